@@ -1,0 +1,41 @@
+# The two commands of the README are `make demo` and `make test`; both make .venv when it is missing.
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+STAMP := $(VENV)/.installed
+
+.PHONY: demo test test-fast test-slow lint types fuzz generate clean
+
+$(STAMP): pyproject.toml hatch_build.py
+	$(PYTHON) -c 'import sys; sys.exit("Scenic needs Python 3.11 or newer; this is " + sys.version.split()[0]) if sys.version_info < (3, 11) else None'
+	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install -q --disable-pip-version-check -e '.[dev]'
+	touch $@
+
+demo: $(STAMP)
+	$(BIN)/python -m examples.demo out
+
+test: test-fast test-slow
+
+test-fast: $(STAMP)
+	$(BIN)/python -m pytest -q -n auto -m 'not slow'
+
+test-slow: $(STAMP)
+	$(BIN)/python -m pytest -q -n auto -m slow
+
+lint: $(STAMP)
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+
+types: $(STAMP)
+	$(BIN)/mypy
+
+fuzz: $(STAMP)
+	$(BIN)/python -m fuzz $(if $(MINUTES),--minutes $(MINUTES))
+
+# Regenerates the parser after a change of grammar/scenic.gram (imports notice a stale one too).
+generate: $(STAMP)
+	$(BIN)/python -m grammar.generator
+
+clean:
+	rm -rf $(VENV) build dist out scenic/compiler/_generated .mypy_cache .ruff_cache .pytest_cache .hypothesis

@@ -1,0 +1,186 @@
+"""The layers import only downwards: the invariants of ARCHITECTURE.md, read off the import statements."""
+
+import ast
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parent.parent
+PACKAGE = ROOT / "scenic"
+
+LAYERS = {
+    "language": set(),
+    "compiler": {"language"},
+    "graph": set(),
+    "runtime": {"graph", "language"},
+    "analysis": {"graph", "runtime", "language", "compiler"},
+    "formats": {"runtime", "language"},
+    "ide": {"compiler", "language"},
+    "lsp": {"ide", "language"},
+}
+"""What each layer may import of the others."""
+
+LIBRARIES = {
+    "language": set(),
+    "compiler": set(),
+    "graph": {"numpy", "scipy"},
+    "ide": set(),
+    "lsp": {"pygls", "lsprotocol"},
+}
+"""Libraries of each layer beside the standard library; layers left out may use any dependency."""
+
+ONLY_IN = {
+    "fcl": {"runtime"},
+    "embreex": {"runtime", "formats"},
+    "z3": {"analysis"},
+    "pygls": {"lsp"},
+    "lsprotocol": {"lsp"},
+    "click": {"cli"},
+    "rich": {"cli"},
+}
+"""Libraries that only some layers may know."""
+
+HEAVY = {"scipy", "trimesh", "z3", "embreex", "shapely", "fcl", "manifold3d", "PIL", "networkx"}
+"""Libraries that may not be imported when a module is."""
+
+
+def modules() -> Iterator[tuple[str, Path]]:
+    for path in sorted(PACKAGE.rglob("*.py")):
+        if "_generated" not in path.parts:
+            yield ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__"), path
+
+
+def imports(path: Path, *, at_start: bool = False) -> Iterator[str]:
+    """Names of modules that a file imports: everywhere in it, or only when it is itself imported."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    for node in _statements(tree, at_start):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"{path}:{node.lineno}: relative import"
+            assert node.module is not None
+            yield node.module
+            yield from (f"{node.module}.{alias.name}" for alias in node.names)
+
+
+def _statements(tree: ast.AST, at_start: bool) -> Iterator[ast.AST]:
+    for node in ast.iter_child_nodes(tree):
+        if at_start and isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda):
+            continue
+        if isinstance(node, ast.If) and "TYPE_CHECKING" in ast.dump(node.test):
+            continue
+        yield node
+        yield from _statements(node, at_start)
+
+
+def layer(module: str) -> str | None:
+    parts = module.split(".")
+    return parts[1] if parts[0] == "scenic" and len(parts) > 1 and (PACKAGE / parts[1]).is_dir() else None
+
+
+ALL = dict(modules())
+
+
+@pytest.mark.parametrize("module", ALL)
+def test_layers_import_downwards(module: str) -> None:
+    own = layer(module)
+    if own not in LAYERS:
+        return
+    wrong = {name for name in imports(ALL[module]) if layer(name) not in (None, own, *LAYERS[own])}
+    assert not wrong
+    joins = {name for name in imports(ALL[module]) if name == "scenic.pipeline"}
+    assert not joins, "only commands and the API call the pipeline"
+
+
+@pytest.mark.parametrize("module", ALL)
+def test_layers_keep_their_libraries(module: str) -> None:
+    own = layer(module)
+    for name in {name.partition(".")[0] for name in imports(ALL[module])} - {"scenic"}:
+        if name in sys.stdlib_module_names:
+            continue
+        assert own not in LIBRARIES or name in LIBRARIES[own], f"{own} imports {name}"
+        assert own in ONLY_IN.get(name, {own}), f"{own} imports {name}"
+
+
+@pytest.mark.parametrize("module", ALL)
+def test_heavy_libraries_are_imported_where_they_are_used(module: str) -> None:
+    early = {name.partition(".")[0] for name in imports(ALL[module], at_start=True)} & HEAVY
+    assert not early
+
+
+def test_there_are_no_import_cycles() -> None:
+    edges = {
+        module: {name for name in imports(path) if name in ALL and name != module}
+        for module, path in ALL.items()
+    }
+    done: set[str] = set()
+
+    def visit(module: str, trail: tuple[str, ...]) -> None:
+        assert module not in trail, " -> ".join((*trail[trail.index(module) :], module))
+        if module in done:
+            return
+        for name in sorted(edges[module]):
+            # A package's own __init__ is imported before its modules: that is no cycle.
+            if not module.startswith(f"{name}."):
+                visit(name, (*trail, module))
+        done.add(module)
+
+    for module in edges:
+        visit(module, ())
+
+
+CHANGING = {"append", "extend", "insert", "add", "update", "setdefault", "pop", "popitem", "clear", "remove"}
+
+
+def test_no_module_has_mutable_state() -> None:
+    """Nothing that a module binds is changed by its functions: no ``global``, no change of a module's container."""
+    found = []
+    for module, path in ALL.items():
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+        containers = {
+            target.id
+            for node in tree.body
+            if isinstance(node, ast.Assign | ast.AnnAssign)
+            for target in getattr(node, "targets", [getattr(node, "target", None)])
+            if isinstance(target, ast.Name)
+        }
+        for function in ast.walk(tree):
+            if not isinstance(function, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda):
+                continue
+            for node in ast.walk(function):
+                if isinstance(node, ast.Global):
+                    found.append(f"{module}:{node.lineno}: global")
+                name = _changed(node)
+                if name in containers and name not in _locals(function):
+                    found.append(f"{module}:{node.lineno}: changes {name}")
+    assert not found
+
+
+def _changed(node: ast.AST) -> str | None:
+    """The name of the container that a node changes in place."""
+    if isinstance(node, ast.Subscript | ast.Attribute) and isinstance(node.ctx, ast.Store | ast.Del):
+        return node.value.id if isinstance(node.value, ast.Name) else None
+    if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr in CHANGING:
+        return node.func.value.id if isinstance(node.func.value, ast.Name) else None
+    return None
+
+
+def _locals(function: ast.AST) -> set[str]:
+    stored = {
+        node.id
+        for node in ast.walk(function)
+        if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)
+    }
+    return stored | {node.arg for node in ast.walk(function) if isinstance(node, ast.arg)}
+
+
+def test_a_static_check_loads_no_numpy() -> None:
+    import subprocess
+
+    program = (
+        "import sys, scenic; scenic.parse('ego = new Object'); "
+        "sys.exit('numpy' in sys.modules or 'rich' in sys.modules)"
+    )
+    assert subprocess.run([sys.executable, "-c", program], cwd=ROOT, check=False).returncode == 0
