@@ -1,0 +1,72 @@
+"""Scenic: compile, check and sample programs that describe scenes.
+
+>>> import scenic
+>>> scenario = scenic.scenarioFromString("ego = new Object at (Range(0, 1), 0)")
+>>> [scene] = scenario.sample(1, seed=7)
+>>> 0 <= scene.egoObject.position.x <= 1
+True
+
+Names are looked up when they are first used, so that ``scenic check`` and the language server start without
+NumPy and the geometry libraries.
+"""
+
+from importlib import import_module
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from scenic.compiler.parser import ParseResult, parse
+    from scenic.language.errors import (
+        InvalidScenarioError,
+        ParseCompileError,
+        RandomControlFlowError,
+        RejectionException,
+        ScenicError,
+        ScenicSyntaxError,
+        SpecifierError,
+    )
+    from scenic.pipeline import load, scenarioFromFile, scenarioFromString
+    from scenic.runtime.scenario import Scenario
+    from scenic.runtime.scene import Scene
+
+_HOMES = MappingProxyType(
+    {
+        "ParseResult": "scenic.compiler.parser",
+        "parse": "scenic.compiler.parser",
+        "InvalidScenarioError": "scenic.language.errors",
+        "ParseCompileError": "scenic.language.errors",
+        "RandomControlFlowError": "scenic.language.errors",
+        "RejectionException": "scenic.language.errors",
+        "ScenicError": "scenic.language.errors",
+        "ScenicSyntaxError": "scenic.language.errors",
+        "SpecifierError": "scenic.language.errors",
+        "load": "scenic.pipeline",
+        "scenarioFromFile": "scenic.pipeline",
+        "scenarioFromString": "scenic.pipeline",
+        "Scenario": "scenic.runtime.scenario",
+        "Scene": "scenic.runtime.scene",
+    }
+)
+
+__all__ = [
+    "InvalidScenarioError",
+    "ParseCompileError",
+    "ParseResult",
+    "RandomControlFlowError",
+    "RejectionException",
+    "Scenario",
+    "Scene",
+    "ScenicError",
+    "ScenicSyntaxError",
+    "SpecifierError",
+    "load",
+    "parse",
+    "scenarioFromFile",
+    "scenarioFromString",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOMES:
+        raise AttributeError(f"module 'scenic' has no attribute {name!r}")
+    return getattr(import_module(_HOMES[name]), name)

@@ -1,0 +1,101 @@
+"""What the tools say about a program: one value for every problem, and the table of all codes.
+
+A diagnostic is plain data. The command line, the language server and the exceptions of the Python API
+all show the same ones; how they look is decided where they are shown.
+"""
+
+from dataclasses import dataclass, field
+from enum import StrEnum
+from types import MappingProxyType
+from typing import Final
+
+from scenic.language.spans import Span
+
+
+class Severity(StrEnum):
+    """How bad it is; only errors make ``scenic check`` fail."""
+
+    ERROR = "error"
+    WARNING = "warning"
+    INFORMATION = "information"
+
+
+@dataclass(frozen=True, slots=True)
+class Label:
+    """A second place that takes part in a problem, and what it has to do with it."""
+
+    span: Span
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Diagnostic:
+    """One problem.
+
+    ``span`` is ``None`` only for problems of no place in a text (a file that cannot be read).
+    ``message`` says what is wrong, ``help`` what to do about it; neither ends in a full stop.
+    """
+
+    code: str
+    message: str
+    span: Span | None = None
+    severity: Severity = Severity.ERROR
+    filename: str | None = None
+    help: str | None = None
+    labels: tuple[Label, ...] = field(default=())
+
+    def __post_init__(self) -> None:
+        if self.code not in CODES:
+            raise ValueError(f"unknown diagnostic code {self.code!r}")
+
+
+CODES: Final = MappingProxyType(
+    {
+        # Lexical and syntax errors.
+        "SC100": "invalid character",
+        "SC101": "unterminated string",
+        "SC102": "bad indentation",
+        "SC103": "unbalanced bracket",
+        "SC104": "invalid number",
+        "SC105": "invalid string or f-string",
+        "SC106": "text after a line continuation",
+        "SC107": "the file is not UTF-8 text",
+        "SC110": "invalid syntax",
+        "SC111": "missing `new`",
+        "SC112": "nesting too deep",
+        "SC120": "syntax newer than the running Python",
+        # Names and placement.
+        "SC200": "reserved name",
+        "SC201": "statement in the wrong place",
+        "SC202": "undefined name",
+        "SC210": "duplicate definition",
+        "SC220": "a literal was required",
+        # Meaning, found without running the program.
+        "SC300": "misspelt property",
+        # Found while the program runs.
+        "SC400": "the program raised an exception",
+        "SC401": "invalid scenario",
+        "SC402": "specifiers that do not fit together",
+        "SC403": "random value used to decide control flow",
+        "SC404": "value of the wrong type",
+        "SC405": "unsuitable value",
+        "SC406": "module not found",
+        # Found while sampling.
+        "SC500": "no scene found",
+        "SC501": "a requirement or property failed while sampling",
+        # Files, options, parameters.
+        "SC600": "file cannot be read",
+        "SC601": "file cannot be written",
+        "SC602": "mesh cannot be used",
+        "SC603": "unknown parameter",
+        "SC604": "bad option",
+        "SC605": "scenario cannot be chosen",
+        # Found by analysis.
+        "SC700": "requirements contradict each other",
+        "SC701": "requirement always holds",
+        # The tools themselves.
+        "SC900": "not supported yet",
+        "SC999": "internal error",
+    }
+)
+"""Every code with its short title; a clash would be a duplicate key here."""

@@ -1,0 +1,195 @@
+"""What the keywords of the language mean, for readers: hard ones, soft ones and the temporal operators."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Final
+
+__all__ = ["HARD_KEYWORDS", "PYTHON_KEYWORDS", "SOFT_KEYWORDS", "TEMPORAL_OPERATORS", "TemporalOperator"]
+
+
+@dataclass(frozen=True, slots=True)
+class TemporalOperator:
+    """An operator that may stand in the condition of ``require`` and speaks of the course of a simulation."""
+
+    name: str
+    operands: tuple[str, ...]
+    forms: tuple[str, ...]
+    documentation: str
+    available: bool = True
+
+
+_TEMPORAL = (
+    TemporalOperator(
+        "always",
+        ("condition",),
+        ("always condition",),
+        "The condition holds at every step from now on.",
+        available=False,
+    ),
+    TemporalOperator(
+        "eventually",
+        ("condition",),
+        ("eventually condition",),
+        "The condition holds at some step from now on.",
+        available=False,
+    ),
+    TemporalOperator(
+        "next", ("condition",), ("next condition",), "The condition holds at the next step.", available=False
+    ),
+    TemporalOperator(
+        "until",
+        ("condition", "end"),
+        ("condition until end",),
+        "The end comes, and the condition holds at every step before.",
+        available=False,
+    ),
+    TemporalOperator(
+        "implies",
+        ("premise", "conclusion"),
+        ("premise implies conclusion",),
+        "The conclusion holds if the premise does.",
+    ),
+)
+
+TEMPORAL_OPERATORS: Final[Mapping[str, TemporalOperator]] = MappingProxyType(
+    {operator.name: operator for operator in _TEMPORAL}
+)
+"""The temporal operators by name."""
+
+HARD_KEYWORDS: Final[Mapping[str, str]] = MappingProxyType(
+    {
+        "at": "Specifier `at position`: places the new object. Operator `field at position`: the field's value there.",
+        "by": "Introduces a distance, an offset or a scale, as in `left of chair by 0.5`.",
+        "do": "Runs a behavior or scenario from inside another: `do behavior`, `do behavior until condition`.",
+        "new": "Creates an instance of a class with the specifiers that follow: `new Object at (0, 0), with width 2`.",
+        "of": "Part of operators and specifiers such as `front of`, `left of`, `relative heading of`.",
+        "on": "Specifier `on target`: stands the new object with its base on a surface.",
+        "require": "Keeps only scenes in which the condition holds. `require[0.8] condition` lets it fail sometimes.",
+        "to": "Part of operators such as `distance to` and `relative to`; in `record`, introduces the file.",
+        "until": "`do behavior until condition`, `wait until condition`, and the temporal operator of `require`.",
+    }
+)
+"""The hard keywords that Scenic adds to Python's."""
+
+PYTHON_KEYWORDS: Final[Mapping[str, str]] = MappingProxyType(
+    {
+        "False": "The truth value false.",
+        "None": "The value that stands for nothing.",
+        "True": "The truth value true.",
+        "and": "True if both operands are. In a requirement, both are part of what must hold.",
+        "as": "Gives a name to a requirement, an import, a context or an exception.",
+        "assert": "Raises an error if a condition does not hold. It cannot depend on random values: use `require`.",
+        "async": "Begins a coroutine, or an asynchronous loop or context.",
+        "await": "Waits for a coroutine.",
+        "break": "Ends the innermost loop.",
+        "class": "Defines a class. Without bases it is a class of objects.",
+        "continue": "Goes on with the next round of the innermost loop.",
+        "def": "Defines a function.",
+        "del": "Removes a name, an attribute or an item.",
+        "elif": "A further condition of `if`.",
+        "else": "What to do otherwise.",
+        "except": "Handles exceptions raised in `try`.",
+        "finally": "What to do in any case after `try`.",
+        "for": "Goes through the elements of a sequence; in dynamic statements, introduces a duration.",
+        "from": "Imports names from a module; in operators and specifiers, introduces a starting point.",
+        "global": "Declares that names belong to the module.",
+        "if": "Does something only if a condition holds. It cannot depend on random values.",
+        "import": "Makes a module available. Scenic modules add their objects and requirements to the scenario.",
+        "in": "Membership of a collection or region. Specifier `in region`: a random position there.",
+        "is": "Whether two names stand for the very same value.",
+        "lambda": "A function written as an expression.",
+        "nonlocal": "Declares that names belong to the enclosing function.",
+        "not": "True if the operand is not. Also part of `not visible` and `not in`.",
+        "or": "True if at least one operand is.",
+        "pass": "Does nothing.",
+        "raise": "Raises an exception.",
+        "return": "Ends the function with a value.",
+        "try": "Does something whose failure is handled; with `interrupt when`, something that can be interrupted.",
+        "while": "Repeats as long as a condition holds.",
+        "with": "Specifier `with property value`: gives a property its value. As a statement, uses a context.",
+        "yield": "Gives the next value of a generator.",
+    }
+)
+"""Python's own keywords, in Scenic's light."""
+
+SOFT_KEYWORDS: Final[Mapping[str, str]] = MappingProxyType(
+    {
+        "_": "In a pattern of `match`, matches anything.",
+        "abort": "Ends the innermost enclosing try-interrupt statement.",
+        "above": "Specifier `above reference by distance`: places the object over another.",
+        "additive": "Attribute of a property: the values of all classes along the inheritance chain are collected.",
+        "after": "`terminate after duration`; in `record`, when recording begins.",
+        "ahead": "Specifier `ahead of reference by distance`: places the object in front of another.",
+        "along": "Part of `offset along direction by offset`.",
+        "altitude": "Operator `altitude from start to end`: the angle of a line above the horizontal plane.",
+        "always": "In `require`: the condition holds at every step of the simulation.",
+        "angle": "Operator `angle from start to end`: the heading of a line.",
+        "apparent": "Operator `apparent heading of target from viewpoint`: heading relative to the line of sight.",
+        "apparently": "Specifier `apparently facing heading from viewpoint`: turns relative to the line of sight.",
+        "away": "Part of `facing away from` and `facing directly away from`.",
+        "back": "Operator `back of object`, also in combinations such as `top back left of`.",
+        "behavior": "Defines a behavior: what an agent does during a simulation.",
+        "behind": "Specifier `behind reference by distance`: places the object at the back of another.",
+        "below": "Specifier `below reference by distance`: places the object under another.",
+        "beyond": "Specifier `beyond reference by offset from viewpoint`: places the object behind something.",
+        "bottom": "Operator `bottom of object`, also in combinations such as `bottom front left of`.",
+        "can": "Operator `viewer can see target`: visibility, with occlusion.",
+        "case": "One pattern of `match`.",
+        "choose": "`do choose`: runs one of several behaviors, drawn at random.",
+        "compose": "The part of a scenario that runs other scenarios during a simulation.",
+        "contained": "Specifier `contained in region`: the whole object lies in the region.",
+        "deg": "Operator `angle deg`: an angle in degrees, converted to radians.",
+        "directly": "Part of `facing directly toward`: yaw and pitch, not yaw alone.",
+        "distance": "Operator `distance from start to end`.",
+        "dynamic": "Attribute of a property: its value is read from the simulator at every step.",
+        "ego": "The object from whose point of view the scenario is written. Set with `ego = object`.",
+        "eventually": "In `require`: the condition holds at some step of the simulation.",
+        "every": "In `record`: how often a value is recorded.",
+        "facing": "Specifier `facing direction`, `facing toward target`: turns the object.",
+        "final": "Attribute of a property that always follows from its definition; `record final`: at the end.",
+        "follow": "Operator `follow field from start for distance`: where following a field leads to.",
+        "following": "Specifier `following field from start for distance`: places the object along a field.",
+        "front": "Operator `front of object`, also in combinations such as `front left of`.",
+        "heading": "Part of `relative heading of` and `apparent heading of`.",
+        "implies": "In `require`: the conclusion holds if the premise does.",
+        "initial": "`record initial`: at the start. `initial scenario`: whether this is the top-level scenario.",
+        "interrupt": "`interrupt when condition:` a handler of a try-interrupt statement.",
+        "intersects": "Operator `a intersects b`: whether two objects or regions share a point.",
+        "invariant": "A condition that must hold whenever a behavior or scenario goes on.",
+        "left": "Specifier `left of reference by distance`; operator `left of object`.",
+        "match": "Python's choice between patterns.",
+        "minimum": "Operator `minimum distance from start to end`: between the spaces that two objects occupy.",
+        "model": "`model module` uses a world model.",
+        "monitor": "Defines a monitor; `require monitor` runs one.",
+        "mutate": "Adds noise to the position and orientation of objects.",
+        "next": "In `require`: the condition holds at the next step. Elsewhere Python's function.",
+        "offset": "Operator and specifier `offset by`, `offset along direction by offset`.",
+        "override": "Gives properties of an existing object new values until the scenario ends.",
+        "param": "Sets global parameters.",
+        "past": "Part of `distance past target of base`.",
+        "position": "Part of `relative position of`.",
+        "precondition": "A condition that must hold when a behavior or scenario starts.",
+        "record": "Saves a value during simulations.",
+        "relative": "Operators `relative to`, `relative heading of`, `relative position of`.",
+        "right": "Specifier `right of reference by distance`; operator `right of object`.",
+        "scenario": "Defines a scenario that can be chosen, or composed with others.",
+        "seconds": "Unit of a duration: seconds of simulated time.",
+        "see": "Part of `can see`.",
+        "setup": "The part of a scenario that creates its objects and requirements.",
+        "shuffle": "`do shuffle`: runs several behaviors one after the other in random order.",
+        "simulation": "`terminate simulation`: ends the whole simulation, not only the scenario.",
+        "simulator": "Says which simulator runs the scenes.",
+        "steps": "Unit of a duration: steps of the simulation.",
+        "take": "Takes actions in this step of the simulation.",
+        "terminate": "Ends a scenario or a simulation.",
+        "top": "Operator `top of object`, also in combinations such as `top front left of`.",
+        "toward": "Part of `facing toward` and `facing directly toward`.",
+        "type": "Python's definition of a type alias.",
+        "visible": "Specifier `visible from viewer`; operator `visible region`, `region visible from viewer`.",
+        "wait": "Takes no action, for one step, for a time or until a condition holds.",
+        "when": "Introduces the condition of `terminate when` and `interrupt when`.",
+        "workspace": "The region that contains all objects. Set with `workspace = Workspace(region)`.",
+    }
+)
+"""Words that are keywords only where they act as such."""

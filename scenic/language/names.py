@@ -1,0 +1,255 @@
+"""The names that are always in scope (sections 7.2, 8 and 9 of the specification), as data."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+from types import MappingProxyType
+from typing import Final
+
+__all__ = [
+    "CONVERSIONS",
+    "LIFTED_FUNCTIONS",
+    "LIFTED_METHODS",
+    "NAMES",
+    "RESERVED",
+    "TRACKED",
+    "Name",
+    "NameKind",
+]
+
+
+class NameKind(StrEnum):
+    """What a provided name stands for."""
+
+    CLASS = "class"
+    DISTRIBUTION = "distribution"
+    EXCEPTION = "exception"
+    FUNCTION = "function"
+    REGION = "region"
+    SHAPE = "shape"
+    VALUE = "value"
+
+
+@dataclass(frozen=True, slots=True)
+class Name:
+    """One provided name.
+
+    ``signature`` is how it is called, or the bare name of something that is not called. ``lifted`` marks the functions
+    that take random arguments, so that a call in a condition can become part of the value graph.
+    """
+
+    name: str
+    kind: NameKind
+    signature: str
+    documentation: str
+    lifted: bool = False
+    available: bool = True
+
+
+def _name(
+    signature: str, kind: NameKind, documentation: str, *, lifted: bool = False, available: bool = True
+) -> Name:
+    return Name(signature.partition("(")[0], kind, signature, documentation, lifted, available)
+
+
+def _function(signature: str, documentation: str, *, lifted: bool = False, available: bool = True) -> Name:
+    return _name(signature, NameKind.FUNCTION, documentation, lifted=lifted, available=available)
+
+
+def _distribution(signature: str, documentation: str, *, available: bool = True) -> Name:
+    return _name(signature, NameKind.DISTRIBUTION, documentation, available=available)
+
+
+def _region(signature: str, documentation: str, *, available: bool = True) -> Name:
+    return _name(signature, NameKind.REGION, documentation, available=available)
+
+
+def _shape(signature: str, documentation: str) -> Name:
+    return _name(signature, NameKind.SHAPE, documentation)
+
+
+def _class(signature: str, documentation: str, *, available: bool = True) -> Name:
+    return _name(signature, NameKind.CLASS, documentation, available=available)
+
+
+def _exception(signature: str, documentation: str, *, available: bool = True) -> Name:
+    return _name(signature, NameKind.EXCEPTION, documentation, available=available)
+
+
+_ALL = (
+    # Classes and values
+    _class("Point", "A position in space. Create one with `new Point`."),
+    _class("OrientedPoint", "A position with an orientation. Create one with `new OrientedPoint`."),
+    _class("Object", "A physical object. Create one with `new Object`, or derive classes from it."),
+    _class(
+        "Vector(x, y, z=0)", "A vector of three coordinates; `x @ y` and tuples do as well nearly everywhere."
+    ),
+    _class(
+        "Orientation",
+        "A rotation in space. Made by `Orientation.fromEuler(yaw, pitch, roll)` or "
+        "`Orientation.fromQuaternion((x, y, z, w))`; `*` composes.",
+    ),
+    _class(
+        "VectorField(name, value, minSteps=4, defaultStepSize=5)",
+        "An orientation for every point of space, given by a function.",
+        available=False,
+    ),
+    _class(
+        "PolygonalVectorField(name, cells, headingFunction=None, defaultHeading=None)",
+        "A vector field that is constant on polygons.",
+        available=False,
+    ),
+    _class("Workspace(region)", "The region that contains all objects, for `workspace = Workspace(region)`."),
+    _class("Mutator", "Base class of what adds noise to mutated objects.", available=False),
+    _class("Behavior", "Base class of all behaviors.", available=False),
+    _class("Monitor", "Base class of all monitors.", available=False),
+    _class("Distribution", "Base class of distributions written in Python.", available=False),
+    _class("File(pattern, **options)", "A recorder that writes one file per series.", available=False),
+    _class("Files(pattern, **options)", "A recorder that writes one file per value.", available=False),
+    Name(
+        "globalParameters",
+        NameKind.VALUE,
+        "globalParameters",
+        "The global parameters set by `param` and on the command line, to be read as attributes or items.",
+    ),
+    # Exceptions
+    _exception("RejectionException", "Raised by a function to reject the current sample."),
+    _exception("GuardViolation", "A guard of a behavior or scenario does not hold.", available=False),
+    _exception("PreconditionViolation", "A precondition does not hold.", available=False),
+    _exception("InvariantViolation", "An invariant does not hold.", available=False),
+    # Functions
+    _function("sin(x)", "The sine of an angle in radians.", lifted=True),
+    _function("cos(x)", "The cosine of an angle in radians.", lifted=True),
+    _function("hypot(x, y, ...)", "The length of the vector with these coordinates.", lifted=True),
+    _function("max(a, b, ...)", "The largest of its arguments.", lifted=True),
+    _function("min(a, b, ...)", "The smallest of its arguments.", lifted=True),
+    _function("abs(x)", "The absolute value.", lifted=True),
+    _function("round(x, digits=None)", "The nearest integer, or number with so many decimals.", lifted=True),
+    _function("len(x)", "The number of elements.", lifted=True),
+    _function("str(x)", "Conversion to text, also of random values.", lifted=True),
+    _function("int(x)", "Conversion to an integer, also of random values.", lifted=True),
+    _function("float(x)", "Conversion to a real number, also of random values.", lifted=True),
+    _function("filter(function, values)", "The values for which the function is true, as a list."),
+    _function("range(stop)", "Python's range; its arguments must not be random."),
+    _function("resample(distribution)", "An independent draw of the same distribution."),
+    _function("localPath(path)", "A path relative to the folder of this source file."),
+    _function(
+        "verbosePrint(*values, level=1, indent=True)", "Prints if the verbosity is at least the level."
+    ),
+    _function(
+        "distributionFunction(function)",
+        "Makes a Python function accept random arguments: it is then called with sampled ones.",
+    ),
+    _function("simulation()", "The running simulation.", available=False),
+    # Distributions
+    _distribution("Range(low, high)", "A real number, uniform on an interval."),
+    _distribution("DiscreteRange(low, high, weights=None)", "An integer between two, both included."),
+    _distribution("Normal(mean, stdDev)", "A real number with a normal distribution."),
+    _distribution(
+        "TruncatedNormal(mean, stdDev, low, high)", "A normal distribution restricted to an interval."
+    ),
+    _distribution("Uniform(value, ...)", "One of the values, each equally likely."),
+    _distribution("Discrete({value: weight, ...})", "One of the values, with these relative weights."),
+    _distribution("Options({value: weight, ...})", "Another name of `Discrete`; takes a sequence too."),
+    _distribution("VerifaiRange(low, high)", "A real number drawn by an external sampler.", available=False),
+    _distribution(
+        "VerifaiDiscreteRange(low, high)", "An integer drawn by an external sampler.", available=False
+    ),
+    _distribution("VerifaiOptions(options)", "An option drawn by an external sampler.", available=False),
+    _distribution("VerifaiParameter", "Base of the values drawn by an external sampler.", available=False),
+    _distribution("TimeSeries(parameter)", "A parameter drawn afresh at every step.", available=False),
+    # Shapes
+    _shape("BoxShape(dimensions=(1, 1, 1), scale=1)", "A cuboid."),
+    _shape("CylinderShape(dimensions=(1, 1, 1), scale=1, sections=24)", "A cylinder along the Z axis."),
+    _shape("ConeShape(dimensions=(1, 1, 1), scale=1)", "A cone along the Z axis, with its tip up."),
+    _shape("SpheroidShape(dimensions=(1, 1, 1), scale=1)", "A spheroid."),
+    _shape(
+        "MeshShape(mesh, dimensions=None, scale=1, initial_rotation=None)",
+        "The form of a closed mesh; `MeshShape.fromFile(path)` reads one.",
+    ),
+    # Regions
+    _region("everywhere", "All of space."),
+    _region("nowhere", "The empty region."),
+    _region("PointSetRegion(name, points)", "A finite set of points.", available=False),
+    _region("GridRegion(name, grid, Ax, Ay, Bx, By)", "The free cells of a grid.", available=False),
+    _region("PolylineRegion(points)", "A sequence of line segments in the plane.", available=False),
+    _region("PathRegion(points)", "A sequence of line segments in space.", available=False),
+    _region("PolygonalRegion(points, z=0)", "A polygon in a horizontal plane."),
+    _region("PolygonalFootprintRegion(polygon)", "All points above and below a polygon.", available=False),
+    _region("CircularRegion(center, radius)", "A disc in a horizontal plane."),
+    _region(
+        "SectorRegion(center, radius, heading, angle)",
+        "A sector of a disc in a horizontal plane.",
+        available=False,
+    ),
+    _region("RectangularRegion(position, heading, width, length)", "A rectangle in a horizontal plane."),
+    _region(
+        "MeshVolumeRegion(mesh, dimensions=None, position=None, rotation=None)",
+        "The inside of a closed mesh.",
+        available=False,
+    ),
+    _region(
+        "MeshSurfaceRegion(mesh, dimensions=None, position=None, rotation=None)",
+        "The surface of a mesh.",
+        available=False,
+    ),
+    _region("BoxRegion(dimensions=(1, 1, 1), position=None, rotation=None)", "A solid cuboid."),
+    _region("SpheroidRegion(dimensions=(2, 2, 2), position=None, rotation=None)", "A solid spheroid."),
+)
+
+NAMES: Final[Mapping[str, Name]] = MappingProxyType({name.name: name for name in _ALL})
+"""What is in scope beside Python's own builtins."""
+
+CONVERSIONS: Final = frozenset({"int", "float", "str"})
+"""Conversions: their calls are lifted wherever they stand, so the names cannot be bound."""
+
+TRACKED: Final[Mapping[str, str]] = MappingProxyType(
+    {
+        "ego": "The object from whose point of view the scenario is written. Set with `ego = object`.",
+        "workspace": "The region that contains all objects. Set with `workspace = Workspace(region)`.",
+    }
+)
+"""Names that read and write the current scenario; they can only be assigned as a whole."""
+
+RESERVED: Final = frozenset({*TRACKED, *CONVERSIONS, "globalParameters"})
+"""Names that nothing else may bind (section 1.3)."""
+
+LIFTED_FUNCTIONS: Final = frozenset(name.name for name in _ALL if name.lifted)
+"""Functions whose calls in a condition may become part of the value graph."""
+
+LIFTED_METHODS: Final = frozenset(
+    {
+        # Vectors
+        "altitudeTo",
+        "angleTo",
+        "angleWith",
+        "azimuthTo",
+        "cross",
+        "distanceTo",
+        "dot",
+        "norm",
+        "normalized",
+        "offsetLocally",
+        "offsetRadially",
+        "offsetRotated",
+        "rotatedBy",
+        "sphericalCoordinates",
+        # Orientations
+        "approxEq",
+        "localAnglesFor",
+        # Points and objects
+        "canSee",
+        "containsPoint",
+        "distancePast",
+        "intersects",
+        "relativePosition",
+        "relativize",
+        "toHeading",
+        "toOrientation",
+        "toVector",
+        # Regions
+        "containsObject",
+        "containsRegion",
+    }
+)
+"""Methods of vectors, orientations, objects and regions whose calls in a condition may become part of the graph."""

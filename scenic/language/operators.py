@@ -1,0 +1,256 @@
+"""The operators that Scenic adds to Python's, as data.
+
+The names are those of ``Operation.operator`` in the tree and of the first argument of the prelude's ``operation``;
+the operands stand in the order declared here. An operand with a default may be left out of the text and is then
+``None`` in the tree.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Final
+
+__all__ = ["OPERATORS", "SIDES", "Operand", "Operator"]
+
+
+@dataclass(frozen=True, slots=True)
+class Operand:
+    """One operand of an operator or specifier.
+
+    ``type`` is the wanted type in the words of the language's manual. ``default`` says in words what is meant when
+    the text leaves the operand out; ``None`` when it may not.
+    """
+
+    name: str
+    type: str
+    default: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Operator:
+    """One operator: its name in the tree, its operands in order, and what a reader should know.
+
+    ``forms`` are all ways to write it, operands by their names. ``available`` tells whether this version builds it;
+    a program that uses an operator that is not available is refused where it stands.
+    """
+
+    name: str
+    operands: tuple[Operand, ...]
+    result: str
+    forms: tuple[str, ...]
+    documentation: str
+    available: bool = True
+
+
+SIDES: Final = (
+    "front",
+    "back",
+    "left",
+    "right",
+    "top",
+    "bottom",
+    "front left",
+    "front right",
+    "back left",
+    "back right",
+    "top front left",
+    "top front right",
+    "top back left",
+    "top back right",
+    "bottom front left",
+    "bottom front right",
+    "bottom back left",
+    "bottom back right",
+)
+"""The sides of an object's bounding box that have an operator ``<side> of``."""
+
+
+def _side(side: str) -> Operator:
+    part = {1: "middle of the face", 2: "middle of the edge", 3: "corner"}[len(side.split())]
+    return Operator(
+        f"{side} of",
+        (Operand("object", "object"),),
+        "oriented point",
+        (f"{side} of object",),
+        f"The {part} at the {side} of the object's bounding box, with the orientation of the object.",
+    )
+
+
+_EGO = "the ego"
+
+_ALL = (
+    Operator(
+        "deg",
+        (Operand("angle", "scalar"),),
+        "scalar",
+        ("angle deg",),
+        "An angle given in degrees, converted to radians. It applies to everything multiplied on its left: "
+        "`2 * x deg` is `(2 * x) deg`.",
+    ),
+    Operator(
+        "@",
+        (Operand("x", "scalar"), Operand("y", "scalar")),
+        "vector",
+        ("x @ y",),
+        "The vector with these two coordinates and `z = 0`.",
+    ),
+    Operator(
+        "at",
+        (Operand("field", "vector field"), Operand("position", "vector")),
+        "orientation",
+        ("field at position",),
+        "The orientation that a vector field has at a position.",
+        available=False,
+    ),
+    Operator(
+        "relative to",
+        (
+            Operand("value", "heading, orientation, vector or field"),
+            Operand("base", "the same, or oriented point"),
+        ),
+        "the type of the operands",
+        ("value relative to base",),
+        "The first operand read in the frame of the second: headings and orientations are composed, vectors are "
+        "added, and a vector relative to an oriented point is an oriented point at that offset.",
+    ),
+    Operator(
+        "offset by",
+        (Operand("base", "heading, orientation, vector or oriented point"), Operand("offset", "the same")),
+        "the type of the operands",
+        ("base offset by offset",),
+        "The same as `relative to`, reading more naturally for vectors.",
+    ),
+    Operator(
+        "offset along",
+        (
+            Operand("position", "vector"),
+            Operand("direction", "heading, orientation or field"),
+            Operand("offset", "vector"),
+        ),
+        "vector",
+        ("position offset along direction by offset",),
+        "A position moved by an offset that is given in the frame of the direction.",
+    ),
+    Operator(
+        "relative position",
+        (Operand("target", "vector"), Operand("base", "vector", _EGO)),
+        "vector",
+        ("relative position of target", "relative position of target from base"),
+        "The vector from the base to the target, in global coordinates.",
+    ),
+    Operator(
+        "relative heading",
+        (Operand("heading", "heading"), Operand("base", "heading", _EGO)),
+        "scalar",
+        ("relative heading of heading", "relative heading of heading from base"),
+        "The difference of two global headings, between -pi and pi.",
+    ),
+    Operator(
+        "apparent heading",
+        (Operand("target", "oriented point"), Operand("viewpoint", "vector", _EGO)),
+        "scalar",
+        ("apparent heading of target", "apparent heading of target from viewpoint"),
+        "The heading of the target relative to the line of sight from the viewpoint.",
+    ),
+    Operator(
+        "distance",
+        (Operand("start", "vector or region", _EGO), Operand("end", "vector or region", _EGO)),
+        "scalar",
+        (
+            "distance to end",
+            "distance from start",
+            "distance from start to end",
+            "distance to end from start",
+        ),
+        "The straight distance between two points, or between a point and a region. An object counts as its "
+        "position; see `minimum distance` for its extent.",
+    ),
+    Operator(
+        "minimum distance",
+        (Operand("start", "object", _EGO), Operand("end", "object", _EGO)),
+        "scalar",
+        (
+            "minimum distance to end",
+            "minimum distance from start",
+            "minimum distance from start to end",
+            "minimum distance to end from start",
+        ),
+        "The smallest distance between the spaces that two objects occupy; 0 if they touch.",
+    ),
+    Operator(
+        "distance past",
+        (Operand("target", "vector"), Operand("base", "oriented point", _EGO)),
+        "scalar",
+        ("distance past target", "distance past target of base"),
+        "How far the base is ahead of the target, measured along the heading of the base.",
+    ),
+    Operator(
+        "angle",
+        (Operand("start", "vector", _EGO), Operand("end", "vector", _EGO)),
+        "scalar",
+        ("angle to end", "angle from start", "angle from start to end", "angle to end from start"),
+        "The heading of the line from one position to another: 0 is North (+Y), and it grows anticlockwise.",
+    ),
+    Operator(
+        "altitude",
+        (Operand("start", "vector", _EGO), Operand("end", "vector", _EGO)),
+        "scalar",
+        (
+            "altitude to end",
+            "altitude from start",
+            "altitude from start to end",
+            "altitude to end from start",
+        ),
+        "The angle of the line from one position to another above the horizontal plane.",
+    ),
+    Operator(
+        "follow",
+        (Operand("field", "vector field"), Operand("start", "vector"), Operand("distance", "scalar")),
+        "oriented point",
+        ("follow field from start for distance",),
+        "The point reached by following a vector field for a distance, with the orientation of the field there.",
+        available=False,
+    ),
+    Operator(
+        "visible",
+        (Operand("region", "region"), Operand("viewer", "point", _EGO)),
+        "region",
+        ("visible region", "region visible from viewer"),
+        "The part of a region that the viewer's view volume covers; nothing occludes here.",
+        available=False,
+    ),
+    Operator(
+        "not visible",
+        (Operand("region", "region"), Operand("viewer", "point", _EGO)),
+        "region",
+        ("not visible region", "region not visible from viewer"),
+        "The part of a region that the viewer's view volume does not cover; nothing occludes here.",
+        available=False,
+    ),
+    Operator(
+        "can see",
+        (Operand("viewer", "point"), Operand("target", "vector, point or object")),
+        "boolean",
+        ("viewer can see target",),
+        "Whether the viewer sees the target past the other objects. For requirements and dynamic code only.",
+        available=False,
+    ),
+    Operator(
+        "intersects",
+        (Operand("first", "object or region"), Operand("second", "object or region")),
+        "boolean",
+        ("first intersects second",),
+        "Whether two objects or regions share a point.",
+    ),
+    Operator(
+        "initial scenario",
+        (),
+        "boolean",
+        ("initial scenario",),
+        "True while the top-level scenario is set up, false in scenarios that start later.",
+    ),
+    *(_side(side) for side in SIDES),
+)
+
+OPERATORS: Final[Mapping[str, Operator]] = MappingProxyType({operator.name: operator for operator in _ALL})
+"""Every operator by its name in the tree."""

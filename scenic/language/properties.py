@@ -1,0 +1,375 @@
+"""The built-in classes, their properties and their derived attributes, as data (section 5.1 of the specification).
+
+Defaults are given as text for readers; the runtime computes them.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Final
+
+__all__ = [
+    "CLASSES",
+    "PROPERTY_ATTRIBUTES",
+    "Attribute",
+    "BuiltinClass",
+    "BuiltinProperty",
+    "attributes_of",
+    "properties_of",
+]
+
+
+@dataclass(frozen=True, slots=True)
+class BuiltinProperty:
+    """One property as one built-in class defines it.
+
+    ``type`` and ``default`` are in the words of the manual. ``needs`` are the properties that the default reads.
+    """
+
+    name: str
+    type: str
+    default: str
+    documentation: str
+    needs: tuple[str, ...] = ()
+    dynamic: bool = False
+    final: bool = False
+    additive: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Attribute:
+    """An attribute or method that instances have without its being a property: it cannot be specified."""
+
+    name: str
+    type: str
+    documentation: str
+    is_method: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class BuiltinClass:
+    """A built-in class: what it defines itself, in order; what it inherits comes from ``base``."""
+
+    name: str
+    base: str | None
+    documentation: str
+    properties: tuple[BuiltinProperty, ...]
+    attributes: tuple[Attribute, ...]
+
+
+PROPERTY_ATTRIBUTES: Final[Mapping[str, str]] = MappingProxyType(
+    {
+        "additive": "The value collects the definitions of all classes along the inheritance chain in a tuple, "
+        "the most derived first.",
+        "dynamic": "During a simulation the value is read from the simulator at every step.",
+        "final": "The value always follows from its definition: it can be neither specified nor defined again.",
+    }
+)
+"""What may stand in the brackets of a property definition."""
+
+_P = BuiltinProperty
+
+_POINT = BuiltinClass(
+    "Point",
+    None,
+    "A position in space.",
+    (
+        _P("position", "vector", "(0, 0, 0)", "Global position, in metres.", dynamic=True),
+        _P("width", "scalar", "0", "Extent along the local X axis; points have none."),
+        _P("length", "scalar", "0", "Extent along the local Y axis; points have none."),
+        _P("height", "scalar", "0", "Extent along the local Z axis; points have none."),
+        _P(
+            "baseOffset",
+            "vector",
+            "(0, 0, 0)",
+            "The base point, relative to the position, that `on` puts on a surface.",
+        ),
+        _P(
+            "contactTolerance",
+            "scalar",
+            "0",
+            "The small gap that `on` and the directional specifiers leave, in metres.",
+        ),
+        _P(
+            "onDirection",
+            "vector or None",
+            "None",
+            "The direction in which `on` projects a position onto a surface.",
+        ),
+        _P("viewAngles", "pair of scalars", "(360 deg, 180 deg)", "Horizontal and vertical angle of view."),
+        _P("visibleDistance", "scalar", "50", "How far it sees, in metres."),
+        _P(
+            "viewRayDensity",
+            "scalar",
+            "5",
+            "Rays per degree, in each dimension, with which visibility is tested.",
+        ),
+        _P("viewRayCount", "pair of integers or None", "None", "Numbers of rays, instead of a density."),
+        _P(
+            "viewRayDistanceScaling", "boolean", "False", "Whether more rays are sent to things farther away."
+        ),
+        _P(
+            "regionContainedIn",
+            "region or None",
+            "None",
+            "The region that must contain it; `None` means the workspace.",
+        ),
+        _P("mutationScale", "scalar", "0", "Factor of the noise that mutation adds; 0 means none."),
+        _P(
+            "positionStdDev",
+            "vector",
+            "(1, 1, 0)",
+            "Standard deviation of the noise on the position, per axis.",
+        ),
+        _P(
+            "mutator",
+            "tuple of mutators",
+            "a position mutator",
+            "What adds the noise.",
+            ("positionStdDev",),
+            additive=True,
+        ),
+    ),
+    (Attribute("toVector", "vector", "The position.", is_method=True),),
+)
+
+_ORIENTED_POINT = BuiltinClass(
+    "OrientedPoint",
+    "Point",
+    "A position in space with an orientation.",
+    (
+        _P(
+            "yaw",
+            "scalar",
+            "0",
+            "Rotation about the Z axis of the parent orientation, in radians.",
+            dynamic=True,
+        ),
+        _P("pitch", "scalar", "0", "Rotation about the X axis after the yaw, in radians.", dynamic=True),
+        _P("roll", "scalar", "0", "Rotation about the Y axis after yaw and pitch, in radians.", dynamic=True),
+        _P(
+            "parentOrientation",
+            "orientation",
+            "no rotation",
+            "The frame in which yaw, pitch and roll are read.",
+        ),
+        _P(
+            "orientation",
+            "orientation",
+            "parentOrientation turned by yaw, pitch, roll",
+            "Global orientation.",
+            ("yaw", "pitch", "roll", "parentOrientation"),
+            dynamic=True,
+            final=True,
+        ),
+        _P(
+            "heading",
+            "scalar",
+            "orientation.yaw",
+            "Global yaw, in radians: 0 is North (+Y), growing anticlockwise.",
+            ("orientation",),
+            dynamic=True,
+            final=True,
+        ),
+        _P("viewAngle", "scalar", "360 deg", "Horizontal angle of view; the older form of `viewAngles`."),
+        _P(
+            "viewAngles",
+            "pair of scalars",
+            "(viewAngle, 180 deg)",
+            "Horizontal and vertical angle of view.",
+            ("viewAngle",),
+        ),
+        _P("headingStdDev", "scalar", "5 deg", "Standard deviation of the noise on the yaw."),
+        _P(
+            "orientationStdDev",
+            "vector",
+            "(headingStdDev, 0, 0)",
+            "Standard deviations of the noise on yaw, pitch and roll.",
+            ("headingStdDev",),
+        ),
+        _P(
+            "mutator",
+            "tuple of mutators",
+            "an orientation mutator, then the point's",
+            "What adds the noise.",
+            ("orientationStdDev",),
+            additive=True,
+        ),
+    ),
+    (
+        Attribute("toHeading", "scalar", "The global yaw.", is_method=True),
+        Attribute("toOrientation", "orientation", "The global orientation.", is_method=True),
+        Attribute(
+            "relativize", "vector", "The global position of a point given in this frame.", is_method=True
+        ),
+        Attribute("relativePosition", "vector", "A global position in this frame.", is_method=True),
+        Attribute(
+            "distancePast", "scalar", "How far this is ahead of a point, along its heading.", is_method=True
+        ),
+    ),
+)
+
+_SIDES: Final = (
+    ("left", "right", "front", "back", "top", "bottom"),
+    ("frontLeft", "frontRight", "backLeft", "backRight"),
+    tuple(
+        f"{end}{face}{side}"
+        for end in ("top", "bottom")
+        for face in ("Front", "Back")
+        for side in ("Left", "Right")
+    ),
+)
+_PLACES: Final = ("The middle of this face", "The middle of this edge", "This corner")
+
+_OBJECT = BuiltinClass(
+    "Object",
+    "OrientedPoint",
+    "A physical object: a shape with a size, in a place, that collides with others. The base of classes without bases.",
+    (
+        _P("shape", "shape", "BoxShape()", "The form, apart from its size and place."),
+        _P(
+            "width", "scalar", "shape.width", "Extent of the bounding box along the local X axis.", ("shape",)
+        ),
+        _P(
+            "length",
+            "scalar",
+            "shape.length",
+            "Extent of the bounding box along the local Y axis.",
+            ("shape",),
+        ),
+        _P(
+            "height",
+            "scalar",
+            "shape.height",
+            "Extent of the bounding box along the local Z axis.",
+            ("shape",),
+        ),
+        _P("allowCollisions", "boolean", "False", "Whether it may overlap other objects."),
+        _P(
+            "regionContainedIn",
+            "region or None",
+            "None",
+            "The region that must contain it; `None` means the workspace.",
+        ),
+        _P(
+            "baseOffset",
+            "vector",
+            "(0, 0, -height / 2)",
+            "The base point that `on` puts on a surface.",
+            ("height",),
+        ),
+        _P(
+            "contactTolerance",
+            "scalar",
+            "1e-4",
+            "The small gap that `on` and the directional specifiers leave.",
+        ),
+        _P(
+            "sideComponentThresholds",
+            "three pairs of scalars",
+            "((-0.5, 0.5),) * 3",
+            "How steep a face may be and still belong to the surface of a side, per axis.",
+        ),
+        _P("cameraOffset", "vector", "(0, 0, 0)", "Where it sees from, in its own frame."),
+        _P(
+            "visionSensorOffset",
+            "vector",
+            "(0, length / 2, 0)",
+            "Where vision sensors are mounted.",
+            ("length",),
+        ),
+        _P("requireVisible", "boolean", "False", "Whether the ego must see it."),
+        _P("occluding", "boolean", "True", "Whether it hides what is behind it."),
+        _P("showVisibleRegion", "boolean", "False", "Whether pictures show its view volume."),
+        _P(
+            "color",
+            "3 or 4 numbers in [0, 1], or None",
+            "None",
+            "Colour in pictures: red, green, blue, opacity.",
+        ),
+        _P("render", "boolean", "True", "Whether pictures show it."),
+        _P(
+            "velocity",
+            "vector",
+            "(0, speed, 0) turned by orientation",
+            "Velocity at the start of a simulation.",
+            ("speed", "orientation"),
+            dynamic=True,
+        ),
+        _P("speed", "scalar", "0", "Speed at the start of a simulation.", dynamic=True),
+        _P(
+            "angularVelocity",
+            "vector",
+            "(0, 0, 0)",
+            "Angular velocity at the start of a simulation.",
+            dynamic=True,
+        ),
+        _P("angularSpeed", "scalar", "0", "Angular speed at the start of a simulation.", dynamic=True),
+        _P("behavior", "behavior or None", "None", "What it does during a simulation."),
+        _P("lastActions", "tuple of actions", "()", "The actions that it took in the previous step."),
+        _P("sensors", "dictionary of sensors", "{}", "Its sensors by name."),
+        _P("observations", "dictionary", "{}", "The latest observation of each sensor.", final=True),
+    ),
+    (
+        *(
+            Attribute(name, "oriented point", f"{place} of the bounding box, oriented like the object.")
+            for names, place in zip(_SIDES, _PLACES, strict=True)
+            for name in names
+        ),
+        Attribute("corners", "tuple of vectors", "The eight corners of the bounding box."),
+        Attribute("hw", "scalar", "Half the width."),
+        Attribute("hl", "scalar", "Half the length."),
+        Attribute("hh", "scalar", "Half the height."),
+        Attribute("radius", "scalar", "Half the diagonal of the bounding box."),
+        Attribute(
+            "inradius", "scalar", "A distance from the position within which everything is inside the object."
+        ),
+        Attribute("planarInradius", "scalar", "The same within the footprint."),
+        Attribute("visibleRegion", "region", "The volume that it sees, if nothing occludes."),
+        Attribute("occupiedSpace", "region", "The volume that it fills."),
+        Attribute("boundingBox", "region", "The box along the global axes around the volume that it fills."),
+        Attribute("surface", "region", "The whole surface."),
+        Attribute(
+            "onSurface",
+            "region",
+            "The surface that `on` this object means; the top surface unless a class overrides it.",
+        ),
+        *(
+            Attribute(f"{side}Surface", "region", f"The part of the surface that looks to the {side}.")
+            for side in _SIDES[0]
+        ),
+        Attribute(
+            "intersects", "boolean", "Whether it shares a point with an object or region.", is_method=True
+        ),
+        Attribute("containsPoint", "boolean", "Whether a point is inside.", is_method=True),
+        Attribute("distanceTo", "scalar", "Distance from the position to a point.", is_method=True),
+        Attribute("canSee", "boolean", "Whether it sees a point or an object.", is_method=True),
+        Attribute(
+            "startDynamicSimulation",
+            "None",
+            "Called when the object is created in a simulation.",
+            is_method=True,
+        ),
+    ),
+)
+
+CLASSES: Final[Mapping[str, BuiltinClass]] = MappingProxyType(
+    {cls.name: cls for cls in (_POINT, _ORIENTED_POINT, _OBJECT)}
+)
+"""The built-in classes, bases first."""
+
+
+def properties_of(cls: str) -> Mapping[str, BuiltinProperty]:
+    """All properties of a built-in class by name, its own definitions before those it inherits."""
+    declared = CLASSES[cls]
+    found = {} if declared.base is None else dict(properties_of(declared.base))
+    found.update((entry.name, entry) for entry in declared.properties)
+    return MappingProxyType(found)
+
+
+def attributes_of(cls: str) -> Mapping[str, Attribute]:
+    """All derived attributes and methods of a built-in class by name."""
+    declared = CLASSES[cls]
+    found = {} if declared.base is None else dict(attributes_of(declared.base))
+    found.update((entry.name, entry) for entry in declared.attributes)
+    return MappingProxyType(found)

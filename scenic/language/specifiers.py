@@ -1,0 +1,258 @@
+"""The specifiers of ``new`` and ``override``, as data (section 6.2 of the specification).
+
+The names are those of ``Specifier.specifier`` in the tree and of the first argument of the prelude's ``specifier``;
+the operands stand in the order declared here. How a specifier computes its values is the runtime's business; what it
+specifies, and how strongly, is declared here once for all.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Final
+
+from scenic.language.operators import Operand
+
+__all__ = ["SPECIFIERS", "Specified", "SpecifierDeclaration"]
+
+
+@dataclass(frozen=True, slots=True)
+class Specified:
+    """One property that a specifier gives a value.
+
+    ``priority``: 1 is the strongest. ``when`` says in words under which condition it is given at all; ``None``
+    means always.
+    """
+
+    property: str
+    priority: int
+    when: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class SpecifierDeclaration:
+    """One specifier.
+
+    ``specifies`` is empty for ``with``, which specifies the property that it names. ``modifies`` are the properties
+    whose value, given by another specifier, this one may adjust. ``needs`` are the properties of the new object that
+    the value always depends on; more may follow from the operands. ``group`` says which half of the object's pose it
+    gives, for ordering documentation and completion: ``"position"``, ``"orientation"`` or ``"general"``.
+    """
+
+    name: str
+    operands: tuple[Operand, ...]
+    specifies: tuple[Specified, ...]
+    needs: tuple[str, ...]
+    group: str
+    forms: tuple[str, ...]
+    documentation: str
+    modifies: tuple[str, ...] = ()
+    available: bool = True
+
+
+_EGO = "the ego"
+_PREFERRED = "the region has a preferred orientation"
+_ORIENTED = "the reference is an oriented point or object"
+
+
+def _beside(name: str, axis: str, extent: str) -> SpecifierDeclaration:
+    return SpecifierDeclaration(
+        name,
+        (
+            Operand("reference", "vector, oriented point or object"),
+            Operand("distance", "scalar or vector", "no gap"),
+        ),
+        (Specified("position", 1), Specified("parentOrientation", 3, _ORIENTED)),
+        (extent,),
+        "position",
+        (f"{name} reference", f"{name} reference by distance"),
+        f"Places the object on the {axis} side of the reference, in the reference's frame, so that their bounding "
+        "boxes are the given distance apart. Next to an object and without a distance they all but touch.",
+    )
+
+
+_ALL = (
+    SpecifierDeclaration(
+        "with",
+        (Operand("value", "anything"),),
+        (),
+        (),
+        "general",
+        ("with property value",),
+        "Gives a property a value. A property that the class does not define is created.",
+    ),
+    SpecifierDeclaration(
+        "at",
+        (Operand("position", "vector"),),
+        (Specified("position", 1),),
+        (),
+        "position",
+        ("at position",),
+        "Places the object's centre at a global position.",
+    ),
+    SpecifierDeclaration(
+        "in",
+        (Operand("region", "region"),),
+        (Specified("position", 1), Specified("parentOrientation", 3, _PREFERRED)),
+        (),
+        "position",
+        ("in region",),
+        "Places the object's centre uniformly at random in a region, aligned with the region's preferred "
+        "orientation if it has one.",
+    ),
+    SpecifierDeclaration(
+        "contained in",
+        (Operand("region", "region"),),
+        (
+            Specified("position", 1),
+            Specified("parentOrientation", 3, _PREFERRED),
+            Specified("regionContainedIn", 1),
+        ),
+        (),
+        "position",
+        ("contained in region",),
+        "Like `in`, and the whole object must lie in the region.",
+    ),
+    SpecifierDeclaration(
+        "on",
+        (Operand("target", "region, object or vector"),),
+        (Specified("position", 1), Specified("parentOrientation", 2, _PREFERRED)),
+        ("baseOffset", "contactTolerance", "onDirection"),
+        "position",
+        ("on target",),
+        "Stands the object with its base on a surface: uniformly at random, or, next to another specifier of the "
+        "position, at the projection of that position onto the surface. An object means its top surface.",
+        modifies=("position",),
+    ),
+    SpecifierDeclaration(
+        "offset by",
+        (Operand("offset", "vector"),),
+        (Specified("position", 1), Specified("parentOrientation", 3)),
+        (),
+        "position",
+        ("offset by offset",),
+        "Places the object at an offset from the ego, in the ego's frame.",
+    ),
+    SpecifierDeclaration(
+        "offset along",
+        (Operand("direction", "heading, orientation or field"), Operand("offset", "vector")),
+        (Specified("position", 1), Specified("parentOrientation", 3)),
+        (),
+        "position",
+        ("offset along direction by offset",),
+        "Places the object at an offset from the ego, in the frame of the direction.",
+    ),
+    SpecifierDeclaration(
+        "beyond",
+        (
+            Operand("reference", "vector"),
+            Operand("offset", "scalar or vector"),
+            Operand("viewpoint", "vector or point", _EGO),
+        ),
+        (Specified("position", 1), Specified("parentOrientation", 3)),
+        (),
+        "position",
+        ("beyond reference by offset", "beyond reference by offset from viewpoint"),
+        "Places the object behind the reference as seen from the viewpoint, on the line of sight.",
+    ),
+    SpecifierDeclaration(
+        "visible",
+        (Operand("viewer", "point", _EGO),),
+        (Specified("position", 3),),
+        ("regionContainedIn",),
+        "position",
+        ("visible", "visible from viewer"),
+        "The viewer must see the object. Without another specifier of the position it is uniformly at random among "
+        "the positions where the viewer can.",
+        available=False,
+    ),
+    SpecifierDeclaration(
+        "not visible",
+        (Operand("viewer", "point", _EGO),),
+        (Specified("position", 3),),
+        ("regionContainedIn",),
+        "position",
+        ("not visible", "not visible from viewer"),
+        "The viewer must not see the object. Without another specifier of the position it is uniformly at random in "
+        "the object's container.",
+        available=False,
+    ),
+    _beside("left of", "left (-X)", "width"),
+    _beside("right of", "right (+X)", "width"),
+    _beside("ahead of", "front (+Y)", "length"),
+    _beside("behind", "back (-Y)", "length"),
+    _beside("above", "upper (+Z)", "height"),
+    _beside("below", "lower (-Z)", "height"),
+    SpecifierDeclaration(
+        "following",
+        (
+            Operand("field", "vector field"),
+            Operand("start", "vector", _EGO),
+            Operand("distance", "scalar"),
+        ),
+        (Specified("position", 1), Specified("parentOrientation", 3)),
+        (),
+        "position",
+        ("following field for distance", "following field from start for distance"),
+        "Places the object where following a vector field for a distance leads to, aligned with the field there.",
+        available=False,
+    ),
+    SpecifierDeclaration(
+        "facing",
+        (Operand("direction", "heading, orientation, Euler angles or field"),),
+        (Specified("yaw", 1), Specified("pitch", 1), Specified("roll", 1)),
+        ("parentOrientation",),
+        "orientation",
+        ("facing direction",),
+        "Turns the object to a global orientation. A number is a heading in radians: write `90 deg` for degrees.",
+    ),
+    SpecifierDeclaration(
+        "facing toward",
+        (Operand("target", "vector"),),
+        (Specified("yaw", 1),),
+        ("position", "parentOrientation"),
+        "orientation",
+        ("facing toward target",),
+        "Turns the object's front toward a position, by its yaw alone: it stays upright.",
+    ),
+    SpecifierDeclaration(
+        "facing away from",
+        (Operand("target", "vector"),),
+        (Specified("yaw", 1),),
+        ("position", "parentOrientation"),
+        "orientation",
+        ("facing away from target",),
+        "Turns the object's front away from a position, by its yaw alone: it stays upright.",
+    ),
+    SpecifierDeclaration(
+        "facing directly toward",
+        (Operand("target", "vector"),),
+        (Specified("yaw", 1), Specified("pitch", 1)),
+        ("position", "parentOrientation"),
+        "orientation",
+        ("facing directly toward target",),
+        "Points the object's front exactly at a position, by yaw and pitch.",
+    ),
+    SpecifierDeclaration(
+        "facing directly away from",
+        (Operand("target", "vector"),),
+        (Specified("yaw", 1), Specified("pitch", 1)),
+        ("position", "parentOrientation"),
+        "orientation",
+        ("facing directly away from target",),
+        "Points the object's front exactly away from a position, by yaw and pitch.",
+    ),
+    SpecifierDeclaration(
+        "apparently facing",
+        (Operand("heading", "heading"), Operand("viewpoint", "vector", _EGO)),
+        (Specified("yaw", 1),),
+        ("position", "parentOrientation"),
+        "orientation",
+        ("apparently facing heading", "apparently facing heading from viewpoint"),
+        "Turns the object to a heading that is measured from the line of sight of the viewpoint.",
+    ),
+)
+
+SPECIFIERS: Final[Mapping[str, SpecifierDeclaration]] = MappingProxyType(
+    {specifier.name: specifier for specifier in _ALL}
+)
+"""Every specifier by its name in the tree."""

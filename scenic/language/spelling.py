@@ -1,0 +1,46 @@
+"""How close two names are, for "did you mean" and for warnings about misspelt properties."""
+
+from collections.abc import Iterable
+
+__all__ = ["distance", "nearest"]
+
+
+def distance(first: str, second: str, *, limit: int) -> int:
+    """Number of single edits that turn one name into the other, or ``limit + 1`` if there are more than ``limit``.
+
+    An edit inserts, deletes or replaces a character, or swaps two neighbours (the restricted Damerau-Levenshtein
+    distance; the recurrence is that of Wagner and Fischer with the transposition of Lowrance and Wagner).
+    """
+    if abs(len(first) - len(second)) > limit:
+        return limit + 1
+    before_last: list[int] = []
+    last = list(range(len(second) + 1))
+    for i, a in enumerate(first, 1):
+        row = [i]
+        for j, b in enumerate(second, 1):
+            best = min(last[j] + 1, row[j - 1] + 1, last[j - 1] + (a != b))
+            if i > 1 and j > 1 and a == second[j - 2] and b == first[i - 2]:
+                best = min(best, before_last[j - 2] + 1)
+            row.append(best)
+        if min(row) > limit:
+            return limit + 1
+        before_last, last = last, row
+    return min(last[-1], limit + 1)
+
+
+def nearest(name: str, candidates: Iterable[str], *, limit: int | None = None) -> str | None:
+    """The candidate closest to ``name``, or ``None`` if none is close.
+
+    Close means at most ``limit`` edits away; without a limit, a third of the name's length. So names of one or two
+    letters are close to nothing but themselves in other letter case.
+    Among equally close ones the first in alphabetical order is taken, so that messages do not vary.
+    """
+    reach = len(name) // 3 if limit is None else limit
+    found = None
+    for candidate in sorted(candidates):
+        edits = distance(name.lower(), candidate.lower(), limit=reach)
+        if edits <= reach and candidate != name:
+            found, reach = candidate, edits - 1
+            if reach < 0:
+                break
+    return found

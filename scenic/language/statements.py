@@ -1,0 +1,241 @@
+"""The statements that Scenic adds, as data: what they are, and where they may stand (section 2 of the spec)."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+from types import MappingProxyType
+from typing import Final
+
+__all__ = ["STATEMENTS", "Place", "Statement"]
+
+
+class Place(StrEnum):
+    """Where a statement stands. Functions belong to the place they are written in, nested statements too.
+
+    The values complete the sentence "... cannot be used ...".
+    """
+
+    TOP = "at the top level"
+    SETUP = "in the setup of a scenario"
+    COMPOSE = "in a compose block"
+    BEHAVIOR = "in a behavior"
+    MONITOR = "in a monitor"
+    CLASS = "in the body of a class"
+
+
+_TOP_AND_SETUP: Final = frozenset({Place.TOP, Place.SETUP})
+_DYNAMIC: Final = frozenset({Place.COMPOSE, Place.BEHAVIOR, Place.MONITOR})
+_BLOCKS: Final = _TOP_AND_SETUP | _DYNAMIC
+
+
+@dataclass(frozen=True, slots=True)
+class Statement:
+    """One statement.
+
+    ``node`` is the name of its class in `scenic.compiler.tree`. ``available`` tells whether this version builds it
+    outside behaviors; the bodies of behaviors are carried as data, so nothing in them is refused.
+    """
+
+    node: str
+    title: str
+    forms: tuple[str, ...]
+    places: frozenset[Place]
+    documentation: str
+    available: bool = True
+
+
+_ALL = (
+    Statement(
+        "Model",
+        "model",
+        ("model module",),
+        frozenset({Place.TOP}),
+        "Uses a world model: everything that the module defines becomes available, and a model given on the command "
+        "line takes its place.",
+    ),
+    Statement(
+        "Param",
+        "param",
+        ("param name = value, ...",),
+        _TOP_AND_SETUP,
+        "Sets global parameters, which are sampled with the scene. The command line overrides them.",
+    ),
+    Statement(
+        "Simulator",
+        "simulator",
+        ("simulator value",),
+        _TOP_AND_SETUP,
+        "Says which simulator runs the scenes; evaluated only when a simulation is asked for.",
+    ),
+    Statement(
+        "Require",
+        "require",
+        ("require condition", "require[probability] condition", "require condition as name"),
+        _BLOCKS,
+        "Keeps only scenes in which the condition holds. With a probability, it holds at least that often.",
+    ),
+    Statement(
+        "RequireMonitor",
+        "require monitor",
+        ("require monitor value", "require monitor value as name"),
+        _BLOCKS,
+        "Runs a monitor alongside the simulation, which rejects it when one of its requirements fails.",
+        available=False,
+    ),
+    Statement(
+        "Record",
+        "record",
+        ("record value as name", "record initial value", "record final value"),
+        _TOP_AND_SETUP,
+        "Saves a value during simulations: at every step, at the start or at the end.",
+        available=False,
+    ),
+    Statement(
+        "Mutate",
+        "mutate",
+        ("mutate", "mutate object, ... by scale"),
+        _TOP_AND_SETUP,
+        "Adds noise to the position and orientation of objects, of all objects so far if none is named.",
+        available=False,
+    ),
+    Statement(
+        "TerminateWhen",
+        "terminate when",
+        ("terminate when condition", "terminate simulation when condition"),
+        _TOP_AND_SETUP,
+        "Ends the scenario, or the whole simulation, as soon as the condition holds.",
+        available=False,
+    ),
+    Statement(
+        "TerminateAfter",
+        "terminate after",
+        ("terminate after duration",),
+        _TOP_AND_SETUP,
+        "Ends the scenario after so many seconds or steps.",
+        available=False,
+    ),
+    Statement(
+        "Terminate",
+        "terminate",
+        ("terminate", "terminate simulation"),
+        _DYNAMIC,
+        "Ends the current scenario, or the whole simulation, now.",
+        available=False,
+    ),
+    Statement(
+        "Take",
+        "take",
+        ("take action, ...",),
+        frozenset({Place.BEHAVIOR}),
+        "Takes actions in this step of the simulation and waits for the next.",
+        available=False,
+    ),
+    Statement(
+        "Wait",
+        "wait",
+        ("wait",),
+        _DYNAMIC,
+        "Takes no action in this step of the simulation.",
+        available=False,
+    ),
+    Statement(
+        "WaitFor",
+        "wait for",
+        ("wait for duration",),
+        _DYNAMIC,
+        "Takes no action for so many seconds or steps.",
+        available=False,
+    ),
+    Statement(
+        "WaitUntil",
+        "wait until",
+        ("wait until condition",),
+        _DYNAMIC,
+        "Takes no action until the condition holds.",
+        available=False,
+    ),
+    Statement(
+        "Do",
+        "do",
+        ("do behavior", "do behavior for duration", "do behavior until condition", "do scenario, ..."),
+        _DYNAMIC,
+        "Runs a behavior or scenario until it ends, a time is over or a condition holds; in a compose block, several "
+        "scenarios in parallel.",
+        available=False,
+    ),
+    Statement(
+        "DoChoose",
+        "do choose",
+        ("do choose behavior, ...", "do choose {behavior: weight, ...}"),
+        _DYNAMIC,
+        "Runs one of several behaviors or scenarios, drawn at random among those whose guards allow it.",
+        available=False,
+    ),
+    Statement(
+        "DoShuffle",
+        "do shuffle",
+        ("do shuffle behavior, ...", "do shuffle {behavior: weight, ...}"),
+        _DYNAMIC,
+        "Runs several behaviors or scenarios one after the other in random order.",
+        available=False,
+    ),
+    Statement(
+        "TryInterrupt",
+        "try ... interrupt when",
+        ("try: ... interrupt when condition: ...",),
+        _DYNAMIC,
+        "Runs a block that handlers interrupt while their conditions hold; later handlers win.",
+        available=False,
+    ),
+    Statement(
+        "Abort",
+        "abort",
+        ("abort",),
+        _DYNAMIC,
+        "Ends the innermost enclosing try-interrupt statement.",
+        available=False,
+    ),
+    Statement(
+        "Override",
+        "override",
+        ("override object specifier, ...",),
+        _DYNAMIC | {Place.SETUP},
+        "Gives properties of an existing object new values until the scenario ends.",
+        available=False,
+    ),
+    Statement(
+        "BehaviorDef",
+        "behavior",
+        ("behavior name(parameters): ...",),
+        _TOP_AND_SETUP,
+        "Defines what an agent does during a simulation.",
+    ),
+    Statement(
+        "MonitorDef",
+        "monitor",
+        ("monitor name(parameters): ...",),
+        _TOP_AND_SETUP,
+        "Defines a process that watches a simulation and can reject or end it.",
+        available=False,
+    ),
+    Statement(
+        "ScenarioDef",
+        "scenario",
+        ("scenario name(parameters): ...", "scenario name: setup: ... compose: ..."),
+        _TOP_AND_SETUP,
+        "Defines a scenario that can be chosen, or composed with others.",
+    ),
+    Statement(
+        "PropertyDef",
+        "property definition",
+        ("name: default", "name[additive]: default", "name[dynamic]: default", "name[final]: default"),
+        frozenset({Place.CLASS}),
+        "Defines a property of the class with its default, which is evaluated for every instance afresh and may read "
+        "other properties as `self.name`.",
+    ),
+)
+
+STATEMENTS: Final[Mapping[str, Statement]] = MappingProxyType(
+    {statement.node: statement for statement in _ALL}
+)
+"""Every statement by the name of its class in the tree."""
