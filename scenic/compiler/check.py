@@ -1,0 +1,29 @@
+"""The static check of a program: all that can be said about it without running any of it.
+
+This one function is what ``scenic check`` and the language server show.
+"""
+
+from collections.abc import Iterable
+from dataclasses import replace
+
+from scenic.compiler.compile import compile_text
+from scenic.language.diagnostics import Diagnostic
+
+__all__ = ["check_text", "in_order"]
+
+
+def check_text(text: str, *, filename: str) -> tuple[Diagnostic, ...]:
+    """What the lexer, the parser, the resolver and the compiler have to say, in order of place."""
+    return in_order(compile_text(text, filename=filename).diagnostics, filename=filename)
+
+
+def in_order(diagnostics: Iterable[Diagnostic], *, filename: str) -> tuple[Diagnostic, ...]:
+    """Sorted by place and each but once; those without a filename get this one."""
+    named = (item if item.filename else replace(item, filename=filename) for item in diagnostics)
+    return tuple(sorted(dict.fromkeys(named), key=_place))
+
+
+def _place(diagnostic: Diagnostic) -> tuple[str, int, int, str]:
+    span = diagnostic.span
+    line, column = (0, 0) if span is None else (span.line, span.column)
+    return diagnostic.filename or "", line, column, diagnostic.code

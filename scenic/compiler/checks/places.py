@@ -1,0 +1,33 @@
+"""Places of words that have no node of their own in the tree."""
+
+import ast
+import re
+
+from scenic.language.source import Source
+from scenic.language.spans import Span
+
+__all__ = ["header_span", "word_span"]
+
+
+def word_span(source: Source, node: ast.AST, word: str) -> Span:
+    """The first place of ``word``, as a whole word, in the text of ``node``; else the beginning of the node."""
+    whole = source.span(node)
+    lines = source.lines
+    for line in range(whole.line, min(whole.end_line, len(lines)) + 1):
+        text = lines[line - 1]
+        start = whole.column if line == whole.line else 0
+        end = whole.end_column if line == whole.end_line else len(text)
+        found = re.compile(rf"(?<!\w){re.escape(word)}(?!\w)").search(text, start, end)
+        if found is not None:
+            return Span(line, found.start(), line, found.end())
+    return header_span(source, node)
+
+
+def header_span(source: Source, node: ast.AST) -> Span:
+    """The first line of a node: the header of a block, all of a statement that fits on a line."""
+    whole = source.span(node)
+    if whole.end_line == whole.line:
+        return whole
+    lines = source.lines
+    text = lines[whole.line - 1].rstrip() if whole.line <= len(lines) else ""
+    return Span(whole.line, whole.column, whole.line, max(whole.column, len(text)))

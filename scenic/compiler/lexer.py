@@ -1,0 +1,663 @@
+"""From source text to tokens, as CPython 3.12 reads it.
+
+One regular expression matches a token with the blanks before it, and the loop of `_Lexer.run` sorts the
+matches into parallel lists, which is what the parser reads fastest. Whatever is rare (indentation that
+changes, f-strings, errors) is in the methods around it.
+
+Nothing raises: what is wrong becomes a diagnostic, and an ``ERROR`` token where text had to be left out or
+something is missing. Indentation is repaired instead, so that the blocks around a bad line stay whole.
+"""
+
+import unicodedata
+from bisect import bisect_left, bisect_right
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from itertools import islice
+from typing import Final, NamedTuple
+
+from scenic.compiler import lexemes, lexical_errors
+from scenic.language.diagnostics import Diagnostic
+from scenic.language.spans import Span
+
+ENDMARKER: Final = 0
+NEWLINE: Final = 1
+INDENT: Final = 2
+DEDENT: Final = 3
+NUMBER: Final = 4
+STRING: Final = 5
+FSTRING_START: Final = 6
+FSTRING_MIDDLE: Final = 7
+FSTRING_END: Final = 8
+ERROR: Final = 9
+NAME: Final = 256
+"""Hard keywords and operators lie between ERROR and NAME, soft keywords above NAME."""
+
+MOST_DIAGNOSTICS: Final = 1000
+"""So many are reported of one text; a file of random bytes has no use for millions."""
+
+_TAB: Final = 8
+_MOST_BRACKETS_SEARCHED: Final = 100
+"""So far out an opening bracket is looked for when a closing one does not fit; keeps the time linear."""
+
+
+@dataclass(slots=True)
+class Tokens:
+    r"""The tokens of a text as parallel lists, with what was wrong with it.
+
+    ``lines`` and ``end_lines`` count from 1, ``columns`` and ``end_columns`` count UTF-8 bytes from 0, as
+    `ast` does. ``texts`` holds the text of each token; of a name its normal form (NFKC), of
+    ``FSTRING_MIDDLE`` the text with doubled braces made single, of ``NEWLINE``, ``DEDENT`` and
+    ``ENDMARKER`` nothing. ``text`` is what the lists describe: the source without byte order mark, with
+    ``\n`` at the end of each line. ``comments`` are triples of line, column in characters, and text.
+    """
+
+    text: str
+    kinds: list[int] = field(default_factory=list)
+    texts: list[str] = field(default_factory=list)
+    lines: list[int] = field(default_factory=list)
+    columns: list[int] = field(default_factory=list)
+    end_lines: list[int] = field(default_factory=list)
+    end_columns: list[int] = field(default_factory=list)
+    comments: list[tuple[int, int, str]] = field(default_factory=list)
+    diagnostics: list[Diagnostic] = field(default_factory=list)
+
+
+def lex(text: str, words: Mapping[str, int]) -> Tokens:
+    """Split ``text`` into tokens; ``words`` gives the kind of each keyword and operator. Never raises."""
+    text = text.removeprefix("\ufeff")
+    if "\r" in text:
+        text = text.replace("\r\n", "\n").replace("\r", "\n")
+    if text and not text.endswith("\n"):
+        text += "\n"
+    tokens = _Lexer(text, words).run()
+    if not text.isascii():
+        _count_bytes(tokens)
+    return tokens
+
+
+class _Bracket(NamedTuple):
+    """An opening bracket that is not closed yet.
+
+    ``closer`` is what closes it, or nothing if it opens a replacement field of an f-string, so that the
+    loop leaves the end of the field to a method.
+    """
+
+    closer: str
+    opener: str
+    line: int
+    column: int
+
+    @property
+    def span(self) -> Span:
+        return Span(self.line, self.column, self.line, self.column + 1)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _FormattedString:
+    """An f-string that is not closed yet."""
+
+    quote: str
+    raw: bool
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class _Field:
+    """A replacement field ``{...}`` that is being read: where it stands, and the brackets around it."""
+
+    string: _FormattedString
+    in_specification: bool
+    outer_brackets: list[_Bracket]
+
+
+class _Lexer:
+    """The state of one run.
+
+    Places are offsets in the text. Methods that read on return where to; they may put other values into
+    ``line_start`` and ``brackets``, which the loop keeps in variables and fetches again afterwards.
+    ``brackets`` are those of the innermost replacement field, beginning with its own brace.
+    """
+
+    __slots__ = (
+        "brackets",
+        "fields",
+        "indents",
+        "line",
+        "line_start",
+        "multiline",
+        "text",
+        "tokens",
+        "white",
+        "words",
+    )
+
+    def __init__(self, text: str, words: Mapping[str, int]) -> None:
+        self.text = text
+        self.words = words
+        self.tokens = Tokens(text)
+        self.line = 1
+        self.line_start = 0
+        self.brackets: list[_Bracket] = []
+        self.fields: list[_Field] = []
+        # The open blocks: width of their indentation, with tabs of eight and with tabs of one.
+        self.indents = [(0, 0)]
+        # The indentation of the innermost block as written: nearly every line has the same.
+        self.white = ""
+        # Tokens that end on another line than they start, which is rare: index, and line of the end.
+        self.multiline: list[tuple[int, int]] = []
+
+    def run(self) -> Tokens:
+        """Tokenise the whole text."""
+        pos: int | None = self.start_line(0)
+        while pos is not None:
+            pos = self.run_from(pos)
+        return self.tokens
+
+    def run_from(self, pos: int) -> int | None:
+        """Tokenise from ``pos``; return where to go on after a leap, ``None`` at the end.
+
+        Iterating over the matches is nearly twice as fast as asking for each, but cannot leap.
+        """
+        text, words, tokens, brackets, fields = self.text, self.words, self.tokens, self.brackets, self.fields
+        kinds, texts, columns, end_columns = tokens.kinds, tokens.texts, tokens.columns, tokens.end_columns
+        add_kind, add_text = kinds.append, texts.append
+        add_column, add_end_column = columns.append, end_columns.append
+        kind_of, name_kind = words.get, NAME
+        line_start = self.line_start
+        for found in lexemes.TOKEN.finditer(text, pos):
+            group = found.lastindex or 0
+            start, end = found.span(group)
+            if group == 1:  # WORD
+                word = text[start:end]
+                add_kind(kind_of(word, name_kind))
+                add_text(word)
+                add_column(start - line_start)
+                add_end_column(end - line_start)
+            elif group == 2:  # OPENER
+                word = text[start]
+                column = start - line_start
+                add_kind(words[word])
+                add_text(word)
+                add_column(column)
+                add_end_column(column + 1)
+                brackets.append(_Bracket(lexical_errors.CLOSER_OF[word], word, self.line, column))
+            elif group == 3:  # CLOSER
+                word = text[start]
+                if brackets and brackets[-1][0] == word:
+                    brackets.pop()
+                    column = start - line_start
+                    add_kind(words[word])
+                    add_text(word)
+                    add_column(column)
+                    add_end_column(column + 1)
+                else:
+                    return self.odd_closer(start)
+            elif group == 4:  # LINE_END
+                if brackets:
+                    self.next_lines(start, end)
+                    if lexemes.STATEMENT_WORD.match(text, end):
+                        self.never_closed(start)
+                        return self.start_line(self.line_start)
+                    line_start = self.line_start
+                else:
+                    column = start - line_start
+                    add_kind(1)  # NEWLINE
+                    add_text("")
+                    add_column(column)
+                    add_end_column(column + 1)
+                    self.next_lines(start, end)
+                    line_start = self.line_start
+                    white = text[line_start:end]
+                    if white != self.white:
+                        return self.start_line(line_start)
+            elif group == 5:  # COLON, and an exclamation mark
+                if fields and len(brackets) == 1:
+                    return self.in_field(start)
+                if text[start] == "!":
+                    return self.stray(start)
+                word = text[start:end]
+                add_kind(words[word])
+                add_text(word)
+                add_column(start - line_start)
+                add_end_column(end - line_start)
+            elif group == 6:  # NUMERAL
+                word = text[start:end]
+                if word[0] == "0" and lexemes.LEADING_ZERO.fullmatch(word):
+                    self.bad_number(start, end, word)
+                else:
+                    self.add(NUMBER, start, end)
+            elif group == 7:  # TEXT
+                self.add(STRING, start, end)
+                if "\n" in text[start:end]:
+                    self.lines_within(start, end)
+                    line_start = self.line_start
+            elif group == 8:  # COMMENT
+                tokens.comments.append((self.line, start - line_start, text[start:end]))
+            elif group == lexemes.END:
+                self.end(start)
+                return None
+            else:
+                return self.rare(group, start, end)
+        raise AssertionError("the last match is that of the end")
+
+    # Adding tokens.
+
+    def add(self, kind: int, start: int, end: int) -> None:
+        """Add the token of ``text[start:end]``, which starts on the present line."""
+        tokens = self.tokens
+        tokens.kinds.append(kind)
+        tokens.texts.append(self.text[start:end])
+        tokens.columns.append(start - self.line_start)
+        tokens.end_columns.append(end - self.line_start)
+
+    def add_empty(self, kind: int, pos: int) -> None:
+        """Add a token without text."""
+        self.add(kind, pos, pos)
+
+    def fill_lines(self) -> None:
+        """Note the line of all tokens added since the last call, which is the present one."""
+        lines = self.tokens.lines
+        lines.extend([self.line] * (len(self.tokens.kinds) - len(lines)))
+
+    def next_line(self, line_start: int) -> None:
+        """Go on to the line after the present one."""
+        self.fill_lines()
+        self.line += 1
+        self.line_start = line_start
+
+    def next_lines(self, start: int, end: int) -> None:
+        """Go on from a line end at ``start``, over empty lines, to the line with ``end`` in it."""
+        text = self.text
+        self.fill_lines()
+        line_start = text.rfind("\n", start, end) + 1
+        if line_start == start + 1:
+            self.line += 1
+        else:
+            if text.find("#", start, line_start) >= 0:
+                self.comment_lines(start + 1, line_start, self.line + 1)
+            self.line += text.count("\n", start, line_start)
+        self.line_start = line_start
+
+    def lines_within(self, start: int, end: int) -> None:
+        """The token added last goes from ``start`` to ``end`` over line ends: go on to its last line."""
+        tokens = self.tokens
+        self.fill_lines()
+        self.line += self.text.count("\n", start, end)
+        self.line_start = self.text.rfind("\n", start, end) + 1
+        self.multiline.append((len(tokens.kinds) - 1, self.line))
+        tokens.end_columns[-1] = end - self.line_start
+
+    def report(self, diagnostic: Diagnostic) -> None:
+        if len(self.tokens.diagnostics) < MOST_DIAGNOSTICS:
+            self.tokens.diagnostics.append(diagnostic)
+
+    def here(self, start: int, end: int) -> Span:
+        """The span of ``text[start:end]``, which lies on the present line."""
+        return Span(self.line, start - self.line_start, self.line, end - self.line_start)
+
+    # Lines and indentation.
+
+    def start_line(self, pos: int) -> int:
+        """Go from the start of a line over empty lines and comments to the next token; indent and dedent."""
+        text = self.text
+        found = lexemes.LINE_START.match(text, pos)
+        start, end = found.span(1) if found else (pos, pos)
+        if start != pos:
+            self.comment_lines(pos, start, self.line)
+            self.line += text.count("\n", pos, start)
+            self.line_start = start
+        if end == len(text):
+            return end
+        if text[end] == "\\":
+            return self.continued_indentation(start)
+        white = text[start:end]
+        if white != self.white:
+            self.indent(*_measure(white), white, end)
+        return end
+
+    def comment_lines(self, start: int, end: int, line: int) -> None:
+        """Collect the comments of lines that hold nothing else; ``start`` is on ``line``."""
+        text = self.text
+        for found in lexemes.COMMENT_LINE.finditer(text, start, end):
+            line += text.count("\n", start, found.start())
+            start = found.start()
+            self.tokens.comments.append((line, found.start(1) - start, found[1]))
+
+    def indent(self, column: int, strict_column: int, white: str, end: int) -> None:
+        """Compare the indentation of a line with the blocks around it; its first token is at ``end``.
+
+        ``column`` counts a tab to the next multiple of eight, ``strict_column`` as one: indentation must
+        not depend on the width of a tab, so both have to agree on what is deeper.
+        """
+        indents = self.indents
+        self.white = white
+        top, strict_top = indents[-1]
+        if column > top:
+            mixed = strict_column <= strict_top
+            indents.append((column, strict_column))
+            self.add(INDENT, self.line_start, end)
+        else:
+            while column < indents[-1][0]:
+                if column > indents[-2][0]:
+                    # Between two levels: take the line for one of the inner block.
+                    self.report(lexical_errors.unmatched_unindent(self.here(self.line_start, end)))
+                    indents[-1] = (column, strict_column)
+                    return
+                indents.pop()
+                self.add_empty(DEDENT, end)
+            mixed = strict_column != indents[-1][1]
+        if mixed:
+            self.report(lexical_errors.mixed_indentation(self.here(self.line_start, end)))
+
+    def continued_indentation(self, start: int) -> int:
+        """A line that starts with a backslash: the blanks before the first one are its indentation."""
+        text = self.text
+        column = strict_column = first = 0
+        pos = start
+        while pos < len(text):
+            character = text[pos]
+            if character == " ":
+                column += 1
+                strict_column += 1
+            elif character == "\t":
+                column = (column // _TAB + 1) * _TAB
+                strict_column += 1
+            elif character == "\f":
+                column = strict_column = 0
+            elif text.startswith("\\\n", pos):
+                first = first or column
+                pos += 1
+                self.next_line(pos + 1)
+            else:
+                break
+            pos += 1
+        if pos == len(text):
+            self.continuation_at_end(pos)
+            return pos
+        if text[pos] in "#\n":
+            line_end = text.index("\n", pos)
+            if line_end != pos:
+                self.tokens.comments.append((self.line, pos - self.line_start, text[pos:line_end]))
+            self.next_line(line_end + 1)
+            return self.start_line(line_end + 1)
+        # No line has a backslash among its blanks, so that the next one is measured again.
+        self.indent(first or column, first or strict_column, "\\", pos)
+        return pos
+
+    def continuation_at_end(self, end: int) -> None:
+        """The text ends with a backslash and a line end."""
+        line, column = self.line - 1, end - 2 - (self.text.rfind("\n", 0, end - 1) + 1)
+        self.report(lexical_errors.continuation_at_end(Span(line, column, line, column + 1)))
+        self.add_empty(ERROR, end)
+
+    def end(self, pos: int) -> None:
+        """Close what is open, and fill the lists that hold the same for nearly every token."""
+        tokens = self.tokens
+        if self.brackets:
+            self.never_closed(pos)
+        elif tokens.kinds and tokens.kinds[-1] not in (NEWLINE, INDENT, DEDENT):
+            self.add_empty(NEWLINE, pos)
+        for _ in self.indents[1:]:
+            self.add_empty(DEDENT, pos)
+        self.add_empty(ENDMARKER, pos)
+        self.fill_lines()
+        tokens.end_lines = tokens.lines.copy()
+        for index, line in self.multiline:
+            tokens.end_lines[index] = line
+        room = MOST_DIAGNOSTICS - len(tokens.diagnostics)
+        tokens.diagnostics += islice(lexical_errors.unreadable(self.text), room)
+
+    # Brackets.
+
+    def never_closed(self, pos: int) -> None:
+        """The statement ends although a bracket is open; ``pos`` is the end of a line, or of the text."""
+        tokens = self.tokens
+        opener = self.brackets[-1]
+        is_field = not opener.closer
+        self.report(lexical_errors.never_closed(opener.opener, opener.span, is_field=is_field))
+        self.fields.clear()
+        self.brackets = []
+        self.fill_lines()
+        # The tokens stand at the line end, and the present line may be a later one.
+        line, line_start = self.line, self.line_start
+        if pos < line_start:
+            line -= self.text.count("\n", pos, line_start)
+            line_start = self.text.rfind("\n", 0, pos) + 1
+        column = pos - line_start
+        tokens.kinds += (ERROR, NEWLINE)
+        tokens.texts += ("", "")
+        tokens.lines += (line, line)
+        tokens.columns += (column, column)
+        tokens.end_columns += (column, column + (pos < len(self.text)))
+
+    def odd_closer(self, start: int) -> int:
+        """A closing bracket that ends a replacement field, or does not fit."""
+        closer = self.text[start]
+        opener = lexical_errors.OPENER_OF[closer]
+        brackets, span = self.brackets, self.here(start, start + 1)
+        if closer == "}" and self.fields and len(brackets) == 1:
+            self.add(self.words["}"], start, start + 1)
+            return self.end_field(start + 1)
+        self.add(ERROR, start, start + 1)
+        if not brackets:
+            self.report(lexical_errors.needless_closer(closer, span))
+            return start + 1
+        innermost = brackets[-1]
+        self.report(lexical_errors.wrong_closer(closer, span, innermost.opener, innermost.span))
+        # If it fits an opener further out, those inside that one were left open.
+        if any(bracket.opener == opener for bracket in brackets[-_MOST_BRACKETS_SEARCHED:]):
+            while brackets[-1].opener != opener:
+                brackets.pop()
+            if not brackets[-1].closer:
+                return self.end_field(start + 1)
+            brackets.pop()
+        return start + 1
+
+    # f-strings.
+
+    def in_field(self, start: int) -> int:
+        """``:`` or ``!`` directly inside a replacement field."""
+        mark = self.text[start]
+        self.add(self.words.get(mark, ERROR), start, start + 1)
+        if mark == "!":
+            return start + 1
+        return self.literal(self.fields[-1].string, start + 1, in_specification=True)
+
+    def end_field(self, pos: int) -> int:
+        """Read on after the brace that ends the innermost replacement field."""
+        ended = self.fields.pop()
+        self.brackets = ended.outer_brackets
+        return self.literal(ended.string, pos, in_specification=ended.in_specification)
+
+    def literal(self, string: _FormattedString, pos: int, *, in_specification: bool) -> int:
+        """Read an f-string from ``pos``, in its text, to the next replacement field or to its end."""
+        text, quote = self.text, string.quote
+        while True:
+            pattern = lexemes.literal(quote, specification=in_specification, raw=string.raw)
+            found = pattern.match(text, pos)
+            start, pos = found.span() if found else (pos, pos)
+            if pos > start:
+                self.add(FSTRING_MIDDLE, start, pos)
+                middle = self.tokens.texts[-1]
+                if not in_specification and ("{{" in middle or "}}" in middle):
+                    self.tokens.texts[-1] = middle.replace("{{", "{").replace("}}", "}")
+                if "\n" in middle:
+                    self.lines_within(start, pos)
+            if text.startswith("{", pos):
+                self.fields.append(_Field(string, in_specification, self.brackets))
+                self.brackets = [_Bracket("", "{", self.line, pos - self.line_start)]
+                self.add(self.words["{"], pos, pos + 1)
+                return pos + 1
+            if text.startswith("}", pos):
+                if in_specification:
+                    self.add(self.words["}"], pos, pos + 1)
+                    ended = self.fields.pop()
+                    self.brackets = ended.outer_brackets
+                    in_specification = ended.in_specification
+                else:
+                    self.report(lexical_errors.single_brace(self.here(pos, pos + 1)))
+                    self.add(ERROR, pos, pos + 1)
+                pos += 1
+            elif not text.startswith(quote, pos):
+                # The end of the line or of the text.
+                self.report(lexical_errors.open_string(quote, string.span))
+                self.add_empty(ERROR, pos)
+                self.leave(string)
+                return pos
+            elif in_specification:
+                return self.close_early(pos)
+            else:
+                self.add(FSTRING_END, pos, pos + len(quote))
+                return pos + len(quote)
+
+    def close_early(self, pos: int) -> int:
+        """The quote of the innermost open f-string stands at ``pos`` while a field of it is still open."""
+        string, innermost = self.fields[-1].string, self.brackets[-1]
+        end = pos + len(string.quote)
+        self.report(lexical_errors.closed_early(self.here(pos, end), innermost.opener, innermost.span))
+        self.add(ERROR, pos, end)
+        self.leave(string)
+        return end
+
+    def leave(self, string: _FormattedString) -> None:
+        """Forget the open fields of ``string``."""
+        while self.fields and self.fields[-1].string is string:
+            self.brackets = self.fields.pop().outer_brackets
+
+    # What is rare.
+
+    def rare(self, group: int, start: int, end: int) -> int:
+        """A match that the loop does not treat itself."""
+        text = self.text
+        if group == lexemes.FORMATTED:
+            quote = text[start:end].lstrip("fFrR")
+            raw = "r" in text[start : end - len(quote)].lower()
+            self.add(FSTRING_START, start, end)
+            string = _FormattedString(quote, raw, self.here(start, end))
+            return self.literal(string, end, in_specification=False)
+        if group == lexemes.ODD_WORD:
+            self.odd_word(start, end)
+            return end
+        if group == lexemes.CONTINUATION:
+            kinds = self.tokens.kinds
+            if not self.brackets and (not kinds or kinds[-1] == NEWLINE):
+                return self.continued_indentation(self.line_start)
+            self.next_line(end)
+            if end == len(text):
+                self.continuation_at_end(end)
+            return end
+        if group == lexemes.OPEN_TEXT:
+            return self.open_string(start, end)
+        if group == lexemes.ODD_NUMERAL:
+            return self.odd_number(start)
+        return self.stray(start)
+
+    def odd_word(self, start: int, end: int) -> None:
+        """A name with characters beyond ASCII, or a word in front of a quote that is no prefix of it."""
+        name = self.text[start:end]
+        if name.isascii():
+            self.add(self.words.get(name, NAME), start, end)
+        elif name.isidentifier():
+            # No keyword, whatever it is normalised to.
+            self.add(NAME, start, end)
+            self.tokens.texts[-1] = unicodedata.normalize("NFKC", name)
+        else:
+            offset = 0
+            if name[0].isidentifier():
+                offset = next(index for index, part in enumerate(name) if not f"_{part}".isidentifier())
+            self.invalid_character(start + offset)
+            self.add(ERROR, start, end)
+
+    def open_string(self, start: int, end: int) -> int:
+        """A string that is not closed; ``end`` is after the quote that opens it."""
+        text = self.text
+        quote = text[start:end].lstrip("bBrRuU")
+        if self.fields and self.fields[-1].string.quote == quote and end - start == len(quote):
+            # Rather than to open a string, this quote was to end the f-string around it.
+            return self.close_early(start)
+        self.report(lexical_errors.open_string(quote, self.here(start, end)))
+        rest = lexemes.OPEN_STRING.match(text, end)
+        stop = len(text) if len(quote) == 3 or rest is None else rest.end()
+        self.add(ERROR, start, stop)
+        if "\n" in text[start:stop]:
+            self.lines_within(start, stop)
+        return stop
+
+    def odd_number(self, start: int) -> int:
+        """A number that touches a word."""
+        text = self.text
+        number = lexemes.NUMBER.match(text, start)
+        valid = "" if number is None else number[0]
+        end = start + len(valid)
+        if valid and lexemes.WORD_AFTER_NUMBER.match(text, end) and not lexemes.LEADING_ZERO.fullmatch(valid):
+            self.add(NUMBER, start, end)
+            return end
+        rest = lexemes.BAD_NUMBER.match(text, end)
+        end = max(end if rest is None else rest.end(), start + 1)
+        self.bad_number(start, end, valid)
+        return end
+
+    def bad_number(self, start: int, end: int, number: str) -> None:
+        """``text[start:end]`` is no number, although its beginning ``number`` may be one."""
+        self.report(lexical_errors.bad_number(self.text[start:end], number, self.here(start, end)))
+        self.add(ERROR, start, end)
+
+    def stray(self, start: int) -> int:
+        """A character that starts no token."""
+        text = self.text
+        if text[start] != "\\":
+            found = lexemes.STRAY_RUN.match(text, start)
+            end = start + 1 if found is None else found.end()
+            self.invalid_character(start)
+            self.add(ERROR, start, end)
+            return end
+        found = lexemes.BACKSLASHES.match(text, start)
+        start_of_rest, end_of_rest = found.span(1) if found else (-1, -1)
+        if start_of_rest >= 0:
+            # Only blanks between a backslash and the line end: what was meant is clear.
+            self.report(lexical_errors.after_continuation(self.here(start, end_of_rest - 1), blank=True))
+            self.add(ERROR, start, start_of_rest)
+            self.next_line(end_of_rest)
+            return end_of_rest
+        end = start + 1 if found is None else found.end()
+        self.report(lexical_errors.after_continuation(self.here(start, end), blank=False))
+        self.add(ERROR, start, end)
+        return end
+
+    def invalid_character(self, pos: int) -> None:
+        character = self.text[pos]
+        # Null characters and surrogates are reported together at the end.
+        if lexemes.UNREADABLE.match(character) is None:
+            self.report(lexical_errors.invalid_character(character, self.here(pos, pos + 1)))
+
+
+def _measure(white: str) -> tuple[int, int]:
+    """The width of an indentation with tabs to the next multiple of eight, and with tabs of one."""
+    if not white.strip(" "):
+        return len(white), len(white)
+    column = strict_column = 0
+    for character in white:
+        if character == " ":
+            column += 1
+            strict_column += 1
+        elif character == "\t":
+            column = (column // _TAB + 1) * _TAB
+            strict_column += 1
+        else:  # a form feed starts the line again
+            column = strict_column = 0
+    return column, strict_column
+
+
+def _count_bytes(tokens: Tokens) -> None:
+    """Turn columns in characters into columns in bytes, on the lines that are not ASCII."""
+    for number, content in enumerate(tokens.text.split("\n"), start=1):
+        if content.isascii():
+            continue
+        for lines, columns in ((tokens.lines, tokens.columns), (tokens.end_lines, tokens.end_columns)):
+            seen = count = 0
+            for index in range(bisect_left(lines, number), bisect_right(lines, number)):
+                column = columns[index]
+                # The line end is one more than the characters of the line.
+                count += len(content[seen:column].encode("utf-8", "surrogatepass"))
+                seen = column
+                columns[index] = count + max(0, column - len(content))

@@ -1,0 +1,144 @@
+"""What the lexer says about text that it cannot read."""
+
+from collections.abc import Iterator
+from typing import Final
+
+from scenic.compiler import lexemes
+from scenic.language.diagnostics import Diagnostic, Label
+from scenic.language.spans import Span
+
+CLOSER_OF: Final = {"(": ")", "[": "]", "{": "}"}
+OPENER_OF: Final = {")": "(", "]": "[", "}": "{"}
+
+_NUMBER_KINDS: Final = {"x": "hexadecimal", "o": "octal", "b": "binary"}
+
+
+def wrong_closer(closer: str, span: Span, opener: str, opener_span: Span) -> Diagnostic:
+    """``closer`` stands where ``opener`` has to be closed first."""
+    return Diagnostic(
+        "SC103",
+        f"`{closer}` does not match `{opener}`",
+        span,
+        help=f"close `{opener}` with `{CLOSER_OF[opener]}`",
+        labels=(Label(opener_span, f"`{opener}` was opened here"),),
+    )
+
+
+def needless_closer(closer: str, span: Span) -> Diagnostic:
+    return Diagnostic("SC103", f"`{closer}` closes no bracket", span, help=f"remove `{closer}`")
+
+
+def never_closed(opener: str, span: Span, *, is_field: bool) -> Diagnostic:
+    """A bracket, or the brace of a replacement field, is still open at the end of the statement."""
+    if is_field:
+        return Diagnostic(
+            "SC105", "this replacement field of an f-string is never closed", span, help="add `}`"
+        )
+    return Diagnostic("SC103", f"`{opener}` is never closed", span, help=f"add `{CLOSER_OF[opener]}`")
+
+
+def closed_early(span: Span, opener: str, opener_span: Span) -> Diagnostic:
+    """An f-string ends inside one of its replacement fields."""
+    closer = CLOSER_OF[opener]
+    return Diagnostic(
+        "SC105",
+        f"the f-string ends before `{closer}`",
+        span,
+        help=f"add `{closer}` before the quote",
+        labels=(Label(opener_span, f"`{opener}` was opened here"),),
+    )
+
+
+def single_brace(span: Span) -> Diagnostic:
+    return Diagnostic("SC105", "single `}` in an f-string", span, help="write `}}` for a brace")
+
+
+def open_string(quote: str, span: Span) -> Diagnostic:
+    return Diagnostic("SC101", "this string is never closed", span, help=f"add `{quote}`")
+
+
+def unmatched_unindent(span: Span) -> Diagnostic:
+    return Diagnostic(
+        "SC102",
+        "unindent does not match any outer indentation level",
+        span,
+        help="align the line with the block that it belongs to",
+    )
+
+
+def mixed_indentation(span: Span) -> Diagnostic:
+    return Diagnostic(
+        "SC102", "inconsistent use of tabs and spaces in indentation", span, help="indent with spaces only"
+    )
+
+
+def continuation_at_end(span: Span) -> Diagnostic:
+    return Diagnostic("SC106", "the file ends after a line continuation", span, help="remove the backslash")
+
+
+def after_continuation(span: Span, *, blank: bool) -> Diagnostic:
+    return Diagnostic(
+        "SC106",
+        f"{'blanks' if blank else 'text'} after a line continuation",
+        span,
+        help="a backslash outside strings must be the last character of its line",
+    )
+
+
+def bad_number(whole: str, number: str, span: Span) -> Diagnostic:
+    """``whole`` is not a number, although its beginning ``number`` may be one."""
+    kind = _NUMBER_KINDS.get(whole[1:2].lower(), "decimal") if whole[0] == "0" else "decimal"
+    message = f"invalid {kind} number `{_short(whole)}`"
+    if lexemes.LEADING_ZERO.fullmatch(number):
+        message = "a decimal number must not start with 0"
+        advice = "remove the zeros, or write `0o` before an octal number"
+    elif whole.endswith("_") or "__" in whole:
+        advice = "an underscore must stand between two digits"
+    elif kind != "decimal":
+        advice = f"write one or more {kind} digits after `{whole[:2]}`"
+    else:
+        advice = "put a space or an operator between the number and what follows"
+    return Diagnostic("SC104", message, span, help=advice)
+
+
+def invalid_character(character: str, span: Span) -> Diagnostic:
+    code = ord(character)
+    if character.isprintable():
+        message = f"invalid character `{character}`" + (f" (U+{code:04X})" if code > 127 else "")
+    else:
+        message = f"invalid non-printable character U+{code:04X}"
+    if character in "“”„«»‘’‚":
+        advice = "use the plain quotes `\"` or `'`"
+    elif character == "!":
+        advice = "write `not` or `!=`"
+    elif character in "−–—":
+        advice = "use the plain hyphen `-`"
+    elif character.isspace():
+        advice = "replace it by a plain space"
+    else:
+        advice = "remove it, or put it into a string"
+    return Diagnostic("SC100", message, span, help=advice)
+
+
+def unreadable(text: str) -> Iterator[Diagnostic]:
+    """Null characters and lone surrogates wherever they are, in strings and comments too."""
+    if "\0" not in text and (text.isascii() or lexemes.UNREADABLE.search(text) is None):
+        return
+    line, line_start, seen = 1, 0, 0
+    for found in lexemes.UNREADABLE.finditer(text):
+        start, end = found.span()
+        count = text.count("\n", seen, start)
+        if count:
+            line += count
+            line_start = text.rfind("\n", seen, start) + 1
+        seen = end
+        if found[1]:
+            message = "null character in the source"
+        else:
+            message = f"half of a character (lone surrogate U+{ord(text[start]):04X}) in the source"
+        span = Span(line, start - line_start, line, end - line_start)
+        yield Diagnostic("SC100", message, span, help="is this really a text file in UTF-8?")
+
+
+def _short(text: str) -> str:
+    return text if len(text) <= 40 else text[:39] + "…"

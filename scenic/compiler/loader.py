@@ -1,0 +1,177 @@
+"""Scenic modules: where they are found, and how their compiled code is kept.
+
+Compiled code is cached beside the source, as Python does, under names of its own: ``foo.scenic`` and ``foo.py`` never
+meet. The name holds a fingerprint of the compiler, so that no cache outlives a change of the grammar or the lowering.
+A cache that does not match its source, or is damaged, is ignored and written anew; where nothing can be written the
+program is simply compiled each time.
+"""
+
+import hashlib
+import importlib.abc
+import marshal
+import os
+import sys
+import tempfile
+from collections.abc import Iterable, Iterator
+from functools import cache
+from pathlib import Path
+from types import CodeType
+from typing import Final
+
+import scenic.compiler
+import scenic.language
+from scenic.compiler.compile import compile_text
+from scenic.language.diagnostics import Severity
+from scenic.language.errors import ScenicSyntaxError
+from scenic.language.source import Source, read_source
+
+__all__ = ["SUFFIXES", "ScenicLoader", "cache_file", "find_module", "load_code"]
+
+SUFFIXES: Final = (".scenic", ".sc")
+"""File extensions of Scenic programs, the preferred one first."""
+
+_DIGEST: Final = 32
+
+
+def find_module(name: str, search_path: Iterable[str | os.PathLike[str]]) -> Path | None:
+    """The file of the Scenic module ``name``, or ``None``.
+
+    A package is a folder: ``a.b`` is ``a/b.scenic``, or ``a/b/__init__.scenic``. The first folder of ``search_path``
+    that has either wins, and ``.scenic`` wins over ``.sc``.
+    """
+    parts = name.split(".")
+    if not all(part.isidentifier() for part in parts):
+        return None
+    for folder in search_path:
+        base = Path(folder, *parts)
+        for candidate in _candidates(base):
+            try:
+                if candidate.is_file():
+                    return candidate
+            except OSError:  # A folder that may not be read holds no modules for us.
+                continue
+    return None
+
+
+def _candidates(base: Path) -> Iterator[Path]:
+    for suffix in SUFFIXES:
+        yield base.with_name(base.name + suffix)
+    for suffix in SUFFIXES:
+        yield base / f"__init__{suffix}"
+
+
+def load_code(path: str | os.PathLike[str]) -> CodeType:
+    """The compiled code of a Scenic file, from the cache if it has one.
+
+    Raises `ScenicSyntaxError`, which holds all diagnostics, if the program has errors, and `ScenicError` if the file
+    cannot be read or is not UTF-8.
+    """
+    location = Path(path)
+    return ScenicLoader(location.stem, str(location)).get_code(location.stem)
+
+
+class ScenicLoader(importlib.abc.ExecutionLoader):
+    """Loads one Scenic file; the module never enters ``sys.modules``, since each compilation runs it afresh.
+
+    Not a ``SourceLoader``, which would cache the code where that of a Python module of the same name belongs.
+    """
+
+    def __init__(self, fullname: str, path: str) -> None:
+        self.name = fullname
+        self.path = path
+
+    def get_filename(self, fullname: str) -> str:
+        """The path of the source."""
+        return self.path
+
+    def get_source(self, fullname: str) -> str:
+        """The text of the program; raises `ScenicError` if it cannot be read."""
+        return read_source(self.path).text
+
+    def get_code(self, fullname: str) -> CodeType:
+        """The code of the module, cached."""
+        source = read_source(self.path)
+        key = _key(source)
+        kept = cache_file(source.filename)
+        if kept is not None:
+            code = _read(kept, key)
+            if code is not None:
+                return code
+        compiled = compile_text(source.text, filename=source.filename)
+        if compiled.code is None:
+            by_severity = sorted(compiled.diagnostics, key=lambda item: item.severity is not Severity.ERROR)
+            raise ScenicSyntaxError(by_severity, filename=source.filename)
+        if kept is not None and not sys.dont_write_bytecode:
+            _write(kept, key, compiled.code)
+        return compiled.code
+
+
+def cache_file(filename: str) -> Path | None:
+    """Where the compiled code of a Scenic file is kept; ``None`` if this installation cannot keep any."""
+    fingerprint = _fingerprint()
+    tag = sys.implementation.cache_tag
+    if fingerprint is None or tag is None:
+        return None
+    source = Path(filename)
+    folder = source.parent / "__pycache__"
+    if sys.pycache_prefix is not None:
+        folder = Path(sys.pycache_prefix, *source.absolute().parent.parts[1:])
+    optimised = f".opt-{sys.flags.optimize}" if sys.flags.optimize else ""
+    return folder / f"{source.name}.{tag}-{fingerprint}{optimised}.pyc"
+
+
+@cache
+def _fingerprint() -> str | None:
+    """A digest of the compiler: its modules and those generated from the grammar. ``None`` without files to read."""
+    digest = hashlib.sha256(sys.version.encode())
+    folders = [*scenic.compiler.__path__, *scenic.language.__path__]
+    try:
+        files = sorted(file for folder in folders for file in Path(folder).rglob("*.py"))
+        for file in files:
+            digest.update(file.name.encode())
+            digest.update(file.read_bytes())
+    except OSError:
+        return None
+    return digest.hexdigest()[:16] if files else None
+
+
+def _key(source: Source) -> bytes:
+    """What a cache must have been made from. The name belongs to it, since compiled code contains it."""
+    digest = hashlib.sha256(source.filename.encode("utf-8", "surrogateescape"))
+    digest.update(b"\0")
+    digest.update(source.text.encode())
+    return digest.digest()
+
+
+def _read(file: Path, key: bytes) -> CodeType | None:
+    """The cached code if it is whole and was made from this source."""
+    try:
+        data = file.read_bytes()
+    except OSError:
+        return None
+    body = data[2 * _DIGEST :]
+    # The digest comes first: damaged data must not reach the decoder, which trusts what it is given.
+    if data[:_DIGEST] != key or data[_DIGEST : 2 * _DIGEST] != hashlib.sha256(body).digest():
+        return None
+    try:
+        code = marshal.loads(body)
+    except (EOFError, ValueError, TypeError):
+        return None
+    return code if isinstance(code, CodeType) else None
+
+
+def _write(file: Path, key: bytes, code: CodeType) -> None:
+    """Writes a cache that is complete or absent; a folder that cannot be written stays without."""
+    body = marshal.dumps(code)
+    try:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        handle, name = tempfile.mkstemp(dir=file.parent, prefix=f"{file.name}.")
+    except OSError:
+        return
+    temporary = Path(name)
+    try:
+        with os.fdopen(handle, "wb") as stream:
+            stream.write(key + hashlib.sha256(body).digest() + body)
+        temporary.replace(file)
+    except OSError:
+        temporary.unlink(missing_ok=True)

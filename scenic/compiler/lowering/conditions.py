@@ -1,0 +1,254 @@
+"""The conditions of requirements.
+
+A condition is split at ``and``, ``or`` and ``not`` into leaves. Each leaf is given to the prelude twice: as an
+expression that builds a node of the value graph, and as a function of the names in it that computes with concrete
+values. Which leaves can become nodes is decided here, by their form alone: a leaf with a call of one of the program's
+own functions, a comprehension, ``is``, a lambda and so on is *opaque*, and given as a function only. Tracing such code
+with random values could be silently wrong; calling it with sampled ones never is.
+"""
+
+import ast
+from collections.abc import Callable, Iterator, Sequence
+from typing import Final
+
+from scenic.compiler import tree as scenic
+from scenic.compiler.lowering.build import (
+    at,
+    constant,
+    lambda_,
+    name,
+    prelude_call,
+    rebuilt,
+    start_of,
+    tuple_,
+)
+from scenic.compiler.scopes import PROVIDED, Resolution
+from scenic.language.names import CONVERSIONS, LIFTED_FUNCTIONS, LIFTED_METHODS, TRACKED
+
+__all__ = ["Conditions"]
+
+_Lowering = Callable[[ast.expr], ast.expr]
+
+_ARITHMETIC: Final = (ast.Add, ast.Sub, ast.Mult, ast.Div, ast.FloorDiv, ast.Mod, ast.Pow)
+_COMPARISONS: Final[dict[type[ast.cmpop], str]] = {
+    ast.Eq: "==",
+    ast.NotEq: "!=",
+    ast.Lt: "<",
+    ast.LtE: "<=",
+    ast.Gt: ">",
+    ast.GtE: ">=",
+}
+
+
+class Conditions:
+    """Lowers conditions.
+
+    ``ordinary`` lowers an expression that is evaluated where it stands, ``captured`` one whose free names are the
+    parameters of the function around it.
+    """
+
+    def __init__(self, resolution: Resolution, ordinary: _Lowering, captured: _Lowering) -> None:
+        self._resolution = resolution
+        self._ordinary = ordinary
+        self._captured = captured
+
+    def condition(self, node: ast.expr) -> ast.expr:
+        """The argument of the prelude's ``require``."""
+        if _assigns(node):
+            # What one leaf assigns another may read: they stay together.
+            return self._leaf(node)
+        return self._split(node)
+
+    def _split(self, node: ast.expr) -> ast.expr:
+        match node:
+            case ast.BoolOp(op=ast.And(), values=values):
+                return prelude_call("conjunction", [self._split(value) for value in values], node)
+            case ast.BoolOp(op=ast.Or(), values=values):
+                return prelude_call("disjunction", [self._split(value) for value in values], node)
+            case ast.UnaryOp(op=ast.Not(), operand=operand):
+                return prelude_call("negation", [self._split(operand)], node)
+            case scenic.Temporal(operator="implies", operands=[premise, conclusion]):
+                failed = prelude_call("negation", [self._split(premise)], premise)
+                return prelude_call("disjunction", [failed, self._split(conclusion)], node)
+            case _:
+                return self._leaf(node)
+
+    def _leaf(self, node: ast.expr) -> ast.expr:
+        try:
+            symbolic = _Symbolic(self._resolution, self._ordinary, self._split)
+            traced: ast.expr = lambda_([], symbolic.expression(node), node)
+        except _OpaqueError:
+            traced = start_of(ast.Constant(None), node)
+        free = list(self._free_names(node))
+        concrete = lambda_([(part.id, part) for part in free], self._captured(node), node)
+        values = tuple_([self._ordinary(part) for part in free], node)
+        return prelude_call("condition", [traced, concrete, values], node)
+
+    def _free_names(self, node: ast.expr) -> Iterator[ast.Name]:
+        """The first occurrence of every name that a leaf takes from outside, other than provided ones."""
+        inner = {self._resolution.scopes[part] for part in ast.walk(node) if part in self._resolution.scopes}
+        seen: set[str] = set()
+        for part in _in_order(node):
+            binding = self._resolution.binding(part)
+            if part.id in seen or (binding is not None and binding.scope in inner):
+                continue
+            if isinstance(part.ctx, ast.Store):
+                # The leaf assigns the name before it reads it.
+                seen.add(part.id)
+            elif binding is not None or part.id in TRACKED or self._may_be_bound(part.id):
+                seen.add(part.id)
+                yield part
+
+    def _may_be_bound(self, identifier: str) -> bool:
+        """Whether a name that the text does not bind may come from a module."""
+        return self._resolution.wildcard and identifier not in PROVIDED
+
+
+def _assigns(node: ast.expr) -> bool:
+    """Whether there is an assignment expression in a condition."""
+    return any(isinstance(part, ast.NamedExpr) for part in ast.walk(node))
+
+
+def _in_order(node: ast.expr) -> Iterator[ast.Name]:
+    """All names in an expression, in the order of evaluation as far as that decides what is assigned before a read."""
+    stack: list[ast.AST] = [node]
+    while stack:
+        part = stack.pop()
+        match part:
+            case ast.Name():
+                yield part
+                continue
+            case ast.NamedExpr():
+                parts: list[ast.AST] = [part.value, part.target]
+            case ast.ListComp() | ast.SetComp() | ast.GeneratorExp():
+                parts = [*part.generators, part.elt]
+            case ast.DictComp():
+                parts = [*part.generators, part.key, part.value]
+            case ast.comprehension():
+                parts = [part.iter, part.target, *part.ifs]
+            case ast.IfExp():
+                parts = [part.test, part.body, part.orelse]
+            case _:
+                parts = list(ast.iter_child_nodes(part))
+        stack.extend(reversed(parts))
+
+
+class _OpaqueError(Exception):
+    """An expression that cannot become a node of the value graph."""
+
+
+class _Symbolic:
+    """Lowers an expression to one that builds a node; raises `_OpaqueError` where the form forbids it."""
+
+    def __init__(self, resolution: Resolution, ordinary: _Lowering, condition: _Lowering) -> None:
+        self._resolution = resolution
+        self._ordinary = ordinary
+        self._condition = condition
+        self._kept = 0
+
+    def expression(self, node: ast.expr) -> ast.expr:
+        match node:
+            case ast.Constant():
+                return node
+            case ast.Name():
+                return self._ordinary(node)
+            case ast.Attribute(value=value, attr=attribute):
+                return prelude_call("read", [self.expression(value), constant(attribute, node)], node)
+            case ast.UnaryOp(op=ast.USub() | ast.UAdd(), operand=operand):
+                return rebuilt(node, operand=self.expression(operand))
+            case ast.UnaryOp(op=ast.Not(), operand=operand):
+                return prelude_call("invert", [self.expression(operand)], node)
+            case ast.BinOp(op=operator, left=left, right=right) if isinstance(operator, _ARITHMETIC):
+                return rebuilt(node, left=self.expression(left), right=self.expression(right))
+            case ast.BoolOp(op=operator, values=values):
+                function = "all_of" if isinstance(operator, ast.And) else "any_of"
+                return prelude_call(function, self._all(values), node)
+            case ast.Compare():
+                return self._comparison(node)
+            case ast.IfExp(test=test, body=body, orelse=orelse):
+                options = [lambda_([], self.expression(option), option) for option in (body, orelse)]
+                return prelude_call("choose", [self._condition(test), *options], node)
+            case ast.Subscript(value=value, slice=index):
+                return rebuilt(node, value=self.expression(value), slice=self._index(index))
+            case ast.Tuple(elts=elements) | ast.List(elts=elements):
+                return rebuilt(node, elts=self._all(elements))
+            case ast.Call():
+                return self._call(node)
+            case scenic.Operation(operator=operator, operands=operands):
+                args = [
+                    start_of(ast.Constant(None), node) if operand is None else self.expression(operand)
+                    for operand in operands
+                ]
+                return prelude_call("operation", [constant(operator, node), *args], node)
+            case _:
+                raise _OpaqueError
+
+    def _all(self, nodes: Sequence[ast.expr]) -> list[ast.expr]:
+        return [self.expression(node) for node in nodes]
+
+    def _index(self, node: ast.expr) -> ast.expr:
+        if not isinstance(node, ast.Slice):
+            return self.expression(node)
+        parts = {
+            field: self.expression(part)
+            for field in ("lower", "upper", "step")
+            if (part := getattr(node, field)) is not None
+        }
+        return rebuilt(node, **parts)
+
+    def _comparison(self, node: ast.Compare) -> ast.expr:
+        """``a < b < c`` becomes ``all_of(compare("<", a, b), compare("<", b, c))`` with ``b`` evaluated once."""
+        left = self.expression(node.left)
+        pairs: list[ast.expr] = []
+        begin: ast.expr = node.left
+        for index, (operator, comparator) in enumerate(zip(node.ops, node.comparators, strict=True)):
+            right = self.expression(comparator)
+            following = right
+            if index + 1 < len(node.ops) and not isinstance(right, ast.Name | ast.Constant):
+                identifier = f"__operand_{self._kept}__"
+                self._kept += 1
+                target = at(ast.Name(identifier, ast.Store()), comparator)
+                right = at(ast.NamedExpr(target, right), comparator)
+                following = name(identifier, comparator)
+            place = _between(begin, comparator)
+            pairs.append(_pair(operator, left, right, place))
+            left, begin = following, comparator
+        return pairs[0] if len(pairs) == 1 else prelude_call("all_of", pairs, node)
+
+    def _call(self, node: ast.Call) -> ast.expr:
+        if node.keywords or any(isinstance(arg, ast.Starred) for arg in node.args):
+            raise _OpaqueError
+        match node.func:
+            case ast.Name(id=function) if function in CONVERSIONS:
+                return prelude_call("convert", [constant(function, node.func), *self._all(node.args)], node)
+            case ast.Name(id=function) as callee if function in LIFTED_FUNCTIONS:
+                if self._resolution.binding(callee) is not None:
+                    raise _OpaqueError  # The program's own function of this name.
+                provided: ast.expr = callee
+                if self._resolution.wildcard:
+                    # A module may bring another function of this name: the prelude looks.
+                    provided = prelude_call("provided", [constant(function, callee), callee], callee)
+                return rebuilt(node, func=provided, args=self._all(node.args))
+            case ast.Attribute(value=value, attr=method) if method in LIFTED_METHODS:
+                args = [self.expression(value), constant(method, node), *self._all(node.args)]
+                return prelude_call("call", args, node)
+            case _:
+                raise _OpaqueError
+
+
+def _pair(operator: ast.cmpop, left: ast.expr, right: ast.expr, origin: ast.AST) -> ast.expr:
+    match operator:
+        case ast.In():
+            return prelude_call("contains", [left, right], origin)
+        case ast.NotIn():
+            return prelude_call("invert", [prelude_call("contains", [left, right], origin)], origin)
+        case ast.Is() | ast.IsNot():
+            raise _OpaqueError
+    return prelude_call("compare", [constant(_COMPARISONS[type(operator)], origin), left, right], origin)
+
+
+def _between(first: ast.expr, last: ast.expr) -> ast.AST:
+    """A place from the beginning of one expression to the end of another."""
+    place = at(ast.Pass(), first)
+    place.end_lineno, place.end_col_offset = last.end_lineno, last.end_col_offset
+    return place

@@ -1,0 +1,386 @@
+"""Statements and expressions."""
+
+import ast
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from types import MappingProxyType
+from typing import Any, Final
+
+from scenic.compiler import tree as scenic
+from scenic.compiler.lowering.build import (
+    at,
+    constant,
+    function,
+    instance_attribute,
+    lambda_,
+    name,
+    prelude,
+    prelude_call,
+    rebuilt,
+    start_of,
+    statement,
+    store_on_instance,
+    tuple_,
+)
+from scenic.compiler.lowering.conditions import Conditions
+from scenic.compiler.scopes import Binding, BindingKind, Resolution, Scope, ScopeKind
+from scenic.language.errors import InternalError
+from scenic.language.names import CONVERSIONS, TRACKED
+
+__all__ = ["lower"]
+
+
+def lower(tree: ast.Module, resolution: Resolution) -> ast.Module:
+    """The Python module for a program without errors; ``tree`` stays as it is.
+
+    Raises `RecursionError` if the tree is nested more deeply than the interpreter's stack allows.
+    """
+    return _Program(resolution).module(tree)
+
+
+_VALUE: Final = "__value__"
+"""Holds the value of an assignment expression while it is stored on a scenario's instance."""
+
+
+class _Program:
+    """Lowers the nodes of one module.
+
+    ``captured`` is for the conditions of requirements, which become functions of the names in them: there a name
+    stands for the parameter, not for what the prelude or a scenario's instance holds now.
+    """
+
+    def __init__(self, resolution: Resolution, *, captured: bool = False) -> None:
+        self._resolution = resolution
+        self._captured = captured
+        self._bound_by: Mapping[ast.AST, Binding] = {
+            site: binding
+            for scope in resolution.scopes.values()
+            for binding in scope.bindings.values()
+            if _is_kept(binding)
+            for site in binding.sites
+        }
+        self._conditions: Conditions | None = None
+
+    def module(self, tree: ast.Module) -> ast.Module:
+        return rebuilt(tree, body=self.block(tree.body), type_ignores=[])
+
+    def expression(self, node: ast.expr) -> ast.expr:
+        lowered: ast.expr = self._lower(node)
+        return lowered
+
+    def block(self, statements: Sequence[ast.stmt]) -> list[ast.stmt]:
+        """A suite; some statements become several."""
+        lowered: list[ast.stmt] = []
+        for node in statements:
+            result = self._lower(node)
+            if isinstance(result, list):
+                lowered.extend(result)
+            else:
+                lowered.append(result)
+        return lowered
+
+    def _lower(self, node: Any) -> Any:
+        rule = _RULES.get(type(node))
+        return self._copy(node) if rule is None else rule(self, node)
+
+    def _copy(self, node: ast.AST, **changes: Any) -> Any:
+        """Lowers the fields of a Python node that are not in ``changes``; the node itself if nothing changes."""
+        if isinstance(node, scenic.ScenicStatement | scenic.ScenicExpression | scenic.ScenicPart):
+            raise InternalError(f"{type(node).__name__} has no lowering")
+        for field in node._fields:
+            if field in changes:
+                continue
+            value = getattr(node, field, None)
+            if isinstance(value, ast.AST):
+                lowered: Any = self._lower(value)
+            elif isinstance(value, list) and value:
+                lowered = self._list(value)
+            else:
+                continue
+            if lowered is not value:
+                changes[field] = lowered
+        return rebuilt(node, **changes) if changes else node
+
+    def _list(self, values: list[Any]) -> list[Any]:
+        """The same list if nothing in it changes."""
+        lowered: list[Any] = []
+        same = True
+        for value in values:
+            result = self._lower(value) if isinstance(value, ast.AST) else value
+            if isinstance(result, list):
+                lowered.extend(result)
+            else:
+                lowered.append(result)
+            same = same and result is value
+        return values if same else lowered
+
+    # Names
+
+    def name(self, node: ast.Name) -> ast.expr:
+        if self._captured:
+            return node
+        if node.id in TRACKED:
+            return prelude(node.id, node, node.ctx)
+        instance = self._instance(node)
+        return node if instance is None else instance_attribute(instance, node.id, node, node.ctx)
+
+    def _instance(self, node: ast.Name) -> str | None:
+        """The scenario's instance that a name is an attribute of."""
+        binding = self._resolution.binding(node)
+        return _instance_name(binding.scope) if binding is not None and _is_kept(binding) else None
+
+    def walrus(self, node: ast.NamedExpr) -> ast.expr:
+        instance = None if self._captured else self._instance(node.target)
+        if instance is None:
+            lowered: ast.expr = self._copy(node)
+            return lowered
+        # `(__value__ := e, __instance__.__setattr__("x", __value__))[0]`: only names can be assigned in expressions.
+        value = at(
+            ast.NamedExpr(at(ast.Name(_VALUE, ast.Store()), node.target), self.expression(node.value)), node
+        )
+        setter = start_of(instance_attribute(instance, "__setattr__", node.target), node.target)
+        stored = at(
+            ast.Call(setter, [constant(node.target.id, node.target), name(_VALUE, node.target)], []), node
+        )
+        pair = tuple_([value, stored], node)
+        return at(ast.Subscript(pair, constant(0, node), ast.Load()), node)
+
+    # Scenic's expressions
+
+    def operation(self, node: scenic.Operation) -> ast.expr:
+        return prelude_call(
+            "operation", [constant(node.operator, node), *self._operands(node.operands, node)], node
+        )
+
+    def _operands(self, operands: Sequence[ast.expr | None], origin: ast.AST) -> list[ast.expr]:
+        return [
+            start_of(ast.Constant(None), origin) if operand is None else self.expression(operand)
+            for operand in operands
+        ]
+
+    def new(self, node: scenic.New) -> ast.expr:
+        cls = self.expression(node.cls)
+        return prelude_call("new", [cls, *[self._specifier(part) for part in node.specifiers]], node)
+
+    def _specifier(self, node: scenic.Specifier) -> ast.expr:
+        args = [constant(node.specifier, node), *self._operands(node.operands, node)]
+        options = {} if node.property is None else {"property": node.property}
+        return prelude_call("specifier", args, node, options=options)
+
+    def call(self, node: ast.Call) -> ast.expr:
+        match node.func:
+            # With keywords, as in `int("ff", base=16)`, it is about text, and Python's own function does it.
+            case ast.Name(id=function) if function in CONVERSIONS and not node.keywords:
+                args = [self.expression(arg) for arg in node.args]
+                return prelude_call("convert", [constant(function, node.func), *args], node)
+        lowered: ast.expr = self._copy(node)
+        return lowered
+
+    # Scenic's statements
+
+    def param(self, node: scenic.Param) -> ast.stmt:
+        values = at(
+            ast.Dict(
+                [constant(item.name, item) for item in node.items],
+                [self.expression(item.value) for item in node.items],
+            ),
+            node,
+        )
+        return statement(prelude_call("param", [values], node), node)
+
+    def model(self, node: scenic.Model) -> ast.stmt:
+        names = start_of(ast.Name("globals", ast.Load()), node)
+        call = at(ast.Call(names, [], []), node)
+        return statement(prelude_call("model", [constant(node.name, node), call], node), node)
+
+    def simulator(self, node: scenic.Simulator) -> ast.stmt:
+        value = lambda_([], self.expression(node.value), node.value)
+        return statement(prelude_call("simulator", [value], node), node)
+
+    def require(self, node: scenic.Require) -> ast.stmt:
+        if self._conditions is None:
+            self._conditions = Conditions(
+                self._resolution, self.expression, _Program(self._resolution, captured=True).expression
+            )
+        condition = self._conditions.condition(node.condition)
+        options = {"probability": node.probability, "name": node.name}
+        return statement(prelude_call("require", [condition], node, options=options), node)
+
+    # Definitions
+
+    def class_definition(self, node: ast.ClassDef) -> Any:
+        properties = [item for item in node.body if isinstance(item, scenic.PropertyDef)]
+        body: list[ast.stmt] = []
+        for item in node.body:
+            if not isinstance(item, scenic.PropertyDef):
+                body.extend(self.block([item]))
+            elif item is properties[0]:
+                body.append(self._properties(properties))
+        bases = [self.expression(base) for base in node.bases] or [start_of(prelude("Object", node), node)]
+        return self._kept(node, self._copy(node, bases=bases, body=body))
+
+    def _properties(self, nodes: Sequence[scenic.PropertyDef]) -> ast.stmt:
+        first = nodes[0]
+        target = start_of(ast.Name("__scenic_properties__", ast.Store()), first)
+        return at(ast.Assign([target], tuple_([self._property(node) for node in nodes], first)), first)
+
+    def _property(self, node: scenic.PropertyDef) -> ast.expr:
+        read: dict[str, ast.expr] = {}
+        for part in sorted(_attributes(node.value), key=lambda part: (part.end_lineno, part.end_col_offset)):
+            match part:
+                case ast.Attribute(value=ast.Name(id="self") as owner, attr=attribute):
+                    binding = self._resolution.binding(owner)
+                    if binding is not None and binding.scope.node is node:
+                        read.setdefault(attribute, constant(attribute, part))
+        value = lambda_([("self", node)], self.expression(node.value), node.value)
+        start_of(value.args.args[0], node)
+        return prelude_call(
+            "property",
+            [
+                constant(node.name, node),
+                tuple_([constant(attribute, node) for attribute in node.attributes], node),
+                value,
+                tuple_(list(read.values()), node.value),
+            ],
+            node,
+        )
+
+    def function_definition(self, node: Any) -> Any:
+        return self._kept(node, self._copy(node))
+
+    def behavior(self, node: scenic.BehaviorDef) -> Any:
+        # A static scene carries behaviors as data: what they do is compiled only where there are simulations.
+        match node.body[:1]:
+            case [ast.Expr(value=ast.Constant(value=str())) as docstring]:
+                body: list[ast.stmt] = [docstring]
+            case _:
+                body = [start_of(ast.Pass(), node)]
+        args: ast.arguments = self._lower(node.args)
+        return self._kept(node, function(node.name, args, body, "behavior", node))
+
+    def scenario(self, node: scenic.ScenarioDef) -> Any:
+        args: ast.arguments = (
+            ast.arguments([], [], None, [], [], None, []) if node.args is None else node.args
+        )
+        body: list[ast.stmt] = []
+        if node.docstring is not None:
+            body.append(start_of(ast.Expr(start_of(ast.Constant(node.docstring), node)), node))
+        own = _instance_name(self._resolution.scopes[node])
+        every = [*args.posonlyargs, *args.args, args.vararg, *args.kwonlyargs, args.kwarg]
+        body.extend(store_on_instance(own, arg.arg, arg) for arg in every if arg is not None)
+        body.extend(self.block(node.setup or ()))
+        lowered: ast.arguments = self._lower(args)
+        instance = start_of(ast.arg(own, None), node)
+        signature = rebuilt(lowered, posonlyargs=[instance, *lowered.posonlyargs])
+        definition = function(node.name, signature, body or [start_of(ast.Pass(), node)], "scenario", node)
+        return self._kept(node, definition)
+
+    # Local names of scenarios that other nodes than names bind
+
+    def _kept(self, site: ast.AST, lowered: Any) -> Any:
+        """A definition, stored on the scenario's instance if it is local to a scenario."""
+        return [lowered, self._store(site)] if site in self._bound_by else lowered
+
+    def _store(self, site: ast.AST) -> ast.stmt:
+        binding = self._bound_by[site]
+        return store_on_instance(_instance_name(binding.scope), binding.name, site)
+
+    def importation(self, node: ast.Import | ast.ImportFrom) -> Any:
+        stores = [self._store(alias) for alias in node.names if alias in self._bound_by]
+        return [node, *stores] if stores else node
+
+    def type_alias(self, node: Any) -> Any:
+        instance = self._instance(node.name)
+        if instance is None:
+            return self._copy(node)
+        return [self._copy(node, name=node.name), store_on_instance(instance, node.name.id, node.name)]
+
+    def nonlocal_declaration(self, node: ast.Nonlocal) -> ast.stmt:
+        scope = self._resolution.nonlocals[node]
+        names = [identifier for identifier in node.names if not _is_kept(scope.lookup(identifier))]
+        if len(names) == len(node.names):
+            return node
+        return rebuilt(node, names=names) if names else at(ast.Pass(), node)
+
+    def annotated(self, node: ast.AnnAssign) -> ast.stmt:
+        lowered: ast.AnnAssign = self._copy(node)
+        # What was a name may have become an attribute.
+        return (
+            lowered if isinstance(lowered.target, ast.Name) or not node.simple else rebuilt(lowered, simple=0)
+        )
+
+    def exception_handler(self, node: ast.ExceptHandler) -> ast.ExceptHandler:
+        lowered: ast.ExceptHandler = self._copy(node)
+        if node not in self._bound_by:
+            return lowered
+        return rebuilt(lowered, body=[self._store(node), *lowered.body])
+
+    def match_case(self, node: ast.match_case) -> ast.match_case:
+        lowered: ast.match_case = self._copy(node)
+        captures = [part for part in ast.walk(node.pattern) if part in self._bound_by]
+        if not captures:
+            return lowered
+        guard = lowered.guard
+        if guard is not None:
+            # The guard reads the names already: `(__instance__.__setattr__("x", x), guard)[-1]`.
+            parts: list[ast.expr] = [self._store_now(part) for part in captures]
+            last = at(ast.UnaryOp(ast.USub(), constant(1, guard)), guard)
+            guard = at(ast.Subscript(tuple_([*parts, guard], guard), last, ast.Load()), guard)
+        body = [*(self._store(part) for part in captures), *lowered.body]
+        return rebuilt(lowered, body=body, guard=guard)
+
+    def _store_now(self, site: ast.AST) -> ast.expr:
+        """As `_store`, in an expression."""
+        binding = self._bound_by[site]
+        setter = start_of(instance_attribute(_instance_name(binding.scope), "__setattr__", site), site)
+        return at(ast.Call(setter, [constant(binding.name, site), name(binding.name, site)], []), site)
+
+
+def _instance_name(scope: Scope) -> str:
+    """The parameter that holds the instance of a scenario; scenarios inside others have their own."""
+    depth = sum(outer.kind is ScopeKind.SCENARIO for outer in scope.ancestors()) - 1
+    return f"__instance_{depth}__" if depth else "__instance__"
+
+
+def _attributes(node: ast.expr) -> Iterator[ast.Attribute]:
+    return (part for part in ast.walk(node) if isinstance(part, ast.Attribute))
+
+
+def _is_kept(binding: Binding | None) -> bool:
+    """Whether a name is local to a scenario, and so an attribute of its instance wherever it is used.
+
+    Parameters that are never assigned, and the names of exceptions, which Python deletes again, stay what they are.
+    """
+    if binding is None or binding.scope.kind is not ScopeKind.SCENARIO:
+        return False
+    return bool(binding.kinds - {BindingKind.PARAMETER, BindingKind.EXCEPTION})
+
+
+def _rules() -> Mapping[type[ast.AST], Callable[[_Program, Any], Any]]:
+    table: dict[type[ast.AST], Callable[[_Program, Any], Any]] = {
+        ast.Name: _Program.name,
+        ast.NamedExpr: _Program.walrus,
+        ast.Call: _Program.call,
+        ast.ClassDef: _Program.class_definition,
+        ast.FunctionDef: _Program.function_definition,
+        ast.AsyncFunctionDef: _Program.function_definition,
+        ast.Import: _Program.importation,
+        ast.ImportFrom: _Program.importation,
+        ast.Nonlocal: _Program.nonlocal_declaration,
+        ast.AnnAssign: _Program.annotated,
+        ast.ExceptHandler: _Program.exception_handler,
+        ast.match_case: _Program.match_case,
+        scenic.Operation: _Program.operation,
+        scenic.New: _Program.new,
+        scenic.Param: _Program.param,
+        scenic.Model: _Program.model,
+        scenic.Simulator: _Program.simulator,
+        scenic.Require: _Program.require,
+        scenic.BehaviorDef: _Program.behavior,
+        scenic.ScenarioDef: _Program.scenario,
+    }
+    if hasattr(ast, "TypeAlias"):  # Python 3.12
+        table[ast.TypeAlias] = _Program.type_alias
+    return MappingProxyType(table)
+
+
+_RULES: Final = _rules()

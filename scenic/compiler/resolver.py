@@ -1,0 +1,338 @@
+"""Name resolution: which scope each name of a program belongs to.
+
+`resolve` also runs the static checks, so its result holds everything that can be said about names and places without
+running the program. It uses an explicit stack, so that no depth of nesting is too much for it.
+"""
+
+import ast
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import replace
+from types import MappingProxyType
+from typing import Any, Final, NamedTuple
+
+from scenic.compiler import tree as scenic
+from scenic.compiler.checks import check
+from scenic.compiler.scopes import PROVIDED, Binding, BindingKind, Reference, Resolution, Scope, ScopeKind
+from scenic.compiler.traversal import parts, walk
+from scenic.language.names import RESERVED, TRACKED
+from scenic.language.source import Source
+
+__all__ = ["resolve"]
+
+_REFLECTION: Final = frozenset({"exec", "globals", "vars"})
+"""Builtins with which programs may bind names in ways that the text does not show."""
+
+
+def resolve(tree: ast.Module, source: Source) -> Resolution:
+    """Bind every name of a module and check names, placement and declarations.
+
+    Never raises on any tree that the parser makes; what is wrong is in ``diagnostics``, ordered by place.
+    """
+    collector = _Collector(tree)
+    collector.walk()
+    resolution = collector.finish()
+    diagnostics = check(
+        tree,
+        source,
+        resolution,
+        reserved=collector.reserved,
+        tolerated=collector.tolerated,
+        provided=PROVIDED,
+    )
+    return replace(resolution, diagnostics=diagnostics)
+
+
+class _Event(NamedTuple):
+    scope: Scope
+    name: str
+    kind: BindingKind
+    site: ast.AST
+
+
+_Task = tuple[ast.AST, Scope]
+
+
+class _Collector:
+    """Walks the tree once and notes scopes, bindings and uses of names."""
+
+    def __init__(self, tree: ast.Module) -> None:
+        self._tree = tree
+        self._module = Scope(ScopeKind.MODULE, "<module>", tree, None)
+        self._scopes: dict[ast.AST, Scope] = {tree: self._module}
+        self._events: list[_Event] = []
+        self._uses: list[tuple[ast.Name, Scope]] = []
+        self._nonlocals: dict[ast.AST, Scope] = {}
+        self._plain_targets: set[ast.AST] = set()
+        self.tolerated: set[ast.AST] = set()
+        """Names read where a ``NameError`` is caught."""
+        self.reserved: list[tuple[str, ast.AST]] = []
+        """Bindings of names that the program must not bind."""
+
+    def walk(self) -> None:
+        stack: list[_Task] = [(child, self._module) for child in reversed(self._tree.body)]
+        handlers = _HANDLERS
+        while stack:
+            node, scope = stack.pop()
+            handler = handlers.get(type(node))
+            if handler is None:
+                tasks = [(child, scope) for child in parts(node)]
+            else:
+                tasks = list(handler(self, node, scope))
+            tasks.reverse()
+            stack.extend(tasks)
+
+    def finish(self) -> Resolution:
+        bound = {(event.scope, event.name) for event in self._events}
+        for event in self._events:
+            if event.name in RESERVED:
+                self.reserved.append((event.name, event.site))
+            else:
+                self._bind(event, bound)
+        references: dict[ast.AST, Reference] = {}
+        for node, scope in self._uses:
+            reference = Reference(node, scope, scope.lookup(node.id))
+            references[node] = reference
+            if reference.binding is None and node.id in _REFLECTION:
+                self._module.wildcard = True
+        return Resolution(self._module, self._scopes, references, self._nonlocals)
+
+    def _bind(self, event: _Event, bound: set[tuple[Scope, str]]) -> None:
+        scope = event.scope
+        if event.name in scope.global_names:
+            scope = self._module
+        elif event.name in scope.nonlocal_names:
+            scope = next(
+                (
+                    outer
+                    for outer in scope.ancestors()
+                    if event.name not in outer.nonlocal_names
+                    and outer.kind not in (ScopeKind.CLASS, ScopeKind.MODULE)
+                    and (outer, event.name) in bound
+                ),
+                scope,
+            )
+        binding = scope.bindings.setdefault(event.name, Binding(event.name, scope))
+        binding.sites.append(event.site)
+        binding.kinds.add(event.kind)
+
+    # Pieces
+
+    def _open(self, kind: ScopeKind, name: str, node: ast.AST, parent: Scope) -> Scope:
+        scope = Scope(kind, name, node, parent)
+        self._scopes[node] = scope
+        return scope
+
+    def _note(self, scope: Scope, name: str | None, kind: BindingKind, site: ast.AST) -> None:
+        if name:
+            self._events.append(_Event(scope, name, kind, site))
+
+    def _parameters(self, args: ast.arguments, outer: Scope, inner: Scope) -> Iterator[_Task]:
+        """Binds parameters in ``inner``; defaults and annotations belong to ``outer``."""
+        every = [*args.posonlyargs, *args.args, args.vararg, *args.kwonlyargs, args.kwarg]
+        for arg in every:
+            if arg is not None:
+                self._note(inner, arg.arg, BindingKind.PARAMETER, arg)
+                if arg.annotation is not None:
+                    yield arg.annotation, outer
+        for default in (*args.defaults, *args.kw_defaults):
+            if default is not None:
+                yield default, outer
+
+    def _type_parameters(self, node: Any, scope: Scope) -> tuple[Scope, list[_Task]]:
+        """The scope for what follows a definition's name, and the work that its type parameters make."""
+        parameters: list[Any] = getattr(node, "type_params", None) or []
+        if not parameters:
+            return scope, []
+        inner = Scope(ScopeKind.TYPE_PARAMETERS, getattr(node.name, "id", node.name), node, scope)
+        tasks: list[_Task] = []
+        for parameter in parameters:
+            self._note(inner, parameter.name, BindingKind.TYPE_PARAMETER, parameter)
+            tasks.extend((child, inner) for child in parts(parameter))
+        return inner, tasks
+
+    # Definitions
+
+    def function(self, node: Any, scope: Scope) -> Iterable[_Task]:
+        self._note(scope, node.name, BindingKind.FUNCTION, node)
+        outer, tasks = self._type_parameters(node, scope)
+        inner = self._open(ScopeKind.FUNCTION, node.name, node, outer)
+        yield from ((decorator, scope) for decorator in node.decorator_list)
+        yield from tasks
+        yield from self._parameters(node.args, outer, inner)
+        if node.returns is not None:
+            yield node.returns, outer
+        yield from ((statement, inner) for statement in node.body)
+
+    def anonymous_function(self, node: ast.Lambda, scope: Scope) -> Iterable[_Task]:
+        inner = self._open(ScopeKind.LAMBDA, "<lambda>", node, scope)
+        yield from self._parameters(node.args, scope, inner)
+        yield node.body, inner
+
+    def class_definition(self, node: Any, scope: Scope) -> Iterable[_Task]:
+        self._note(scope, node.name, BindingKind.CLASS, node)
+        outer, tasks = self._type_parameters(node, scope)
+        inner = self._open(ScopeKind.CLASS, node.name, node, outer)
+        yield from ((decorator, scope) for decorator in node.decorator_list)
+        yield from tasks
+        yield from ((base, outer) for base in node.bases)
+        yield from ((keyword.value, outer) for keyword in node.keywords)
+        yield from ((statement, inner) for statement in node.body)
+
+    def property_definition(self, node: scenic.PropertyDef, scope: Scope) -> Iterable[_Task]:
+        inner = self._open(ScopeKind.PROPERTY, node.name, node, scope)
+        self._note(inner, "self", BindingKind.SELF, node)
+        yield node.value, inner
+
+    def behavior(self, node: scenic.BehaviorDef, scope: Scope) -> Iterable[_Task]:
+        self._note(scope, node.name, BindingKind.BEHAVIOR, node)
+        inner = self._open(ScopeKind.BEHAVIOR, node.name, node, scope)
+        self._note(inner, "self", BindingKind.SELF, node)
+        yield from self._parameters(node.args, scope, inner)
+        yield from ((guard, inner) for guard in node.guards)
+        yield from ((statement, inner) for statement in node.body)
+
+    def monitor(self, node: scenic.MonitorDef, scope: Scope) -> Iterable[_Task]:
+        self._note(scope, node.name, BindingKind.MONITOR, node)
+        inner = self._open(ScopeKind.MONITOR, node.name, node, scope)
+        yield from self._parameters(node.args, scope, inner)
+        yield from ((statement, inner) for statement in node.body)
+
+    def scenario(self, node: scenic.ScenarioDef, scope: Scope) -> Iterable[_Task]:
+        self._note(scope, node.name, BindingKind.SCENARIO, node)
+        inner = self._open(ScopeKind.SCENARIO, node.name, node, scope)
+        if node.args is not None:
+            yield from self._parameters(node.args, scope, inner)
+        yield from ((guard, inner) for guard in node.guards)
+        yield from ((statement, inner) for statement in (*(node.setup or ()), *(node.compose or ())))
+
+    def type_alias(self, node: Any, scope: Scope) -> Iterable[_Task]:
+        outer, tasks = self._type_parameters(node, scope)
+        yield node.name, scope
+        yield from tasks
+        yield node.value, outer
+
+    # Expressions
+
+    def comprehension(self, node: Any, scope: Scope) -> Iterable[_Task]:
+        inner = self._open(ScopeKind.COMPREHENSION, "<comprehension>", node, scope)
+        for index, generator in enumerate(node.generators):
+            # The first iterable is evaluated where the comprehension stands.
+            yield generator.iter, inner if index else scope
+            yield generator.target, inner
+            yield from ((test, inner) for test in generator.ifs)
+        if isinstance(node, ast.DictComp):
+            yield node.key, inner
+            yield node.value, inner
+        else:
+            yield node.elt, inner
+
+    def walrus(self, node: ast.NamedExpr, scope: Scope) -> Iterable[_Task]:
+        owner = next(outer for outer in scope.ancestors() if outer.kind is not ScopeKind.COMPREHENSION)
+        self._note(owner, node.target.id, BindingKind.VARIABLE, node.target)
+        self._uses.append((node.target, scope))
+        yield node.value, scope
+
+    def name(self, node: ast.Name, scope: Scope) -> Iterable[_Task]:
+        self._uses.append((node, scope))
+        if not isinstance(node.ctx, ast.Load) and node not in self._plain_targets:
+            self._note(scope, node.id, BindingKind.VARIABLE, node)
+        return ()
+
+    # Statements
+
+    def assignment(self, node: ast.Assign, scope: Scope) -> Iterable[_Task]:
+        if len(node.targets) == 1 and isinstance(node.targets[0], ast.Name) and node.targets[0].id in TRACKED:
+            self._plain_targets.add(node.targets[0])
+        yield node.value, scope
+        yield from ((target, scope) for target in node.targets)
+
+    def importation(self, node: ast.Import, scope: Scope) -> Iterable[_Task]:
+        for alias in node.names:
+            name = alias.asname or alias.name.partition(".")[0]
+            self._note(scope, name, BindingKind.MODULE, alias)
+        return ()
+
+    def import_from(self, node: ast.ImportFrom, scope: Scope) -> Iterable[_Task]:
+        for alias in node.names:
+            if alias.name == "*":
+                self._module.wildcard = True
+            else:
+                self._note(scope, alias.asname or alias.name, BindingKind.IMPORTED, alias)
+        return ()
+
+    def model(self, _node: scenic.Model, _scope: Scope) -> Iterable[_Task]:
+        self._module.wildcard = True
+        return ()
+
+    def global_declaration(self, node: ast.Global, scope: Scope) -> Iterable[_Task]:
+        scope.global_names.update(node.names)
+        return ()
+
+    def nonlocal_declaration(self, node: ast.Nonlocal, scope: Scope) -> Iterable[_Task]:
+        scope.nonlocal_names.update(node.names)
+        self._nonlocals[node] = scope
+        return ()
+
+    def handler(self, node: ast.ExceptHandler, scope: Scope) -> Iterable[_Task]:
+        self._note(scope, node.name, BindingKind.EXCEPTION, node)
+        return [(child, scope) for child in parts(node)]
+
+    def capture(self, node: Any, scope: Scope) -> Iterable[_Task]:
+        self._note(
+            scope, getattr(node, "rest", None) or getattr(node, "name", None), BindingKind.CAPTURE, node
+        )
+        return [(child, scope) for child in parts(node)]
+
+    def attempt(self, node: Any, scope: Scope) -> Iterable[_Task]:
+        if any(_catches_name_errors(handler) for handler in node.handlers):
+            for statement in node.body:
+                self.tolerated.update(part for part in walk(statement) if isinstance(part, ast.Name))
+        return [(child, scope) for child in parts(node)]
+
+
+def _catches_name_errors(handler: ast.ExceptHandler) -> bool:
+    if handler.type is None:
+        return True
+    types = handler.type.elts if isinstance(handler.type, ast.Tuple) else [handler.type]
+    return any(
+        isinstance(type_, ast.Name) and type_.id in ("NameError", "Exception", "BaseException")
+        for type_ in types
+    )
+
+
+def _handlers() -> Mapping[type[ast.AST], Callable[[_Collector, Any, Scope], Iterable[_Task]]]:
+    table: dict[type[ast.AST], Callable[[_Collector, Any, Scope], Iterable[_Task]]] = {
+        ast.FunctionDef: _Collector.function,
+        ast.AsyncFunctionDef: _Collector.function,
+        ast.Lambda: _Collector.anonymous_function,
+        ast.ClassDef: _Collector.class_definition,
+        scenic.PropertyDef: _Collector.property_definition,
+        scenic.BehaviorDef: _Collector.behavior,
+        scenic.MonitorDef: _Collector.monitor,
+        scenic.ScenarioDef: _Collector.scenario,
+        scenic.Model: _Collector.model,
+        ast.ListComp: _Collector.comprehension,
+        ast.SetComp: _Collector.comprehension,
+        ast.DictComp: _Collector.comprehension,
+        ast.GeneratorExp: _Collector.comprehension,
+        ast.NamedExpr: _Collector.walrus,
+        ast.Name: _Collector.name,
+        ast.Assign: _Collector.assignment,
+        ast.Import: _Collector.importation,
+        ast.ImportFrom: _Collector.import_from,
+        ast.Global: _Collector.global_declaration,
+        ast.Nonlocal: _Collector.nonlocal_declaration,
+        ast.ExceptHandler: _Collector.handler,
+        ast.MatchAs: _Collector.capture,
+        ast.MatchStar: _Collector.capture,
+        ast.MatchMapping: _Collector.capture,
+        ast.Try: _Collector.attempt,
+        ast.TryStar: _Collector.attempt,
+        scenic.TryInterrupt: _Collector.attempt,
+    }
+    if hasattr(ast, "TypeAlias"):  # Python 3.12
+        table[ast.TypeAlias] = _Collector.type_alias
+    return MappingProxyType(table)
+
+
+_HANDLERS: Final = _handlers()

@@ -1,0 +1,170 @@
+"""From Python frames and tracebacks back to places in the program.
+
+Code generated from a program is recognised by its globals, which hold the prelude. Its positions are exact, but count
+UTF-8 bytes; the text that turns them into characters comes from the module's own globals (`SOURCE_NAME`) if it was put
+there, as for programs that are no files, and else from the file.
+"""
+
+import linecache
+import os
+import sys
+import sysconfig
+import traceback
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cache
+from itertools import islice
+from pathlib import Path
+from types import CodeType, FrameType, TracebackType
+from typing import Final
+
+from scenic.compiler.lowering.build import PRELUDE
+from scenic.language.source import Source
+from scenic.language.spans import Span
+
+__all__ = ["SOURCE_NAME", "Locator", "Place", "format_traceback", "locate"]
+
+SOURCE_NAME: Final = "__scenic_source__"
+"""A global of generated modules that may hold their `Source`; without it the text is read from the file."""
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """A place in a program."""
+
+    filename: str
+    span: Span
+
+
+_Positions = tuple[int | None, int | None, int | None, int | None]
+
+
+class Locator:
+    """Finds places, and remembers the positions of code that it has seen: for whoever asks often."""
+
+    def __init__(self) -> None:
+        self._positions: dict[int, tuple[CodeType, list[_Positions]]] = {}
+
+    def place(self, where: TracebackType | FrameType) -> Place | None:
+        """As `locate`."""
+        found = _innermost(where)
+        if found is None:
+            return None
+        frame, instruction = found
+        code = frame.f_code
+        # The code object is kept with its positions, so that its identity stays its own.
+        kept = self._positions.get(id(code))
+        if kept is None:
+            kept = self._positions[id(code)] = (code, list(code.co_positions()))
+        return _place(frame, kept[1][instruction // 2] if 0 <= instruction // 2 < len(kept[1]) else None)
+
+
+def locate(where: TracebackType | FrameType) -> Place | None:
+    """The place in the program that a frame, or the failure of a traceback, comes from.
+
+    It is that of the innermost frame of generated code: of the callers of a frame, it itself included; of the frames
+    of a traceback. ``None`` if there is no such frame, or Python was told to keep no positions.
+    """
+    found = _innermost(where)
+    if found is None:
+        return None
+    frame, instruction = found
+    position = next(islice(frame.f_code.co_positions(), max(0, instruction // 2), None), None)
+    return _place(frame, position)
+
+
+def _innermost(where: TracebackType | FrameType) -> tuple[FrameType, int] | None:
+    if isinstance(where, FrameType):
+        frame: FrameType | None = where
+        while frame is not None:
+            if PRELUDE in frame.f_globals:
+                return frame, frame.f_lasti
+            frame = frame.f_back
+        return None
+    found = None
+    step: TracebackType | None = where
+    while step is not None:
+        if PRELUDE in step.tb_frame.f_globals:
+            found = step.tb_frame, step.tb_lasti
+        step = step.tb_next
+    return found
+
+
+def _place(frame: FrameType, position: _Positions | None) -> Place | None:
+    filename = frame.f_code.co_filename
+    if position is None:
+        return None
+    line, end_line, column, end_column = position
+    if line is None:
+        return None
+    if end_line is None or column is None or end_column is None:
+        return Place(filename, Span(line, 0, line, 0))
+    start = _character(frame, line, column)
+    end = _character(frame, end_line, end_column)
+    if (end_line, end) < (line, start):
+        end_line, end = line, start
+    return Place(filename, Span(line, start, end_line, end))
+
+
+def _character(frame: FrameType, line: int, column: int) -> int:
+    """The column in characters of a column in UTF-8 bytes."""
+    text = _line(frame, line)
+    if text.isascii():
+        return column
+    return len(text.encode("utf-8", "surrogatepass")[:column].decode("utf-8", "ignore"))
+
+
+def _line(frame: FrameType, line: int) -> str:
+    source = frame.f_globals.get(SOURCE_NAME)
+    if isinstance(source, Source):
+        return source.line(line)
+    return linecache.getline(frame.f_code.co_filename, line, frame.f_globals)
+
+
+def format_traceback(error: BaseException) -> str:
+    """A traceback as Python prints it, with the frames of the program and of its own Python modules alone.
+
+    Frames of this package, of Python's library and of installed packages are left out.
+    """
+    summary = traceback.StackSummary.from_list(list(_user_frames(error.__traceback__)))
+    lines = ["Traceback (most recent call last):\n", *summary.format()] if summary else []
+    lines.extend(traceback.format_exception_only(error))
+    return "".join(lines)
+
+
+def _user_frames(step: TracebackType | None) -> Iterator[traceback.FrameSummary]:
+    while step is not None:
+        frame = step.tb_frame
+        if PRELUDE in frame.f_globals or _is_users(frame.f_code.co_filename):
+            position = next(islice(frame.f_code.co_positions(), max(0, step.tb_lasti // 2), None), None)
+            line, end_line, column, end_column = position or (step.tb_lineno, None, None, None)
+            first = step.tb_lineno if line is None else line
+            yield traceback.FrameSummary(
+                frame.f_code.co_filename,
+                first,
+                frame.f_code.co_name,
+                lookup_line=False,
+                line=_line(frame, first).strip() or None,
+                end_lineno=end_line,
+                colno=column,
+                end_colno=end_column,
+            )
+        step = step.tb_next
+
+
+def _is_users(filename: str) -> bool:
+    if filename.startswith("<"):
+        return False
+    path = os.path.abspath(filename)
+    return not any(path.startswith(folder + os.sep) for folder in _library_folders())
+
+
+@cache
+def _library_folders() -> tuple[str, ...]:
+    """Folders whose Python code is not the user's."""
+    paths = sysconfig.get_paths()
+    names = ("stdlib", "platstdlib", "purelib", "platlib")
+    package = str(Path(__file__).resolve().parent.parent)
+    return tuple(
+        {package, *(os.path.abspath(paths[name]) for name in names), os.path.join(sys.base_prefix, "lib")}
+    )

@@ -1,0 +1,71 @@
+"""Going through trees quickly: the parts of a node without contexts, operators and plain values."""
+
+import ast
+from collections.abc import Iterator
+from typing import Final
+
+from scenic.compiler import tree
+
+__all__ = ["parts", "walk"]
+
+_PLAIN: Final = frozenset(
+    {
+        "arg",
+        "attr",
+        "attributes",
+        "conversion",
+        "ctx",
+        "docstring",
+        "id",
+        "kind",
+        "kwd_attrs",
+        "level",
+        "module",
+        "moment",
+        "op",
+        "operator",
+        "ops",
+        "probability",
+        "property",
+        "rest",
+        "simple",
+        "simulation",
+        "specifier",
+        "type_comment",
+        "type_ignores",
+        "unit",
+    }
+)
+"""Fields that never hold parts, in any class of node."""
+
+
+_FIELDS: Final[dict[object, tuple[str, ...]]] = {
+    cls: tuple(field for field in cls._fields if field not in _PLAIN)
+    for cls in (*vars(ast).values(), *vars(tree).values())
+    if isinstance(cls, type) and issubclass(cls, ast.AST)
+}
+"""The fields of each class of node that may hold parts."""
+
+
+def parts(node: ast.AST) -> list[ast.AST]:
+    """The nodes directly in a node, in order; no contexts and no operators of Python's."""
+    found: list[ast.AST] = []
+    values = node.__dict__
+    for field in _FIELDS[node.__class__]:
+        value = values.get(field)
+        if value.__class__ is list:
+            found.extend([part for part in value if isinstance(part, ast.AST)])
+        elif isinstance(value, ast.AST):
+            found.append(value)
+    return found
+
+
+def walk(node: ast.AST) -> Iterator[ast.AST]:
+    """A node and all nodes in it, in order, however deep."""
+    stack = [node]
+    while stack:
+        part = stack.pop()
+        yield part
+        inner = parts(part)
+        inner.reverse()
+        stack.extend(inner)
