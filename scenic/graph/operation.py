@@ -1,0 +1,181 @@
+"""What an entry of the table of operations consists of: one operation, all its readings side by side."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from scenic.graph.bounds import Bounds
+from scenic.graph.kinds import Codec, Column, Kind
+
+if TYPE_CHECKING:
+    from scenic.graph.node import Node
+
+OK: Final = 0
+FAULT: Final = 1
+REJECTED: Final = 2
+"""Status of a lane at a node. A lane that both faults and is rejected counts as rejected (the larger)."""
+
+Status = NDArray[np.int8]
+
+
+class Call:
+    """One evaluation of one node over the lanes of a batch, as its NumPy reading sees it.
+
+    ``operands`` holds the statuses of the operands (``None`` where every lane is fine); only operations that are
+    not strict look at them, through `inherit`. ``kinds`` are the kinds of the operands, ``kind`` that of the result;
+    ``codec`` is there for operations that mix kinds.
+    """
+
+    __slots__ = (
+        "codec",
+        "culprit",
+        "error",
+        "kind",
+        "kinds",
+        "lanes",
+        "operands",
+        "payload",
+        "seeds",
+        "status",
+    )
+
+    def __init__(
+        self,
+        lanes: int,
+        payload: Any,
+        operands: Sequence[Status | None],
+        seeds: Callable[[], NDArray[np.uint64]],
+        *,
+        kinds: Sequence[Kind] = (),
+        kind: Kind = Kind.SCALAR,
+        codec: Codec | None = None,
+    ) -> None:
+        self.lanes = lanes
+        self.payload = payload
+        self.operands = operands
+        self.seeds = seeds
+        self.kinds = kinds
+        self.kind = kind
+        self.codec = codec
+        self.status: Status | None = None
+        self.error: Exception | None = None
+        self.culprit: int | None = None
+
+    def reject(self, mask: Column) -> None:
+        """Reject the lanes where ``mask`` (shape ``(n,)`` or ``(1,)``) holds."""
+        self._mark(mask, REJECTED)
+
+    def fault(self, mask: Column, error: Exception) -> None:
+        """Let the lanes where ``mask`` holds fail with ``error``, should they ever be asked for."""
+        if self._mark(mask, FAULT) and self.error is None:
+            self.error = error
+
+    def inherit(self, position: int, mask: Column) -> None:
+        """Let the lanes where ``mask`` holds share the fate of one operand (operations that are not strict)."""
+        status = self.operands[position]
+        if status is None:
+            return
+        fate = np.where(mask, status, np.int8(OK))
+        if not fate.any():
+            return
+        if self.culprit is None and (fate == FAULT).any():
+            self.culprit = position
+        if self.status is None:
+            self.status = np.zeros(self.lanes, dtype=np.int8)
+        np.maximum(self.status, fate, out=self.status)
+
+    def _mark(self, mask: Column, mark: int) -> bool:
+        if not mask.any():
+            return False
+        if self.status is None:
+            self.status = np.zeros(self.lanes, dtype=np.int8)
+        np.maximum(self.status, np.where(mask, np.int8(mark), np.int8(OK)), out=self.status)
+        return True
+
+
+class Terms(Protocol):
+    """The solver's terms, passed to solver readings so that the graph needs no solver.
+
+    Numbers are real terms and truth values boolean ones, both with Python's operators (``& | ~`` for logic); a vector
+    is a triple of real terms, a constant orientation four. Where nothing is known of a value its term is ``None``;
+    strict readings never see one. Arithmetic is that of the real numbers: rounding is left out.
+    """
+
+    def real(self, value: float) -> Any:
+        """The exact rational value of a float."""
+
+    def number(self, term: Any) -> Any:
+        """A truth value as 0 or 1; a number unchanged."""
+
+    def constant(self, term: Any) -> float | None:
+        """The value of a term that is a fixed number."""
+
+    def either(self, condition: Any, then: Any, otherwise: Any) -> Any:
+        """``then`` where ``condition`` holds, else ``otherwise``."""
+
+    def fresh(self, kind: Kind) -> Any:
+        """A term about which nothing is known; always a sound encoding of any value."""
+
+    def integer_part(self, term: Any) -> Any:
+        """The floor of a real term."""
+
+    def define(self, condition: Any) -> None:
+        """Assert what holds of a fresh term by its meaning; every other value must allow some value of that term."""
+
+    def support(self, condition: Any, phrase: str) -> None:
+        """Assert what holds of the primitive value being encoded, with words for it (``"is at most 10"``)."""
+
+
+BatchReading = Callable[..., Column]
+"""``(call, *columns) -> column``; elementwise over lanes."""
+
+BoundsReading = Callable[..., Bounds | None]
+"""``(payload, *operand bounds) -> bounds``, rounded outward; ``None`` where nothing is known.
+
+Operands without bounds (Python objects) are ``None``; only operations that are not strict see those. Known bounds mean that
+the value is a number, a vector or an orientation, whatever the node's kind.
+"""
+
+InverseReading = Callable[..., Sequence[Bounds | None]]
+"""``(payload, result bounds, *operand bounds) -> narrowed operand bounds``, rounded outward.
+
+``None`` for an operand says nothing about it. Narrowed bounds must hold every operand value for which the result can
+lie in the result bounds; they are intersected with the old ones by the caller. An operation that is not strict leaves both
+ends infinite in boxes where the operand may not be evaluated at all.
+"""
+
+SolverReading = Callable[..., Any]
+"""``(terms, payload, *operand terms) -> term``."""
+
+KindRule = Callable[[Sequence["Node"], Any], Kind]
+
+
+@dataclass(frozen=True, slots=True)
+class Operation:
+    """An entry of the table.
+
+    ``batch`` is the NumPy reading. ``python`` is Python's own function of the same meaning where there is one: it
+    evaluates constants and lanes that hold Python objects, so that results equal Python's. ``bounds``, ``inverse`` and
+    ``solver`` may be missing: analysis then knows nothing of the result, never something wrong. An operation that is
+    not ``strict`` decides itself which operands' faults and rejections reach its result (a choice ignores the options
+    that were not drawn). ``pure`` operations with constant operands are evaluated at once.
+    """
+
+    name: str
+    kind: KindRule
+    batch: BatchReading
+    doc: str
+    python: Callable[..., Any] | None = None
+    bounds: BoundsReading | None = None
+    inverse: InverseReading | None = None
+    solver: SolverReading | None = None
+    strict: bool = True
+    pure: bool = True
+
+
+def always(kind: Kind) -> KindRule:
+    """The rule of an operation whose result is of one kind whatever its operands."""
+    return lambda _operands, _payload: kind

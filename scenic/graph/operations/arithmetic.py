@@ -1,0 +1,206 @@
+"""Sums, products and quotients of numbers and vectors."""
+
+import operator
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+
+from scenic.graph import intervals
+from scenic.graph.bounds import Bounds
+from scenic.graph.kinds import Column, Kind
+from scenic.graph.node import Node
+from scenic.graph.operation import BoundsReading, Call, KindRule, Operation
+from scenic.graph.operations.encoding import componentwise
+from scenic.graph.operations.narrowing import before_rounding, collapsed
+from scenic.graph.operations.numbers import (
+    are_exact,
+    arithmetic_kind,
+    as_integers,
+    fail_as_python,
+    lane_by_lane,
+)
+
+
+def _kind(reading: BoundsReading, *vectors: tuple[bool, ...]) -> KindRule:
+    """As numbers, and a vector where the operands that are vectors stand as in one of ``vectors``."""
+    numbers = arithmetic_kind(reading)
+
+    def rule(operands: Sequence[Node], payload: Any) -> Kind:
+        pattern = tuple(operand.kind is Kind.VECTOR for operand in operands)
+        fits = all(operand.kind.is_number or operand.kind is Kind.VECTOR for operand in operands)
+        return Kind.VECTOR if fits and pattern in vectors else numbers(operands, payload)
+
+    return rule
+
+
+def _spread(column: Column, like: Column) -> Column:
+    """A number's column made to broadcast against a vector's."""
+    return column[:, np.newaxis] if column.ndim < like.ndim else column
+
+
+def _elementwise(function: Callable[..., Column]) -> Callable[..., Column]:
+    def batch(_call: Call, *columns: Column) -> Column:
+        a, *rest = (as_integers(column) for column in columns)
+        if not rest:
+            return function(a)
+        return function(_spread(a, rest[0]), _spread(rest[0], a))
+
+    return batch
+
+
+def _divide(call: Call, a: Column, b: Column) -> Column:
+    a, b = as_integers(a), as_integers(b)
+    zero = b == 0
+    if zero.any():
+        # The divisor is a number even where a vector is divided; Python's error is the same for its components.
+        fail_as_python(call, zero, operator.truediv, a if a.ndim == 1 else a[:, 0], b)
+        b = np.where(zero, np.ones_like(b), b)
+    if not (a.dtype == b.dtype == np.int64) or are_exact(a, b):
+        return np.asarray(_spread(a, b) / _spread(b, a))
+    return lane_by_lane(call, operator.truediv, float, a, b)
+
+
+def _divide_kind(operands: Sequence[Node], _payload: Any) -> Kind:
+    a, b = (operand.kind for operand in operands)
+    if not b.is_number:
+        return Kind.OTHER
+    if a is Kind.VECTOR:
+        return Kind.VECTOR
+    return Kind.SCALAR if a.is_number else Kind.OTHER
+
+
+def _add_bounds(_payload: Any, a: Bounds, b: Bounds) -> Bounds:
+    return intervals.add(a, b)
+
+
+def _add_inverse(_payload: Any, result: Bounds, a: Bounds, b: Bounds) -> list[Bounds]:
+    exact = before_rounding(result)
+    return [intervals.subtract(exact, b), intervals.subtract(exact, a)]
+
+
+def _subtract_bounds(_payload: Any, a: Bounds, b: Bounds) -> Bounds:
+    return intervals.subtract(a, b)
+
+
+def _subtract_inverse(_payload: Any, result: Bounds, a: Bounds, b: Bounds) -> list[Bounds]:
+    exact = before_rounding(result)
+    return [intervals.add(exact, b), intervals.subtract(a, exact)]
+
+
+def _multiply_bounds(_payload: Any, a: Bounds, b: Bounds) -> Bounds:
+    return intervals.multiply(a, b)
+
+
+def _multiply_inverse(_payload: Any, result: Bounds, a: Bounds, b: Bounds) -> list[Bounds]:
+    exact = before_rounding(result)
+    return [collapsed(intervals.divide(exact, b), a), collapsed(intervals.divide(exact, a), b)]
+
+
+def _divide_bounds(_payload: Any, a: Bounds, b: Bounds) -> Bounds:
+    return intervals.divide(a, b)
+
+
+def _divide_inverse(_payload: Any, result: Bounds, a: Bounds, b: Bounds) -> list[Bounds]:
+    exact = before_rounding(result)
+    return [intervals.multiply(exact, b), collapsed(intervals.divide(a, exact), b)]
+
+
+def _negative_bounds(_payload: Any, a: Bounds) -> Bounds:
+    return intervals.negative(a)
+
+
+def _negative_inverse(_payload: Any, result: Bounds, _a: Bounds) -> list[Bounds]:
+    return [intervals.negative(result)]
+
+
+def _positive_bounds(_payload: Any, a: Bounds) -> Bounds:
+    return a
+
+
+def _positive_inverse(_payload: Any, result: Bounds, _a: Bounds) -> list[Bounds]:
+    return [result]
+
+
+def _absolute_bounds(_payload: Any, a: Bounds) -> Bounds:
+    return intervals.absolute(a)
+
+
+def _absolute_inverse(_payload: Any, result: Bounds, a: Bounds) -> list[Bounds]:
+    lower = np.where(a.lower >= 0, result.lower, -result.upper)
+    upper = np.where(a.upper <= 0, -result.lower, result.upper)
+    return [Bounds(lower, upper)]
+
+
+OPERATIONS = (
+    Operation(
+        "add",
+        _kind(_add_bounds, (True, True)),
+        _elementwise(np.add),
+        "The sum of two numbers or two vectors.",
+        python=operator.add,
+        bounds=_add_bounds,
+        inverse=_add_inverse,
+        solver=componentwise(lambda _terms, a, b: a + b),
+    ),
+    Operation(
+        "subtract",
+        _kind(_subtract_bounds, (True, True)),
+        _elementwise(np.subtract),
+        "The difference of two numbers or two vectors.",
+        python=operator.sub,
+        bounds=_subtract_bounds,
+        inverse=_subtract_inverse,
+        solver=componentwise(lambda _terms, a, b: a - b),
+    ),
+    Operation(
+        "multiply",
+        _kind(_multiply_bounds, (True, False), (False, True)),
+        _elementwise(np.multiply),
+        "The product of two numbers, or of a vector and a number.",
+        python=operator.mul,
+        bounds=_multiply_bounds,
+        inverse=_multiply_inverse,
+        solver=componentwise(lambda _terms, a, b: a * b),
+    ),
+    Operation(
+        "divide",
+        _divide_kind,
+        _divide,
+        "The quotient of two numbers, or of a vector by a number; dividing by zero is a fault.",
+        python=operator.truediv,
+        bounds=_divide_bounds,
+        inverse=_divide_inverse,
+        solver=componentwise(lambda _terms, a, b: a / b),
+    ),
+    Operation(
+        "negative",
+        _kind(_negative_bounds, (True,)),
+        _elementwise(np.negative),
+        "The opposite number or vector.",
+        python=operator.neg,
+        bounds=_negative_bounds,
+        inverse=_negative_inverse,
+        solver=componentwise(lambda _terms, a: -a),
+    ),
+    Operation(
+        "positive",
+        _kind(_positive_bounds, (True,)),
+        _elementwise(np.positive),
+        "The number or vector itself; a truth value becomes an integer.",
+        python=operator.pos,
+        bounds=_positive_bounds,
+        inverse=_positive_inverse,
+        solver=componentwise(lambda _terms, a: a),
+    ),
+    Operation(
+        "absolute",
+        arithmetic_kind(_absolute_bounds),
+        _elementwise(np.abs),
+        "The absolute value of a number.",
+        python=abs,
+        bounds=_absolute_bounds,
+        inverse=_absolute_inverse,
+        solver=componentwise(lambda terms, a: terms.either(a >= terms.real(0), a, -a)),
+    ),
+)

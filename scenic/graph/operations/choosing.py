@@ -1,0 +1,74 @@
+"""Taking each lane's value from one of several columns, which may be of different kinds."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from scenic.graph.bounds import Bounds
+from scenic.graph.kinds import Column, Kind, join
+from scenic.graph.node import Node
+from scenic.graph.operation import OK, Call
+
+
+def joined_kind(operands: Sequence[Node], _payload: Any) -> Kind:
+    """The kind of a value that is one of ``operands``."""
+    return join(*(operand.kind for operand in operands))
+
+
+def choose(call: Call, masks: Sequence[Column], columns: Sequence[Column], *, first: int) -> Column:
+    """The column that takes the lanes of ``masks[i]`` (all of shape ``(n,)``, disjoint) from ``columns[i]``.
+
+    ``columns[i]`` belongs to operand ``first + i``, whose status counts in those lanes. Where the operands' kinds
+    differ the result holds decoded values, so that the program sees each option as what it is.
+    """
+    kind = call.kind
+    result = np.zeros((call.lanes, *kind.trailing), dtype=kind.dtype)
+    if kind.is_boxed:
+        result[:] = None
+    for place, (mask, column) in enumerate(zip(masks, columns, strict=True)):
+        if not mask.any():
+            continue
+        position = first + place
+        call.inherit(position, mask)
+        option = call.kinds[position]
+        if option is kind:
+            result[mask] = column[mask] if len(column) > 1 else column[0]
+            continue
+        if call.codec is None:
+            raise ValueError("a choice among values of different kinds needs a codec")
+        status = call.operands[position]
+        for lane in np.flatnonzero(mask):
+            if status is None or status[lane] == OK:
+                row = column[lane if len(column) > 1 else 0]
+                result[lane] = call.codec.encode(kind, call.codec.decode(option, row))
+    return result
+
+
+def hull_of_possible(options: Sequence[Bounds | None], possible: Sequence[Column]) -> Bounds | None:
+    """Bounds of a value that is one of the options that are possible, box by box.
+
+    ``None`` where a possible option is no number or vector, or options are of different shapes.
+    """
+    result: Bounds | None = None
+    for option, mask in zip(options, possible, strict=True):
+        if not mask.any():
+            continue
+        if option is None or (result is not None and result.lower.shape[1:] != option.lower.shape[1:]):
+            return None
+        wide = mask if option.lower.ndim == 1 else mask[:, np.newaxis]
+        # Where it is impossible the option is left out: empty bounds add nothing to a hull.
+        part = Bounds(np.where(wide, option.lower, np.inf), np.where(wide, option.upper, -np.inf))
+        result = part if result is None else result.hull(part)
+    if result is not None and bool(result.empty().any()):
+        # No option is possible in some box; bounds of no value are for the caller to find elsewhere.
+        empty = result.lower > result.upper
+        result = Bounds(np.where(empty, -np.inf, result.lower), np.where(empty, np.inf, result.upper))
+    return result
+
+
+def can_give(option: Bounds | None, result: Bounds) -> Column:
+    """In which boxes an option's bounds and the result's have a value in common."""
+    if option is None or option.lower.shape[1:] != result.lower.shape[1:]:
+        return np.ones(1, dtype=np.bool_)
+    return ~option.meet(result).empty()

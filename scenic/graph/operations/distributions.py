@@ -1,0 +1,458 @@
+"""Primitive distributions: each maps its axis of the unit cube, its first operand, to a value by inverse transform.
+
+Every one is monotone in its axis, so that an interval of values is an interval of the axis: that is what makes exact
+pruning possible.
+"""
+
+from typing import Any, Final
+
+import numpy as np
+
+from scenic.graph import intervals
+from scenic.graph.bounds import Bounds, Floats, outward
+from scenic.graph.kinds import Column, Kind
+from scenic.graph.operation import Call, Operation, Terms, always
+from scenic.graph.operations.choosing import can_give, choose, hull_of_possible, joined_kind
+from scenic.graph.operations.encoding import chain, disjunction
+from scenic.graph.operations.narrowing import Mask, before_rounding, where
+from scenic.graph.operations.normal import conditioned_cumulative, conditioned_quantile
+
+FIRST: Final = 5e-324
+LAST: Final = 1 - 2.0**-53
+"""The outermost points of the open unit interval."""
+
+
+def _range(call: Call, axis: Column, low: Column, high: Column) -> Column:
+    low, high = low.astype(np.float64), high.astype(np.float64)
+    endless = ~(np.isfinite(low) & np.isfinite(high))
+    if endless.any():
+        call.fault(endless, ValueError("the ends of a range must be finite"))
+    width = high - low
+    value = low + width * axis
+    if not np.isfinite(width).all():
+        # Ends so far apart that their distance overflows.
+        value = np.where(np.isfinite(width), value, low * (1 - axis) + high * axis)
+    return np.asarray(np.clip(value, np.minimum(low, high), np.maximum(low, high)))
+
+
+def _normal(_call: Call, axis: Column, mean: Column, deviation: Column) -> Column:
+    from scipy.special import ndtri
+
+    return np.asarray(mean + deviation * ndtri(np.ascontiguousarray(axis)))
+
+
+def _truncated_normal(call: Call, axis: Column, mean: Column, deviation: Column) -> Column:
+    low, high = call.payload
+    mean, deviation = mean.astype(np.float64), np.abs(deviation.astype(np.float64))
+    fixed = deviation == 0
+    if fixed.any():
+        impossible = fixed & ((mean < low) | (mean > high))
+        if impossible.any():
+            call.fault(impossible, ValueError("a normal without deviation lies outside its window"))
+    scale = np.where(fixed, 1.0, deviation)
+    z = conditioned_quantile((low - mean) / scale, (high - mean) / scale, axis)
+    return np.asarray(np.clip(np.where(fixed, mean, mean + scale * z), low, high))
+
+
+def _discrete_range(call: Call, axis: Column, low: Column, high: Column) -> Column:
+    first, last = np.broadcast_arrays(_rounded(call, low, np.ceil), _rounded(call, high, np.floor))
+    count = last - first + 1
+    call.reject(count <= 0)
+    # A rounded product may reach the count itself.
+    return np.asarray(first + np.minimum((axis * count).astype(np.int64), np.maximum(count, 1) - 1))
+
+
+def _rounded(call: Call, end: Column, function: Any) -> Column:
+    if end.dtype != np.float64:
+        return end.astype(np.int64)
+    rounded = function(end)
+    large = ~(np.abs(rounded) < 2.0**61)
+    if large.any():
+        call.fault(large, OverflowError("an end of a range of integers is too large"))
+        rounded = np.where(large, 0.0, rounded)
+    return np.asarray(rounded.astype(np.int64))
+
+
+def _weighted_integer(call: Call, axis: Column) -> Column:
+    first, cumulative = call.payload
+    return np.asarray(first + _position(axis, cumulative))
+
+
+def _choice(call: Call, axis: Column) -> Column:
+    return _position(axis, call.payload)
+
+
+def _position(axis: Column, cumulative: Any) -> Column:
+    """Which option a point of the axis draws; an option of weight zero is never drawn."""
+    limits = np.asarray(cumulative, dtype=np.float64)
+    found = np.searchsorted(limits, axis, side="right")
+    # The last limit is 1 but for rounding; what lies above it belongs to the last option of positive weight.
+    last = int(np.searchsorted(limits, limits[-1], side="left"))
+    return np.minimum(found, last).astype(np.int64)
+
+
+def _select_kind(operands: Any, payload: Any) -> Kind:
+    return joined_kind(operands[1:], payload)
+
+
+def _select(call: Call, index: Column, *options: Column) -> Column:
+    call.inherit(0, np.ones(1, dtype=np.bool_))
+    status = call.operands[0]
+    index = np.broadcast_to(index, (call.lanes,))
+    if status is not None:
+        index = np.where(status == 0, index, -1)
+    return choose(call, [index == place for place in range(len(options))], options, first=1)
+
+
+def _python_select(index: int, *options: Any) -> Any:
+    return options[index]
+
+
+# Bounds, inverses and terms.
+
+
+def _opened(axis: Bounds) -> Bounds:
+    """Bounds of an axis without the ends of the interval, which no point of the cube has."""
+    return Bounds(np.maximum(axis.lower, FIRST), np.minimum(axis.upper, LAST))
+
+
+def _fixed(*operands: Bounds) -> Mask:
+    """Where all operands have one finite value each."""
+    result = np.ones(1, dtype=np.bool_)
+    for operand in operands:
+        result = result & (operand.lower == operand.upper) & np.isfinite(operand.lower)
+    return result
+
+
+def _if_fixed(fixed: Mask, known: Bounds, otherwise: Bounds) -> Bounds:
+    return Bounds(
+        np.where(fixed, known.lower, otherwise.lower), np.where(fixed, known.upper, otherwise.upper)
+    )
+
+
+def _range_rounding(low: Bounds, high: Bounds) -> Floats:
+    """What rounding may add to ``low + (high - low) * u``."""
+    return 4 * intervals.EPSILON * np.maximum(intervals.size(low), intervals.size(high))
+
+
+def _range_bounds(_payload: Any, axis: Bounds, low: Bounds, high: Bounds) -> Bounds:
+    # The value grows with either end, and runs straight from one to the other along the axis.
+    bottoms = [low.lower + (high.lower - low.lower) * u for u in (axis.lower, axis.upper)]
+    tops = [low.upper + (high.upper - low.upper) * u for u in (axis.lower, axis.upper)]
+    margin = _range_rounding(low, high)
+    line = Bounds(np.minimum(*bottoms) - margin, np.maximum(*tops) + margin)
+    ends = Bounds(np.minimum(low.lower, high.lower), np.maximum(low.upper, high.upper))
+    line = Bounds(
+        np.where(np.isnan(line.lower), -np.inf, line.lower),
+        np.where(np.isnan(line.upper), np.inf, line.upper),
+    )
+    return intervals.doubtful(line.meet(ends), low, high)
+
+
+def _range_inverse(
+    _payload: Any, result: Bounds, _axis: Bounds, low: Bounds, high: Bounds
+) -> list[Bounds | None]:
+    exact = intervals.widened(result, _range_rounding(low, high))
+    width = intervals.subtract(high, low)
+    place = intervals.relaxed(intervals.divide(intervals.subtract(exact, low), width), 1e-15)
+    # At the very ends the clipped value hides where on the axis it came from by no more than rounding.
+    place = intervals.widened(place, 1e-15)
+    rising = high.lower >= low.upper
+    falling = low.lower >= high.upper
+    top = np.where(rising, exact.upper, np.inf)
+    bottom = np.where(rising, exact.lower, -np.inf)
+    new_low = Bounds(np.where(falling, exact.lower, -np.inf), top)
+    new_high = Bounds(bottom, np.where(falling, exact.upper, np.inf))
+    return [place, new_low, new_high]
+
+
+def _range_solver(terms: Terms, _payload: Any, _axis: Any, low: Any, high: Any) -> Any:
+    value = terms.fresh(Kind.SCALAR)
+    low, high = terms.number(low), terms.number(high)
+    first, last = terms.constant(low), terms.constant(high)
+    if first is None or last is None:
+        inside = ((value >= low) & (value <= high)) | ((value >= high) & (value <= low))
+        terms.support(inside, "lies between its ends")
+        return value
+    first, last = min(first, last), max(first, last)
+    terms.support(value >= terms.real(first), f"is at least {first:.12g}")
+    terms.support(value <= terms.real(last), f"is at most {last:.12g}")
+    return value
+
+
+def _normal_bounds(_payload: Any, axis: Bounds, mean: Bounds, deviation: Bounds) -> Bounds:
+    from scipy.special import ndtri
+
+    inside = _opened(axis)
+    z = intervals.widened(intervals.relaxed(Bounds(ndtri(inside.lower), ndtri(inside.upper)), 1e-12), 1e-12)
+    return intervals.add(mean, intervals.multiply(deviation, z))
+
+
+def _normal_inverse(
+    _payload: Any, result: Bounds, axis: Bounds, mean: Bounds, deviation: Bounds
+) -> list[Bounds | None]:
+    from scipy.special import ndtr, ndtri
+
+    shift = before_rounding(intervals.subtract(before_rounding(result), mean))
+    z = intervals.widened(intervals.relaxed(intervals.divide(shift, deviation), 1e-12), 1e-12)
+    place = Bounds(ndtr(z.lower) * (1 - 1e-11), ndtr(z.upper) * (1 + 1e-11))
+    inside = _opened(axis)
+    drawn = intervals.widened(
+        intervals.relaxed(Bounds(ndtri(inside.lower), ndtri(inside.upper)), 1e-12), 1e-12
+    )
+    product = intervals.multiply(deviation, drawn)
+    return [place, intervals.subtract(before_rounding(result), product), intervals.divide(shift, drawn)]
+
+
+def _normal_solver(terms: Terms, _payload: Any, _axis: Any, _mean: Any, _deviation: Any) -> Any:
+    return terms.fresh(Kind.SCALAR)
+
+
+def _standardised(payload: Any, mean: Bounds, deviation: Bounds) -> tuple[Floats, Floats, Floats, Mask]:
+    """The window in deviations from the mean, the deviation, and where both parameters are fixed."""
+    low, high = payload
+    fixed = _fixed(mean, deviation) & (deviation.lower != 0)
+    scale = np.where(fixed, np.abs(deviation.lower), 1.0)
+    centre = np.where(fixed, mean.lower, 0.0)
+    return (low - centre) / scale, (high - centre) / scale, scale, fixed
+
+
+def _truncated_bounds(payload: Any, axis: Bounds, mean: Bounds, deviation: Bounds) -> Bounds:
+    low, high = payload
+    a, b, scale, fixed = _standardised(payload, mean, deviation)
+    inside = _opened(axis)
+    z = Bounds(conditioned_quantile(a, b, inside.lower), conditioned_quantile(a, b, inside.upper))
+    z = intervals.widened(intervals.relaxed(z, 1e-11), 1e-11)
+    value = intervals.add(mean, outward(z.lower * scale, z.upper * scale))
+    window = Bounds(np.full_like(value.lower, low), np.full_like(value.upper, high))
+    return intervals.doubtful(_if_fixed(fixed, value.meet(window), window), mean, deviation)
+
+
+def _truncated_inverse(
+    payload: Any, result: Bounds, _axis: Bounds, mean: Bounds, deviation: Bounds
+) -> list[Bounds | None]:
+    low, high = payload
+    a, b, scale, fixed = _standardised(payload, mean, deviation)
+    shift = intervals.subtract(before_rounding(result), mean)
+    z = intervals.widened(intervals.relaxed(Bounds(shift.lower / scale, shift.upper / scale), 1e-11), 1e-11)
+    below, above = (conditioned_cumulative(a, b, np.clip(end, a, b)) for end in (z.lower, z.upper))
+    place = Bounds(below[0] - below[1], above[0] + above[1])
+    # A value on the window's end may have been moved there.
+    place = Bounds(
+        np.where(result.lower <= low, 0.0, place.lower), np.where(result.upper >= high, 1.0, place.upper)
+    )
+    nothing = intervals.unbounded(place)
+    return [_if_fixed(fixed, place, nothing), None, None]
+
+
+def _truncated_solver(terms: Terms, payload: Any, _axis: Any, _mean: Any, _deviation: Any) -> Any:
+    low, high = payload
+    value = terms.fresh(Kind.SCALAR)
+    if np.isfinite(low):
+        terms.support(value >= terms.real(low), f"is at least {low:.12g}")
+    if np.isfinite(high):
+        terms.support(value <= terms.real(high), f"is at most {high:.12g}")
+    return value
+
+
+def _discrete_bounds(_payload: Any, axis: Bounds, low: Bounds, high: Bounds) -> Bounds:
+    ends = Bounds(np.ceil(low.lower), np.floor(high.upper))
+    # An empty range rejects its lane, so that whatever is said of its value is right.
+    ends = Bounds(ends.lower, np.maximum(ends.lower, ends.upper))
+    fixed = _fixed(low, high)
+    count = np.where(fixed, ends.upper - ends.lower + 1, 1.0)
+    first, last = (np.minimum(np.floor(u * count), count - 1) for u in (axis.lower, axis.upper))
+    return _if_fixed(fixed, Bounds(ends.lower + first, ends.lower + last), ends)
+
+
+def _discrete_inverse(
+    _payload: Any, result: Bounds, _axis: Bounds, low: Bounds, high: Bounds
+) -> list[Bounds | None]:
+    first, last = np.ceil(low.lower), np.floor(high.upper)
+    fixed = _fixed(low, high)
+    count = np.where(fixed, last - first + 1, 1.0)
+    start = (np.ceil(result.lower) - first) / count
+    end = (np.floor(result.upper) - first + 1) / count
+    place = intervals.relaxed(Bounds(start, end), 1e-15)
+    place = Bounds(place.lower, np.where(result.upper >= last, 1.0, place.upper))
+    nothing = intervals.unbounded(place)
+    below = Bounds(np.full_like(result.lower, -np.inf), result.upper)
+    above = Bounds(result.lower, np.full_like(result.upper, np.inf))
+    return [_if_fixed(fixed & (count > 0), place, nothing), below, above]
+
+
+def _discrete_solver(terms: Terms, _payload: Any, _axis: Any, low: Any, high: Any) -> Any:
+    value = terms.fresh(Kind.INTEGER)
+    low, high = terms.number(low), terms.number(high)
+    first, last = terms.constant(low), terms.constant(high)
+    if first is None or last is None:
+        # An empty range rejects its sample only if it is drawn at all.
+        terms.support((low > high) | ((value >= low) & (value <= high)), "lies between its ends")
+    elif first <= last:
+        terms.support(value >= low, f"is at least {first:.12g}")
+        terms.support(value <= high, f"is at most {last:.12g}")
+    return value
+
+
+def _position_bounds(axis: Bounds, cumulative: Any) -> Bounds:
+    inside = _opened(axis)
+    first, last = (_position(end, cumulative).astype(np.float64) for end in (inside.lower, inside.upper))
+    return Bounds(first, last)
+
+
+def _position_inverse(result: Bounds, cumulative: Any) -> Bounds:
+    """The stretch of the axis that draws the options within ``result``; exact, since nothing is rounded."""
+    limits = np.asarray(cumulative, dtype=np.float64)
+    last = int(np.searchsorted(limits, limits[-1], side="left"))
+    starts = np.concatenate([[0.0], limits])
+    ends = np.nextafter(limits, 0.0)
+    ends[last:] = 1.0
+    low, high = np.ceil(result.lower), np.floor(result.upper)
+    lower = starts[np.clip(low, 0, last).astype(np.intp)]
+    upper = ends[np.clip(high, 0, last).astype(np.intp)]
+    impossible = (low > last) | (high < 0)
+    return Bounds(np.where(impossible, np.inf, lower), np.where(impossible, -np.inf, upper))
+
+
+def _weighted_bounds(payload: Any, axis: Bounds) -> Bounds:
+    first, cumulative = payload
+    place = _position_bounds(axis, cumulative)
+    return Bounds(first + place.lower, first + place.upper)
+
+
+def _weighted_inverse(payload: Any, result: Bounds, _axis: Bounds) -> list[Bounds]:
+    first, cumulative = payload
+    return [_position_inverse(Bounds(result.lower - first, result.upper - first), cumulative)]
+
+
+def _weighted_solver(terms: Terms, payload: Any, _axis: Any) -> Any:
+    first, cumulative = payload
+    return _drawn(terms, first, cumulative)
+
+
+def _drawn(terms: Terms, first: int, cumulative: Any) -> Any:
+    value = terms.fresh(Kind.INTEGER)
+    weights = np.diff(np.asarray(cumulative, dtype=np.float64), prepend=0.0)
+    places = [first + place for place in range(len(weights)) if weights[place] > 0]
+    terms.support(value >= terms.real(places[0]), f"is at least {places[0]}")
+    terms.support(value <= terms.real(places[-1]), f"is at most {places[-1]}")
+    for never in range(places[0], places[-1]):
+        if never not in places:
+            terms.support(value != terms.real(never), f"is never {never}")
+    return value
+
+
+def _choice_bounds(payload: Any, axis: Bounds) -> Bounds:
+    return _position_bounds(axis, payload)
+
+
+def _choice_inverse(payload: Any, result: Bounds, _axis: Bounds) -> list[Bounds]:
+    return [_position_inverse(result, payload)]
+
+
+def _choice_solver(terms: Terms, payload: Any, _axis: Any) -> Any:
+    value = terms.fresh(Kind.INTEGER)
+    weights = np.diff(np.asarray(payload, dtype=np.float64), prepend=0.0)
+    options = [value == terms.real(place) for place in range(len(weights)) if weights[place] > 0]
+    terms.support(disjunction(options), "takes one of its options")
+    return value
+
+
+def _select_bounds(_payload: Any, index: Bounds, *options: Bounds | None) -> Bounds | None:
+    return hull_of_possible(options, _possible(index, len(options)))
+
+
+def _possible(index: Bounds, count: int) -> list[Mask]:
+    return [np.asarray((index.lower <= place) & (place <= index.upper)) for place in range(count)]
+
+
+def _select_inverse(
+    _payload: Any, result: Bounds, index: Bounds, *options: Bounds | None
+) -> list[Bounds | None]:
+    possible = [
+        mask & can_give(option, result)
+        for mask, option in zip(_possible(index, len(options)), options, strict=True)
+    ]
+    boxes = np.broadcast_shapes(*(mask.shape for mask in possible))
+    first, last = np.full(boxes, np.inf), np.full(boxes, -np.inf)
+    for place, mask in enumerate(possible):
+        first = np.where(mask, np.minimum(first, place), first)
+        last = np.where(mask, float(place), last)
+    narrowed: list[Bounds | None] = [Bounds(first, last)]
+    for place, option in enumerate(options):
+        fits = option is not None and option.lower.shape[1:] == result.lower.shape[1:]
+        narrowed.append(where((first == place) & (last == place), result) if fits else None)
+    return narrowed
+
+
+def _select_solver(terms: Terms, _payload: Any, index: Any, *options: Any) -> Any:
+    return chain(terms, index, options)
+
+
+OPERATIONS = (
+    Operation(
+        "range",
+        always(Kind.SCALAR),
+        _range,
+        "A real number, uniform between two ends in either order.",
+        bounds=_range_bounds,
+        inverse=_range_inverse,
+        solver=_range_solver,
+    ),
+    Operation(
+        "normal",
+        always(Kind.SCALAR),
+        _normal,
+        "A real number of the normal law (mean, standard deviation).",
+        bounds=_normal_bounds,
+        inverse=_normal_inverse,
+        solver=_normal_solver,
+    ),
+    Operation(
+        "truncated normal",
+        always(Kind.SCALAR),
+        _truncated_normal,
+        "A real number of the normal law (mean, standard deviation) conditioned to a window, the payload.",
+        bounds=_truncated_bounds,
+        inverse=_truncated_inverse,
+        solver=_truncated_solver,
+    ),
+    Operation(
+        "discrete range",
+        always(Kind.INTEGER),
+        _discrete_range,
+        "An integer, uniform between two ends inclusive; rejected where there is none.",
+        bounds=_discrete_bounds,
+        inverse=_discrete_inverse,
+        solver=_discrete_solver,
+    ),
+    Operation(
+        "weighted integer",
+        always(Kind.INTEGER),
+        _weighted_integer,
+        "An integer of given weights; payload (first, cumulative weights).",
+        bounds=_weighted_bounds,
+        inverse=_weighted_inverse,
+        solver=_weighted_solver,
+    ),
+    Operation(
+        "choice",
+        always(Kind.INTEGER),
+        _choice,
+        "Which option is drawn; payload cumulative weights.",
+        bounds=_choice_bounds,
+        inverse=_choice_inverse,
+        solver=_choice_solver,
+    ),
+    Operation(
+        "select",
+        _select_kind,
+        _select,
+        "The option that an index draws; only its faults and rejections count.",
+        python=_python_select,
+        bounds=_select_bounds,
+        inverse=_select_inverse,
+        solver=_select_solver,
+        strict=False,
+    ),
+)

@@ -1,0 +1,160 @@
+"""Functions of real numbers that programs call by name."""
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from scenic.graph import intervals
+from scenic.graph.bounds import Bounds
+from scenic.graph.kinds import Column, Kind
+from scenic.graph.operation import Call, Operation, Terms, always
+from scenic.graph.operations.encoding import root_of_squares, within
+from scenic.graph.operations.narrowing import sides, where
+from scenic.graph.quaternions import normalize_angle
+
+
+def _periodic(function: Callable[[float], float]) -> Callable[[Call, Column], Column]:
+    def batch(call: Call, angle: Column) -> Column:
+        # The C library lane by lane, as Python itself: NumPy's own version depends on the machine.
+        angle = angle.astype(np.float64)
+        infinite = np.isinf(angle)
+        if infinite.any():
+            call.fault(infinite, ValueError("math domain error"))
+            angle = np.where(infinite, 0.0, angle)
+        return np.array([function(value) for value in angle.tolist()], dtype=np.float64)
+
+    return batch
+
+
+def _hypot(_call: Call, *sides: Column) -> Column:
+    columns = np.broadcast_arrays(*(side.astype(np.float64) for side in sides))
+    lanes = zip(*(column.tolist() for column in columns), strict=True)
+    return np.array([math.hypot(*values) for values in lanes], dtype=np.float64)
+
+
+def _normalize_angle(_call: Call, angle: Column) -> Column:
+    return normalize_angle(angle.astype(np.float64))
+
+
+def _python_normalize_angle(angle: Any) -> float:
+    return float(normalize_angle(np.array([float(angle)]))[0])
+
+
+def _wave_bounds(peak: float) -> Callable[[Any, Bounds], Bounds]:
+    """Bounds of the periodic function that reaches 1 at ``peak`` (plus whole turns) and -1 half a turn later."""
+
+    def bounds(_payload: Any, angle: Bounds) -> Bounds:
+        # Positions in turns since the peak; a margin covers the rounding of large angles.
+        start = (angle.lower - peak) / math.tau
+        end = (angle.upper - peak) / math.tau
+        margin = 1e-15 * (2 + np.maximum(np.abs(start), np.abs(end)))
+        start, end = start - margin, end + margin
+        wide = ~(end - start < 1)
+        top = wide | (np.ceil(start) <= end)
+        bottom = wide | (np.ceil(start - 0.5) <= end - 0.5)
+        at_start, at_end = np.cos(math.tau * start), np.cos(math.tau * end)
+        slack = 1e-15 + 8 * margin
+        lower = np.where(bottom, -1.0, np.maximum(np.minimum(at_start, at_end) - slack, -1.0))
+        upper = np.where(top, 1.0, np.minimum(np.maximum(at_start, at_end) + slack, 1.0))
+        return intervals.doubtful(Bounds(lower, upper), angle)
+
+    return bounds
+
+
+sin_bounds = _wave_bounds(math.pi / 2)
+cos_bounds = _wave_bounds(0.0)
+
+
+def _wave_solver(terms: Terms, _payload: Any, _angle: Any) -> Any:
+    return within(terms, -1.0, 1.0)
+
+
+def _hypot_bounds(_payload: Any, *parts: Bounds) -> Bounds:
+    return length_bounds(parts)
+
+
+def length_bounds(parts: Any) -> Bounds:
+    """Bounds of the length of a vector from those of its components."""
+    length = intervals.square_root(intervals.total([intervals.square(part) for part in parts]))
+    length = intervals.relaxed(length, 1e-15)
+    return Bounds(np.maximum(length.lower, 0.0), length.upper)
+
+
+def _hypot_inverse(_payload: Any, result: Bounds, *parts: Bounds) -> list[Bounds]:
+    return sides(result, parts)
+
+
+def _hypot_solver(terms: Terms, _payload: Any, *parts: Any) -> Any:
+    return root_of_squares(terms, [terms.number(part) for part in parts])
+
+
+def _normalize_bounds(_payload: Any, angle: Bounds) -> Bounds:
+    low, high = normalize_angle(angle.lower), normalize_angle(angle.upper)
+    # Both ends moved by the same number of turns: the interval moved as a whole.
+    turns = (angle.lower - low) / math.tau
+    whole = (np.rint(turns) == np.rint((angle.upper - high) / math.tau)) & (angle.upper - angle.lower < 7)
+    whole = whole & (low <= high)
+    margin = 1e-15 * intervals.size(angle)
+    inside = (angle.lower >= -math.pi) & (angle.upper <= math.pi)
+    margin = np.where(inside, 0.0, margin)
+    # A value next to the seam may, once rounded, fall on its other side.
+    whole = whole & (inside | ((low - margin > -math.pi) & (high + margin < math.pi)))
+    lower = np.where(whole, low - margin, -math.pi)
+    upper = np.where(whole, high + margin, math.pi)
+    return intervals.doubtful(Bounds(lower, upper), angle)
+
+
+def _normalize_inverse(_payload: Any, result: Bounds, angle: Bounds) -> list[Bounds]:
+    return [where((angle.lower >= -math.pi) & (angle.upper <= math.pi), result)]
+
+
+def _normalize_solver(terms: Terms, _payload: Any, angle: Any) -> Any:
+    angle = terms.number(angle)
+    pi = terms.real(math.pi)
+    result = within(terms, -math.pi, math.pi)
+    terms.define(~((angle >= -pi) & (angle <= pi)) | (result == angle))
+    return result
+
+
+OPERATIONS = (
+    Operation(
+        "sin",
+        always(Kind.SCALAR),
+        _periodic(math.sin),
+        "Sine of an angle in radians.",
+        python=math.sin,
+        bounds=sin_bounds,
+        solver=_wave_solver,
+    ),
+    Operation(
+        "cos",
+        always(Kind.SCALAR),
+        _periodic(math.cos),
+        "Cosine of an angle in radians.",
+        python=math.cos,
+        bounds=cos_bounds,
+        solver=_wave_solver,
+    ),
+    Operation(
+        "hypot",
+        always(Kind.SCALAR),
+        _hypot,
+        "Length of a diagonal from its sides.",
+        python=math.hypot,
+        bounds=_hypot_bounds,
+        inverse=_hypot_inverse,
+        solver=_hypot_solver,
+    ),
+    Operation(
+        "normalize angle",
+        always(Kind.SCALAR),
+        _normalize_angle,
+        "The angle moved by whole turns into [-pi, pi].",
+        python=_python_normalize_angle,
+        bounds=_normalize_bounds,
+        inverse=_normalize_inverse,
+        solver=_normalize_solver,
+    ),
+)

@@ -1,0 +1,75 @@
+"""What the numeric operations share: their kinds, and evaluation by Python's own functions lane by lane."""
+
+from collections.abc import Callable, Sequence
+from typing import Any, Final
+
+import numpy as np
+
+from scenic.graph.bounding import whole_limits
+from scenic.graph.kinds import Column, Kind
+from scenic.graph.node import Node
+from scenic.graph.operation import BoundsReading, Call, KindRule
+
+EXACT: Final = 2**53
+"""Integers up to this size are floats too."""
+
+
+def arithmetic_kind(reading: BoundsReading) -> KindRule:
+    """Numbers follow Python: a float makes a float, integers stay integers while they provably fit 64 bits."""
+
+    def rule(operands: Sequence[Node], payload: Any) -> Kind:
+        kinds = [operand.kind for operand in operands]
+        if not all(kind.is_number for kind in kinds):
+            return Kind.OTHER
+        if Kind.SCALAR in kinds:
+            return Kind.SCALAR
+        return Kind.INTEGER if whole_limits(reading, operands, payload) is not None else Kind.OTHER
+
+    return rule
+
+
+def as_integers(column: Column) -> Column:
+    """Booleans as the integers that they are in Python's arithmetic; other numbers unchanged."""
+    return column.astype(np.int64) if column.dtype == np.bool_ else column
+
+
+def are_exact(*columns: Column) -> bool:
+    """Whether every integer of the columns is a float too, so that mixed arithmetic loses nothing."""
+    return all(column.dtype != np.int64 or bool((np.abs(column) <= EXACT).all()) for column in columns)
+
+
+def fail_as_python(call: Call, mask: Column, function: Callable[..., Any], *columns: Column) -> None:
+    """Let the lanes of ``mask`` fail with the exception that Python's ``function`` raises there."""
+    if not mask.any():
+        return
+    mask = np.broadcast_to(mask, np.broadcast_shapes(mask.shape, *(column.shape for column in columns)))
+    lane = int(np.flatnonzero(mask)[0])
+    try:
+        function(*(column[lane if len(column) > 1 else 0].item() for column in columns))
+    except ArithmeticError as error:
+        call.fault(mask, error)
+    else:
+        raise AssertionError("Python has a value where its exception was expected")
+
+
+def lane_by_lane(call: Call, function: Callable[..., Any], dtype: type[Any], *columns: Column) -> Column:
+    """Python's ``function`` on the plain numbers of each lane; its exceptions are faults of the lane.
+
+    A complex result (of a negative base and a broken exponent) is no real number and a fault as well.
+    """
+    arrays = np.broadcast_arrays(*columns)
+    result = np.zeros(arrays[0].shape, dtype=dtype)
+    failed = np.zeros(arrays[0].shape, dtype=np.bool_)
+    error: Exception | None = None
+    for lane, values in enumerate(zip(*(array.tolist() for array in arrays), strict=True)):
+        try:
+            value = function(*values)
+            if isinstance(value, complex):
+                raise TypeError("the result of a negative number to a broken power is not a real number")
+            result[lane] = value
+        except (ArithmeticError, ValueError, TypeError) as problem:
+            failed[lane] = True
+            error = problem if error is None else error
+    if error is not None:
+        call.fault(failed, error)
+    return result

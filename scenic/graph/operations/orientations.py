@@ -1,0 +1,212 @@
+"""Orientations: unit quaternions and the Euler angles (yaw, pitch, roll)."""
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from scenic.graph import intervals, quaternions
+from scenic.graph.bounds import Bounds
+from scenic.graph.kinds import Column, Kind
+from scenic.graph.operation import Call, Operation, Terms, always
+from scenic.graph.operations.encoding import within
+from scenic.graph.operations.functions import cos_bounds, length_bounds, sin_bounds
+
+
+def _from_euler(_call: Call, yaw: Column, pitch: Column, roll: Column) -> Column:
+    return quaternions.from_euler(*(angle.astype(np.float64) for angle in (yaw, pitch, roll)))
+
+
+def _compose(_call: Call, outer: Column, inner: Column) -> Column:
+    return quaternions.multiply(outer, inner)
+
+
+def _inverse(_call: Call, orientation: Column) -> Column:
+    return quaternions.conjugate(orientation)
+
+
+def _rotate(_call: Call, orientation: Column, vector: Column) -> Column:
+    return quaternions.rotate(orientation, vector)
+
+
+def _euler(call: Call, orientation: Column) -> Column:
+    return np.ascontiguousarray(quaternions.to_euler(orientation)[call.payload])
+
+
+_SLACK = 1e-14
+"""More than rounding can add to a component of a unit quaternion in a few operations."""
+
+
+def _unit(parts: Sequence[Bounds]) -> Bounds:
+    """Bounds of a unit quaternion from those of its components as computed without rounding."""
+    bounds = intervals.widened(intervals.stacked(parts), _SLACK)
+    one = 1 + 1e-9
+    return Bounds(np.clip(bounds.lower, -one, one), np.clip(bounds.upper, -one, one))
+
+
+def _product(*factors: Bounds) -> Bounds:
+    result = factors[0]
+    for factor in factors[1:]:
+        result = intervals.multiply(result, factor)
+    return result
+
+
+def _from_euler_bounds(_payload: Any, *angles: Bounds) -> Bounds:
+    halves = [Bounds(angle.lower / 2, angle.upper / 2) for angle in angles]
+    sines = [sin_bounds(None, half) for half in halves]
+    cosines = [cos_bounds(None, half) for half in halves]
+    (sy, sp, sr), (cy, cp, cr) = sines, cosines
+    return _unit(
+        [
+            intervals.subtract(_product(cy, sp, cr), _product(sy, cp, sr)),
+            intervals.add(_product(cy, cp, sr), _product(sy, sp, cr)),
+            intervals.add(_product(sy, cp, cr), _product(cy, sp, sr)),
+            intervals.subtract(_product(cy, cp, cr), _product(sy, sp, sr)),
+        ]
+    )
+
+
+def _compose_bounds(_payload: Any, outer: Bounds, inner: Bounds) -> Bounds:
+    px, py, pz, pw = intervals.components(outer)
+    qx, qy, qz, qw = intervals.components(inner)
+    minus = intervals.negative
+    return _unit(
+        [
+            intervals.total([_product(pw, qx), _product(px, qw), _product(py, qz), minus(_product(pz, qy))]),
+            intervals.total([_product(pw, qy), _product(py, qw), _product(pz, qx), minus(_product(px, qz))]),
+            intervals.total([_product(pw, qz), _product(pz, qw), _product(px, qy), minus(_product(py, qx))]),
+            intervals.total(
+                [_product(pw, qw), minus(_product(px, qx)), minus(_product(py, qy)), minus(_product(pz, qz))]
+            ),
+        ]
+    )
+
+
+def _conjugated(bounds: Bounds) -> Bounds:
+    x, y, z, w = intervals.components(bounds)
+    return intervals.stacked([*(intervals.negative(part) for part in (x, y, z)), w])
+
+
+def _inverse_bounds(_payload: Any, orientation: Bounds) -> Bounds:
+    return _conjugated(orientation)
+
+
+def _inverse_inverse(_payload: Any, result: Bounds, _orientation: Bounds) -> list[Bounds]:
+    return [_conjugated(result)]
+
+
+def _matrix(orientation: Bounds) -> list[list[Bounds]]:
+    """Bounds of the rotation matrix, row by row."""
+    x, y, z, w = intervals.components(orientation)
+    squares = {name: intervals.square(part) for name, part in (("x", x), ("y", y), ("z", z))}
+    one = Bounds.exactly(1.0)
+
+    def doubled(a: Bounds) -> Bounds:
+        return Bounds(2 * a.lower, 2 * a.upper)
+
+    def diagonal(first: str, second: str) -> Bounds:
+        return intervals.subtract(one, doubled(intervals.add(squares[first], squares[second])))
+
+    def mixed(p: Bounds, q: Bounds, r: Bounds, sign: int) -> Bounds:
+        turn = _product(r, w)
+        return doubled(intervals.add(_product(p, q), turn if sign > 0 else intervals.negative(turn)))
+
+    rows = [
+        [diagonal("y", "z"), mixed(x, y, z, -1), mixed(x, z, y, 1)],
+        [mixed(x, y, z, 1), diagonal("x", "z"), mixed(y, z, x, -1)],
+        [mixed(x, z, y, -1), mixed(y, z, x, 1), diagonal("x", "y")],
+    ]
+    limit = 1 + 1e-8
+    return [
+        [Bounds(np.clip(entry.lower, -limit, limit), np.clip(entry.upper, -limit, limit)) for entry in row]
+        for row in rows
+    ]
+
+
+def _turned(rows: list[list[Bounds]], vector: Bounds) -> Bounds:
+    parts = intervals.components(vector)
+    result = intervals.stacked(
+        [
+            intervals.total([_product(entry, part) for entry, part in zip(row, parts, strict=True)])
+            for row in rows
+        ]
+    )
+    # A rotation keeps the length; rounding and a norm of the quaternion off by little are covered by the margin.
+    length = intervals.spread(length_bounds(parts), 2).upper
+    result = intervals.widened(result, np.where(np.isfinite(length), 1e-8 * length, np.inf))
+    reach = np.where(np.isfinite(length), length * (1 + 1e-8), np.inf)
+    return Bounds(np.maximum(result.lower, -reach), np.minimum(result.upper, reach))
+
+
+def _rotate_bounds(_payload: Any, orientation: Bounds, vector: Bounds) -> Bounds:
+    return _turned(_matrix(orientation), vector)
+
+
+def _rotate_inverse(
+    _payload: Any, result: Bounds, orientation: Bounds, _vector: Bounds
+) -> list[Bounds | None]:
+    return [None, _turned(_matrix(_conjugated(orientation)), result)]
+
+
+def _rotate_solver(terms: Terms, _payload: Any, orientation: Any, vector: Any) -> Any:
+    if any(terms.constant(part) is None for part in orientation):
+        return terms.fresh(Kind.VECTOR)
+    x, y, z, w = orientation
+    vx, vy, vz = vector
+    two = terms.real(2)
+    tx, ty, tz = two * (y * vz - z * vy), two * (z * vx - x * vz), two * (x * vy - y * vx)
+    return (vx + w * tx + (y * tz - z * ty), vy + w * ty + (z * tx - x * tz), vz + w * tz + (x * ty - y * tx))
+
+
+def _euler_bounds(payload: Any, _orientation: Bounds) -> Bounds:
+    limit = math.pi / 2 if payload == 1 else math.pi
+    return Bounds(np.array([-limit - _SLACK]), np.array([limit + _SLACK]))
+
+
+def _euler_solver(terms: Terms, payload: Any, _orientation: Any) -> Any:
+    limit = math.pi / 2 if payload == 1 else math.pi
+    return within(terms, -limit, limit)
+
+
+OPERATIONS = (
+    Operation(
+        "from euler",
+        always(Kind.ORIENTATION),
+        _from_euler,
+        "The orientation of intrinsic rotations about Z, the new X and the new Y (radians).",
+        bounds=_from_euler_bounds,
+    ),
+    Operation(
+        "compose",
+        always(Kind.ORIENTATION),
+        _compose,
+        "The second orientation read in the frame of the first.",
+        bounds=_compose_bounds,
+    ),
+    Operation(
+        "inverse",
+        always(Kind.ORIENTATION),
+        _inverse,
+        "The opposite rotation.",
+        bounds=_inverse_bounds,
+        inverse=_inverse_inverse,
+    ),
+    Operation(
+        "rotate",
+        always(Kind.VECTOR),
+        _rotate,
+        "A vector turned by an orientation.",
+        bounds=_rotate_bounds,
+        inverse=_rotate_inverse,
+        solver=_rotate_solver,
+    ),
+    Operation(
+        "euler",
+        always(Kind.SCALAR),
+        _euler,
+        "One Euler angle of an orientation in radians; payload 0 yaw, 1 pitch, 2 roll.",
+        bounds=_euler_bounds,
+        solver=_euler_solver,
+    ),
+)

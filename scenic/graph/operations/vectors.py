@@ -1,0 +1,313 @@
+"""Vectors: making them, their parts, lengths and directions."""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from scenic.graph import intervals
+from scenic.graph.bounds import Bounds
+from scenic.graph.kinds import Column, Kind
+from scenic.graph.operation import Call, Operation, Terms, always
+from scenic.graph.operations.encoding import root_of_squares, within
+from scenic.graph.operations.functions import length_bounds
+from scenic.graph.operations.narrowing import before_rounding, sides
+from scenic.graph.quaternions import normalize_angle
+
+
+def _vector(_call: Call, x: Column, y: Column, z: Column) -> Column:
+    result = np.empty((max(len(x), len(y), len(z)), 3))
+    result[:, 0] = x
+    result[:, 1] = y
+    result[:, 2] = z
+    return result
+
+
+def _component(call: Call, vector: Column) -> Column:
+    return np.ascontiguousarray(vector[:, call.payload])
+
+
+def _parts(vector: Column) -> tuple[Column, Column, Column]:
+    # Contiguous, so that functions give the same bits whatever the memory layout.
+    x, y, z = (np.ascontiguousarray(vector[:, index]) for index in range(3))
+    return x, y, z
+
+
+def _length(x: Column, y: Column, z: Column) -> Column:
+    return np.asarray(np.sqrt(x * x + y * y + z * z))
+
+
+def _norm(_call: Call, vector: Column) -> Column:
+    return _length(*_parts(vector))
+
+
+def _dot(_call: Call, a: Column, b: Column) -> Column:
+    (ax, ay, az), (bx, by, bz) = _parts(a), _parts(b)
+    return np.asarray(ax * bx + ay * by + az * bz)
+
+
+def _cross(_call: Call, a: Column, b: Column) -> Column:
+    (ax, ay, az), (bx, by, bz) = _parts(a), _parts(b)
+    result = np.empty((max(len(a), len(b)), 3))
+    result[:, 0] = ay * bz - az * by
+    result[:, 1] = az * bx - ax * bz
+    result[:, 2] = ax * by - ay * bx
+    return result
+
+
+def _distance(_call: Call, a: Column, b: Column) -> Column:
+    return _length(*_parts(a - b))
+
+
+def _azimuth(_call: Call, vector: Column) -> Column:
+    x, y, _ = _parts(vector)
+    return normalize_angle(np.arctan2(y, x) - np.pi / 2)
+
+
+def _altitude(_call: Call, vector: Column) -> Column:
+    x, y, z = _parts(vector)
+    return np.asarray(np.arctan2(z, np.hypot(x, y)))
+
+
+def _normalized(_call: Call, vector: Column) -> Column:
+    length = _norm(_call, vector)
+    # The zero vector has no direction and stays as it is.
+    return np.asarray(vector / np.where(length == 0, 1.0, length)[:, np.newaxis])
+
+
+def _vector_bounds(_payload: Any, *parts: Bounds) -> Bounds:
+    return intervals.stacked(parts)
+
+
+def _vector_inverse(_payload: Any, result: Bounds, *_parts: Bounds) -> list[Bounds]:
+    return intervals.components(result)
+
+
+def _vector_solver(terms: Terms, _payload: Any, *parts: Any) -> Any:
+    return tuple(terms.number(part) for part in parts)
+
+
+def _component_bounds(payload: Any, vector: Bounds) -> Bounds:
+    return intervals.component(vector, payload)
+
+
+def _component_inverse(payload: Any, result: Bounds, _vector: Bounds) -> list[Bounds]:
+    rest = intervals.unbounded(result)
+    return [intervals.stacked([result if index == payload else rest for index in range(3)])]
+
+
+def _component_solver(_terms: Terms, payload: Any, vector: Any) -> Any:
+    return vector[payload]
+
+
+def _norm_bounds(_payload: Any, vector: Bounds) -> Bounds:
+    return length_bounds(intervals.components(vector))
+
+
+def _norm_inverse(_payload: Any, result: Bounds, vector: Bounds) -> list[Bounds]:
+    return [intervals.stacked(sides(result, intervals.components(vector)))]
+
+
+def _norm_solver(terms: Terms, _payload: Any, vector: Any) -> Any:
+    return root_of_squares(terms, vector)
+
+
+def _dot_bounds(_payload: Any, a: Bounds, b: Bounds) -> Bounds:
+    pairs = zip(intervals.components(a), intervals.components(b), strict=True)
+    return intervals.total([intervals.multiply(x, y) for x, y in pairs])
+
+
+def _dot_inverse(_payload: Any, result: Bounds, a: Bounds, b: Bounds) -> list[Bounds]:
+    parts_a, parts_b = intervals.components(a), intervals.components(b)
+    products = [intervals.multiply(x, y) for x, y in zip(parts_a, parts_b, strict=True)]
+    # Each sum of the three may have been rounded by a unit in the last place of any partial sum.
+    slack = sum(intervals.size(product) for product in products) * 1e-15
+    exact = intervals.widened(result, slack)
+    new_a, new_b = [], []
+    for place in range(3):
+        rest = exact
+        for other in range(3):
+            if other != place:
+                rest = intervals.subtract(rest, products[other])
+        new_a.append(intervals.divide(rest, parts_b[place]))
+        new_b.append(intervals.divide(rest, parts_a[place]))
+    return [intervals.stacked(new_a), intervals.stacked(new_b)]
+
+
+def _dot_solver(_terms: Terms, _payload: Any, a: Any, b: Any) -> Any:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+_TURNS = ((1, 2), (2, 0), (0, 1))
+"""Components that make each component of a vector product."""
+
+
+def _cross_bounds(_payload: Any, a: Bounds, b: Bounds) -> Bounds:
+    p, q = intervals.components(a), intervals.components(b)
+    return intervals.stacked(
+        [
+            intervals.subtract(intervals.multiply(p[i], q[j]), intervals.multiply(p[j], q[i]))
+            for i, j in _TURNS
+        ]
+    )
+
+
+def _cross_solver(_terms: Terms, _payload: Any, a: Any, b: Any) -> Any:
+    return tuple(a[i] * b[j] - a[j] * b[i] for i, j in _TURNS)
+
+
+def _distance_bounds(_payload: Any, a: Bounds, b: Bounds) -> Bounds:
+    return length_bounds(intervals.components(intervals.subtract(a, b)))
+
+
+def _distance_inverse(_payload: Any, result: Bounds, a: Bounds, b: Bounds) -> list[Bounds]:
+    difference = intervals.subtract(a, b)
+    narrowed = intervals.stacked(sides(result, intervals.components(difference)))
+    difference = before_rounding(Bounds(*_met(narrowed, difference)))
+    return [intervals.add(difference, b), intervals.subtract(a, difference)]
+
+
+def _met(first: Bounds, second: Bounds) -> tuple[Any, Any]:
+    met = first.meet(second)
+    # An empty part stays visibly empty through the sums that follow.
+    empty = met.lower > met.upper
+    return np.where(empty, np.inf, met.lower), np.where(empty, -np.inf, met.upper)
+
+
+def _distance_solver(terms: Terms, _payload: Any, a: Any, b: Any) -> Any:
+    return root_of_squares(terms, [x - y for x, y in zip(a, b, strict=True)])
+
+
+def _angle_bounds(across: Bounds, along: Bounds) -> Bounds:
+    """Bounds of ``atan2(across, along)``: from the corners, unless the box touches the cut or the origin."""
+    corners = [np.arctan2(y, x) for y in (across.lower, across.upper) for x in (along.lower, along.upper)]
+    lower = np.minimum(np.minimum(corners[0], corners[1]), np.minimum(corners[2], corners[3]))
+    upper = np.maximum(np.maximum(corners[0], corners[1]), np.maximum(corners[2], corners[3]))
+    cut = (along.lower <= 0) & (across.lower <= 0) & (across.upper >= 0)
+    margin = 1e-14
+    lower = np.where(cut, -math.pi, np.maximum(lower - margin, -math.pi))
+    return Bounds(lower, np.where(cut, math.pi, np.minimum(upper + margin, math.pi)))
+
+
+def _azimuth_bounds(_payload: Any, vector: Bounds) -> Bounds:
+    x, y, _ = intervals.components(vector)
+    # North, the zero of azimuths, is the y axis: a quarter turn takes it to where atan2 is zero.
+    angle = _angle_bounds(intervals.negative(x), y)
+    # A direction next to South may, once rounded, appear on the other side of the seam.
+    seam = (angle.upper > math.pi - 1e-12) | (angle.lower < -math.pi + 1e-12)
+    bounds = Bounds(np.where(seam, -math.pi, angle.lower), np.where(seam, math.pi, angle.upper))
+    return intervals.doubtful(bounds, x, y)
+
+
+def _altitude_bounds(_payload: Any, vector: Bounds) -> Bounds:
+    x, y, z = intervals.components(vector)
+    angle = _angle_bounds(z, length_bounds([x, y]))
+    half = math.pi / 2
+    bounds = Bounds(np.maximum(angle.lower, -half), np.minimum(angle.upper, half))
+    return intervals.doubtful(bounds, x, y, z)
+
+
+def _azimuth_solver(terms: Terms, _payload: Any, _vector: Any) -> Any:
+    return within(terms, -math.pi, math.pi)
+
+
+def _altitude_solver(terms: Terms, _payload: Any, _vector: Any) -> Any:
+    return within(terms, -math.pi / 2, math.pi / 2)
+
+
+def _normalized_bounds(_payload: Any, vector: Bounds) -> Bounds:
+    length = intervals.spread(_norm_bounds(None, vector), 2)
+    quotient = intervals.divide(vector, length)
+    # No component is longer than the vector.
+    one = 1 + 1e-15
+    bounds = Bounds(np.clip(quotient.lower, -one, one), np.clip(quotient.upper, -one, one))
+    sign = Bounds(
+        np.where(vector.lower >= 0, np.maximum(bounds.lower, 0.0), bounds.lower),
+        np.where(vector.upper <= 0, np.minimum(bounds.upper, 0.0), bounds.upper),
+    )
+    return intervals.doubtful(sign, *(intervals.spread(part, 2) for part in intervals.components(vector)))
+
+
+def _normalized_solver(terms: Terms, _payload: Any, _vector: Any) -> Any:
+    return tuple(within(terms, -1.0, 1.0) for _ in range(3))
+
+
+OPERATIONS = (
+    Operation(
+        "vector",
+        always(Kind.VECTOR),
+        _vector,
+        "The vector of three numbers, in metres.",
+        bounds=_vector_bounds,
+        inverse=_vector_inverse,
+        solver=_vector_solver,
+    ),
+    Operation(
+        "component",
+        always(Kind.SCALAR),
+        _component,
+        "One component of a vector; payload 0, 1 or 2.",
+        bounds=_component_bounds,
+        inverse=_component_inverse,
+        solver=_component_solver,
+    ),
+    Operation(
+        "norm",
+        always(Kind.SCALAR),
+        _norm,
+        "Euclidean length of a vector.",
+        bounds=_norm_bounds,
+        inverse=_norm_inverse,
+        solver=_norm_solver,
+    ),
+    Operation(
+        "dot",
+        always(Kind.SCALAR),
+        _dot,
+        "Scalar product of two vectors.",
+        bounds=_dot_bounds,
+        inverse=_dot_inverse,
+        solver=_dot_solver,
+    ),
+    Operation(
+        "cross",
+        always(Kind.VECTOR),
+        _cross,
+        "Vector product of two vectors.",
+        bounds=_cross_bounds,
+        solver=_cross_solver,
+    ),
+    Operation(
+        "distance",
+        always(Kind.SCALAR),
+        _distance,
+        "Euclidean distance between two points.",
+        bounds=_distance_bounds,
+        inverse=_distance_inverse,
+        solver=_distance_solver,
+    ),
+    Operation(
+        "azimuth",
+        always(Kind.SCALAR),
+        _azimuth,
+        "Direction of a vector in the horizontal plane: radians from North, anticlockwise, within [-pi, pi].",
+        bounds=_azimuth_bounds,
+        solver=_azimuth_solver,
+    ),
+    Operation(
+        "altitude",
+        always(Kind.SCALAR),
+        _altitude,
+        "Radians by which a vector rises above the horizon.",
+        bounds=_altitude_bounds,
+        solver=_altitude_solver,
+    ),
+    Operation(
+        "normalized",
+        always(Kind.VECTOR),
+        _normalized,
+        "The unit vector of the same direction; zero stays.",
+        bounds=_normalized_bounds,
+        solver=_normalized_solver,
+    ),
+)
