@@ -1,0 +1,145 @@
+"""Whether points lie in a solid, decided exactly by parity in double precision.
+
+A vertical line through the point is followed upwards, and its crossings with the surface are counted. What
+counts as a crossing is decided per edge of the projected triangles, by the same operations on the same
+numbers for all faces that share the edge, and half-open where the point is level with a vertex. So no line
+slips between two faces or meets both: the surface of a closed mesh is watertight whatever the rounding, and
+only points within rounding of the surface itself may go either way.
+"""
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from scenic.runtime.geometry.mesh import Mesh
+from scenic.runtime.geometry.poses import Booleans, Floats, Indices
+from scenic.runtime.geometry.ragged import expand, group_starts, pieces
+
+_CHUNK: Final = 1 << 19
+"""Pairs of point and face looked at together; some twenty temporary arrays of that length are alive."""
+
+_PADDING: Final = 1e-12
+"""Part of the extents by which the boxes of faces are widened: more than the rounding of points on edges."""
+
+_MOST_INCIDENCES: Final = 8
+"""Cells of the grid per face above which the grid is made coarser, on average."""
+
+
+@dataclass(frozen=True, slots=True)
+class ColumnGrid:
+    """The faces of a mesh sorted into columns over a grid in the XY plane.
+
+    Attributes:
+        lower: corner of the grid, ``(2,)``.
+        scale: cells per unit of length, ``(2,)``.
+        cells: cells per axis.
+        starts: ``(cells² + 1,)``: where the faces of each cell begin in ``faces``.
+        faces: face indices, cell by cell.
+        corners: ``(f, 3, 3)`` corners of each face, in ascending order of vertex index, so that both faces
+            of an edge run through it in the same direction.
+        boxes: ``(f, 6)``: lower and upper corner of the bounding box of each face, slightly widened.
+
+    """
+
+    lower: Floats
+    scale: Floats
+    cells: int
+    starts: Indices
+    faces: Indices
+    corners: Floats
+    boxes: Floats
+
+
+def column_grid(mesh: Mesh) -> ColumnGrid:
+    """The grid of a mesh; takes tens of milliseconds for 100,000 faces. Get it as ``mesh.derived(column_grid)``."""
+    corners = mesh.vertices[np.sort(mesh.faces, axis=1)]
+    padding = _PADDING * mesh.extents
+    boxes = np.concatenate([corners.min(axis=1) - padding, corners.max(axis=1) + padding], axis=1)
+    low, high = boxes[:, :2], boxes[:, 3:5]
+    lower, extents = mesh.bounds[0, :2], mesh.extents[:2]
+    cells = int(np.clip(np.sqrt(len(mesh.faces)), 1, 1024))
+    while True:
+        scale = np.where(extents > 0, cells / np.where(extents > 0, extents, 1), 0)
+        first = _cell(low, lower, scale, cells)
+        counts = _cell(high, lower, scale, cells) - first + 1
+        total = int((counts[:, 0] * counts[:, 1]).sum())
+        if cells == 1 or total <= _MOST_INCIDENCES * len(corners) + 4096:
+            break
+        cells = max(cells // 2, 1)
+    face, offset = expand(counts[:, 0] * counts[:, 1])
+    column = first[face, 0] + offset // counts[face, 1]
+    row = first[face, 1] + offset % counts[face, 1]
+    cell = column * cells + row
+    order = np.argsort(cell, kind="stable")
+    return ColumnGrid(
+        lower, scale, cells, group_starts(cell[order], cells * cells), face[order], corners, boxes
+    )
+
+
+def contains_points(mesh: Mesh, points: Floats) -> Booleans:
+    """Whether points ``(n, 3)``, in the frame of the mesh, lie in the solid that the closed mesh bounds."""
+    result = np.zeros(len(points), dtype=np.bool_)
+    candidates = np.flatnonzero(((points >= mesh.bounds[0]) & (points <= mesh.bounds[1])).all(axis=1))
+    if not len(candidates):
+        return result
+    grid = mesh.derived(column_grid)
+    near = points[candidates]
+    cells = _cell(near[:, :2], grid.lower, grid.scale, grid.cells)
+    cell = cells[:, 0] * grid.cells + cells[:, 1]
+    counts = grid.starts[cell + 1] - grid.starts[cell]
+    for part in pieces(counts, _CHUNK):
+        owner, offset = expand(counts[part])
+        face = grid.faces[grid.starts[cell[part]][owner] + offset]
+        point = near[part][owner]
+        over = _may_cross_above(grid.boxes[face], point)
+        owner, face, point = owner[over], face[over], point[over]
+        above = _crosses_above(grid.corners[face], point)
+        crossings = np.bincount(owner[above], minlength=part.stop - part.start)
+        result[candidates[part]] = crossings % 2 == 1
+    return result
+
+
+def _cell(xy: Floats, lower: Floats, scale: Floats, cells: int) -> Indices:
+    """The cell of each point; monotonic in the coordinates, so a face's range covers all points over it."""
+    return np.clip(((xy - lower) * scale).astype(np.intp), 0, cells - 1)
+
+
+def _may_cross_above(boxes: Floats, points: Floats) -> Booleans:
+    x, y, z = points[:, 0], points[:, 1], points[:, 2]
+    result: Booleans = (
+        (boxes[:, 0] <= x) & (x <= boxes[:, 3]) & (boxes[:, 1] <= y) & (y <= boxes[:, 4]) & (z <= boxes[:, 5])
+    )
+    return result
+
+
+def _crosses_above(corners: Floats, points: Floats) -> Booleans:
+    """Whether the upward vertical from each point ``(m, 3)`` crosses the face with ``corners`` ``(m, 3, 3)``.
+
+    The horizontal line y = py meets the projected edges in none or two points; the vertical crosses the face
+    if px lies between them.
+    """
+    px, py, pz = points[:, 0], points[:, 1], points[:, 2]
+    x = [corners[:, i, 0] for i in range(3)]
+    y = [corners[:, i, 1] for i in range(3)]
+    z = [corners[:, i, 2] for i in range(3)]
+    north = [y_i > py for y_i in y]
+    inside = np.zeros(len(points), dtype=np.bool_)
+    # Of the two meeting points, the one to the right of the point and the one that is not.
+    right_x, right_z = np.zeros(len(points)), np.zeros(len(points))
+    left_x, left_z = np.zeros(len(points)), np.zeros(len(points))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        for a, b in ((0, 1), (1, 2), (0, 2)):
+            meets = north[a] != north[b]
+            t = (py - y[a]) / (y[b] - y[a])
+            edge_x = x[a] + t * (x[b] - x[a])
+            edge_z = z[a] + t * (z[b] - z[a])
+            right = meets & (edge_x > px)
+            left = meets & ~right
+            inside ^= right
+            right_x, right_z = np.where(right, edge_x, right_x), np.where(right, edge_z, right_z)
+            left_x, left_z = np.where(left, edge_x, left_x), np.where(left, edge_z, left_z)
+        part = (px - left_x) / (right_x - left_x)
+        height = left_z + part * (right_z - left_z)
+    result: Booleans = inside & (height > pz)
+    return result

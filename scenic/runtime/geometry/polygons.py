@@ -1,0 +1,130 @@
+"""The facade over shapely: fixed polygons in the plane, with holes, perhaps several."""
+
+from collections.abc import Sequence
+from functools import cached_property
+from typing import Any, Final
+
+import numpy as np
+
+from scenic.runtime.geometry.poses import Booleans, Floats
+
+TOLERANCE: Final = 1e-9
+"""Metres by which something may stick out of a container, for rounding."""
+
+
+class Polygons:
+    """A polygon or several disjoint ones.
+
+    Args:
+        polygon: a shapely ``Polygon`` or ``MultiPolygon``; height is dropped.
+
+    Raises:
+        ValueError: it is empty, crosses itself, or is another kind of geometry.
+
+    """
+
+    def __init__(self, polygon: Any) -> None:  # shapely has no types
+        import shapely
+
+        kind = getattr(polygon, "geom_type", type(polygon).__name__)
+        if kind not in {"Polygon", "MultiPolygon"}:
+            raise ValueError(f"a polygon or multipolygon is needed, not a value of type `{kind}`")
+        flat = shapely.force_2d(polygon)
+        if flat.is_empty or not flat.area > 0:
+            raise ValueError("the polygon is empty")
+        if not flat.is_valid:
+            raise ValueError(f"the polygon is not valid: {shapely.is_valid_reason(flat)}")
+        self.polygon: Final[Any] = shapely.orient_polygons(flat)
+
+    @classmethod
+    def of_points(cls, points: Sequence[Sequence[float]]) -> "Polygons":
+        """The polygon with these vertices ``(x, y)`` in order."""
+        import shapely
+
+        if len(points) < 3:
+            raise ValueError(f"a polygon needs at least three points, not {len(points)}")
+        return cls(shapely.Polygon([(float(x), float(y)) for x, y in points]))
+
+    @staticmethod
+    def union(members: Sequence["Polygons"], buffer: float = 0.0) -> "Polygons":
+        """The union of polygons, each grown by ``buffer`` metres."""
+        import shapely
+
+        grown = [member.polygon.buffer(buffer) if buffer else member.polygon for member in members]
+        return Polygons(shapely.union_all(grown))
+
+    def __repr__(self) -> str:
+        return f"<Polygons of {self.area:g} square metres>"
+
+    @property
+    def area(self) -> float:
+        """Square metres."""
+        return float(self.polygon.area)
+
+    @cached_property
+    def convex_corners(self) -> Floats | None:
+        """The vertices ``(k, 2)``, anticlockwise, of a single convex polygon; ``None`` for others."""
+        if self.polygon.geom_type != "Polygon" or self.polygon.interiors:
+            return None
+        corners = np.asarray(self.polygon.exterior.coords, dtype=np.float64)[:-1]
+        after, before = np.roll(corners, -1, axis=0), np.roll(corners, 1, axis=0)
+        ahead, behind = after - corners, corners - before
+        turns = behind[:, 0] * ahead[:, 1] - behind[:, 1] * ahead[:, 0]
+        return corners if (turns >= 0).all() else None
+
+    @cached_property
+    def _triangles(self) -> tuple[Floats, Floats]:
+        """A triangulation ``(t, 3, 2)`` and its cumulative areas ``(t,)``."""
+        import shapely
+
+        parts = shapely.get_parts(shapely.constrained_delaunay_triangles(self.polygon))
+        corners = shapely.get_coordinates(parts).reshape(-1, 4, 2)[:, :3]
+        ab, ac = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+        return corners, np.cumsum(0.5 * np.abs(ab[:, 0] * ac[:, 1] - ab[:, 1] * ac[:, 0]))
+
+    def sample(self, choice: Floats, first: Floats, second: Floats) -> Floats:
+        """Points ``(n, 2)``, uniform by area, from three columns ``(n,)`` of uniform numbers in (0, 1)."""
+        corners, areas = self._triangles
+        triangle = np.searchsorted(areas, choice * areas[-1], side="right")
+        a, b, c = np.moveaxis(corners[np.minimum(triangle, len(areas) - 1)], 1, 0)
+        # The square root makes a strip parallel to bc as likely as it is long.
+        root = np.sqrt(first)[:, None]
+        along = second[:, None]
+        result: Floats = (1 - root) * a + root * (1 - along) * b + root * along * c
+        return result
+
+    def contains(self, x: Floats, y: Floats) -> Booleans:
+        """Which points lie inside or on the edge, ``(n,)``."""
+        import shapely
+
+        shapely.prepare(self.polygon)
+        return np.asarray(shapely.intersects_xy(self.polygon, x, y), dtype=np.bool_)
+
+    def nearly_contains(self, x: Floats, y: Floats) -> Booleans:
+        """Which points lie inside up to the tolerance, ``(n,)``."""
+        import shapely
+
+        return np.asarray(shapely.intersects_xy(self._grown, x, y), dtype=np.bool_)
+
+    @cached_property
+    def _grown(self) -> Any:
+        import shapely
+
+        grown = self.polygon.buffer(TOLERANCE, join_style="mitre")
+        shapely.prepare(grown)
+        return grown
+
+    def covers_hulls(self, points: Floats) -> Booleans:
+        """Which convex hulls of points ``(n, k, 2)`` lie inside, up to the tolerance."""
+        import shapely
+
+        count, size = points.shape[:2]
+        owner = np.repeat(np.arange(count), size)
+        hulls = shapely.convex_hull(shapely.multipoints(points.reshape(-1, 2), indices=owner))
+        return np.asarray(shapely.covers(self._grown, hulls), dtype=np.bool_)
+
+    def covers_triangles(self, corners: Floats) -> bool:
+        """Whether all triangles ``(t, 3, 2)`` lie inside, up to the tolerance."""
+        import shapely
+
+        return bool(shapely.covers(self._grown, shapely.polygons(corners)).all())

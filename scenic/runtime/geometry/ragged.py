@@ -1,0 +1,37 @@
+"""Loops over groups of different lengths, written as flat arrays in bounded pieces."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from scenic.runtime.geometry.poses import Indices
+
+
+def expand(counts: Indices) -> tuple[Indices, Indices]:
+    """For groups of ``counts`` members: the group of each member, and its number within the group."""
+    owner = np.repeat(np.arange(len(counts)), counts)
+    offset = np.arange(len(owner)) - np.repeat(np.cumsum(counts) - counts, counts)
+    return owner, offset
+
+
+def group_starts(keys: Indices, groups: int) -> Indices:
+    """Where each of the groups 0, 1, ... begins in ascending ``keys``, and the end: ``(groups + 1,)``."""
+    return np.searchsorted(keys, np.arange(groups + 1))
+
+
+def pieces(counts: Indices, most: int) -> Iterator[slice]:
+    """Consecutive slices of the groups with about ``most`` members each, and at least one group."""
+    total = np.cumsum(counts)
+    start = 0
+    while start < len(counts):
+        before = int(total[start - 1]) if start else 0
+        end = max(int(np.searchsorted(total, before + most, side="right")), start + 1)
+        yield slice(start, end)
+        start = end
+
+
+def rows(count: int, width: int, most: int) -> Iterator[slice]:
+    """Slices of ``count`` rows that hold about ``most`` elements each at ``width`` elements a row."""
+    step = max(1, most // max(width, 1))
+    for start in range(0, count, step):
+        yield slice(start, min(start + step, count))

@@ -1,0 +1,109 @@
+"""How the triangles of a mesh hang together: edges, components, closedness."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from scenic.runtime.geometry.poses import Floats, Indices
+
+
+@dataclass(frozen=True, slots=True)
+class EdgeCensus:
+    """What the edges of a mesh say about the solid it may bound.
+
+    Attributes:
+        open_edges: edges with a face on one side only (an odd number of faces).
+        inconsistent_edges: edges whose faces do not pair up in opposite directions.
+
+    """
+
+    open_edges: int
+    inconsistent_edges: int
+
+    @property
+    def is_closed(self) -> bool:
+        """Whether the faces form closed surfaces with consistent winding."""
+        return self.open_edges == 0 and self.inconsistent_edges == 0
+
+
+def edge_census(faces: Indices) -> EdgeCensus:
+    """Count the edges of ``faces`` ``(f, 3)`` that keep them from bounding a solid."""
+    start = faces.ravel()
+    end = faces[:, [1, 2, 0]].ravel()
+    count = int(faces.max(initial=0)) + 1
+    forward = start < end
+    key = np.where(forward, start, end) * count + np.where(forward, end, start)
+    order = np.argsort(key, kind="stable")
+    key, sign = key[order], np.where(forward[order], 1, -1)
+    first = np.flatnonzero(np.diff(key, prepend=-1))
+    uses = np.diff(first, append=len(key))
+    balance = np.add.reduceat(sign, first) if len(first) else np.zeros(0, dtype=np.intp)
+    odd = uses % 2 == 1
+    return EdgeCensus(int(odd.sum()), int((~odd & (balance != 0)).sum()))
+
+
+def face_components(faces: Indices, count: int) -> Indices:
+    """The component ``(f,)``, numbered from 0, of each face of ``(f, 3)`` over ``count`` vertices.
+
+    Faces that share a vertex belong together.
+    """
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    rows = np.concatenate([faces[:, 0], faces[:, 1]])
+    columns = np.concatenate([faces[:, 1], faces[:, 2]])
+    graph = coo_array((np.ones(len(rows), dtype=np.int8), (rows, columns)), shape=(count, count))
+    labels = connected_components(graph, directed=False)[1]
+    _, components = np.unique(labels[faces[:, 0]], return_inverse=True)
+    return components.astype(np.intp)
+
+
+def merge_vertices(vertices: Floats, faces: Indices, *, tolerance: float = 0.0) -> tuple[Floats, Indices]:
+    """The mesh with equal vertices made one, unused vertices and collapsed faces dropped.
+
+    With a positive ``tolerance`` in metres, vertices connected by steps of at most that length are equal; the
+    first of them stays.
+    """
+    used = np.zeros(len(vertices), dtype=np.bool_)
+    used[faces] = True
+    kept = np.flatnonzero(used)
+    points = vertices[kept] + 0.0  # turns -0.0 into 0.0, so that the two are equal
+    group = _close_groups(points, tolerance) if tolerance > 0 else _equal_groups(points)
+    # Groups in the order of their first vertices in the file.
+    _, first, group = np.unique(group, return_index=True, return_inverse=True)
+    rank = np.argsort(np.argsort(first))
+    target = np.zeros(len(vertices), dtype=np.intp)
+    target[kept] = rank[group]
+    merged = target[faces]
+    a, b, c = merged.T
+    proper = (a != b) & (b != c) & (a != c)
+    return points[np.sort(first)], merged[proper]
+
+
+def _equal_groups(points: Floats) -> Indices:
+    order = np.lexsort(points.T)
+    ordered = points[order]
+    new = np.ones(len(order), dtype=np.bool_)
+    new[1:] = (ordered[1:] != ordered[:-1]).any(axis=1)
+    group = np.empty(len(order), dtype=np.intp)
+    group[order] = np.cumsum(new) - 1
+    return group
+
+
+def _close_groups(points: Floats, tolerance: float) -> Indices:
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+    from scipy.spatial import cKDTree
+
+    pairs = cKDTree(points).query_pairs(tolerance, output_type="ndarray")
+    near = coo_array(
+        (np.ones(len(pairs), dtype=np.int8), (pairs[:, 0], pairs[:, 1])), shape=(len(points),) * 2
+    )
+    return connected_components(near, directed=False)[1].astype(np.intp)
+
+
+def signed_volume(vertices: Floats, faces: Indices) -> float:
+    """The volume enclosed by closed faces; negative where their normals point inwards."""
+    centred = vertices - (vertices.min(axis=0) + vertices.max(axis=0)) / 2
+    a, b, c = (centred[faces[:, i]] for i in range(3))
+    return float(np.sum(a * np.cross(b, c)) / 6)

@@ -1,0 +1,152 @@
+"""A coarse picture of a solid in its unit cube: cells that are solid, empty, or cut by the surface.
+
+Solid cells prove collisions and empty ones prove that there is none, whatever the size and pose of the mesh.
+Where cells are cut, nothing is proved.
+"""
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+import numpy.typing as npt
+
+from scenic.runtime.geometry.cells import touched_cells
+from scenic.runtime.geometry.inside import contains_points
+from scenic.runtime.geometry.mesh import Mesh
+from scenic.runtime.geometry.poses import Booleans, Floats
+
+RESOLUTION: Final = 32
+
+COVER_BOXES: Final = 16
+_COVER_WASTE: Final = 0.002
+"""Part of the whole that a box of the cover may hold in empty cells without being cut further."""
+
+INTERIOR_POINTS: Final = 16
+
+
+@dataclass(frozen=True, slots=True)
+class Voxels:
+    """What is known of the cells of a mesh.
+
+    Attributes:
+        solid: whether a cell lies wholly inside, ``(r, r, r)``.
+        filled: number of non-empty cells with smaller index on every axis, ``(r + 1, r + 1, r + 1)``.
+        cover: boxes that together hold the whole solid, ``(k, 2, 3)`` lower and upper corners.
+        interior: points inside the solid, spread out and deep, ``(j, 3)``.
+
+    """
+
+    solid: Booleans
+    filled: npt.NDArray[np.int32]
+    cover: Floats
+    interior: Floats
+
+
+def voxels(mesh: Mesh) -> Voxels:
+    """The cells of a closed unit mesh. Get them as ``mesh.derived(voxels)``."""
+    if mesh.is_box:
+        return _box_voxels()
+    touched = np.zeros(RESOLUTION**3, dtype=np.bool_)
+    for _, cell in touched_cells(mesh.triangles, RESOLUTION):
+        touched[cell] = True
+    cut = touched.reshape(RESOLUTION, RESOLUTION, RESOLUTION)
+    axis = (np.arange(RESOLUTION) + 0.5) / RESOLUTION - 0.5
+    centres = np.stack(np.meshgrid(axis, axis, axis, indexing="ij"), axis=-1)
+    inside = contains_points(mesh, centres.reshape(-1, 3)).reshape(cut.shape)
+    solid = inside & ~cut
+    filled = np.zeros((RESOLUTION + 1,) * 3, dtype=np.int32)
+    filled[1:, 1:, 1:] = (solid | cut).cumsum(axis=0).cumsum(axis=1).cumsum(axis=2)
+    return Voxels(solid, filled, _cover(solid | cut), _interior(mesh, inside, solid, centres))
+
+
+def _box_voxels() -> Voxels:
+    """Those of a box: all of them are solid, its surface included."""
+    solid = np.ones((RESOLUTION,) * 3, dtype=np.bool_)
+    steps = np.arange(RESOLUTION + 1, dtype=np.int32)
+    filled = steps[:, None, None] * steps[:, None] * steps
+    near = [-0.45, 0.0, 0.45]
+    points = np.array([(x, y, z) for x in near for y in near for z in near])
+    corners_faces_centre = np.isin((points != 0).sum(axis=1), (0, 1, 3))
+    return Voxels(solid, filled, np.array([[[-0.5] * 3, [0.5] * 3]]), points[corners_faces_centre])
+
+
+def _cover(occupied: Booleans) -> Floats:
+    """Boxes around the occupied cells: the box that holds most empty cells is cut in two, again and again."""
+    whole = _tight(occupied, (0, 0, 0))
+    boxes = [whole]
+    while len(boxes) < COVER_BOXES:
+        waste = [int(part.size - np.count_nonzero(part)) for part, _ in boxes]
+        worst = int(np.argmax(waste))
+        if waste[worst] < _COVER_WASTE * whole[0].size:
+            break
+        part, corner = boxes.pop(worst)
+        axis, at = _best_cut(part)
+        below, above = np.split(part, [at], axis=axis)
+        offset = [at if i == axis else 0 for i in range(3)]
+        boxes.append(_tight(below, corner))
+        boxes.append(_tight(above, (corner[0] + offset[0], corner[1] + offset[1], corner[2] + offset[2])))
+    corners = np.array([corner for _, corner in boxes])
+    sizes = np.array([part.shape for part, _ in boxes])
+    return np.stack([corners, corners + sizes], axis=1) / RESOLUTION - 0.5
+
+
+def _tight(part: Booleans, corner: tuple[int, int, int]) -> tuple[Booleans, tuple[int, int, int]]:
+    """The occupied part of a box of cells whose first cell is ``corner``, and the first cell of that."""
+    spans = []
+    for axis in range(3):
+        used = np.flatnonzero(part.any(axis=tuple({0, 1, 2} - {axis})))
+        spans.append(slice(int(used[0]), int(used[-1]) + 1))
+    x, y, z = spans
+    return part[x, y, z], (corner[0] + x.start, corner[1] + y.start, corner[2] + z.start)
+
+
+def _best_cut(part: Booleans) -> tuple[int, int]:
+    """The axis and place of the cut that leaves the least volume in the tight boxes of the two sides."""
+    longest = int(np.argmax(part.shape))
+    best = (part.size, longest, part.shape[longest] // 2)
+    for axis in range(3):
+        moved = np.moveaxis(part, axis, 0)
+        before = _volumes_up_to(moved)[:-1]
+        after = _volumes_up_to(moved[::-1])[::-1][1:]
+        if len(before):
+            at = int(np.argmin(before + after))
+            best = min(best, (int(before[at] + after[at]), axis, at + 1))
+    return best[1], best[2]
+
+
+def _volumes_up_to(part: Booleans) -> npt.NDArray[np.intp]:
+    """The volume of the tight box around the first 1, 2, ... slices."""
+    slices = np.arange(1, len(part) + 1)
+    volume: npt.NDArray[np.intp] = np.maximum.accumulate(np.where(part.any(axis=(1, 2)), slices, 0))
+    for other in (1, 2):
+        shadow = np.logical_or.reduce(part, axis=3 - other)
+        width = shadow.shape[1]
+        used = shadow.any(axis=1)
+        low = np.minimum.accumulate(np.where(used, shadow.argmax(axis=1), width))
+        high = np.maximum.accumulate(np.where(used, width - shadow[:, ::-1].argmax(axis=1), 0))
+        volume = volume * np.maximum(high - low, 0)
+    return volume
+
+
+def _interior(mesh: Mesh, inside: Booleans, solid: Booleans, centres: Floats) -> Floats:
+    """Points inside, each far from those before it and from the surface."""
+    from scipy.ndimage import distance_transform_edt
+
+    depth = distance_transform_edt(np.pad(solid, 1))[1:-1, 1:-1, 1:-1] + 0.25
+    points, depths = centres[inside], depth[inside]
+    if not len(points):
+        # All of the solid is thinner than the cells: the middles of its faces, moved inwards where that works.
+        step = 1e-3 * mesh.normals
+        points = mesh.triangles.mean(axis=1) - step
+        points = points[contains_points(mesh, points)]
+        depths = np.ones(len(points))
+    chosen: list[int] = []
+    distance = np.full(len(points), 1.0)
+    while len(chosen) < min(INTERIOR_POINTS, len(points)):
+        best = int(np.argmax(distance * np.sqrt(depths)))
+        if distance[best] == 0:
+            break
+        chosen.append(best)
+        offset = points - points[best]
+        distance = np.minimum(distance, np.sqrt((offset * offset).sum(axis=1)))
+    return np.ascontiguousarray(points[chosen])
