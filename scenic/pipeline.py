@@ -1,0 +1,320 @@
+"""Joins the layers: compile, run the program once, analyse, plan. What the API and the commands call."""
+
+import difflib
+import inspect
+import random
+import sys
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from types import CodeType, FrameType, ModuleType
+from typing import Any
+
+import numpy as np
+
+from scenic.analysis.contraction import contract
+from scenic.analysis.facts import Condition
+from scenic.compiler import loader
+from scenic.compiler.compile import compile_text
+from scenic.compiler.tracebacks import SOURCE_NAME, Locator, locate
+from scenic.language.diagnostics import Diagnostic
+from scenic.language.errors import (
+    InvalidScenarioError,
+    Located,
+    RejectionException,
+    ScenarioChoiceError,
+    ScenicSyntaxError,
+)
+from scenic.language.source import Source, read_source
+from scenic.language.spans import Span
+from scenic.runtime.context import Context, current
+from scenic.runtime.objects import Object, Point
+from scenic.runtime.prelude import Loader
+from scenic.runtime.program import Module, Program, ScenarioClass, ScenarioInstance
+from scenic.runtime.scenario import Scenario
+from scenic.runtime.values import is_random
+
+PROGRAM_SEED = 0
+"""Seed of Python's and NumPy's global generators while a program runs, so that it builds the same graph each time."""
+
+
+def load(
+    path: str | Path,
+    *,
+    params: Mapping[str, Any] | None = None,
+    model: str | None = None,
+    scenario: str | None = None,
+    mode2D: bool = False,
+    prune: bool = True,
+) -> Scenario:
+    """The scenario of a file.
+
+    Args:
+        path: a ``.scenic`` file.
+        params: values for global parameters, which win over the program's own.
+        model: a world model to use in place of the program's.
+        scenario: which scenario of the file, where it defines several.
+        mode2D: compile in the 2D compatibility mode.
+        prune: narrow the distributions to what the requirements allow, which changes nothing but speed.
+
+    Raises:
+        ScenicSyntaxError: if the program cannot be compiled.
+        InvalidScenarioError: if it describes no scenario, or a parameter is unknown.
+        ScenicError: for the other mistakes of section 14 of the specification.
+
+    """
+    file = Path(path)
+    source = read_source(file)
+    return _scenario(
+        source.text, str(file), params or {}, model, scenario, mode2D, prune=prune, strict_params=True
+    )
+
+
+def scenarioFromFile(
+    path: str | Path,
+    params: Mapping[str, Any] | None = None,
+    model: str | None = None,
+    scenario: str | None = None,
+    *,
+    mode2D: bool = False,
+) -> Scenario:
+    """The scenario of a file; the established name of `load`.
+
+    Parameters that the program does not use are accepted, and appear among the parameters of its scenes.
+    """
+    source = read_source(Path(path))
+    return _scenario(source.text, str(path), params or {}, model, scenario, mode2D)
+
+
+def scenarioFromString(
+    text: str,
+    params: Mapping[str, Any] | None = None,
+    model: str | None = None,
+    scenario: str | None = None,
+    *,
+    filename: str = "<string>",
+    mode2D: bool = False,
+) -> Scenario:
+    """The scenario of a program given as text."""
+    return _scenario(text, filename, params or {}, model, scenario, mode2D)
+
+
+def deep_check(path: str | Path) -> tuple[Diagnostic, ...]:
+    """What is wrong with a program, found by running and analysing it (no scene is sampled)."""
+    from scenic.analysis.report import prove
+
+    filename = str(path)
+    try:
+        scenario = load(path, prune=False)
+    except ScenicSyntaxError as error:
+        return error.diagnostics
+    except Exception as error:
+        found = diagnose(error)
+        if found is None:
+            raise
+        return (found,)
+    return tuple(
+        Diagnostic(
+            item.code,
+            item.message,
+            item.span,
+            item.severity,
+            item.filename or filename,
+            item.help,
+            item.labels,
+        )
+        for item in prove(scenario.outline.graph, conditions(scenario))
+    )
+
+
+def conditions(scenario: Scenario) -> list[Condition]:
+    """The hard requirements of a scenario, as analysis reads them."""
+    return [Condition(item.condition, item.label, item.span) for item in scenario.outline.requirements]
+
+
+def diagnose(error: BaseException) -> Diagnostic | None:
+    """An exception as a diagnostic: with its place in the program, if the program or its use caused it."""
+    if isinstance(error, Located):
+        return error.diagnostic()
+    place = locate(error.__traceback__) if error.__traceback__ is not None else None
+    if place is None:
+        return None
+    return Diagnostic(
+        "SC400",
+        f"{type(error).__name__}: {error}",
+        place.span,
+        filename=place.filename,
+        help="the program raised this exception while it ran",
+    )
+
+
+# From text to scenario
+
+
+class _Modules:
+    """Scenic modules beside the program and on Python's path."""
+
+    def __init__(self, folder: Path) -> None:
+        self._path = [str(folder), *sys.path]
+
+    def find(self, name: str) -> Path | None:
+        return loader.find_module(name, self._path)
+
+    def code(self, path: Path) -> CodeType:
+        return loader.load_code(path)
+
+
+def _scenario(
+    text: str,
+    filename: str,
+    params: Mapping[str, Any],
+    model: str | None,
+    chosen: str | None,
+    mode_2d: bool,
+    *,
+    prune: bool = True,
+    strict_params: bool = False,
+) -> Scenario:
+    compiled = compile_text(text, filename=filename)
+    if compiled.code is None:
+        errors = [item for item in compiled.diagnostics if item.severity == "error"]
+        raise ScenicSyntaxError(errors, filename=filename)
+    locator = Locator()
+
+    def span_of(frame: FrameType) -> Span | None:
+        place = locator.place(frame)
+        return None if place is None else place.span
+
+    context = Context(locate=span_of, mode_2d=mode_2d)
+    program = Program(overrides=dict(params))
+    modules = Loader(_Modules(Path(filename).parent), context, program, model=model)
+    token = current.set(context)
+    try:
+        with _fixed_randomness():
+            module, state = modules.run(compiled.code, filename, {SOURCE_NAME: Source(text, filename)})
+            _run_chosen(module, state, chosen)
+        _settle_parameters(program, strict=strict_params)
+        scenario = Scenario(
+            program,
+            filename=filename,
+            ego=state.ego,
+            workspace=state.workspace,
+            names=_names(module, state.ego),
+            mode_2d=mode_2d,
+        )
+    except RejectionException as error:
+        raise InvalidScenarioError(
+            "the program rejected itself while it ran: every scene would be rejected",
+            filename=filename,
+        ) from error
+    except Located as error:
+        if error.span is None or error.filename is None:
+            place = locate(error.__traceback__) if error.__traceback__ is not None else None
+            error.span = error.span or (place.span if place else None)
+            error.filename = error.filename or (place.filename if place else filename)
+        raise
+    finally:
+        current.reset(token)
+    if prune:
+        pruning = contract(scenario.outline.graph, conditions(scenario))
+        scenario.restrict(pruning.domain, impossible=[item.label for item in pruning.impossible])
+    return scenario
+
+
+@contextmanager
+def _fixed_randomness() -> Iterator[None]:
+    """Python's and NumPy's global generators at a fixed seed, and as they were afterwards."""
+    python_state, numpy_state = random.getstate(), np.random.get_state()  # noqa: NPY002 - what programs use
+    random.seed(PROGRAM_SEED)
+    np.random.seed(PROGRAM_SEED)  # noqa: NPY002
+    try:
+        yield
+    finally:
+        random.setstate(python_state)
+        np.random.set_state(numpy_state)  # noqa: NPY002
+
+
+def _run_chosen(module: ModuleType, state: Module, chosen: str | None) -> None:
+    """Run the set-up of the scenario that the file means (section 2.6 of the specification)."""
+    defined = {
+        item.name: item
+        for item in vars(module).values()
+        if isinstance(item, ScenarioClass) and item.setup.__globals__ is vars(module)
+    }
+    if chosen is not None and chosen not in defined:
+        near = difflib.get_close_matches(chosen, defined, n=1)
+        known = ", ".join(sorted(defined)) or "none"
+        raise ScenarioChoiceError(
+            f"there is no scenario {chosen!r}",
+            filename=state.filename,
+            help=f"did you mean {near[0]!r}?" if near else f"scenarios of this file: {known}",
+        )
+    scenario = defined.get(chosen or "Main")
+    if scenario is None and len(defined) == 1:
+        (only,) = defined.values()
+        scenario = None if _needed(only) else only
+    if scenario is None:
+        if len(defined) > 1:
+            raise ScenarioChoiceError(
+                f"the file defines {len(defined)} scenarios: {', '.join(defined)}",
+                filename=state.filename,
+                help="choose one with `--scenario NAME`",
+            )
+        return
+    needed = _needed(scenario)
+    if needed:
+        raise ScenarioChoiceError(
+            f"scenario {scenario.name!r} needs arguments: {', '.join(needed)}",
+            filename=state.filename,
+            help="give its parameters default values",
+        )
+    instance = ScenarioInstance(scenario, (), {})
+    scenario.setup(instance)
+
+
+def _needed(scenario: ScenarioClass) -> list[str]:
+    parameters = list(inspect.signature(scenario.setup).parameters.values())[1:]
+    variadic = (inspect.Parameter.VAR_POSITIONAL, inspect.Parameter.VAR_KEYWORD)
+    return [
+        item.name
+        for item in parameters
+        if item.default is inspect.Parameter.empty and item.kind not in variadic
+    ]
+
+
+def _settle_parameters(program: Program, *, strict: bool) -> None:
+    for name, value in program.overrides.items():
+        if strict and name not in program.parameters and name not in program.read_parameters:
+            known = ", ".join(sorted(program.parameters)) or "none"
+            near = difflib.get_close_matches(name, program.parameters, n=1)
+            raise InvalidScenarioError(
+                f"the program has no parameter {name!r}",
+                code="SC603",
+                help=f"did you mean {near[0]!r}?" if near else f"its parameters: {known}",
+            )
+        program.parameters[name] = value
+
+
+def _names(module: ModuleType, ego: Object | None) -> dict[int, str]:
+    """Variables of the module that hold instances."""
+    names: dict[int, str] = {}
+    for name, value in vars(module).items():
+        if isinstance(value, Point):
+            names.setdefault(id(value), name)
+        elif isinstance(value, list | tuple) and not is_random(value):
+            for index, item in enumerate(value):
+                if isinstance(item, Point):
+                    names.setdefault(id(item), f"{name}[{index}]")
+    if ego is not None:
+        names.setdefault(id(ego), "ego")
+    return names
+
+
+__all__ = [
+    "conditions",
+    "deep_check",
+    "diagnose",
+    "load",
+    "scenarioFromFile",
+    "scenarioFromString",
+]

@@ -1,0 +1,72 @@
+"""What is being compiled or simulated right now, as an explicit object.
+
+Generated code reaches its context through the prelude that it was given. Functions that programs call like any Python
+function (``Range(0, 1)``) find it in a context variable, so that several scenarios can be compiled side by side.
+"""
+
+import sys
+from collections.abc import Callable
+from contextvars import ContextVar
+from types import FrameType
+from typing import Any
+
+import numpy as np
+
+from scenic.language.spans import Span
+
+Locator = Callable[[FrameType], Span | None]
+"""Where in the Scenic source a Python frame is (`scenic.compiler.tracebacks`); passed in, since the runtime knows
+nothing of source text."""
+
+
+class Context:
+    """How the program is being read.
+
+    Args:
+        locate: finds the place of a frame of generated code.
+        generator: ``None`` while a scenario is compiled (distributions become nodes of the graph); during a
+            simulation the source of the draws (distributions draw at once and give plain values).
+        mode_2d: whether the 2D compatibility mode is on (section 5.5 of the specification).
+
+    """
+
+    def __init__(
+        self,
+        *,
+        locate: Locator = lambda _frame: None,
+        generator: np.random.Generator | None = None,
+        mode_2d: bool = False,
+    ) -> None:
+        self._locate = locate
+        self.generator = generator
+        self.mode_2d = mode_2d
+        self.evaluating = False
+        """Whether a requirement's condition is being evaluated: nothing may be created then."""
+
+    @property
+    def is_symbolic(self) -> bool:
+        """Whether distributions stand for values to be drawn later."""
+        return self.generator is None
+
+    def place(self) -> Span | None:
+        """Place in the program of whoever called the runtime."""
+        return self._locate(sys._getframe(1))
+
+
+current: ContextVar[Context | None] = ContextVar("scenic context", default=None)
+
+
+def here() -> Span | None:
+    """Place in the program of whoever called the runtime, if a program is running."""
+    context = current.get()
+    return None if context is None else context.place()
+
+
+def uniform_draw() -> float | None:
+    """A draw from (0, 1) when values are drawn at once, ``None`` when they become nodes."""
+    context = current.get()
+    if context is None or context.generator is None:
+        return None
+    draw: Any = context.generator.random()
+    # The open interval: zero comes up once in 2**53 draws, and has no image under an unbounded law.
+    return float(draw) or 2.0**-54

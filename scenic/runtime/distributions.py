@@ -1,0 +1,123 @@
+"""The distributions that programs draw from (section 8.1 of the specification).
+
+Names are the language's. Each gives a random value while a scenario is compiled, and a plain draw during a simulation.
+"""
+
+import itertools
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+from scenic.graph.node import apply as apply_node
+from scenic.graph.operations import TABLE
+from scenic.language.errors import InvalidScenarioError, ScenicTypeError, ScenicValueError
+from scenic.runtime.context import here
+from scenic.runtime.values import (
+    Random,
+    as_node,
+    as_value,
+    describe,
+    draw,
+    is_number,
+    is_random,
+    to_scalar,
+)
+
+
+def Range(low: Any, high: Any) -> Any:
+    """A real number, uniform between two ends (in either order; they may be random)."""
+    return draw("range", to_scalar(low, "`Range`"), to_scalar(high, "`Range`"))
+
+
+def Normal(mean: Any, stdDev: Any) -> Any:
+    """A real number, normally distributed."""
+    return draw("normal", to_scalar(mean, "`Normal`"), to_scalar(stdDev, "`Normal`"))
+
+
+def TruncatedNormal(mean: Any, stdDev: Any, low: Any, high: Any) -> Any:
+    """A real number, normally distributed on condition that it lies between two fixed ends."""
+    if is_random(low) or is_random(high):
+        raise ScenicValueError("the window of `TruncatedNormal` must be fixed", span=here())
+    window = (to_scalar(low, "`TruncatedNormal`"), to_scalar(high, "`TruncatedNormal`"))
+    if not window[0] < window[1]:
+        raise ScenicValueError(
+            f"the window of `TruncatedNormal` is empty: {low!r} is not below {high!r}",
+            span=here(),
+            help="give the lower end first",
+        )
+    return draw(
+        "truncated normal",
+        to_scalar(mean, "`TruncatedNormal`"),
+        to_scalar(stdDev, "`TruncatedNormal`"),
+        payload=window,
+    )
+
+
+def DiscreteRange(low: Any, high: Any, weights: Sequence[float] | None = None) -> Any:
+    """An integer between two ends (included), uniform, or with a weight for each."""
+    if weights is None:
+        return draw("discrete range", to_scalar(low, "`DiscreteRange`"), to_scalar(high, "`DiscreteRange`"))
+    ends = []
+    for end in (low, high):
+        if is_random(end) or not is_number(end) or int(end) != end:
+            raise ScenicTypeError(
+                f"with weights the ends of `DiscreteRange` are fixed integers, not {describe(end)}",
+                span=here(),
+            )
+        ends.append(int(end))
+    if ends[0] > ends[1]:
+        raise ScenicValueError(f"`DiscreteRange` is empty: {low} is above {high}", span=here())
+    count = ends[1] - ends[0] + 1
+    if len(weights) != count:
+        raise ScenicValueError(
+            f"`DiscreteRange` from {low} to {high} needs {count} weights, not {len(weights)}", span=here()
+        )
+    return draw("weighted integer", payload=(ends[0], _cumulative(weights)))
+
+
+def Uniform(*options: Any) -> Any:
+    """One of the options, each equally likely. ``Uniform(*xs)`` draws from the elements of a list."""
+    return _choose(options, [1.0] * len(options), "Uniform")
+
+
+def Discrete(options: Mapping[Any, Any] | Iterable[Any]) -> Any:
+    """One of the keys of a dictionary, with probability in proportion to its value."""
+    if isinstance(options, Mapping):
+        weights = list(options.values())
+        for weight in weights:
+            if is_random(weight) or not is_number(weight):
+                raise ScenicTypeError(f"a weight is a fixed number, not {describe(weight)}", span=here())
+            if weight < 0:
+                raise ScenicValueError(f"a weight cannot be negative: {weight}", span=here())
+        return _choose(list(options), [float(weight) for weight in weights], "Discrete")
+    listed = list(options)
+    return _choose(listed, [1.0] * len(listed), "Options")
+
+
+Options = Discrete
+
+
+def _choose(options: Sequence[Any], weights: Sequence[float], name: str) -> Any:
+    possible = [(option, weight) for option, weight in zip(options, weights, strict=True) if weight > 0]
+    if not possible:
+        raise InvalidScenarioError(
+            f"`{name}` has nothing to choose from", span=here(), help="give at least one possible option"
+        )
+    index = draw("choice", payload=_cumulative([weight for _, weight in possible]))
+    chosen = [option for option, _ in possible]
+    if not isinstance(index, Random):
+        return chosen[index]
+    node = apply_node(TABLE["select"], [as_node(index), *map(as_node, chosen)], span=here())
+    # Drawing again keeps the options and draws only which one.
+    return as_value(node, lambda: _choose(options, weights, name))
+
+
+def _cumulative(weights: Sequence[float]) -> tuple[float, ...]:
+    """Cumulative probabilities; the last is exactly 1."""
+    total = sum(weights)
+    sums = list(itertools.accumulate(weight / total for weight in weights))
+    return (*sums[:-1], 1.0)
+
+
+def resample(value: Any) -> Any:
+    """An independent draw of the same primitive distribution; a value that is not random stays as it is."""
+    return value.resampled() if isinstance(value, Random) else value

@@ -1,0 +1,110 @@
+"""Python functions that also take random arguments (section 7.2 of the specification)."""
+
+import builtins
+from collections.abc import Callable
+from typing import Any
+
+from scenic.graph.kinds import Kind
+from scenic.graph.operation import Operation, always
+from scenic.language.errors import RandomControlFlowError
+from scenic.runtime.context import here
+from scenic.runtime.values import Random, apply, is_random, operate
+
+
+def sin(x: Any) -> Any:
+    """Sine of an angle in radians."""
+    return operate("sin", x)
+
+
+def cos(x: Any) -> Any:
+    """Cosine of an angle in radians."""
+    return operate("cos", x)
+
+
+def hypot(*coordinates: Any) -> Any:
+    """Euclidean length of a vector given by its coordinates."""
+    return operate("hypot", *coordinates)
+
+
+def _extreme(name: str, function: Callable[..., Any]) -> Callable[..., Any]:
+    def extreme(*args: Any, **options: Any) -> Any:
+        if options or not any(is_random(item) for item in args):
+            return function(*args, **options)
+        values = args[0] if len(args) == 1 else args
+        if isinstance(values, Random):
+            return apply(_lift(function), values)
+        return operate(name, *values)
+
+    extreme.__name__ = function.__name__
+    extreme.__doc__ = function.__doc__
+    return extreme
+
+
+max = _extreme("maximum", builtins.max)
+min = _extreme("minimum", builtins.min)
+
+
+def round(number: Any, ndigits: Any = None) -> Any:
+    """Python's ``round``, also of random numbers."""
+    if is_random(number) or is_random(ndigits):
+        return operate("round", number) if ndigits is None else operate("round", number, ndigits)
+    return builtins.round(number, ndigits)
+
+
+def len(value: Any) -> Any:
+    """Python's ``len``, also of random containers."""
+    return operate("len", value) if isinstance(value, Random) else builtins.len(value)
+
+
+def filter(function: Callable[[Any], Any] | None, values: Any) -> Any:
+    """The elements for which ``function`` holds, as a list; ``values`` may be random."""
+    keep = function if function is not None else bool
+    if not is_random(values):
+        return [item for item in values if keep(item)]
+    return apply(_lift(lambda concrete: [item for item in concrete if keep(item)]), values)
+
+
+def range(*bounds: Any) -> Any:
+    """Python's ``range``; raises `RandomControlFlowError` for random bounds."""
+    if any(is_random(bound) for bound in bounds):
+        raise RandomControlFlowError(
+            "`range` needs definite bounds",
+            span=here(),
+            help="for a random integer write `DiscreteRange(low, high)`",
+        )
+    return builtins.range(*bounds)
+
+
+def convert(name: str, value: Any = 0, *rest: Any) -> Any:
+    """``int``, ``float`` and ``str`` as calls in programs, also of random values."""
+    if isinstance(value, Random) or is_random(value):
+        return operate(name, value)
+    function: Callable[..., Any] = {"int": int, "float": float, "str": str}[name]
+    return function(value, *rest)
+
+
+def distributionFunction(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Make a Python function take random arguments: it is then called with their sampled values."""
+
+    def lifted(*args: Any) -> Any:
+        if not any(is_random(item) for item in args):
+            return function(*args)
+        return apply(_lift(function), *args)
+
+    lifted.__name__ = getattr(function, "__name__", "lifted")
+    lifted.__doc__ = function.__doc__
+    return lifted
+
+
+def _lift(function: Callable[..., Any]) -> Operation:
+    return Operation(
+        getattr(function, "__name__", "function"),
+        always(Kind.OTHER),
+        _by_lane,
+        "A Python function of sampled values.",
+        python=function,
+    )
+
+
+def _by_lane(*_: Any) -> Any:
+    raise AssertionError("evaluated lane by lane")

@@ -1,0 +1,150 @@
+"""The names that every module of Scenic code finds in scope (section 7.2 of the specification)."""
+
+import builtins
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+from scenic.language import errors
+from scenic.language.errors import InvalidScenarioError
+from scenic.runtime import distributions, functions, shapes
+from scenic.runtime.context import here
+from scenic.runtime.objects import Object, OrientedPoint, Point
+from scenic.runtime.program import Program
+from scenic.runtime.regions.base import Workspace, everywhere, nowhere, unsupported
+from scenic.runtime.regions.planar import CircularRegion, PolygonalRegion, RectangularRegion
+from scenic.runtime.regions.volumes import BoxRegion, SpheroidRegion
+from scenic.runtime.values import Orientation, Vector
+
+_NAMES: Mapping[str, Any] = MappingProxyType(
+    {
+        "Point": Point,
+        "OrientedPoint": OrientedPoint,
+        "Object": Object,
+        "Vector": Vector,
+        "Orientation": Orientation,
+        "Range": distributions.Range,
+        "DiscreteRange": distributions.DiscreteRange,
+        "Normal": distributions.Normal,
+        "TruncatedNormal": distributions.TruncatedNormal,
+        "Uniform": distributions.Uniform,
+        "Discrete": distributions.Discrete,
+        "Options": distributions.Options,
+        "resample": distributions.resample,
+        "sin": functions.sin,
+        "cos": functions.cos,
+        "hypot": functions.hypot,
+        "max": functions.max,
+        "min": functions.min,
+        "round": functions.round,
+        "len": functions.len,
+        "filter": functions.filter,
+        "range": functions.range,
+        "distributionFunction": functions.distributionFunction,
+        "BoxShape": shapes.BoxShape,
+        "CylinderShape": shapes.CylinderShape,
+        "ConeShape": shapes.ConeShape,
+        "SpheroidShape": shapes.SpheroidShape,
+        "MeshShape": shapes.MeshShape,
+        "everywhere": everywhere,
+        "nowhere": nowhere,
+        "Workspace": Workspace,
+        "CircularRegion": CircularRegion,
+        "PolygonalRegion": PolygonalRegion,
+        "RectangularRegion": RectangularRegion,
+        "BoxRegion": BoxRegion,
+        "SpheroidRegion": SpheroidRegion,
+        "RejectionException": errors.RejectionException,
+    }
+)
+
+_UNSUPPORTED = (
+    "File",
+    "Files",
+    "GridRegion",
+    "GuardViolation",
+    "InvariantViolation",
+    "MeshSurfaceRegion",
+    "MeshVolumeRegion",
+    "Monitor",
+    "Mutator",
+    "PathRegion",
+    "PointSetRegion",
+    "PolygonalFootprintRegion",
+    "PolygonalVectorField",
+    "PolylineRegion",
+    "PreconditionViolation",
+    "SectorRegion",
+    "VectorField",
+    "VerifaiDiscreteRange",
+    "VerifaiOptions",
+    "VerifaiParameter",
+    "VerifaiRange",
+    "simulation",
+    "verbosePrint",
+)
+
+
+class Unsupported:
+    """A name of the language whose use is refused, with one clear diagnostic."""
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+
+    def __call__(self, *_args: Any, **_kwargs: Any) -> Any:
+        raise unsupported(f"`{self._name}`")
+
+    def __getattr__(self, attribute: str) -> Any:
+        raise unsupported(f"`{self._name}.{attribute}`")
+
+
+class GlobalParameters:
+    """The program's parameters, read by attribute or index."""
+
+    def __init__(self, program: Program) -> None:
+        object.__setattr__(self, "_program", program)
+
+    def __getitem__(self, name: str) -> Any:
+        parameters = self._program.parameters
+        self._program.read_parameters.add(name)
+        if name in self._program.overrides:
+            return self._program.overrides[name]
+        if name not in parameters:
+            known = ", ".join(sorted(parameters)) or "none"
+            raise InvalidScenarioError(
+                f"there is no global parameter {name!r}",
+                span=here(),
+                help=f"parameters set so far: {known}; set it with `param {name} = ...`",
+            )
+        return parameters[name]
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("__"):
+            raise AttributeError(name)
+        return self[name]
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        raise InvalidScenarioError(
+            "global parameters are set by `param`, not by assignment",
+            span=here(),
+            help=f"write `param {name} = ...`",
+        )
+
+
+def builtin_names(program: Program, filename: str, import_module: Callable[..., Any]) -> dict[str, Any]:
+    """The builtins of one module: Python's, the language's, and what depends on the module's place."""
+    folder = Path(filename).parent
+
+    def local_path(relative: str) -> Path:
+        """A path relative to the file that the program is in."""
+        return folder / relative
+
+    return {
+        **vars(builtins),
+        **_NAMES,
+        **{name: Unsupported(name) for name in _UNSUPPORTED},
+        "globalParameters": GlobalParameters(program),
+        "localPath": local_path,
+        "__import__": import_module,
+    }

@@ -1,0 +1,343 @@
+"""The built-in classes `Point`, `OrientedPoint` and `Object`, from which all classes of programs derive.
+
+An instance made by the program holds values, definite or random, of its properties in its ``__dict__``. A sampled instance
+(in a scene, or inside a requirement's condition) is a second object of the same class, which takes each value from the
+sample when it is first read: most values of most scenes are never looked at.
+"""
+
+import math
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
+from typing import Any, ClassVar, Self
+
+from scenic.graph.kinds import Kind
+from scenic.language.errors import InvalidScenarioError
+from scenic.runtime.context import here
+from scenic.runtime.properties import Property, PropertyDefinition, combine
+from scenic.runtime.regions.bodies import OccupiedSpace, SideSurface
+from scenic.runtime.shapes import BoxShape
+from scenic.runtime.values import Orientation, operate, to_orientation, to_scalar, to_vector, vector
+
+
+def builtin(
+    value: Callable[[Any], Any], *dependencies: str, attributes: tuple[str, ...] = ()
+) -> tuple[Callable[[Any], Any], tuple[str, ...], tuple[str, ...]]:
+    """A built-in default: how to compute it, what it reads, its attributes."""
+    return value, dependencies, attributes
+
+
+def _definitions(table: Mapping[str, Any]) -> dict[str, PropertyDefinition]:
+    return {
+        name: PropertyDefinition(name, frozenset(attributes), value, dependencies, is_builtin=True)
+        for name, (value, dependencies, attributes) in table.items()
+    }
+
+
+def _combine_properties(cls: type["Point"]) -> None:
+    chain = [base.__dict__["_definitions"] for base in cls.__mro__ if "_definitions" in base.__dict__]
+    cls.scenic_properties = MappingProxyType(combine(chain))
+
+
+class Point:
+    """A position in space."""
+
+    scenic_kind: ClassVar[Kind] = Kind.OBJECT
+    scenic_properties: ClassVar[Mapping[str, Property]]
+    """All properties of the class, with what their definitions combine to."""
+    _definitions: ClassVar[Mapping[str, PropertyDefinition]] = _definitions(
+        {
+            "position": builtin(lambda _: vector(0, 0, 0), attributes=("dynamic",)),
+            "width": builtin(lambda _: 0),
+            "length": builtin(lambda _: 0),
+            "height": builtin(lambda _: 0),
+            "baseOffset": builtin(lambda _: vector(0, 0, 0)),
+            "contactTolerance": builtin(lambda _: 0),
+            "onDirection": builtin(lambda _: None),
+            "viewAngles": builtin(lambda _: (2 * math.pi, math.pi)),
+            "visibleDistance": builtin(lambda _: 50),
+            "viewRayDensity": builtin(lambda _: 5),
+            "viewRayCount": builtin(lambda _: None),
+            "viewRayDistanceScaling": builtin(lambda _: False),
+            "regionContainedIn": builtin(lambda _: None),
+            "mutationScale": builtin(lambda _: 0),
+            "positionStdDev": builtin(lambda _: vector(1, 1, 0)),
+            "mutator": builtin(lambda _: None, "positionStdDev", attributes=("additive",)),
+        }
+    )
+
+    def __new__(cls, *_args: Any, **_kwargs: Any) -> Self:
+        raise InvalidScenarioError(
+            f"{cls.__name__} is a Scenic class and cannot be called",
+            code="SC111",
+            span=here(),
+            help=f"create an instance with `new {cls.__name__}`",
+        )
+
+    def __init_subclass__(cls, **kwargs: Any) -> None:
+        super().__init_subclass__(**kwargs)
+        own: tuple[PropertyDefinition, ...] = cls.__dict__.get("__scenic_properties__", ())
+        if own or "_definitions" not in cls.__dict__:
+            cls._definitions = {definition.name: definition for definition in own}
+        _combine_properties(cls)
+
+    @classmethod
+    def _make(cls, values: Mapping[str, Any]) -> Self:
+        """An instance with these property values; for the runtime, not for programs."""
+        instance = object.__new__(cls)
+        instance.__dict__.update(values)
+        return instance
+
+    @property
+    def properties(self) -> Mapping[str, Any]:
+        """All properties and their values."""
+        stored = self.__dict__
+        names = stored.get("_source", self).__dict__.get("_names", self.scenic_properties)
+        return MappingProxyType({name: getattr(self, name) for name in names})
+
+    def __getattr__(self, name: str) -> Any:
+        # Reached only for what is not stored yet: a property of a sampled instance, or a vector's attribute.
+        stored = object.__getattribute__(self, "__dict__")
+        source = stored.get("_source")
+        if source is not None and name in source.__dict__:
+            value = stored["_sample"].value(source.__dict__[name])
+            stored[name] = value
+            return value
+        if not name.startswith("_") and (source is not None or "position" in stored) and name != "position":
+            position = self.position
+            if hasattr(type(position), name):
+                return getattr(position, name)
+        raise AttributeError(f"{type(self).__name__} has no property or attribute {name!r}")
+
+    def toVector(self) -> Any:
+        """The position."""
+        return self.position
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__}>"
+
+
+class OrientedPoint(Point):
+    """A position with an orientation."""
+
+    _definitions = _definitions(
+        {
+            "yaw": builtin(lambda _: 0, attributes=("dynamic",)),
+            "pitch": builtin(lambda _: 0, attributes=("dynamic",)),
+            "roll": builtin(lambda _: 0, attributes=("dynamic",)),
+            "parentOrientation": builtin(lambda _: Orientation()),
+            "orientation": builtin(
+                lambda self: operate(
+                    "compose",
+                    self.parentOrientation,
+                    Orientation.fromEuler(self.yaw, self.pitch, self.roll),
+                ),
+                "yaw",
+                "pitch",
+                "roll",
+                "parentOrientation",
+                attributes=("dynamic", "final"),
+            ),
+            "heading": builtin(
+                lambda self: self.orientation.yaw, "orientation", attributes=("dynamic", "final")
+            ),
+            "viewAngle": builtin(lambda _: 2 * math.pi),
+            "viewAngles": builtin(lambda self: (self.viewAngle, math.pi), "viewAngle"),
+            "headingStdDev": builtin(lambda _: math.radians(5)),
+            "orientationStdDev": builtin(lambda self: vector(self.headingStdDev, 0, 0), "headingStdDev"),
+            "mutator": builtin(lambda _: None, "orientationStdDev", attributes=("additive",)),
+        }
+    )
+
+    def toHeading(self) -> Any:
+        """The global yaw, in radians."""
+        return self.heading
+
+    def toOrientation(self) -> Any:
+        """The global orientation."""
+        return self.orientation
+
+    def relativize(self, offset: Any) -> Any:
+        """The global position of ``offset``, given in this frame."""
+        return operate("add", self.position, operate("rotate", self.orientation, to_vector(offset)))
+
+    def relativePosition(self, point: Any) -> Any:
+        """A global point in this frame."""
+        inverse = operate("inverse", self.orientation)
+        return operate("rotate", inverse, operate("subtract", to_vector(point), self.position))
+
+    def distancePast(self, point: Any) -> Any:
+        """How far this point is past ``point``, measured along its heading (metres)."""
+        back = operate("from euler", operate("negative", self.heading), 0, 0)
+        return operate("rotate", back, operate("subtract", self.position, to_vector(point))).y
+
+    def _placed(self, x: float, y: float, z: float) -> "OrientedPoint":
+        """The oriented point at these multiples of the half extents, in this frame."""
+        offset = vector(
+            operate("multiply", x / 2, to_scalar(self.width)),
+            operate("multiply", y / 2, to_scalar(self.length)),
+            operate("multiply", z / 2, to_scalar(self.height)),
+        )
+        return oriented_point(self.relativize(offset), self.orientation)
+
+
+class Object(OrientedPoint):
+    """A physical object: a shape with a size, in a place, that collides with others."""
+
+    _definitions = _definitions(
+        {
+            "shape": builtin(lambda _: BoxShape()),
+            "width": builtin(lambda self: self.shape.width, "shape"),
+            "length": builtin(lambda self: self.shape.length, "shape"),
+            "height": builtin(lambda self: self.shape.height, "shape"),
+            "allowCollisions": builtin(lambda _: False),
+            "regionContainedIn": builtin(lambda _: None),
+            "baseOffset": builtin(
+                lambda self: vector(0, 0, operate("divide", operate("negative", self.height), 2)), "height"
+            ),
+            "contactTolerance": builtin(lambda _: 1e-4),
+            "sideComponentThresholds": builtin(lambda _: ((-0.5, 0.5),) * 3),
+            "cameraOffset": builtin(lambda _: vector(0, 0, 0)),
+            "visionSensorOffset": builtin(
+                lambda self: vector(0, operate("divide", self.length, 2), 0), "length"
+            ),
+            "requireVisible": builtin(lambda _: False),
+            "occluding": builtin(lambda _: True),
+            "showVisibleRegion": builtin(lambda _: False),
+            "color": builtin(lambda _: None),
+            "render": builtin(lambda _: True),
+            "velocity": builtin(
+                lambda self: operate("rotate", self.orientation, vector(0, self.speed, 0)),
+                "speed",
+                "orientation",
+                attributes=("dynamic",),
+            ),
+            "speed": builtin(lambda _: 0, attributes=("dynamic",)),
+            "angularVelocity": builtin(lambda _: vector(0, 0, 0), attributes=("dynamic",)),
+            "angularSpeed": builtin(lambda _: 0, attributes=("dynamic",)),
+            "behavior": builtin(lambda _: None),
+            "lastActions": builtin(lambda _: ()),
+            "sensors": builtin(lambda _: {}),
+            "observations": builtin(lambda _: {}, attributes=("final",)),
+        }
+    )
+
+    @property
+    def hw(self) -> Any:
+        """Half the width, in metres."""
+        return operate("divide", self.width, 2)
+
+    @property
+    def hl(self) -> Any:
+        """Half the length, in metres."""
+        return operate("divide", self.length, 2)
+
+    @property
+    def hh(self) -> Any:
+        """Half the height, in metres."""
+        return operate("divide", self.height, 2)
+
+    @property
+    def radius(self) -> Any:
+        """Half the diagonal of the bounding box, in metres."""
+        return operate("norm", vector(self.hw, self.hl, self.hh))
+
+    @property
+    def corners(self) -> tuple[Any, ...]:
+        """The eight corners of the bounding box in this object's frame, as global points."""
+        return tuple(
+            self._placed(x, y, z).position for z in (1, -1) for x, y in ((1, 1), (-1, 1), (-1, -1), (1, -1))
+        )
+
+    def containsPoint(self, point: Any) -> Any:
+        """Whether the shape holds a point."""
+        return self.occupiedSpace.containsPoint(point)
+
+    def intersects(self, other: Any) -> Any:
+        """Whether the shape shares a point with another object or region."""
+        return self.occupiedSpace.intersects(other)
+
+    @property
+    def occupiedSpace(self) -> Any:
+        """The region that the object fills."""
+        return OccupiedSpace(self)
+
+    @property
+    def surface(self) -> Any:
+        """The whole boundary, as a region."""
+        return self._side("surface")
+
+    @property
+    def onSurface(self) -> Any:
+        """Where things stand that are ``on`` this object: its top surface, unless a class says otherwise."""
+        return self.topSurface
+
+    def _side(self, name: str) -> Any:
+        return SideSurface(self, name)
+
+
+def _corner(x: float, y: float, z: float) -> property:
+    return property(lambda self: self._placed(x, y, z))
+
+
+def _surface(side: str) -> property:
+    return property(lambda self: self._side(side))
+
+
+SIDES: Mapping[str, tuple[int, int, int]] = MappingProxyType(
+    {
+        "left": (-1, 0, 0),
+        "right": (1, 0, 0),
+        "front": (0, 1, 0),
+        "back": (0, -1, 0),
+        "top": (0, 0, 1),
+        "bottom": (0, 0, -1),
+        "frontLeft": (-1, 1, 0),
+        "frontRight": (1, 1, 0),
+        "backLeft": (-1, -1, 0),
+        "backRight": (1, -1, 0),
+        "topFrontLeft": (-1, 1, 1),
+        "topFrontRight": (1, 1, 1),
+        "topBackLeft": (-1, -1, 1),
+        "topBackRight": (1, -1, 1),
+        "bottomFrontLeft": (-1, 1, -1),
+        "bottomFrontRight": (1, 1, -1),
+        "bottomBackLeft": (-1, -1, -1),
+        "bottomBackRight": (1, -1, -1),
+    }
+)
+"""Derived oriented points on the bounding box, in half extents along the object's axes."""
+
+
+_combine_properties(Point)
+for _name, _place in SIDES.items():
+    setattr(Object, _name, _corner(*_place))
+for _name in ("top", "bottom", "left", "right", "front", "back"):
+    setattr(Object, f"{_name}Surface", _surface(_name))
+
+
+def oriented_point(position: Any, orientation: Any) -> OrientedPoint:
+    """An oriented point that the program did not create with ``new``: all other properties at their defaults."""
+    values: dict[str, Any] = {"position": position, "parentOrientation": to_orientation(orientation)}
+    instance = OrientedPoint._make(values)
+    for name in ("yaw", "pitch", "roll"):
+        instance.__dict__[name] = 0.0
+    instance.__dict__["orientation"] = instance.parentOrientation
+    instance.__dict__["heading"] = instance.orientation.yaw
+    for name, entry in OrientedPoint.scenic_properties.items():
+        if name not in instance.__dict__:
+            instance.__dict__[name] = entry.default(instance)
+    return instance
+
+
+TWO_D_DEFAULTS: Mapping[str, PropertyDefinition] = MappingProxyType(
+    _definitions(
+        {
+            "baseOffset": builtin(lambda _: vector(0, 0, 0)),
+            "contactTolerance": builtin(lambda _: 0),
+            "requireVisible": builtin(lambda _: True),
+            "occluding": builtin(lambda _: False),
+            "height": builtin(lambda self: operate("maximum", self.width, self.length), "width", "length"),
+        }
+    )
+)
+"""Built-in defaults of objects that differ in 2D mode (section 5.5)."""

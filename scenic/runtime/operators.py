@@ -1,0 +1,174 @@
+"""The language's own operators on values (section 7 of the specification).
+
+Each is a composition of operations of the table, so that sampling, intervals and the solver read it alike. The names are
+those of `scenic.language.operators`.
+"""
+
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
+from typing import Any
+
+from scenic.graph.kinds import Kind
+from scenic.language.errors import ScenicTypeError
+from scenic.runtime.context import here
+from scenic.runtime.objects import SIDES, Object, OrientedPoint, oriented_point
+from scenic.runtime.regions.base import Region
+from scenic.runtime.specifiers import Ego, is_kind
+from scenic.runtime.values import (
+    Random,
+    describe,
+    is_number,
+    is_orientation,
+    is_vector,
+    operate,
+    to_heading,
+    to_orientation,
+    to_scalar,
+    to_vector,
+    vector,
+    wrong_type,
+)
+
+
+def _degrees(_ego: Ego, value: Any) -> Any:
+    if isinstance(value, tuple | list):
+        raise wrong_type("a number", value, "`deg`")
+    return operate("multiply", value, 0.017453292519943295)
+
+
+def _vector(_ego: Ego, x: Any, y: Any) -> Any:
+    return vector(to_scalar(x, "`@`"), to_scalar(y, "`@`"))
+
+
+def _is_frame(value: Any) -> bool:
+    """A number or an orientation."""
+    if isinstance(value, Random):
+        return value.node.kind.is_number or value.node.kind is Kind.ORIENTATION
+    return is_number(value) or is_orientation(value)
+
+
+def _relative_to(_ego: Ego, value: Any, frame: Any) -> Any:
+    """Section 7.1: the first row of the table that fits."""
+    oriented = [is_kind(operand, OrientedPoint) for operand in (value, frame)]
+    if all(oriented):
+        raise ScenicTypeError(
+            "`relative to` between two oriented points is ambiguous",
+            span=here(),
+            help="write `.position` or `.heading` behind the one that you mean",
+        )
+    if any(oriented):
+        point, other = (value, frame) if oriented[0] else (frame, value)
+        if is_number(other) or (isinstance(other, Random) and other.node.kind.is_number):
+            return operate("add", point.heading, to_scalar(other))
+        if is_orientation(other):
+            return operate("compose", to_orientation(frame), to_orientation(value))
+        return oriented_point(point.relativize(to_vector(other, "`relative to`")), point.orientation)
+    if _is_frame(value) and _is_frame(frame):
+        return operate("compose", to_orientation(frame), to_orientation(value))
+    if _is_place(value) and _is_place(frame):
+        return operate("add", to_vector(value), to_vector(frame))
+    raise ScenicTypeError(
+        f"`relative to` cannot combine {describe(value)} with {describe(frame)}",
+        span=here(),
+        help="it takes two vectors, two orientations or headings, or an oriented point and one of these",
+    )
+
+
+def _is_place(value: Any) -> bool:
+    return is_vector(value) or (hasattr(value, "toVector") and not isinstance(value, type))
+
+
+def _offset_along(_ego: Ego, base: Any, direction: Any, offset: Any) -> Any:
+    frame = to_orientation(direction, "`offset along`")
+    return operate("add", to_vector(base), operate("rotate", frame, to_vector(offset, "`offset along`")))
+
+
+def _relative_position(ego: Ego, target: Any, origin: Any) -> Any:
+    start = to_vector(ego() if origin is None else origin, "`relative position`")
+    return operate("subtract", to_vector(target, "`relative position`"), start)
+
+
+def _relative_heading(ego: Ego, target: Any, origin: Any) -> Any:
+    start = to_heading(ego() if origin is None else origin, "`relative heading`")
+    return operate("normalize angle", operate("subtract", to_heading(target, "`relative heading`"), start))
+
+
+def _apparent_heading(ego: Ego, target: Any, origin: Any) -> Any:
+    if not is_kind(target, OrientedPoint):
+        raise wrong_type("an oriented point", target, "`apparent heading of`")
+    start = to_vector(ego() if origin is None else origin, "`apparent heading`")
+    line = operate("azimuth", operate("subtract", target.position, start))
+    return operate("normalize angle", operate("subtract", target.heading, line))
+
+
+def _distance(ego: Ego, origin: Any, target: Any) -> Any:
+    start, end = (ego() if operand is None else operand for operand in (origin, target))
+    for near, far in ((start, end), (end, start)):
+        if isinstance(near, Region):
+            return near.distance_from(to_vector(far, "`distance`"))
+    return operate("distance", to_vector(start, "`distance`"), to_vector(end, "`distance`"))
+
+
+def _distance_past(ego: Ego, target: Any, reference: Any) -> Any:
+    point = ego() if reference is None else reference
+    if not is_kind(point, OrientedPoint):
+        raise wrong_type("an oriented point", point, "`distance past ... of`")
+    return point.distancePast(to_vector(target, "`distance past`"))
+
+
+def _direction(ego: Ego, origin: Any, target: Any, what: str) -> Any:
+    start, end = (to_vector(ego() if operand is None else operand, what) for operand in (origin, target))
+    return operate("subtract", end, start)
+
+
+def _angle(ego: Ego, origin: Any, target: Any) -> Any:
+    return operate("azimuth", _direction(ego, origin, target, "`angle`"))
+
+
+def _altitude(ego: Ego, origin: Any, target: Any) -> Any:
+    return operate("altitude", _direction(ego, origin, target, "`altitude`"))
+
+
+def _intersects(_ego: Ego, left: Any, right: Any) -> Any:
+    for operand in (left, right):
+        if not isinstance(operand, Region) and not is_kind(operand, Object):
+            raise wrong_type("an object or a region", operand, "`intersects`")
+    return left.intersects(right)
+
+
+def _side(name: str, attribute: str) -> Callable[..., Any]:
+    def build(_ego: Ego, target: Any) -> Any:
+        if not is_kind(target, Object):
+            raise wrong_type("an object", target, f"`{name}`")
+        return getattr(target, attribute)
+
+    return build
+
+
+def _sides() -> dict[str, Callable[..., Any]]:
+    names = {}
+    for attribute in SIDES:
+        words = "".join(f" {letter.lower()}" if letter.isupper() else letter for letter in attribute)
+        names[f"{words} of"] = _side(f"{words} of", attribute)
+    return names
+
+
+OPERATORS: Mapping[str, Callable[..., Any]] = MappingProxyType(
+    {
+        "deg": _degrees,
+        "@": _vector,
+        "relative to": _relative_to,
+        "offset by": lambda ego, base, offset: _relative_to(ego, base, offset),
+        "offset along": _offset_along,
+        "relative position": _relative_position,
+        "relative heading": _relative_heading,
+        "apparent heading": _apparent_heading,
+        "distance": _distance,
+        "distance past": _distance_past,
+        "angle": _angle,
+        "altitude": _altitude,
+        "intersects": _intersects,
+        **_sides(),
+    }
+)
+"""Each operator as a function ``(ego, *operands)``; an operand that the text leaves out is ``None``."""

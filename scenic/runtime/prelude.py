@@ -1,0 +1,457 @@
+"""The prelude: the one object that generated code talks to.
+
+The compiler translates a program to Python that calls methods of ``__scenic__``, a `Prelude`, and otherwise is the program
+itself. Names such as ``Range`` are not translated: they are builtins of generated modules (`builtin_names`). Each
+module of a program has its own prelude; all of a compilation share a `Program` and a `Context`.
+
+The same generated code serves two readings. While a scenario is compiled its context is symbolic and values are nodes of
+the graph; during a simulation the context draws at once, and conditions are evaluated where they stand.
+"""
+
+import builtins
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from types import CodeType, MappingProxyType, ModuleType
+from typing import Any, Protocol
+
+from scenic.graph.kinds import Kind
+from scenic.graph.node import Node, apply
+from scenic.graph.operations import TABLE
+from scenic.language.errors import (
+    InvalidScenarioError,
+    RejectionException,
+    ScenicTypeError,
+    UnsupportedError,
+)
+from scenic.runtime import conditions, names
+from scenic.runtime.context import Context, here
+from scenic.runtime.functions import convert
+from scenic.runtime.objects import Object, Point
+from scenic.runtime.operators import OPERATORS
+from scenic.runtime.program import (
+    Behavior,
+    BehaviorClass,
+    Module,
+    Program,
+    Requirement,
+    ScenarioClass,
+)
+from scenic.runtime.properties import ATTRIBUTES, PropertyDefinition
+from scenic.runtime.regions.base import Region, Workspace
+from scenic.runtime.resolution import build
+from scenic.runtime.specifiers import BUILDERS, Specifier
+from scenic.runtime.values import (
+    OrientationMethods,
+    Random,
+    VectorMethods,
+    as_node,
+    as_value,
+    describe,
+    is_random,
+    operate,
+    to_orientation,
+)
+
+COMPARISONS: Mapping[str, str] = MappingProxyType(
+    {
+        "<": "less",
+        "<=": "less or equal",
+        ">": "greater",
+        ">=": "greater or equal",
+        "==": "equal",
+        "!=": "not equal",
+    }
+)
+
+
+class Modules(Protocol):
+    """Where modules of Scenic code come from (`scenic.compiler.loader`, passed in)."""
+
+    def find(self, name: str) -> Path | None:
+        """The file of a module, or ``None`` if no Scenic module of that name exists."""
+
+    def code(self, path: Path) -> CodeType:
+        """The compiled code of a file; raises `ScenicSyntaxError`."""
+
+
+class Condition:
+    """A condition of a requirement: a node while a scenario is compiled, its truth during a simulation."""
+
+    __slots__ = ("node", "truth")
+
+    def __init__(self, node: Node | None, truth: bool | None) -> None:
+        self.node = node
+        self.truth = truth
+
+
+class Prelude:
+    """What one module of generated code can do. Method names are fixed by the compiler."""
+
+    Object = Object
+
+    def __init__(self, context: Context, program: Program, module: Module, modules: "Loader") -> None:
+        self._context = context
+        self._program = program
+        self._module = module
+        self._modules = modules
+
+    # Ego and workspace
+
+    @property
+    def ego(self) -> Any:
+        """The ego object; raises `InvalidScenarioError` before it is set."""
+        if self._module.ego is None:
+            raise InvalidScenarioError(
+                "the ego object is used before it is set",
+                span=here(),
+                help="write `ego = new Object ...` first",
+            )
+        return self._module.ego
+
+    @ego.setter
+    def ego(self, value: Any) -> None:
+        if not isinstance(value, Object):
+            hint = f"write `ego = new {value.__name__}`" if isinstance(value, type) else None
+            raise ScenicTypeError(f"the ego must be an object, not {describe(value)}", span=here(), help=hint)
+        self._module.ego = value
+
+    def _ego(self) -> Any:
+        return self.ego
+
+    @property
+    def workspace(self) -> Any:
+        """The workspace; all of space where the program sets none."""
+        if self._module.workspace is None:
+            raise InvalidScenarioError(
+                "the workspace is used before it is set",
+                span=here(),
+                help="write `workspace = Workspace(region)` first",
+            )
+        return self._module.workspace
+
+    @workspace.setter
+    def workspace(self, value: Any) -> None:
+        if not isinstance(value, Workspace):
+            raise ScenicTypeError(
+                f"the workspace must be a Workspace, not {describe(value)}",
+                span=here(),
+                help="write `workspace = Workspace(region)`",
+            )
+        self._module.workspace = value
+
+    # Instances
+
+    def specifier(self, name: str, *operands: Any, property: str | None = None) -> Specifier:
+        """One specifier of ``new``."""
+        if name not in BUILDERS:
+            raise UnsupportedError(f"the specifier `{name}` is not supported yet", span=here())
+        if property is not None:
+            if property == "heading" and self._context.mode_2d:
+                return BUILDERS["facing"](self._ego, *operands)
+            return BUILDERS[name](self._ego, property, *operands)
+        return BUILDERS[name](self._ego, *operands)
+
+    def new(self, cls: Any, *specifiers: Specifier) -> Any:
+        """A new instance of a Scenic class."""
+        if not (isinstance(cls, type) and issubclass(cls, Point)):
+            raise ScenicTypeError(
+                f"`new` needs a Scenic class, not {describe(cls)}",
+                span=here(),
+                help="Python classes are called: `C(...)`",
+            )
+        if self._context.evaluating and issubclass(cls, Object):
+            raise InvalidScenarioError("a requirement cannot create an object", span=here())
+        instance = build(cls, specifiers, mode_2d=self._context.mode_2d)
+        self._check_supported(instance)
+        self._program.instances.append(instance)
+        if isinstance(instance, Object):
+            self._program.objects.append(instance)
+            behavior = instance.behavior
+            if isinstance(behavior, BehaviorClass):
+                instance.__dict__["behavior"] = behavior()
+            elif behavior is not None and not isinstance(behavior, Behavior | Random):
+                raise ScenicTypeError(
+                    f"property 'behavior' must be a behavior, not {describe(behavior)}", span=here()
+                )
+        self._program.places[id(instance)] = (here(), self._module.filename)
+        return instance
+
+    def _check_supported(self, instance: Point) -> None:
+        """Refuse the properties whose meaning is not built yet."""
+        values = instance.__dict__
+        scale = values["mutationScale"]
+        if is_random(scale) or scale != 0:
+            raise UnsupportedError("mutation is not supported yet", span=here())
+        if not self._context.mode_2d and values.get("requireVisible", False) is not False:
+            raise UnsupportedError("visibility requirements are not supported yet", span=here())
+
+    def property(
+        self, name: str, attributes: Sequence[str], value: Callable[[Any], Any], reads: Sequence[str]
+    ) -> PropertyDefinition:
+        """One property definition of a class."""
+        assert set(attributes) <= ATTRIBUTES, attributes
+        if name == "heading" and self._context.mode_2d:
+            return PropertyDefinition(
+                "parentOrientation",
+                frozenset(attributes),
+                lambda instance: to_orientation(value(instance)),
+                tuple(reads),
+                here(),
+            )
+        return PropertyDefinition(name, frozenset(attributes), value, tuple(reads), here())
+
+    def behavior(self, signature: Callable[..., Any]) -> BehaviorClass:
+        """A behavior definition, given its signature."""
+        return BehaviorClass(signature.__name__, signature)
+
+    def scenario(self, setup: Callable[..., Any]) -> ScenarioClass:
+        """A scenario definition, given its set-up."""
+        return ScenarioClass(setup.__name__, setup)
+
+    # Operators
+
+    def operation(self, name: str, *operands: Any) -> Any:
+        """One of the language's own operators."""
+        if name == "initial scenario":
+            return self._context.is_symbolic
+        if name not in OPERATORS:
+            raise UnsupportedError(f"the operator `{name}` is not supported yet", span=here())
+        return OPERATORS[name](self._ego, *operands)
+
+    def convert(self, name: str, *args: Any) -> Any:
+        """``int(x)``, ``float(x)``, ``str(x)``."""
+        return convert(name, *args)
+
+    # Statements
+
+    def param(self, values: Mapping[str, Any]) -> None:
+        """``param name = value, ...``."""
+        if self._context.evaluating or not self._context.is_symbolic:
+            raise InvalidScenarioError("parameters cannot be set here", span=here())
+        program = self._program
+        for name, value in values.items():
+            if name in program.overrides:
+                program.parameters[name] = program.overrides[name]
+            elif not (self._module.is_model and name in program.parameters):
+                program.parameters[name] = value
+
+    def model(self, name: str, scope: dict[str, Any]) -> None:
+        """``model name``: everything that the module defines, with its parameters as defaults."""
+        if self._module.is_model:
+            raise InvalidScenarioError("a model cannot itself use `model`", span=here())
+        self._modules.use_model(name, scope, self._module)
+
+    def simulator(self, make: Callable[[], Any]) -> None:
+        """``simulator expr``: kept, and evaluated when a simulator is asked for."""
+        self._program.simulator = make
+
+    def require(
+        self, condition: Condition, *, probability: float | None = None, name: str | None = None
+    ) -> None:
+        """``require condition``: recorded while compiling, checked at once during a simulation."""
+        if self._context.evaluating:
+            raise InvalidScenarioError("a requirement cannot contain another one", span=here())
+        chance = 1.0 if probability is None else probability
+        if not self._context.is_symbolic:
+            generator = self._context.generator
+            assert generator is not None
+            if chance < 1 and generator.random() >= chance:
+                return
+            if not condition.truth:
+                raise RejectionException(name or "requirement")
+            return
+        assert condition.node is not None
+        span = here()
+        label = name or (f"requirement on line {span.line}" if span else "requirement")
+        self._program.requirements.append(
+            Requirement(condition.node, chance, label, span, self._module.filename)
+        )
+
+    # Conditions
+
+    def condition(
+        self, symbolic: Callable[[], Any] | None, concrete: Callable[..., Any], captured: Sequence[Any]
+    ) -> Condition:
+        """A leaf of a condition; see `scenic.runtime.conditions`."""
+        if self._context.is_symbolic:
+            return Condition(conditions.leaf(symbolic, concrete, captured), None)
+        return Condition(None, bool(concrete(*captured)))
+
+    def conjunction(self, *parts: Condition) -> Condition:
+        """``and``."""
+        return self._connect("and", all, parts)
+
+    def disjunction(self, *parts: Condition) -> Condition:
+        """``or``."""
+        return self._connect("or", any, parts)
+
+    def negation(self, part: Condition) -> Condition:
+        """``not``."""
+        return self._connect("not", lambda truths: not truths[0], [part])
+
+    def _connect(
+        self, operation: str, decide: Callable[[Sequence[Any]], bool], parts: Sequence[Condition]
+    ) -> Condition:
+        nodes = [part.node for part in parts if part.node is not None]
+        if len(nodes) == len(parts):
+            return Condition(conditions.connect(operation, nodes), None)
+        return Condition(None, decide([part.truth for part in parts]))
+
+    # Inside the symbolic reading of a condition
+
+    def read(self, value: Any, name: str) -> Any:
+        """An attribute, read when the condition is evaluated."""
+        return getattr(value, name)
+
+    def call(self, value: Any, name: str, *args: Any) -> Any:
+        """A method that takes random arguments; any other is called on samples."""
+        if not isinstance(value, VectorMethods | OrientationMethods | Region | Random | Object):
+            raise conditions.NotSymbolicError
+        if isinstance(value, Object) and getattr(type(value), name, None) is not getattr(Object, name, None):
+            raise conditions.NotSymbolicError  # The program's own method: never traced.
+        return getattr(value, name)(*args)
+
+    def compare(self, operator: str, left: Any, right: Any) -> Any:
+        """``left operator right`` as a truth value, which may be random."""
+        if is_random(left) or is_random(right):
+            return operate(COMPARISONS[operator], left, right)
+        if isinstance(left, Point) or isinstance(right, Point):
+            raise conditions.NotSymbolicError  # Whether two instances are equal is decided on their samples.
+        return operate(COMPARISONS[operator], left, right)
+
+    def contains(self, item: Any, container: Any) -> Any:
+        """``item in container``: containment in a region, else Python's."""
+        if isinstance(container, Region):
+            return (
+                container.containsObject(item)
+                if hasattr(item, "occupiedSpace")
+                else container.containsPoint(item)
+            )
+        raise conditions.NotSymbolicError
+
+    def all_of(self, *values: Any) -> Any:
+        """``and`` of truth values inside an expression."""
+        return self._logic("and", values)
+
+    def any_of(self, *values: Any) -> Any:
+        """``or`` of truth values inside an expression."""
+        return self._logic("or", values)
+
+    def invert(self, value: Any) -> Any:
+        """``not`` of a truth value inside an expression."""
+        return as_value(conditions.connect("not", [conditions.truth(value)]))
+
+    def _logic(self, operation: str, values: Sequence[Any]) -> Any:
+        nodes = [as_node(value) for value in values]
+        if not all(node.kind is Kind.BOOLEAN for node in nodes):
+            raise conditions.NotSymbolicError  # Python's `and` and `or` give an operand, not a truth value.
+        return as_value(conditions.connect(operation, nodes))
+
+    def choose(self, test: Condition, then: Callable[[], Any], otherwise: Callable[[], Any]) -> Any:
+        """``then if test else otherwise``."""
+        if test.node is None:
+            return then() if test.truth else otherwise()
+        if test.node.is_constant:
+            return then() if test.node.value else otherwise()
+        return as_value(apply(TABLE["if"], [test.node, as_node(then()), as_node(otherwise())], span=here()))
+
+
+class Loader:
+    """Runs the modules of one compilation, each afresh.
+
+    Args:
+        modules: finds and compiles files of Scenic code.
+        context: how the program is being read.
+        program: what the modules produce.
+        model: replaces the module of every ``model`` statement.
+
+    """
+
+    def __init__(
+        self, modules: Modules, context: Context, program: Program, *, model: str | None = None
+    ) -> None:
+        self._modules = modules
+        self._context = context
+        self._program = program
+        self._model = model
+        self._loaded: dict[Path, ModuleType] = {}
+        self._states: dict[Path, Module] = {}
+
+    def run(
+        self, code: CodeType, filename: str, scope: Mapping[str, Any] | None = None
+    ) -> tuple[ModuleType, Module]:
+        """Run the code of a file as a module, with these globals to begin with."""
+        state = Module(filename)
+        module = ModuleType(Path(filename).stem)
+        vars(module).update(scope or {})
+        self._execute(code, module, state)
+        return module, state
+
+    def _execute(self, code: CodeType, module: ModuleType, state: Module) -> None:
+        prelude = Prelude(self._context, self._program, state, self)
+        scope = module.__dict__
+        scope["__scenic__"] = prelude
+        scope["__file__"] = state.filename
+        scope["__builtins__"] = names.builtin_names(
+            self._program, state.filename, lambda *args: self._import(state, *args)
+        )
+        exec(code, scope)
+
+    def _import(
+        self,
+        importer: Module,
+        name: str,
+        globals: Mapping[str, Any] | None = None,
+        locals: Mapping[str, Any] | None = None,
+        fromlist: Sequence[str] | None = (),
+        level: int = 0,
+    ) -> Any:
+        """``__import__`` of generated modules: Scenic modules first, then Python's."""
+        path = self._modules.find(name) if level == 0 else None
+        if path is None:
+            return builtins.__import__(name, globals, locals, fromlist or (), level)
+        module = self._load(path, name, importer)
+        if fromlist or "." not in name:
+            return module
+        # `import a.b` binds `a`: a namespace that leads to the module.
+        package = ModuleType(name.partition(".")[0])
+        holder = package
+        for part in name.split(".")[1:-1]:
+            child = ModuleType(part)
+            setattr(holder, part, child)
+            holder = child
+        setattr(holder, name.rpartition(".")[2], module)
+        return package
+
+    def _load(self, path: Path, name: str, importer: Module, *, is_model: bool = False) -> ModuleType:
+        if path not in self._loaded:
+            module = ModuleType(name)
+            self._loaded[path] = module
+            state = self._states[path] = Module(str(path), is_model=is_model or importer.is_model)
+            self._execute(self._modules.code(path), module, state)
+        state = self._states[path]
+        importer.ego = importer.ego or state.ego
+        importer.workspace = importer.workspace or state.workspace
+        return self._loaded[path]
+
+    def use_model(self, name: str, scope: dict[str, Any], importer: Module) -> None:
+        """Give a module everything that a model defines."""
+        chosen = self._model or name
+        path = self._modules.find(chosen)
+        if path is None:
+            raise InvalidScenarioError(
+                f"there is no world model {chosen!r}",
+                code="SC406",
+                span=here(),
+                help="a model is a .scenic file beside the program or on Python's path",
+            )
+        module = self._load(path, chosen, importer, is_model=True)
+        public = getattr(module, "__all__", None)
+        scope.update(
+            (key, value)
+            for key, value in vars(module).items()
+            if (key in public if public is not None else not key.startswith("_"))
+        )
+
+
+__all__ = ["COMPARISONS", "Condition", "Loader", "Modules", "Prelude"]

@@ -1,0 +1,138 @@
+"""Properties of classes: their defaults, how definitions combine along the inheritance chain, how values are stored.
+
+Section 5.2 of the specification.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from scenic.language.errors import InvalidScenarioError, ScenicValueError
+from scenic.language.spans import Span
+from scenic.runtime.context import here
+from scenic.runtime.values import Random, is_number, operate, to_orientation, to_scalar, to_vector
+
+ATTRIBUTES = frozenset({"additive", "dynamic", "final"})
+
+
+@dataclass(frozen=True, slots=True)
+class PropertyDefinition:
+    """One definition in one class.
+
+    ``value`` computes the default from the partially built instance, of which it reads ``dependencies``.
+    """
+
+    name: str
+    attributes: frozenset[str]
+    value: Callable[[Any], Any]
+    dependencies: tuple[str, ...]
+    span: Span | None = None
+    is_builtin: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Property:
+    """A property as instances of one class have it."""
+
+    name: str
+    definitions: tuple[PropertyDefinition, ...]
+    additive: bool
+    dynamic: bool
+    final: bool
+
+    @property
+    def dependencies(self) -> frozenset[str]:
+        """Properties that the default reads."""
+        return frozenset(name for definition in self.definitions for name in definition.dependencies)
+
+    def default(self, instance: Any) -> Any:
+        """The default for one instance; additive properties give all definitions, most derived first."""
+        if self.additive:
+            return tuple(definition.value(instance) for definition in self.definitions)
+        return self.definitions[0].value(instance)
+
+
+def combine(chain: Sequence[Mapping[str, PropertyDefinition]]) -> dict[str, Property]:
+    """The properties of a class from the definitions of each class of its method-resolution order.
+
+    Raises `InvalidScenarioError` where a final property is defined again or one is both additive and dynamic.
+    """
+    names = dict.fromkeys(name for definitions in reversed(chain) for name in definitions)
+    return {
+        name: _combine(name, [definitions[name] for definitions in chain if name in definitions])
+        for name in names
+    }
+
+
+def _combine(name: str, definitions: Sequence[PropertyDefinition]) -> Property:
+    primary = definitions[0]
+    for overridden in definitions[1:]:
+        if "final" in overridden.attributes:
+            raise InvalidScenarioError(
+                f"property {name!r} is final and cannot be defined again", span=primary.span
+            )
+    additive = "additive" in primary.attributes
+    dynamic = any("dynamic" in definition.attributes for definition in definitions)
+    if additive and dynamic:
+        raise InvalidScenarioError(
+            f"property {name!r} cannot be both additive and dynamic", span=primary.span
+        )
+    return Property(
+        name,
+        tuple(definitions) if additive else (primary,),
+        additive,
+        dynamic,
+        "final" in primary.attributes,
+    )
+
+
+# Values as they are stored
+
+_VECTORS = frozenset(
+    {"position", "velocity", "cameraOffset", "positionStdDev", "orientationStdDev", "baseOffset"}
+)
+_SCALARS = frozenset(
+    {
+        "width",
+        "length",
+        "height",
+        "visibleDistance",
+        "viewAngle",
+        "speed",
+        "angularSpeed",
+        "mutationScale",
+        "contactTolerance",
+    }
+)
+_ANGLES = frozenset({"yaw", "pitch", "roll"})
+
+
+def normalised(name: str, value: Any) -> Any:
+    """A property's value as instances store it: vectors, scalars and angles in (-pi, pi] by name."""
+    if name in _VECTORS:
+        return to_vector(value, f"property {name!r}")
+    if name in _SCALARS:
+        return to_scalar(value, f"property {name!r}")
+    if name in _ANGLES:
+        return operate("normalize angle", to_scalar(value, f"property {name!r}"))
+    if name == "parentOrientation":
+        return to_orientation(value, "property 'parentOrientation'")
+    if name == "color":
+        return _colour(value)
+    return value
+
+
+def _colour(value: Any) -> Any:
+    if value is None or isinstance(value, Random):
+        return value
+    parts = tuple(value) if isinstance(value, tuple | list) else ()
+    fine = len(parts) in (3, 4) and all(
+        isinstance(part, Random) or (is_number(part) and 0 <= part <= 1) for part in parts
+    )
+    if not fine:
+        raise ScenicValueError(
+            f"a colour is 3 or 4 numbers from 0 to 1, not {value!r}",
+            span=here(),
+            help="for example `with color (0.8, 0.2, 0.2)`",
+        )
+    return parts

@@ -1,0 +1,187 @@
+"""Regions that belong to an object: the space it fills, and the sides of its surface."""
+
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+
+from scenic.graph.kinds import Column, Kind
+from scenic.graph.operation import Call, Operation, always
+from scenic.language.errors import ScenicTypeError
+from scenic.runtime.context import here
+from scenic.runtime.geometry import containment, projection, surface
+from scenic.runtime.geometry.collision import Body, collide
+from scenic.runtime.regions.base import Mask, Points, Region, body_of, body_operands, unsupported
+from scenic.runtime.values import Random, apply, to_vector, uniform
+
+Side = tuple[int, int]
+"""Axis of the world (0 to 2) and sign."""
+
+SIDES: Mapping[str, Side | None] = MappingProxyType(
+    {
+        "surface": None,
+        "right": (0, 1),
+        "left": (0, -1),
+        "front": (1, 1),
+        "back": (1, -1),
+        "top": (2, 1),
+        "bottom": (2, -1),
+    }
+)
+
+
+class OccupiedSpace(Region):
+    """The space that an object fills."""
+
+    dimension: float = 3
+
+    def __init__(self, thing: Any) -> None:
+        super().__init__(*body_operands(thing), name="occupied space")
+
+    def contains_points(self, points: Points, *columns: Column) -> Mask:
+        return containment.contains_points(body_of(*columns), points)
+
+    def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
+        return containment.in_body(body, body_of(*columns), lanes)
+
+    def uniform_placement(self) -> tuple[Any, Any]:
+        raise unsupported("drawing points inside an object")
+
+    def intersects(self, other: Any) -> Any:
+        """Whether another object's space shares a point with this one."""
+        if hasattr(other, "occupiedSpace"):
+            return apply(_INTERSECT, *self.parameters, *body_operands(other))
+        raise unsupported("`intersects` between an object and a region")
+
+
+def _intersect(
+    _call: Call,
+    position: Column,
+    orientation: Column,
+    size: Column,
+    shape: Column,
+    position_2: Column,
+    orientation_2: Column,
+    size_2: Column,
+    shape_2: Column,
+) -> Column:
+    bodies = [
+        body_of(position, orientation, size, shape),
+        body_of(position_2, orientation_2, size_2, shape_2),
+    ]
+    columns = (position, orientation, size, shape, position_2, orientation_2, size_2, shape_2)
+    lanes = max(len(column) for column in columns)
+    return ~collide(bodies, np.array([[0, 1]]), lanes=lanes).free
+
+
+_INTERSECT = Operation(
+    "bodies intersect", always(Kind.BOOLEAN), _intersect, "Whether two objects share a point."
+)
+
+
+class SideSurface(Region):
+    """The faces of an object's surface that look along one direction of the world, or the whole surface.
+
+    Section 9.6 of the specification: a face belongs to a side when the component of its unit normal on the world's
+    axis passes the object's threshold.
+    """
+
+    dimension: float = 2
+    has_orientation = True
+
+    def __init__(self, thing: Any, side: str) -> None:
+        thresholds = thing.sideComponentThresholds
+        if isinstance(thresholds, Random):
+            raise unsupported("a random `sideComponentThresholds`")
+        super().__init__(*body_operands(thing), name=f"{side} surface" if SIDES[side] else side)
+        self.side = SIDES[side]
+        self.threshold = 0.0
+        if self.side is not None:
+            axis, sign = self.side
+            lower, upper = thresholds[axis]
+            self.threshold = float(upper if sign > 0 else -lower)
+
+    def uniform_placement(self) -> tuple[Any, Any]:
+        face = apply(_FACE, uniform(), *self.parameters, payload=self)
+        point = apply(_FACE_POINT, face, uniform(), uniform(), *self.parameters)
+        return point, apply(_FACE_ORIENTATION, face, *self.parameters)
+
+    def project(self, point: Any, direction: Any) -> tuple[Any, Any]:
+        place = to_vector(point)
+        if direction is None:
+            way = apply(_MEAN_NORMAL, *self.parameters, payload=self)
+        else:
+            way = to_vector(direction, "`onDirection`")
+        face = apply(_LANDING_FACE, place, way, *self.parameters, payload=self)
+        landed = apply(_LANDING_POINT, face, place, way, *self.parameters)
+        return landed, apply(_FACE_ORIENTATION, face, *self.parameters)
+
+    def contains_points(self, points: Points, *columns: Column) -> Mask:
+        raise ScenicTypeError("containment in a surface is not supported", span=here())
+
+    def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
+        return np.zeros(lanes, dtype=np.bool_)
+
+
+def _face(call: Call, draw: Column, *columns: Column) -> Column:
+    region: SideSurface = call.payload
+    faces = surface.draw_faces(body_of(*columns), region.side, region.threshold, draw, _rows(draw, *columns))
+    call.reject(faces < 0)
+    return faces.astype(np.int64)
+
+
+def _face_point(_call: Call, face: Column, first: Column, second: Column, *columns: Column) -> Column:
+    return surface.face_points(body_of(*columns), face, first, second)
+
+
+def _face_orientation(_call: Call, face: Column, *columns: Column) -> Column:
+    return surface.face_orientations(body_of(*columns), face)
+
+
+_FACE = Operation(
+    "surface face",
+    always(Kind.INTEGER),
+    _face,
+    "A face of a side, by area; the candidate is rejected where the side has none.",
+)
+_FACE_POINT = Operation("face point", always(Kind.VECTOR), _face_point, "A uniform point of a face.")
+_FACE_ORIENTATION = Operation(
+    "face orientation", always(Kind.ORIENTATION), _face_orientation, "The preferred orientation of a face."
+)
+
+
+def _mean_normal(call: Call, *columns: Column) -> Column:
+    region: SideSurface = call.payload
+    return surface.mean_normals(body_of(*columns), region.side, region.threshold, _rows(*columns))
+
+
+def _landing_face(call: Call, point: Column, direction: Column, *columns: Column) -> Column:
+    region: SideSurface = call.payload
+    lanes = _rows(point, direction, *columns)
+    faces, _ = projection.project(body_of(*columns), region.side, region.threshold, point, direction, lanes)
+    call.reject(faces < 0)
+    return faces.astype(np.int64)
+
+
+def _landing_point(_call: Call, face: Column, point: Column, direction: Column, *columns: Column) -> Column:
+    return projection.landing_points(body_of(*columns), face, point, direction)
+
+
+def _rows(*columns: Column) -> int:
+    """Number of different lanes: 1 where all columns are the same everywhere."""
+    return max(len(column) for column in columns)
+
+
+_MEAN_NORMAL = Operation(
+    "mean normal", always(Kind.VECTOR), _mean_normal, "The direction in which things land on a side."
+)
+_LANDING_FACE = Operation(
+    "landing face",
+    always(Kind.INTEGER),
+    _landing_face,
+    "The face of a side where a point lands; the candidate is rejected where it misses.",
+)
+_LANDING_POINT = Operation(
+    "landing point", always(Kind.VECTOR), _landing_point, "Where a point lands on a face."
+)

@@ -1,0 +1,264 @@
+"""Regions of the plane: discs, rectangles, polygons, and the columns above and below them.
+
+Containment ignores z; points are drawn at the region's height (section 9.2 of the specification).
+"""
+
+import math
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import numpy as np
+
+from scenic.graph.bounds import Bounds, outward
+from scenic.graph.kinds import Column, Kind
+from scenic.graph.operation import Call, Operation, always
+from scenic.language.errors import ScenicTypeError, ScenicValueError
+from scenic.runtime.context import here
+from scenic.runtime.geometry import containment
+from scenic.runtime.geometry.collision import Body
+from scenic.runtime.geometry.polygons import Polygons
+from scenic.runtime.regions.base import Mask, Points, Region
+from scenic.runtime.values import (
+    apply,
+    is_number,
+    is_random,
+    operate,
+    to_heading,
+    to_scalar,
+    to_vector,
+    uniform,
+    vector,
+)
+
+
+class PlanarRegion(Region):
+    """A region of the plane at some height."""
+
+    dimension: float = 2
+
+    @property
+    def height(self) -> Any:
+        """The z of the plane, in metres."""
+        return 0.0
+
+    @property
+    def footprint(self) -> Region:
+        return self
+
+    def project(self, point: Any, direction: Any) -> tuple[Any, Any]:
+        """Vertically onto the plane; a point beside the region lands nowhere."""
+        target = to_vector(point)
+        landed = vector(target.x, target.y, self.height)
+        return apply(_LAND, landed, *self.parameters, payload=self), None
+
+
+def _land(call: Call, points: Points, *columns: Column) -> Column:
+    inside = call.payload.contains_points(points, *columns)
+    call.reject(~inside)
+    return points
+
+
+_LAND = Operation(
+    "plane projection",
+    always(Kind.VECTOR),
+    _land,
+    "A point of a plane; the candidate is rejected where it lies beside the region.",
+)
+
+
+def _positive(value: Any, what: str) -> Any:
+    size = to_scalar(value, what)
+    if is_number(size) and not size >= 0:
+        raise ScenicValueError(f"{what} cannot be negative: {size:g}", span=here())
+    return size
+
+
+def _disc_point(_call: Call, first: Column, second: Column) -> Column:
+    # The radius of a uniform point of the unit disc is distributed as the square root of a uniform number.
+    radius, angle = np.sqrt(first), 2 * math.pi * second
+    return np.stack([radius * np.cos(angle), radius * np.sin(angle), np.zeros_like(radius)], axis=-1)
+
+
+def _disc_bounds(_payload: Any, first: Bounds, _second: Bounds) -> Bounds:
+    reach = outward(first.upper, np.sqrt(first.upper), ulps=4).upper
+    upper = np.stack([reach, reach, np.zeros_like(reach)], axis=-1)
+    return Bounds(-upper, upper)
+
+
+DISC_POINT = Operation(
+    "disc point",
+    always(Kind.VECTOR),
+    _disc_point,
+    "A uniform point of the unit disc, from two axes.",
+    bounds=_disc_bounds,
+)
+
+
+class CircularRegion(PlanarRegion):
+    """A disc.
+
+    Args:
+        center: its centre; points are drawn at its z.
+        radius: metres.
+        resolution: vertices per quadrant of the polygon that must hold the outline of an object.
+
+    """
+
+    def __init__(self, center: Any, radius: Any, resolution: int = 32, *, name: str | None = None) -> None:
+        self.center = to_vector(center, "`CircularRegion` center")
+        self.radius = _positive(radius, "`CircularRegion` radius")
+        self.resolution = resolution
+        super().__init__(self.center, self.radius, name=name)
+
+    @property
+    def height(self) -> Any:
+        return self.center.z
+
+    def uniform_placement(self) -> tuple[Any, Any]:
+        offset = apply(DISC_POINT, uniform(), uniform())
+        return operate("add", self.center, operate("multiply", offset, self.radius)), None
+
+    def contains_points(self, points: Points, *columns: Column) -> Mask:
+        center, radius = columns
+        dx, dy = points[:, 0] - center[:, 0], points[:, 1] - center[:, 1]
+        inside: Mask = dx * dx + dy * dy <= radius * radius
+        return inside
+
+    def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
+        center, radius = columns
+        angles = np.arange(4 * self.resolution) * (math.pi / (2 * self.resolution))
+        circle = np.stack([np.cos(angles), np.sin(angles)], axis=-1)
+        corners = center[:, np.newaxis, :2] + radius[:, np.newaxis, np.newaxis] * circle
+        return containment.in_convex_polygon(body, corners, lanes)
+
+
+class RectangularRegion(PlanarRegion):
+    """A rectangle turned by a heading.
+
+    Args:
+        position: its centre.
+        heading: radians, anticlockwise.
+        width: extent across the heading, metres.
+        length: extent along the heading, metres.
+
+    """
+
+    def __init__(
+        self, position: Any, heading: Any, width: Any, length: Any, *, name: str | None = None
+    ) -> None:
+        self.position = to_vector(position, "`RectangularRegion` position")
+        self.heading = to_heading(heading, "`RectangularRegion` heading")
+        self.width = _positive(width, "`RectangularRegion` width")
+        self.length = _positive(length, "`RectangularRegion` length")
+        super().__init__(self.position, self.heading, self.width, self.length, name=name)
+
+    @property
+    def height(self) -> Any:
+        return self.position.z
+
+    def uniform_placement(self) -> tuple[Any, Any]:
+        x = operate("multiply", operate("subtract", uniform(), 0.5), self.width)
+        y = operate("multiply", operate("subtract", uniform(), 0.5), self.length)
+        frame = operate("from euler", self.heading, 0.0, 0.0)
+        offset = vector(x, y, 0)
+        if not is_number(self.heading) or self.heading != 0:
+            offset = operate("rotate", frame, offset)
+        return operate("add", self.position, offset), None
+
+    def contains_points(self, points: Points, *columns: Column) -> Mask:
+        position, heading, width, length = columns
+        dx, dy = points[:, 0] - position[:, 0], points[:, 1] - position[:, 1]
+        cos, sin = np.cos(heading), np.sin(heading)
+        inside: Mask = (np.abs(dx * cos + dy * sin) <= width / 2) & (
+            np.abs(dy * cos - dx * sin) <= length / 2
+        )
+        return inside
+
+    def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
+        position, heading, width, length = columns
+        cos, sin = np.cos(heading), np.sin(heading)
+        corners = np.empty((max(map(len, columns)), 4, 2))
+        for corner, (x, y) in enumerate(((-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5))):
+            corners[:, corner, 0] = position[:, 0] + (x * width * cos - y * length * sin)
+            corners[:, corner, 1] = position[:, 1] + (x * width * sin + y * length * cos)
+        return containment.in_convex_polygon(body, corners, lanes)
+
+
+class PolygonalRegion(PlanarRegion):
+    """A polygon, or several, with holes.
+
+    Args:
+        points: vertices of one polygon, in order; or
+        polygon: a shapely polygon or multipolygon.
+        z: height at which points are drawn, metres.
+
+    Raises:
+        ValueError: if the polygon is empty or crosses itself.
+
+    """
+
+    def __init__(
+        self,
+        points: Sequence[Any] = (),
+        polygon: Any = None,
+        z: float = 0,
+        orientation: Any = None,
+        *,
+        name: str | None = None,
+    ) -> None:
+        if is_random(points) or is_random(z):
+            raise ScenicTypeError("`PolygonalRegion` needs fixed points", span=here())
+        if orientation is not None:
+            raise ScenicTypeError("`PolygonalRegion` with a vector field is not supported yet", span=here())
+        try:
+            if polygon is None:
+                self.polygons = Polygons.of_points([tuple(to_vector(point))[:2] for point in points])
+            else:
+                self.polygons = Polygons(polygon)
+        except ValueError as error:
+            raise ScenicValueError(f"`PolygonalRegion`: {error}", span=here()) from error
+        self.z = float(z)
+        super().__init__(name=name)
+
+    @property
+    def height(self) -> Any:
+        return self.z
+
+    @property
+    def area(self) -> float:
+        """Square metres."""
+        return self.polygons.area
+
+    def buffer(self, distance: float) -> "PolygonalRegion":
+        """The region of all points within ``distance`` metres (shrunk where negative)."""
+        return PolygonalRegion(polygon=self.polygons.polygon.buffer(distance), z=self.z)
+
+    @staticmethod
+    def unionAll(regions: Iterable["PolygonalRegion"], buf: float = 0) -> "PolygonalRegion":
+        """The union of regions, each grown by ``buf`` metres."""
+        members = list(regions)
+        merged = Polygons.union([member.polygons for member in members], buf)
+        return PolygonalRegion(polygon=merged.polygon, z=members[0].z)
+
+    def uniform_placement(self) -> tuple[Any, Any]:
+        point = apply(_POLYGON_POINT, uniform(), uniform(), uniform(), payload=self)
+        return point, None
+
+    def contains_points(self, points: Points, *columns: Column) -> Mask:
+        return self.polygons.contains(points[:, 0], points[:, 1])
+
+    def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
+        return containment.in_polygons(body, self.polygons, lanes)
+
+
+def _polygon_point(call: Call, choice: Column, first: Column, second: Column) -> Column:
+    region: PolygonalRegion = call.payload
+    points = np.empty((max(len(choice), len(first), len(second)), 3))
+    points[:, :2] = region.polygons.sample(choice, first, second)
+    points[:, 2] = region.z
+    return points
+
+
+_POLYGON_POINT = Operation(
+    "polygon point", always(Kind.VECTOR), _polygon_point, "A point of a polygon, uniform by area."
+)

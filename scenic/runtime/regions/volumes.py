@@ -1,0 +1,130 @@
+"""Solid boxes and ellipsoids as regions, in closed form (section 9.2 of the specification)."""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from scenic.graph import quaternions
+from scenic.graph.bounds import Bounds, outward
+from scenic.graph.kinds import Column, Kind
+from scenic.graph.operation import Call, Operation, always
+from scenic.language.errors import ScenicValueError
+from scenic.runtime.context import here
+from scenic.runtime.geometry import containment
+from scenic.runtime.geometry.collision import Body
+from scenic.runtime.regions.base import Mask, Points, Region
+from scenic.runtime.values import (
+    Orientation,
+    apply,
+    is_number,
+    operate,
+    to_orientation,
+    to_scalar,
+    to_vector,
+    uniform,
+    vector,
+)
+
+
+class PlacedVolume(Region):
+    """A volume of some dimensions, turned and moved."""
+
+    dimension: float = 3
+
+    def __init__(
+        self,
+        dimensions: Any = (1, 1, 1),
+        position: Any = None,
+        rotation: Any = None,
+        *,
+        name: str | None = None,
+    ) -> None:
+        what = f"`{type(self).__name__}`"
+        sizes = [to_scalar(size, f"{what} dimensions") for size in dimensions]
+        if len(sizes) != 3 or any(is_number(size) and not size > 0 for size in sizes):
+            raise ScenicValueError(f"{what} needs three positive dimensions, not {dimensions!r}", span=here())
+        self.dimensions = vector(*sizes)
+        self.position = vector(0, 0, 0) if position is None else to_vector(position, f"{what} position")
+        self.rotation = Orientation() if rotation is None else to_orientation(rotation, f"{what} rotation")
+        super().__init__(self.dimensions, self.position, self.rotation, name=name)
+
+    def _placed(self, x: Any, y: Any, z: Any) -> tuple[Any, Any]:
+        """The point at these fractions of the dimensions from the centre."""
+        size = self.dimensions
+        offset = vector(
+            operate("multiply", x, size.x), operate("multiply", y, size.y), operate("multiply", z, size.z)
+        )
+        if not isinstance(self.rotation, Orientation) or self.rotation != Orientation():
+            offset = operate("rotate", self.rotation, offset)
+        return operate("add", self.position, offset), None
+
+
+def _local(points: Points, dimensions: Column, position: Column, rotation: Column) -> Points:
+    """Points in the unit frame of the volume."""
+    local: Points = quaternions.rotate(quaternions.conjugate(rotation), points - position) / dimensions
+    return local
+
+
+class BoxRegion(PlacedVolume):
+    """A solid box."""
+
+    def uniform_placement(self) -> tuple[Any, Any]:
+        return self._placed(*(operate("subtract", uniform(), 0.5) for _ in range(3)))
+
+    def contains_points(self, points: Points, *columns: Column) -> Mask:
+        local = np.abs(_local(points, *columns))
+        inside: Mask = (local[:, 0] <= 0.5) & (local[:, 1] <= 0.5) & (local[:, 2] <= 0.5)
+        return inside
+
+    def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
+        return containment.in_box(body, *columns, lanes)
+
+
+def _ball_point(_call: Call, first: Column, second: Column, third: Column) -> Column:
+    # Archimedes: height and azimuth of a uniform point of the sphere are uniform; the radius is a cube root.
+    radius, z, angle = np.cbrt(first), 2 * second - 1, 2 * math.pi * third
+    level = np.sqrt((1 - z) * (1 + z))
+    return np.stack([radius * level * np.cos(angle), radius * level * np.sin(angle), radius * z], axis=-1)
+
+
+def _ball_bounds(_payload: Any, first: Bounds, *_others: Bounds) -> Bounds:
+    reach = outward(first.upper, np.cbrt(first.upper), ulps=4).upper
+    upper = np.stack([reach, reach, reach], axis=-1)
+    return Bounds(-upper, upper)
+
+
+BALL_POINT = Operation(
+    "ball point",
+    always(Kind.VECTOR),
+    _ball_point,
+    "A uniform point of the unit ball, from three axes.",
+    bounds=_ball_bounds,
+)
+
+
+class SpheroidRegion(PlacedVolume):
+    """A solid ellipsoid with these three diameters."""
+
+    def __init__(
+        self,
+        dimensions: Any = (2, 2, 2),
+        position: Any = None,
+        rotation: Any = None,
+        *,
+        name: str | None = None,
+    ) -> None:
+        super().__init__(dimensions, position, rotation, name=name)
+
+    def uniform_placement(self) -> tuple[Any, Any]:
+        point = apply(BALL_POINT, uniform(), uniform(), uniform())
+        return self._placed(*(operate("multiply", 0.5, part) for part in point))
+
+    def contains_points(self, points: Points, *columns: Column) -> Mask:
+        local = _local(points, *columns)
+        x, y, z = local[:, 0], local[:, 1], local[:, 2]
+        inside: Mask = x * x + y * y + z * z <= 0.25
+        return inside
+
+    def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
+        return containment.in_ellipsoid(body, *columns, lanes)

@@ -1,0 +1,224 @@
+"""Which specifier decides which property, and the building of an instance (section 6.1 of the specification)."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from scenic.language.errors import ScenicValueError, SpecifierError
+from scenic.runtime.context import here
+from scenic.runtime.objects import TWO_D_DEFAULTS, Object, Point
+from scenic.runtime.properties import Property, normalised
+from scenic.runtime.specifiers import Specifier
+from scenic.runtime.values import is_number
+
+
+@dataclass(frozen=True, slots=True)
+class Resolution:
+    """Specifiers in the order in which to evaluate them, with the properties each one owns and modifies."""
+
+    order: tuple[Specifier, ...]
+    owns: Mapping[Specifier, frozenset[str]]
+    modifies: Mapping[Specifier, frozenset[str]]
+
+
+def build(cls: type[Point], specifiers: Sequence[Specifier], *, mode_2d: bool = False) -> Any:
+    """A new instance of ``cls``.
+
+    Raises `SpecifierError` where the specifiers do not fit together or to the class, `ScenicTypeError` and
+    `ScenicValueError` where a value does not fit its property.
+    """
+    defaults = class_defaults(cls, mode_2d=mode_2d)
+    resolution = resolve(cls, specifiers, defaults)
+    instance = cls._make({})
+    values = instance.__dict__
+    for specifier in resolution.order:
+        modifying = resolution.modifies.get(specifier, frozenset())
+        owned = resolution.owns.get(specifier, frozenset())
+        function = specifier.modify if modifying and specifier.modify else specifier.evaluate
+        offered = function(instance)
+        for name in owned | modifying:
+            values[name] = normalised(name, offered[name])
+    values["_names"] = tuple(sorted(values, key=list(_order(cls, values)).index))
+    if issubclass(cls, Object):
+        if mode_2d:
+            position = values["position"]
+            values["position"] = normalised("position", (position.x, position.y, 0))
+        _check_size(values)
+    return instance
+
+
+def _order(cls: type[Point], values: Mapping[str, Any]) -> dict[str, None]:
+    return dict.fromkeys([*cls.scenic_properties, *values])
+
+
+def class_defaults(cls: type[Point], *, mode_2d: bool) -> dict[str, Property]:
+    """The properties of a class, with the defaults of the mode."""
+    properties = dict(cls.scenic_properties)
+    if mode_2d and issubclass(cls, Object):
+        for name, definition in TWO_D_DEFAULTS.items():
+            entry = properties[name]
+            if entry.definitions[0].is_builtin:
+                properties[name] = Property(name, (definition,), entry.additive, entry.dynamic, entry.final)
+    return properties
+
+
+def resolve(
+    cls: type[Point], specifiers: Sequence[Specifier], properties: Mapping[str, Property]
+) -> Resolution:
+    """Decide who provides what, and in which order."""
+    _reject_duplicates(specifiers)
+    claims: dict[str, Specifier] = {}
+    modifiers: dict[str, Specifier] = {}
+    for specifier in specifiers:
+        own = specifier.dependencies & specifier.priorities.keys()
+        if own:
+            raise SpecifierError(
+                f"{specifier} specifies {_quoted(own)} and depends on it at the same time",
+                span=specifier.span,
+            )
+        for name in specifier.priorities:
+            _check_property(cls, name, specifier, properties)
+    for specifier in specifiers:
+        if not specifier.modifiable:
+            for name, priority in specifier.priorities.items():
+                _claim(claims, name, specifier, priority)
+    for specifier in specifiers:
+        if specifier.modifiable:
+            _claim_or_modify(claims, modifiers, specifier)
+    for name, entry in properties.items():
+        if name not in claims:
+            claims[name] = _default_specifier(name, entry)
+    owns = _by_specifier(claims)
+    modifies = _by_specifier(modifiers)
+    order = _topological(owns, modifies, claims, modifiers)
+    return Resolution(order, owns, modifies)
+
+
+def _reject_duplicates(specifiers: Sequence[Specifier]) -> None:
+    seen: set[str] = set()
+    for specifier in specifiers:
+        if specifier.name in seen:
+            raise SpecifierError(
+                f"{specifier} is given twice", span=specifier.span, help="remove one of the two"
+            )
+        seen.add(specifier.name)
+
+
+def _check_property(
+    cls: type[Point], name: str, specifier: Specifier, properties: Mapping[str, Property]
+) -> None:
+    if name in properties:
+        if properties[name].final:
+            hint = None
+            if name == "heading":
+                hint = "use `facing`, or compile in 2D mode (`--2d`) to set headings"
+            elif name == "orientation":
+                hint = "use `facing`, or set `yaw`, `pitch`, `roll` or `parentOrientation`"
+            raise SpecifierError(
+                f"property {name!r} cannot be directly specified", span=specifier.span, help=hint
+            )
+    elif hasattr(cls, name):
+        raise SpecifierError(
+            f"{name!r} is an attribute of {cls.__name__} and cannot be a property",
+            span=specifier.span,
+            help="choose another name",
+        )
+
+
+def _claim(claims: dict[str, Specifier], name: str, specifier: Specifier, priority: int) -> None:
+    present = claims.get(name)
+    if present is None or priority < present.priorities[name]:
+        claims[name] = specifier
+    elif priority == present.priorities[name]:
+        raise SpecifierError(
+            f"property {name!r} is specified twice with the same priority: by {present} and by {specifier}",
+            span=specifier.span,
+            help="remove one of the two specifiers",
+        )
+
+
+def _claim_or_modify(
+    claims: dict[str, Specifier], modifiers: dict[str, Specifier], specifier: Specifier
+) -> None:
+    for name, priority in specifier.priorities.items():
+        present = claims.get(name)
+        if present is None or priority < present.priorities[name]:
+            claims[name] = specifier
+        elif name in specifier.modifiable:
+            if name in modifiers:
+                raise SpecifierError(
+                    f"property {name!r} is modified twice: by {modifiers[name]} and by {specifier}",
+                    span=specifier.span,
+                )
+            modifiers[name] = specifier
+
+
+def _default_specifier(name: str, entry: Property) -> Specifier:
+    return Specifier(
+        f"default of {name}",
+        {name: 10},
+        entry.dependencies,
+        lambda instance: {name: entry.default(instance)},
+        span=entry.definitions[0].span,
+    )
+
+
+def _by_specifier(owners: Mapping[str, Specifier]) -> dict[Specifier, frozenset[str]]:
+    result: dict[Specifier, frozenset[str]] = {}
+    for name, specifier in owners.items():
+        result[specifier] = result.get(specifier, frozenset()) | {name}
+    return result
+
+
+def _topological(
+    owns: Mapping[Specifier, frozenset[str]],
+    modifies: Mapping[Specifier, frozenset[str]],
+    claims: Mapping[str, Specifier],
+    modifiers: Mapping[str, Specifier],
+) -> tuple[Specifier, ...]:
+    """Providers before the specifiers that read them, by depth-first search in program order."""
+    order: list[Specifier] = []
+    done: set[Specifier] = set()
+    active: list[Specifier] = []
+
+    def visit(specifier: Specifier) -> None:
+        if specifier in done:
+            return
+        if specifier in active:
+            circle = [*active[active.index(specifier) :], specifier]
+            raise SpecifierError(
+                "these specifiers depend on each other: " + " -> ".join(str(item) for item in circle),
+                span=next((item.span for item in circle if item.span is not None), None),
+                help="give one of the properties a value that does not depend on the others",
+            )
+        active.append(specifier)
+        for name in sorted(specifier.dependencies):
+            provider = modifiers.get(name) or claims.get(name)
+            if provider is None:
+                raise SpecifierError(
+                    f"{specifier} needs property {name!r}, which nothing provides", span=specifier.span
+                )
+            visit(provider)
+        for name in sorted(modifies.get(specifier, ())):
+            visit(claims[name])
+        active.pop()
+        done.add(specifier)
+        order.append(specifier)
+
+    for specifier in (*owns, *modifies):
+        visit(specifier)
+    return tuple(order)
+
+
+def _check_size(values: Mapping[str, Any]) -> None:
+    for name in ("width", "length", "height"):
+        size = values[name]
+        if is_number(size) and not size > 0:
+            raise ScenicValueError(f"property {name!r} must be greater than 0, not {size:g}", span=here())
+
+
+def _quoted(names: frozenset[str]) -> str:
+    return ", ".join(repr(name) for name in sorted(names))
+
+
+__all__ = ["Resolution", "build", "class_defaults", "resolve"]

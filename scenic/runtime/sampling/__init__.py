@@ -1,0 +1,1 @@
+"""From a plan of checks to scenes: streams of points of the cube, the order of checks, the engine."""

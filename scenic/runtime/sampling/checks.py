@@ -1,0 +1,145 @@
+"""What a candidate has to pass to become a scene, each check over many lanes at a time."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from scenic.graph.batch import Batch
+from scenic.graph.node import Node
+from scenic.graph.operation import FAULT, OK, REJECTED
+from scenic.language.spans import Span
+from scenic.runtime.geometry.collision import Body, collide
+from scenic.runtime.regions.base import body_of
+
+Mask = NDArray[np.bool_]
+
+DRAWING = -1
+"""Position of the drawing of values, before every requirement."""
+BUILT_IN = 0
+"""Position of the built-in requirements; those of the program follow, from 1."""
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """What a check says of each lane: does it hold, and did evaluating it fail (shape ``(n,)`` each).
+
+    In lanes that failed, ``holds`` means nothing. ``failed`` is ``None`` where none did.
+    """
+
+    holds: Mask
+    failed: Mask | None = None
+
+
+class Check(Protocol):
+    """One requirement as the engine sees it.
+
+    ``position`` is its place in program order. A ``fallible`` check may raise an error in a lane; checks that come
+    later in the program then have to wait for it, so that which error a program shows does not depend on the order in
+    which checks happen to be made.
+    """
+
+    label: str
+    span: Span | None
+    position: int
+    fallible: bool
+    probability: float
+    cost: float
+
+    def test(self, batch: Batch) -> Verdict:
+        """Evaluate the check in every lane of the batch."""
+
+    def nodes(self) -> Sequence[Node]:
+        """The nodes whose values it needs."""
+
+
+@dataclass(slots=True)
+class NodeCheck:
+    """A requirement that is a node of the graph."""
+
+    node: Node
+    label: str
+    span: Span | None
+    position: int
+    fallible: bool
+    probability: float = 1.0
+    cost: float = 1.0
+
+    def nodes(self) -> Sequence[Node]:
+        return [self.node]
+
+    def test(self, batch: Batch) -> Verdict:
+        holds = np.array(batch.full(self.node), dtype=np.bool_)
+        status = batch.status(self.node)
+        if status is None:
+            return Verdict(holds)
+        holds &= status != REJECTED
+        failed = status == FAULT
+        return Verdict(holds, failed if failed.any() else None)
+
+
+@dataclass(slots=True)
+class DrawingCheck:
+    """That a value of the scene can be drawn: no empty range, no missing attribute, no miss of a surface."""
+
+    node: Node
+    label: str
+    span: Span | None
+    fallible: bool
+    position: int = DRAWING
+    probability: float = 1.0
+    cost: float = 2.0
+
+    def nodes(self) -> Sequence[Node]:
+        return [self.node]
+
+    def test(self, batch: Batch) -> Verdict:
+        status = batch.status(self.node)
+        if status is None:
+            return Verdict(np.ones(len(batch), dtype=np.bool_))
+        failed = status == FAULT
+        return Verdict(status == OK, failed if failed.any() else None)
+
+
+@dataclass(frozen=True, slots=True)
+class ObjectNodes:
+    """The nodes that decide where an object is and what space it fills."""
+
+    position: Node
+    orientation: Node
+    size: Node
+    shape: Node
+    allow_collisions: Node
+
+    def body(self, batch: Batch) -> Body:
+        """The object's body in every lane."""
+        body = body_of(*(batch.column(node) for node in self.all[:4]))
+        return Body(body.meshes, body.choice, body.poses, batch.column(self.allow_collisions))
+
+    @property
+    def all(self) -> tuple[Node, ...]:
+        """Every node, in the order of the fields."""
+        return self.position, self.orientation, self.size, self.shape, self.allow_collisions
+
+
+@dataclass(slots=True)
+class CollisionCheck:
+    """That no two objects share a point, but for those that allow it."""
+
+    objects: Sequence[ObjectNodes]
+    pairs: NDArray[np.intp]
+    label: str = "collision of objects"
+    span: Span | None = None
+    position: int = BUILT_IN
+    fallible: bool = False
+    probability: float = 1.0
+    cost: float = 100.0
+
+    def nodes(self) -> Sequence[Node]:
+        return [node for item in self.objects for node in item.all]
+
+    def test(self, batch: Batch) -> Verdict:
+        bodies = [item.body(batch) for item in self.objects]
+        return Verdict(collide(bodies, self.pairs, lanes=len(batch)).free)

@@ -1,0 +1,288 @@
+"""From a program's objects and requirements to the checks of a plan (sections 10.1 and 10.2 of the specification)."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from scenic.graph.batch import Batch
+from scenic.graph.bounding import overall
+from scenic.graph.domain import Domain
+from scenic.graph.node import Graph, Node
+from scenic.graph.operations import TABLE
+from scenic.language.errors import InvalidScenarioError, UnsupportedError
+from scenic.language.spans import Span
+from scenic.runtime.conditions import truth
+from scenic.runtime.geometry.collision import collide
+from scenic.runtime.objects import Object
+from scenic.runtime.program import Program, Requirement
+from scenic.runtime.regions.base import Everywhere, Region, Workspace, body_operands
+from scenic.runtime.samples import dependencies
+from scenic.runtime.sampling.checks import (
+    BUILT_IN,
+    Check,
+    CollisionCheck,
+    DrawingCheck,
+    NodeCheck,
+    ObjectNodes,
+)
+from scenic.runtime.sampling.engine import Plan
+from scenic.runtime.values import CODEC, Random, as_node, is_random, operate
+from scenic.runtime.visibility import sees_in_plane
+
+
+@dataclass(frozen=True, slots=True)
+class Outline:
+    """A plan but for the part of the cube to sample from, which analysis may still narrow."""
+
+    graph: Graph
+    checks: tuple[Check, ...]
+    outputs: tuple[Node, ...]
+    requirements: tuple[Requirement, ...]
+    """The hard requirements of the program that are nodes, for analysis."""
+
+    def plan(self, domain: Domain | None = None) -> Plan:
+        """The plan on a part of the cube (the whole of it by default)."""
+        part = Domain.whole(self.graph.dimension) if domain is None else domain
+        return Plan(self.graph, part, self.checks, self.outputs, CODEC)
+
+
+def outline(program: Program, ego: Object | None, workspace: Workspace, *, mode_2d: bool) -> Outline:
+    """Everything that a scene must satisfy.
+
+    Raises `InvalidScenarioError` where a built-in requirement can be seen to fail in every scene.
+    """
+    outputs = dependencies([*program.objects, *program.instances, *program.parameters.values()])
+    checks: list[Check] = _drawing(outputs)
+    checks += _sizes(program)
+    checks += _containment(program, workspace)
+    if mode_2d:
+        checks += _visibility(program, ego)
+    checks += _collisions(program)
+    checks += _requirements(program)
+    nodes = [node for check in checks for node in check.nodes()]
+    graph = Graph([*outputs, *nodes])
+    hard = tuple(item for item in program.requirements if item.probability == 1)
+    return Outline(graph, tuple(checks), tuple(outputs), hard)
+
+
+def _drawing(outputs: Sequence[Node]) -> list[Check]:
+    """One check for each node that may have no value in some lane.
+
+    Below a choice only the drawn option counts, so that there the choice itself is checked.
+    """
+    sources: dict[Node, None] = {}
+    stack = list(outputs)[::-1]
+    seen: set[Node] = set()
+    while stack:
+        node = stack.pop()
+        if node in seen:
+            continue
+        seen.add(node)
+        if not node.operation.strict:
+            if any(_may_fail(operand) for operand in node.operands):
+                sources[node] = None
+            continue
+        if node.operation.name in _REJECTING or _raises(node):
+            sources[node] = None
+        stack.extend(reversed(node.operands))
+    return [
+        DrawingCheck(node, f"drawing a value ({node.operation.name})", _span(node), is_fallible(node))
+        for node in sources
+        if not _always_lands(node)
+    ]
+
+
+def _always_lands(node: Node) -> bool:
+    """Whether a node that draws a face of a fixed object is sure to find one."""
+    if node.operation.name != "surface face" or not all(item.is_constant for item in node.operands[1:]):
+        return False
+    batch = Batch(Graph([node]), np.full((1, 1), 0.5), CODEC)
+    return batch.status(node) is None
+
+
+def _span(node: Node) -> Span | None:
+    return node.span if isinstance(node.span, Span) else None
+
+
+def _place(program: Program, item: Any) -> Any:
+    return program.places.get(id(item), (None, None))
+
+
+def _sizes(program: Program) -> list[Check]:
+    """Random sizes must come out positive (section 5.3)."""
+    checks: list[Check] = []
+    for item in program.objects:
+        for name in ("width", "length", "height"):
+            size = getattr(item, name)
+            if is_random(size):
+                node = truth(operate("less", 0, size))
+                bounds = overall(node)
+                if bounds is not None and bounds.lower[0] == 1:
+                    continue
+                span, _ = _place(program, item)
+                checks.append(NodeCheck(node, f"positive {name}", span, BUILT_IN, is_fallible(node)))
+    return checks
+
+
+def _containment(program: Program, workspace: Workspace) -> list[Check]:
+    checks: list[Check] = []
+    for item in program.objects:
+        container = item.regionContainedIn
+        if isinstance(container, Random):
+            raise UnsupportedError(
+                "a random `regionContainedIn` is not supported yet", span=_place(program, item)[0]
+            )
+        region: Region = workspace if container is None else container
+        while isinstance(region, Workspace):
+            region = region.region
+        if isinstance(region, Everywhere):
+            continue
+        if not isinstance(region, Region):
+            raise InvalidScenarioError(
+                f"`regionContainedIn` must be a region, not {region!r}", span=_place(program, item)[0]
+            )
+        span, filename = _place(program, item)
+        node = truth(region.footprint.containsObject(item))
+        if not node.is_constant:
+            checks.append(
+                NodeCheck(node, f"{_name(item)} inside its container", span, BUILT_IN, False, cost=20)
+            )
+        elif not node.value:
+            raise InvalidScenarioError(
+                f"this {_name(item)} is not inside its container, {region!r}",
+                span=span,
+                filename=filename,
+                help="move or shrink it, or enlarge the workspace or its `regionContainedIn`",
+            )
+    return checks
+
+
+def _visibility(program: Program, ego: Object | None) -> list[Check]:
+    """In 2D mode the ego must see every object that asks for it."""
+    checks: list[Check] = []
+    for item in program.objects:
+        wanted = item.requireVisible
+        if item is ego or (not is_random(wanted) and not wanted):
+            continue
+        span, filename = _place(program, item)
+        if ego is None:
+            raise InvalidScenarioError(
+                "an object must be visible from the ego, but there is no ego",
+                span=span,
+                filename=filename,
+                help="set `ego = new Object ...`, or write `with requireVisible False`",
+            )
+        node = truth(sees_in_plane(ego, item))
+        if is_random(wanted):
+            node = as_node(operate("or", operate("not", wanted), Random(node)))
+        if not node.is_constant:
+            checks.append(
+                NodeCheck(node, f"{_name(item)} visible from the ego", span, BUILT_IN, False, cost=20)
+            )
+        elif not node.value:
+            raise InvalidScenarioError(
+                f"this {_name(item)} cannot be seen from the ego",
+                span=span,
+                filename=filename,
+                help="move it into view, or write `with requireVisible False`",
+            )
+    return checks
+
+
+def _collisions(program: Program) -> list[Check]:
+    objects = program.objects
+    nodes = [ObjectNodes(*map(as_node, (*body_operands(item), item.allowCollisions))) for item in objects]
+    fixed = [all(node.is_constant for node in item.all[:4]) for item in nodes]
+    pairs = []
+    for second in range(len(objects)):
+        for first in range(second):
+            allowed = (nodes[first].allow_collisions, nodes[second].allow_collisions)
+            if any(node.is_constant and node.value for node in allowed):
+                continue
+            if fixed[first] and fixed[second] and all(node.is_constant for node in allowed):
+                _check_fixed_pair(program, objects, nodes, first, second)
+            else:
+                pairs.append((first, second))
+    if not pairs:
+        return []
+    return [CollisionCheck(nodes, np.array(pairs, dtype=np.intp))]
+
+
+def _check_fixed_pair(
+    program: Program, objects: Sequence[Object], nodes: Sequence[ObjectNodes], first: int, second: int
+) -> None:
+    roots = [node for item in (nodes[first], nodes[second]) for node in item.all]
+    batch = Batch(Graph(roots), np.empty((1, 0)), CODEC)
+    bodies = [nodes[first].body(batch), nodes[second].body(batch)]
+    if not collide(bodies, np.array([[0, 1]]), lanes=1).free[0]:
+        span, filename = _place(program, objects[second])
+        other, _ = _place(program, objects[first])
+        where = f" on line {other.line}" if other is not None else ""
+        raise InvalidScenarioError(
+            f"this {_name(objects[second])} always collides with the {_name(objects[first])}{where}",
+            span=span,
+            filename=filename,
+            help="move one of the two, or write `with allowCollisions True`",
+        )
+
+
+def _requirements(program: Program) -> list[Check]:
+    checks: list[Check] = []
+    for position, item in enumerate(program.requirements, start=BUILT_IN + 1):
+        node = item.condition
+        if node.is_constant and node.value:
+            continue
+        checks.append(
+            NodeCheck(node, item.label, item.span, position, is_fallible(node), item.probability, cost=2)
+        )
+    return checks
+
+
+def _name(item: Any) -> str:
+    return type(item).__name__
+
+
+# Which nodes can fail
+
+_REJECTING = frozenset({"discrete range", "surface face", "landing face", "plane projection"})
+_FALLIBLE = frozenset(
+    {
+        "divide",
+        "floor divide",
+        "modulo",
+        "divmod",
+        "power",
+        "int",
+        "float",
+        "len",
+        "getitem",
+        "missing attribute",
+    }
+)
+_DIVISIONS = frozenset({"divide", "floor divide", "modulo", "divmod"})
+
+
+def is_fallible(root: Node) -> bool:
+    """Whether evaluating a node may raise an error in some lane."""
+    return any(_raises(node) for node in Graph([root]).nodes)
+
+
+def _may_fail(root: Node) -> bool:
+    """Whether a node may raise an error in some lane, or have no value there."""
+    return any(node.operation.name in _REJECTING or _raises(node) for node in Graph([root]).nodes)
+
+
+def _raises(node: Node) -> bool:
+    operation = node.operation
+    if node.is_constant or node.is_axis or operation is TABLE["select"]:
+        return False
+    if operation.name in _DIVISIONS and operation is TABLE.get(operation.name):
+        divisor = node.operands[1]
+        if divisor.is_constant and divisor.kind.is_number and divisor.value != 0:
+            return False
+    by_lane = operation.python is not None and (
+        node.kind.is_boxed or any(operand.kind.is_boxed for operand in node.operands)
+    )
+    return operation.name in _FALLIBLE or operation.name == "opaque condition" or by_lane

@@ -1,0 +1,50 @@
+"""Why candidates were rejected, counted so that the order of checks does not matter."""
+
+from dataclasses import dataclass
+
+from scenic.language.spans import Span
+
+
+@dataclass(frozen=True, slots=True)
+class RejectionRow:
+    """One requirement on a fixed sample of candidates.
+
+    ``rejected`` is the fraction that it rejects, ``alone`` the fraction that it alone rejects, both from 0 to 1.
+    """
+
+    label: str
+    span: Span | None
+    rejected: float
+    alone: float
+
+
+@dataclass(frozen=True, slots=True)
+class RejectionReport:
+    """Every requirement's share in the rejections, on the first ``candidates`` attempts of a scene."""
+
+    candidates: int
+    rows: tuple[RejectionRow, ...]
+
+    def culprits(self) -> tuple[RejectionRow, ...]:
+        """The requirements that rejected every candidate."""
+        return tuple(row for row in self.rows if row.rejected == 1)
+
+    def __str__(self) -> str:
+        lines = [f"of {self.candidates} candidates:   rejected     alone"]
+        for row in sorted(self.rows, key=lambda row: -row.rejected):
+            where = f" (line {row.span.line})" if row.span else ""
+            lines.append(f"{row.rejected:>24.1%} {row.alone:>9.1%}  {row.label}{where}")
+        return "\n".join(lines)
+
+
+@dataclass(frozen=True, slots=True)
+class Exhausted:
+    """A scene that was not found within its limit; ``reason`` is ``"attempts"``, ``"time"``, or
+    ``"impossible"`` where analysis proves that none exists.
+    """
+
+    seed: int
+    k: int
+    attempts: int
+    reason: str
+    report: RejectionReport

@@ -1,0 +1,197 @@
+"""A compiled scenario, from which scenes are sampled."""
+
+import random
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from scenic.graph.domain import Domain
+from scenic.language.errors import Located, RejectionException, SamplingError
+from scenic.runtime.objects import Object
+from scenic.runtime.program import Program
+from scenic.runtime.regions.base import Workspace, everywhere
+from scenic.runtime.sampling.engine import DEFAULT_LANES, CandidateError, Engine
+from scenic.runtime.sampling.planning import Outline, outline
+from scenic.runtime.sampling.report import Exhausted
+from scenic.runtime.scene import Scene
+
+PROOF_CANDIDATES = 200
+"""Candidates looked at to illustrate why no scene exists, where that is proven."""
+
+DEFAULT_ATTEMPTS = 100_000
+"""Candidates tried for one scene before giving up, unless the caller says otherwise."""
+
+
+class Scenario:
+    """What a program describes.
+
+    Made by `scenic.load` and by the established `scenarioFromFile` and `scenarioFromString`.
+    """
+
+    def __init__(
+        self,
+        program: Program,
+        *,
+        filename: str,
+        ego: Object | None,
+        workspace: Workspace | None,
+        names: Mapping[int, str],
+        mode_2d: bool = False,
+    ) -> None:
+        self.filename = filename
+        self.workspace = workspace or Workspace(everywhere)
+        self.egoObject = ego
+        self.outline: Outline = outline(program, ego, self.workspace, mode_2d=mode_2d)
+        self._program = program
+        self._names = names
+        self._plan = self.outline.plan()
+        self._impossible: tuple[str, ...] = ()
+
+    @property
+    def objects(self) -> tuple[Object, ...]:
+        """The objects of the program, whose properties may be random: the ego first, then in order of creation."""
+        others = tuple(item for item in self._program.objects if item is not self.egoObject)
+        return others if self.egoObject is None else (self.egoObject, *others)
+
+    @property
+    def params(self) -> dict[str, Any]:
+        """The global parameters, which may be random."""
+        return dict(self._program.parameters)
+
+    @property
+    def requirements(self) -> tuple[Any, ...]:
+        """The ``require`` statements, in program order."""
+        return tuple(self._program.requirements)
+
+    @property
+    def domain(self) -> Domain:
+        """The part of the unit cube that is sampled."""
+        return self._plan.domain
+
+    def restrict(self, domain: Domain, *, impossible: Sequence[str] = ()) -> None:
+        """Sample from a part of the cube only. It must hold every point that meets the requirements.
+
+        ``impossible`` names requirements that are proven to fail everywhere; then nothing is sampled at all.
+        """
+        self._plan = self.outline.plan(domain)
+        self._impossible = tuple(impossible)
+
+    def stream(
+        self,
+        n: int,
+        *,
+        seed: int,
+        first: int = 0,
+        max_attempts: int | None = None,
+        time_limit: float | None = None,
+        lanes: int = DEFAULT_LANES,
+    ) -> Iterator[Scene | Exhausted]:
+        """Scenes ``first`` to ``first + n`` of a seed, in order, as they are found.
+
+        Args:
+            n: how many.
+            seed: any integer; scene ``k`` of a seed is always the same.
+            first: number of the first scene.
+            max_attempts: candidates tried for one scene before it is given up as `Exhausted`.
+            time_limit: seconds for all of them; scenes not found by then are `Exhausted`.
+            lanes: candidates evaluated at a time. Changes speed and memory, never the scenes.
+
+        Raises:
+            SamplingError: if a requirement or property fails on a candidate.
+
+        """
+        engine = Engine(self._plan, seed, lanes)
+        if self._impossible:
+            report = engine.report(first, PROOF_CANDIDATES)
+            for k in range(first, first + n):
+                yield Exhausted(seed, k, 0, "impossible", report)
+            return
+        limit = DEFAULT_ATTEMPTS if max_attempts is None else max_attempts
+        if self._plan.graph.dimension == 0:
+            limit = 1  # Every attempt would be the same.
+        deadline = None if time_limit is None else time.monotonic() + time_limit
+        try:
+            for result in engine.scenes(first, n, max_attempts=limit, deadline=deadline):
+                if isinstance(result, Exhausted):
+                    yield result
+                else:
+                    yield Scene(result, self._program, self.egoObject, self.workspace, self._names)
+        except CandidateError as error:
+            raise self._sampling_error(error) from error.__cause__
+
+    def sample(
+        self,
+        n: int = 1,
+        *,
+        seed: int | None = None,
+        max_attempts: int | None = None,
+        time_limit: float | None = None,
+        lanes: int = DEFAULT_LANES,
+    ) -> list[Scene]:
+        """``n`` scenes of a seed (drawn from Python's ``random`` if not given).
+
+        Raises:
+            RejectionException: if a scene is not found within the limits; the message lists what rejected it.
+            SamplingError: if a requirement or property fails on a candidate.
+
+        """
+        chosen = random.getrandbits(63) if seed is None else seed
+        scenes = []
+        for result in self.stream(
+            n, seed=chosen, max_attempts=max_attempts, time_limit=time_limit, lanes=lanes
+        ):
+            if isinstance(result, Exhausted):
+                raise RejectionException(exhaustion_message(result))
+            scenes.append(result)
+        return scenes
+
+    def generate(
+        self, maxIterations: int = 2000, verbosity: int = 0, feedback: Any = None, *, seed: int | None = None
+    ) -> tuple[Scene, int]:
+        """One scene, and the number of candidates tried for it.
+
+        Without ``seed`` one is drawn from Python's ``random``, so that scripts which call ``random.seed`` repeat.
+        ``verbosity`` and ``feedback`` are accepted for compatibility.
+
+        Raises:
+            RejectionException: if none of ``maxIterations`` candidates meets the requirements.
+
+        """
+        (scene,) = self.sample(
+            1, seed=seed, max_attempts=maxIterations, lanes=min(DEFAULT_LANES, maxIterations)
+        )
+        return scene, scene.attempts
+
+    def generateBatch(
+        self, n: int, maxIterations: int = DEFAULT_ATTEMPTS, verbosity: int = 0, feedback: Any = None
+    ) -> tuple[list[Scene], int]:
+        """``n`` scenes, and the total number of candidates tried for them."""
+        scenes = self.sample(n, max_attempts=maxIterations)
+        return scenes, sum(scene.attempts for scene in scenes)
+
+    def _sampling_error(self, error: CandidateError) -> Exception:
+        cause, check = error.__cause__, error.check
+        if isinstance(cause, Located) and not isinstance(cause, SamplingError):
+            cause.span = cause.span or check.span
+            cause.filename = cause.filename or self.filename
+            return cause
+        what = "unknown error" if cause is None else f"{type(cause).__name__}: {cause}"
+        return SamplingError(
+            f"{check.label} failed: {what}",
+            span=check.span,
+            filename=self.filename,
+            help="this came up in a sampled candidate; guard against the value, or reject it by an earlier "
+            "`require`",
+        )
+
+
+def exhaustion_message(exhausted: Exhausted) -> str:
+    """Why a scene was not found, with the share of each requirement."""
+    head = {
+        "attempts": f"no scene was found within {exhausted.attempts} candidates",
+        "time": f"no scene was found in the time given ({exhausted.attempts} candidates)",
+        "impossible": "no scene exists: the requirements cannot hold together",
+    }[exhausted.reason]
+    culprits = exhausted.report.culprits()
+    blame = "".join(f"\n{row.label} rejected every candidate" for row in culprits)
+    return f"{head}{blame}\n{exhausted.report}"

@@ -1,0 +1,85 @@
+"""Scenes: one sample of a scenario."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from scenic.graph.node import Node
+from scenic.language.errors import InternalError
+from scenic.runtime.objects import Object
+from scenic.runtime.program import Program
+from scenic.runtime.regions.base import Workspace
+from scenic.runtime.samples import Sample
+from scenic.runtime.sampling.engine import Accepted
+from scenic.runtime.values import CODEC
+
+
+class Scene:
+    """Concrete objects and parameters. Values are taken from the sample when they are first looked at.
+
+    Attributes:
+        seed: seed of the run that made the scene.
+        k: number of the scene in that run, from 0; with ``seed`` it determines the scene.
+        attempts: candidates tried until this one was accepted, itself included.
+
+    """
+
+    def __init__(
+        self,
+        accepted: Accepted,
+        program: Program,
+        ego: Object | None,
+        workspace: Workspace,
+        names: Mapping[int, str],
+    ) -> None:
+        self.seed = accepted.seed
+        self.k = accepted.k
+        self.attempts = accepted.attempts
+        self.workspace = workspace
+        self._accepted = accepted
+        self._program = program
+        self._ego = ego
+        self._names = names
+        self._sample = Sample(self._lookup)
+        self._objects: tuple[Any, ...] | None = None
+        self._params: dict[str, Any] | None = None
+
+    def _lookup(self, node: Node) -> Any:
+        column = self._accepted.columns.get(node)
+        if column is None:
+            raise InternalError(f"no column for {node!r}")
+        return CODEC.decode(node.kind, column[self._accepted.lane if len(column) > 1 else 0])
+
+    @property
+    def objects(self) -> tuple[Any, ...]:
+        """All objects: the ego first, then the others in order of creation."""
+        if self._objects is None:
+            ordered: list[Object] = [] if self._ego is None else [self._ego]
+            ordered += [item for item in self._program.objects if item is not self._ego]
+            self._objects = tuple(self._sample.value(item) for item in ordered)
+        return self._objects
+
+    @property
+    def egoObject(self) -> Any:
+        """The ego, or ``None``."""
+        return None if self._ego is None else self._sample.value(self._ego)
+
+    @property
+    def params(self) -> dict[str, Any]:
+        """Values of the global parameters."""
+        if self._params is None:
+            self._params = {
+                name: self._sample.value(value) for name, value in self._program.parameters.items()
+            }
+        return self._params
+
+    @property
+    def names(self) -> dict[Any, str]:
+        """The variable of the program that holds each object, where there is one."""
+        return {
+            item: name
+            for item in self.objects
+            if (name := self._names.get(id(item.__dict__.get("_source")))) is not None
+        }
+
+    def __repr__(self) -> str:
+        return f"<Scene {self.k} of seed {self.seed}: {len(self.objects)} objects>"

@@ -1,0 +1,312 @@
+"""What each specifier specifies (section 6.2 to 6.4 of the specification).
+
+A specifier is turned into a `Specifier`: the properties it offers with their priorities, the properties it reads, and
+a function from the partially built instance to values. Which of the offered values are taken is decided in
+`scenic.runtime.resolution`.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Any
+
+from scenic.graph.operations import TABLE
+from scenic.language.errors import ScenicTypeError
+from scenic.language.spans import Span
+from scenic.runtime.context import here
+from scenic.runtime.objects import Object, OrientedPoint, Point
+from scenic.runtime.regions.base import Region, unsupported
+from scenic.runtime.values import (
+    Orientation,
+    Random,
+    as_value,
+    describe,
+    is_number,
+    is_orientation,
+    operate,
+    to_heading,
+    to_orientation,
+    to_scalar,
+    to_vector,
+    vector,
+    wrong_type,
+)
+
+Evaluate = Callable[[Any], Mapping[str, Any]]
+Ego = Callable[[], Any]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Specifier:
+    """One specifier of an instance.
+
+    ``priorities`` maps each property offered to the strength of the offer (1 is strongest). ``modify`` is the function
+    used when the specifier modifies a property that another one specifies; ``modifiable`` names those properties.
+    """
+
+    name: str
+    priorities: Mapping[str, int]
+    dependencies: frozenset[str]
+    evaluate: Evaluate
+    modifiable: frozenset[str] = frozenset()
+    modify: Evaluate | None = None
+    span: Span | None = None
+
+    def __str__(self) -> str:
+        return f"`{self.name}`"
+
+
+def _specifier(
+    name: str, priorities: Mapping[str, int], evaluate: Evaluate, *dependencies: str, **options: Any
+) -> Specifier:
+    return Specifier(name, priorities, frozenset(dependencies), evaluate, span=here(), **options)
+
+
+# What operands are, where formulas differ by it
+
+
+def is_kind(value: Any, cls: type[Point]) -> bool:
+    """Whether a value is certainly an instance of a class: for a choice, every option."""
+    if isinstance(value, Random):
+        if value.node.operation is not TABLE["select"]:
+            return False
+        return all(is_kind(as_value(option), cls) for option in value.node.operands[1:])
+    return isinstance(value, cls)
+
+
+def region_of(value: Any, what: str) -> Region:
+    """A region; raises `ScenicTypeError` for anything else."""
+    if isinstance(value, Region):
+        return value
+    if isinstance(value, Random) and value.node.operation is TABLE["select"]:
+        options = [as_value(option) for option in value.node.operands[1:]]
+        if all(isinstance(option, Region) for option in options):
+            raise unsupported("a random choice among regions")
+    raise wrong_type("a region", value, what)
+
+
+# The specifiers
+
+
+def with_(_ego: Ego, property: str, value: Any) -> Specifier:
+    return _specifier(f"with {property}", {property: 1}, lambda _: {property: value})
+
+
+def at(_ego: Ego, position: Any) -> Specifier:
+    place = to_vector(position, "`at`")
+    return _specifier("at", {"position": 1}, lambda _: {"position": place})
+
+
+def in_(_ego: Ego, region: Any, *, name: str = "in", contained: bool = False) -> Specifier:
+    target = region_of(region, f"`{name}`")
+    priorities = {"position": 1}
+    if target.has_orientation:
+        priorities["parentOrientation"] = 3
+    if contained:
+        priorities["regionContainedIn"] = 1
+
+    def evaluate(_: Any) -> Mapping[str, Any]:
+        position, orientation = target.uniform_placement()
+        return {"position": position, "parentOrientation": orientation, "regionContainedIn": target}
+
+    return _specifier(name, priorities, evaluate)
+
+
+def contained_in(ego: Ego, region: Any) -> Specifier:
+    return in_(ego, region, name="contained in", contained=True)
+
+
+def on(_ego: Ego, target: Any) -> Specifier:
+    """Section 6.3: the base point touches the target, with a gap of half the contact tolerance."""
+    surface = target.onSurface if is_kind(target, Object) else target
+    reads = ("baseOffset", "contactTolerance", "onDirection")
+    priorities = {"position": 1}
+    region: Region | None = None
+    if isinstance(surface, Region):
+        region = surface
+        if region.has_orientation:
+            priorities["parentOrientation"] = 2
+    elif isinstance(surface, Random) and surface.node.kind.is_boxed:
+        region = region_of(surface, "`on`")
+    else:
+        place = to_vector(surface, "`on`")
+
+    def rest(instance: Any, anchor: Any, orientation: Any) -> Mapping[str, Any]:
+        gap = vector(0, 0, operate("divide", instance.contactTolerance, 2))
+        offset = operate("subtract", gap, to_vector(instance.baseOffset))
+        if orientation is not None:
+            offset = operate("rotate", orientation, offset)
+        return {"position": operate("add", anchor, offset), "parentOrientation": orientation}
+
+    def evaluate(instance: Any) -> Mapping[str, Any]:
+        if region is None:
+            return rest(instance, place, None)
+        return rest(instance, *region.uniform_placement())
+
+    def modify(instance: Any) -> Mapping[str, Any]:
+        if region is None:
+            raise ScenicTypeError(
+                "`on` a vector cannot be combined with a specifier that sets the position",
+                span=here(),
+                help="use `at`, or `on` a region or object",
+            )
+        return rest(instance, *region.project(instance.position, instance.onDirection))
+
+    return _specifier("on", priorities, evaluate, *reads, modifiable=frozenset({"position"}), modify=modify)
+
+
+def offset_by(ego: Ego, offset: Any) -> Specifier:
+    origin, step = ego(), to_vector(offset, "`offset by`")
+
+    def evaluate(_: Any) -> Mapping[str, Any]:
+        return {"position": origin.relativize(step), "parentOrientation": origin.orientation}
+
+    return _specifier("offset by", {"position": 1, "parentOrientation": 3}, evaluate)
+
+
+def offset_along(ego: Ego, direction: Any, offset: Any) -> Specifier:
+    origin, step = ego(), to_vector(offset, "`offset along`")
+    frame = to_orientation(direction, "`offset along`")
+
+    def evaluate(_: Any) -> Mapping[str, Any]:
+        position = operate("add", origin.position, operate("rotate", frame, step))
+        return {"position": position, "parentOrientation": origin.orientation}
+
+    return _specifier("offset along", {"position": 1, "parentOrientation": 3}, evaluate)
+
+
+def beyond(ego: Ego, target: Any, offset: Any, origin: Any) -> Specifier:
+    observer = ego() if origin is None else origin
+    place = to_vector(target, "`beyond`")
+    step = scalar_or_vector(offset, "`beyond`", axis=1)
+    line = operate("subtract", place, to_vector(observer, "`beyond ... from`"))
+    frame = operate("from euler", operate("azimuth", line), operate("altitude", line), 0)
+    orientation = observer.orientation if is_kind(observer, OrientedPoint) else Orientation()
+
+    def evaluate(_: Any) -> Mapping[str, Any]:
+        position = operate("add", place, operate("rotate", frame, step))
+        return {"position": position, "parentOrientation": orientation}
+
+    return _specifier("beyond", {"position": 1, "parentOrientation": 3}, evaluate)
+
+
+def scalar_or_vector(value: Any, what: str, *, axis: int) -> Any:
+    """A displacement: a vector, or a number along one axis."""
+    if is_number(value) or (isinstance(value, Random) and value.node.kind.is_number):
+        parts: list[Any] = [0, 0, 0]
+        parts[axis] = value
+        return vector(*parts)
+    return to_vector(value, what)
+
+
+def _directional(name: str, axis: int, sign: int, extent: str) -> Callable[..., Specifier]:
+    """Section 6.4: next to something, along one axis of its frame."""
+
+    def build(_ego: Ego, target: Any, distance: Any) -> Specifier:
+        is_object, is_oriented = is_kind(target, Object), is_kind(target, OrientedPoint)
+        centre = target.position if is_oriented else to_vector(target, f"`{name}`")
+        reference = to_scalar(getattr(target, extent)) if is_object else 0.0
+        step = None if distance is None else scalar_or_vector(distance, f"`{name} ... by`", axis=axis)
+
+        def offset(instance: Any) -> Any:
+            # u (s/2 + t/2 + d + g): the two half extents, the displacement, or else the contact gap.
+            along = operate("divide", operate("add", to_scalar(getattr(instance, extent)), reference), 2)
+            parts: list[Any] = [0.0, 0.0, 0.0] if step is None else list(step)
+            if step is not None:
+                along = operate("add", along, parts[axis])
+            elif is_object:
+                along = operate("add", along, operate("divide", instance.contactTolerance, 2))
+            parts[axis] = operate("multiply", sign, along)
+            return vector(*parts)
+
+        def evaluate(instance: Any) -> Mapping[str, Any]:
+            frame = target.orientation if is_oriented else instance.orientation
+            position = operate("add", centre, operate("rotate", frame, offset(instance)))
+            return {"position": position, "parentOrientation": target.orientation if is_oriented else None}
+
+        priorities = {"position": 1, "parentOrientation": 3} if is_oriented else {"position": 1}
+        reads = [extent]
+        if is_object:
+            reads.append("contactTolerance")
+        if not is_oriented:
+            reads.append("orientation")
+        return _specifier(name, priorities, evaluate, *reads)
+
+    return build
+
+
+def facing(_ego: Ego, orientation: Any) -> Specifier:
+    if is_number(orientation) or is_orientation(orientation) or is_kind(orientation, OrientedPoint):
+        target = to_orientation(orientation, "`facing`")
+    elif isinstance(orientation, tuple | list) and len(orientation) == 2:
+        raise ScenicTypeError(
+            f"`facing` takes a heading, an orientation or three Euler angles, not {describe(orientation)}",
+            span=here(),
+            help="to face a position write `facing toward`",
+        )
+    else:
+        target = to_orientation(orientation, "`facing`")
+
+    def evaluate(instance: Any) -> Mapping[str, Any]:
+        local = operate("compose", operate("inverse", instance.parentOrientation), target)
+        return {"yaw": local.yaw, "pitch": local.pitch, "roll": local.roll}
+
+    return _specifier("facing", {"yaw": 1, "pitch": 1, "roll": 1}, evaluate, "parentOrientation")
+
+
+def _facing_point(name: str, *, away: bool, directly: bool) -> Callable[..., Specifier]:
+    def build(_ego: Ego, target: Any) -> Specifier:
+        place = to_vector(target, f"`{name}`")
+
+        def evaluate(instance: Any) -> Mapping[str, Any]:
+            ends = (place, instance.position) if away else (instance.position, place)
+            line = operate("subtract", ends[1], ends[0])
+            local = operate("rotate", operate("inverse", instance.parentOrientation), line)
+            angles = {"yaw": operate("azimuth", local)}
+            return {**angles, "pitch": operate("altitude", local)} if directly else angles
+
+        priorities = {"yaw": 1, "pitch": 1} if directly else {"yaw": 1}
+        return _specifier(name, priorities, evaluate, "position", "parentOrientation")
+
+    return build
+
+
+def apparently_facing(ego: Ego, heading: Any, origin: Any) -> Specifier:
+    angle = to_heading(heading, "`apparently facing`")
+    observer = to_vector(ego() if origin is None else origin, "`apparently facing ... from`")
+
+    def evaluate(instance: Any) -> Mapping[str, Any]:
+        line = operate("subtract", instance.position, observer)
+        return {"yaw": operate("add", operate("azimuth", line), angle)}
+
+    return _specifier("apparently facing", {"yaw": 1}, evaluate, "position", "parentOrientation")
+
+
+BUILDERS: Mapping[str, Callable[..., Specifier]] = MappingProxyType(
+    {
+        "with": with_,
+        "at": at,
+        "in": in_,
+        "contained in": contained_in,
+        "on": on,
+        "offset by": offset_by,
+        "offset along": offset_along,
+        "beyond": beyond,
+        "left of": _directional("left of", 0, -1, "width"),
+        "right of": _directional("right of", 0, 1, "width"),
+        "ahead of": _directional("ahead of", 1, 1, "length"),
+        "behind": _directional("behind", 1, -1, "length"),
+        "above": _directional("above", 2, 1, "height"),
+        "below": _directional("below", 2, -1, "height"),
+        "facing": facing,
+        "facing toward": _facing_point("facing toward", away=False, directly=False),
+        "facing away from": _facing_point("facing away from", away=True, directly=False),
+        "facing directly toward": _facing_point("facing directly toward", away=False, directly=True),
+        "facing directly away from": _facing_point("facing directly away from", away=True, directly=True),
+        "apparently facing": apparently_facing,
+    }
+)
+"""How each specifier of `scenic.language.specifiers` is built: ``(ego, *operands)``; ``with`` gets its property
+first. ``ego`` is a function, so that a scenario without ego fails only where one is needed."""
+
+__all__ = ["BUILDERS", "Specifier", "is_kind", "region_of", "scalar_or_vector"]

@@ -1,0 +1,892 @@
+"""The values a program computes with: numbers, vectors and orientations, definite or random.
+
+A random value wraps a node of the value graph. Every function here takes definite and random values alike: with definite
+operands an operation is evaluated at once, by the same reading that batches use; with a random one it becomes a node. So
+the language's operators, vector methods and specifier formulas are each written once.
+"""
+
+import math
+import warnings
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any, Self, TypeGuard
+
+import numpy as np
+
+from scenic.graph import node as graph
+from scenic.graph.kinds import Kind
+from scenic.graph.node import Node
+from scenic.graph.operation import Call, Operation, always
+from scenic.graph.operations import TABLE
+from scenic.language.errors import InvalidScenarioError, RandomControlFlowError, ScenicTypeError
+from scenic.runtime.context import current, here, uniform_draw
+
+LARGEST_INTEGER = 2**62
+"""Integers beyond this are kept as Python objects."""
+
+
+class Random:
+    """A value that is drawn when a scene is sampled.
+
+    Arithmetic, indexing, calling and attribute access give further random values. Anything that needs a definite
+    answer now (a truth value, a comparison, iteration) raises `RandomControlFlowError`.
+    """
+
+    __slots__ = ("_again", "node")
+    __array_priority__ = 1000  # NumPy scalars on the left defer to the methods below.
+
+    def __init__(self, node: Node, again: "Callable[[], Any] | None" = None) -> None:
+        self.node = node
+        self._again = again
+
+    # Arithmetic
+
+    def __add__(self, other: Any) -> Any:
+        return operate("add", self, other)
+
+    def __radd__(self, other: Any) -> Any:
+        return operate("add", other, self)
+
+    def __sub__(self, other: Any) -> Any:
+        return operate("subtract", self, other)
+
+    def __rsub__(self, other: Any) -> Any:
+        return operate("subtract", other, self)
+
+    def __mul__(self, other: Any) -> Any:
+        return operate("multiply", self, other)
+
+    def __rmul__(self, other: Any) -> Any:
+        return operate("multiply", other, self)
+
+    def __truediv__(self, other: Any) -> Any:
+        return operate("divide", self, other)
+
+    def __rtruediv__(self, other: Any) -> Any:
+        return operate("divide", other, self)
+
+    def __floordiv__(self, other: Any) -> Any:
+        return operate("floor divide", self, other)
+
+    def __rfloordiv__(self, other: Any) -> Any:
+        return operate("floor divide", other, self)
+
+    def __mod__(self, other: Any) -> Any:
+        return operate("modulo", self, other)
+
+    def __rmod__(self, other: Any) -> Any:
+        return operate("modulo", other, self)
+
+    def __divmod__(self, other: Any) -> Any:
+        return operate("divmod", self, other)
+
+    def __rdivmod__(self, other: Any) -> Any:
+        return operate("divmod", other, self)
+
+    def __pow__(self, other: Any) -> Any:
+        return operate("power", self, other)
+
+    def __rpow__(self, other: Any) -> Any:
+        return operate("power", other, self)
+
+    def __neg__(self) -> Any:
+        return operate("negative", self)
+
+    def __pos__(self) -> Any:
+        return operate("positive", self)
+
+    def __abs__(self) -> Any:
+        return operate("absolute", self)
+
+    def __round__(self, digits: Any = None) -> Any:
+        return operate("round", self) if digits is None else operate("round", self, digits)
+
+    # Parts
+
+    def __getitem__(self, index: Any) -> Any:
+        return operate("getitem", self, index)
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("__") and name.endswith("__"):
+            raise AttributeError(name)
+        return attribute(self, name)
+
+    def __call__(self, *args: Any, **kwargs: Any) -> Any:
+        return call(self, args, kwargs)
+
+    # What a random value cannot do
+
+    def _definite(self, what: str) -> RandomControlFlowError:
+        return RandomControlFlowError(
+            f"{what} a random value is not possible while the scenario is being built",
+            span=here(),
+            help="its value is known only in a sampled scene; use `require`, or make the choice itself "
+            "random with `Uniform(...)` or `Discrete({...})`",
+        )
+
+    def __bool__(self) -> bool:
+        raise self._definite("branching on the truth of")
+
+    def __eq__(self, other: object) -> bool:
+        raise self._definite("comparing")
+
+    def __ne__(self, other: object) -> bool:
+        raise self._definite("comparing")
+
+    def __lt__(self, other: Any) -> bool:
+        raise self._definite("comparing")
+
+    def __le__(self, other: Any) -> bool:
+        raise self._definite("comparing")
+
+    def __gt__(self, other: Any) -> bool:
+        raise self._definite("comparing")
+
+    def __ge__(self, other: Any) -> bool:
+        raise self._definite("comparing")
+
+    def __contains__(self, item: Any) -> bool:
+        raise self._definite("looking into")
+
+    def __iter__(self) -> Iterator[Any]:
+        raise self._definite("iterating over")
+
+    def __len__(self) -> int:
+        raise self._definite("taking Python's own `len` of")
+
+    def __index__(self) -> int:
+        raise self._definite("indexing with")
+
+    def __int__(self) -> int:
+        raise self._definite("converting (outside Scenic code)")
+
+    def __float__(self) -> float:
+        raise self._definite("converting (outside Scenic code)")
+
+    __hash__ = object.__hash__
+
+    def __repr__(self) -> str:
+        return f"<random {self.node.kind.value}: {self.node.operation.name}>"
+
+    def __format__(self, spec: str) -> str:
+        warnings.warn("a random value formatted as text shows no sample", stacklevel=2)
+        return repr(self)
+
+    def resampled(self) -> Any:
+        """An independent draw of the same law with the same parameters (``resample``)."""
+        if self._again is None:
+            raise ScenicTypeError(
+                "only primitive distributions can be resampled, not values computed from them",
+                span=here(),
+                help="resample the distribution itself and compute with the result",
+            )
+        return self._again()
+
+
+class VectorMethods:
+    """What a vector can do, definite or random."""
+
+    __slots__ = ()
+
+    @property
+    def x(self) -> Any:
+        """East, in metres."""
+        return operate("component", self, payload=0)
+
+    @property
+    def y(self) -> Any:
+        """North, in metres."""
+        return operate("component", self, payload=1)
+
+    @property
+    def z(self) -> Any:
+        """Up, in metres."""
+        return operate("component", self, payload=2)
+
+    def norm(self) -> Any:
+        """Euclidean length."""
+        return operate("norm", self)
+
+    def dot(self, other: Any) -> Any:
+        """Scalar product."""
+        return operate("dot", self, to_vector(other))
+
+    def cross(self, other: Any) -> Any:
+        """Vector product."""
+        return operate("cross", self, to_vector(other))
+
+    def normalized(self) -> Any:
+        """The unit vector of the same direction; the zero vector stays as it is."""
+        return operate("normalized", self)
+
+    def rotatedBy(self, rotation: Any) -> Any:
+        """Rotated by an orientation, or by an angle about the vertical axis (radians, anticlockwise)."""
+        return operate("rotate", to_orientation(rotation), self)
+
+    def distanceTo(self, other: Any) -> Any:
+        """Distance to another point, or to the nearest point of a region."""
+        measure = getattr(other, "distance_from", None)
+        return operate("distance", self, to_vector(other)) if measure is None else measure(self)
+
+    def angleTo(self, other: Any) -> Any:
+        """Azimuth of the direction to ``other`` (radians, from North, anticlockwise)."""
+        return operate("azimuth", operate("subtract", to_vector(other), self))
+
+    azimuthTo = angleTo
+
+    def altitudeTo(self, other: Any) -> Any:
+        """Altitude of the direction to ``other`` (radians above the horizon)."""
+        return operate("altitude", operate("subtract", to_vector(other), self))
+
+    def angleWith(self, other: Any) -> Any:
+        """Signed angle in the plane from this vector to ``other`` (radians, within [-pi, pi])."""
+        return operate(
+            "normalize angle",
+            operate("subtract", operate("azimuth", to_vector(other)), operate("azimuth", self)),
+        )
+
+    def offsetRotated(self, rotation: Any, offset: Any) -> Any:
+        """This point displaced by ``offset`` read in the frame ``rotation``."""
+        return operate("add", self, operate("rotate", to_orientation(rotation), to_vector(offset)))
+
+    def offsetLocally(self, orientation: Any, offset: Any) -> Any:
+        """This point displaced by ``offset`` read in the frame ``orientation``."""
+        return self.offsetRotated(orientation, offset)
+
+    def offsetRadially(self, radius: Any, heading: Any) -> Any:
+        """This point displaced by ``radius`` metres in the direction ``heading``."""
+        return self.offsetRotated(heading, vector(0, radius, 0))
+
+    def sphericalCoordinates(self) -> Any:
+        """Length, azimuth (not normalised) and altitude, as a vector."""
+        azimuth = operate("azimuth", self)
+        return vector(self.norm(), azimuth, operate("altitude", self))
+
+    def toVector(self) -> Any:
+        """The vector itself; points and objects have the same method."""
+        return self
+
+    def __add__(self, other: Any) -> Any:
+        return _with_vector("add", self, other)
+
+    def __radd__(self, other: Any) -> Any:
+        return _with_vector("add", self, other)
+
+    def __sub__(self, other: Any) -> Any:
+        return _with_vector("subtract", self, other)
+
+    def __rsub__(self, other: Any) -> Any:
+        return _with_vector("subtract", other, self)
+
+    def __mul__(self, other: Any) -> Any:
+        return _with_number("multiply", self, other)
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, other: Any) -> Any:
+        return _with_number("divide", self, other)
+
+    def __neg__(self) -> Any:
+        return operate("negative", self)
+
+    def __pos__(self) -> Any:
+        return self
+
+    def __len__(self) -> int:
+        return 3
+
+    def __getitem__(self, index: Any) -> Any:
+        if isinstance(index, int) and -3 <= index < 3:
+            return operate("component", self, payload=index % 3)
+        if isinstance(index, slice):
+            return (self.x, self.y, self.z)[index]
+        if isinstance(index, int):
+            raise IndexError("a vector has three components")
+        raise TypeError(f"a vector is indexed by 0, 1 or 2, not by {index!r}")
+
+    def __iter__(self) -> Iterator[Any]:
+        return iter((self.x, self.y, self.z))
+
+
+class Vector(VectorMethods):
+    """A definite vector: three floats, in metres. ``Vector(x, y, z)`` with a random coordinate is a random vector."""
+
+    __slots__ = ("_row",)
+    _row: tuple[float, float, float]
+
+    def __new__(cls, x: Any, y: Any, z: Any = 0) -> Any:
+        if is_random(x) or is_random(y) or is_random(z):
+            return vector(x, y, z)
+        return cls.of((float(x), float(y), float(z)))
+
+    @classmethod
+    def of(cls, row: Any) -> Self:
+        """The vector of three floats."""
+        self = object.__new__(cls)
+        self._row = (row[0], row[1], row[2])
+        return self
+
+    @property
+    def x(self) -> float:
+        return self._row[0]
+
+    @property
+    def y(self) -> float:
+        return self._row[1]
+
+    @property
+    def z(self) -> float:
+        return self._row[2]
+
+    def __iter__(self) -> Iterator[float]:
+        return iter(self._row)
+
+    def __eq__(self, other: object) -> bool:
+        if isinstance(other, Vector):
+            return self._row == other._row
+        if isinstance(other, tuple | list) and not is_random(other):
+            return len(other) in (2, 3) and self._row == tuple(other) + (0,) * (3 - len(other))
+        return NotImplemented
+
+    def __hash__(self) -> int:
+        return hash(self._row)
+
+    def __repr__(self) -> str:
+        return f"({self._row[0]:g}, {self._row[1]:g}, {self._row[2]:g})"
+
+    def __array__(self, dtype: Any = None, copy: Any = None) -> Any:
+        return np.array(self._row, dtype=dtype)
+
+
+class OrientationMethods:
+    """What an orientation can do, definite or random."""
+
+    __slots__ = ()
+
+    @property
+    def yaw(self) -> Any:
+        """Rotation about Z, the first of the intrinsic Euler angles (radians)."""
+        return operate("euler", self, payload=0)
+
+    @property
+    def pitch(self) -> Any:
+        """Rotation about the new X (radians)."""
+        return operate("euler", self, payload=1)
+
+    @property
+    def roll(self) -> Any:
+        """Rotation about the new Y (radians)."""
+        return operate("euler", self, payload=2)
+
+    @property
+    def eulerAngles(self) -> Any:
+        """Yaw, pitch and roll."""
+        return (self.yaw, self.pitch, self.roll)
+
+    @property
+    def inverse(self) -> Any:
+        """The opposite rotation."""
+        return operate("inverse", self)
+
+    def localAnglesFor(self, other: Any) -> Any:
+        """Euler angles of ``other`` in this frame."""
+        return operate("compose", self.inverse, to_orientation(other)).eulerAngles
+
+    def toOrientation(self) -> Any:
+        """The orientation itself."""
+        return self
+
+    def toHeading(self) -> Any:
+        """Global yaw."""
+        return self.yaw
+
+    def __mul__(self, other: Any) -> Any:
+        if is_orientation(other):
+            return operate("compose", self, other)
+        if is_vector(other):
+            return operate("rotate", self, to_vector(other))
+        return NotImplemented
+
+    def __add__(self, other: Any) -> Any:
+        return operate("compose", self, to_orientation(other))
+
+    def __radd__(self, other: Any) -> Any:
+        return operate("compose", to_orientation(other), self)
+
+
+class Orientation(OrientationMethods):
+    """A definite orientation: a unit quaternion. Made by `fromEuler` or `fromQuaternion`."""
+
+    __slots__ = ("_row",)
+    _row: tuple[float, float, float, float]
+
+    def __init__(self) -> None:
+        self._row = (0.0, 0.0, 0.0, 1.0)
+
+    @classmethod
+    def of(cls, row: Any) -> Self:
+        """The orientation of a unit quaternion x, y, z, w."""
+        self = cls()
+        self._row = (row[0], row[1], row[2], row[3])
+        return self
+
+    @staticmethod
+    def fromEuler(yaw: Any, pitch: Any, roll: Any) -> Any:
+        """Intrinsic rotations about Z, the new X and the new Y (radians)."""
+        return operate("from euler", to_scalar(yaw), to_scalar(pitch), to_scalar(roll))
+
+    @classmethod
+    def fromQuaternion(cls, quaternion: Sequence[float]) -> "Orientation":
+        """From (x, y, z, w), normalised; raises ``ValueError`` for the zero quaternion."""
+        x, y, z, w = (float(part) for part in quaternion)
+        length = math.sqrt(x * x + y * y + z * z + w * w)
+        if not (length > 0 and math.isfinite(length)):
+            raise ValueError(f"not a rotation: quaternion {tuple(quaternion)}")
+        return cls.of((x / length, y / length, z / length, w / length))
+
+    @property
+    def x(self) -> float:
+        """First imaginary part of the quaternion."""
+        return self._row[0]
+
+    @property
+    def y(self) -> float:
+        """Second imaginary part of the quaternion."""
+        return self._row[1]
+
+    @property
+    def z(self) -> float:
+        """Third imaginary part of the quaternion."""
+        return self._row[2]
+
+    @property
+    def w(self) -> float:
+        """Real part of the quaternion."""
+        return self._row[3]
+
+    def approxEq(self, other: "Orientation", tol: float = 1e-10) -> bool:
+        """Whether the two differ by a rotation of at most about ``tol`` (up to the sign of the quaternion)."""
+        product = sum(a * b for a, b in zip(self._row, other._row, strict=True))
+        return bool(abs(product) >= 1 - tol)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Orientation):
+            return NotImplemented
+        return self._row == other._row or self._row == tuple(-part for part in other._row)
+
+    def __hash__(self) -> int:
+        sign = next((part for part in reversed(self._row) if part != 0), 1.0)
+        return hash(tuple(part if sign > 0 else -part for part in self._row))
+
+    def __repr__(self) -> str:
+        return "Orientation.fromEuler({:g}, {:g}, {:g})".format(*self.eulerAngles)
+
+
+class RandomVector(VectorMethods, Random):
+    """A random vector."""
+
+    __slots__ = ()
+    __hash__ = object.__hash__
+
+    def __eq__(self, other: object) -> bool:
+        raise self._definite("comparing")
+
+
+class RandomOrientation(OrientationMethods, Random):
+    """A random orientation."""
+
+    __slots__ = ()
+    __hash__ = object.__hash__
+
+
+# Kinds and conversion between values and nodes
+
+
+def is_random(value: Any) -> bool:
+    """Whether a value is random or a container with random parts."""
+    if isinstance(value, Random):
+        return True
+    if isinstance(value, tuple | list):
+        return any(is_random(item) for item in value)
+    if isinstance(value, slice):
+        return is_random(value.start) or is_random(value.stop) or is_random(value.step)
+    if type(value) is dict:
+        return any(is_random(item) for item in value.values())
+    return False
+
+
+def is_number(value: Any) -> TypeGuard[float]:
+    """Whether a definite value is a real number."""
+    return isinstance(value, int | float | np.integer | np.floating | np.bool_)
+
+
+def is_vector(value: Any) -> bool:
+    """Whether a value is a vector, or a pair or triple that stands for one."""
+    if isinstance(value, Random):
+        return value.node.kind is Kind.VECTOR
+    if isinstance(value, tuple | list):
+        return len(value) in (2, 3)
+    return isinstance(value, Vector) or (isinstance(value, np.ndarray) and value.shape in ((2,), (3,)))
+
+
+def is_orientation(value: Any) -> bool:
+    """Whether a value is an orientation."""
+    if isinstance(value, Random):
+        return value.node.kind is Kind.ORIENTATION
+    return isinstance(value, Orientation)
+
+
+class ValueCodec:
+    """Rows of columns as the values above; see `scenic.graph.kinds.Codec`."""
+
+    def decode(self, kind: Kind, row: Any) -> Any:
+        """The value of one lane."""
+        if kind is Kind.VECTOR:
+            return Vector.of(row.tolist())
+        if kind is Kind.ORIENTATION:
+            return Orientation.of(row.tolist())
+        return row.item() if kind.is_number else row
+
+    def encode(self, kind: Kind, value: Any) -> Any:
+        """The row of a value; raises ``TypeError`` where it is of another kind."""
+        if kind.is_boxed:
+            return value
+        if kind is Kind.VECTOR:
+            return tuple(to_vector(value))
+        if kind is Kind.ORIENTATION:
+            orientation = to_orientation(value)
+            return (orientation.x, orientation.y, orientation.z, orientation.w)
+        if not is_number(value):
+            raise ScenicTypeError(f"expected a number, not {describe(value)}")
+        return value
+
+
+CODEC = ValueCodec()
+
+_TUPLE = Operation(
+    "tuple",
+    always(Kind.OTHER),
+    lambda _call, *_columns: np.empty(0),
+    "A tuple with random parts.",
+    python=lambda *parts: parts,
+)
+_LIST = Operation(
+    "list",
+    always(Kind.OTHER),
+    lambda _call, *_columns: np.empty(0),
+    "A list with random parts.",
+    python=lambda *parts: list(parts),
+)
+
+
+def as_node(value: Any) -> Node:
+    """The node of a value: its own if random, else a constant."""
+    if isinstance(value, Random):
+        return value.node
+    if isinstance(value, tuple | list) and is_random(value):
+        parts = [as_node(item) for item in value]
+        return graph.apply(_LIST if isinstance(value, list) else _TUPLE, parts, span=here())
+    kind = kind_of(value)
+    return graph.constant(value, kind, CODEC.encode(kind, value))
+
+
+def kind_of(value: Any) -> Kind:
+    """The kind of a definite value."""
+    if isinstance(value, bool | np.bool_):
+        return Kind.BOOLEAN
+    if isinstance(value, int | np.integer):
+        return Kind.INTEGER if abs(int(value)) < LARGEST_INTEGER else Kind.OTHER
+    if isinstance(value, float | np.floating):
+        return Kind.SCALAR
+    if isinstance(value, Vector):
+        return Kind.VECTOR
+    if isinstance(value, Orientation):
+        return Kind.ORIENTATION
+    kind: Kind = getattr(value, "scenic_kind", Kind.OTHER)
+    return kind if isinstance(kind, Kind) else Kind.OTHER
+
+
+def as_value(node: Node, again: Callable[[], Any] | None = None) -> Any:
+    """The value of a node: definite for a constant, else random."""
+    if node.is_constant:
+        return node.value
+    if node.kind is Kind.VECTOR:
+        return RandomVector(node, again)
+    if node.kind is Kind.ORIENTATION:
+        return RandomOrientation(node, again)
+    return Random(node, again)
+
+
+# Applying operations
+
+
+def operate(name: str, *operands: Any, payload: Any = None) -> Any:
+    """Apply an operation of the table to values."""
+    return apply(TABLE[name], *operands, payload=payload)
+
+
+def apply(operation: Operation, *operands: Any, payload: Any = None) -> Any:
+    """Apply any operation to values: at once when all are definite, as a new node otherwise."""
+    nodes = [as_node(operand) for operand in operands]
+    if operation.pure and all(node.is_constant for node in nodes):
+        return evaluate(operation, nodes, payload)
+    return as_value(graph.apply(operation, nodes, payload, here()))
+
+
+def evaluate(operation: Operation, nodes: Sequence[Node], payload: Any) -> Any:
+    """The value of an operation on constants; raises what a sample of it would raise."""
+    kind = operation.kind(nodes, payload)
+    plain = all(node.kind.is_number for node in nodes) or kind.is_boxed
+    if operation.python is not None and (plain or any(node.kind.is_boxed for node in nodes)):
+        return operation.python(*(node.value for node in nodes))
+    call = Call(1, payload, [None] * len(nodes), lambda: np.zeros(1, dtype=np.uint64))
+    with np.errstate(all="ignore"):
+        column = operation.batch(call, *(node.payload.column for node in nodes))
+    if call.error is not None:
+        raise call.error
+    if call.status is not None:
+        raise InvalidScenarioError(
+            f"this {operation.name} can never be drawn", span=here(), help="it rejects every sample"
+        )
+    return CODEC.decode(kind, column[0])
+
+
+def draw(operation: str, *operands: Any, payload: Any = None) -> Any:
+    """A primitive random value: the operation's first operand is an axis of its own.
+
+    In a simulation it is drawn at once. Raises `InvalidScenarioError` inside a requirement.
+    """
+    context = current.get()
+    if context is not None and context.evaluating:
+        raise InvalidScenarioError(
+            "a requirement cannot create a distribution",
+            span=here(),
+            help="draw the value before the `require` statement and use it there",
+        )
+    nodes = [as_node(operand) for operand in operands]
+    uniform = uniform_draw()
+    entry = TABLE[operation]
+    if uniform is not None:
+        first = graph.constant(uniform, Kind.SCALAR, uniform)
+        return evaluate(entry, [first, *nodes], payload)
+    span = here()
+    node = graph.apply(entry, [graph.axis(span), *nodes], payload, span)
+    return as_value(node, lambda: draw(operation, *operands, payload=payload))
+
+
+def uniform() -> Any:
+    """One axis of the cube as a value: uniform on (0, 1)."""
+    drawn = uniform_draw()
+    return Random(graph.axis(here())) if drawn is None else drawn
+
+
+# Attributes and calls
+
+
+def attribute(value: Random, name: str) -> Any:
+    """An attribute of a random value. A choice gives the choice among the options' attributes."""
+    node = value.node
+    if node.operation is TABLE["select"]:
+        index, *options = node.operands
+        return _select(index, [_attribute_of_option(option, name) for option in options])
+    if node.kind.is_number or node.kind in (Kind.VECTOR, Kind.ORIENTATION):
+        raise AttributeError(f"a random {node.kind.value} has no attribute {name!r}")
+    return apply(_GETATTR, value, name)
+
+
+def call(value: Random, args: Sequence[Any], kwargs: dict[str, Any]) -> Any:
+    """The result of calling a random value. A choice among functions calls each with the arguments."""
+    node = value.node
+    if node.operation is TABLE["select"]:
+        index, *options = node.operands
+        results = []
+        for option in options:
+            if option.operation is _MISSING or not option.is_constant:
+                results.append(option if option.operation is _MISSING else _call_later(option, args, kwargs))
+            else:
+                results.append(as_node(option.value(*args, **kwargs)))
+        return _select(index, results)
+    return as_value(_call_later(node, args, kwargs))
+
+
+def _call_later(function: Node, args: Sequence[Any], kwargs: dict[str, Any]) -> Node:
+    operands = [function, *(as_node(item) for item in (*args, *kwargs.values()))]
+    names, positional = tuple(kwargs), len(args)
+
+    def invoke(target: Any, *values: Any) -> Any:
+        return target(*values[:positional], **dict(zip(names, values[positional:], strict=True)))
+
+    operation = Operation("call", always(Kind.OTHER), _CALL_BATCH, "A call of a random value.", python=invoke)
+    return graph.apply(operation, operands, span=here())
+
+
+def _CALL_BATCH(_call: Call, *_columns: Any) -> Any:
+    raise AssertionError("evaluated lane by lane")
+
+
+def _attribute_of_option(option: Node, name: str) -> Node:
+    if option.operation is _MISSING:
+        return option
+    value = as_value(option)
+    try:
+        return as_node(getattr(value, name))
+    except AttributeError as error:
+        return graph.apply(_MISSING, (), error, here())
+
+
+def _select(index: Node, options: Sequence[Node]) -> Any:
+    return as_value(graph.apply(TABLE["select"], [index, *options], span=here()))
+
+
+def _missing(call: Call) -> Any:
+    call.fault(np.ones(1, dtype=np.bool_), call.payload)
+    return np.empty(1, dtype=object)
+
+
+_MISSING = Operation(
+    "missing attribute",
+    always(Kind.OTHER),
+    _missing,
+    "An attribute that an option of a choice does not have; an error only where that option is drawn.",
+    pure=False,
+)
+_GETATTR = Operation(
+    "attribute", always(Kind.OTHER), _CALL_BATCH, "An attribute of a random value.", python=getattr
+)
+
+
+# Coercions (section 4.3)
+
+
+def describe(value: Any) -> str:
+    """A value in words for a message."""
+    if isinstance(value, Random):
+        return f"a random {value.node.kind.value}"
+    if value is None:
+        return "None"
+    if isinstance(value, type):
+        return f"the class {value.__name__}"
+    text = repr(value)
+    kind = type(value).__name__
+    return f"{text} ({kind})" if len(text) < 40 else f"a value of type {kind}"
+
+
+def wrong_type(wanted: str, value: Any, what: str = "") -> ScenicTypeError:
+    """The error for a value that cannot be read as ``wanted``."""
+    hint = None
+    if isinstance(value, type):
+        hint = f"to create an instance write `new {value.__name__}`"
+    prefix = f"{what}: " if what else ""
+    return ScenicTypeError(f"{prefix}expected {wanted}, not {describe(value)}", span=here(), help=hint)
+
+
+def to_scalar(value: Any, what: str = "") -> Any:
+    """A real number, as a float."""
+    if isinstance(value, Random):
+        if value.node.kind is Kind.SCALAR:
+            return value
+        if value.node.kind.is_number:
+            return operate("float", value)
+        if value.node.kind.is_boxed:
+            return _coerce_later(value, Kind.SCALAR, to_scalar, what)
+    elif is_number(value):
+        return float(value)
+    raise wrong_type("a number", value, what)
+
+
+def to_vector(value: Any, what: str = "") -> Any:
+    """A vector: also a pair (z = 0), a triple, and anything with a position."""
+    if isinstance(value, Vector):
+        return value
+    if isinstance(value, Random):
+        if value.node.kind is Kind.VECTOR:
+            return value
+        if value.node.kind.is_boxed:
+            return _coerce_boxed(value, Kind.VECTOR, to_vector, what)
+        raise wrong_type("a vector", value, what)
+    if isinstance(value, tuple | list | np.ndarray):
+        if len(value) not in (2, 3):
+            raise ScenicTypeError(
+                f"{what + ': ' if what else ''}a vector has 2 or 3 coordinates, not {len(value)}",
+                span=here(),
+            )
+        return vector(*value)
+    if hasattr(value, "toVector") and not isinstance(value, type):
+        return value.toVector()
+    raise wrong_type("a vector", value, what)
+
+
+def to_heading(value: Any, what: str = "") -> Any:
+    """A heading in radians: a number, the global yaw of an orientation, the heading of an oriented point."""
+    if isinstance(value, Random):
+        if value.node.kind.is_number:
+            return to_scalar(value)
+        if value.node.kind is Kind.ORIENTATION:
+            return value.yaw
+        if value.node.kind.is_boxed:
+            return _coerce_boxed(value, Kind.SCALAR, to_heading, what)
+    elif is_number(value):
+        return float(value)
+    elif hasattr(value, "toHeading") and not isinstance(value, type):
+        return value.toHeading()
+    raise wrong_type("a heading", value, what)
+
+
+def to_orientation(value: Any, what: str = "") -> Any:
+    """An orientation: also a heading, a triple of Euler angles, and anything that has an orientation."""
+    if isinstance(value, Orientation):
+        return value
+    if isinstance(value, Random):
+        if value.node.kind is Kind.ORIENTATION:
+            return value
+        if value.node.kind.is_number:
+            return Orientation.fromEuler(value, 0, 0)
+        if value.node.kind is Kind.VECTOR:
+            return Orientation.fromEuler(*value)
+        if value.node.kind.is_boxed:
+            return _coerce_boxed(value, Kind.ORIENTATION, to_orientation, what)
+    elif is_number(value):
+        return Orientation.fromEuler(value, 0, 0)
+    elif isinstance(value, Vector) or (isinstance(value, tuple | list | np.ndarray) and len(value) == 3):
+        return Orientation.fromEuler(*value)
+    elif hasattr(value, "toOrientation") and not isinstance(value, type):
+        return value.toOrientation()
+    raise wrong_type("an orientation (a heading, Euler angles or an oriented point)", value, what)
+
+
+def vector(x: Any, y: Any, z: Any = 0) -> Any:
+    """The vector of three numbers."""
+    if is_number(x) and is_number(y) and is_number(z):
+        return Vector.of((float(x), float(y), float(z)))
+    return operate("vector", to_scalar(x), to_scalar(y), to_scalar(z))
+
+
+def _coerce_boxed(value: Random, kind: Kind, function: Callable[..., Any], what: str) -> Any:
+    """Coerce option by option where ``value`` is a choice, else when it is sampled."""
+    if value.node.operation is TABLE["select"]:
+        index, *options = value.node.operands
+        return _select(index, [as_node(function(as_value(option), what)) for option in options])
+    return _coerce_later(value, kind, function, what)
+
+
+def _coerce_later(value: Random, kind: Kind, function: Callable[..., Any], what: str) -> Any:
+    operation = Operation(
+        f"to {kind.value}",
+        always(kind),
+        _CALL_BATCH,
+        "A coercion that has to wait for the sampled value.",
+        python=lambda sampled: function(sampled, what),
+    )
+    return apply(operation, value)
+
+
+def _with_vector(name: str, left: Any, right: Any) -> Any:
+    try:
+        return operate(name, to_vector(left), to_vector(right))
+    except ScenicTypeError:
+        return NotImplemented
+
+
+def _with_number(name: str, left: Any, right: Any) -> Any:
+    if is_number(right) or (isinstance(right, Random) and not is_vector(right) and not is_orientation(right)):
+        return operate(name, left, to_scalar(right))
+    return NotImplemented
