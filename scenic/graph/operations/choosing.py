@@ -33,7 +33,8 @@ def choose(call: Call, masks: Sequence[Column], columns: Sequence[Column], *, fi
         call.inherit(position, mask)
         option = call.kinds[position]
         if option is kind:
-            result[mask] = column[mask] if len(column) > 1 else column[0]
+            # A single row stays in an array: assigned bare, a list or tuple would be spread over the lanes.
+            result[mask] = column[mask] if len(column) > 1 else column[:1]
             continue
         if call.codec is None:
             raise ValueError("a choice among values of different kinds needs a codec")

@@ -153,16 +153,19 @@ def _range_inverse(
     _payload: Any, result: Bounds, _axis: Bounds, low: Bounds, high: Bounds
 ) -> list[Bounds | None]:
     exact = intervals.widened(result, _range_rounding(low, high))
-    width = intervals.subtract(high, low)
-    place = intervals.relaxed(intervals.divide(intervals.subtract(exact, low), width), 1e-15)
-    # At the very ends the clipped value hides where on the axis it came from by no more than rounding.
-    place = intervals.widened(place, 1e-15)
+    place = intervals.divide(intervals.subtract(exact, low), intervals.subtract(high, low))
     rising = high.lower >= low.upper
     falling = low.lower >= high.upper
-    top = np.where(rising, exact.upper, np.inf)
-    bottom = np.where(rising, exact.lower, -np.inf)
-    new_low = Bounds(np.where(falling, exact.lower, -np.inf), top)
-    new_high = Bounds(bottom, np.where(falling, exact.upper, np.inf))
+    # Between ordered ends the place falls as either end grows, so that its extremes are at theirs.
+    known = rising & (exact.upper <= high.lower)
+    last = np.where(known, (exact.upper - low.lower) / (high.lower - low.lower), np.inf)
+    known = rising & (exact.lower >= low.upper)
+    first = np.where(known, (exact.lower - low.upper) / (high.upper - low.upper), -np.inf)
+    ordered = Bounds(np.where(np.isnan(first), -np.inf, first), np.where(np.isnan(last), np.inf, last))
+    # At the very ends the clipped value hides where on the axis it came from by no more than rounding.
+    place = intervals.widened(intervals.relaxed(place.meet(ordered), 1e-15), 1e-15)
+    new_low = Bounds(np.where(falling, exact.lower, -np.inf), np.where(rising, exact.upper, np.inf))
+    new_high = Bounds(np.where(rising, exact.lower, -np.inf), np.where(falling, exact.upper, np.inf))
     return [place, new_low, new_high]
 
 

@@ -1,0 +1,257 @@
+"""Narrowing the cube to what the requirements allow, by interval arithmetic forward and backward (HC4).
+
+Bounds go up from the axes to the conditions, which must be true, and back down through the operations' inverses, until
+nothing moves (Benhamou, Goualard, Granvilliers and Puget, "Revising hull and box consistency", ICLP 1999). What remains
+are boxes of cube axes, jointly, so that the law conditioned on the requirements is the same as before; a point is
+dropped only if it certainly meets not all of them. In a dropped point a condition may have raised an exception instead of
+being false; those scenes are lost either way.
+
+All work is counted, never timed: the result decides which scenes a seed gives.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from scenic.analysis.facts import Condition
+from scenic.graph import bounding
+from scenic.graph.bounds import Bounds, Floats
+from scenic.graph.domain import Domain
+from scenic.graph.kinds import Kind
+from scenic.graph.node import Graph, Node
+
+Mask = NDArray[np.bool_]
+
+ROUNDS: Final = 40
+"""Passes over the graph for one set of boxes, at most."""
+
+FIRST_ROUNDS: Final = 2
+"""Passes after which contraction may stop: what one learns of inner nodes may help the next."""
+
+VISITS: Final = 20_000
+"""Nodes looked at in all passes over all sets of boxes, at most (but for the first passes)."""
+
+PROGRESS: Final = 1e-3
+"""Contraction goes on while some axis of some box loses at least this share."""
+
+LARGEST_PAVING: Final = 64
+"""Boxes of a paving, at most."""
+
+SPLITS: Final = 16
+"""How often all boxes of a paving are split, at most."""
+
+SPLIT_AXES: Final = 8
+"""Conditions on more axes than these are not paved: too few boxes would fall to each."""
+
+GAIN: Final = 0.5
+"""A paving is used if it leaves less than this share of its hull."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Pruning:
+    """What contraction found: the part of the cube that is left, and conditions that no point of the cube meets.
+
+    Where ``impossible`` is not empty the domain is the whole cube.
+    """
+
+    domain: Domain
+    impossible: tuple[Condition, ...]
+
+
+def prune(graph: Graph, conditions: Sequence[Condition]) -> Domain:
+    """The part of the cube in which the conditions can hold; the whole cube where they cannot hold at all."""
+    return contract(graph, conditions).domain
+
+
+def contract(graph: Graph, conditions: Sequence[Condition]) -> Pruning:
+    """Narrow the cube of ``graph`` to where all conditions can hold. Never samples."""
+    network = _Network(graph, conditions)
+    whole = Domain.whole(graph.dimension)
+    if not network.axes:
+        return Pruning(whole, _impossible_alone(graph, conditions))
+    boxes = network.contract(_Boxes(whole.lower, whole.upper))
+    if len(boxes.lower) == 0:
+        return Pruning(whole, _impossible_alone(graph, conditions))
+    paving = network.pave(boxes)
+    if len(paving.lower) == 0:
+        return Pruning(whole, _impossible_alone(graph, conditions))
+    hull = Domain(paving.lower.min(axis=0, keepdims=True), paving.upper.max(axis=0, keepdims=True))
+    union = Domain(paving.lower, paving.upper)
+    return Pruning(union if union.volume < GAIN * hull.volume else hull, ())
+
+
+def _impossible_alone(graph: Graph, conditions: Sequence[Condition]) -> tuple[Condition, ...]:
+    """The conditions that are impossible by themselves, or all of them where it takes several."""
+    whole = Domain.whole(graph.dimension)
+    alone = []
+    for condition in conditions:
+        network = _Network(graph, [condition])
+        if len(network.contract(_Boxes(whole.lower, whole.upper)).lower) == 0:
+            alone.append(condition)
+    if alone:
+        return tuple(alone)
+    network = _Network(graph, conditions)
+    left = network.contract(_Boxes(whole.lower, whole.upper))
+    impossible = len(left.lower) == 0 or len(network.pave(left).lower) == 0
+    return tuple(conditions) if impossible else ()
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Boxes:
+    """Boxes of the cube, corners of shape ``(m, dimension)``."""
+
+    lower: Floats
+    upper: Floats
+
+
+def _moved(before: _Boxes, after: _Boxes, alive: Mask) -> bool:
+    """Whether some axis of a box that is still alive lost enough to go on."""
+    old = before.upper[alive] - before.lower[alive]
+    new = after.upper[alive] - after.lower[alive]
+    return bool((new < (1 - PROGRESS) * old).any())
+
+
+class _Network:
+    """The nodes below some conditions, in the order of evaluation."""
+
+    def __init__(self, graph: Graph, conditions: Sequence[Condition]) -> None:
+        self.conditions = [condition.node for condition in conditions]
+        self.order = Graph(self.conditions).nodes
+        self.axes = {node: graph.axes[node] for node in self.order if node.is_axis}
+        self.inner = [node for node in self.order if not node.is_axis and not node.is_constant]
+        self._visits = VISITS
+
+    def contract(self, boxes: _Boxes) -> _Boxes:
+        """The boxes narrowed; those that hold no solution are left out."""
+        rounds = max(FIRST_ROUNDS, min(ROUNDS, self._visits // max(1, len(self.inner))))
+        state = _State(self, boxes)
+        for number in range(rounds):
+            before = boxes
+            self._visits -= len(self.inner)
+            state.forward()
+            state.backward()
+            boxes = state.boxes(before)
+            if not state.alive.any():
+                break
+            if number >= FIRST_ROUNDS and not _moved(before, boxes, state.alive):
+                break
+        return _Boxes(boxes.lower[state.alive], boxes.upper[state.alive])
+
+    def pave(self, boxes: _Boxes) -> _Boxes:
+        """Split boxes along the axes below the conditions and narrow the parts, up to a number of boxes."""
+        axes = np.array(sorted(self.axes.values()))
+        if not 0 < len(axes) <= SPLIT_AXES:
+            return boxes
+        for _ in range(SPLITS):
+            if not 0 < len(boxes.lower) <= LARGEST_PAVING // 2 or self._visits <= 0:
+                break
+            widths = boxes.upper[:, axes] - boxes.lower[:, axes]
+            rows, widest = np.arange(len(widths)), axes[widths.argmax(axis=1)]
+            middle = (boxes.lower[rows, widest] + boxes.upper[rows, widest]) / 2
+            left, right = boxes.upper.copy(), boxes.lower.copy()
+            left[rows, widest] = middle
+            right[rows, widest] = middle
+            boxes = self.contract(
+                _Boxes(np.concatenate([boxes.lower, right]), np.concatenate([left, boxes.upper]))
+            )
+        return boxes
+
+
+class _State:
+    """Bounds of every node over a set of boxes, tightened pass by pass."""
+
+    def __init__(self, network: _Network, boxes: _Boxes) -> None:
+        self._network = network
+        self.alive: Mask = np.ones(len(boxes.lower), dtype=np.bool_)
+        """Boxes in which all conditions may still hold."""
+        self._bounds: dict[Node, Bounds] = {}
+        for node in network.order:
+            if node.is_axis:
+                axis = network.axes[node]
+                self._bounds[node] = Bounds(boxes.lower[:, axis].copy(), boxes.upper[:, axis].copy())
+            elif node.is_constant:
+                known = bounding.of_constant(node)
+                if known is not None:
+                    self._bounds[node] = known
+
+    def forward(self) -> None:
+        """From the operands to the results, and on to the conditions, which must hold."""
+        for node in self._network.inner:
+            new = bounding.forward(node, [self._bounds.get(operand) for operand in node.operands])
+            if new is not None:
+                self._narrow(node, new)
+        for node in self._network.conditions:
+            if node.kind is Kind.BOOLEAN:
+                self._narrow(node, Bounds.exactly(1.0))
+
+    def backward(self) -> None:
+        """From the conditions down to the axes, through nodes that every solution evaluates."""
+        reached: dict[Node, Mask] = dict.fromkeys(self._network.conditions, np.ones_like(self.alive))
+        for node in reversed(self._network.inner):
+            mask = reached.get(node)
+            if mask is None or not mask.any():
+                continue
+            for operand, part in zip(node.operands, self._inverted(node), strict=True):
+                here = mask
+                if part is not None:
+                    part = bounding.integral(operand.kind, part)
+                    here = mask & (np.True_ if node.operation.strict else _speaks(part))
+                    self._narrow(operand, _only(here, part))
+                elif not node.operation.strict:
+                    continue
+                reached[operand] = reached[operand] | here if operand in reached else here
+
+    def _inverted(self, node: Node) -> Sequence[Bounds | None]:
+        """What the node's bounds say about its operands, by the operation's inverse reading."""
+        inverse, result = node.operation.inverse, self._bounds.get(node)
+        operands = [self._bounds.get(operand) for operand in node.operands]
+        nothing = [None] * len(operands)
+        if inverse is None or result is None:
+            return nothing
+        if node.operation.strict and any(operand is None for operand in operands):
+            return nothing
+        with np.errstate(all="ignore"):
+            return inverse(node.payload, result, *operands)
+
+    def _narrow(self, node: Node, new: Bounds) -> None:
+        old = self._bounds.get(node)
+        if old is not None:
+            if old.lower.shape[1:] != new.lower.shape[1:]:
+                return
+            new = old.meet(new)
+        # A value that is no number has come from an operation on infinities: nothing is known.
+        new = Bounds(
+            np.where(np.isnan(new.lower), -np.inf, new.lower),
+            np.where(np.isnan(new.upper), np.inf, new.upper),
+        )
+        self.alive = self.alive & ~new.empty()
+        self._bounds[node] = new
+
+    def boxes(self, before: _Boxes) -> _Boxes:
+        """The boxes as the bounds of the axes now are."""
+        lower, upper = before.lower.copy(), before.upper.copy()
+        for node, axis in self._network.axes.items():
+            lower[:, axis], upper[:, axis] = self._bounds[node].lower, self._bounds[node].upper
+        self.alive = self.alive & (lower <= upper).all(axis=1)
+        # A single point of an axis keeps a little volume, so that it can still be drawn.
+        point = lower == upper
+        lower = np.where(point & (upper == 1), np.nextafter(lower, 0), lower)
+        upper = np.where(point & (upper < 1), np.nextafter(upper, 1), upper)
+        return _Boxes(lower, upper)
+
+
+def _speaks(part: Bounds | None) -> Mask:
+    """Where an inverse that is not strict says something of an operand, which is then evaluated."""
+    if part is None:
+        return np.zeros(1, dtype=np.bool_)
+    finite = np.isfinite(part.lower) | np.isfinite(part.upper) | (part.lower > part.upper)
+    return np.asarray(finite if finite.ndim == 1 else finite.any(axis=1))
+
+
+def _only(mask: Mask, part: Bounds | None) -> Bounds:
+    assert part is not None
+    wide = mask if part.lower.ndim == 1 else mask[:, np.newaxis]
+    return Bounds(np.where(wide, part.lower, -np.inf), np.where(wide, part.upper, np.inf))

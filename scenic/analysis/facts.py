@@ -1,0 +1,18 @@
+"""What analysis is asked about: conditions that every scene must meet."""
+
+from dataclasses import dataclass
+
+from scenic.graph.node import Node
+from scenic.language.spans import Span
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Condition:
+    """A hard requirement whose truth value is a node.
+
+    ``label`` names it in reports (``"requirement on line 3"``); ``span`` is its place in the program.
+    """
+
+    node: Node
+    label: str
+    span: Span | None = None

@@ -1,0 +1,116 @@
+"""What analysis proves, as diagnostics."""
+
+from collections.abc import Sequence
+from typing import Final
+
+from scenic.analysis.contraction import contract
+from scenic.analysis.facts import Condition
+from scenic.analysis.smt import Contradiction, Support, Verdict, judge
+from scenic.graph.node import Graph, Node
+from scenic.graph.operations import TABLE
+from scenic.language.diagnostics import Diagnostic, Label, Severity
+from scenic.language.spans import Span
+
+_MEND: Final = "no scene can meet all of the marked places; change one of them"
+
+
+def prove(graph: Graph, conditions: Sequence[Condition]) -> tuple[Diagnostic, ...]:
+    """Contradictions among the conditions (SC700) and conditions that always hold (SC701). Never samples.
+
+    Each diagnostic lacks the file's name, which the caller knows.
+    """
+    if not conditions:
+        return ()
+    ordered = sorted(conditions, key=_place)
+    verdict = judge(ordered)
+    found = [_contradiction(item, verdict) for item in verdict.contradictions]
+    if not found:
+        core = _by_intervals(graph, ordered)
+        if core:
+            found = [_contradiction(Contradiction(core, ()), verdict)]
+    found += [_tautology(condition) for condition in verdict.tautologies]
+    return tuple(found)
+
+
+def _place(condition: Condition) -> tuple[bool, Span]:
+    """Sorts in program order; conditions of no place come last, in the order given."""
+    if condition.span is None:
+        return True, Span(1, 0, 1, 0)
+    return False, condition.span
+
+
+def _by_intervals(graph: Graph, conditions: Sequence[Condition]) -> tuple[Condition, ...]:
+    """A minimal set of conditions that intervals prove impossible; empty where there is none.
+
+    Intervals know functions that the solver does not, such as sine.
+    """
+    core = contract(graph, conditions).impossible
+    for condition in core[:-1] if len(core) > 1 else ():
+        rest = tuple(member for member in core if member is not condition)
+        if contract(graph, rest).impossible:
+            core = rest
+    return core
+
+
+def _contradiction(item: Contradiction, verdict: Verdict) -> Diagnostic:
+    *others, last = item.conditions
+    if others:
+        message = "this requirement cannot hold together with the others marked"
+    elif item.supports:
+        message = "this requirement cannot hold for any value of what it depends on"
+    else:
+        message = "this requirement can never hold"
+    labels = [Label(other.span, "while this is required") for other in others if other.span is not None]
+    phrases: dict[Span, tuple[str, list[str]]] = {}
+    for support in item.supports:
+        if isinstance(support.node.span, Span):
+            noun, phrase = _words(support, verdict)
+            phrases.setdefault(support.node.span, (noun, []))[1].append(phrase)
+    labels += [Label(span, f"{noun} {' and '.join(parts)}") for span, (noun, parts) in phrases.items()]
+    labels.sort(key=lambda label: label.span)
+    return Diagnostic(
+        "SC700",
+        message,
+        last.span,
+        Severity.ERROR,
+        help=_MEND if labels else "no scene can meet it; change or remove it",
+        labels=tuple(labels),
+    )
+
+
+_NOUNS: Final = {
+    "range": "this range",
+    "discrete range": "this range of integers",
+    "weighted integer": "this range of integers",
+    "truncated normal": "this truncated normal",
+    "choice": "this choice",
+}
+
+
+def _words(support: Support, verdict: Verdict) -> tuple[str, str]:
+    """A support in words: of what, and what about it."""
+    noun = _NOUNS.get(support.node.operation.name, f"this {support.node.operation.name}")
+    options = _options(support.node, verdict.encoding.nodes)
+    if options:
+        return noun, f"is one of {', '.join(options)}"
+    return noun, support.phrase
+
+
+def _options(choice: Node, nodes: Sequence[Node]) -> list[str]:
+    """The values that a choice among fixed numbers picks from."""
+    for node in nodes:
+        if node.operation is TABLE["select"] and node.operands[0] is choice:
+            options = node.operands[1:]
+            if all(option.is_constant and isinstance(option.value, int | float) for option in options):
+                return [f"{option.value:.12g}" for option in options]
+    return []
+
+
+def _tautology(condition: Condition) -> Diagnostic:
+    return Diagnostic(
+        "SC701",
+        "this requirement always holds",
+        condition.span,
+        Severity.WARNING,
+        help="it rejects no scene; remove it, or check that it says what it should",
+    )

@@ -1,0 +1,96 @@
+"""Small random programs: draws, arithmetic over them, and conditions."""
+
+import numpy as np
+from graph.programs import CODEC, make, one_of, uniform
+
+from scenic.analysis.facts import Condition
+from scenic.graph import node as graph
+from scenic.graph.batch import Batch
+from scenic.graph.kinds import Kind
+from scenic.graph.node import Graph
+from scenic.graph.operation import OK
+
+
+class Writer:
+    """Writes one random program; equal seeds write equal ones."""
+
+    def __init__(self, seed: int, *, transcendental: bool = True) -> None:
+        self.rng = np.random.default_rng(seed)
+        self.transcendental = transcendental
+        self.numbers = [self.draw() for _ in range(self.rng.integers(2, 5))]
+
+    def pick(self, items):
+        return items[self.rng.integers(len(items))]
+
+    def number(self) -> float:
+        return float(np.round(self.rng.normal() * 4, 1))
+
+    def draw(self):
+        kind = self.rng.integers(6)
+        if kind == 0 or not hasattr(self, "numbers"):
+            low = self.number()
+            return uniform(low, low + abs(self.number()) + 0.5)
+        if kind == 1:
+            return make("normal", graph.axis(), self.number(), 0.5 + abs(self.number()))
+        if kind == 2:
+            low = int(self.rng.integers(-3, 3))
+            return make("discrete range", graph.axis(), low, low + int(self.rng.integers(0, 5)))
+        if kind == 3:
+            return one_of(*(self.number() for _ in range(self.rng.integers(2, 4))))
+        if kind == 4:
+            low = self.number()
+            return make("truncated normal", graph.axis(), self.number(), 1.0, payload=(low, low + 3))
+        return uniform(self.expression(1), self.expression(1))
+
+    def expression(self, depth: int):
+        kind = self.rng.integers(12) if depth else 0
+        if kind <= 1:
+            return self.pick(self.numbers)
+        a, b = self.expression(depth - 1), self.expression(depth - 1)
+        if kind == 2:
+            return make("divide", a, self.pick([2.0, -4, b]))
+        if kind == 3:
+            return make("absolute", a)
+        if kind == 4:
+            return make(self.pick(["minimum", "maximum"]), make("float", a), make("float", b))
+        if kind == 5:
+            return make("if", self.condition(depth - 1), make("float", a), make("float", b))
+        if kind == 6:
+            return make("distance", self.vector(a, b), self.vector(b, self.number()))
+        if kind == 7:
+            return make("power", a, 2)
+        if kind == 8 and self.transcendental:
+            return make(self.pick(["sin", "cos", "normalize angle"]), a)
+        if kind == 9:
+            return make("component", make("add", self.vector(a, b), self.vector(b, 1.0)), payload=0)
+        return make(self.pick(["add", "subtract", "multiply"]), a, self.pick([b, self.number()]))
+
+    def vector(self, x, y):
+        return make("vector", x, y, 0.5)
+
+    def condition(self, depth: int):
+        kind = self.rng.integers(8) if depth else 0
+        if kind == 6:
+            return make("not", self.condition(depth - 1))
+        if kind == 7:
+            return make(self.pick(["and", "or"]), self.condition(depth - 1), self.condition(depth - 1))
+        name = self.pick(["less", "less or equal", "greater", "greater or equal"])
+        return make(name, self.expression(depth), self.number())
+
+
+def conditions(seed: int, **options) -> list[Condition]:
+    writer = Writer(seed, **options)
+    return [
+        Condition(writer.condition(3), f"condition {place}") for place in range(writer.rng.integers(1, 4))
+    ]
+
+
+def accepted(nodes: Graph, points: np.ndarray, items: list[Condition]) -> np.ndarray:
+    """Which points of the cube meet every condition."""
+    batch = Batch(nodes, points, CODEC)
+    result = np.ones(len(points), dtype=bool)
+    for item in items:
+        assert item.node.kind is Kind.BOOLEAN
+        status = batch.status(item.node)
+        result &= batch.full(item.node) if status is None else batch.full(item.node) & (status == OK)
+    return result

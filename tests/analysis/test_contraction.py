@@ -1,0 +1,246 @@
+"""Contraction keeps every solution, changes no law, and finds what it should."""
+
+import numpy as np
+import pytest
+from graph.programs import CODEC, make, one_of, source, uniform
+from scipy import stats
+
+from analysis.random_programs import accepted, conditions
+from scenic.analysis.contraction import contract, prune
+from scenic.analysis.facts import Condition
+from scenic.graph import node as graph
+from scenic.graph.batch import Batch
+from scenic.graph.kinds import Kind
+from scenic.graph.node import Graph
+from scenic.graph.operation import Operation, always
+
+POINTS = 2000
+
+
+def check(*nodes):
+    """Prune under requirements; returns the axes' bounds, once no solution is found to be lost."""
+    items = [Condition(node, "requirement") for node in nodes]
+    network = Graph(nodes)
+    domain = prune(network, items)
+    points = np.random.default_rng(0).random((POINTS, network.dimension))
+    good = accepted(network, points, items)
+    assert domain.contains(points[good]).all()
+    return domain
+
+
+def example(threshold):
+    r1, r2 = uniform(0, 10), uniform(1, 4)
+    c = one_of(1, 2)
+    x = make("subtract", r1, make("add", make("add", 0.5, make("divide", c, 2)), r2))
+    return make("greater", x, threshold)
+
+
+def test_the_worked_example():
+    domain = check(example(2))
+    assert domain.boxes == 1
+    assert domain.lower[0] == pytest.approx([0.4, 0, 0], abs=1e-9)
+    assert domain.lower[0, 0] <= 0.4
+    assert domain.upper[0].tolist() == [1, 1, 1]
+
+
+def test_an_impossible_requirement_is_named():
+    impossible, possible = example(9), example(2)
+    items = [Condition(possible, "possible"), Condition(impossible, "impossible")]
+    found = contract(Graph([item.node for item in items]), items)
+    assert [item.label for item in found.impossible] == ["impossible"]
+    assert found.domain.is_whole
+
+
+def test_requirements_impossible_together_are_all_named():
+    x = uniform(0, 1)
+    items = [
+        Condition(make("greater", x, 0.7), "high"),
+        Condition(make("less", x, 0.3), "low"),
+    ]
+    found = contract(Graph([item.node for item in items]), items)
+    assert [item.label for item in found.impossible] == ["high", "low"]
+
+
+def test_a_false_constant_is_impossible():
+    items = [Condition(make("less", 2, 1), "false")]
+    assert contract(Graph([items[0].node]), items).impossible == tuple(items)
+
+
+def interval(domain, axis=0):
+    return domain.lower[:, axis].min(), domain.upper[:, axis].max()
+
+
+def test_distance_to_a_fixed_point():
+    x, y = uniform(-10, 10), uniform(-10, 10)
+    near = make("less", make("distance", make("vector", x, y, 0.0), make("vector", 4.0, 4.0, 0.0)), 2.0)
+    domain = check(near)
+    for axis in range(2):
+        assert interval(domain, axis) == pytest.approx((0.6, 0.8), abs=1e-6)
+
+
+def test_distance_of_two_points_narrows_both():
+    x, y = uniform(0, 10), uniform(8, 30)
+    domain = check(
+        make("less or equal", make("distance", make("vector", x, 0.0, 0.0), make("vector", y, 0.0, 0.0)), 1.0)
+    )
+    assert interval(domain, 0) == pytest.approx((0.7, 1.0), abs=0.02)
+    assert interval(domain, 1) == pytest.approx((0.0, 3 / 22), abs=0.02)
+
+
+def test_normal_axes_are_narrowed_through_the_law():
+    x = make("normal", graph.axis(), 1.0, 2.0)
+    domain = check(make("greater", x, 1.0), make("less", x, 5.0))
+    assert interval(domain) == pytest.approx((0.5, stats.norm.cdf(2)), abs=1e-6)
+
+
+def test_truncated_normal_axes_are_narrowed_through_the_law():
+    x = make("truncated normal", graph.axis(), 0.0, 1.0, payload=(-1.0, 2.0))
+    domain = check(make("greater", x, 1.0))
+    assert interval(domain)[0] == pytest.approx(stats.truncnorm(-1, 2).cdf(1), abs=1e-6)
+
+
+def test_integer_axes_are_narrowed_to_whole_values():
+    x = make("discrete range", graph.axis(), 1, 6)
+    domain = check(make("greater", x, 4))
+    assert interval(domain) == pytest.approx((4 / 6, 1), abs=1e-9)
+
+
+def test_options_that_cannot_be_drawn_are_dropped():
+    x = one_of(1.0, 5.0, 9.0, weights=[1, 2, 1])
+    domain = check(make("less", x, 7.0))
+    assert interval(domain) == pytest.approx((0, 0.75))
+    domain = check(make("equal", x, 5.0))
+    assert interval(domain) == pytest.approx((0.25, 0.75))
+
+
+def test_the_option_drawn_is_narrowed():
+    first, second = uniform(0, 10), uniform(20, 30)
+    domain = check(make("less", one_of(first, second), 5.0))
+    # The second option is impossible, so the first is always drawn and lies in its lower half.
+    assert domain.boxes == 1
+    assert sorted(domain.upper[0].tolist()) == pytest.approx([0.5, 0.5, 1.0])
+
+
+def test_a_union_of_boxes_where_it_pays():
+    x = uniform(0, 10)
+    domain = check(make("greater", make("absolute", make("subtract", x, 5.0)), 4.5))
+    assert domain.boxes > 1
+    assert domain.volume == pytest.approx(0.1, abs=0.02)
+
+
+def test_what_may_not_be_evaluated_narrows_nothing():
+    """Behind an ``or``, in the branch not taken, among the options not drawn: faults there reject nothing."""
+    x = uniform(-1, 1)
+    root = make("power", x, 0.5)
+    for node in (
+        make("or", make("less", x, 0.0), make("greater", root, 0.1)),
+        make("greater", make("if", make("less", x, 0.0), 1.0, root), 0.1),
+        make("greater", make("select", make("int", make("greater", x, 0.0)), 1.0, root), 0.1),
+    ):
+        items = [Condition(node, "")]
+        network = Graph([node])
+        points = np.linspace(0.001, 0.999, 999)[:, None]
+        good = accepted(network, points, items)
+        assert good[points[:, 0] < 0.5].all()
+        assert prune(network, items).contains(points[good]).all()
+
+
+def test_what_is_evaluated_after_and_narrows():
+    x, y = uniform(0, 1), uniform(0, 1)
+    domain = check(make("and", make("less", x, 0.5), make("less", y, 0.25)))
+    assert domain.upper[0] == pytest.approx([0.5, 0.25])
+    domain = check(make("not", make("or", make("less", x, 0.5), make("less", y, 0.25))))
+    assert domain.lower[0] == pytest.approx([0.5, 0.25])
+
+
+def test_empty_integer_ranges_among_undrawn_options_narrow_nothing():
+    x = uniform(0, 4)
+    empty = make("discrete range", graph.axis(), 2, x)
+    check(make("less", one_of(empty, 1), 3))
+
+
+def test_unknown_operations_are_passed_over():
+    unknown = Operation("unknown", always(Kind.BOOLEAN), lambda call, a: a > 0.5, "A test.")
+    x = uniform(0, 1)
+    domain = check(make("and", graph.apply(unknown, [x]), make("less", x, 0.75)))
+    assert interval(domain) == pytest.approx((0, 0.75))
+
+
+def test_conditions_that_are_python_objects_are_passed_over():
+    word = source(Kind.OTHER, np.array(["word"], dtype=object))
+    x = uniform(0, 1)
+    node = make("and", make("equal", word, "word"), make("greater", x, 0.5))
+    assert interval(prune(Graph([node]), [Condition(node, "")])) == pytest.approx((0.5, 1))
+
+
+def test_nothing_to_prune():
+    x = uniform(0, 1)
+    assert prune(Graph([x]), []).is_whole
+    assert check(make("less", x, 2.0)).is_whole
+
+
+def test_the_same_work_gives_the_same_domain():
+    first, second = (prune(Graph([c.node for c in cs]), cs) for cs in (conditions(5), conditions(5)))
+    assert first.to_data() == second.to_data()
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_no_solution_of_a_random_program_is_lost(seed):
+    items = conditions(seed)
+    network = Graph([item.node for item in items])
+    found = contract(network, items)
+    points = np.random.default_rng(seed).random((POINTS, network.dimension))
+    good = accepted(network, points, items)
+    if found.impossible:
+        assert not good.any()
+    else:
+        assert found.domain.contains(points[good]).all()
+
+
+def narrowed_programs():
+    for seed in range(200):
+        items = conditions(seed)
+        network = Graph([item.node for item in items])
+        found = contract(network, items)
+        if not found.impossible and found.domain.volume < 0.8:
+            yield items, network, found.domain
+
+
+@pytest.mark.slow
+def test_pruned_and_unpruned_samples_follow_one_law():
+    """Two-sample tests over the axes of random programs; one false alarm in ten thousand runs over all of them."""
+    pvalues = []
+    for items, network, domain in narrowed_programs():
+        rng = np.random.default_rng(99)
+        plain = rng.random((3000, network.dimension))
+        plain = plain[accepted(network, plain, items)]
+        pruned = domain.place(rng.random((3000, domain.width)))
+        pruned = pruned[accepted(network, pruned, items)]
+        if len(plain) < 100:
+            continue
+        pvalues += [
+            stats.ks_2samp(plain[:, axis], pruned[:, axis], method="asymp").pvalue
+            for axis in range(network.dimension)
+        ]
+        # Pruning never lowers the share that is accepted.
+        assert len(pruned) >= 0.9 * len(plain)
+        if len(pvalues) > 60:
+            break
+    assert len(pvalues) > 50
+    assert min(pvalues) > 1e-4 / len(pvalues)
+
+
+def test_values_follow_one_law_too():
+    """The worked example, by the values that a program sees."""
+    node = example(2)
+    network = Graph([node])
+    draws = [item for item in network.nodes if item.operation.name in ("range", "select")]
+    domain = prune(network, [Condition(node, "")])
+    rng = np.random.default_rng(5)
+    samples = []
+    for points in (rng.random((20_000, 3)), domain.place(rng.random((20_000, domain.width)))):
+        batch = Batch(network, points, CODEC)
+        batch.keep(batch.full(node))
+        samples.append([batch.full(item).astype(float) for item in draws])
+    for plain, pruned in zip(*samples, strict=True):
+        assert stats.ks_2samp(plain, pruned, method="asymp").pvalue > 1e-4

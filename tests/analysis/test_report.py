@@ -1,0 +1,92 @@
+"""What is told of contradictions: code, places, words."""
+
+from graph.programs import make, one_of, uniform
+
+from scenic.analysis.facts import Condition
+from scenic.analysis.report import prove
+from scenic.graph import node as graph
+from scenic.graph.node import Graph
+from scenic.language.diagnostics import Severity
+from scenic.language.spans import Span
+
+
+def line(number, column=0):
+    return Span(number, column, number, column + 5)
+
+
+def report(*items):
+    conditions = [Condition(node, "requirement", span) for node, span in items]
+    return prove(Graph([node for node, _ in items]), conditions)
+
+
+def told(diagnostic):
+    return (
+        diagnostic.code,
+        diagnostic.span.line if diagnostic.span else None,
+        [(label.span.line, label.text) for label in diagnostic.labels],
+    )
+
+
+def test_the_worked_example():
+    r1, r2, c = uniform(0, 10, span=line(1)), uniform(1, 4, span=line(2)), one_of(1, 2, span=line(2, 9))
+    x = make("subtract", r1, make("add", make("add", 0.5, make("divide", c, 2)), r2))
+    (found,) = report((make("greater", x, 9), line(3)))
+    assert told(found) == ("SC700", 3, [(1, "this range is at most 10"), (2, "this range is at least 1")])
+    assert found.severity is Severity.ERROR
+    assert found.filename is None
+    assert report((make("greater", x, 2), line(3))) == ()
+
+
+def test_the_last_requirement_is_blamed_whatever_the_order_given():
+    x = uniform(0, 10, span=line(1))
+    first, last = (make("greater", x, 6), line(4)), (make("less", x, 3), line(7))
+    for items in ((first, last), (last, first)):
+        (found,) = report(*items)
+        assert told(found) == ("SC700", 7, [(4, "while this is required")])
+
+
+def test_both_ends_of_one_draw_share_a_label():
+    x = uniform(0, 10, span=line(1))
+    twice = make("or", make("less", x, -1), make("greater", x, 11))
+    (found,) = report((twice, line(2)))
+    assert told(found) == ("SC700", 2, [(1, "this range is at least 0 and is at most 10")])
+
+
+def test_a_choice_is_told_by_its_options():
+    index = make("choice", graph.axis(), payload=(0.5, 1.0), span=line(1))
+    (found,) = report((make("greater", index, 3), line(2)))
+    assert told(found) == ("SC700", 2, [(1, "this choice takes one of its options")])
+    (found,) = report(
+        (make("and", make("greater", make("select", index, 1, 2), 0), make("greater", index, 3)), line(2))
+    )
+    assert told(found) == ("SC700", 2, [(1, "this choice is one of 1, 2")])
+
+
+def test_contradictions_that_only_intervals_see():
+    x = uniform(0.0, 0.1, span=line(1))
+    (found,) = report((make("greater", x, 0.01), line(2)), (make("greater", make("sin", x), 0.5), line(3)))
+    assert told(found) == ("SC700", 3, [])
+    y = make("sin", uniform(0.0, 3.0))
+    z = make("cos", uniform(0.0, 1.0))
+    (found,) = report((make("less", y, z), line(2)), (make("less", z, -0.1), line(3)))
+    assert told(found) == ("SC700", 3, [])
+
+
+def test_a_requirement_that_always_holds_is_a_warning():
+    x = uniform(0, 1, span=line(1))
+    (found,) = report((make("greater", x, -1), line(2)))
+    assert told(found) == ("SC701", 2, [])
+    assert found.severity is Severity.WARNING
+
+
+def test_a_constant_requirement():
+    (found,) = report((make("less", 2, 1), line(2)))
+    assert told(found) == ("SC700", 2, [])
+    assert found.message == "this requirement can never hold"
+
+
+def test_places_that_are_not_known_are_left_out():
+    x = uniform(0, 1)
+    (found,) = report((make("greater", x, 2), None))
+    assert told(found) == ("SC700", None, [])
+    assert report() == ()

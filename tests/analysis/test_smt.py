@@ -1,0 +1,180 @@
+"""The solver's verdicts, against brute force and on cases worked by hand."""
+
+import math
+from functools import cache
+
+import numpy as np
+import pytest
+from graph.programs import Triple, constant, make, one_of, source, uniform
+
+from analysis.random_programs import accepted, conditions
+from scenic.analysis.facts import Condition
+from scenic.analysis.smt import judge
+from scenic.analysis.terms import Answer, Questions, SolverTerms
+from scenic.graph import node as graph
+from scenic.graph.kinds import Kind
+from scenic.graph.node import Graph
+from scenic.graph.operation import Operation, always
+
+
+def verdict(*nodes):
+    """Labels of the members of each contradiction, and of the tautologies."""
+    items = [Condition(node, str(place)) for place, node in enumerate(nodes)]
+    found = judge(items)
+    return (
+        [[item.label for item in core.conditions] for core in found.contradictions],
+        [item.label for item in found.tautologies],
+    )
+
+
+def test_two_requirements_contradict_each_other():
+    x = uniform(0, 10)
+    assert verdict(make("greater", x, 6), make("less", x, 3)) == ([["0", "1"]], [])
+
+
+def test_the_core_is_minimal():
+    x, y, z = (uniform(0, 10) for _ in range(3))
+    nodes = [
+        make("less", x, y),
+        make("less", z, 9.0),
+        make("less", y, z),
+        make("greater", x, 1.0),
+        make("less", z, x),
+    ]
+    assert verdict(*nodes) == ([["0", "2", "4"]], [])
+
+
+def test_the_core_names_the_draws_it_rests_on():
+    x, y = uniform(0, 10), uniform(1, 4)
+    found = judge([Condition(make("greater", make("subtract", x, y), 9.5), "")])
+    (core,) = found.contradictions
+    assert [(item.node is x, item.phrase) for item in core.supports] == [
+        (True, "is at most 10"),
+        (False, "is at least 1"),
+    ]
+
+
+def test_an_impossible_requirement_is_reported_alone_and_the_rest_judged_without_it():
+    x = uniform(0, 1)
+    impossible, low, high = make("greater", x, 2.0), make("less", x, 0.3), make("greater", x, 0.6)
+    assert verdict(low, impossible, high) == ([["1"], ["0", "2"]], [])
+
+
+def test_independent_contradictions_are_all_reported():
+    x, y = uniform(0, 1), uniform(0, 1)
+    nodes = [make(name, item, 0.5) for item in (x, y) for name in ("less", "greater")]
+    cores, _ = verdict(*nodes)
+    assert sorted(cores) == [["0", "1"], ["2", "3"]]
+
+
+def test_what_always_holds():
+    x = uniform(0, 1)
+    assert verdict(make("greater", x, -1.0), make("greater", x, 0.5)) == ([], ["0"])
+
+
+def test_constants():
+    assert verdict(make("less", 2, 1), make("less", 1, 2)) == ([["0"]], ["1"])
+
+
+def test_choices_and_integers():
+    x = one_of(1, 5, 9)
+    assert verdict(make("greater", x, 9)) == ([["0"]], [])
+    assert verdict(make("greater", x, 5), make("less", x, 9)) == ([["0", "1"]], [])
+    k = make("discrete range", graph.axis(), 1, 3)
+    assert verdict(make("greater", k, 1), make("less", k, 2)) == ([["0", "1"]], [])
+    w = make("weighted integer", graph.axis(), payload=(0, (0.5, 0.5, 1.0)))
+    assert verdict(make("equal", w, 1)) == ([["0"]], [])
+
+
+def test_distances():
+    x, y = uniform(-1, 1), uniform(-1, 1)
+    here = make("vector", x, y, 0.0)
+    origin = constant(Triple((0.0, 0.0, 0.0)))
+    assert verdict(make("greater", make("distance", here, origin), 2.5)) == ([["0"]], [])
+    assert verdict(make("greater", make("norm", here), 1.2)) == ([], [])
+    far = make("vector", make("add", x, 5.0), y, 0.0)
+    assert verdict(make("less", make("distance", here, far), 4.9)) == ([["0"]], [])
+
+
+def test_random_ends_in_either_order():
+    low = uniform(0, 1)
+    x = make("range", graph.axis(), low, -1.0)
+    assert verdict(make("greater", x, 1.5)) == ([["0"]], [])
+    assert verdict(make("greater", x, 0.5)) == ([], [])
+
+
+def test_an_undrawn_impossible_range_contradicts_nothing():
+    empty = make("discrete range", graph.axis(), 3, uniform(0, 2))
+    assert verdict(make("less", one_of(empty, 1), 2)) == ([], [])
+
+
+def test_a_branch_not_taken_contradicts_nothing():
+    x = uniform(-1, 1)
+    root = make("power", x, 0.5)
+    assert verdict(make("or", make("less", x, -0.5), make("greater", root, 2.0)))[0] == []
+
+
+def test_the_same_formula_written_twice_is_one():
+    """Even where the solver knows nothing of a function, it is one function."""
+    x = uniform(0, 1)
+    cores, _ = verdict(make("greater", make("sin", x), 0.5), make("less", make("sin", x), 0.25))
+    assert cores == [["0", "1"]]
+
+
+def test_different_unknown_values_are_not_taken_for_one():
+    unknown = Operation("unknown", always(Kind.SCALAR), lambda call, a: a, "A test.", pure=False)
+    x = uniform(0, 1)
+    first, second = graph.apply(unknown, [x]), graph.apply(unknown, [x])
+    assert verdict(make("less", first, 0.0), make("greater", second, 0.0)) == ([], [])
+
+
+def test_python_objects_are_left_open():
+    word = source(Kind.OTHER, np.array(["a"], dtype=object))
+    assert verdict(make("equal", word, "a"), make("not equal", word, "a")) == ([], [])
+    assert verdict(make("greater", one_of(1, "a", word), 5)) == ([], [])
+
+
+def test_not_a_number_is_left_open():
+    nan = make("minimum", constant(math.nan), constant(math.inf))
+    assert verdict(make("less", nan, 1.0)) == ([], [])
+
+
+@cache
+def judged(seed):
+    items = conditions(seed)
+    return items, judge(items)
+
+
+SEEDS = range(50)
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_verdicts_agree_with_brute_force(seed):
+    """What the solver calls impossible no sample meets; what it says always holds every sample meets."""
+    items, found = judged(seed)
+    network = Graph([item.node for item in items])
+    points = np.random.default_rng(seed).random((1000, network.dimension))
+    for core in found.contradictions:
+        assert not accepted(network, points, list(core.conditions)).any()
+        # Minimal: without any one condition the solver finds no contradiction among the others.
+        for left_out in core.conditions:
+            rest = [item for item in core.conditions if item is not left_out]
+            assert not any(len(other.conditions) == len(rest) for other in judge(rest).contradictions)
+    for item in found.tautologies:
+        assert accepted(network, points, [item]).all()
+
+
+def test_brute_force_sees_verdicts_of_both_kinds():
+    """The seeds above are worth something only if the solver says something in a good part of them."""
+    found = [judged(seed)[1] for seed in SEEDS]
+    assert sum(bool(item.contradictions) for item in found) >= 10
+    assert sum(bool(item.tautologies) for item in found) >= 5
+
+
+def test_a_hard_question_is_given_up_by_count():
+    terms = SolverTerms()
+    x, y, z = (terms.fresh(Kind.INTEGER) for _ in range(3))
+    one = terms.real(1)
+    sums = x * x * x + y * y * y + z * z * z == terms.real(114)
+    questions = Questions(terms, [(x > one) | (x < -one)], [sums])
+    assert questions.ask([0]) is not Answer.IMPOSSIBLE

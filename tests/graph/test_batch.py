@@ -1,0 +1,223 @@
+"""Evaluation of graphs: order, lanes that are dropped, and the fate of lanes that fail or are rejected."""
+
+import numpy as np
+import pytest
+
+from graph.programs import (
+    CODEC,
+    PlainCodec,
+    Triple,
+    evaluate,
+    faulty,
+    is_fine,
+    make,
+    one_of,
+    sampled,
+    source,
+    uniform,
+)
+from scenic.graph import node as graph
+from scenic.graph.batch import Batch
+from scenic.graph.kinds import Kind
+from scenic.graph.node import Graph
+from scenic.graph.operation import Operation, always
+
+OK, FAULT, REJECTED = 0, 1, 2
+
+
+def lanes_of(name, *columns, **keywords):
+    """Value and status of a boolean operation over operands given as strings: T, F, f (fault), r (rejected)."""
+    operands = []
+    for column in columns:
+        values = [letter == "T" for letter in column]
+        statuses = [{"f": FAULT, "r": REJECTED}.get(letter, OK) for letter in column]
+        operands.append(faulty(Kind.BOOLEAN, values, statuses, ValueError(column)))
+    node = make(name, *operands, **keywords)
+    batch = evaluate(node, len(columns[0]))
+    fine = is_fine(batch, node)
+    status = batch.status(node)
+    values = batch.full(node)
+    return "".join(
+        ("T" if values[lane] else "F") if fine[lane] else ("f" if status[lane] == FAULT else "r")
+        for lane in range(len(fine))
+    )
+
+
+def test_and_reads_from_the_left_as_far_as_needed():
+    assert lanes_of("and", "TTTTFFFFffff", "TFfrTFfrTFfr") == "TFfrFFFFffff"
+
+
+def test_or_reads_from_the_left_as_far_as_needed():
+    assert lanes_of("or", "TTTTFFFFrrrr", "TFfrTFfrTFfr") == "TTTTTFfrrrrr"
+
+
+def test_three_operands():
+    assert lanes_of("and", "TTTF", "TFTT", "ffTr") == "fFTF"
+    assert lanes_of("or", "FFFT", "FTFF", "ffFr") == "fTFT"
+
+
+def test_strict_operations_take_the_worse_fate():
+    assert lanes_of("equal", "TTfr", "TfrF") == "Tfrr"
+    assert lanes_of("not", "TFfr") == "FTfr"
+
+
+def test_a_conditional_counts_only_the_part_it_takes():
+    assert lanes_of("if", "TTFFfr", "TfTfTT", "fTfFTT") == "TffFfr"
+
+
+def test_a_choice_counts_only_the_option_drawn():
+    index = source(Kind.INTEGER, [0, 0, 1, 1, 2])
+    options = [
+        faulty(Kind.SCALAR, [1, 2, 3, 4, 5], [0, 1, 0, 0, 0], ZeroDivisionError()),
+        faulty(Kind.SCALAR, [10, 20, 30, 40, 50], [1, 0, 0, 2, 1], ZeroDivisionError()),
+        source(Kind.SCALAR, [100] * 5),
+    ]
+    node = make("select", index, *options)
+    batch = evaluate(node, 5)
+    assert batch.status(node).tolist() == [OK, FAULT, OK, REJECTED, OK]
+    assert batch.column(node)[[0, 2, 4]].tolist() == [1.0, 30.0, 100.0]
+
+
+def test_the_error_is_that_of_the_option_drawn():
+    first, second = ValueError("first"), KeyError("second")
+    index = source(Kind.INTEGER, [1])
+    options = [faulty(Kind.SCALAR, [0], [FAULT], first), faulty(Kind.SCALAR, [0], [FAULT], second)]
+    node = make("select", index, *options)
+    batch = evaluate(node, 1)
+    batch.column(node)
+    assert batch.errors[node] is second
+
+
+def test_the_error_of_a_strict_operation_is_its_first_operands():
+    first, second = ValueError("first"), KeyError("second")
+    quotient = make(
+        "divide", faulty(Kind.SCALAR, [1], [FAULT], first), faulty(Kind.SCALAR, [0], [FAULT], second)
+    )
+    batch = evaluate(quotient, 1)
+    batch.column(quotient)
+    assert batch.errors[quotient] is first
+
+
+def test_options_of_different_kinds_are_seen_as_what_they_are():
+    vector = source(Kind.VECTOR, [[1.0, 2.0, 3.0]] * 5)
+    words = np.array(["a", "b", "c", "d", "e"], dtype=object)
+    index = source(Kind.INTEGER, [0, 1, 2, 3, 4])
+    node = make("select", index, 7, 2.5, True, source(Kind.OTHER, words), vector)
+    assert node.kind is Kind.OTHER
+    batch = evaluate(node, 5)
+    values = [batch.value(node, lane) for lane in range(5)]
+    assert values == [7, 2.5, True, "d", Triple((1.0, 2.0, 3.0))]
+    assert [type(value) for value in values] == [int, float, bool, str, Triple]
+
+
+def test_a_fault_of_an_option_of_another_kind_is_not_decoded():
+    index = source(Kind.INTEGER, [0, 1])
+    node = make("select", index, 1, faulty(Kind.SCALAR, [0, 0], [FAULT, FAULT], ValueError()))
+    batch = evaluate(node, 2)
+    assert batch.status(node).tolist() == [OK, FAULT]
+    assert batch.value(node, 0) == 1
+
+
+def program():
+    """A small graph with draws, a choice, a fault and Python objects."""
+    x, y = uniform(0.0, 10.0), uniform(-1.0, 1.0)
+    choice = one_of(1, 2.5, "text")
+    product = make("multiply", choice, 2)
+    quotient = make("divide", x, make("int", make("multiply", y, 3)))
+    return [x, y, choice, product, quotient, make("greater", quotient, 1.0)]
+
+
+def test_dropping_lanes_changes_no_value():
+    """Values are the same whether lanes are dropped before or after a node is evaluated, in one step or several."""
+    nodes = program()
+    whole = sampled(nodes, 100, seed=4)
+    columns = {node: whole.full(node) for node in nodes}
+    statuses = {node: whole.status(node) for node in nodes}
+    rng = np.random.default_rng(0)
+    for _ in range(10):
+        batch = sampled(nodes, 100, seed=4)
+        for node in rng.permutation(len(nodes)):
+            batch.column(nodes[node])
+            batch.keep(rng.random(len(batch)) < 0.8)
+            if len(batch) == 0:
+                break
+        for node in nodes:
+            assert batch.full(node).tolist() == columns[node][batch.rows].tolist()
+            expected = statuses[node]
+            found = batch.status(node)
+            if expected is None or not expected[batch.rows].any():
+                assert found is None
+            else:
+                assert found.tolist() == expected[batch.rows].tolist()
+
+
+def test_keeping_by_indices_and_by_mask():
+    nodes = program()
+    by_mask, by_index = sampled(nodes, 10), sampled(nodes, 10)
+    mask = np.arange(10) % 3 == 0
+    by_mask.keep(mask)
+    by_index.keep(np.flatnonzero(mask))
+    assert by_mask.rows.tolist() == by_index.rows.tolist() == [0, 3, 6, 9]
+    assert by_mask.column(nodes[0]).tolist() == by_index.column(nodes[0]).tolist()
+
+
+def test_no_lanes_at_all():
+    nodes = program()
+    batch = sampled(nodes, 5)
+    batch.keep(np.zeros(5, dtype=bool))
+    assert all(len(batch.full(node)) == 0 for node in nodes)
+
+
+def test_python_functions_may_reject():
+    class Rejected(Exception):
+        pass
+
+    def picky(value):
+        if value < 1:
+            raise Rejected
+        if value < 2:
+            raise KeyError("two")
+        return value
+
+    operation = Operation("picky", always(Kind.OTHER), lambda call, a: a, "A test.", python=picky)
+    node = graph.apply(operation, [source(Kind.SCALAR, [0.5, 1.5, 2.5])])
+    batch = Batch(Graph([node]), np.empty((3, 0)), CODEC, rejections=(Rejected,))
+    assert batch.status(node).tolist() == [REJECTED, FAULT, OK]
+    assert batch.value(node, 2) == 2.5
+
+
+def test_a_value_of_the_wrong_kind_is_a_fault():
+    operation = Operation("word", always(Kind.SCALAR), lambda call, a: a, "A test.", python=lambda a: a)
+    node = graph.apply(operation, [source(Kind.OTHER, np.array(["word", 1.5], dtype=object))])
+    batch = evaluate(node, 2)
+    assert batch.status(node).tolist() == [FAULT, OK]
+    assert batch.value(node, 1) == 1.5
+
+
+def test_seeds_depend_on_the_point_and_the_node_alone():
+    seen = {}
+    operation = Operation(
+        "seeds", always(Kind.INTEGER), lambda call, a: call.seeds().astype(np.int64), "A test."
+    )
+    x = uniform(0, 1)
+    nodes = [graph.apply(operation, [x]), graph.apply(operation, [x])]
+    seen = sampled(nodes, 50)
+    first, second = (seen.column(node) for node in nodes)
+    assert len({*first.tolist(), *second.tolist()}) == 100
+    later = sampled(nodes, 50)
+    later.keep(np.arange(50) % 7 == 0)
+    assert later.column(nodes[1]).tolist() == second[::7].tolist()
+
+
+def test_a_cube_of_the_wrong_width_is_refused():
+    node = uniform(0, 1)
+    with pytest.raises(ValueError, match="axes"):
+        Batch(Graph([node]), np.empty((3, 2)), PlainCodec())
+
+
+def test_long_chains_need_no_recursion():
+    node = uniform(0.0, 1.0)
+    for _ in range(20_000):
+        node = make("add", node, 1.0)
+    batch = sampled([node], 2)
+    assert (batch.column(node) > 20_000).all()

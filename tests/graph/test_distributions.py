@@ -1,0 +1,201 @@
+"""Primitive distributions: their laws by goodness of fit, their ends, and what rejects or fails.
+
+Each fit is one test at a false-alarm rate of one in ten thousand, with a fixed seed: it passes or fails for good.
+"""
+
+import math
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from graph.programs import CODEC, faulty, make, one_of, sampled, source, uniform
+from scenic.graph import node as graph
+from scenic.graph.batch import Batch
+from scenic.graph.kinds import Kind
+from scenic.graph.node import Graph
+from scenic.graph.operations.normal import conditioned_cumulative, conditioned_quantile
+
+ALARM = 1e-4
+LANES = 20_000
+ENDS = np.array([5e-324, 2.0**-54, 0.5, 1 - 2.0**-53])
+"""Points of the open unit interval, its outermost included."""
+
+
+def values_of(node, seed=0):
+    return sampled([node], LANES, seed).full(node)
+
+
+def at_ends(node):
+    """The values at the outermost points of the node's only axis."""
+    batch = Batch(Graph([node]), ENDS[:, None], CODEC)
+    return batch.full(node), batch.status(node)
+
+
+@pytest.mark.parametrize(("low", "high"), [(2.0, 5.0), (5.0, 2.0), (-1, 1), (1e-3, 1e3)])
+def test_range_is_uniform(low, high):
+    values = values_of(uniform(low, high))
+    bottom, top = min(low, high), max(low, high)
+    assert stats.kstest(values, stats.uniform(bottom, top - bottom).cdf).pvalue > ALARM
+
+
+def test_range_keeps_within_its_ends():
+    for low, high in [(0.1, 0.3), (1e16, 1e16 + 2), (-1e308, 1e308), (5.0, 5.0), (0.3, 0.1)]:
+        values, status = at_ends(uniform(low, high))
+        assert status is None
+        assert (values >= min(low, high)).all()
+        assert (values <= max(low, high)).all()
+
+
+def test_range_of_endless_ends_fails():
+    node = make("range", graph.axis(), 0.0, source(Kind.SCALAR, [1.0, math.inf, math.nan]))
+    batch = Batch(Graph([node]), np.full((3, 1), 0.5), CODEC)
+    assert batch.status(node).tolist() == [0, 1, 1]
+
+
+def test_range_with_random_ends():
+    low = uniform(0.0, 1.0)
+    node = make("range", graph.axis(), low, make("add", low, 1.0))
+    batch = sampled([node, low], LANES)
+    rest = batch.full(node) - batch.full(low)
+    assert stats.kstest(rest, stats.uniform(0, 1).cdf).pvalue > ALARM
+    assert abs(stats.pearsonr(rest, batch.full(low)).statistic) < 0.03
+
+
+@pytest.mark.parametrize(("mean", "deviation"), [(0.0, 1.0), (-3, 0.25), (1.0, -2.0)])
+def test_normal(mean, deviation):
+    values = values_of(make("normal", graph.axis(), mean, deviation))
+    assert stats.kstest(values, stats.norm(mean, abs(deviation)).cdf).pvalue > ALARM
+    assert np.isfinite(at_ends(make("normal", graph.axis(), mean, deviation))[0]).all()
+
+
+WINDOWS = [
+    (0.0, 1.0, -1.0, 2.0),
+    (0.0, 1.0, 2.0, 3.0),
+    (5.0, 2.0, -math.inf, 4.0),
+    (0.0, 1.0, 6.0, math.inf),
+    (0.0, 1.0, -12.0, -9.0),
+    (0.0, 1.0, 35.0, 36.0),
+    (0.0, 1.0, -200.0, -150.0),
+    (0.0, -1.0, 3.0, 7.0),
+]
+
+
+@pytest.mark.parametrize(("mean", "deviation", "low", "high"), WINDOWS)
+def test_truncated_normal(mean, deviation, low, high):
+    node = make("truncated normal", graph.axis(), mean, deviation, payload=(low, high))
+    values = values_of(node)
+    scale = abs(deviation)
+    a, b = (low - mean) / scale, (high - mean) / scale
+    law = stats.truncnorm(a, b, loc=mean, scale=scale)
+    assert stats.kstest(values, law.cdf).pvalue > ALARM
+    ends, status = at_ends(node)
+    assert status is None
+    assert ((ends >= low) & (ends <= high)).all()
+
+
+@pytest.mark.parametrize("far", [1e5, 1e7])
+def test_truncated_normal_in_the_far_tail_is_an_exponential(far):
+    node = make("truncated normal", graph.axis(), 0.0, 1.0, payload=(far, 2 * far))
+    values = (values_of(node) - far) * far
+    assert stats.kstest(values, stats.expon().cdf).pvalue > ALARM
+
+
+def test_truncated_normal_without_deviation():
+    node = make(
+        "truncated normal",
+        graph.axis(),
+        source(Kind.SCALAR, [1.0, 3.0]),
+        source(Kind.SCALAR, [0.0]),
+        payload=(0.0, 2.0),
+    )
+    batch = Batch(Graph([node]), np.full((2, 1), 0.3), CODEC)
+    assert batch.status(node).tolist() == [0, 1]
+    assert batch.column(node)[0] == 1.0
+
+
+@pytest.mark.parametrize(
+    ("a", "b"), [(-1.0, 2.0), (3.0, 5.0), (-40.0, -35.0), (31.0, 33.0), (-math.inf, 0.5)]
+)
+def test_quantile_and_cumulative_are_inverse(a, b):
+    u = np.linspace(0.001, 0.999, 41)
+    z = conditioned_quantile(np.float64(a), np.float64(b), u)
+    share, error = conditioned_cumulative(np.float64(a), np.float64(b), z)
+    assert (np.abs(share - u) <= error + 1e-9).all()
+    assert (error < 1e-6).all()
+    assert (np.diff(z) > 0).all()
+
+
+@pytest.mark.parametrize(("low", "high"), [(1, 6), (0.5, 3.5), (-3, -3), (-2.0, 2)])
+def test_discrete_range_is_uniform(low, high):
+    node = make("discrete range", graph.axis(), low, high)
+    values = values_of(node)
+    support = np.arange(math.ceil(low), math.floor(high) + 1)
+    counts = [(values == value).sum() for value in support]
+    assert sum(counts) == LANES
+    if len(support) > 1:
+        assert stats.chisquare(counts).pvalue > ALARM
+    ends, _ = at_ends(node)
+    assert ends[0] == support[0]
+    assert ends[-1] == support[-1]
+
+
+def test_empty_discrete_range_rejects():
+    node = make(
+        "discrete range", graph.axis(), source(Kind.SCALAR, [0.2, 0.2]), source(Kind.SCALAR, [0.8, 1.8])
+    )
+    batch = Batch(Graph([node]), np.full((2, 1), 0.5), CODEC)
+    assert batch.status(node).tolist() == [2, 0]
+
+
+def test_discrete_range_of_huge_ends_fails():
+    node = make("discrete range", graph.axis(), 0.0, source(Kind.SCALAR, [1e300, math.nan]))
+    batch = Batch(Graph([node]), np.full((2, 1), 0.5), CODEC)
+    assert batch.status(node).tolist() == [1, 1]
+
+
+def test_weights():
+    weights = np.array([3.0, 0.0, 1.0, 6.0, 0.0])
+    cumulative = tuple((np.cumsum(weights) / weights.sum()).tolist())
+    for node, first in (
+        (make("weighted integer", graph.axis(), payload=(10, cumulative)), 10),
+        (make("choice", graph.axis(), payload=cumulative), 0),
+    ):
+        assert node.limits == (first, first + 3)
+        values = values_of(node)
+        counts = np.array([(values == first + place).sum() for place in range(5)])
+        assert counts[weights == 0].tolist() == [0, 0]
+        positive = weights > 0
+        expected = LANES * weights[positive] / weights.sum()
+        assert stats.chisquare(counts[positive], expected).pvalue > ALARM
+        ends, _ = at_ends(node)
+        assert ends.tolist() == [first, first, first + 3, first + 3]
+
+
+def test_an_option_of_weight_zero_is_not_drawn_at_a_limit():
+    node = make("choice", graph.axis(), payload=(0.0, 0.5, 0.5, 1.0))
+    batch = Batch(Graph([node]), np.array([[1e-300], [0.5]]), CODEC)
+    assert batch.column(node).tolist() == [1, 3]
+
+
+def test_choice_among_numbers():
+    values = values_of(one_of(1, 2.5, 1e9, weights=[1, 2, 1]))
+    counts = [sum(value == option for value in values) for option in (1, 2.5, 1e9)]
+    assert stats.chisquare(counts, [LANES / 4, LANES / 2, LANES / 4]).pvalue > ALARM
+
+
+def test_undrawn_options_cannot_reject():
+    empty = make("discrete range", graph.axis(), 2, 1)
+    node = one_of(empty, 5)
+    batch = sampled([node], 1000)
+    status = batch.status(node)
+    rejected = (status == 2).mean()
+    assert 0.4 < rejected < 0.6
+    assert set(batch.column(node)[status == 0].tolist()) == {5}
+
+
+def test_the_fate_of_the_index_counts():
+    index = faulty(Kind.INTEGER, [0, 1, 0], [0, 1, 2], ValueError())
+    node = make("select", index, 1.0, 2.0)
+    batch = Batch(Graph([node]), np.empty((3, 0)), CODEC)
+    assert batch.status(node).tolist() == [0, 1, 2]

@@ -1,0 +1,120 @@
+"""The part of the cube to sample from."""
+
+import json
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy import stats
+
+from scenic.graph.domain import Domain
+
+
+def union(*boxes):
+    corners = np.array(boxes, dtype=float)
+    return Domain(corners[:, :, 0], corners[:, :, 1])
+
+
+TWO = union([[0.0, 0.5], [0.0, 1.0]], [[0.5, 1.0], [0.75, 1.0]])
+
+
+def test_the_whole_cube_leaves_points_as_they_are():
+    rows = np.random.default_rng(0).random((10, 3))
+    whole = Domain.whole(3)
+    assert whole.width == 3
+    assert whole.volume == 1
+    assert whole.is_whole
+    assert whole.place(rows) is rows
+
+
+def test_one_box_is_filled_evenly():
+    domain = union([[0.4, 1.0], [0.0, 0.25]])
+    assert domain.width == 2
+    assert domain.volume == pytest.approx(0.15)
+    points = domain.place(np.random.default_rng(1).random((5000, 2)))
+    assert stats.kstest(points[:, 0], stats.uniform(0.4, 0.6).cdf).pvalue > 1e-4
+    assert stats.kstest(points[:, 1], stats.uniform(0.0, 0.25).cdf).pvalue > 1e-4
+    assert domain.contains(points).all()
+
+
+def test_a_union_is_filled_evenly():
+    """Points of the union are points of the cube conditioned to lie in it: cell by cell in proportion to volume."""
+    assert TWO.width == 3
+    assert TWO.volume == pytest.approx(0.625)
+    points = TWO.place(np.random.default_rng(2).random((8000, 3)))
+    assert TWO.contains(points).all()
+    cells = np.floor(points * 4).astype(int) @ [4, 1]
+    counts = np.bincount(cells, minlength=16)
+    possible = np.array([0, 1, 2, 3, 4, 5, 6, 7, 11, 15])
+    assert counts.sum() == counts[possible].sum()
+    assert stats.chisquare(counts[possible]).pvalue > 1e-4
+
+
+def test_rows_are_placed_one_by_one():
+    rows = np.random.default_rng(3).random((512, 3))
+    whole = TWO.place(rows)
+    for size in (1, 7):
+        for start in range(0, 70, size):
+            part = TWO.place(rows[start : start + size])
+            assert part.tobytes() == whole[start : start + size].tobytes()
+    spaced = np.zeros((512, 6))
+    spaced[:, ::2] = rows
+    assert TWO.place(spaced[:, ::2]).tobytes() == whole.tobytes()
+
+
+corner = st.floats(0, 1)
+
+
+@given(st.lists(st.tuples(corner, corner), min_size=1, max_size=4), st.floats(5e-324, 1 - 2.0**-53))
+def test_points_stay_inside(box, u):
+    """Also where a box touches the ends of the unit interval or is as thin as a float allows."""
+    box = [(min(pair), max(pair)) for pair in box]
+    if any(low == high for low, high in box):
+        return
+    domain = union(box)
+    points = domain.place(np.full((1, len(box)), u))
+    assert domain.contains(points).all()
+    assert ((points > 0) & (points < 1)).all()
+
+
+def test_many_axes_do_not_underflow():
+    lower, upper = np.zeros((2, 3000)), np.full((2, 3000), 0.5)
+    lower[1, 0], upper[1, 0] = 0.5, 0.75
+    domain = Domain(lower, upper)
+    points = domain.place(np.random.default_rng(4).random((600, 3001)))
+    assert 0.28 < (points[:, 0] > 0.5).mean() < 0.39
+
+
+def test_plain_data_round_trip():
+    for domain in (TWO, Domain.whole(4), union([[0.1, 0.30000000000000004]])):
+        data = json.loads(json.dumps(domain.to_data()))
+        again = Domain.from_data(data)
+        assert again.lower.tobytes() == domain.lower.tobytes()
+        assert again.upper.tobytes() == domain.upper.tobytes()
+    assert TWO.to_data()["boxes"][0] == {"0": [0.0, 0.5]}
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        {},
+        {"dimension": 1, "boxes": []},
+        {"dimension": 1, "boxes": [{"5": [0, 1]}]},
+        {"dimension": 1, "boxes": [{"0": [1, 0]}]},
+    ],
+)
+def test_bad_data_is_refused(data):
+    with pytest.raises(ValueError):  # noqa: PT011 - the messages differ
+        Domain.from_data(data)
+
+
+@pytest.mark.parametrize("box", [[[0.5, 0.5]], [[-0.1, 1.0]], [[0.0, 1.1]], [[0.0, float("nan")]]])
+def test_boxes_without_volume_are_refused(box):
+    with pytest.raises(ValueError, match="volume"):
+        union(box)
+
+
+def test_rows_of_the_wrong_width_are_refused():
+    with pytest.raises(ValueError, match="3 numbers"):
+        TWO.place(np.zeros((1, 2)))

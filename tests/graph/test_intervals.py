@@ -1,0 +1,136 @@
+"""Interval arithmetic: outward rounding, infinities, and the promise that finite bounds exclude NaN."""
+
+import math
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from scenic.graph import intervals
+from scenic.graph.bounds import Bounds, outward
+from scenic.graph.operations import TABLE
+
+numbers = st.floats(-1e6, 1e6)
+ends = st.tuples(numbers, numbers).map(lambda pair: (min(pair), max(pair)))
+
+
+def box(low, high):
+    return Bounds(np.array([float(low)]), np.array([float(high)]))
+
+
+EXACT = {
+    intervals.add: lambda a, b: a + b,
+    intervals.subtract: lambda a, b: a - b,
+    intervals.multiply: lambda a, b: a * b,
+}
+
+
+@pytest.mark.parametrize("function", EXACT)
+@given(ends, ends)
+def test_exact_results_are_held(function, first, second):
+    """The real number is within the bounds, not only its rounding."""
+    result = function(box(*first), box(*second))
+    corners = [EXACT[function](Fraction(a), Fraction(b)) for a in first for b in second]
+    assert Fraction(float(result.lower[0])) <= min(corners)
+    assert max(corners) <= Fraction(float(result.upper[0]))
+
+
+def test_a_third():
+    result = intervals.divide(box(1, 1), box(3, 3))
+    assert Fraction(float(result.lower[0])) < Fraction(1, 3) < Fraction(float(result.upper[0]))
+
+
+def test_dividing_by_what_may_be_zero_says_nothing():
+    for divisor in ((0, 0), (-1, 1), (0, 5)):
+        with np.errstate(all="ignore"):
+            result = intervals.divide(box(1, 2), box(*divisor))
+        assert (result.lower[0], result.upper[0]) == (-math.inf, math.inf)
+        assert not result.empty()[0]
+
+
+WILD = [(1, math.inf), (-math.inf, 2), (-math.inf, math.inf)]
+TAME = [(0, 0), (-1, 2), (3, 4)]
+
+
+@pytest.mark.parametrize("wild", WILD)
+@pytest.mark.parametrize("tame", TAME)
+def test_what_may_be_no_number_is_never_bounded(wild, tame):
+    """An operand that may be infinite may be NaN, and so may the result: some end must be infinite."""
+    both = (
+        "add",
+        "subtract",
+        "multiply",
+        "divide",
+        "floor divide",
+        "modulo",
+        "power",
+        "minimum",
+        "maximum",
+        "hypot",
+    )
+    for name in both:
+        for operands in ((wild, tame), (tame, wild), (wild, wild)):
+            with np.errstate(all="ignore"):
+                result = TABLE[name].bounds(None, *(box(*operand) for operand in operands))
+            assert intervals.infinite(result).all(), name
+            assert not result.empty().any(), name
+    for name in ("negative", "absolute", "sin", "cos", "normalize angle", "float"):
+        with np.errstate(all="ignore"):
+            assert intervals.infinite(TABLE[name].bounds(None, box(*wild))).all(), name
+
+
+def test_comparisons_with_what_may_be_no_number_are_never_certain_to_hold():
+    for name, first, second in (("less", (-math.inf, 1), (2, 3)), ("greater", (2, math.inf), (0, 1))):
+        result = TABLE[name].bounds(None, box(*first), box(*second))
+        assert (result.lower[0], result.upper[0]) == (0, 1)
+    result = TABLE["less"].bounds(None, box(2, math.inf), box(0, 1))
+    assert (result.lower[0], result.upper[0]) == (0, 0)
+
+
+@given(st.floats(-30, 30), st.floats(0, 7), st.floats(0, 1))
+def test_waves_hold_their_values(start, width, share):
+    angle = start + width * share
+    for name, function in (("sin", math.sin), ("cos", math.cos)):
+        result = TABLE[name].bounds(None, box(start, start + width))
+        assert result.lower[0] <= function(angle) <= result.upper[0]
+
+
+def test_waves_are_tight():
+    result = TABLE["sin"].bounds(None, box(0.1, 0.2))
+    assert result.lower[0] == pytest.approx(math.sin(0.1), abs=1e-12)
+    assert result.upper[0] == pytest.approx(math.sin(0.2), abs=1e-12)
+    result = TABLE["cos"].bounds(None, box(-0.1, 0.2))
+    assert result.upper[0] == 1
+
+
+@given(st.floats(-50, 50), st.floats(0, 3), st.floats(0, 1))
+def test_normalised_angles_hold_their_values(start, width, share):
+    angle = start + width * share
+    value = TABLE["normalize angle"].python(angle)
+    result = TABLE["normalize angle"].bounds(None, box(start, start + width))
+    assert result.lower[0] <= value <= result.upper[0]
+
+
+def test_azimuths_are_tight_away_from_the_seam():
+    east = Bounds(np.array([[1.0, -0.1, 0.0]]), np.array([[2.0, 0.1, 0.0]]))
+    result = TABLE["azimuth"].bounds(None, east)
+    assert result.lower[0] == pytest.approx(-math.pi / 2 - math.atan(0.1))
+    assert result.upper[0] == pytest.approx(-math.pi / 2 + math.atan(0.1))
+    south = Bounds(np.array([[-0.1, -2.0, 0.0]]), np.array([[0.1, -1.0, 0.0]]))
+    result = TABLE["azimuth"].bounds(None, south)
+    assert (result.lower[0], result.upper[0]) == (-math.pi, math.pi)
+
+
+def test_bounds_themselves():
+    a, b = box(0, 2), box(1, 5)
+    assert a.meet(b).lower[0] == 1
+    assert a.hull(b).upper[0] == 5
+    assert not a.empty()[0]
+    assert a.meet(box(3, 4)).empty()[0]
+    assert box(math.nan, 1).empty()[0]
+    assert Bounds.exactly([1.0, 2.0, 3.0]).lower.shape == (1, 3)
+    wide = outward(np.array([1.0]), np.array([1.0]), 2)
+    assert wide.lower[0] == 1 - 2.0**-52
+    assert wide.upper[0] == 1 + 2.0**-51

@@ -1,0 +1,76 @@
+"""Nodes, graphs and kinds."""
+
+import numpy as np
+import pytest
+
+from graph.programs import Triple, constant, make, one_of, uniform
+from scenic.graph import bounding
+from scenic.graph.kinds import Kind, boxed, join
+from scenic.graph.node import Graph, axis
+
+
+def test_operands_come_before_what_uses_them():
+    x, y = uniform(0, 1), uniform(0, 1)
+    root = make("add", make("multiply", x, y), x)
+    network = Graph([root, y])
+    assert network.nodes[-1] is root
+    for node in network.nodes:
+        assert all(network.index[operand] < network.index[node] for operand in node.operands)
+    assert len(set(network.nodes)) == len(network.nodes)
+
+
+def test_axes_are_numbered_by_the_order_of_roots_and_operands():
+    first, second = axis(), axis()
+    a = make("range", first, 0, 1)
+    b = make("range", second, 0, 1)
+    assert Graph([a, b]).axes == {first: 0, second: 1}
+    assert Graph([b, a]).axes == {second: 0, first: 1}
+    assert Graph([make("subtract", b, a)]).dimension == 2
+
+
+def test_the_order_of_one_root_leaves_out_leaves():
+    x = uniform(0, 1)
+    root = make("add", x, 1)
+    assert Graph([root]).order(root) == [x, root]
+
+
+def test_constants_know_their_values():
+    node = constant(2.5)
+    assert node.is_constant
+    assert node.value == 2.5
+    assert constant(7).limits == (7, 7)
+    with pytest.raises(ValueError, match="not a constant"):
+        _ = uniform(0, 1).value
+
+
+def test_join():
+    assert join(Kind.SCALAR, Kind.SCALAR) is Kind.SCALAR
+    assert join(Kind.INTEGER, Kind.SCALAR) is Kind.OTHER
+    assert one_of(1, 2).kind is Kind.INTEGER
+    assert one_of(1, 2.0).kind is Kind.OTHER
+
+
+def test_boxed_columns_keep_sequences_whole():
+    column = boxed([(1, 2), [3], np.array([4.0, 5.0])])
+    assert column.shape == (3,)
+    assert column[0] == (1, 2)
+
+
+def test_bounds_of_the_whole_cube():
+    x = uniform(0, 10)
+    bounds = bounding.overall(make("divide", x, 4))
+    assert bounds.lower[0] == pytest.approx(0)
+    assert bounds.upper[0] == pytest.approx(2.5)
+    assert bounding.overall(constant("word")) is None
+    mixed = bounding.overall(make("add", one_of(1, 2.5), 1))
+    assert (mixed.lower[0], mixed.upper[0]) == pytest.approx((2, 3.5))
+    assert bounding.overall(one_of(1, "word")) is None
+    assert bounding.overall(constant(Triple((1.0, 2.0, 3.0)))).lower.tolist() == [[1.0, 2.0, 3.0]]
+
+
+def test_bounds_of_the_whole_cube_give_up_after_some_nodes():
+    x = uniform(0, 1)
+    for _ in range(1000):
+        x = make("multiply", x, 1.0)
+    bounds = bounding.overall(x)
+    assert (bounds.lower[0], bounds.upper[0]) == (-np.inf, np.inf)

@@ -1,0 +1,146 @@
+"""The table as a whole: which entry has which reading, and what every reading must be."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from graph.programs import CASES, case_node, draw, evaluate, is_fine, kind_of
+from scenic.graph.operations import TABLE
+
+GOLDEN = Path(__file__).parent / "data" / "table.json"
+READINGS = ("batch", "python", "bounds", "inverse", "solver")
+
+
+def test_the_readings_of_every_entry(request):
+    cells = {
+        name: {
+            reading: "supported" if getattr(operation, reading) is not None else "unsupported"
+            for reading in READINGS
+        }
+        | {"strict": operation.strict}
+        for name, operation in TABLE.items()
+    }
+    if request.config.getoption("--update-golden", default=False):
+        GOLDEN.write_text(json.dumps(cells, indent=1) + "\n")
+    assert cells == json.loads(GOLDEN.read_text())
+
+
+def test_the_table_is_read_only():
+    with pytest.raises(TypeError):
+        TABLE["add"] = TABLE["subtract"]
+
+
+def test_every_entry_has_a_case_and_a_description():
+    assert {case.name for case in CASES} == set(TABLE)
+    assert all(operation.doc.endswith(".") and operation.name == name for name, operation in TABLE.items())
+
+
+def bits(column: np.ndarray) -> bytes:
+    if column.dtype == object:
+        return repr(column.tolist()).encode()
+    return np.ascontiguousarray(column).tobytes()
+
+
+def same(first, second, case):
+    """Equal bit for bit, faults and rejections included."""
+    node, other = first[1], second[1]
+    fine = is_fine(*first)
+    assert (fine == is_fine(*second)).all(), case
+    assert bits(first[0].full(node)[fine]) == bits(second[0].full(other)[fine]), case
+
+
+@pytest.mark.parametrize("case", CASES, ids=str)
+def test_batches_and_strides_change_no_bit(case):
+    """Rows are the same in batches of 1, 7 and 512, and when columns are strided or repeat one row."""
+    rng = np.random.default_rng(3)
+    lanes = 512
+    columns = [draw(part, lanes, rng) for part in case.operands]
+    # Integer kinds depend on the limits of all values, which every part of the batch must share.
+    whole = case_node(case, columns)
+
+    def part_of(rows):
+        sources = [
+            replace_column(operand, column[rows])
+            for operand, column in zip(whole.operands, columns, strict=True)
+        ]
+        node = replace(whole, operands=tuple(sources))
+        return evaluate(node, len(columns[0][rows])), node
+
+    full = part_of(slice(None))
+    values, fine = full[0].full(full[1]), is_fine(*full)
+    for size in (1, 7):
+        for start in range(0, 30 * size, size):
+            rows = slice(start, start + size)
+            batch, node = part_of(rows)
+            assert (is_fine(batch, node) == fine[rows]).all()
+            assert bits(batch.full(node)[fine[rows]]) == bits(values[rows][fine[rows]])
+
+    strided = []
+    for operand, column in zip(whole.operands, columns, strict=True):
+        spaced = np.zeros((2 * lanes, *column.shape[1:]), dtype=operand.kind.dtype)
+        spaced[::2] = column
+        strided.append(replace_column(operand, spaced[::2]))
+    node = replace(whole, operands=tuple(strided))
+    same((evaluate(node, lanes), node), full, case)
+
+    constant_row = [
+        replace_column(operand, column[:1]) for operand, column in zip(whole.operands, columns, strict=True)
+    ]
+    node = replace(whole, operands=tuple(constant_row))
+    batch = evaluate(node, 9)
+    if fine[0]:
+        assert bits(batch.full(node)) == bits(np.repeat(values[:1], 9, axis=0))
+    else:
+        assert not is_fine(batch, node).any()
+
+
+def replace_column(operand, column):
+    return replace(operand, payload=(np.asarray(column, dtype=operand.kind.dtype),))
+
+
+@pytest.mark.parametrize("case", CASES, ids=str)
+def test_columns_have_the_form_of_the_kind(case):
+    rng = np.random.default_rng(5)
+    columns = [draw(part, 20, rng) for part in case.operands]
+    node = case_node(case, columns)
+    column = evaluate(node, 20).column(node)
+    assert column.dtype == node.kind.dtype
+    assert column.shape[1:] == node.kind.trailing
+    assert len(column) in (1, 20)
+
+
+PLAIN = [
+    case
+    for case in CASES
+    if TABLE[case.name].python is not None and not any(kind_of(part).trailing for part in case.operands)
+]
+
+
+@pytest.mark.parametrize("case", PLAIN, ids=str)
+def test_batches_agree_with_python(case):
+    """The NumPy reading gives in every lane what Python's own function gives, and fails as it fails."""
+    rng = np.random.default_rng(7)
+    columns = [draw(part, 60, rng) for part in case.operands]
+    node = case_node(case, columns)
+    batch = evaluate(node, 60)
+    fine = is_fine(batch, node)
+    for lane in range(60):
+        values = [
+            np.asarray(column, kind_of(part).dtype)[lane].item()
+            for part, column in zip(case.operands, columns, strict=True)
+        ]
+        try:
+            expected = TABLE[case.name].python(*values)
+        except ArithmeticError:
+            assert not fine[lane]
+            continue
+        if isinstance(expected, complex):
+            assert not fine[lane]
+            continue
+        assert fine[lane]
+        found = batch.value(node, lane)
+        assert repr(found) == repr(expected), values
+        assert type(found) is type(expected)
