@@ -61,12 +61,12 @@ def node_classes() -> dict[str, NodeClass]:
 
 
 def helper_names() -> frozenset[str]:
-    """The methods of ``scenic.compiler.actions.Actions`` that actions may call."""
-    tree = ast.parse((SOURCES / "actions.py").read_text(encoding="utf-8"))
+    """The methods of ``scenic.compiler.actions.Actions``, and of its bases, that actions may call."""
     return frozenset(
         method.name
-        for statement in tree.body
-        if isinstance(statement, ast.ClassDef) and statement.name == "Actions"
+        for source in sorted((SOURCES / "actions").glob("*.py"))
+        for statement in ast.parse(source.read_text(encoding="utf-8")).body
+        if isinstance(statement, ast.ClassDef) and statement.name.endswith("Actions")
         for method in statement.body
         if isinstance(method, ast.FunctionDef) and not method.name.startswith("_")
     )
@@ -166,7 +166,10 @@ class _Rewriter(ast.NodeTransformer):
 
     def visit_ListComp(self, node: ast.ListComp) -> ast.expr:
         outer = self.bound
-        self.bound = {*outer, *(each.target.id for each in node.generators if isinstance(each.target, ast.Name))}
+        self.bound = {
+            *outer,
+            *(each.target.id for each in node.generators if isinstance(each.target, ast.Name)),
+        }
         self.generic_visit(node)
         self.bound = outer
         return node

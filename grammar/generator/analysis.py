@@ -1,8 +1,9 @@
 """Facts about a grammar: first tokens, left recursion, the ladder of operators, what has to be memoised."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TypeAlias
 
 from grammar.generator.model import (
     KINDS,
@@ -24,6 +25,8 @@ from grammar.generator.model import (
     Token,
     TokenChoice,
 )
+
+Found: TypeAlias = Mapping[str, frozenset[int]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,7 +93,9 @@ class Analysis:
 
     # First and last tokens.
 
-    def _fixed_point(self, of_alternative):  # type: ignore[no-untyped-def]
+    def _fixed_point(
+        self, of_alternative: Callable[[Sequence[Named], Found], frozenset[int]]
+    ) -> dict[str, frozenset[int]]:
         found: dict[str, frozenset[int]] = dict.fromkeys(self.rules, frozenset())
         changed = True
         while changed:
@@ -102,7 +107,7 @@ class Analysis:
                     changed = True
         return found
 
-    def _first_of_item(self, item: Item, found: dict[str, frozenset[int]]) -> frozenset[int]:
+    def _first_of_item(self, item: Item, found: Found) -> frozenset[int]:
         match item:
             case Token() | TokenChoice():
                 return self.kinds_of(item)
@@ -120,9 +125,7 @@ class Analysis:
             isinstance(item, Repeat) and not item.at_least_one
         )
 
-    def _first_of_alternative(
-        self, items: Sequence[Named], found: dict[str, frozenset[int]]
-    ) -> frozenset[int]:
+    def _first_of_alternative(self, items: Sequence[Named], found: Found) -> frozenset[int]:
         kinds: frozenset[int] = frozenset()
         allowed: frozenset[int] | None = None
         for named in items:
@@ -135,9 +138,7 @@ class Analysis:
                 break
         return kinds if allowed is None else kinds & allowed
 
-    def _last_of_alternative(
-        self, items: Sequence[Named], found: dict[str, frozenset[int]]
-    ) -> frozenset[int]:
+    def _last_of_alternative(self, items: Sequence[Named], found: Found) -> frozenset[int]:
         kinds: frozenset[int] = frozenset()
         for named in reversed(items):
             item = named.item
@@ -156,7 +157,7 @@ class Analysis:
                 break
         return kinds
 
-    def _last_of_item(self, item: Item, found: dict[str, frozenset[int]]) -> frozenset[int]:
+    def _last_of_item(self, item: Item, found: Found) -> frozenset[int]:
         match item:
             case Token() | TokenChoice():
                 return self.kinds_of(item)
@@ -377,7 +378,7 @@ class Analysis:
             if len(group) > 1:
                 deeper = self._retried_among(name, [body[1:] for body in group], stops, start)
                 if deeper:
-                    kinds |= self.first_of(group[0]) if self.first_of(group[0]) else start
+                    kinds |= self.first_of(group[0]) or start
         return kinds
 
     def _reaches(self, items: Sequence[Named], target: str, stops: frozenset[str], *, to_cut: bool) -> bool:
@@ -412,9 +413,7 @@ class Analysis:
             if rule not in seen:
                 seen.add(rule)
                 for alternative in self.rules[rule].alternatives:
-                    roots += [
-                        item.rule for item in self.items_of(alternative) if isinstance(item, Reference)
-                    ]
+                    roots += [item.rule for item in self.items_of(alternative) if isinstance(item, Reference)]
         return seen
 
 

@@ -96,7 +96,7 @@ def value_item(alternative: Alternative, rule: str) -> Named:
     """The item whose value is that of an alternative without an action."""
     named = [each for each in alternative.items if each.name is not None]
     bearing = [each for each in alternative.items if not isinstance(each.item, Look | Cut)]
-    chosen = named if named else bearing
+    chosen = named or bearing
     if len(chosen) != 1:
         raise GrammarError(f"rule {rule!r}: {describe(alternative)} needs an action")
     item = chosen[0].item

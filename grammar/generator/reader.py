@@ -83,7 +83,11 @@ class _Reader:
         if both := self.hard & self.soft:
             raise GrammarError(f"both hard and soft keywords: {sorted(both)}")
         return Grammar(
-            self.rules, settings["start"][0], frozenset(settings.get("recover", ())), self.vocabulary(), digest
+            self.rules,
+            settings["start"][0],
+            frozenset(settings.get("recover", ())),
+            self.vocabulary(),
+            digest,
         )
 
     def vocabulary(self) -> Vocabulary:

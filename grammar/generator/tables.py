@@ -10,7 +10,8 @@ def emit_tables(analysis: Analysis, header: str) -> str:
     starting_words = sorted(_starting_words(analysis))
     operators = sorted(
         frozenset().union(
-            *(analysis.continuations(name) for name in analysis.steps if name in _ladder_of(analysis)), frozenset()
+            *(analysis.continuations(name) for name in analysis.steps if name in _ladder_of(analysis)),
+            frozenset(),
         )
     )
     specifiers = sorted(analysis.first["specifier"]) if "specifier" in analysis.rules else []

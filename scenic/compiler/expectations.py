@@ -38,7 +38,19 @@ _KINDS: Final = {
 _UNMISTAKABLE: Final = SPECIFIER_KINDS - {HARD_KEYWORDS["at"], HARD_KEYWORDS["in"], HARD_KEYWORDS["not"]}
 """The first words of specifiers that are no operators."""
 
-_MANY: Final = 6
+_CONNECTORS: Final = frozenset(OPERATORS[mark] for mark in (",", ";", ":", "="))
+_KEYWORD_KINDS: Final = frozenset(HARD_KEYWORDS.values())
+_NAME_LABELS: Final = frozenset({"a name", "a parameter", "a parameter's name", "the name of a module"})
+
+_PREFIX_OPERATORS: Final = frozenset(
+    [(word, mark) for word in ("distance", "angle", "altitude") for mark in ("to", "from")]
+    + [("distance", "past"), ("relative", "heading"), ("relative", "position"), ("apparent", "heading")]
+    + [(word, "of") for word in ("front", "back", "left", "right", "top", "bottom")]
+)
+"""The first words of prefix operators, of which the first is a name where no such operator can stand."""
+
+_MANY: Final = 5
+"""So many possibilities are named."""
 
 
 class Expectations:
@@ -65,10 +77,11 @@ class Expectations:
     def place(self, token: int) -> tuple[int, int, int, int]:
         """Where to point: at the token, or at the end of what is before it if it is the end of something."""
         tokens = self._tokens
-        if self._kinds[token] in (NEWLINE, ENDMARKER, DEDENT) and token > 0:
-            line, column = tokens.end_lines[token - 1], tokens.end_columns[token - 1]
-            if self._kinds[token - 1] not in (NEWLINE, DEDENT, INDENT):
-                return (line, column, line, column)
+        if self._kinds[token] in (NEWLINE, ENDMARKER, DEDENT):
+            while token > 0 and self._kinds[token] in (NEWLINE, ENDMARKER, DEDENT, INDENT):
+                token -= 1
+            line, column = tokens.end_lines[token], tokens.end_columns[token]
+            return (line, column, line, column)
         return (
             tokens.lines[token],
             tokens.columns[token],
@@ -90,13 +103,17 @@ class Expectations:
         """What could have stood somewhere, in words."""
         kinds = {each for each in expected if isinstance(each, int)}
         words = {each for each in expected if isinstance(each, str)}
-        words -= {"a statement"} if len(words) > 1 else set()
+        if len(words) > 1:
+            words.discard("a statement")
         if len(kinds & INFIX_KINDS) > 3:
             kinds -= INFIX_KINDS
             words.add("an operator")
-        names = [_KINDS[kind] if kind in _KINDS else f"`{_WORDS[kind]}`" for kind in kinds]
-        ordered = sorted(words) + sorted(set(names), key=lambda name: (name.startswith("`"), name))
-        ordered = list(dict.fromkeys(ordered))
+            if NEWLINE in kinds:
+                # After a complete statement nearly everything can go on; what is said is what is likely.
+                kinds -= _CONNECTORS
+                words.discard("an assignment operator")
+        names = {_KINDS[kind] if kind in _KINDS else f"`{_WORDS[kind]}`" for kind in kinds}
+        ordered = sorted(words | names, key=lambda name: (name.startswith("`"), name))
         if len(ordered) > _MANY:
             ordered = [*ordered[: _MANY - 1], "something else"]
         if len(ordered) > 1:
@@ -121,32 +138,78 @@ class Expectations:
         )
 
     def _special(self, start: int, token: int, expected: set[int | str]) -> Problem | None:
-        kinds, texts = self._kinds, self._tokens.texts
-        kind, text = kinds[token], texts[token] if token < len(texts) else ""
+        """A mistake that has its own message."""
+        kind = self._kinds[token]
+        text = self._tokens.texts[token]
         place = self.place(token)
-        if text == "=" and (expected & INFIX_KINDS) and OPERATORS["="] not in expected:
-            return Problem(
-                "SC110", place, "`=` assigns a value and cannot stand here", "use `==` to compare two values"
-            )
-        if (
-            kind in HARD_KEYWORDS.values()
-            and (NAME in expected or "a name" in expected)
-            and len(expected) <= 3
-        ):
-            return Problem(
-                "SC110", place, f"`{text}` is a keyword and cannot be a name", "choose another name"
-            )
+        if kind == NEWLINE and OPERATORS[":"] in expected:
+            return Problem("SC110", place, "expected `:`, but found the end of the line", "add `:`")
         if INDENT in expected or expected == {"an indented block"}:
             return Problem(
                 "SC110",
                 place,
                 f"expected an indented block, but found {self.found(token)}",
-                "indent the lines of it",
+                "indent the lines of the block",
             )
         if kind == INDENT:
-            return Problem("SC102", place, "this line is indented more than it can be")
-        if OPERATORS[":"] in expected and kind == NEWLINE:
-            return Problem("SC110", place, "expected `:`, but found the end of the line", "add `:`")
+            return Problem("SC102", place, "this line is indented more than it can be", "indent it less")
+        if kind in _KEYWORD_KINDS and (
+            expected & _NAME_LABELS
+            or ("an argument" in expected and self._kinds[token + 1] == OPERATORS["="])
+            or NAME in expected
+            and len(expected) == 1
+        ):
+            return Problem("SC110", place, f"`{text}` is a keyword and cannot be a name", "choose another name")
+        return self._special_word(start, token, expected)
+
+    def _special_word(self, start: int, token: int, expected: set[int | str]) -> Problem | None:
+        """A mistake that is known by the words around it."""
+        texts = self._tokens.texts
+        text, before, first = texts[token], texts[token - 1] if token > start else "", texts[start]
+        place = self.place(token)
+        if text == "=" and expected & INFIX_KINDS and OPERATORS["="] not in expected:
+            if token > start + 1 and texts[start + 1] == ":" and self._kinds[start] >= NAME:
+                return Problem(
+                    "SC110",
+                    place,
+                    "annotated assignments are not allowed in a class: `name: value` defines a property",
+                    f"write `{first}: value`, or `{first} = value` for an ordinary attribute",
+                )
+            return Problem(
+                "SC110", place, "`=` assigns a value and cannot stand here", "use `==` to compare two values"
+            )
+        if (before, text) in _PREFIX_OPERATORS:
+            return Problem(
+                "SC110",
+                place,
+                f"`{before} {text}` is looser than the operator before it",
+                f"put parentheses around `{before} {text} ...`",
+            )
+        if first == "require" and text in ("until", "implies"):
+            return Problem(
+                "SC110", place, f"`{text}` takes exactly two operands", "put parentheses around two of them"
+            )
+        if first == "require" and before == "]" and texts[start + 1] == "[":
+            return Problem(
+                "SC220",
+                self.place(start + 2),
+                "the probability of a requirement has to be a number between 0 and 1",
+                "write it out, as in `require[0.5] ...`",
+            )
+        if first == "do" and text == "until":
+            return Problem(
+                "SC110",
+                place,
+                "a conditional expression before `until` has to stand in parentheses",
+                "put parentheses around what stands between `do` and `until`",
+            )
+        if first == "monitor" and text == ":" and token == start + 2:
+            return Problem(
+                "SC110",
+                place,
+                "the definition of a monitor needs parentheses",
+                f"write `monitor {before}():`",
+            )
         return None
 
 

@@ -6,18 +6,29 @@ list of nodes for a replacement field, and a triple (start, parts, end) for an f
 
 import ast
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 from scenic.compiler import literals
-from scenic.compiler.lexer import STRING, Tokens
-
-if TYPE_CHECKING:
-    from scenic.compiler.actions import Actions
+from scenic.compiler.lexer import FSTRING_END, FSTRING_START, Tokens
 
 Place = tuple[int, int, int, int]
 
 
-def joined(actions: "Actions", tokens: Tokens, pieces: Sequence[Any], place: Place) -> ast.expr | None:
+class Reader(Protocol):
+    """What is needed of `scenic.compiler.actions.Actions`."""
+
+    def fail(self, place: Place, message: str, *, help: str | None = None) -> None: ...
+
+    def literal_problem(self, index: int, message: str) -> None: ...
+
+    def place_of_token(self, index: int) -> Place: ...
+
+    def string_kind(self, index: int) -> str | None: ...
+
+    def string_value(self, index: int) -> str | bytes: ...
+
+
+def joined(actions: Reader, tokens: Tokens, pieces: Sequence[Any], place: Place) -> ast.expr | None:
     """The node of adjacent strings, of which ``pieces`` are f-strings (triples) or plain ones (indices)."""
     plain = [piece for piece in pieces if not isinstance(piece, tuple)]
     values = {index: actions.string_value(index) for index in plain}
@@ -66,7 +77,7 @@ def _constant(value: Any, place: Place, kind: str | None = None) -> ast.Constant
     return node
 
 
-def _parts(actions: "Actions", tokens: Tokens, parts: Iterable[Any], *, raw: bool) -> list[ast.expr]:
+def _parts(actions: Reader, tokens: Tokens, parts: Iterable[Any], *, raw: bool) -> list[ast.expr]:
     found: list[ast.expr] = []
     for part in parts:
         if isinstance(part, list):
@@ -102,7 +113,7 @@ def _merged(nodes: Iterable[ast.expr]) -> list[ast.expr]:
 
 
 def replacement_field(
-    actions: "Actions",
+    actions: Reader,
     tokens: Tokens,
     opening: int,
     value: ast.expr,
@@ -162,9 +173,9 @@ def _is_raw(tokens: Tokens, index: int) -> bool:
     depth = 0
     while index >= 0:
         kind = tokens.kinds[index]
-        if kind == STRING + 3:
+        if kind == FSTRING_END:
             depth += 1
-        elif kind == STRING + 1:
+        elif kind == FSTRING_START:
             if depth == 0:
                 return "r" in tokens.texts[index].lower()
             depth -= 1

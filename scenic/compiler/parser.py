@@ -9,15 +9,16 @@ import gc
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
-from scenic.compiler.actions import Actions
+from scenic.compiler.actions import Actions, Problem
 from scenic.compiler.generated import WORDS, build_parser
 from scenic.compiler.lexer import Tokens, lex
 from scenic.compiler.recovery import Recovery
-from scenic.compiler.source import Source
 from scenic.language.diagnostics import Diagnostic
+from scenic.language.source import Source
+from scenic.language.spans import Span
 
 __all__ = ["ParseResult", "parse"]
 
@@ -37,7 +38,7 @@ def parse(text: str, *, filename: str = "<string>") -> ParseResult:
     """Parse a Scenic program.
 
     Never raises because of ``text``, which may hold anything. Statements that cannot be parsed are
-    `scenic.compiler.tree.ErrorStatement` nodes in the tree, and every one has a diagnostic with an error.
+    `scenic.compiler.tree.ErrorStatement` nodes in the tree, and what is wrong with them is in the diagnostics.
     """
     with _no_garbage_collection():
         tokens = lex(text, WORDS)
@@ -53,15 +54,19 @@ def parse(text: str, *, filename: str = "<string>") -> ParseResult:
         problems = [*actions.problems.values(), *(recovery.problems if recovery else ())]
         if not problems and not tokens.diagnostics:
             return ParseResult(tree, ())
-        source = Source(tokens)
-        diagnostics = [
-            *tokens.diagnostics,
-            *(
-                Diagnostic(each.code, each.message, source.span(each.place), help=each.help)
-                for each in problems
-            ),
-        ]
-    return ParseResult(tree, tuple(sorted(set(diagnostics), key=_order)))
+    source = Source(tokens.text, filename)
+    diagnostics = {replace(each, filename=filename) for each in tokens.diagnostics}
+    diagnostics.update(_diagnostic(each, source) for each in problems)
+    return ParseResult(tree, tuple(sorted(diagnostics, key=_order)))
+
+
+def _diagnostic(problem: Problem, source: Source) -> Diagnostic:
+    line, column, end_line, end_column = problem.place
+    start = (line, source.character(line, column))
+    end = max(start, (end_line, source.character(end_line, end_column)))
+    return Diagnostic(
+        problem.code, problem.message, Span(*start, *end), filename=source.filename, help=problem.help
+    )
 
 
 def _order(diagnostic: Diagnostic) -> tuple[int, int, str, str]:

@@ -10,7 +10,7 @@ import ast
 from typing import Any, Final
 
 from scenic.compiler import tree
-from scenic.compiler.actions import Actions, Problem, place_of
+from scenic.compiler.actions import Actions, Problem, make
 from scenic.compiler.expectations import Expectations
 from scenic.compiler.generated import HARD_KEYWORDS, SOFT_KEYWORDS, build_parser, build_recording_parser
 from scenic.compiler.lexer import DEDENT, ENDMARKER, ERROR, INDENT, NEWLINE, Tokens
@@ -167,11 +167,8 @@ class Recovery:
         last = position - 1
         while last > start and kinds[last] in (NEWLINE, INDENT, DEDENT):
             last -= 1
-        node = tree.ErrorStatement(body=body)
-        first_place, last_place = self.actions.place_of_token(start), self.actions.place_of_token(last)
-        node.lineno, node.col_offset = first_place[:2]
-        node.end_lineno, node.end_col_offset = last_place[2:]
-        return node, position
+        place = (*self.actions.place_of_token(start)[:2], *self.actions.place_of_token(last)[2:])
+        return make(tree.ErrorStatement, place, body=body), position
 
     def _starts_clause(self, position: int) -> bool:
         """Whether the line at ``position`` has a block."""
@@ -208,4 +205,4 @@ class Recovery:
         return body, end + (self._kinds[end] == DEDENT)
 
 
-__all__ = ["MOST_PROBLEMS", "Recovery", "place_of"]
+__all__ = ["MOST_PROBLEMS", "Recovery"]

@@ -134,7 +134,9 @@ _ALL = (
     _function("resample(distribution)", "An independent draw of the same distribution."),
     _function("localPath(path)", "A path relative to the folder of this source file."),
     _function(
-        "verbosePrint(*values, level=1, indent=True)", "Prints if the verbosity is at least the level."
+        "verbosePrint(*values, level=1, indent=True)",
+        "Prints if the verbosity is at least the level.",
+        available=False,
     ),
     _function(
         "distributionFunction(function)",

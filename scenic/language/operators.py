@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Final
 
-__all__ = ["OPERATORS", "SIDES", "Operand", "Operator"]
+__all__ = ["EGO", "OPERATORS", "SIDES", "Operand", "Operator"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,6 +41,9 @@ class Operator:
     documentation: str
     available: bool = True
 
+
+EGO: Final = "the ego"
+"""The default of most operands that may be left out."""
 
 SIDES: Final = (
     "front",
@@ -75,8 +78,6 @@ def _side(side: str) -> Operator:
         f"The {part} at the {side} of the object's bounding box, with the orientation of the object.",
     )
 
-
-_EGO = "the ego"
 
 _ALL = (
     Operator(
@@ -133,28 +134,28 @@ _ALL = (
     ),
     Operator(
         "relative position",
-        (Operand("target", "vector"), Operand("base", "vector", _EGO)),
+        (Operand("target", "vector"), Operand("base", "vector", EGO)),
         "vector",
         ("relative position of target", "relative position of target from base"),
         "The vector from the base to the target, in global coordinates.",
     ),
     Operator(
         "relative heading",
-        (Operand("heading", "heading"), Operand("base", "heading", _EGO)),
+        (Operand("heading", "heading"), Operand("base", "heading", EGO)),
         "scalar",
         ("relative heading of heading", "relative heading of heading from base"),
         "The difference of two global headings, between -pi and pi.",
     ),
     Operator(
         "apparent heading",
-        (Operand("target", "oriented point"), Operand("viewpoint", "vector", _EGO)),
+        (Operand("target", "oriented point"), Operand("viewpoint", "vector", EGO)),
         "scalar",
         ("apparent heading of target", "apparent heading of target from viewpoint"),
         "The heading of the target relative to the line of sight from the viewpoint.",
     ),
     Operator(
         "distance",
-        (Operand("start", "vector or region", _EGO), Operand("end", "vector or region", _EGO)),
+        (Operand("start", "vector or region", EGO), Operand("end", "vector or region", EGO)),
         "scalar",
         (
             "distance to end",
@@ -167,7 +168,7 @@ _ALL = (
     ),
     Operator(
         "minimum distance",
-        (Operand("start", "object", _EGO), Operand("end", "object", _EGO)),
+        (Operand("start", "object", EGO), Operand("end", "object", EGO)),
         "scalar",
         (
             "minimum distance to end",
@@ -176,24 +177,25 @@ _ALL = (
             "minimum distance to end from start",
         ),
         "The smallest distance between the spaces that two objects occupy; 0 if they touch.",
+        available=False,
     ),
     Operator(
         "distance past",
-        (Operand("target", "vector"), Operand("base", "oriented point", _EGO)),
+        (Operand("target", "vector"), Operand("base", "oriented point", EGO)),
         "scalar",
         ("distance past target", "distance past target of base"),
         "How far the base is ahead of the target, measured along the heading of the base.",
     ),
     Operator(
         "angle",
-        (Operand("start", "vector", _EGO), Operand("end", "vector", _EGO)),
+        (Operand("start", "vector", EGO), Operand("end", "vector", EGO)),
         "scalar",
         ("angle to end", "angle from start", "angle from start to end", "angle to end from start"),
         "The heading of the line from one position to another: 0 is North (+Y), and it grows anticlockwise.",
     ),
     Operator(
         "altitude",
-        (Operand("start", "vector", _EGO), Operand("end", "vector", _EGO)),
+        (Operand("start", "vector", EGO), Operand("end", "vector", EGO)),
         "scalar",
         (
             "altitude to end",
@@ -213,7 +215,7 @@ _ALL = (
     ),
     Operator(
         "visible",
-        (Operand("region", "region"), Operand("viewer", "point", _EGO)),
+        (Operand("region", "region"), Operand("viewer", "point", EGO)),
         "region",
         ("visible region", "region visible from viewer"),
         "The part of a region that the viewer's view volume covers; nothing occludes here.",
@@ -221,7 +223,7 @@ _ALL = (
     ),
     Operator(
         "not visible",
-        (Operand("region", "region"), Operand("viewer", "point", _EGO)),
+        (Operand("region", "region"), Operand("viewer", "point", EGO)),
         "region",
         ("not visible region", "region not visible from viewer"),
         "The part of a region that the viewer's view volume does not cover; nothing occludes here.",

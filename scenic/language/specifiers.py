@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Final
 
-from scenic.language.operators import Operand
+from scenic.language.operators import EGO, Operand
 
 __all__ = ["SPECIFIERS", "Specified", "SpecifierDeclaration"]
 
@@ -49,7 +49,6 @@ class SpecifierDeclaration:
     available: bool = True
 
 
-_EGO = "the ego"
 _PREFERRED = "the region has a preferred orientation"
 _ORIENTED = "the reference is an oriented point or object"
 
@@ -146,7 +145,7 @@ _ALL = (
         (
             Operand("reference", "vector"),
             Operand("offset", "scalar or vector"),
-            Operand("viewpoint", "vector or point", _EGO),
+            Operand("viewpoint", "vector or point", EGO),
         ),
         (Specified("position", 1), Specified("parentOrientation", 3)),
         (),
@@ -156,7 +155,7 @@ _ALL = (
     ),
     SpecifierDeclaration(
         "visible",
-        (Operand("viewer", "point", _EGO),),
+        (Operand("viewer", "point", EGO),),
         (Specified("position", 3),),
         ("regionContainedIn",),
         "position",
@@ -167,7 +166,7 @@ _ALL = (
     ),
     SpecifierDeclaration(
         "not visible",
-        (Operand("viewer", "point", _EGO),),
+        (Operand("viewer", "point", EGO),),
         (Specified("position", 3),),
         ("regionContainedIn",),
         "position",
@@ -186,7 +185,7 @@ _ALL = (
         "following",
         (
             Operand("field", "vector field"),
-            Operand("start", "vector", _EGO),
+            Operand("start", "vector", EGO),
             Operand("distance", "scalar"),
         ),
         (Specified("position", 1), Specified("parentOrientation", 3)),
@@ -243,7 +242,7 @@ _ALL = (
     ),
     SpecifierDeclaration(
         "apparently facing",
-        (Operand("heading", "heading"), Operand("viewpoint", "vector", _EGO)),
+        (Operand("heading", "heading"), Operand("viewpoint", "vector", EGO)),
         (Specified("yaw", 1),),
         ("position", "parentOrientation"),
         "orientation",

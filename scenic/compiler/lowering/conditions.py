@@ -23,9 +23,11 @@ from scenic.compiler.lowering.build import (
     tuple_,
 )
 from scenic.compiler.scopes import PROVIDED, Resolution
+from scenic.compiler.traversal import walk
 from scenic.language.names import CONVERSIONS, LIFTED_FUNCTIONS, LIFTED_METHODS, TRACKED
+from scenic.language.operators import EGO, OPERATORS
 
-__all__ = ["Conditions"]
+__all__ = ["Conditions", "implicit_ego"]
 
 _Lowering = Callable[[ast.expr], ast.expr]
 
@@ -80,13 +82,15 @@ class Conditions:
         except _OpaqueError:
             traced = start_of(ast.Constant(None), node)
         free = list(self._free_names(node))
+        if not any(part.id == "ego" for part in free):
+            free.extend(_unwritten_ego(node))
         concrete = lambda_([(part.id, part) for part in free], self._captured(node), node)
         values = tuple_([self._ordinary(part) for part in free], node)
         return prelude_call("condition", [traced, concrete, values], node)
 
     def _free_names(self, node: ast.expr) -> Iterator[ast.Name]:
         """The first occurrence of every name that a leaf takes from outside, other than provided ones."""
-        inner = {self._resolution.scopes[part] for part in ast.walk(node) if part in self._resolution.scopes}
+        inner = {self._resolution.scopes[part] for part in walk(node) if part in self._resolution.scopes}
         seen: set[str] = set()
         for part in _in_order(node):
             binding = self._resolution.binding(part)
@@ -104,9 +108,27 @@ class Conditions:
         return self._resolution.wildcard and identifier not in PROVIDED
 
 
+def implicit_ego(node: scenic.Operation) -> list[int]:
+    """Which operands are left out and mean the ego."""
+    declared = OPERATORS[node.operator].operands
+    return [
+        index
+        for index, (operand, declaration) in enumerate(zip(node.operands, declared, strict=True))
+        if operand is None and declaration.default == EGO
+    ]
+
+
+def _unwritten_ego(node: ast.expr) -> list[ast.Name]:
+    """The ego, at the first operator that means it without naming it."""
+    for part in walk(node):
+        if isinstance(part, scenic.Operation) and implicit_ego(part):
+            return [start_of(ast.Name("ego", ast.Load()), part)]
+    return []
+
+
 def _assigns(node: ast.expr) -> bool:
     """Whether there is an assignment expression in a condition."""
-    return any(isinstance(part, ast.NamedExpr) for part in ast.walk(node))
+    return any(isinstance(part, ast.NamedExpr) for part in walk(node))
 
 
 def _in_order(node: ast.expr) -> Iterator[ast.Name]:

@@ -21,7 +21,7 @@ from scenic.compiler.lowering.build import (
     store_on_instance,
     tuple_,
 )
-from scenic.compiler.lowering.conditions import Conditions
+from scenic.compiler.lowering.conditions import Conditions, implicit_ego
 from scenic.compiler.scopes import Binding, BindingKind, Resolution, Scope, ScopeKind
 from scenic.language.errors import InternalError
 from scenic.language.names import CONVERSIONS, TRACKED
@@ -147,9 +147,12 @@ class _Program:
     # Scenic's expressions
 
     def operation(self, node: scenic.Operation) -> ast.expr:
-        return prelude_call(
-            "operation", [constant(node.operator, node), *self._operands(node.operands, node)], node
-        )
+        operands = self._operands(node.operands, node)
+        if self._captured:
+            # The ego of the requirement, which the function around it has as a parameter, not the present one.
+            for index in implicit_ego(node):
+                operands[index] = start_of(ast.Name("ego", ast.Load()), node)
+        return prelude_call("operation", [constant(node.operator, node), *operands], node)
 
     def _operands(self, operands: Sequence[ast.expr | None], origin: ast.AST) -> list[ast.expr]:
         return [

@@ -1,0 +1,177 @@
+"""Actions of Scenic's definitions and statements."""
+
+import ast
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+from scenic.compiler import tree
+from scenic.compiler.actions.common import Place, make, place_of
+from scenic.compiler.actions.definitions import DefinitionActions
+from scenic.compiler.actions.expressions import ExpressionActions
+
+
+class StatementActions(DefinitionActions, ExpressionActions):
+    """Behaviors, scenarios, requirements, parameters, records."""
+
+    def no_later_guard(self, body: Iterable[ast.stmt]) -> bool:
+        """Report guards among the statements of a behavior; there they would be annotations."""
+        for statement in body:
+            word = _guard_word(statement)
+            if word is not None:
+                self._report(
+                    place_of(statement),
+                    f"`{word}` has to stand before all other statements",
+                    help="move it to the front",
+                )
+        return True
+
+    def no_guard(self, body: Iterable[ast.stmt]) -> bool:
+        """Report guards in a monitor."""
+        for statement in body:
+            word = _guard_word(statement)
+            if word is not None:
+                self._report(
+                    place_of(statement),
+                    f"a monitor has no `{word}`",
+                    help="only behaviors and scenarios have guards",
+                )
+        return True
+
+    def one_block(self, body: list[ast.stmt]) -> tuple[Any, ...]:
+        """The parts of a scenario that is all set-up."""
+        self.no_later_guard(body)
+        if _docstring(body[0]) is not None:
+            return (body[0], [], body[1:], None)
+        return (None, [], body, None)
+
+    def scenario(
+        self, name: int, parameters: list[Any] | None, parts: tuple[Any, ...], place: Place
+    ) -> tree.ScenarioDef | None:
+        opening, guards, setup, compose = parts
+        docstring = None
+        if opening is not None:
+            docstring = _docstring(opening)
+            if docstring is None:
+                self.fail(place_of(opening), "only a plain string can stand here, as documentation")
+                return None
+        arguments = None
+        if parameters is not None:
+            arguments = parameters[0] or self.no_parameters()
+        return make(
+            tree.ScenarioDef,
+            place,
+            name=self._texts[name],
+            args=arguments,
+            docstring=docstring,
+            guards=guards,
+            setup=setup,
+            compose=compose,
+        )
+
+    def distinct(self, items: Sequence[tree.ParamItem]) -> bool:
+        """Report parameters that are set twice in one statement."""
+        seen: set[str] = set()
+        for item in items:
+            if item.name in seen:
+                self._report(
+                    place_of(item), f"the parameter `{item.name}` is set twice in one statement", code="SC210"
+                )
+            seen.add(item.name)
+        return True
+
+    def parameter_setting(self, name: int, value: ast.expr, place: Place) -> tree.ParamItem | None:
+        text = self.string_name(name)
+        if text is None:
+            return None
+        return make(tree.ParamItem, place, name=text, value=value)
+
+    def string_name(self, index: int) -> str | None:
+        """A name written as a string."""
+        value = self.string_value(index)
+        if isinstance(value, str):
+            return value
+        self.fail(self.place_of_token(index), "a name cannot be bytes", help="remove the prefix `b`")
+        return None
+
+    def not_both(self, name: str | None, target: ast.expr | None) -> bool:
+        """Report a record with a name and a target."""
+        if name is not None and target is not None:
+            self._report(
+                place_of(target),
+                "a record has either a name or a target, not both",
+                help="remove `as` or `to`",
+            )
+        return True
+
+    def probability(self, index: int) -> float:
+        """The value of a probability; one that cannot be is reported, and moved to where it can."""
+        value = self.number_value(index)
+        if isinstance(value, complex) or not 0 <= value <= 1:
+            self._report(self.place_of_token(index), "a probability has to lie between 0 and 1")
+            return 1.0
+        return float(value)
+
+    def is_requirement(self, condition: ast.expr) -> bool:
+        """Report temporal operators where they have no meaning."""
+        stack: list[ast.expr] = [condition]
+        while stack:
+            node = stack.pop()
+            if isinstance(node, tree.Temporal):
+                stack += node.operands
+            elif isinstance(node, ast.BoolOp):
+                stack += node.values
+            elif isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.Not):
+                stack.append(node.operand)
+            else:
+                self._check_static(node)
+        return True
+
+    def _check_static(self, root: ast.expr) -> None:
+        """Report temporal operators in an ordinary expression."""
+        stack: list[ast.AST] = [root]
+        while stack:
+            node = stack.pop()
+            if isinstance(node, tree.Temporal):
+                self._report(
+                    place_of(node),
+                    f"`{node.operator}` cannot stand inside a conditional expression",
+                    help="write the cases as `(c implies a) and (not c implies b)`",
+                )
+                return
+            if (
+                isinstance(node, ast.Call)
+                and isinstance(node.func, ast.Name)
+                and node.func.id in ("always", "eventually", "next")
+            ):
+                self._report(
+                    place_of(node),
+                    f"malformed use of the temporal operator `{node.func.id}`",
+                    help="a temporal operator cannot be part of an ordinary expression",
+                )
+                return
+            for value in vars(node).values():
+                if isinstance(value, ast.AST):
+                    stack.append(value)
+                elif type(value) is list:
+                    stack += [each for each in value if isinstance(each, ast.AST)]
+
+
+def _guard_word(statement: ast.stmt) -> str | None:
+    if (
+        isinstance(statement, ast.AnnAssign)
+        and isinstance(statement.target, ast.Name)
+        and statement.target.id in ("precondition", "invariant")
+        and statement.value is None
+    ):
+        return statement.target.id
+    return None
+
+
+def _docstring(statement: ast.stmt) -> str | None:
+    if (
+        isinstance(statement, ast.Expr)
+        and isinstance(statement.value, ast.Constant)
+        and isinstance(statement.value.value, str)
+    ):
+        return statement.value.value
+    return None
