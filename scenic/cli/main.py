@@ -1,0 +1,154 @@
+"""The command ``scenic``: finds the module of the subcommand, and reports what escapes from it.
+
+Each subcommand is in a module of its own, which is imported only when it is called, so that ``scenic check``
+does not wait for what other commands need.
+"""
+
+import os
+import sys
+import traceback
+from collections.abc import Mapping
+from importlib import import_module
+from types import MappingProxyType
+from typing import Final
+
+import click
+
+from scenic.cli.output import FINDINGS, INTERNAL, INTERRUPTED, exit_code, show_diagnostics
+from scenic.language.diagnostics import Diagnostic
+from scenic.language.errors import Located, ParseCompileError
+
+__all__ = ["main", "scenic"]
+
+_COMMANDS: Final[Mapping[str, tuple[str, str, str]]] = MappingProxyType(
+    {
+        "check": ("scenic.cli.check", "check", "Report what is wrong with programs, without running them."),
+        "sample": ("scenic.cli.sample", "sample", "Sample scenes from a program."),
+        "ast": ("scenic.cli.syntax_tree", "syntax_tree", "Show the syntax tree of a program."),
+        "python": ("scenic.cli.python_code", "python_code", "Show the Python code that a program becomes."),
+        "lsp": ("scenic.cli.lsp", "lsp", "Start the language server, for editors."),
+    }
+)
+"""By name: module, function in it, and what the list of commands says."""
+
+_FRAMES: Final = 6
+"""So many frames of an internal error are shown."""
+
+
+class _Commands(click.Group):
+    """A group whose commands are imported when they are called."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return list(_COMMANDS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        if cmd_name not in _COMMANDS:
+            return None
+        module, function, _ = _COMMANDS[cmd_name]
+        command: click.Command = getattr(import_module(module), function)
+        return command
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        with formatter.section("Commands"):
+            formatter.write_dl([(name, text) for name, (_, _, text) in _COMMANDS.items()])
+
+
+def _show_version(ctx: click.Context, _parameter: click.Parameter, wanted: bool) -> None:
+    if not wanted or ctx.resilient_parsing:
+        return
+    from importlib.metadata import PackageNotFoundError, version  # only needed here, and slow to import
+
+    try:
+        click.echo(f"scenic {version('scenic-lang')}")
+    except PackageNotFoundError:
+        click.echo("scenic (not installed)")
+    ctx.exit()
+
+
+@click.group(cls=_Commands, context_settings={"help_option_names": ["-h", "--help"]})
+@click.option(
+    "--version",
+    is_flag=True,
+    callback=_show_version,
+    expose_value=False,
+    is_eager=True,
+    help="Show the version.",
+)
+def scenic() -> None:
+    """Check, compile and sample Scenic programs.
+
+    Exit codes: 0 success, 1 the program has errors, 2 wrong usage (an unknown option,
+    a file that cannot be read), 3 only some of the scenes were found, 70 an internal error, 130 interrupted.
+    """
+
+
+def main() -> None:
+    """Run the command line; the entry point of ``scenic``."""
+    for stream in (sys.stdout, sys.stderr):
+        # What the terminal cannot show must not end the command.
+        if hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="backslashreplace")
+    sys.exit(_run())
+
+
+def _run() -> int:
+    try:
+        try:
+            result = scenic.main(prog_name="scenic", standalone_mode=False)
+            code = result if isinstance(result, int) else 0
+        except click.ClickException as error:
+            error.show()
+            code = error.exit_code
+        except SystemExit as error:
+            code = error.code if isinstance(error.code, int) else int(error.code is not None)
+        except BrokenPipeError:
+            raise
+        except Exception as error:  # noqa: BLE001 - whatever escapes a command is reported here
+            code = _report(error)
+        sys.stdout.flush()
+        sys.stderr.flush()
+    except BrokenPipeError:
+        # The reader has gone; Python would complain again when it closes the stream at the end.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return FINDINGS
+    except (KeyboardInterrupt, click.Abort):
+        sys.stderr.write("interrupted\n")
+        return INTERRUPTED
+    return code
+
+
+def _report(error: Exception) -> int:
+    """Show an exception that escaped a command: a problem of the program, or else a fault of ours."""
+    if isinstance(error, click.Abort):
+        raise error
+    found = _diagnostics(error)
+    if found:
+        show_diagnostics(found)
+        return exit_code(found)
+    internal = Diagnostic(
+        "SC999",
+        f"internal error: {type(error).__name__}: {error}",
+        help="this is a fault of scenic, not of your program; please report it with the program and these lines",
+    )
+    show_diagnostics([internal])
+    frames = traceback.extract_tb(error.__traceback__)[-_FRAMES:]
+    sys.stderr.write("".join(traceback.format_list(frames)))
+    return INTERNAL
+
+
+def _diagnostics(error: Exception) -> tuple[Diagnostic, ...]:
+    if isinstance(error, ParseCompileError):
+        return error.diagnostics
+    if isinstance(error, Located):
+        return (error.diagnostic(),)
+    pipeline = sys.modules.get("scenic.pipeline")
+    if pipeline is not None:
+        # A program was run: the exception may be its own.
+        found: Diagnostic | None = pipeline.diagnose(error)
+        if found is not None:
+            return (found,)
+    return ()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,68 @@
+"""Where the commands write: colours only on a terminal, and exit codes that mean the same everywhere."""
+
+import os
+import sys
+from collections.abc import Iterable
+from typing import Final, TextIO
+
+from scenic.cli.render import Sources, render_text
+from scenic.language.diagnostics import Diagnostic, Severity
+
+__all__ = [
+    "CLEAN",
+    "FINDINGS",
+    "INTERNAL",
+    "INTERRUPTED",
+    "USAGE",
+    "exit_code",
+    "has_colours",
+    "show_diagnostics",
+    "summary",
+]
+
+CLEAN: Final = 0
+FINDINGS: Final = 1
+"""The program has errors."""
+USAGE: Final = 2
+"""The command was called wrongly: an unknown option, a file that cannot be read or written."""
+INTERNAL: Final = 70
+"""A fault of this program (``EX_SOFTWARE`` of sysexits.h)."""
+INTERRUPTED: Final = 130
+"""Ended with Ctrl-C (128 + SIGINT, as shells have it)."""
+
+_OF_USAGE: Final = frozenset({"SC600", "SC601", "SC603", "SC604", "SC605"})
+
+
+def exit_code(diagnostics: Iterable[Diagnostic]) -> int:
+    """The exit code that these ask for: the worst of them."""
+    errors = {item.code for item in diagnostics if item.severity is Severity.ERROR}
+    if not errors:
+        return CLEAN
+    if "SC999" in errors:
+        return INTERNAL
+    return USAGE if errors & _OF_USAGE else FINDINGS
+
+
+def has_colours(stream: TextIO) -> bool:
+    """Whether to use colours: on a terminal that has them, unless ``NO_COLOR`` is set (no-color.org)."""
+    if os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb":
+        return False
+    return stream.isatty()
+
+
+def show_diagnostics(diagnostics: Iterable[Diagnostic], sources: Sources | None = None) -> None:
+    """Show diagnostics for people on the error stream, as commands do whose output is something else."""
+    found = list(diagnostics)
+    sys.stderr.write(render_text(found, sources or Sources(), has_colours(sys.stderr)))
+
+
+def summary(diagnostics: Iterable[Diagnostic]) -> str:
+    """How many there are of each severity, in words."""
+    severities = [item.severity for item in diagnostics]
+    counts = [(severity.value, severities.count(severity)) for severity in Severity]
+    parts = [
+        f"{count} {name}{'s' if count > 1 and name != 'information' else ''}"
+        for name, count in counts
+        if count
+    ]
+    return ", ".join(parts) or "no problems"

@@ -1,0 +1,32 @@
+"""``scenic python``: the Python code that a program is compiled to."""
+
+import ast
+import sys
+from typing import Final
+
+import click
+
+from scenic.cli.deep import call_deep
+from scenic.cli.output import exit_code, show_diagnostics
+from scenic.cli.render import Sources
+from scenic.compiler.check import in_order
+from scenic.compiler.compile import lower_text
+from scenic.language.source import read_source
+
+__all__ = ["python_code"]
+
+_FRAMES: Final = 10_000
+
+
+@click.command()
+@click.argument("file", metavar="FILE")
+def python_code(file: str) -> int:
+    """Show the Python code that a program becomes."""
+    source = read_source(file)
+    lowered = lower_text(source.text, filename=file)
+    found = in_order(lowered.diagnostics, filename=file)
+    show_diagnostics(found, Sources([source]))
+    module = lowered.module
+    if module is not None:
+        sys.stdout.write(call_deep(lambda: ast.unparse(module), file, frames=_FRAMES) + "\n")
+    return exit_code(found)

@@ -1,0 +1,136 @@
+"""Where sampled scenes go: each sink is a context that gives a function to call with every scene.
+
+A sink's files are complete when its context ends well; when it ends with an error, Ctrl-C included, those begun are absent.
+"""
+
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager
+from pathlib import Path
+
+from scenic.formats.files import check_folder, check_writable, numbered, write, writing
+from scenic.formats.scenes import Scene
+from scenic.language.errors import Located
+
+Take = Callable[[Scene], None]
+Sink = AbstractContextManager[Take]
+
+STANDARD_OUTPUT = Path("-")
+
+_OTHER_FORMATS = {
+    ".png": "images are made with --png",
+    ".jpg": "images are made with --png, as PNG",
+    ".html": "a page to look at the scenes is made with --view",
+    ".htm": "a page to look at the scenes is made with --view",
+    ".gltf": "write the binary form of it: a name that ends in .glb",
+    ".obj": "3D files are written as .glb",
+    ".stl": "3D files are written as .glb",
+    ".ply": "3D files are written as .glb",
+}
+
+
+class OutputChoiceError(Located):
+    """An output that scenes are not written as."""
+
+    code = "SC604"
+
+
+def scene_file(path: Path, count: int) -> Sink:
+    """JSON Lines, to a file or for ``-`` to standard output; or a ``.glb`` file for each scene, by the name's ending.
+
+    Raises ``OutputError`` or ``OutputChoiceError`` at once if that cannot be.
+    """
+    if path == STANDARD_OUTPUT:
+        return _lines_to_output()
+    suffix = path.suffix.lower()
+    if suffix in _OTHER_FORMATS:
+        raise OutputChoiceError(f"scenes are not written as '{suffix}' files", help=_OTHER_FORMATS[suffix])
+    check_writable(path)
+    if suffix == ".glb":
+        _check_numbered(path, count)
+        return _glb_files(path, count)
+    return _lines_to_file(path)
+
+
+def page(path: Path, title: str) -> Sink:
+    """One HTML page that shows the scenes; raises ``OutputError`` at once if it cannot be written."""
+    check_writable(path)
+    return _page(path, title)
+
+
+def images(path: Path, stem: str, count: int) -> Sink:
+    """A PNG image of each scene: at ``path`` if that ends in ``.png``, else in the folder of that name.
+
+    Raises ``OutputError`` or ``MissingLibraryError`` at once if that cannot be.
+    """
+    from scenic.formats.png import require_pillow
+
+    require_pillow()
+    if path.suffix.lower() == ".png":
+        check_writable(path)
+        folder, target = None, path
+    else:
+        check_folder(path if path.exists() else path.resolve().parent)
+        folder, target = path, path / f"{stem}.png"
+    _check_numbered(target, count)
+    return _images(folder, target, count)
+
+
+def _check_numbered(path: Path, count: int) -> None:
+    if path.parent.exists():
+        check_writable(numbered(path, count - 1, count))
+
+
+@contextmanager
+def _lines_to_output() -> Iterator[Take]:
+    from scenic.formats.json_lines import scene_line
+
+    def take(scene: Scene) -> None:
+        sys.stdout.write(scene_line(scene) + "\n")
+        sys.stdout.flush()
+
+    yield take
+
+
+@contextmanager
+def _lines_to_file(path: Path) -> Iterator[Take]:
+    from scenic.formats.json_lines import scene_line
+
+    with writing(path) as stream:
+
+        def take(scene: Scene) -> None:
+            stream.write(scene_line(scene).encode("ascii") + b"\n")
+
+        yield take
+
+
+@contextmanager
+def _glb_files(path: Path, count: int) -> Iterator[Take]:
+    from scenic.formats.glb import glb
+
+    def take(scene: Scene) -> None:
+        write(numbered(path, scene.k, count), glb(scene))
+
+    yield take
+
+
+@contextmanager
+def _page(path: Path, title: str) -> Iterator[Take]:
+    from scenic.formats.html import Page
+
+    made = Page(title)
+    yield made.add
+    if len(made):
+        write(path, made.text().encode())
+
+
+@contextmanager
+def _images(folder: Path | None, target: Path, count: int) -> Iterator[Take]:
+    from scenic.formats.png import png
+
+    def take(scene: Scene) -> None:
+        if folder is not None:
+            folder.mkdir(exist_ok=True)
+        write(numbered(target, scene.k, count), png(scene))
+
+    yield take

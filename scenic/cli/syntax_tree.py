@@ -1,0 +1,40 @@
+"""``scenic ast``: the syntax tree of a program."""
+
+import ast
+import sys
+from typing import Final
+
+import click
+
+from scenic.cli.deep import call_deep
+from scenic.cli.output import exit_code, show_diagnostics
+from scenic.cli.render import Sources
+from scenic.compiler.check import in_order
+from scenic.compiler.parser import parse
+from scenic.language.source import read_source
+
+__all__ = ["syntax_tree"]
+
+_FRAMES: Final = 1_000
+"""Each line is indented by its depth, and copied once for each level: more would take minutes."""
+
+
+@click.command()
+@click.argument("file", metavar="FILE")
+@click.option(
+    "--positions", is_flag=True, help="Show where each node stands: lines from 1, columns in UTF-8 bytes."
+)
+def syntax_tree(file: str, positions: bool) -> int:
+    """Show the syntax tree of a program.
+
+    Of a program with syntax errors, the parts that could be read are shown, and the exit code is 1.
+    """
+    source = read_source(file)
+    parsed = parse(source.text, filename=file)
+    found = in_order(parsed.diagnostics, filename=file)
+    show_diagnostics(found, Sources([source]))
+    shown = call_deep(
+        lambda: ast.dump(parsed.tree, indent=2, include_attributes=positions), file, frames=_FRAMES
+    )
+    sys.stdout.write(f"{shown}\n")
+    return exit_code(found)

@@ -1,0 +1,21 @@
+"""What is wrong with a document, as the editor shows it: the same as ``scenic check``."""
+
+from scenic.compiler.check import check_text
+from scenic.language.diagnostics import Diagnostic
+
+__all__ = ["diagnostics"]
+
+
+def diagnostics(text: str, *, filename: str) -> tuple[Diagnostic, ...]:
+    """The findings of the static check, in order of place. Runs none of the program, and never raises."""
+    try:
+        return check_text(text, filename=filename)
+    except Exception as error:  # noqa: BLE001 - an editor must go on; the fault is shown in the document
+        return (
+            Diagnostic(
+                "SC999",
+                f"internal error: {type(error).__name__}: {error}",
+                filename=filename,
+                help="this is a fault of scenic, not of your program; please report it with the program",
+            ),
+        )

@@ -1,0 +1,117 @@
+"""The declarations of the language as Markdown."""
+
+from collections.abc import Sequence
+
+from scenic.language.keywords import HARD_KEYWORDS, PYTHON_KEYWORDS, SOFT_KEYWORDS, TEMPORAL_OPERATORS
+from scenic.language.names import NAMES
+from scenic.language.operators import Operand, Operator
+from scenic.language.properties import CLASSES, BuiltinProperty, attributes_of, properties_of
+from scenic.language.specifiers import SpecifierDeclaration
+from scenic.language.statements import Statement
+
+__all__ = [
+    "of_keyword",
+    "of_name",
+    "of_operator",
+    "of_property",
+    "of_specifier",
+    "of_statement",
+    "of_temporal",
+]
+
+_REFUSED = "*This version does not build it yet.*"
+
+
+def of_operator(operator: Operator) -> str:
+    """An operator: its forms, what it does, its operands."""
+    return _page(
+        operator.forms,
+        operator.documentation,
+        [*_operands(operator.operands), f"result: {operator.result}"],
+        available=operator.available,
+    )
+
+
+def of_specifier(specifier: SpecifierDeclaration) -> str:
+    """A specifier: its forms, what it does, its operands, and what it specifies."""
+    points = _operands(specifier.operands)
+    for given in specifier.specifies:
+        condition = f", if {given.when}" if given.when else ""
+        points.append(f"specifies `{given.property}` (priority {given.priority}{condition})")
+    points += [f"may adjust `{name}`" for name in specifier.modifies]
+    return _page(specifier.forms, specifier.documentation, points, available=specifier.available)
+
+
+def of_statement(statement: Statement) -> str:
+    """A statement: its forms and what it does."""
+    return _page(statement.forms, statement.documentation, (), available=statement.available)
+
+
+def of_temporal(name: str) -> str | None:
+    """A temporal operator."""
+    operator = TEMPORAL_OPERATORS.get(name)
+    if operator is None:
+        return None
+    return _page(operator.forms, operator.documentation, (), available=operator.available)
+
+
+def of_name(name: str) -> str | None:
+    """A name that is always in scope: a class, a function, a distribution."""
+    known = NAMES.get(name)
+    if known is not None:
+        points = [f"{known.kind.value}, also of random values" if known.lifted else known.kind.value]
+        if name in CLASSES:
+            points.append("properties: " + ", ".join(f"`{each}`" for each in properties_of(name)))
+        return _page((known.signature,), known.documentation, points, available=known.available)
+    if name in ("ego", "workspace"):
+        return of_keyword(name)
+    return None
+
+
+def of_property(name: str) -> str | None:
+    """A property or derived attribute of the built-in classes, as the most derived class has it."""
+    for cls in reversed(list(CLASSES)):
+        declared = properties_of(cls).get(name)
+        if declared is not None:
+            return _property(declared)
+        attribute = attributes_of(cls).get(name)
+        if attribute is not None:
+            call = "(...)" if attribute.is_method else ""
+            return _page(
+                (f"{name}{call}: {attribute.type}",), attribute.documentation, ("cannot be specified",)
+            )
+    return None
+
+
+def of_keyword(word: str) -> str | None:
+    """A keyword, in general."""
+    for table in (HARD_KEYWORDS, SOFT_KEYWORDS, PYTHON_KEYWORDS):
+        if word in table:
+            return _page((word,), table[word], ())
+    return None
+
+
+def _property(declared: BuiltinProperty) -> str:
+    attributes = [name for name in ("additive", "dynamic", "final") if getattr(declared, name)]
+    points = [f"default: {declared.default}"]
+    if attributes:
+        points.append(", ".join(attributes))
+    if declared.needs:
+        points.append("the default depends on " + ", ".join(f"`{name}`" for name in declared.needs))
+    return _page((f"{declared.name}: {declared.type}",), declared.documentation, points)
+
+
+def _operands(operands: Sequence[Operand]) -> list[str]:
+    return [
+        f"`{operand.name}`: {operand.type}" + (f" (default: {operand.default})" if operand.default else "")
+        for operand in operands
+    ]
+
+
+def _page(forms: Sequence[str], text: str, points: Sequence[str], *, available: bool = True) -> str:
+    parts = ["```scenic\n" + "\n".join(forms) + "\n```", text]
+    if points:
+        parts.append("\n".join(f"- {point}" for point in points))
+    if not available:
+        parts.append(_REFUSED)
+    return "\n\n".join(parts)

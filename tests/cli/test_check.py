@@ -1,0 +1,272 @@
+"""``scenic check`` as a process, and what the frame around all commands does."""
+
+import json
+import os
+import pty
+import re
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+GOOD = "ego = new Object at (1, 2, 0), with width 3\nrequire ego.position.x > 0\n"
+BAD = "x = 1\nego = new Object at (1, 2\nrequire x >\n"
+COMMAND = [sys.executable, "-m", "scenic.cli.main"]
+ENVIRONMENT = {**os.environ, "PYTHONPATH": str(ROOT), "NO_COLOR": ""}
+
+
+def run(*arguments: str | Path, code: str | None = None) -> "subprocess.CompletedProcess[str]":
+    """Run the command; with ``code``, run this Python code instead, which may prepare what fails."""
+    command = [sys.executable, "-c", code] if code else COMMAND
+    return subprocess.run(
+        [*command, *map(str, arguments)],
+        cwd=ROOT,
+        env=ENVIRONMENT,
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+
+
+@pytest.fixture
+def good(tmp_path: Path) -> Path:
+    file = tmp_path / "good.scenic"
+    file.write_text(GOOD)
+    return file
+
+
+@pytest.fixture
+def bad(tmp_path: Path) -> Path:
+    file = tmp_path / "bad.scenic"
+    file.write_text(BAD)
+    return file
+
+
+def test_clean_program(good: Path) -> None:
+    result = run("check", good)
+    assert (result.returncode, result.stdout, result.stderr) == (0, "", "")
+
+
+def test_errors_are_shown_with_their_place(bad: Path) -> None:
+    result = run("check", bad)
+    assert result.returncode == 1
+    assert f"--> {bad}:2:21" in result.stdout
+    assert "2 | ego = new Object at (1, 2" in result.stdout
+    assert re.search(r"^  \| {21}\^$", result.stdout, re.MULTILINE)
+    assert "= help: add `)`" in result.stdout
+    assert "error" in result.stderr
+    assert "\x1b" not in result.stdout + result.stderr
+
+
+def test_json(good: Path, bad: Path) -> None:
+    clean = run("check", "--format", "json", good)
+    assert clean.returncode == 0
+    assert json.loads(clean.stdout) == {"version": 1, "diagnostics": []}
+    result = run("check", "--format", "json", bad, good)
+    assert (result.returncode, result.stderr) == (1, "")
+    found = json.loads(result.stdout)["diagnostics"]
+    assert {item["filename"] for item in found} == {str(bad)}
+    first = found[0]
+    assert (first["code"], first["severity"], first["help"]) == ("SC103", "error", "add `)`")
+    assert first["span"] == {"line": 2, "column": 21, "end_line": 2, "end_column": 22}
+    places = [(item["span"]["line"], item["span"]["column"]) for item in found]
+    assert places == sorted(places)
+    assert len({json.dumps(item) for item in found}) == len(found)
+
+
+def test_files_that_cannot_be_read(tmp_path: Path, good: Path) -> None:
+    missing = tmp_path / "missing.scenic"
+    result = run("check", missing, tmp_path, good)
+    assert result.returncode == 2
+    assert result.stdout.count("error[SC600]") == 2
+    assert f"--> {missing}\n" in result.stdout
+    assert "Traceback" not in result.stderr
+    for command in ("ast", "python"):
+        other = run(command, missing)
+        assert (other.returncode, other.stdout) == (2, "")
+        assert "error[SC600]" in other.stderr
+
+
+def test_other_encodings(tmp_path: Path) -> None:
+    file = tmp_path / "latin.scenic"
+    file.write_bytes(b"x = 1\ny = '\xe9'\n")
+    result = run("check", file)
+    assert result.returncode == 1
+    assert "error[SC107]" in result.stdout
+    assert f"--> {file}:2:6" in result.stdout
+
+
+@pytest.mark.parametrize(
+    "arguments", [["check"], ["check", "--frmat", "x"], ["chek"], ["check", "--format", "xml", "f"]]
+)
+def test_wrong_usage(arguments: list[str]) -> None:
+    result = run(*arguments)
+    assert result.returncode == 2
+    assert "Usage:" in result.stderr
+    assert "Traceback" not in result.stderr
+
+
+def test_help_and_version() -> None:
+    result = run("--help")
+    assert result.returncode == 0
+    for command in ("check", "sample", "ast", "python", "lsp"):
+        assert re.search(rf"^  {command} ", result.stdout, re.MULTILINE)
+    assert run("--version").stdout.startswith("scenic ")
+    assert "Exit codes" in run("check", "--help").stdout
+
+
+def test_check_needs_no_heavy_library(good: Path) -> None:
+    code = (
+        "import sys; from scenic.cli.main import scenic\n"
+        "scenic.main(['check', sys.argv[1]], standalone_mode=False)\n"
+        "print(sorted({name.partition('.')[0] for name in sys.modules}))"
+    )
+    result = run(good, code=code)
+    assert result.returncode == 0, result.stderr
+    loaded = set(result.stdout.translate({ord(each): None for each in "[]',"}).split())
+    assert "click" in loaded
+    assert not loaded & {"numpy", "scipy", "trimesh", "z3", "rich", "shapely", "pygls", "asyncio", "pegen"}
+
+
+def test_closed_pipe(bad: Path) -> None:
+    bad.write_text("x = $\n" * 1000)
+    command = " ".join([*COMMAND, "check", str(bad), "| head -n 1"])
+    result = subprocess.run(
+        ["bash", "-o", "pipefail", "-c", command],
+        cwd=ROOT,
+        env=ENVIRONMENT,
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    assert result.stdout == "error[SC100]: invalid character `$`\n"
+    assert "Traceback" not in result.stderr
+    assert "BrokenPipe" not in result.stderr
+    assert result.returncode == 1
+
+
+def test_interruption(good: Path) -> None:
+    code = (
+        "import sys, time, scenic.cli.main, scenic.cli.check as check\n"
+        "def slow(*_, **__):\n    print('ready', flush=True)\n    time.sleep(60)\n"
+        "check.check_text = slow\n"
+        "sys.argv[1:1] = ['check']\n"
+        "scenic.cli.main.main()"
+    )
+    process = subprocess.Popen(
+        [sys.executable, "-c", code, str(good)],
+        cwd=ROOT,
+        env=ENVIRONMENT,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    try:
+        assert process.stdout is not None
+        assert process.stdout.readline() == "ready\n"
+        process.send_signal(signal.SIGINT)
+        stdout, stderr = process.communicate(timeout=30)
+    finally:
+        process.kill()
+        process.wait(30)
+    assert (process.returncode, stdout, stderr.strip()) == (130, "", "interrupted")
+
+
+def test_internal_errors_ask_for_a_report(good: Path) -> None:
+    code = (
+        "import sys, scenic.cli.main, scenic.cli.check as check\n"
+        "def fail(*_, **__): raise ZeroDivisionError('oops')\n"
+        "check.check_text = fail\n"
+        "sys.argv[1:1] = ['check']\n"
+        "scenic.cli.main.main()"
+    )
+    result = run(good, code=code)
+    assert result.returncode == 70
+    assert "error[SC999]: internal error: ZeroDivisionError: oops" in result.stderr
+    assert "please report" in result.stderr
+    assert ", in fail" in result.stderr
+
+
+@pytest.mark.parametrize(
+    ("variable", "value", "coloured"), [("NO_COLOR", "", True), ("NO_COLOR", "1", False)]
+)
+def test_colours_on_a_terminal(bad: Path, variable: str, value: str, coloured: bool) -> None:
+    main, terminal = pty.openpty()
+    environment = {**ENVIRONMENT, "TERM": "xterm", variable: value}
+    process = subprocess.Popen(
+        [*COMMAND, "check", str(bad)], cwd=ROOT, env=environment, stdout=terminal, stderr=subprocess.DEVNULL
+    )
+    os.close(terminal)
+    shown = b""
+    try:
+        while chunk := os.read(main, 4096):
+            shown += chunk
+    except OSError:  # how Linux tells that the other side of a terminal is closed
+        pass
+    finally:
+        os.close(main)
+        assert process.wait(60) == 1
+    assert (b"\x1b[1;31merror[SC103]" in shown) is coloured
+    assert b"SC103" in shown
+
+
+def test_the_screen_cannot_be_controlled_by_a_program(tmp_path: Path) -> None:
+    file = tmp_path / "evil.scenic"
+    file.write_text("x = '\x1b[2J' $\n")
+    result = run("check", file)
+    assert result.returncode == 1
+    assert "\x1b" not in result.stdout
+
+
+def test_output_that_the_terminal_cannot_show(tmp_path: Path) -> None:
+    file = tmp_path / "greek.scenic"
+    file.write_text("α = 'é' $\n")
+    result = subprocess.run(
+        [*COMMAND, "check", str(file)],
+        cwd=ROOT,
+        env={**ENVIRONMENT, "PYTHONIOENCODING": "ascii"},
+        capture_output=True,
+        timeout=60,
+        check=False,
+    )
+    assert result.returncode == 1
+    assert rb"\u03b1 = '\xe9' $" in result.stdout
+
+
+def test_tree_and_python(good: Path, bad: Path) -> None:
+    tree = run("ast", good)
+    assert tree.returncode == 0
+    assert tree.stdout.startswith("Module(")
+    assert "New(" in tree.stdout
+    assert "lineno=1" in run("ast", "--positions", good).stdout
+    python = run("python", good)
+    assert python.returncode == 0
+    compile(python.stdout, "shown", "exec")
+    assert python.stdout.strip()
+    broken = run("python", bad)
+    assert (broken.returncode, broken.stdout) == (1, "")
+    assert "error[SC103]" in broken.stderr
+    partial = run("ast", bad)
+    assert partial.returncode == 1
+    assert "ErrorStatement(" in partial.stdout
+
+
+def test_deep_trees_are_refused_in_words(tmp_path: Path) -> None:
+    file = tmp_path / "deep.scenic"
+    file.write_text("x = " + "not " * 20_000 + "True\n")
+    for command in ("ast", "python"):
+        result = run(command, file)
+        assert result.returncode == 1
+        assert "error[SC112]" in result.stderr
+
+
+def test_deep_adds_what_analysis_proves(good: Path) -> None:
+    result = run("check", "--deep", "--format", "json", good)
+    assert result.returncode == 0, result.stderr
+    (found,) = json.loads(result.stdout)["diagnostics"]
+    assert (found["code"], found["severity"], found["span"]["line"]) == ("SC701", "warning", 2)

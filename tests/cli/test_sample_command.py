@@ -1,0 +1,199 @@
+"""``scenic sample`` as a user runs it: a process of its own, from the program to the files."""
+
+import json
+import os
+import pty
+import re
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+import trimesh
+
+pytestmark = pytest.mark.slow
+ROOT = Path(__file__).parents[2]
+
+BALLS = """
+param far = 5
+param count = 1
+ego = new Object at (Range(0, 1), 0, 0), with color (1, 0, 0)
+ball = new Object at (Range(0, globalParameters.far), 3, 0), with shape SpheroidShape()
+require ball.position.x > 0.5
+"""
+NEVER = "ego = new Object at (Range(0, 1), 0, 0)\nrequire ego.position.x * ego.position.x > 2\n"
+SLOW = """
+ego = new Object at (Range(0, 1), 0, 0)
+def rare(x):
+    return x > 0.9999999
+require rare(ego.position.x)
+"""
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    for name, text in (("balls", BALLS), ("never", NEVER), ("slow", SLOW)):
+        (tmp_path / f"{name}.scenic").write_text(text)
+    return tmp_path
+
+
+def command(*arguments: object) -> list[str]:
+    return [sys.executable, "-m", "scenic.cli.main", "sample", *map(str, arguments)]
+
+
+def environment() -> dict[str, str]:
+    return {**os.environ, "PYTHONPATH": str(ROOT), "NO_COLOR": "1", "COLUMNS": "100"}
+
+
+def run(folder: Path, *arguments: object) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        command(*arguments), cwd=folder, env=environment(), capture_output=True, text=True, check=False
+    )
+
+
+def test_every_output_at_once(folder: Path) -> None:
+    outputs = ("-o", "balls.jsonl", "--view", "balls.html", "--png", "pictures")
+    result = run(folder, "balls.scenic", "-n", 3, "--seed", 4, "-p", "far=2", *outputs)
+    assert (result.returncode, result.stdout, result.stderr) == (0, "", "")
+    rows = [json.loads(line) for line in (folder / "balls.jsonl").read_text().splitlines()]
+    assert [row["k"] for row in rows] == [0, 1, 2]
+    assert {row["params"]["far"] for row in rows} == {2}
+    assert [thing["name"] for thing in rows[0]["objects"]] == ["ego", "ball"]
+    assert all(0.5 < row["objects"][1]["position"][0] < 2 for row in rows)
+    assert sorted(os.listdir(folder / "pictures")) == [f"balls-00{k}.png" for k in range(3)]
+    assert "<title>balls.scenic</title>" in (folder / "balls.html").read_text()
+    assert run(folder, "balls.scenic", "--seed", 4, "-p", "far=2", "-o", "one.glb").returncode == 0
+    loaded = trimesh.load_scene(folder / "one.glb")
+    matrix, _ = loaded.graph["ball"]
+    assert matrix[0, 3] == pytest.approx(rows[0]["objects"][1]["position"][0], abs=1e-5)
+
+
+def test_the_same_seed_gives_the_same_text(folder: Path) -> None:
+    first = run(folder, "balls.scenic", "-n", 5, "--seed", 4)
+    assert first.stdout == run(folder, "balls.scenic", "-n", 5, "--seed", 4).stdout
+    drawn = run(folder, "balls.scenic")
+    (seed,) = re.findall(r"--seed (\d+)", drawn.stderr)
+    assert run(folder, "balls.scenic", "--seed", seed).stdout == drawn.stdout
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "words"),
+    [
+        (["missing.scenic"], 2, "missing.scenic"),
+        (["."], 2, "SC600"),
+        (["latin.scenic"], 1, "SC107"),
+        (["broken.scenic"], 1, "SC1"),
+        (["badmesh.scenic"], 1, "SC602"),
+        (["balls.scenic", "-p", "fra=2"], 2, "far"),
+        (["balls.scenic", "-n", "0"], 2, "-n"),
+        (["balls.scenic", "-o", "no/such/folder.jsonl"], 2, "SC601"),
+        (["balls.scenic", "-o", "."], 2, "SC601"),
+        (["balls.scenic", "--scenario", "Other"], 2, "SC605"),
+        (["balls.scenic", "-o", "x.png"], 2, "--png"),
+        (["never.scenic"], 3, "line 2"),
+        (["slow.scenic", "--max-attempts", "1000"], 3, "1000 candidates"),
+        (["slow.scenic", "--time-limit", "0.2"], 3, "time limit"),
+    ],
+)
+def test_trouble_is_told_once_and_leaves_nothing(
+    folder: Path, arguments: list[str], code: int, words: str
+) -> None:
+    (folder / "latin.scenic").write_bytes(b"# caf\xe9\nego = new Object\n")
+    (folder / "broken.scenic").write_text("ego = new Object at\n")
+    (folder / "badmesh.scenic").write_text(
+        'ego = new Object with shape MeshShape.fromFile(localPath("m.obj"))\n'
+    )
+    (folder / "m.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    before = sorted(os.listdir(folder))
+    outputs = [] if "-o" in arguments else ["-o", "out.glb", "--view", "out.html"]
+    result = run(folder, *arguments, "--seed", 1, *outputs)
+    assert result.returncode == code
+    assert words in result.stderr
+    assert result.stdout == ""
+    assert "Traceback" not in result.stderr
+    assert "SC999" not in result.stderr
+    assert sorted(set(os.listdir(folder)) - {"__pycache__"}) == before
+
+
+def test_scenes_that_are_found_are_written_when_others_are_not(folder: Path) -> None:
+    (folder / "rare.scenic").write_text(
+        "ego = new Object at (Range(0, 1), 0, 0)\nrequire ego.position.x > 0.9\n"
+    )
+    result = run(folder, "rare.scenic", "-n", 20, "--seed", 1, "--max-attempts", 5, "--no-prune")
+    assert result.returncode == 3
+    found = [json.loads(line)["k"] for line in result.stdout.splitlines()]
+    assert 0 < len(found) < 20
+    assert f"{20 - len(found)} scenes were not found" in result.stderr
+    assert "line 2" in " ".join(result.stderr.split()) or re.search(r"\b2 +│", result.stderr)
+
+
+def test_a_closed_pipe_is_no_trouble(folder: Path) -> None:
+    with subprocess.Popen(
+        command("balls.scenic", "-n", 2000, "--seed", 1),
+        cwd=folder,
+        env=environment(),
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+    ) as process:
+        assert process.stdout is not None
+        assert process.stderr is not None
+        assert process.stdout.readline().startswith(b"{")
+        process.stdout.close()
+        assert process.stderr.read() == b""
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_an_interrupt_ends_it_in_one_line(folder: Path, number: signal.Signals) -> None:
+    before = sorted(os.listdir(folder))
+    arguments = (
+        "slow.scenic",
+        "--seed",
+        1,
+        "--max-attempts",
+        10**12,
+        "-o",
+        "out.jsonl",
+        "--view",
+        "out.html",
+    )
+    with subprocess.Popen(
+        command(*arguments), cwd=folder, env=environment(), stderr=subprocess.PIPE
+    ) as process:
+        deadline = time.monotonic() + 30
+        while not any(name.endswith(".part") for name in os.listdir(folder)):
+            assert time.monotonic() < deadline
+            time.sleep(0.05)
+        process.send_signal(number)
+        assert process.stderr is not None
+        shown = process.stderr.read().decode()
+    assert process.returncode == 128 + number
+    # An empty line ends the one in which the terminal shows ^C.
+    assert len(shown.strip().splitlines()) <= 1
+    assert sorted(set(os.listdir(folder)) - {"__pycache__"}) == before
+
+
+def test_progress_is_shown_on_a_terminal_only(folder: Path) -> None:
+    reader, writer = pty.openpty()
+    variables = {**environment(), "TERM": "xterm"}
+    with subprocess.Popen(
+        command("balls.scenic", "-n", 30, "--seed", 1, "-o", "balls.jsonl"),
+        cwd=folder,
+        env=variables,
+        stderr=writer,
+    ) as process:
+        os.close(writer)
+        shown = b""
+        while True:
+            try:
+                part = os.read(reader, 4096)
+            except OSError:  # the other end is closed
+                break
+            if not part:
+                break
+            shown += part
+    os.close(reader)
+    assert process.returncode == 0
+    assert b"sampling" in shown
+    assert b"/30" in shown
