@@ -5,9 +5,7 @@ it reads. If the first can be built it becomes the leaf's node. If not, the leaf
 with the sampled values of the names, lane by lane. The answer is the same; only analysis sees less, and it is slower.
 """
 
-import random
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -16,23 +14,13 @@ from scenic.graph.kinds import Column, Kind
 from scenic.graph.node import Node, apply
 from scenic.graph.operation import Call, Operation, always
 from scenic.graph.operations import TABLE
-from scenic.runtime.context import Context, current, here
-from scenic.runtime.samples import Sample, dependencies
-from scenic.runtime.values import CODEC, as_node
+from scenic.runtime.context import here
+from scenic.runtime.opaque import evaluated, later
+from scenic.runtime.values import as_node
 
 
 class NotSymbolicError(Exception):
     """Raised while an expression is built that has to be evaluated on samples instead."""
-
-
-@dataclass(frozen=True, slots=True)
-class OpaqueCode:
-    """Payload of an opaque leaf: the function, the values it reads, and the nodes behind them."""
-
-    function: Callable[..., Any]
-    captured: tuple[Any, ...]
-    operands: tuple[Node, ...]
-    context: Context | None
 
 
 def leaf(symbolic: Callable[[], Any] | None, concrete: Callable[..., Any], captured: Sequence[Any]) -> Node:
@@ -42,9 +30,7 @@ def leaf(symbolic: Callable[[], Any] | None, concrete: Callable[..., Any], captu
             return truth(symbolic())
         except Exception:  # noqa: BLE001 - whatever went wrong goes wrong again, with its place, on a sample
             pass
-    operands = tuple(dependencies(captured))
-    code = OpaqueCode(concrete, tuple(captured), operands, current.get())
-    return apply(OPAQUE, operands, code, here())
+    return later(OPAQUE, concrete, captured)
 
 
 def truth(value: Any) -> Node:
@@ -62,53 +48,14 @@ def connect(operation: str, conditions: Sequence[Node]) -> Node:
     return apply(TABLE[operation], conditions, span=here())
 
 
-def _evaluate_opaque(call: Call, *columns: Column) -> Column:
-    code: OpaqueCode = call.payload
-    lanes = call.lanes
-    result = np.zeros(lanes, dtype=np.bool_)
-    failed = np.zeros(lanes, dtype=np.bool_)
-    seeds = call.seeds().tolist()
-    bad = np.zeros(lanes, dtype=np.bool_)
-    for status in call.operands:
-        if status is not None:
-            bad |= status != 0
-    by_node = dict(zip(code.operands, columns, strict=True))
-    context = code.context
-    was_evaluating = context is not None and context.evaluating
-    python_state, numpy_state = random.getstate(), np.random.get_state()  # noqa: NPY002 - the program's own
-    token = current.set(context)
-    try:
-        if context is not None:
-            context.evaluating = True
-        for lane in range(lanes):
-            if bad[lane]:
-                continue
-
-            def lookup(node: Node, lane: int = lane) -> Any:
-                column = by_node[node]
-                return CODEC.decode(node.kind, column[lane if len(column) > 1 else 0])
-
-            sample = Sample(lookup)
-            random.seed(seeds[lane])
-            np.random.seed(seeds[lane] & 0xFFFFFFFF)  # noqa: NPY002 - the program may draw from it
-            try:
-                result[lane] = bool(code.function(*(sample.value(item) for item in code.captured)))
-            except Exception as error:  # noqa: BLE001 - whatever the program raises is that lane's fault
-                failed[lane] = True
-                call.fault(failed, error)
-    finally:
-        if context is not None:
-            context.evaluating = was_evaluating
-        current.reset(token)
-        random.setstate(python_state)
-        np.random.set_state(numpy_state)  # noqa: NPY002
-    return result
+def _truths(call: Call, *columns: Column) -> Column:
+    return np.array([bool(result) for result in evaluated(call, columns)], dtype=np.bool_)
 
 
 OPAQUE = Operation(
     "opaque condition",
     always(Kind.BOOLEAN),
-    _evaluate_opaque,
+    _truths,
     "A condition that is Python code, called with the sampled values of the names it reads.",
     pure=False,
 )

@@ -4,6 +4,7 @@ Names are the language's. Each gives a random value while a scenario is compiled
 """
 
 import itertools
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
@@ -71,7 +72,10 @@ def DiscreteRange(low: Any, high: Any, weights: Sequence[float] | None = None) -
         raise ScenicValueError(
             f"`DiscreteRange` from {low} to {high} needs {count} weights, not {len(weights)}", span=here()
         )
-    return draw("weighted integer", payload=(ends[0], _cumulative(weights)))
+    fixed = [_weight(weight) for weight in weights]
+    if not any(fixed):
+        raise _nothing("DiscreteRange")
+    return draw("weighted integer", payload=(ends[0], _cumulative(fixed)))
 
 
 def Uniform(*options: Any) -> Any:
@@ -82,13 +86,12 @@ def Uniform(*options: Any) -> Any:
 def Discrete(options: Mapping[Any, Any] | Iterable[Any]) -> Any:
     """One of the keys of a dictionary, with probability in proportion to its value."""
     if isinstance(options, Mapping):
-        weights = list(options.values())
-        for weight in weights:
-            if is_random(weight) or not is_number(weight):
-                raise ScenicTypeError(f"a weight is a fixed number, not {describe(weight)}", span=here())
-            if weight < 0:
-                raise ScenicValueError(f"a weight cannot be negative: {weight}", span=here())
-        return _choose(list(options), [float(weight) for weight in weights], "Discrete")
+        return _choose(list(options), [_weight(weight) for weight in options.values()], "Discrete")
+    if (is_random(options) and not isinstance(options, tuple | list)) or not isinstance(options, Iterable):
+        raise ScenicTypeError(
+            f"`Discrete` takes a dictionary of weights or a fixed collection, not {describe(options)}",
+            span=here(),
+        )
     listed = list(options)
     return _choose(listed, [1.0] * len(listed), "Options")
 
@@ -99,9 +102,7 @@ Options = Discrete
 def _choose(options: Sequence[Any], weights: Sequence[float], name: str) -> Any:
     possible = [(option, weight) for option, weight in zip(options, weights, strict=True) if weight > 0]
     if not possible:
-        raise InvalidScenarioError(
-            f"`{name}` has nothing to choose from", span=here(), help="give at least one possible option"
-        )
+        raise _nothing(name)
     index = draw("choice", payload=_cumulative([weight for _, weight in possible]))
     chosen = [option for option, _ in possible]
     if not isinstance(index, Random):
@@ -109,6 +110,20 @@ def _choose(options: Sequence[Any], weights: Sequence[float], name: str) -> Any:
     node = apply_node(TABLE["select"], [as_node(index), *map(as_node, chosen)], span=here())
     # Drawing again keeps the options and draws only which one.
     return as_value(node, lambda: _choose(options, weights, name))
+
+
+def _nothing(name: str) -> InvalidScenarioError:
+    return InvalidScenarioError(
+        f"`{name}` has nothing to choose from", span=here(), help="give at least one possible option"
+    )
+
+
+def _weight(weight: Any) -> float:
+    if is_random(weight) or not is_number(weight):
+        raise ScenicTypeError(f"a weight is a fixed number, not {describe(weight)}", span=here())
+    if not 0 <= weight < math.inf:
+        raise ScenicValueError(f"a weight is a number from 0 on, not {weight}", span=here())
+    return float(weight)
 
 
 def _cumulative(weights: Sequence[float]) -> tuple[float, ...]:

@@ -4,11 +4,10 @@ import builtins
 from collections.abc import Callable
 from typing import Any
 
-from scenic.graph.kinds import Kind
-from scenic.graph.operation import Operation, always
 from scenic.language.errors import RandomControlFlowError
 from scenic.runtime.context import here
-from scenic.runtime.values import Random, apply, is_random, operate
+from scenic.runtime.opaque import call_later
+from scenic.runtime.values import Random, is_random, operate
 
 
 def sin(x: Any) -> Any:
@@ -32,7 +31,7 @@ def _extreme(name: str, function: Callable[..., Any]) -> Callable[..., Any]:
             return function(*args, **options)
         values = args[0] if len(args) == 1 else args
         if isinstance(values, Random):
-            return apply(_lift(function), values)
+            return call_later(function, values)
         return operate(name, *values)
 
     extreme.__name__ = function.__name__
@@ -61,7 +60,7 @@ def filter(function: Callable[[Any], Any] | None, values: Any) -> Any:
     keep = function if function is not None else bool
     if not is_random(values):
         return [item for item in values if keep(item)]
-    return apply(_lift(lambda concrete: [item for item in concrete if keep(item)]), values)
+    return call_later(lambda concrete: [item for item in concrete if keep(item)], values)
 
 
 def range(*bounds: Any) -> Any:
@@ -86,25 +85,11 @@ def convert(name: str, value: Any = 0, *rest: Any) -> Any:
 def distributionFunction(function: Callable[..., Any]) -> Callable[..., Any]:
     """Make a Python function take random arguments: it is then called with their sampled values."""
 
-    def lifted(*args: Any) -> Any:
-        if not any(is_random(item) for item in args):
-            return function(*args)
-        return apply(_lift(function), *args)
+    def lifted(*args: Any, **keywords: Any) -> Any:
+        if not is_random(args) and not is_random(keywords):
+            return function(*args, **keywords)
+        return call_later(function, *args, **keywords)
 
     lifted.__name__ = getattr(function, "__name__", "lifted")
     lifted.__doc__ = function.__doc__
     return lifted
-
-
-def _lift(function: Callable[..., Any]) -> Operation:
-    return Operation(
-        getattr(function, "__name__", "function"),
-        always(Kind.OTHER),
-        _by_lane,
-        "A Python function of sampled values.",
-        python=function,
-    )
-
-
-def _by_lane(*_: Any) -> Any:
-    raise AssertionError("evaluated lane by lane")

@@ -1,7 +1,7 @@
 """The names that every module of Scenic code finds in scope (section 7.2 of the specification)."""
 
 import builtins
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -60,6 +60,8 @@ _NAMES: Mapping[str, Any] = MappingProxyType(
 )
 
 _UNSUPPORTED = (
+    "Behavior",
+    "Distribution",
     "File",
     "Files",
     "GridRegion",
@@ -76,6 +78,7 @@ _UNSUPPORTED = (
     "PolylineRegion",
     "PreconditionViolation",
     "SectorRegion",
+    "TimeSeries",
     "VectorField",
     "VerifaiDiscreteRange",
     "VerifaiOptions",
@@ -124,12 +127,26 @@ class GlobalParameters:
             raise AttributeError(name)
         return self[name]
 
+    def __contains__(self, name: object) -> bool:
+        return name in self._program.parameters or name in self._program.overrides
+
+    def __iter__(self) -> Iterator[str]:
+        return iter({**self._program.parameters, **self._program.overrides})
+
+    def __len__(self) -> int:
+        return len({**self._program.parameters, **self._program.overrides})
+
     def __setattr__(self, name: str, value: Any) -> None:
         raise InvalidScenarioError(
             "global parameters are set by `param`, not by assignment",
             span=here(),
             help=f"write `param {name} = ...`",
         )
+
+
+def provided(name: str) -> Any:
+    """What a name means where the program does not bind it itself; ``None`` for unknown names."""
+    return _NAMES.get(name, getattr(builtins, name, None))
 
 
 def builtin_names(program: Program, filename: str, import_module: Callable[..., Any]) -> dict[str, Any]:

@@ -14,6 +14,7 @@ from scenic.graph.kinds import Kind
 from scenic.language.errors import InvalidScenarioError
 from scenic.runtime.context import here
 from scenic.runtime.properties import Property, PropertyDefinition, combine
+from scenic.runtime.regions.base import unsupported
 from scenic.runtime.regions.bodies import OccupiedSpace, SideSurface
 from scenic.runtime.shapes import BoxShape
 from scenic.runtime.values import Orientation, operate, to_orientation, to_scalar, to_vector, vector
@@ -78,6 +79,13 @@ class Point:
         own: tuple[PropertyDefinition, ...] = cls.__dict__.get("__scenic_properties__", ())
         if own or "_definitions" not in cls.__dict__:
             cls._definitions = {definition.name: definition for definition in own}
+            if len(cls._definitions) < len(own):
+                # Only in 2D mode: the compiler refuses a property that is written twice.
+                raise InvalidScenarioError(
+                    "`heading` and `parentOrientation` mean the same in 2D mode",
+                    span=own[-1].span,
+                    help="define one of the two",
+                )
         _combine_properties(cls)
 
     @classmethod
@@ -271,12 +279,26 @@ class Object(OrientedPoint):
         """Where things stand that are ``on`` this object: its top surface, unless a class says otherwise."""
         return self.topSurface
 
+    def canSee(self, other: Any, occludingObjects: Any = ()) -> Any:
+        """Whether this object sees a point or an object: not built yet."""
+        raise unsupported("`canSee`")
+
+    def startDynamicSimulation(self) -> None:
+        """Called when the object is created in a simulation; does nothing unless a class overrides it."""
+
     def _side(self, name: str) -> Any:
         return SideSurface(self, name)
 
 
 def _corner(x: float, y: float, z: float) -> property:
     return property(lambda self: self._placed(x, y, z))
+
+
+def _refused(name: str) -> property:
+    def refuse(_self: Any) -> Any:
+        raise unsupported(f"`{name}`")
+
+    return property(refuse)
 
 
 def _surface(side: str) -> property:
@@ -313,6 +335,8 @@ for _name, _place in SIDES.items():
     setattr(Object, _name, _corner(*_place))
 for _name in ("top", "bottom", "left", "right", "front", "back"):
     setattr(Object, f"{_name}Surface", _surface(_name))
+for _name in ("visibleRegion", "boundingBox", "inradius", "planarInradius"):
+    setattr(Object, _name, _refused(_name))
 
 
 def oriented_point(position: Any, orientation: Any) -> OrientedPoint:
@@ -323,10 +347,18 @@ def oriented_point(position: Any, orientation: Any) -> OrientedPoint:
         instance.__dict__[name] = 0.0
     instance.__dict__["orientation"] = instance.parentOrientation
     instance.__dict__["heading"] = instance.orientation.yaw
-    for name, entry in OrientedPoint.scenic_properties.items():
-        if name not in instance.__dict__:
-            instance.__dict__[name] = entry.default(instance)
+    for name in OrientedPoint.scenic_properties:
+        _fill(instance, name)
     return instance
+
+
+def _fill(instance: OrientedPoint, name: str) -> None:
+    """Give a property its default, after those that the default reads."""
+    if name not in instance.__dict__:
+        entry = OrientedPoint.scenic_properties[name]
+        for needed in entry.dependencies:
+            _fill(instance, needed)
+        instance.__dict__[name] = entry.default(instance)
 
 
 TWO_D_DEFAULTS: Mapping[str, PropertyDefinition] = MappingProxyType(

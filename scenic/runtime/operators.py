@@ -16,6 +16,7 @@ from scenic.runtime.regions.base import Region
 from scenic.runtime.specifiers import Ego, is_kind
 from scenic.runtime.values import (
     Random,
+    Vector,
     describe,
     is_number,
     is_orientation,
@@ -31,7 +32,7 @@ from scenic.runtime.values import (
 
 
 def _degrees(_ego: Ego, value: Any) -> Any:
-    if isinstance(value, tuple | list):
+    if not (isinstance(value, Random | Vector) or is_number(value)):
         raise wrong_type("a number", value, "`deg`")
     return operate("multiply", value, 0.017453292519943295)
 

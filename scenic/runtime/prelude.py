@@ -10,6 +10,7 @@ the graph; during a simulation the context draws at once, and conditions are eva
 
 import builtins
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from types import CodeType, MappingProxyType, ModuleType
 from typing import Any, Protocol
@@ -39,6 +40,7 @@ from scenic.runtime.program import (
 from scenic.runtime.properties import ATTRIBUTES, PropertyDefinition
 from scenic.runtime.regions.base import Region, Workspace
 from scenic.runtime.resolution import build
+from scenic.runtime.samples import Sample
 from scenic.runtime.specifiers import BUILDERS, Specifier
 from scenic.runtime.values import (
     OrientationMethods,
@@ -94,6 +96,32 @@ class Prelude:
         self._program = program
         self._module = module
         self._modules = modules
+
+    # As a value that functions of the program reach: what they read of it is the ego
+
+    def snapshot(self) -> "Prelude":
+        """The prelude with the ego and workspace of this moment, whatever the program sets later."""
+        return Prelude(self._context, self._program, replace(self._module), self._modules)
+
+    def random_parts(self) -> list[Any]:
+        """The ego, for sampling."""
+        return [self._module.ego]
+
+    def sampled(self, sample: Sample) -> "Prelude":
+        """The prelude whose ego is that of a sample."""
+        module = replace(self._module, ego=sample.value(self._module.ego))
+        return Prelude(self._context, self._program, module, self._modules)
+
+    def __eq__(self, other: object) -> bool:
+        """Whether two preludes are of the same module in the same state."""
+        if not isinstance(other, Prelude):
+            return NotImplemented
+        mine, theirs = self._module, other._module
+        return (
+            mine.ego is theirs.ego and mine.workspace is theirs.workspace and mine.filename == theirs.filename
+        )
+
+    __hash__ = object.__hash__
 
     # Ego and workspace
 
@@ -163,6 +191,8 @@ class Prelude:
             raise InvalidScenarioError("a requirement cannot create an object", span=here())
         instance = build(cls, specifiers, mode_2d=self._context.mode_2d)
         self._check_supported(instance)
+        if self._context.evaluating:
+            return instance
         self._program.instances.append(instance)
         if isinstance(instance, Object):
             self._program.objects.append(instance)
@@ -299,6 +329,12 @@ class Prelude:
 
     # Inside the symbolic reading of a condition
 
+    def provided(self, name: str, function: Any) -> Any:
+        """The function, if it is the one that every module finds in scope under this name."""
+        if function is not names.provided(name):
+            raise conditions.NotSymbolicError
+        return function
+
     def read(self, value: Any, name: str) -> Any:
         """An attribute, read when the condition is evaluated."""
         return getattr(value, name)
@@ -430,8 +466,10 @@ class Loader:
             state = self._states[path] = Module(str(path), is_model=is_model or importer.is_model)
             self._execute(self._modules.code(path), module, state)
         state = self._states[path]
-        importer.ego = importer.ego or state.ego
-        importer.workspace = importer.workspace or state.workspace
+        if importer.ego is None:
+            importer.ego = state.ego
+        if importer.workspace is None:
+            importer.workspace = state.workspace
         return self._loaded[path]
 
     def use_model(self, name: str, scope: dict[str, Any], importer: Module) -> None:

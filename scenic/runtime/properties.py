@@ -10,7 +10,17 @@ from typing import Any
 from scenic.language.errors import InvalidScenarioError, ScenicValueError
 from scenic.language.spans import Span
 from scenic.runtime.context import here
-from scenic.runtime.values import Random, is_number, operate, to_orientation, to_scalar, to_vector
+from scenic.runtime.regions.base import Region
+from scenic.runtime.shapes import Shape
+from scenic.runtime.values import (
+    Random,
+    is_number,
+    operate,
+    to_orientation,
+    to_scalar,
+    to_vector,
+    wrong_type,
+)
 
 ATTRIBUTES = frozenset({"additive", "dynamic", "final"})
 
@@ -119,6 +129,10 @@ def normalised(name: str, value: Any) -> Any:
         return to_orientation(value, "property 'parentOrientation'")
     if name == "color":
         return _colour(value)
+    if name == "shape" and not isinstance(value, Shape | Random):
+        raise wrong_type("a shape", value, "property 'shape'")
+    if name == "regionContainedIn" and not isinstance(value, Region | Random | None):
+        raise wrong_type("a region", value, "property 'regionContainedIn'")
     return value
 
 

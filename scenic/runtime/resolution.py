@@ -4,10 +4,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from scenic.language.errors import ScenicValueError, SpecifierError
+from scenic.language.errors import InvalidScenarioError, Located, ScenicValueError, SpecifierError
+from scenic.language.spans import Span
 from scenic.runtime.context import here
 from scenic.runtime.objects import TWO_D_DEFAULTS, Object, Point
 from scenic.runtime.properties import Property, normalised
+from scenic.runtime.shapes import BoxShape
 from scenic.runtime.specifiers import Specifier
 from scenic.runtime.values import is_number
 
@@ -35,15 +37,20 @@ def build(cls: type[Point], specifiers: Sequence[Specifier], *, mode_2d: bool = 
         modifying = resolution.modifies.get(specifier, frozenset())
         owned = resolution.owns.get(specifier, frozenset())
         function = specifier.modify if modifying and specifier.modify else specifier.evaluate
-        offered = function(instance)
-        for name in owned | modifying:
-            values[name] = normalised(name, offered[name])
+        try:
+            offered = function(instance)
+            for name in sorted(owned | modifying):
+                values[name] = normalised(name, offered[name])
+                if issubclass(cls, Object):
+                    _check_value(name, values[name], mode_2d=mode_2d)
+        except Located as error:
+            if not specifier.is_default:
+                error.span = specifier.span or error.span
+            raise
     values["_names"] = tuple(sorted(values, key=list(_order(cls, values)).index))
-    if issubclass(cls, Object):
-        if mode_2d:
-            position = values["position"]
-            values["position"] = normalised("position", (position.x, position.y, 0))
-        _check_size(values)
+    if issubclass(cls, Object) and mode_2d:
+        position = values["position"]
+        values["position"] = normalised("position", (position.x, position.y, 0))
     return instance
 
 
@@ -67,6 +74,9 @@ def resolve(
 ) -> Resolution:
     """Decide who provides what, and in which order."""
     _reject_duplicates(specifiers)
+    for name, entry in properties.items():
+        if hasattr(cls, name):
+            raise _clash(cls, name, entry.definitions[0].span)
     claims: dict[str, Specifier] = {}
     modifiers: dict[str, Specifier] = {}
     for specifier in specifiers:
@@ -118,11 +128,15 @@ def _check_property(
                 f"property {name!r} cannot be directly specified", span=specifier.span, help=hint
             )
     elif hasattr(cls, name):
-        raise SpecifierError(
-            f"{name!r} is an attribute of {cls.__name__} and cannot be a property",
-            span=specifier.span,
-            help="choose another name",
-        )
+        raise _clash(cls, name, specifier.span)
+
+
+def _clash(cls: type[Point], name: str, span: Span | None) -> SpecifierError:
+    return SpecifierError(
+        f"{name!r} is an attribute of {cls.__name__} and cannot be a property",
+        span=span,
+        help="choose another name",
+    )
 
 
 def _claim(claims: dict[str, Specifier], name: str, specifier: Specifier, priority: int) -> None:
@@ -160,6 +174,7 @@ def _default_specifier(name: str, entry: Property) -> Specifier:
         entry.dependencies,
         lambda instance: {name: entry.default(instance)},
         span=entry.definitions[0].span,
+        is_default=True,
     )
 
 
@@ -210,11 +225,20 @@ def _topological(
     return tuple(order)
 
 
-def _check_size(values: Mapping[str, Any]) -> None:
-    for name in ("width", "length", "height"):
-        size = values[name]
-        if is_number(size) and not size > 0:
-            raise ScenicValueError(f"property {name!r} must be greater than 0, not {size:g}", span=here())
+def _check_value(name: str, value: Any, *, mode_2d: bool) -> None:
+    """Raise an error for a property of an object that no object can have."""
+    if name in ("width", "length", "height") and is_number(value) and not value > 0:
+        raise ScenicValueError(
+            f"property {name!r} must be greater than 0, not {value:g}",
+            span=here(),
+            help="sizes are in metres",
+        )
+    if mode_2d and name == "shape" and not isinstance(value, BoxShape):
+        raise InvalidScenarioError(
+            f"in 2D mode every object is a box, not {value!r}",
+            span=here(),
+            help="leave out the shape, or compile without 2D mode",
+        )
 
 
 def _quoted(names: frozenset[str]) -> str:

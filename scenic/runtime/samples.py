@@ -2,7 +2,7 @@
 
 `dependencies` lists the nodes that a value needs, `Sample` replaces them. Both walk the same structure: random values,
 instances, tuples, lists, dictionaries, slices, functions of the program (their global names and closures), bound methods,
-and objects that say so themselves by a ``sampled(sample)`` method.
+methods of the program's classes, and objects that say so themselves by a ``sampled(sample)`` method.
 """
 
 from collections.abc import Callable, Iterable, Iterator
@@ -10,15 +10,88 @@ from types import CellType, CodeType, FunctionType, MethodType
 from typing import Any
 
 from scenic.graph.node import Node
-from scenic.runtime.objects import Point
+from scenic.runtime.objects import Object, OrientedPoint, Point
 from scenic.runtime.values import Random
 
 Lookup = Callable[[Node], Any]
 
+PRELUDE = "__scenic__"
+"""The global name by which generated code finds the prelude, through which functions read the ego."""
 
-def dependencies(values: Iterable[Any]) -> list[Node]:
+
+class Globals:
+    """Global names of the program's functions, each with the value that it had when it was first asked for.
+
+    A requirement keeps those of the moment at which its statement ran: the program may bind the names anew later.
+    """
+
+    def __init__(self) -> None:
+        self._values: dict[tuple[int, str], Any] = {}
+        self._fixed: dict[int, tuple[FunctionType, bool]] = {}
+        self._methods: dict[type, tuple[tuple[str, FunctionType], ...]] = {}
+
+    def of(self, function: FunctionType) -> list[tuple[str, Any]]:
+        """Global names of the program that a function of the program, or code nested in it, may read."""
+        names = function.__globals__
+        if PRELUDE not in names:
+            return []
+        found: dict[str, Any] = {}
+        codes = [function.__code__]
+        while codes:
+            code = codes.pop()
+            for name in code.co_names:
+                key = (id(names), name)
+                if key not in self._values and name in names:
+                    value = names[name]
+                    self._values[key] = value.snapshot() if name == PRELUDE else value
+                if key in self._values:
+                    found[name] = self._values[key]
+            codes.extend(item for item in code.co_consts if isinstance(item, CodeType))
+        return list(found.items())
+
+    def is_fixed(self, function: FunctionType) -> bool:
+        """Whether a function does the same in every sample: it reaches nothing random, and nothing bound anew."""
+        known = self._fixed.get(id(function))
+        if known is None:
+            fixed = all(self._is_plain(value) for value in reachable([function], self))
+            known = self._fixed[id(function)] = (function, fixed)
+        return known[1]
+
+    def _is_plain(self, value: Any) -> bool:
+        if isinstance(value, Random):
+            return False
+        if not isinstance(value, FunctionType):
+            return True
+        names = value.__globals__
+        return all(
+            old == names.get(name) if name == PRELUDE else old is names.get(name)
+            for name, old in self.of(value)
+        )
+
+    def methods(self, cls: type) -> tuple[tuple[str, FunctionType], ...]:
+        """The methods that a class of the program defines or inherits from another one of the program."""
+        if cls not in self._methods:
+            found: dict[str, FunctionType] = {}
+            for base in cls.__mro__:
+                if base not in _BUILT_IN:
+                    for name, item in vars(base).items():
+                        if isinstance(item, FunctionType) and PRELUDE in item.__globals__:
+                            found.setdefault(name, item)
+            self._methods[cls] = tuple(found.items())
+        return self._methods[cls]
+
+
+_BUILT_IN = frozenset({object, Point, OrientedPoint, Object})
+
+
+def dependencies(values: Iterable[Any], names: Globals | None = None) -> list[Node]:
     """The nodes whose values decide the sampled values of ``values``, in order of discovery."""
-    found: dict[Node, None] = {}
+    walk = reachable(values, Globals() if names is None else names)
+    return list(dict.fromkeys(value.node for value in walk if isinstance(value, Random)))
+
+
+def reachable(values: Iterable[Any], names: Globals) -> Iterator[Any]:
+    """Everything that the values are made of as far as sampling goes, themselves included, each once."""
     seen: dict[int, Any] = {}
     stack = list(values)[::-1]
     while stack:
@@ -26,12 +99,11 @@ def dependencies(values: Iterable[Any]) -> list[Node]:
         if id(value) in seen or value is None or isinstance(value, _PLAIN):
             continue
         seen[id(value)] = value  # Kept alive, so that identities stay unique.
+        yield value
         if isinstance(value, Random):
-            found[value.node] = None
             stack.extend(_boxed_constants(value.node, seen))
         else:
-            stack.extend(reversed(list(_parts(value))))
-    return list(found)
+            stack.extend(reversed(list(_parts(value, names))))
 
 
 _PLAIN = (int, float, str, bytes, bool, type, CodeType)
@@ -54,10 +126,11 @@ def _boxed_constants(root: Node, seen: dict[int, Any]) -> list[Any]:
     return values
 
 
-def _parts(value: Any) -> Iterator[Any]:
+def _parts(value: Any, names: Globals) -> Iterator[Any]:
     """What a value is made of, as far as sampling goes."""
     if isinstance(value, Point):
         yield from value.__dict__.get("_source", value).__dict__.values()
+        yield from (method for _, method in names.methods(type(value)))
     elif isinstance(value, tuple | list | set | frozenset):
         yield from value
     elif isinstance(value, dict):
@@ -65,31 +138,14 @@ def _parts(value: Any) -> Iterator[Any]:
     elif isinstance(value, slice):
         yield from (value.start, value.stop, value.step)
     elif isinstance(value, FunctionType):
-        yield from (item for _, item in referenced_globals(value))
-        for cell in value.__closure__ or ():
-            if (content := _content(cell)) is not None:
-                yield content
+        yield from (item for _, item in names.of(value))
+        yield from (_content(cell) for cell in value.__closure__ or ())
         yield from value.__defaults__ or ()
+        yield from (value.__kwdefaults__ or {}).values()
     elif isinstance(value, MethodType):
         yield from (value.__self__, value.__func__)
     elif hasattr(value, "sampled") and hasattr(value, "random_parts"):
         yield from value.random_parts()
-
-
-def referenced_globals(function: FunctionType) -> list[tuple[str, Any]]:
-    """Global names of the program that a function of the program, or code nested in it, may read."""
-    names = function.__globals__
-    if "__scenic__" not in names:
-        return []
-    result: dict[str, Any] = {}
-    codes = [function.__code__]
-    while codes:
-        code = codes.pop()
-        for name in code.co_names:
-            if name in names and name != "__scenic__":
-                result[name] = names[name]
-        codes.extend(item for item in code.co_consts if isinstance(item, CodeType))
-    return list(result.items())
 
 
 def _content(cell: CellType) -> Any:
@@ -104,14 +160,17 @@ class Sample:
 
     Args:
         lookup: the value of a node in this sample.
+        names: the global names that functions of the program read; by default as they are now.
 
     """
 
-    __slots__ = ("_lookup", "_memo")
+    __slots__ = ("_lookup", "_memo", "_names", "_scopes")
 
-    def __init__(self, lookup: Lookup) -> None:
+    def __init__(self, lookup: Lookup, names: Globals | None = None) -> None:
         self._lookup = lookup
+        self._names = Globals() if names is None else names
         self._memo: dict[int, tuple[Any, Any]] = {}
+        self._scopes: dict[int, dict[str, Any]] = {}
 
     def value(self, value: Any) -> Any:
         """The sampled value: ``value`` itself where nothing in it is random.
@@ -121,11 +180,9 @@ class Sample:
         if value is None or isinstance(value, _PLAIN):
             return value
         key = id(value)
-        if key in self._memo:
-            return self._memo[key][1]
-        result = self._sampled(value)
-        self._memo[key] = (value, result)
-        return result
+        if key not in self._memo:
+            self._memo[key] = (value, self._sampled(value))
+        return self._memo[key][1]
 
     def _sampled(self, value: Any) -> Any:
         if isinstance(value, Random):
@@ -145,7 +202,7 @@ class Sample:
         if isinstance(value, slice):
             return slice(self.value(value.start), self.value(value.stop), self.value(value.step))
         if isinstance(value, FunctionType):
-            return self._function(value)
+            return value if self._names.is_fixed(value) else self._function(value)
         if isinstance(value, MethodType):
             return MethodType(self.value(value.__func__), self.value(value.__self__))
         if hasattr(value, "sampled") and hasattr(value, "random_parts"):
@@ -158,27 +215,30 @@ class Sample:
         copy = object.__new__(type(instance))
         copy.__dict__["_source"] = instance
         copy.__dict__["_sample"] = self
+        # Methods may lead back to the instance, which must find its entry then.
+        self._memo[id(instance)] = (instance, copy)
+        for name, method in self._names.methods(type(instance)):
+            sampled = self.value(method)
+            if sampled is not method:
+                copy.__dict__[name] = MethodType(sampled, copy)
         return copy
 
     def _function(self, function: FunctionType) -> FunctionType:
-        """The function over sampled globals and closure; itself where none of them is random."""
-        # A function that refers to itself must find an entry while its own parts are sampled.
-        self._memo[id(function)] = (function, function)
-        changed = {
-            name: new for name, old in referenced_globals(function) if (new := self.value(old)) is not old
-        }
-        cells = function.__closure__ or ()
-        contents = [_content(cell) for cell in cells]
-        sampled = [self.value(content) for content in contents]
-        defaults = self.value(function.__defaults__)
-        same = all(new is old for new, old in zip(sampled, contents, strict=True))
-        if not changed and same and defaults is function.__defaults__:
-            return function
-        closure = tuple(
-            cell if new is old else CellType(new)
-            for cell, old, new in zip(cells, contents, sampled, strict=True)
-        )
-        scope = {**function.__globals__, **changed} if changed else function.__globals__
-        copy = FunctionType(function.__code__, scope, function.__name__, defaults, closure or None)
-        copy.__kwdefaults__ = function.__kwdefaults__
+        """The function over sampled globals, closure and defaults."""
+        names = function.__globals__
+        # All functions of a module share one scope, so that functions which call each other find each other.
+        scope = self._scopes.setdefault(id(names), dict(names))
+        cells = tuple(CellType() for _ in function.__closure__ or ())
+        copy = FunctionType(function.__code__, scope, function.__name__, None, cells or None)
+        self._memo[id(function)] = (function, copy)
+        for name, value in self._names.of(function):
+            scope[name] = self.value(value)
+        for new, old in zip(cells, function.__closure__ or (), strict=True):
+            try:
+                content = old.cell_contents
+            except ValueError:  # not bound yet
+                continue
+            new.cell_contents = self.value(content)
+        copy.__defaults__ = self.value(function.__defaults__)
+        copy.__kwdefaults__ = self.value(function.__kwdefaults__)
         return copy

@@ -23,6 +23,7 @@ from scenic.runtime.values import (
     describe,
     is_number,
     is_orientation,
+    is_vector,
     operate,
     to_heading,
     to_orientation,
@@ -42,6 +43,7 @@ class Specifier:
 
     ``priorities`` maps each property offered to the strength of the offer (1 is strongest). ``modify`` is the function
     used when the specifier modifies a property that another one specifies; ``modifiable`` names those properties.
+    ``is_default`` marks the default of a property, which the program did not write here.
     """
 
     name: str
@@ -51,6 +53,7 @@ class Specifier:
     modifiable: frozenset[str] = frozenset()
     modify: Evaluate | None = None
     span: Span | None = None
+    is_default: bool = False
 
     def __str__(self) -> str:
         return f"`{self.name}`"
@@ -128,8 +131,10 @@ def on(_ego: Ego, target: Any) -> Specifier:
             priorities["parentOrientation"] = 2
     elif isinstance(surface, Random) and surface.node.kind.is_boxed:
         region = region_of(surface, "`on`")
-    else:
+    elif is_vector(surface) or hasattr(surface, "toVector"):
         place = to_vector(surface, "`on`")
+    else:
+        raise wrong_type("a region, an object or a vector", surface, "`on`")
 
     def rest(instance: Any, anchor: Any, orientation: Any) -> Mapping[str, Any]:
         gap = vector(0, 0, operate("divide", instance.contactTolerance, 2))

@@ -17,7 +17,12 @@ from scenic.graph.kinds import Kind
 from scenic.graph.node import Node
 from scenic.graph.operation import Call, Operation, always
 from scenic.graph.operations import TABLE
-from scenic.language.errors import InvalidScenarioError, RandomControlFlowError, ScenicTypeError
+from scenic.language.errors import (
+    InvalidScenarioError,
+    RandomControlFlowError,
+    ScenicTypeError,
+    UnsupportedError,
+)
 from scenic.runtime.context import current, here, uniform_draw
 
 LARGEST_INTEGER = 2**62
@@ -550,6 +555,11 @@ class ValueCodec:
         """The row of a value; raises ``TypeError`` where it is of another kind."""
         if kind.is_boxed:
             return value
+        if isinstance(value, Random):
+            raise UnsupportedError(
+                "reaching a random value of an instance through a random container is not supported yet",
+                help="choose among the instances themselves: `Uniform(a, b)`",
+            )
         if kind is Kind.VECTOR:
             return tuple(to_vector(value))
         if kind is Kind.ORIENTATION:
@@ -700,12 +710,30 @@ def call(value: Random, args: Sequence[Any], kwargs: dict[str, Any]) -> Any:
         index, *options = node.operands
         results = []
         for option in options:
-            if option.operation is _MISSING or not option.is_constant:
-                results.append(option if option.operation is _MISSING else _call_later(option, args, kwargs))
+            if option.operation is _MISSING:
+                results.append(option)
+            elif option.is_constant and _is_traceable(option.value):
+                results.append(_traced(option.value, args, kwargs))
             else:
-                results.append(as_node(option.value(*args, **kwargs)))
+                results.append(_call_later(option, args, kwargs))
         return _select(index, results)
     return as_value(_call_later(node, args, kwargs))
+
+
+def _is_traceable(function: Any) -> bool:
+    """Whether a callable is a method of the runtime, or of an instance, which takes random arguments."""
+    defined = getattr(function, "__func__", function)
+    module = getattr(defined, "__module__", None) or ""
+    owner = getattr(function, "__self__", None)
+    return module.startswith("scenic.runtime.") or kind_of(owner) is Kind.OBJECT
+
+
+def _traced(function: Any, args: Sequence[Any], kwargs: dict[str, Any]) -> Node:
+    """The result of a call; an error of it counts only where this option is drawn."""
+    try:
+        return as_node(function(*args, **kwargs))
+    except Exception as error:  # noqa: BLE001 - whatever the call raises
+        return graph.apply(_MISSING, (), error, here())
 
 
 def _call_later(function: Node, args: Sequence[Any], kwargs: dict[str, Any]) -> Node:
@@ -774,7 +802,8 @@ def wrong_type(wanted: str, value: Any, what: str = "") -> ScenicTypeError:
     """The error for a value that cannot be read as ``wanted``."""
     hint = None
     if isinstance(value, type):
-        hint = f"to create an instance write `new {value.__name__}`"
+        is_scenic = hasattr(value, "scenic_properties")
+        hint = f"to create an instance write `{'new ' * is_scenic}{value.__name__}{'()' * (not is_scenic)}`"
     prefix = f"{what}: " if what else ""
     return ScenicTypeError(f"{prefix}expected {wanted}, not {describe(value)}", span=here(), help=hint)
 
@@ -787,6 +816,9 @@ def to_scalar(value: Any, what: str = "") -> Any:
         if value.node.kind.is_number:
             return operate("float", value)
         if value.node.kind.is_boxed:
+            if all(option.kind.is_number for option in value.node.operands[1:]):
+                # A choice among integers and floats: as floats its options have one kind, which analysis understands.
+                return _coerce_boxed(value, Kind.SCALAR, to_scalar, what)
             return _coerce_later(value, Kind.SCALAR, to_scalar, what)
     elif is_number(value):
         return float(value)

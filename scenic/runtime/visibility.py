@@ -76,7 +76,7 @@ def _nearest(starts: Column, ends: Column) -> Column:
     length = along[..., 0] ** 2 + along[..., 1] ** 2
     dot = -(starts[..., 0] * along[..., 0] + starts[..., 1] * along[..., 1])
     part = np.clip(dot / np.maximum(length, 1e-300), 0, 1)
-    return starts + along * part[..., np.newaxis]
+    return np.asarray(starts + along * part[..., np.newaxis])
 
 
 def _within(points: Column, heading: Column, angle: Column, distance: Column) -> Column:
@@ -85,7 +85,7 @@ def _within(points: Column, heading: Column, angle: Column, distance: Column) ->
     azimuth = np.abs(np.remainder(azimuth + np.pi, 2 * np.pi) - np.pi)
     full = angle >= FULL_ANGLE
     in_angle = (azimuth <= angle[:, np.newaxis] / 2) | full[:, np.newaxis]
-    return in_angle & (np.hypot(x, y) <= distance[:, np.newaxis])
+    return np.asarray(in_angle & (np.hypot(x, y) <= distance[:, np.newaxis]))
 
 
 def _crosses(starts: Column, ends: Column, direction: Column, distance: Column) -> Column:
@@ -94,10 +94,10 @@ def _crosses(starts: Column, ends: Column, direction: Column, distance: Column) 
     along = ends - starts
     across = along[..., 0] * ray[..., 1] - along[..., 1] * ray[..., 0]
     safe = np.where(across == 0, 1, across)
-    reach = (starts[..., 1] * along[..., 0] - starts[..., 0] * along[..., 1]) / -safe
+    reach = (starts[..., 1] * along[..., 0] - starts[..., 0] * along[..., 1]) / safe
     part = (starts[..., 1] * ray[..., 0] - starts[..., 0] * ray[..., 1]) / safe
     hit = (part >= 0) & (part <= 1) & (reach >= 0) & (reach <= distance[:, np.newaxis])
-    return hit & (across != 0)
+    return np.asarray(hit & (across != 0))
 
 
 _SEES = Operation("sees in plane", always(Kind.BOOLEAN), _sees, "Whether a 2D view touches an outline.")

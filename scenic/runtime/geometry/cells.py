@@ -32,8 +32,11 @@ def touched_cells(triangles: Floats, resolution: int) -> Iterator[tuple[Indices,
         resolution: cells per axis.
 
     """
-    first = cell_of(triangles.min(axis=1) - PADDING, resolution)
-    counts = cell_of(triangles.max(axis=1) + PADDING, resolution) - first + 1
+    # Written out, since reductions over short axes are slow.
+    lowest = np.minimum(np.minimum(triangles[:, 0], triangles[:, 1]), triangles[:, 2])
+    highest = np.maximum(np.maximum(triangles[:, 0], triangles[:, 1]), triangles[:, 2])
+    first = cell_of(lowest - PADDING, resolution)
+    counts = cell_of(highest + PADDING, resolution) - first + 1
     total = counts[:, 0] * counts[:, 1] * counts[:, 2]
     alone = np.flatnonzero(total == 1)  # the face's bounding box is in one cell: nothing to test
     yield alone, _number(first[alone], resolution)

@@ -60,20 +60,48 @@ def in_convex_polygon(body: Body, corners: Floats, lanes: int) -> Booleans:
     doubled = spokes[..., 0] * after[..., 1] - spokes[..., 1] * after[..., 0]
     has_area: Booleans = np.logical_or.reduce(doubled > 0, axis=1)
 
-    def test(chosen: Indices, points: Floats) -> Booleans:
-        x, y = (part.T for part in _world(body.poses, chosen, points)[:2])
+    def beside(images: Columns, chosen: Indices, numbers: Indices | int) -> Booleans:
+        """Whether all points are on the inner side of an edge, the same for all lanes or one for each."""
         edge, corner, length = (
-            part if len(part) == 1 else part[chosen] for part in (edges, corners, lengths)
+            part[0 if len(part) == 1 else chosen, numbers] for part in (edges, corners, lengths)
         )
+        side = edge[..., 0] * (images[1] - corner[..., 1]) - edge[..., 1] * (images[0] - corner[..., 0])
+        inner: Booleans = np.logical_and.reduce(side >= -TOLERANCE * length, axis=0)
+        return inner
+
+    def test(chosen: Indices, points: Floats) -> Booleans:
+        images = _world(body.poses, chosen, points)
         result = np.ones(len(chosen), dtype=np.bool_)
         for number in range(corners.shape[1]):
-            ex, ey = edge[:, number, :1], edge[:, number, 1:]
-            side = ex * (y - corner[:, number, 1:]) - ey * (x - corner[:, number, :1])
-            result &= np.logical_and.reduce(side >= -TOLERANCE * length[:, number, None], axis=1)
+            result &= beside(images, chosen, number)
         return result
 
-    result = _all_inside(body, lanes, test)
-    return result & has_area
+    result: Booleans = np.zeros(lanes, dtype=np.bool_)
+    margins = _box_margins(body.poses, corners, edges)
+    worst = np.broadcast_to(np.argmin(margins, axis=1), (lanes,))
+    box_inside = np.broadcast_to(np.min(margins, axis=1) >= 0, (lanes,))
+    for mesh, chosen in body.by_mesh(lanes):
+        result[chosen] = box_inside[chosen]
+        left = chosen[~box_inside[chosen]]
+        # The edge that the world box oversteps most is the one that the body is likely to overstep.
+        for part in rows(len(left), len(mesh.hull.vertices), _CHUNK):
+            some = left[part]
+            result[some] = beside(_world(body.poses, some, mesh.hull.vertices), some, worst[some])
+        left = left[result[left]]
+        result[left] = _chunked(test, left, mesh.hull.vertices)
+    result &= has_area
+    return result
+
+
+def _box_margins(poses: Poses, corners: Floats, edges: Floats) -> Floats:
+    """How far the world boxes lie inside each edge, times its length, ``(n | 1, k)``."""
+    lower, upper = poses.bounds()
+    x, y = ((lower[:, axis, None] + upper[:, axis, None]) / 2 for axis in (0, 1))
+    reach_x, reach_y = ((upper[:, axis, None] - lower[:, axis, None]) / 2 for axis in (0, 1))
+    ex, ey = edges[..., 0], edges[..., 1]
+    side = ex * (y - corners[..., 1]) - ey * (x - corners[..., 0])
+    margins: Floats = side - (np.abs(ex) * reach_y + np.abs(ey) * reach_x)
+    return margins
 
 
 def in_polygons(body: Body, polygons: Polygons, lanes: int) -> Booleans:
@@ -89,23 +117,26 @@ def in_polygons(body: Body, polygons: Polygons, lanes: int) -> Booleans:
     def vertices_inside(chosen: Indices, points: Floats) -> Booleans:
         x, y = _world(body.poses, chosen, points)[:2]
         near = polygons.nearly_contains(x.ravel(), y.ravel()).reshape(x.shape)
-        result: Booleans = np.logical_and.reduce(near, axis=0)
-        return result
+        held: Booleans = np.logical_and.reduce(near, axis=0)
+        return held
 
     result = np.zeros(lanes, dtype=np.bool_)
-    for mesh, chosen in body.by_mesh(lanes):
-        extreme = _chunked(vertices_inside, chosen, _extreme_corners(mesh))
-        chosen = chosen[extreme]
-        corners = mesh.hull.vertices
-        held = np.zeros(len(chosen), dtype=np.bool_)
-        for part in rows(len(chosen), len(corners), _CHUNK):
-            held[part] = covered(chosen[part], corners)
-        result[chosen[held]] = True
-        for lane in chosen[~held]:
+    lower, upper = body.poses.bounds()
+    centre, reach = (lower + upper) / 2, (upper - lower) / 2
+    radius = np.sqrt(reach[:, 0] * reach[:, 0] + reach[:, 1] * reach[:, 1])
+    result[:] = polygons.holds_discs(centre[:, 0], centre[:, 1], radius)
+    for mesh, every in body.by_mesh(lanes):
+        left = every[~result[every]]
+        left = left[_chunked(vertices_inside, left, _extreme_corners(mesh))]
+        for points in (_BOX_CORNERS, mesh.hull.vertices):
+            for part in rows(len(left), len(points), _CHUNK):
+                result[left[part]] = covered(left[part], points)
+            left = left[~result[left]]
+        for lane in left:
             # The outline of a concave body may go around a hole or a notch of the polygon.
-            lane_poses = body.poses.take(np.array([lane]))
-            outline = lane_poses.to_world(mesh.triangles.reshape(1, -1, 3)).reshape(-1, 3, 3)
-            result[lane] = polygons.covers_triangles(outline[..., :2])
+            pose = body.poses.take(np.array([lane]))
+            outline = pose.to_world(mesh.triangles.reshape(1, -1, 3)).reshape(-1, 3, 3)
+            result[lane] = not mesh.is_box and polygons.covers_triangles(outline[..., :2])
     return result
 
 

@@ -175,7 +175,8 @@ class Mesh:
         # In a closed mesh the k-th smallest edge has its partner in the k-th smallest reversed edge.
         face, neighbour_apex = order // 3, apex[opposite]
         offset = self.vertices[neighbour_apex] - self.triangles[face, 0]
-        height = (offset * self.normals[face]).sum(axis=1)
+        normal = self.normals[face]
+        height = offset[:, 0] * normal[:, 0] + offset[:, 1] * normal[:, 1] + offset[:, 2] * normal[:, 2]
         return bool((height > 1e-7 * float(self.extents.max())).any())
 
     @cached_property

@@ -13,10 +13,11 @@ import numpy as np
 from scenic.graph import quaternions
 from scenic.runtime.geometry.affine import relative_map
 from scenic.runtime.geometry.broadphase import boxes_overlap
+from scenic.runtime.geometry.facegrid import face_grid
 from scenic.runtime.geometry.fcl import SizedSurfaces, Surface
 from scenic.runtime.geometry.inside import contains_points
 from scenic.runtime.geometry.mesh import Mesh
-from scenic.runtime.geometry.poses import Booleans, Indices, Poses
+from scenic.runtime.geometry.poses import Booleans, Floats, Indices, Poses
 from scenic.runtime.geometry.proofs import ProofTable
 from scenic.runtime.geometry.ragged import rows
 
@@ -26,6 +27,9 @@ _FEW_POINTS: Final = 3
 _CHUNK: Final = 1 << 12
 """Entries looked at together, so that the temporary columns stay in the processor's cache."""
 
+_MANY_FACES: Final = 20_000
+"""Faces above which a mesh is indexed only around the other body."""
+
 _CULLING_MARGIN: Final = 1e-6
 """How far outside the unit cube of the larger mesh faces of the smaller one are still kept."""
 
@@ -34,7 +38,7 @@ def meshes_intersect(mesh_a: Mesh, poses_a: Poses, mesh_b: Mesh, poses_b: Poses)
     """Whether the solids share a point, ``(n,)``; touching counts, up to rounding.
 
     Both are closed unit meshes. Which frame the comparison works in depends on whether both poses are of
-    constant size, and then on the numbers of faces.
+    constant size, and on the numbers of faces.
     """
     result = boxes_overlap(poses_a, poses_b)
     if mesh_a.is_box and mesh_b.is_box:
@@ -88,7 +92,8 @@ def solids_touch(mesh_a: Mesh, poses_a: Poses, mesh_b: Mesh, poses_b: Poses) -> 
 
 def surfaces_touch(mesh_a: Mesh, poses_a: Poses, mesh_b: Mesh, poses_b: Poses) -> Booleans:
     """Whether the surfaces share a point, ``(n,)``, by FCL."""
-    if poses_a.constant_size and poses_b.constant_size:
+    most = max(len(mesh_a.faces), len(mesh_b.faces))
+    if poses_a.constant_size and poses_b.constant_size and most <= _MANY_FACES:
         return _rigid_surfaces_touch(mesh_a, poses_a, mesh_b, poses_b)
     if len(mesh_a.faces) >= len(mesh_b.faces):
         return _mapped_surfaces_touch(mesh_a, poses_a, mesh_b, poses_b)
@@ -116,7 +121,6 @@ def _rigid_surfaces_touch(mesh_a: Mesh, poses_a: Poses, mesh_b: Mesh, poses_b: P
 def _mapped_surfaces_touch(large: Mesh, large_poses: Poses, small: Mesh, small_poses: Poses) -> Booleans:
     """In the unit frame of the larger mesh, whose index serves all sizes: affine maps keep intersections."""
     affine = relative_map(small_poses, large_poses)
-    still = large.derived(SizedSurfaces).at(np.ones(3))
     limit = 0.5 + _CULLING_MARGIN
     result = np.zeros(len(affine.offset[0]), dtype=np.bool_)
     for entry in range(len(result)):
@@ -124,8 +128,25 @@ def _mapped_surfaces_touch(large: Mesh, large_poses: Poses, small: Mesh, small_p
         outside = np.concatenate([vertices > limit, vertices < -limit], axis=1)[small.faces]
         near = ~np.logical_and.reduce(outside, axis=1).any(axis=1)
         if near.any():
-            result[entry] = still.touches(Surface(vertices, small.faces[near]))
+            faces = small.faces[near]
+            still = _surface_around(large, vertices[faces])
+            result[entry] = still is not None and still.touches(Surface(vertices, faces))
     return result
+
+
+def _surface_around(mesh: Mesh, triangles: Floats) -> Surface | None:
+    """An index of at least the faces of the unit mesh near some triangles; ``None`` if there are none.
+
+    Indexing a large mesh takes seconds, so only the faces in question are indexed, unless they are many.
+    """
+    if len(mesh.faces) > _MANY_FACES:
+        faces = mesh.derived(face_grid).sharing_cells(triangles)
+        if not len(faces):
+            return None
+        if len(faces) <= _MANY_FACES:
+            corners = mesh.triangles[faces].reshape(-1, 3)
+            return Surface(corners, np.arange(len(corners)).reshape(-1, 3))
+    return mesh.derived(SizedSurfaces).at(np.ones(3))
 
 
 def some_part_inside(inner: Mesh, inner_poses: Poses, outer: Mesh, outer_poses: Poses) -> Booleans:

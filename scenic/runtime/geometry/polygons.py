@@ -30,10 +30,10 @@ class Polygons:
         if kind not in {"Polygon", "MultiPolygon"}:
             raise ValueError(f"a polygon or multipolygon is needed, not a value of type `{kind}`")
         flat = shapely.force_2d(polygon)
-        if flat.is_empty or not flat.area > 0:
-            raise ValueError("the polygon is empty")
         if not flat.is_valid:
             raise ValueError(f"the polygon is not valid: {shapely.is_valid_reason(flat)}")
+        if flat.is_empty or not flat.area > 0:
+            raise ValueError("the polygon is empty")
         self.polygon: Final[Any] = shapely.orient_polygons(flat)
 
     @classmethod
@@ -100,6 +100,13 @@ class Polygons:
         shapely.prepare(self.polygon)
         return np.asarray(shapely.intersects_xy(self.polygon, x, y), dtype=np.bool_)
 
+    def distances(self, x: Floats, y: Floats) -> Floats:
+        """Distances of points of the plane from the polygons, ``(n,)``; 0 inside."""
+        import shapely
+
+        distances: Floats = shapely.distance(self.polygon, shapely.points(x, y))
+        return distances
+
     def nearly_contains(self, x: Floats, y: Floats) -> Booleans:
         """Which points lie inside up to the tolerance, ``(n,)``."""
         import shapely
@@ -113,6 +120,15 @@ class Polygons:
         grown = self.polygon.buffer(TOLERANCE, join_style="mitre")
         shapely.prepare(grown)
         return grown
+
+    def holds_discs(self, x: Floats, y: Floats, radius: Floats) -> Booleans:
+        """Which discs are quickly seen to lie inside, ``(n,)``; not all that do."""
+        import shapely
+
+        boundary = self.polygon.boundary
+        shapely.prepare(boundary)
+        near = shapely.dwithin(boundary, shapely.points(x, y), radius)
+        return np.asarray(self.contains(x, y) & ~near, dtype=np.bool_)
 
     def covers_hulls(self, points: Floats) -> Booleans:
         """Which convex hulls of points ``(n, k, 2)`` lie inside, up to the tolerance."""

@@ -62,7 +62,7 @@ def project(
 def landing_points(body: Body, faces: Indices, points: Floats, directions: Floats) -> Floats:
     """Where lines meet the planes of given faces of the world, ``(n, 3)``: `project`, once the faces are known.
 
-    A point within `TOLERANCE` of the plane stays where it is.
+    A point within `TOLERANCE` of its face stays where it is.
     """
     lanes = max(len(faces), len(points), len(directions), body.lanes)
     faces = np.broadcast_to(faces, (lanes,))
@@ -70,10 +70,11 @@ def landing_points(body: Body, faces: Indices, points: Floats, directions: Float
     travel = np.zeros(lanes)
     for mesh, chosen in body.by_mesh(lanes):
         start, way = (np.broadcast_to(part, (lanes, 3))[chosen] for part in (points, directions))
-        corner = body.poses.take(chosen).to_world(mesh.triangles[np.maximum(faces[chosen], 0), 0])
-        height = _dot(normals[chosen], corner - start)
+        corners = body.poses.take(chosen).to_world(mesh.triangles[np.maximum(faces[chosen], 0)])
+        height = _dot(normals[chosen], corners[:, 0] - start)
         rate = _dot(normals[chosen], way)
-        moves = (np.abs(height) > TOLERANCE) & (rate != 0)
+        distance = distance_to_triangles(start, corners[:, 0], corners[:, 1], corners[:, 2])
+        moves = (distance > TOLERANCE) & (rate != 0)
         travel[chosen] = np.where(moves, height / np.where(moves, rate, 1.0), 0.0)
     return points + travel[:, None] * directions
 

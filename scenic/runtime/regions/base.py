@@ -90,6 +90,35 @@ class Region(ABC):
         """Whether the region holds the whole of an object."""
         return apply(_CONTAINS_BODY, *body_operands(thing), *self.parameters, payload=self)
 
+    def distanceTo(self, point: Any) -> Any:
+        """Distance from a point to the nearest point of the region, in metres."""
+        return self.distance_from(point)
+
+    def intersects(self, other: Any) -> Any:
+        """Whether the region shares a point with another or with an object: not built yet."""
+        raise unsupported(f"`intersects` of a {type(self).__name__}")
+
+    def containsRegion(self, other: Any, tolerance: float = 0) -> Any:
+        """Whether the region holds another: not built yet."""
+        raise unsupported("`containsRegion`")
+
+    def intersect(self, other: Any) -> Any:
+        """The points that lie in both regions: not built yet."""
+        raise unsupported("the intersection of regions")
+
+    def union(self, other: Any) -> Any:
+        """The points that lie in either region: not built yet."""
+        raise unsupported("the union of regions")
+
+    def difference(self, other: Any) -> Any:
+        """The points that do not lie in the other region: not built yet."""
+        raise unsupported("the difference of regions")
+
+    @property
+    def AABB(self) -> Any:
+        """The bounding box along the global axes: not built yet."""
+        raise unsupported("`AABB`")
+
     def __contains__(self, item: Any) -> Any:
         return self.containsObject(item) if hasattr(item, "occupiedSpace") else self.containsPoint(item)
 
@@ -122,10 +151,16 @@ def body_operands(thing: Any) -> tuple[Any, Any, Any, Any]:
     return thing.position, thing.orientation, size, thing.shape
 
 
-def body_of(position: Column, orientation: Column, size: Column, shape: Column) -> Body:
-    """The body of an object over lanes, from the columns of `body_operands`."""
+def body_of(
+    position: Column, orientation: Column, size: Column, shape: Column, *, constant_size: bool = False
+) -> Body:
+    """The body of an object over lanes, from the columns of `body_operands`.
+
+    ``constant_size`` says that the size is the same in every lane of every batch (see `Poses`).
+    """
+    poses = Poses(position, orientation, size, constant_size)
     if len(shape) == 1:
-        return Body((shape[0].mesh,), None, Poses(position, orientation, size))
+        return Body((shape[0].mesh,), None, poses)
     meshes: dict[int, int] = {}
     kinds: list[Any] = []
     choice = np.empty(len(shape), dtype=np.intp)
@@ -135,7 +170,7 @@ def body_of(position: Column, orientation: Column, size: Column, shape: Column) 
             meshes[key] = len(kinds)
             kinds.append(item.mesh)
         choice[lane] = meshes[key]
-    return Body(tuple(kinds), choice, Poses(position, orientation, size))
+    return Body(tuple(kinds), choice, poses)
 
 
 def _contains_body(
@@ -168,6 +203,9 @@ class Everywhere(Region):
             span=here(),
             help="draw from a bounded region, or set `workspace = Workspace(region)`",
         )
+
+    def distances(self, points: Points, *columns: Column) -> NDArray[np.float64]:
+        return np.zeros(len(points))
 
     def project(self, point: Any, direction: Any) -> tuple[Any, Any]:
         return point, None

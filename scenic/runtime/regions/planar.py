@@ -17,7 +17,7 @@ from scenic.runtime.context import here
 from scenic.runtime.geometry import containment
 from scenic.runtime.geometry.collision import Body
 from scenic.runtime.geometry.polygons import Polygons
-from scenic.runtime.regions.base import Mask, Points, Region
+from scenic.runtime.regions.base import Mask, Points, Region, unsupported
 from scenic.runtime.values import (
     apply,
     is_number,
@@ -124,6 +124,12 @@ class CircularRegion(PlanarRegion):
         inside: Mask = dx * dx + dy * dy <= radius * radius
         return inside
 
+    def distances(self, points: Points, *columns: Column) -> Column:
+        center, radius = columns
+        dx, dy = points[:, 0] - center[:, 0], points[:, 1] - center[:, 1]
+        beside = np.maximum(np.hypot(dx, dy) - radius, 0)
+        return np.asarray(np.hypot(beside, points[:, 2] - center[:, 2]))
+
     def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
         center, radius = columns
         angles = np.arange(4 * self.resolution) * (math.pi / (2 * self.resolution))
@@ -166,13 +172,24 @@ class RectangularRegion(PlanarRegion):
         return operate("add", self.position, offset), None
 
     def contains_points(self, points: Points, *columns: Column) -> Mask:
-        position, heading, width, length = columns
+        across, along = self._local(points, *columns)
+        inside: Mask = (np.abs(across) <= columns[2] / 2) & (np.abs(along) <= columns[3] / 2)
+        return inside
+
+    def distances(self, points: Points, *columns: Column) -> Column:
+        across, along = self._local(points, *columns)
+        beside = np.hypot(
+            np.maximum(np.abs(across) - columns[2] / 2, 0), np.maximum(np.abs(along) - columns[3] / 2, 0)
+        )
+        return np.hypot(beside, points[:, 2] - columns[0][:, 2])
+
+    def _local(
+        self, points: Points, position: Column, heading: Column, *_size: Column
+    ) -> tuple[Column, Column]:
+        """Coordinates of points across and along the heading, from the centre."""
         dx, dy = points[:, 0] - position[:, 0], points[:, 1] - position[:, 1]
         cos, sin = np.cos(heading), np.sin(heading)
-        inside: Mask = (np.abs(dx * cos + dy * sin) <= width / 2) & (
-            np.abs(dy * cos - dx * sin) <= length / 2
-        )
-        return inside
+        return dx * cos + dy * sin, dy * cos - dx * sin
 
     def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
         position, heading, width, length = columns
@@ -209,7 +226,7 @@ class PolygonalRegion(PlanarRegion):
         if is_random(points) or is_random(z):
             raise ScenicTypeError("`PolygonalRegion` needs fixed points", span=here())
         if orientation is not None:
-            raise ScenicTypeError("`PolygonalRegion` with a vector field is not supported yet", span=here())
+            raise unsupported("`PolygonalRegion` with a vector field")
         try:
             if polygon is None:
                 self.polygons = Polygons.of_points([tuple(to_vector(point))[:2] for point in points])
@@ -229,6 +246,11 @@ class PolygonalRegion(PlanarRegion):
         """Square metres."""
         return self.polygons.area
 
+    @property
+    def boundary(self) -> Any:
+        """The outline, as a line: not built yet."""
+        raise unsupported("`boundary`")
+
     def buffer(self, distance: float) -> "PolygonalRegion":
         """The region of all points within ``distance`` metres (shrunk where negative)."""
         return PolygonalRegion(polygon=self.polygons.polygon.buffer(distance), z=self.z)
@@ -237,6 +259,8 @@ class PolygonalRegion(PlanarRegion):
     def unionAll(regions: Iterable["PolygonalRegion"], buf: float = 0) -> "PolygonalRegion":
         """The union of regions, each grown by ``buf`` metres."""
         members = list(regions)
+        if not members or not all(isinstance(member, PolygonalRegion) for member in members):
+            raise ScenicTypeError("`unionAll` takes at least one polygonal region", span=here())
         merged = Polygons.union([member.polygons for member in members], buf)
         return PolygonalRegion(polygon=merged.polygon, z=members[0].z)
 
@@ -246,6 +270,9 @@ class PolygonalRegion(PlanarRegion):
 
     def contains_points(self, points: Points, *columns: Column) -> Mask:
         return self.polygons.contains(points[:, 0], points[:, 1])
+
+    def distances(self, points: Points, *columns: Column) -> Column:
+        return np.hypot(self.polygons.distances(points[:, 0], points[:, 1]), points[:, 2] - self.z)
 
     def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
         return containment.in_polygons(body, self.polygons, lanes)

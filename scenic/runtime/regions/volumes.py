@@ -13,22 +13,27 @@ from scenic.language.errors import ScenicValueError
 from scenic.runtime.context import here
 from scenic.runtime.geometry import containment
 from scenic.runtime.geometry.collision import Body
-from scenic.runtime.regions.base import Mask, Points, Region
+from scenic.runtime.regions.base import Mask, Points, Region, unsupported
 from scenic.runtime.values import (
     Orientation,
     apply,
     is_number,
     operate,
     to_orientation,
-    to_scalar,
     to_vector,
     uniform,
     vector,
 )
 
+BISECTIONS = 60
+"""Halvings of an interval until nothing is left of it in double precision."""
+
 
 class PlacedVolume(Region):
-    """A volume of some dimensions, turned and moved."""
+    """A volume of some dimensions, turned and moved.
+
+    ``tolerance``, ``centerMesh`` and ``onDirection`` are those of regions made of meshes; closed forms need none of them.
+    """
 
     dimension: float = 3
 
@@ -37,17 +42,26 @@ class PlacedVolume(Region):
         dimensions: Any = (1, 1, 1),
         position: Any = None,
         rotation: Any = None,
+        orientation: Any = None,
+        tolerance: float = 1e-6,
+        centerMesh: bool = True,
+        onDirection: Any = None,
         *,
         name: str | None = None,
     ) -> None:
         what = f"`{type(self).__name__}`"
-        sizes = [to_scalar(size, f"{what} dimensions") for size in dimensions]
-        if len(sizes) != 3 or any(is_number(size) and not size > 0 for size in sizes):
+        if orientation is not None:
+            raise unsupported(f"{what} with a vector field")
+        sizes = list(to_vector(dimensions, f"{what} dimensions"))
+        if any(is_number(size) and not size > 0 for size in sizes):
             raise ScenicValueError(f"{what} needs three positive dimensions, not {dimensions!r}", span=here())
         self.dimensions = vector(*sizes)
         self.position = vector(0, 0, 0) if position is None else to_vector(position, f"{what} position")
         self.rotation = Orientation() if rotation is None else to_orientation(rotation, f"{what} rotation")
         super().__init__(self.dimensions, self.position, self.rotation, name=name)
+
+    def project(self, point: Any, direction: Any) -> tuple[Any, Any]:
+        raise unsupported(f"placing things `on` a {type(self).__name__}")
 
     def _placed(self, x: Any, y: Any, z: Any) -> tuple[Any, Any]:
         """The point at these fractions of the dimensions from the centre."""
@@ -77,8 +91,12 @@ class BoxRegion(PlacedVolume):
         inside: Mask = (local[:, 0] <= 0.5) & (local[:, 1] <= 0.5) & (local[:, 2] <= 0.5)
         return inside
 
+    def distances(self, points: Points, *columns: Column) -> Column:
+        beside = np.maximum((np.abs(_local(points, *columns)) - 0.5) * columns[0], 0)
+        return np.asarray(np.sqrt(beside[:, 0] ** 2 + beside[:, 1] ** 2 + beside[:, 2] ** 2))
+
     def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
-        return containment.in_box(body, *columns, lanes)
+        return containment.in_box(body, columns[0], columns[1], columns[2], lanes)
 
 
 def _ball_point(_call: Call, first: Column, second: Column, third: Column) -> Column:
@@ -106,15 +124,8 @@ BALL_POINT = Operation(
 class SpheroidRegion(PlacedVolume):
     """A solid ellipsoid with these three diameters."""
 
-    def __init__(
-        self,
-        dimensions: Any = (2, 2, 2),
-        position: Any = None,
-        rotation: Any = None,
-        *,
-        name: str | None = None,
-    ) -> None:
-        super().__init__(dimensions, position, rotation, name=name)
+    def __init__(self, dimensions: Any = (2, 2, 2), *args: Any, **options: Any) -> None:
+        super().__init__(dimensions, *args, **options)
 
     def uniform_placement(self) -> tuple[Any, Any]:
         point = apply(BALL_POINT, uniform(), uniform(), uniform())
@@ -126,5 +137,26 @@ class SpheroidRegion(PlacedVolume):
         inside: Mask = x * x + y * y + z * z <= 0.25
         return inside
 
+    def distances(self, points: Points, *columns: Column) -> Column:
+        """By the root of a decreasing function of one variable, bisected until the interval is spent.
+
+        The nearest point x of the surface to an outer point y has x = a^2 y / (t + a^2), componentwise over the
+        half axes a, for the t > 0 that puts x on the surface (D. Eberly, "Distance from a Point to an Ellipse, an
+        Ellipsoid, or a Hyperellipsoid", 2013).
+        """
+        half = columns[0] / 2
+        squares = half * half
+        point = np.abs(_local(points, *columns)) * columns[0]
+        length = np.sqrt(point[:, 0] ** 2 + point[:, 1] ** 2 + point[:, 2] ** 2)
+        low, high = np.zeros_like(length), length * np.maximum(np.maximum(half[:, 0], half[:, 1]), half[:, 2])
+        for _ in range(BISECTIONS):
+            middle = (low + high) / 2
+            ratio = half * point / (middle[:, np.newaxis] + squares)
+            outside = ratio[:, 0] ** 2 + ratio[:, 1] ** 2 + ratio[:, 2] ** 2 > 1
+            low, high = np.where(outside, middle, low), np.where(outside, high, middle)
+        gap = point - squares * point / (high[:, np.newaxis] + squares)
+        distance = np.sqrt(gap[:, 0] ** 2 + gap[:, 1] ** 2 + gap[:, 2] ** 2)
+        return np.where(self.contains_points(points, *columns), 0.0, distance)
+
     def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
-        return containment.in_ellipsoid(body, *columns, lanes)
+        return containment.in_ellipsoid(body, columns[0], columns[1], columns[2], lanes)

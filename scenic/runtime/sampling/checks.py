@@ -1,7 +1,7 @@
 """What a candidate has to pass to become a scene, each check over many lanes at a time."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
@@ -115,8 +115,9 @@ class ObjectNodes:
 
     def body(self, batch: Batch) -> Body:
         """The object's body in every lane."""
-        body = body_of(*(batch.column(node) for node in self.all[:4]))
-        return Body(body.meshes, body.choice, body.poses, batch.column(self.allow_collisions))
+        columns = [batch.column(node) for node in self.all[:4]]
+        body = body_of(*columns, constant_size=self.size.is_constant)
+        return replace(body, allow=batch.column(self.allow_collisions))
 
     @property
     def all(self) -> tuple[Node, ...]:

@@ -17,12 +17,21 @@ from scenic.graph.batch import Batch
 from scenic.graph.domain import Domain
 from scenic.graph.kinds import Codec, Column
 from scenic.graph.node import Graph, Node
+from scenic.language.errors import RejectionException
 from scenic.runtime.sampling.checks import Check
 from scenic.runtime.sampling.report import Exhausted, RejectionReport, RejectionRow
 from scenic.runtime.sampling.streams import SOFT, Streams
 
 DEFAULT_LANES = 4096
 REPORT_CANDIDATES = 1000
+FIRST_LANES = 256
+"""Candidates of the first round, before their cost is known."""
+
+CHEAP_ROUND = 0.02
+"""Seconds up to which the length of a round does not matter."""
+
+ROUND_SECONDS = 2.0
+"""Rounds are cut to about this time, so that limits and interrupts are noticed soon."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,6 +109,7 @@ class Engine:
     lanes: int = DEFAULT_LANES
     candidates: int = 0
     accepted: int = 0
+    _seconds: float = 0.0  # a candidate, in the last round
     _streams: Streams = field(init=False)
     _measured: list[_Measured] = field(init=False)
     _soft: list[int] = field(init=False)
@@ -157,13 +167,24 @@ class Engine:
 
     def _scenes_at_once(self) -> int:
         ahead = max(1, math.ceil(0.2 / self._acceptance()))
-        return max(1, self.lanes // ahead)
+        return max(1, self._width() // ahead)
 
     def _attempts_each(self, scenes: int) -> int:
-        # Enough to be likely to find each scene, and no more: what runs past the first success is wasted.
-        return max(1, min(self.lanes // scenes, math.ceil(3 / self._acceptance())))
+        # What runs past the first success is wasted, and a round has a cost of its own: cheap candidates run far
+        # enough ahead to be likely to find each scene at once, dear ones only as far as the round's cost is worth.
+        expected = 1 / self._acceptance()
+        affordable = 0.0 if self._seconds == 0 else CHEAP_ROUND / (self._seconds * scenes)
+        ahead = min(3 * expected, max(0.5 * expected, affordable))
+        return max(1, min(self._width() // scenes, math.ceil(ahead)))
+
+    def _width(self) -> int:
+        """Lanes of a round: fewer than allowed only where candidates are slow to evaluate."""
+        if self._seconds == 0:
+            return min(self.lanes, FIRST_LANES)
+        return max(1, min(self.lanes, int(ROUND_SECONDS / self._seconds)))
 
     def _round(self, pending: Sequence[_Pending], max_attempts: int) -> dict[int, Accepted | CandidateError]:
+        begun = time.perf_counter()
         each = self._attempts_each(len(pending))
         counts = [min(each, max_attempts - scene.attempts) for scene in pending]
         owner = np.repeat(np.arange(len(pending)), counts)
@@ -177,6 +198,7 @@ class Engine:
         for scene, made in zip(pending, counts, strict=True):
             scene.attempts += made
         self.candidates += len(owner)
+        self._seconds = (time.perf_counter() - begun) / len(owner)
         rows = batch.rows
         _, positions = np.unique(owner[rows], return_index=True)
         failed = failures[rows[positions]]
@@ -196,7 +218,9 @@ class Engine:
 
     def _batch(self, scenes: NDArray[np.int64], attempts: NDArray[np.int64]) -> Batch:
         rows = self._streams.matrix(scenes, attempts, self.plan.domain.width)
-        return Batch(self.plan.graph, self.plan.domain.place(rows), self.plan.codec)
+        return Batch(
+            self.plan.graph, self.plan.domain.place(rows), self.plan.codec, rejections=(RejectionException,)
+        )
 
     def _survivors(self, batch: Batch, inactive: NDArray[np.bool_] | None) -> NDArray[np.intp]:
         """Run the checks, leaving in the batch the lanes that pass; returns for each first lane the check at which it

@@ -259,6 +259,7 @@ _FALLIBLE = frozenset(
         "len",
         "getitem",
         "missing attribute",
+        "opaque call",
     }
 )
 _DIVISIONS = frozenset({"divide", "floor divide", "modulo", "divmod"})

@@ -1,0 +1,113 @@
+"""Python code that is called on samples: never traced, lane by lane.
+
+What such code does cannot be known before it runs. So it gets concrete values, and finds the names of the program at
+concrete values too; analysis sees nothing of it.
+"""
+
+import random
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from scenic.graph.kinds import Column, Kind, boxed
+from scenic.graph.node import Node, apply
+from scenic.graph.operation import OK, Call, Operation, always
+from scenic.language.errors import RejectionException
+from scenic.runtime.context import Context, current, here
+from scenic.runtime.samples import Globals, Sample, dependencies
+from scenic.runtime.values import CODEC, as_value
+
+
+@dataclass(frozen=True, slots=True)
+class OpaqueCode:
+    """A function with its arguments, the nodes behind both, and where it runs.
+
+    ``names`` are the global names that functions in reach read, as they were when this was made.
+    """
+
+    function: Callable[..., Any]
+    args: tuple[Any, ...]
+    keywords: Mapping[str, Any]
+    operands: tuple[Node, ...]
+    names: Globals
+    context: Context | None
+
+
+def later(operation: Operation, function: Callable[..., Any], args: Sequence[Any], **keywords: Any) -> Node:
+    """The node of a call that is made on each sample; ``operation`` is one made with `evaluated`."""
+    names = Globals()
+    operands = tuple(dependencies([function, *args, *keywords.values()], names))
+    code = OpaqueCode(function, tuple(args), keywords, operands, names, current.get())
+    return apply(operation, operands, code, here())
+
+
+def call_later(function: Callable[..., Any], *args: Any, **keywords: Any) -> Any:
+    """The random value of a call that is made on each sample."""
+    return as_value(later(CALL, function, args, **keywords))
+
+
+def evaluated(call: Call, columns: Sequence[Column]) -> list[Any]:
+    """The results of the calls, ``None`` in lanes where there is none.
+
+    A call that raises `RejectionException` rejects its lane, any other exception is that lane's fault. Python's and
+    NumPy's global generators are seeded for each call by its lane and node, and are afterwards as they were before.
+    """
+    code: OpaqueCode = call.payload
+    results: list[Any] = [None] * call.lanes
+    failed, rejected, absent = (np.zeros(call.lanes, dtype=np.bool_) for _ in range(3))
+    for status in call.operands:
+        if status is not None:
+            absent |= status != OK
+    error: Exception | None = None
+    seeds = call.seeds().tolist()
+    context = code.context
+    was_evaluating = context is not None and context.evaluating
+    python_state, numpy_state = random.getstate(), np.random.get_state()  # noqa: NPY002 - the program's own
+    token = current.set(context)
+    try:
+        if context is not None:
+            context.evaluating = True
+        for lane in np.flatnonzero(~absent).tolist():
+            sample = Sample(_row(code, columns, lane), code.names)
+            random.seed(seeds[lane])
+            np.random.seed(seeds[lane] & 0xFFFFFFFF)  # noqa: NPY002 - the program may draw from it
+            try:
+                args = [sample.value(item) for item in code.args]
+                keywords = {name: sample.value(item) for name, item in code.keywords.items()}
+                results[lane] = sample.value(code.function)(*args, **keywords)
+            except RejectionException:
+                rejected[lane] = True
+            except Exception as problem:  # noqa: BLE001 - whatever the program raises is that lane's fault
+                failed[lane] = True
+                error = problem if error is None else error
+    finally:
+        if context is not None:
+            context.evaluating = was_evaluating
+        current.reset(token)
+        random.setstate(python_state)
+        np.random.set_state(numpy_state)  # noqa: NPY002
+    if error is not None:
+        call.fault(failed, error)
+    call.reject(rejected)
+    return results
+
+
+def _row(code: OpaqueCode, columns: Sequence[Column], lane: int) -> Callable[[Node], Any]:
+    by_node = dict(zip(code.operands, columns, strict=True))
+
+    def lookup(node: Node) -> Any:
+        column = by_node[node]
+        return CODEC.decode(node.kind, column[lane if len(column) > 1 else 0])
+
+    return lookup
+
+
+CALL = Operation(
+    "opaque call",
+    always(Kind.OTHER),
+    lambda call, *columns: boxed(evaluated(call, columns)),
+    "A call of Python code with sampled arguments.",
+    pure=False,
+)

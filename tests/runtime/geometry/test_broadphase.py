@@ -1,0 +1,81 @@
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.optimize import linprog
+
+from scenic.runtime.geometry import broadphase, primitives
+from scenic.runtime.geometry.poses import Poses
+
+from .samples import common_volume, in_batches, random_poses, world_vertices, yawed
+
+BOX = primitives.box()
+
+
+def separable(points_a, points_b) -> bool:
+    """Whether a plane separates two point sets by a margin: linear programming, no axes."""
+    rows = np.concatenate([np.c_[points_a, -np.ones(8)], np.c_[-points_b, np.ones(8)]])
+    result = linprog(np.zeros(4), A_ub=rows, b_ub=-np.ones(16), bounds=[(None, None)] * 4)
+    return result.status == 0
+
+
+@settings(max_examples=150)
+@given(st.integers(0, 10**6))
+def test_boxes_against_separating_planes(seed):
+    a, b = random_poses(1, seed, spread=0.6), random_poses(1, seed + 1, spread=0.6)
+    found = broadphase.boxes_overlap(a, b)[0]
+    assert found != separable(world_vertices(BOX, a, 0), world_vertices(BOX, b, 0))
+
+
+def test_boxes_against_booleans():
+    a, b = random_poses(400, 1), random_poses(400, 2)
+    found = broadphase.boxes_overlap(a, b)
+    volumes = np.array([common_volume(BOX, a, BOX, b, entry) for entry in range(400)])
+    assert 0.1 < found.mean() < 0.9
+    assert found[volumes > 0].all()
+    assert (volumes[~found] == 0).all()
+
+
+@pytest.mark.parametrize("yaw", [0.0, 0.3, np.pi / 2])
+def test_touching_boxes_overlap_and_parallel_edges_do_not_separate(yaw):
+    axis = np.array([-np.sin(yaw), np.cos(yaw), 0])
+    still = yawed((0, 0, 0), yaw)
+    for offset, expected in ((0.9999999, True), (1.0000001, False)):
+        assert broadphase.boxes_overlap(still, yawed(offset * axis, yaw))[0] == expected
+        assert broadphase.boxes_overlap(still, yawed((0, 0, offset), yaw + 0.7))[0] == expected
+    assert broadphase.boxes_overlap(yawed((0, 0, 0)), yawed((0, 0, 1)))[0]
+
+
+@pytest.mark.parametrize("batch", [1, 7, 512])
+def test_batches_do_not_matter(batch):
+    a, b = random_poses(700, 3), random_poses(700, 4)
+    whole = broadphase.boxes_overlap(a, b)
+    parts = in_batches(lambda i: broadphase.boxes_overlap(a.take(i), b.take(i)), 700, batch)
+    np.testing.assert_array_equal(parts, whole)
+    strided = np.arange(0, 700, 3)
+    np.testing.assert_array_equal(broadphase.boxes_overlap(a.take(strided), b.take(strided)), whole[::3])
+
+
+def test_fixed_poses_broadcast():
+    a, b = random_poses(50, 5), random_poses(1, 6, constant_size=True)
+    repeated = Poses(*(np.repeat(part, 50, axis=0) for part in (b.position, b.orientation, b.size)))
+    np.testing.assert_array_equal(broadphase.boxes_overlap(a, b), broadphase.boxes_overlap(a, repeated))
+
+
+@pytest.mark.parametrize("bodies", [2, 20, 63, 65, 150])
+def test_overlapping_pairs_are_all_pairs(bodies):
+    rng = np.random.default_rng(bodies)
+    lower = rng.uniform(-3, 3, (3, bodies, 5))
+    upper = lower + rng.uniform(0, 1.5, lower.shape)
+    upper[:, 0] += 10  # one body is as large as the world
+    found = [np.stack(group, axis=1) for group in broadphase.overlapping_pairs(lower, upper)]
+    triples = {tuple(row) for row in np.concatenate(found).tolist()}
+    assert len(triples) == sum(map(len, found))
+    expected = {
+        (i, j, lane)
+        for lane in range(5)
+        for i in range(bodies)
+        for j in range(i + 1, bodies)
+        if (lower[:, i, lane] <= upper[:, j, lane]).all() and (lower[:, j, lane] <= upper[:, i, lane]).all()
+    }
+    assert triples == expected

@@ -1,0 +1,237 @@
+import numpy as np
+import pytest
+import shapely
+import shapely.affinity
+from scipy.spatial.transform import Rotation
+
+from scenic.graph import quaternions
+from scenic.runtime.geometry import containment, primitives
+from scenic.runtime.geometry.bodies import Body
+from scenic.runtime.geometry.polygons import Polygons
+from scenic.runtime.geometry.poses import Poses
+
+from .samples import (
+    FILES,
+    SHAPES,
+    hollow,
+    in_batches,
+    random_poses,
+    real_meshes,
+    solid,
+    table,
+    unit_mesh,
+    world_vertices,
+    yawed,
+)
+
+MARGIN = 1e-6  # answers this close to the border of a container are not compared
+
+
+def regular(corners, radius, centre=(0, 0)):
+    angles = 2 * np.pi * np.arange(corners) / corners
+    return np.stack([np.cos(angles), np.sin(angles)], axis=1) * radius + centre
+
+
+RING = shapely.Polygon(regular(40, 3), [regular(12, 0.4)])
+HOOK = shapely.Polygon([(-3, -3), (3, -3), (3, 3), (1, 3), (1, -1), (-1, -1), (-1, 3), (-3, 3)])
+ISLANDS = shapely.MultiPolygon([shapely.box(-4, -4, -0.1, 4), shapely.box(0.1, -4, 4, 4)])
+
+
+def covers(polygon, mesh, poses, entry):
+    """Whether the exact projection, triangle by triangle, lies in a polygon."""
+    vertices = world_vertices(mesh, poses, entry)[:, :2]
+    triangles = shapely.polygons(vertices[mesh.faces])
+    proper = triangles[shapely.area(triangles) > 1e-14]
+    shapely.prepare(polygon)
+    return polygon.covers(shapely.MultiPoint(vertices)) and shapely.covers(polygon, proper).all()
+
+
+def check_footprint(mesh, poses, polygon, found):
+    inside = 0
+    for entry, answer in enumerate(found):
+        if covers(polygon.buffer(-MARGIN), mesh, poses, entry):
+            assert answer, entry
+            inside += 1
+        elif not covers(polygon.buffer(MARGIN), mesh, poses, entry):
+            assert not answer, entry
+    assert 0 < inside < len(found)
+
+
+@pytest.mark.parametrize("polygon", [RING, HOOK, ISLANDS], ids=["ring", "hook", "islands"])
+@pytest.mark.parametrize("name", ["box", "cone", "table"])
+def test_polygons_with_holes_and_notches(name, polygon):
+    mesh, poses = SHAPES[name](), random_poses(80, 50, spread=2.2)
+    found = containment.in_polygons(Body((mesh,), None, poses), Polygons(polygon), 80)
+    check_footprint(mesh, poses, polygon, found)
+
+
+def test_a_body_may_straddle_a_hole():
+    """The hull of a table on its side covers a hole that the table itself goes around."""
+    pillar = shapely.box(-0.1, -0.3, 0.1, 0.1)
+    floor = Polygons(shapely.box(-2, -2, 2, 2).difference(pillar))
+    fallen = Poses.fixed((0, 0, 0), quaternions.from_euler(0, np.pi / 2, 0))
+    assert containment.in_polygons(Body((table(),), None, fallen), floor, 1)[0]
+    upright = yawed((0, 0, 0))
+    assert not containment.in_polygons(Body((table(),), None, upright), floor, 1)[0]
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_convex_polygons(name):
+    mesh = SHAPES[name]()
+    count = 150
+    poses = random_poses(count, 51, spread=1.5)
+    corners = regular(7, 2.0, (0.2, -0.1))
+    body = Body((mesh,), None, poses)
+    found = containment.in_convex_polygon(body, corners[None], count)
+    check_footprint(mesh, poses, shapely.Polygon(corners), found)
+    np.testing.assert_array_equal(containment.in_polygons(body, Polygons.of_points(corners), count), found)
+
+
+def test_polygons_of_their_own():
+    """Every lane has another polygon; one without area holds nothing."""
+    poses = random_poses(40, 52, sizes=(0.1, 0.5))
+    rng = np.random.default_rng(53)
+    corners = np.stack(
+        [
+            regular(5, radius, centre)
+            for radius, centre in zip(rng.uniform(0, 1.5, 40), rng.uniform(-0.5, 0.5, (40, 2)), strict=True)
+        ]
+    )
+    corners[0] = 0
+    mesh = primitives.cylinder()
+    found = containment.in_convex_polygon(Body((mesh,), None, poses), corners, 40)
+    assert not found[0]
+    assert 0 < found.mean() < 1
+    for entry in range(1, 40):
+        polygon = shapely.Polygon(corners[entry]).buffer(MARGIN)
+        assert found[entry] == covers(polygon, mesh, poses, entry)
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_boxes_and_ellipsoids(name):
+    mesh, poses = SHAPES[name](), random_poses(150, 54, spread=0.8)
+    container = random_poses(1, 55, spread=0.1, sizes=(2.5, 3.5))
+    body = Body((mesh,), None, poses)
+    arguments = (container.size, container.position, container.orientation, 150)
+    in_box = containment.in_box(body, *arguments)
+    in_ellipsoid = containment.in_ellipsoid(body, *arguments)
+    for entry in range(150):
+        back = Rotation.from_quat(container.orientation[0]).inv()
+        local = back.apply(world_vertices(mesh, poses, entry) - container.position[0])
+        reach = np.abs(local / container.size[0]).max()
+        radius = np.linalg.norm(local / container.size[0], axis=1).max()
+        assert in_box[entry] == (reach <= 0.5) or abs(reach - 0.5) < MARGIN
+        assert in_ellipsoid[entry] == (radius <= 0.5) or abs(radius - 0.5) < MARGIN
+    assert 0 < in_ellipsoid.sum() < in_box.sum() < 150
+
+
+def test_touching_from_inside_is_inside():
+    body = Body((primitives.box(),), None, yawed((0.5, 0.5, 0.5)))
+    still = np.array([[0.0, 0, 0, 1]])
+    assert containment.in_box(body, np.full((1, 3), 2.0), np.zeros((1, 3)), still, 1)[0]
+    assert not containment.in_box(body, np.full((1, 3), 1.999), np.zeros((1, 3)), still, 1)[0]
+    square = Polygons(shapely.box(-1, -1, 1, 1))
+    assert containment.in_polygons(body, square, 1)[0]
+    turned = Body((primitives.box(),), None, yawed((0, 0, 0), np.pi / 2, (2, 2, 2)))
+    assert containment.in_polygons(turned, square, 1)[0]
+    assert containment.in_polygons(body, Polygons(RING.union(shapely.box(-1, -1, 1, 1))), 1)[0]
+
+
+def test_containers_without_volume_hold_nothing():
+    body = Body((primitives.box(),), None, yawed((0, 0, 0)))
+    sizes = np.array([(2, 2, 2), (2, 0, 2), (-2, 2, 2)], dtype=float)
+    still = np.array([[0.0, 0, 0, 1]])
+    np.testing.assert_array_equal(
+        containment.in_box(body, sizes, np.zeros((1, 3)), still, 3), [True, False, False]
+    )
+
+
+def outside_volume(inner, inner_poses, outer, outer_poses, entry):
+    return (solid(inner, inner_poses, entry) - solid(outer, outer_poses, entry)).volume()
+
+
+@pytest.mark.parametrize("outer", ["box", "cylinder", "spheroid", "table", "hollow", "bumpy"])
+@pytest.mark.parametrize("inner", ["box", "table", "spheroid"])
+def test_meshes_in_meshes(inner, outer):
+    inside, container = SHAPES[inner](), SHAPES[outer]()
+    poses = random_poses(60, 56, spread=1.3, sizes=(0.02, 0.4))
+    around = random_poses(60, 57, spread=0.05, sizes=(2, 3))
+    # Half of the bodies are put where a table is thick, so that some fit into it.
+    thick = np.random.default_rng(58).uniform(-0.48, 0.48, (60, 3)) * (1, 1, 0) + (0, 0, 0.45)
+    poses.position[::2] = around.to_world(thick)[::2]
+    found = containment.mesh_in_mesh(inside, poses, container, around)
+    for entry in range(60):
+        out = outside_volume(inside, poses, container, around, entry)
+        assert found[entry] == (out < 1e-12)
+    assert found.any()
+    assert not found.all()
+
+
+def test_a_body_over_a_cavity_is_not_inside():
+    ball = primitives.spheroid()
+    for size, expected in ((0.2, False), (0.8, False)):
+        pose = yawed((0, 0, 0), size=(size, size, size))
+        assert containment.mesh_in_mesh(ball, pose, hollow(), yawed((0, 0, 0)))[0] == expected
+    assert containment.mesh_in_mesh(ball, yawed((0.37, 0, 0), size=(0.2,) * 3), hollow(), yawed((0, 0, 0)))[0]
+
+
+def test_bodies_in_bodies_with_choices():
+    meshes = (primitives.box(), primitives.spheroid())
+    choice = np.array([0, 1, 0, 1])
+    around = Body(
+        (primitives.box(), bumpy_container()), np.array([0, 0, 1, 1]), yawed((0, 0, 0), size=(1, 1, 1))
+    )
+    body = Body(meshes, choice, yawed((0, 0, 0), size=(0.9, 0.9, 0.9)))
+    np.testing.assert_array_equal(containment.in_body(body, around, 4), [True, True, False, False])
+
+
+def bumpy_container():
+    return SHAPES["bumpy"]()
+
+
+def test_points_in_bodies():
+    poses = random_poses(300, 58)
+    points = poses.position + np.random.default_rng(59).uniform(-0.6, 0.6, (300, 3))
+    for name in ("box", "spheroid", "table"):
+        mesh = SHAPES[name]()
+        found = containment.contains_points(Body((mesh,), None, poses), points)
+        speck = Poses(points, np.array([[0, 0, 0, 1.0]]), np.full((1, 3), 1e-7))
+        inside = containment.mesh_in_mesh(primitives.box(), speck, mesh, poses)
+        np.testing.assert_array_equal(found, inside)
+        assert 0 < found.mean() < 1
+
+
+@real_meshes
+def test_real_meshes_on_a_floor():
+    for number, path in enumerate(FILES):
+        mesh, poses = unit_mesh(path), random_poses(12, number, spread=1.5)
+        found = containment.in_polygons(Body((mesh,), None, poses), Polygons(RING), 12)
+        for entry in range(12):
+            grown = RING.buffer(1e-9, join_style="mitre")
+            assert found[entry] == covers(grown, mesh, poses, entry)
+
+
+@pytest.mark.parametrize("batch", [1, 7, 512])
+def test_batches_do_not_matter(batch):
+    count = 150
+    poses = random_poses(count, 60, spread=0.8, sizes=(0.2, 1.2))
+    polygons = Polygons(shapely.affinity.scale(HOOK, 0.5, 0.5))
+    still = np.array([[0.0, 0, 0, 1]])
+
+    def answers(lanes):
+        body = Body((table(),), None, poses.take(lanes))
+        size, centre = np.full((1, 3), 2.5), np.zeros((1, 3))
+        around = Body((SHAPES["bumpy"](),), None, yawed((0, 0, 0), size=(4, 4, 4)))
+        return np.column_stack(
+            [
+                containment.in_polygons(body, polygons, len(lanes)),
+                containment.in_box(body, size, centre, still, len(lanes)),
+                containment.in_ellipsoid(body, size, centre, still, len(lanes)),
+                containment.in_body(body, around, len(lanes)),
+            ]
+        )
+
+    whole = answers(np.arange(count))
+    np.testing.assert_array_equal(in_batches(answers, count, batch), whole)
+    assert (whole.mean(axis=0) > 0).all()
+    assert (whole.mean(axis=0) < 1).all()

@@ -1,0 +1,85 @@
+import numpy as np
+import pytest
+
+from scenic.runtime.geometry import primitives
+from scenic.runtime.geometry.inside import contains_points
+from scenic.runtime.geometry.mesh import Mesh
+
+from .samples import FILES, SHAPES, bumpy, hollow, in_batches, real_meshes, table, unit_mesh
+
+
+def winding_numbers(mesh: Mesh, points: np.ndarray) -> np.ndarray:
+    """Solid angles of all faces (van Oosterom and Strackee), an oracle without rays."""
+    corners = mesh.triangles[None] - points[:, None, None]
+    a, b, c = (corners[:, :, i] for i in range(3))
+    la, lb, lc = (np.linalg.norm(part, axis=2) for part in (a, b, c))
+    numerator = np.einsum("nfi,nfi->nf", a, np.cross(b, c))
+    ab, bc, ca = (np.einsum("nfi,nfi->nf", u, v) for u, v in ((a, b), (b, c), (c, a)))
+    angles = 2 * np.arctan2(numerator, la * lb * lc + ab * lc + bc * la + ca * lb)
+    return angles.sum(axis=1) / (4 * np.pi)
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_agrees_with_winding_numbers(name):
+    mesh = SHAPES[name]()
+    points = np.random.default_rng(3).uniform(-0.55, 0.55, (300, 3))
+    np.testing.assert_array_equal(contains_points(mesh, points), winding_numbers(mesh, points) > 0.5)
+
+
+@real_meshes
+@pytest.mark.parametrize("path", FILES, ids=lambda path: path.name)
+def test_real_meshes_agree_with_winding_numbers(path):
+    mesh = unit_mesh(path)
+    points = np.random.default_rng(4).uniform(-0.5, 0.5, (60, 3))
+    np.testing.assert_array_equal(contains_points(mesh, points), winding_numbers(mesh, points) > 0.5)
+
+
+def test_vertical_lines_through_vertices_and_edges():
+    """The points lie above and below vertices and edges of the mesh, where rays have to be lucky."""
+    mesh = primitives.spheroid()
+    starts = np.concatenate([mesh.vertices, mesh.triangles.mean(axis=1), mesh.triangles[:, :2].mean(axis=1)])
+    for scale in (0.0, 0.5, 0.9, 1.1, 3.0):
+        points = starts * (1, 1, scale)
+        radii = np.linalg.norm(points, axis=1)
+        inside = contains_points(mesh, points)
+        assert inside[radii < 0.49].all()
+        assert not inside[radii > 0.500001].any()
+
+
+def test_grid_points_of_a_table():
+    """Coordinates coincide with those of vertices, edges and vertical faces."""
+    steps = np.linspace(-0.5, 0.5, 21)
+    points = np.stack(np.meshgrid(steps, steps, steps + 0.013), axis=-1).reshape(-1, 3)
+    x, y, z = points.T
+    near_leg = (np.abs(np.abs(x) - 0.4) < 0.05 - 1e-9) & (np.abs(np.abs(y) - 0.4) < 0.05 - 1e-9)
+    near_top = (np.abs(x) < 0.5) & (np.abs(y) < 0.5) & (z > 0.4)
+    sure_inside = (near_top | near_leg) & (np.abs(z) < 0.5)
+    outside_leg = (np.abs(np.abs(x) - 0.4) > 0.05 + 1e-9) | (np.abs(np.abs(y) - 0.4) > 0.05 + 1e-9)
+    sure_outside = ((z < 0.4) & outside_leg) | (np.abs(z) > 0.5)
+    found = contains_points(table(), points)
+    assert found[sure_inside].all()
+    assert not found[sure_outside].any()
+
+
+def test_cavities_are_outside():
+    points = np.array([(0, 0, 0), (0.24, 0.24, 0.24), (0.26, 0, 0), (0.4, 0.4, 0.4)])
+    np.testing.assert_array_equal(contains_points(hollow(), points), [False, False, True, True])
+
+
+def test_slivers_nearly_vertical():
+    """A wall thinner than rounding of its coordinates' products still separates."""
+    cube = primitives.box()
+    shift = np.where(cube.vertices[:, 2] > 0, 1e-16, 0.0)
+    leaning = Mesh(cube.vertices + np.stack([shift, 0 * shift, 0 * shift], axis=1), cube.faces)
+    points = np.array([(0.4999999, 0, 0.2), (0.5000001, 0, 0.2), (-0.4999999, 0.1, -0.3), (-0.500001, 0, 0)])
+    np.testing.assert_array_equal(contains_points(leaning, points), [True, False, True, False])
+
+
+@pytest.mark.parametrize("batch", [1, 7, 512])
+def test_batches_do_not_matter(batch):
+    points = np.random.default_rng(5).uniform(-0.5, 0.5, (600, 3))
+    whole = contains_points(bumpy(3), points)
+    np.testing.assert_array_equal(
+        in_batches(lambda i: contains_points(bumpy(3), points[i]), 600, batch), whole
+    )
+    np.testing.assert_array_equal(contains_points(bumpy(3), points[::3]), whole[::3])

@@ -1,0 +1,139 @@
+import bz2
+import gzip
+
+import numpy as np
+import pytest
+import trimesh
+
+from scenic.language.errors import MeshError
+from scenic.runtime.geometry import primitives
+from scenic.runtime.geometry.loading import load_mesh
+
+from .samples import FILES, bumpy, hollow, placed, real_meshes
+
+
+def export(folder, name, *parts):
+    meshes = [trimesh.Trimesh(part.vertices, part.faces, process=False) for part in parts]
+    path = folder / name
+    trimesh.util.concatenate(meshes).export(path)
+    return path
+
+
+@pytest.mark.parametrize("suffix", ["obj", "stl", "ply", "off", "glb"])
+def test_formats(tmp_path, suffix):
+    mesh = load_mesh(export(tmp_path, f"bumpy.{suffix}", bumpy(3)))
+    # Some formats hold single precision.
+    assert mesh.volume == pytest.approx(bumpy(3).volume, rel=1e-5)
+    assert len(mesh.vertices) == len(bumpy(3).vertices)
+
+
+@pytest.mark.parametrize(("suffix", "pack"), [("bz2", bz2.compress), ("gz", gzip.compress)])
+def test_packed_files(tmp_path, suffix, pack):
+    plain = export(tmp_path, "mesh.obj", bumpy(2))
+    packed = tmp_path / f"mesh.obj.{suffix}"
+    packed.write_bytes(pack(plain.read_bytes()))
+    np.testing.assert_array_equal(load_mesh(packed).vertices, load_mesh(plain).vertices)
+
+
+def test_scenes_are_joined_in_place(tmp_path):
+    scene = trimesh.Scene()
+    box = trimesh.creation.box()
+    scene.add_geometry(box)
+    scene.add_geometry(box, transform=trimesh.transformations.translation_matrix((5, 0, 0)))
+    scene.export(tmp_path / "two.glb")
+    mesh = load_mesh(tmp_path / "two.glb")
+    np.testing.assert_allclose(mesh.extents, [6, 1, 1])
+    assert mesh.volume == pytest.approx(2)
+
+
+def test_overlapping_bodies_are_united(tmp_path):
+    path = export(tmp_path, "two.obj", primitives.box(), placed(primitives.box(), (0.5, 0.3, 0.2), (1, 1, 1)))
+    assert load_mesh(path).volume == pytest.approx(2 - 0.5 * 0.7 * 0.8, rel=1e-12)
+    assert load_mesh(path, unify=False).volume == pytest.approx(2)
+
+
+def test_cavities_stay_and_inverted_bodies_are_turned(tmp_path):
+    assert load_mesh(export(tmp_path, "hollow.obj", hollow())).volume == pytest.approx(0.875)
+    turned = trimesh.creation.box()
+    turned.invert()
+    turned.export(tmp_path / "inverted.obj")
+    assert load_mesh(tmp_path / "inverted.obj").volume == pytest.approx(1)
+
+
+def test_a_solid_within_a_cavity(tmp_path):
+    path = export(tmp_path, "nested.obj", hollow(), placed(primitives.spheroid(), (0, 0, 0), (0.3, 0.3, 0.3)))
+    expected = 0.875 + primitives.spheroid().volume * 0.3**3
+    assert load_mesh(path).volume == pytest.approx(expected, rel=1e-7)
+
+
+def test_nearly_equal_vertices_are_merged(tmp_path):
+    soup = bumpy(2).triangles.reshape(-1, 3)
+    noisy = soup + np.random.default_rng(0).uniform(-1e-12, 1e-12, soup.shape)
+    trimesh.Trimesh(noisy, np.arange(len(noisy)).reshape(-1, 3), process=False).export(tmp_path / "soup.ply")
+    lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in noisy.tolist()]
+    lines += [f"f {i} {i + 1} {i + 2}" for i in range(1, len(noisy), 3)]
+    (tmp_path / "soup.obj").write_text("\n".join(lines))
+    assert load_mesh(tmp_path / "soup.obj").volume == pytest.approx(bumpy(2).volume)
+
+
+def test_holes_are_counted(tmp_path):
+    box = primitives.box()
+    trimesh.Trimesh(box.vertices, box.faces[1:], process=False).export(tmp_path / "open.obj")
+    with pytest.raises(
+        MeshError, match=r"open\.obj` is not a volume: .* holes \(3 edges are open\)"
+    ) as caught:
+        load_mesh(tmp_path / "open.obj")
+    assert caught.value.code == "SC602"
+    assert caught.value.help
+    assert len(load_mesh(tmp_path / "open.obj", volume=False).faces) == 11
+
+
+def test_inconsistent_winding(tmp_path):
+    box = primitives.box()
+    faces = box.faces.copy()
+    faces[0] = faces[0][::-1]
+    trimesh.Trimesh(box.vertices, faces, process=False).export(tmp_path / "twisted.obj")
+    with pytest.raises(MeshError, match="winding of its triangles is inconsistent"):
+        load_mesh(tmp_path / "twisted.obj")
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "message"),
+    [
+        ("missing.obj", None, "does not exist"),
+        ("notes.txt", b"hello", r"unknown format `\.txt`"),
+        ("nothing", b"hello", "unknown format"),
+        ("empty.obj", b"", "cannot be read as obj|holds no triangles"),
+        ("points.obj", b"v 0 0 0\nv 1 0 0\n", "cannot be read as obj|holds no triangles"),
+        ("broken.stl", b"solid \xff\x00 nonsense", "cannot be read as stl|holds no triangles"),
+        ("broken.glb", b"glTF", "cannot be read as glb"),
+        ("broken.ply", b"ply\nformat ascii 1.0\nelement vertex 3\n", "cannot be read as ply|no triangles"),
+        ("broken.obj.bz2", b"not packed", "cannot be unpacked"),
+        ("broken.obj.gz", b"not packed", "cannot be unpacked"),
+        ("indices.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n", "indices.obj"),
+        ("nan.obj", b"v 0 0 0\nv 1 0 0\nv 0 nan 0\nf 1 2 3\n", "nan.obj|finite"),
+    ],
+)
+def test_bad_files(tmp_path, name, content, message):
+    path = tmp_path / name
+    if content is not None:
+        path.write_bytes(content)
+    with pytest.raises(MeshError, match=message) as caught:
+        load_mesh(path)
+    assert caught.value.code == "SC602"
+
+
+def test_a_directory(tmp_path):
+    with pytest.raises(MeshError, match="cannot be read"):
+        load_mesh(tmp_path)
+
+
+@real_meshes
+@pytest.mark.parametrize("path", FILES, ids=lambda path: path.name)
+def test_real_meshes_keep_their_volume(path):
+    import io
+
+    expected = trimesh.load_mesh(io.BytesIO(bz2.decompress(path.read_bytes())), file_type="obj")
+    mesh = load_mesh(path)
+    assert mesh.volume == pytest.approx(expected.volume)
+    np.testing.assert_array_equal(mesh.extents, expected.extents)

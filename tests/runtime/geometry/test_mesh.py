@@ -1,0 +1,128 @@
+import numpy as np
+import pytest
+from scipy.spatial import ConvexHull
+
+from scenic.language.errors import MeshError
+from scenic.runtime.geometry import primitives
+from scenic.runtime.geometry.mesh import Mesh
+
+from .samples import FILES, SHAPES, bumpy, hollow, placed, real_meshes, table, unit_mesh
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_unit_meshes_are_volumes_in_the_unit_cube(name):
+    mesh = SHAPES[name]()
+    np.testing.assert_array_equal(mesh.bounds, [[-0.5] * 3, [0.5] * 3])
+    assert mesh.is_volume
+    assert 0 < mesh.volume <= 1
+
+
+def test_known_volumes():
+    assert primitives.box().volume == pytest.approx(1)
+    assert primitives.cylinder(24).volume == pytest.approx(24 / 2 * np.sin(2 * np.pi / 24) / 4)
+    assert primitives.cone().volume == pytest.approx(32 / 2 * np.sin(2 * np.pi / 32) / 4 / 3)
+    assert primitives.spheroid().volume == pytest.approx(np.pi / 6, rel=0.01)
+    assert hollow().volume == pytest.approx(1 - 1 / 8)
+    assert table().volume == pytest.approx(0.1 + 4 * 0.1 * 0.1 * 0.9)
+
+
+@pytest.mark.parametrize(
+    ("name", "convex", "box"),
+    [
+        ("box", True, True),
+        ("cylinder", True, False),
+        ("cone", True, False),
+        ("spheroid", True, False),
+        ("table", False, False),
+        ("hollow", False, False),
+        ("bumpy", False, False),
+    ],
+)
+def test_convex_and_box(name, convex, box):
+    mesh = SHAPES[name]()
+    assert (mesh.is_convex, mesh.is_box) == (convex, box)
+
+
+def test_is_box_only_for_whole_boxes():
+    cube = primitives.box()
+    wedge = Mesh(cube.vertices, [(0, 1, 3), (0, 3, 2), (0, 2, 6), (1, 6, 3), (2, 3, 6), (0, 6, 1)])
+    assert wedge.is_volume
+    assert not wedge.is_box
+
+
+def test_hull_matches_its_planes():
+    hull = bumpy(3).hull
+    heights = hull.vertices @ hull.planes[:, :3].T + hull.planes[:, 3]
+    assert heights.max() < 1e-10
+    assert ConvexHull(hull.vertices).volume == pytest.approx(hull.volume)
+
+
+def test_normals_and_areas():
+    cube = primitives.box()
+    np.testing.assert_allclose(np.abs(cube.normals).sum(axis=1), 1)
+    assert cube.areas.sum() == pytest.approx(6)
+    outwards = (cube.normals * cube.triangles.mean(axis=1)).sum(axis=1)
+    assert (outwards > 0).all()
+
+
+def test_component_vertices():
+    assert len(hollow().component_vertices) == 2
+    assert len(table().component_vertices) == 1
+
+
+def test_flat_meshes_stay_flat():
+    square = Mesh([(0, 0, 2), (4, 0, 2), (4, 1, 2), (0, 1, 2)], [(0, 1, 2), (0, 2, 3)])
+    unit, centre, extents = square.normalized()
+    np.testing.assert_array_equal(extents, [4, 1, 0])
+    np.testing.assert_array_equal(centre, [2, 0.5, 2])
+    np.testing.assert_array_equal(unit.bounds, [[-0.5, -0.5, 0], [0.5, 0.5, 0]])
+
+
+def test_normalizing_undoes_placing():
+    moved = placed(table(), (3, -200, 1e-3), (7, 1e-4, 0.3))
+    unit, centre, extents = moved.normalized()
+    np.testing.assert_allclose(unit.vertices, table().vertices, atol=1e-9)
+    np.testing.assert_allclose(unit.vertices * extents + centre, moved.vertices, rtol=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("vertices", "faces", "message"),
+    [
+        (np.zeros((3, 3)), [(0, 1, 3)], "outside 0 to 2"),
+        (np.zeros((3, 3)), [(0, 1, -1)], "outside 0 to 2"),
+        (np.zeros((3, 3)), np.zeros((0, 3)), "no triangles"),
+        ([(0, 0, 0), (1, 0, 0), (0, np.nan, 0)], [(0, 1, 2)], "not finite"),
+        (np.zeros((3, 2)), [(0, 1, 2)], "needs arrays"),
+    ],
+)
+def test_bad_arrays_are_refused(vertices, faces, message):
+    with pytest.raises(MeshError, match=message):
+        Mesh(vertices, faces)
+
+
+def test_meshes_cannot_be_changed():
+    mesh = Mesh(np.eye(3), [(0, 1, 2)])
+    for array in (mesh.vertices, mesh.faces, mesh.bounds, mesh.areas):
+        with pytest.raises(ValueError, match="read-only"):
+            array[0] = 1
+
+
+def test_derived_data_is_made_once():
+    calls = []
+    mesh = Mesh(np.eye(3), [(0, 1, 2)])
+
+    def build(given):
+        calls.append(given)
+        return len(given.faces)
+
+    assert mesh.derived(build) == mesh.derived(build) == 1
+    assert calls == [mesh]
+
+
+@real_meshes
+@pytest.mark.parametrize("path", FILES, ids=lambda path: path.name)
+def test_real_meshes_are_volumes(path):
+    mesh = unit_mesh(path)
+    assert mesh.is_volume
+    np.testing.assert_array_equal(mesh.bounds, [[-0.5] * 3, [0.5] * 3])
+    assert mesh.volume <= ConvexHull(mesh.vertices).volume * (1 + 1e-12)

@@ -1,0 +1,69 @@
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from scenic.runtime.geometry.affine import relative_map
+from scenic.runtime.geometry.bodies import Body
+from scenic.runtime.geometry.poses import Poses
+
+from .samples import SHAPES, random_poses, table, world_vertices
+
+
+@given(st.integers(0, 10**6))
+def test_to_world_and_back(seed):
+    poses = random_poses(5, seed)
+    points = np.broadcast_to(table().vertices, (5, *table().vertices.shape))
+    world = poses.to_world(points)
+    for entry in range(5):
+        np.testing.assert_allclose(world[entry], world_vertices(table(), poses, entry), atol=1e-12)
+    np.testing.assert_allclose(poses.to_unit(world), points, atol=1e-12)
+
+
+def test_bounds_hold_the_oriented_boxes_tightly():
+    poses = random_poses(50, 1)
+    lower, upper = poses.bounds()
+    for entry in range(50):
+        corners = world_vertices(SHAPES["box"](), poses, entry)
+        np.testing.assert_allclose(lower[entry], corners.min(axis=0), atol=1e-12)
+        np.testing.assert_allclose(upper[entry], corners.max(axis=0), atol=1e-12)
+
+
+def test_take_keeps_what_is_the_same_everywhere():
+    poses = random_poses(6, 2, constant_size=True)
+    assert poses.matrix.shape == (6, 3, 3)
+    some = poses.take(np.array([4, 1]))
+    assert (len(some), len(some.size), some.constant_size) == (2, 1, True)
+    np.testing.assert_array_equal(some.position, poses.position[[4, 1]])
+    np.testing.assert_array_equal(some.matrix, poses.matrix[[4, 1]])
+    assert len(poses.take(np.zeros(0, dtype=int))) == 0
+
+
+def test_shapes_are_checked():
+    with pytest.raises(ValueError, match="poses of shapes"):
+        Poses(np.zeros((2, 3)), np.zeros((3, 4)), np.ones((1, 3)))
+    with pytest.raises(ValueError, match="poses of shapes"):
+        Poses(np.zeros((2, 3)), np.zeros((2, 3)), np.ones((1, 3)))
+
+
+def test_affine_maps():
+    a, b = random_poses(7, 3), random_poses(7, 4)
+    maps = relative_map(a, b)
+    points = np.random.default_rng(5).normal(size=(4, 3))
+    expected = b.to_unit(a.to_world(np.broadcast_to(points, (7, 4, 3))))
+    for entry in range(7):
+        np.testing.assert_allclose(maps.of_entry(entry, points), expected[entry], atol=1e-12)
+        alone = maps.take(np.array([entry]))
+        np.testing.assert_array_equal(alone.of_entry(0, points), maps.of_entry(entry, points))
+
+
+def test_bodies_walk_over_their_meshes():
+    meshes = (SHAPES["box"](), table())
+    choice = np.array([1, 0, 1])
+    body = Body(meshes, choice, Poses.fixed((0, 0, 0)))
+    found = {mesh: lanes.tolist() for mesh, lanes in body.by_mesh(3)}
+    assert found == {meshes[0]: [1], meshes[1]: [0, 2]}
+    assert (body.lanes, body.is_fixed) == (3, False)
+    single = Body(meshes, np.array([1]), Poses.fixed((0, 0, 0)))
+    assert single.is_fixed
+    assert [(mesh, lanes.tolist()) for mesh, lanes in single.by_mesh(2)] == [(table(), [0, 1])]

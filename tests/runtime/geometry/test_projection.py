@@ -1,0 +1,144 @@
+import numpy as np
+import pytest
+import trimesh
+
+from scenic.runtime.geometry import primitives, projection, surface
+from scenic.runtime.geometry.bodies import Body
+from scenic.runtime.geometry.poses import Poses
+
+from .samples import SHAPES, bumpy, in_batches, random_poses, table, world_vertices, yawed
+
+SIDES = [None, (2, 1), (2, -1), (0, 1), (1, -1)]
+
+
+def brute_force(mesh, poses, entry, side, threshold, point, direction):
+    """The nearest crossing of the line with the side in the world, face by face; ``None`` if there is none."""
+    placed = trimesh.Trimesh(world_vertices(mesh, poses, entry), mesh.faces, process=False)
+    normals = placed.face_normals
+    chosen = np.arange(len(normals))
+    if side is not None:
+        chosen = np.flatnonzero(side[1] * normals[:, side[0]] >= threshold)
+    hits = []
+    for face in chosen:
+        rate = normals[face] @ direction
+        if abs(rate) < 1e-14:
+            continue
+        a, b, c = placed.triangles[face]
+        travel = (a - point) @ normals[face] / rate
+        at = point + travel * direction
+        if all((np.cross(v - u, at - u) @ normals[face]) >= -1e-14 for u, v in ((a, b), (b, c), (c, a))):
+            hits.append((abs(travel), travel))
+    return point + min(hits)[1] * direction if hits else None
+
+
+@pytest.mark.parametrize("side", SIDES)
+@pytest.mark.parametrize("name", ["box", "cone", "table", "bumpy"])
+def test_against_brute_force(name, side):
+    mesh, poses = SHAPES[name](), random_poses(24, 40)
+    rng = np.random.default_rng(41)
+    points = poses.position + rng.uniform(-0.8, 0.8, (24, 3))
+    for directions in (np.array([[0, 0, 1.0]]), rng.normal(size=(24, 3))):
+        body = Body((mesh,), None, poses)
+        faces, landed = projection.project(body, side, 0.4, points, directions, 24)
+        again = projection.landing_points(body, faces, points, directions)
+        for entry in range(24):
+            direction = directions[entry % len(directions)]
+            expected = brute_force(mesh, poses, entry, side, 0.4, points[entry], direction)
+            assert (faces[entry] >= 0) == (expected is not None)
+            if expected is not None:
+                np.testing.assert_allclose(landed[entry], expected, atol=1e-9)
+                np.testing.assert_allclose(again[entry], expected, atol=1e-9)
+
+
+def test_large_meshes_need_no_luck():
+    """Lines through vertices and along edges of a mesh with a grid, and lines parallel to its layers."""
+    mesh = bumpy(4)
+    assert len(mesh.faces) > projection._FEW_FACES
+    body = Body((mesh,), None, Poses.fixed((0, 0, 0)))
+    targets = np.concatenate([mesh.vertices[::7], mesh.triangles[::11, :2].mean(axis=1)])
+    for direction in ((0, 0, 1), (1, 0, 0), (0, 1, 0), (1, 1, 0), (0.3, -0.2, 0.7)):
+        way = np.array([direction], dtype=float)
+        start = targets + 1.5e-3 * way
+        faces, landed = projection.project(body, None, 0, start, way, len(targets))
+        assert (faces >= 0).all()
+        assert (
+            np.linalg.norm(landed - start, axis=1) <= np.linalg.norm(targets - start, axis=1) + 1e-9
+        ).all()
+
+
+def test_far_away_points_and_long_directions():
+    body = Body((primitives.box(),), None, yawed((0, 0, 0), 0.3, (4, 4, 0.1)))
+    start = np.array([(0.5, -0.25, 1e6), (0.5, -0.25, -1e6), (100, 0, 1)])
+    faces, landed = projection.project(body, (2, 1), 0.5, start, np.array([[0, 0, 1e-3]]), 3)
+    np.testing.assert_allclose(landed[:2], [(0.5, -0.25, 0.05)] * 2, atol=1e-9)
+    np.testing.assert_array_equal(landed[:2, :2], start[:2, :2])
+    assert faces[2] == -1
+
+
+def test_nearest_over_both_ways():
+    body = Body((table(),), None, yawed((0, 0, 0.5)))
+    start = np.array([(0, 0, 0.85), (0, 0, 0.95), (0, 0, 0.1), (0, 0, 3)])
+    _, landed = projection.project(body, None, 0, start, np.array([[0, 0, -2.0]]), 4)
+    # The top of the table is the slab from 0.9 to 1; inside it, above and below are equally near.
+    assert landed[0, 2] == pytest.approx(0.9)
+    assert landed[1, 2] == pytest.approx(0.9) or landed[1, 2] == pytest.approx(1.0)
+    np.testing.assert_allclose(landed[2:, 2], [0.9, 1.0])
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_points_on_the_surface_stay(name):
+    """Also where the direction runs along the face, so that no line crosses it."""
+    mesh, poses = SHAPES[name](), random_poses(200, 42)
+    rng = np.random.default_rng(43)
+    body = Body((mesh,), None, poses)
+    faces = surface.draw_faces(body, None, 0, rng.random(200), 200)
+    points = surface.face_points(body, faces, *rng.random((2, 200)))
+    corners = [surface.face_points(body, faces, np.array([first]), np.array([0.5])) for first in (0.0, 1.0)]
+    for directions in (rng.normal(size=(200, 3)), corners[1] - corners[0]):
+        found, landed = projection.project(body, None, 0, points, directions, 200)
+        assert (found >= 0).all()
+        np.testing.assert_array_equal(landed, points)
+        np.testing.assert_array_equal(projection.landing_points(body, found, points, directions), points)
+
+
+def test_near_surface_against_distances():
+    mesh, poses = bumpy(2), random_poses(60, 44)
+    rng = np.random.default_rng(45)
+    body = Body((mesh,), None, poses)
+    faces = surface.draw_faces(body, None, 0, rng.random(60), 60)
+    points = surface.face_points(body, faces, *rng.random((2, 60)))
+    normals = surface.face_normals(body, faces)
+    for shift, expected in ((0.5e-6, True), (-0.9e-6, True), (1e-3, False)):
+        moved = points + shift * normals
+        found = projection.near_surface(body, None, 0, moved, 60)
+        for entry in range(60):
+            placed = trimesh.Trimesh(world_vertices(mesh, poses, entry), mesh.faces, process=False)
+            distance = trimesh.proximity.closest_point_naive(placed, moved[entry : entry + 1])[1][0]
+            assert found[entry] == (distance <= 1e-6)
+            if expected:
+                assert found[entry]
+
+
+def test_distance_to_triangles():
+    rng = np.random.default_rng(46)
+    points, *corners = rng.normal(size=(4, 500, 3))
+    expected = np.linalg.norm(
+        points - trimesh.triangles.closest_point(np.stack(corners, axis=1), points), axis=1
+    )
+    np.testing.assert_allclose(projection.distance_to_triangles(points, *corners), expected, atol=1e-12)
+
+
+@pytest.mark.parametrize("mesh", [primitives.box(), bumpy(3)], ids=["small", "large"])
+@pytest.mark.parametrize("batch", [1, 7, 512])
+def test_batches_do_not_matter(mesh, batch):
+    count = 200
+    poses = random_poses(count, 47)
+    rng = np.random.default_rng(48)
+    points, ways = poses.position + rng.uniform(-0.5, 0.5, (count, 3)), rng.normal(size=(count, 3))
+
+    def answers(lanes):
+        body = Body((mesh,), None, poses.take(lanes))
+        faces, landed = projection.project(body, (2, 1), 0.2, points[lanes], ways[lanes], len(lanes))
+        return np.column_stack([faces, landed])
+
+    np.testing.assert_array_equal(in_batches(answers, count, batch), answers(np.arange(count)))

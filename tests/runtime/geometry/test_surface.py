@@ -1,0 +1,208 @@
+import numpy as np
+import pytest
+import trimesh
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.stats import chi2
+
+from scenic.graph import quaternions
+from scenic.runtime.geometry import primitives, surface
+from scenic.runtime.geometry.bodies import Body
+from scenic.runtime.geometry.poses import Poses
+
+from .samples import SHAPES, bumpy, in_batches, random_poses, table, world_vertices
+
+SIDES = [None, (0, 1), (0, -1), (1, 1), (1, -1), (2, 1), (2, -1)]
+FALSE_ALARM = 1e-6  # of each chi-square test; seeds are fixed, so a failure is a change of the code
+
+
+def body_of(mesh, poses) -> Body:
+    return Body((mesh,), None, poses)
+
+
+def world(mesh, poses, entry) -> trimesh.Trimesh:
+    return trimesh.Trimesh(world_vertices(mesh, poses, entry), mesh.faces, process=False)
+
+
+def expected_areas(mesh, poses, entry, side, threshold) -> np.ndarray:
+    placed = world(mesh, poses, entry)
+    if side is None:
+        return placed.area_faces
+    axis, sign = side
+    return placed.area_faces * (sign * placed.face_normals[:, axis] >= threshold)
+
+
+def check_uniform(faces, areas):
+    count = len(faces)
+    assert areas[np.unique(faces)].all(), "a face outside the side was drawn"
+    expected = areas / areas.sum() * count
+    # Small faces are counted together, so that the statistic is close to its limit.
+    order = np.argsort(expected)
+    groups = np.empty(len(expected), dtype=int)
+    groups[order] = np.floor(np.cumsum(expected[order]) / max(10, count / 200)).astype(int)
+    seen = np.bincount(groups, weights=np.bincount(faces, minlength=len(areas)))
+    wanted = np.bincount(groups, weights=expected)
+    seen, wanted = seen[wanted > 0], wanted[wanted > 0]
+    statistic = ((seen - wanted) ** 2 / wanted).sum()
+    assert chi2.sf(statistic, max(len(wanted) - 1, 1)) > FALSE_ALARM
+
+
+@pytest.mark.parametrize("side", SIDES)
+@pytest.mark.parametrize("name", ["box", "cone", "table", "bumpy"])
+def test_draws_are_uniform_by_area_of_the_world(name, side):
+    mesh, poses = SHAPES[name](), random_poses(1, 20)
+    uniforms = np.random.default_rng(21).random(20_000)
+    faces = surface.draw_faces(body_of(mesh, poses), side, 0.4, uniforms, 20_000)
+    check_uniform(faces, expected_areas(mesh, poses, 0, side, 0.4))
+
+
+@pytest.mark.parametrize("side", [None, (2, 1), (0, -1)])
+def test_each_entry_has_its_own_side(side):
+    mesh, poses = bumpy(2), random_poses(12, 22)
+    uniforms = np.random.default_rng(23).random((800, 12))
+    draws = np.array([surface.draw_faces(body_of(mesh, poses), side, 0.5, row, 12) for row in uniforms])
+    for entry in range(12):
+        check_uniform(draws[:, entry], expected_areas(mesh, poses, entry, side, 0.5))
+
+
+def test_meshes_of_several_blocks():
+    mesh, poses = bumpy(5), random_poses(2, 24)
+    assert len(mesh.faces) > 2 * surface._BLOCK
+    for entry in range(2):
+        some = poses.take(np.array([entry]))
+        faces = surface.draw_faces(
+            body_of(mesh, some), (2, 1), 0.5, np.random.default_rng(25).random(50_000), 50_000
+        )
+        check_uniform(faces, expected_areas(mesh, poses, entry, (2, 1), 0.5))
+
+
+def test_draws_follow_the_uniform_number():
+    """Faces are laid out in order: the inverse transform, which pruning relies on."""
+    body = body_of(bumpy(5), random_poses(1, 26))
+    uniforms = np.sort(np.random.default_rng(27).random(5000))
+    faces = surface.draw_faces(body, (2, 1), 0.5, uniforms, 5000)
+    assert (np.diff(faces) >= 0).all()
+    for extreme in (1e-300, np.nextafter(1, 0)):
+        last = surface.draw_faces(body, (2, 1), 0.5, np.array([extreme]), 1)
+        assert surface.side_contains(bumpy(5), body.poses, (2, 1), 0.5, np.zeros(1, dtype=int), last)[0]
+
+
+def test_no_faces():
+    body = body_of(primitives.spheroid(), random_poses(5, 28))
+    uniforms = np.full(5, 0.5)
+    assert (surface.draw_faces(body, (2, 1), 1.5, uniforms, 5) == -1).all()
+    np.testing.assert_array_equal(surface.mean_normals(body, (2, 1), 1.5, 5), [[0, 0, 1]] * 5)
+
+
+def test_top_of_a_turned_box_at_threshold_one():
+    """The normal of the top is up exactly, but for rounding."""
+    yaw = np.random.default_rng(29).uniform(-3, 3, 200)
+    poses = Poses(np.zeros((1, 3)), quaternions.from_euler(yaw, 0, 0), np.array([[0.3, 0.7, 1.9]]))
+    faces = surface.draw_faces(body_of(primitives.box(), poses), (2, 1), 1.0, np.full(200, 0.7), 200)
+    assert set(faces) == {11}
+
+
+def test_points_are_uniform_on_their_faces():
+    body = body_of(primitives.box(), random_poses(1, 30))
+    uniforms = np.random.default_rng(31).random((2, 20_000))
+    points = surface.face_points(body, np.full(20_000, 4), *uniforms)
+    corners = world_vertices(primitives.box(), body.poses, 0)[primitives.box().faces[4]]
+    bary = trimesh.triangles.points_to_barycentric(np.broadcast_to(corners, (20_000, 3, 3)), points)
+    assert bary.min() > -1e-9
+    # Each of the four triangles cut off by the middles of the edges holds a quarter of the points.
+    cells = np.where((bary > 0.5).any(axis=1), bary.argmax(axis=1), 3)
+    seen = np.bincount(cells, minlength=4)
+    assert chi2.sf(((seen - 5000) ** 2 / 5000).sum(), 3) > FALSE_ALARM
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_points_and_normals_are_those_of_the_world(name):
+    mesh, poses = SHAPES[name](), random_poses(40, 32)
+    rng = np.random.default_rng(33)
+    faces = rng.integers(0, len(mesh.faces), 40)
+    points = surface.face_points(body_of(mesh, poses), faces, *rng.random((2, 40)))
+    normals = surface.face_normals(body_of(mesh, poses), faces)
+    for entry in range(40):
+        placed = world(mesh, poses, entry)
+        np.testing.assert_allclose(normals[entry], placed.face_normals[faces[entry]], atol=1e-9)
+        corner = placed.triangles[faces[entry], 0]
+        assert abs(np.dot(points[entry] - corner, normals[entry])) < 1e-12
+
+
+@pytest.mark.parametrize("side", SIDES)
+def test_mean_normals(side):
+    mesh, poses = bumpy(2), random_poses(8, 34)
+    means = surface.mean_normals(body_of(mesh, poses), side, 0.3, 8)
+    for entry in range(8):
+        placed = world(mesh, poses, entry)
+        areas = expected_areas(mesh, poses, entry, side, 0.3)
+        if side is None:
+            np.testing.assert_array_equal(means[entry], (0, 0, 1))
+        else:
+            expected = (placed.face_normals * areas[:, None]).sum(axis=0)
+            np.testing.assert_allclose(means[entry], expected, atol=1e-9)
+
+
+@settings(max_examples=60)
+@given(st.integers(0, 10**6))
+def test_preferred_orientations(seed):
+    """Local Z is the normal, and no direction in the face is nearer to north than local Y."""
+    mesh, poses = table(), random_poses(1, seed)
+    face = np.array([seed % len(mesh.faces)])
+    orientation = surface.face_orientations(body_of(mesh, poses), face)
+    normal = surface.face_normals(body_of(mesh, poses), face)[0]
+    np.testing.assert_allclose(quaternions.rotate(orientation, [0, 0, 1])[0], normal, atol=1e-12)
+    ahead = quaternions.rotate(orientation, [0, 1, 0])[0]
+    angles = np.linspace(0, 2 * np.pi, 721)
+    right = quaternions.rotate(orientation, [1, 0, 0])[0]
+    others = np.outer(np.cos(angles), ahead) + np.outer(np.sin(angles), right)
+    assert (others[:, 1] <= ahead[1] + 1e-12).all()
+
+
+def test_orientations_of_level_and_vertical_faces():
+    box = body_of(primitives.box(), Poses.fixed((0, 0, 0)))
+    ahead = quaternions.rotate(surface.face_orientations(box, np.arange(12)), [0, 1, 0])
+    north, up = (0, 1, 0), (0, 0, 1)
+    np.testing.assert_allclose(ahead, [north] * 4 + [up] * 4 + [north] * 4, atol=1e-15)
+    np.testing.assert_array_equal(surface.face_orientations(box, np.array([11])), [[0, 0, 0, 1]])
+
+
+def test_choices_of_meshes():
+    meshes = (primitives.box(), primitives.cone(), bumpy(2))
+    choice = np.arange(30) % 3
+    poses = random_poses(30, 35)
+    rng = np.random.default_rng(36)
+    uniforms = rng.random((3, 30))
+    mixed = Body(meshes, choice, poses)
+    faces = surface.draw_faces(mixed, (2, 1), 0.2, uniforms[0], 30)
+    points = surface.face_points(mixed, faces, *uniforms[1:])
+    for number, mesh in enumerate(meshes):
+        lanes = np.flatnonzero(choice == number)
+        alone = body_of(mesh, poses.take(lanes))
+        expected = surface.draw_faces(alone, (2, 1), 0.2, uniforms[0, lanes], len(lanes))
+        np.testing.assert_array_equal(faces[lanes], expected)
+        np.testing.assert_array_equal(
+            points[lanes], surface.face_points(alone, expected, *uniforms[1:, lanes])
+        )
+
+
+@pytest.mark.parametrize("mesh", [table(), bumpy(5)], ids=["small", "large"])
+@pytest.mark.parametrize("batch", [1, 7, 512])
+def test_batches_do_not_matter(mesh, batch):
+    """Also where some lanes share size and orientation, which is a quicker path."""
+    count = 100
+    poses = random_poses(count, 37)
+    poses.size[::4] = poses.size[0]
+    poses.orientation[::4] = poses.orientation[0]
+    uniforms = np.random.default_rng(38).random(count)
+    for part in ("draw_faces", "mean_normals"):
+
+        def answers(lanes, part=part):
+            body = body_of(mesh, poses.take(lanes))
+            if part == "draw_faces":
+                return surface.draw_faces(body, (2, 1), 0.3, uniforms[lanes], len(lanes))
+            return surface.mean_normals(body, (2, 1), 0.3, len(lanes))
+
+        whole = answers(np.arange(count))
+        np.testing.assert_array_equal(in_batches(answers, count, batch), whole)
+        np.testing.assert_array_equal(answers(np.arange(0, count, 4)), whole[::4])

@@ -1,0 +1,73 @@
+import numpy as np
+import pytest
+
+from scenic.runtime.geometry import primitives
+from scenic.runtime.geometry.cells import touched_cells
+from scenic.runtime.geometry.inside import contains_points
+from scenic.runtime.geometry.voxels import RESOLUTION, voxels
+
+from .samples import FILES, SHAPES, real_meshes, unit_mesh
+
+
+def cell_corners(index):
+    corners = np.array([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)])
+    return (np.asarray(index) + corners) / RESOLUTION - 0.5
+
+
+def check(mesh):
+    """Solid cells hold only points inside, and what is inside is covered and not in empty cells."""
+    known = mesh.derived(voxels)
+    rng = np.random.default_rng(6)
+    points = rng.uniform(-0.5, 0.5, (4000, 3))
+    cells = tuple(((points + 0.5) * RESOLUTION).astype(int).T)
+    inside = contains_points(mesh, points)
+    assert inside[known.solid[cells]].all()
+    x, y, z = cells
+    filled = np.diff(np.diff(np.diff(known.filled, axis=0), axis=1), axis=2)
+    assert set(np.unique(filled)) <= {0, 1}
+    assert filled[x, y, z][inside].all()
+    lower, upper = known.cover[:, 0], known.cover[:, 1]
+    covered = ((points[:, None] >= lower) & (points[:, None] <= upper)).all(axis=2).any(axis=1)
+    assert covered[inside].all()
+    assert contains_points(mesh, known.interior).all() or mesh.is_box
+    assert len(known.interior) > 1
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_cells_tell_the_truth(name):
+    check(SHAPES[name]())
+
+
+@real_meshes
+@pytest.mark.parametrize("path", FILES, ids=lambda path: path.name)
+def test_real_meshes(path):
+    check(unit_mesh(path))
+
+
+@pytest.mark.parametrize("name", ["cone", "table", "spheroid"])
+def test_touched_cells_hold_all_points_of_the_faces(name):
+    mesh = SHAPES[name]()
+    pairs = {
+        (face, cell)
+        for faces, cells in touched_cells(mesh.triangles, 9)
+        for face, cell in zip(faces.tolist(), cells.tolist(), strict=True)
+    }
+    rng = np.random.default_rng(7)
+    for face, corners in enumerate(mesh.triangles):
+        weights = rng.dirichlet((0.7, 0.7, 0.7), 50)
+        x, y, z = np.clip(((weights @ corners + 0.5) * 9).astype(int), 0, 8).T
+        assert {(face, cell) for cell in ((x * 9 + y) * 9 + z).tolist()} <= pairs
+
+
+def test_touched_cells_are_few():
+    """A slanted face touches a plane of cells, not its whole bounding box."""
+    corners = np.array([[(-0.5, -0.5, -0.5), (0.5, -0.5, 0.5), (-0.5, 0.5, 0.49)]])
+    count = sum(len(cells) for _, cells in touched_cells(corners, 32))
+    assert 32 * 32 / 2 < count < 3 * 32 * 32
+
+
+def test_solids_thinner_than_cells_have_interior_points():
+    thin = primitives.spheroid()
+    check(thin)
+    sheet = SHAPES["table"]()
+    assert contains_points(sheet, sheet.derived(voxels).interior).all()

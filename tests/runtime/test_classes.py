@@ -1,0 +1,160 @@
+"""Classes and their properties: inheritance, attributes, defaults, methods, what instances store."""
+
+import math
+
+import pytest
+
+from scenic.language.errors import InvalidScenarioError, ScenicTypeError, ScenicValueError, SpecifierError
+from scenic.language.properties import CLASSES, attributes_of, properties_of
+from scenic.runtime import objects
+from scenic.runtime.values import Orientation, Vector
+from tests.runtime.programs import draws, failure, params, place, scenario, thing
+
+
+@pytest.mark.parametrize("name", list(CLASSES))
+def test_built_in_classes_are_as_declared(name: str) -> None:
+    cls, declared = getattr(objects, name), properties_of(name)
+    assert set(cls.scenic_properties) == set(declared)
+    for key, entry in declared.items():
+        built = cls.scenic_properties[key]
+        assert (built.dynamic, built.final, built.additive) == (entry.dynamic, entry.final, entry.additive), (
+            key
+        )
+        assert built.dependencies >= set(entry.needs), key
+    for attribute in attributes_of(name):
+        assert hasattr(cls, attribute) or hasattr(Vector, attribute), attribute
+
+
+def test_the_default_base_is_object_and_the_nearest_definition_wins() -> None:
+    found = params(
+        "class A:\n    foo: 1\n    bar: 10\nclass B(A):\n    foo: 2\nclass C(A):\n    foo: 3\n    bar: 30\n"
+        "class D(B, C): pass\n"
+        "d = new D\nparam foo = d.foo, bar = d.bar, kinds = (isinstance(d, Object), isinstance(d, B))"
+    )
+    assert found == {"foo": 2, "bar": 30, "kinds": (True, True)}
+
+
+def test_additive_properties_collect_definitions() -> None:
+    found = params(
+        "class A:\n    foo[additive]: 1\n    w: 3\nclass B(A):\n    foo[additive]: self.w + 1\nclass C(B):\n    foo: 5\n"
+        "class D(C):\n    foo[additive]: 7\n"
+        "a, b, c, d = (new A at (0, 0)), (new B at (0, 5)), (new C at (0, 9)), (new D at (9, 9))\n"
+        "param a = a.foo, b = b.foo, c = c.foo, d = d.foo"
+    )
+    assert found == {"a": (1,), "b": (4, 1), "c": 5, "d": (7, 5, 4, 1)}
+
+
+@pytest.mark.parametrize(
+    ("text", "error", "message", "line"),
+    [
+        ("class A:\n    x1[final]: 1\nclass B(A):\n    x1: 2", InvalidScenarioError, "final", 4),
+        ("class A:\n    x1[final]: 1\nnew A with x1 2", SpecifierError, "cannot be directly specified", 3),
+        ("class A:\n    x1[additive, dynamic]: 1", InvalidScenarioError, "both additive and dynamic", 2),
+        ("class A:\n    x1[dynamic]: 1\nclass B(A):\n    x1[additive]: 1", InvalidScenarioError, "both", 4),
+        ("class A:\n    orientation: 1", InvalidScenarioError, "final", 2),
+        ("class A:\n    left: 1\nnew A", SpecifierError, "'left' is an attribute of A", 2),
+        ("class A:\n    f: 1\n    def f(self): pass\nnew A", SpecifierError, "'f' is an attribute of A", 2),
+        ("class A:\n    a1: self.b1\n    b1: self.a1\nnew A", SpecifierError, "depend on each other", 2),
+        ("class A:\n    a1: self.nothing\nnew A", SpecifierError, "'nothing', which nothing provides", 2),
+        ("class A:\n    width: 'wide'\nnew A", ScenicTypeError, "expected a number", 3),
+        ("class A:\n    color: (1, 2)\nnew A", ScenicValueError, "a colour is 3 or 4 numbers", 3),
+        ("class A:\n    shape: 3\nnew A", ScenicTypeError, "expected a shape", 3),
+    ],
+)  # fmt: skip
+def test_mistakes(text: str, error: type[Exception], message: str, line: int) -> None:
+    found = failure(text)
+    assert type(found) is error
+    assert message in str(found)
+    assert found.span is not None
+    assert found.span.line == line
+
+
+def test_dynamic_sticks() -> None:
+    program = scenario("class A:\n    foo[dynamic]: 1\nclass B(A):\n    foo: 2\nnew B")
+    assert type(program.objects[0]).scenic_properties["foo"].dynamic
+
+
+def test_defaults_read_what_the_instance_gets() -> None:
+    found = thing(
+        "class A:\n    width: self.length * 2\n    length: self.tall + 1\n    tall: 3\nnew A with tall 5"
+    )
+    assert (found.length, found.width) == (6, 12)
+
+
+def test_random_defaults_are_drawn_for_each_instance() -> None:
+    text = "class A:\n    foo: Range(0, 1)\n    bar: (self.foo, self.foo)\na = new A at (0, 0)\nb = new A at (5, 5)\n"
+    for first, second, pair in draws(text + "param x = (a.foo, b.foo, a.bar)", n=20):
+        assert first != second
+        assert pair == (first, first)
+
+
+def test_a_default_object_is_shared_when_it_is_made_outside() -> None:
+    text = "shared = Range(0, 1)\nclass A:\n    foo: shared\na = new A at (0, 0)\nb = new A at (5, 5)\n"
+    assert all(first == second for first, second in draws(text + "param x = (a.foo, b.foo)", n=20))
+
+
+def test_methods_attributes_and_super() -> None:
+    found = params(
+        "class A:\n    size = 4\n    def area(self, times=1): return self.width * self.length * times\n"
+        "    @property\n    def double(self): return 2 * self.width\n    @staticmethod\n    def one(): return 1\n"
+        "class B(A):\n    def area(self, times=1): return super().area(times) + 1\n"
+        "b = new B with width 3, with length Range(2, 2)\n"
+        "param area = b.area(times=2), double = b.double, one = b.one(), size = b.size"
+    )
+    assert found == {"area": 13, "double": 6, "one": 1, "size": 4}
+
+
+def test_python_classes_stay_python() -> None:
+    found = params(
+        "class E(Exception):\n    pass\ntry:\n    raise E('x')\nexcept E as e:\n    param caught = str(e)\n"
+    )
+    assert found == {"caught": "x"}
+
+
+def test_what_new_takes() -> None:
+    assert type(failure("x = new list")) is ScenicTypeError
+    called = failure("class A: pass\nx = A()")
+    assert isinstance(called, InvalidScenarioError)
+    assert place(called) == ("SC111", "2:5-2:8", "create an instance with `new A`")
+
+
+def test_stored_values_have_their_types() -> None:
+    found = thing(
+        "new Object at (1, 2), with velocity [1, 2], with yaw 3 * 3.141592653589793, with speed 2,"
+        " with viewAngle 1, with parentOrientation 0.5, with foo [1, 2], with cameraOffset (0, 0, 1)"
+    )
+    assert isinstance(found.position, Vector)
+    assert isinstance(found.velocity, Vector)
+    assert isinstance(found.parentOrientation, Orientation)
+    assert found.yaw == pytest.approx(math.pi)
+    assert type(found.speed) is float
+    assert found.viewAngles == (1, math.pi)
+    assert found.foo == [1, 2]
+
+
+def test_velocity_follows_speed_and_orientation() -> None:
+    found = thing("new Object facing 90 deg, with speed 3")
+    assert tuple(found.velocity) == pytest.approx((-3, 0, 0))
+
+
+def test_places_on_the_bounding_box() -> None:
+    found = thing("new Object at (1, 2, 3), facing 90 deg, with width 2, with length 4, with height 6")
+    # Facing West: ahead is -X, right is +Y.
+    assert tuple(found.front.position) == pytest.approx((-1, 2, 3))
+    assert tuple(found.right.position) == pytest.approx((1, 3, 3))
+    assert tuple(found.topBackLeft.position) == pytest.approx((3, 1, 6))
+    assert found.front.heading == pytest.approx(math.pi / 2)
+    corners = {tuple(round(part, 9) for part in corner) for corner in found.corners}
+    assert corners == {(x, y, z) for x in (-1, 3) for y in (1, 3) for z in (0, 6)}
+    assert (found.hw, found.hl, found.hh) == (1, 2, 3)
+    assert found.radius == pytest.approx(math.sqrt(14))
+
+
+def test_points_have_the_attributes_of_their_position() -> None:
+    found = params(
+        "p = new Point at (3, 4)\nparam x = p.x, n = p.norm(), d = p.distanceTo((3, 0)), a = p.angleTo((3, 9))"
+    )
+    assert found == {"x": 3, "n": 5, "d": 4, "a": 0}
+    missing = failure("p = new Point\nx = p.nothing")
+    assert isinstance(missing, AttributeError)
+    assert "'nothing'" in str(missing)

@@ -1,0 +1,387 @@
+"""Distributions as programs write them: their laws, sharing, choices, control flow, containers.
+
+Goodness of fit is tested at the false-alarm rate `FALSE_ALARM` a test, on fixed seeds.
+"""
+
+import math
+import random
+import sys
+from collections import Counter
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from scenic.language.errors import (
+    InvalidScenarioError,
+    RandomControlFlowError,
+    SamplingError,
+    ScenicTypeError,
+    ScenicValueError,
+)
+from tests.runtime.programs import FALSE_ALARM, draws, failure, params, place, scenario
+
+
+def assert_law(values: Any, law: Any) -> None:
+    assert stats.kstest(np.asarray(values, dtype=float), law).pvalue > FALSE_ALARM
+
+
+def assert_frequencies(values: list[Any], expected: dict[Any, float]) -> None:
+    counts = Counter(values)
+    assert set(counts) <= set(expected)
+    observed = [counts[value] for value in expected]
+    total = sum(expected.values())
+    wanted = [len(values) * weight / total for weight in expected.values()]
+    assert stats.chisquare(observed, wanted).pvalue > FALSE_ALARM
+
+
+@pytest.mark.parametrize(
+    ("expression", "law"),
+    [
+        ("Range(2, 5)", stats.uniform(2, 3).cdf),
+        ("Range(5, 2)", stats.uniform(2, 3).cdf),
+        ("Normal(1, 2)", stats.norm(1, 2).cdf),
+        ("TruncatedNormal(1, 2, 0, 4)", stats.truncnorm(-0.5, 1.5, 1, 2).cdf),
+        ("2 * Range(0, 1) + 1", stats.uniform(1, 2).cdf),
+        ("Range(0, 1) + Range(0, 1)", stats.triang(0.5, 0, 2).cdf),
+        ("max(Range(0, 1), Range(0, 1), Range(0, 1))", stats.powerlaw(3).cdf),
+        ("Range(0, Range(0, 1))", lambda x: x * (1 - np.log(x))),
+        ("Normal(Normal(0, 3), 4)", stats.norm(0, 5).cdf),
+        ("(CircularRegion((0, 0), 2), (new Point in CircularRegion((0, 0), 2)))[1].norm()", stats.powerlaw(2, scale=2).cdf),
+        ("(new Point in BoxRegion((2, 4, 6), (1, 1, 1))).z", stats.uniform(-2, 6).cdf),
+        ("(new Point in SpheroidRegion((4, 4, 4))).norm()", stats.powerlaw(3, scale=2).cdf),
+        ("(new Point in RectangularRegion((1, 1), 90 deg, 2, 6)).x", stats.uniform(-2, 6).cdf),
+        ("(new Point in PolygonalRegion([(0, 0), (2, 0), (0, 2)])).x", lambda x: 1 - (1 - x / 2) ** 2),
+    ],
+)  # fmt: skip
+def test_continuous_laws(expression: str, law: Any) -> None:
+    assert_law(draws(f"param x = {expression}"), law)
+
+
+@pytest.mark.parametrize(
+    ("expression", "expected"),
+    [
+        ("DiscreteRange(2, 5)", dict.fromkeys([2, 3, 4, 5], 1)),
+        ("DiscreteRange(1.5, 4.9)", dict.fromkeys([2, 3, 4], 1)),
+        ("DiscreteRange(-1, 1, [1, 2, 3])", {-1: 1, 0: 2, 1: 3}),
+        ("Uniform('a', 'b', 'c')", {"a": 1, "b": 1, "c": 1}),
+        ("Uniform(1, 1, 2)", {1: 2, 2: 1}),
+        ("Discrete({'a': 1, 'b': 3})", {"a": 1, "b": 3}),
+        ("Discrete({'a': 1, 'b': 0, 'c': 2.5})", {"a": 1, "c": 2.5}),
+        ("Options([1, 2, 4])", {1: 1, 2: 1, 4: 1}),
+        ("Options({1: 3, 2: 1})", {1: 3, 2: 1}),
+        ("Uniform(1, Uniform(2, 3))", {1: 2, 2: 1, 3: 1}),
+        ("DiscreteRange(1, DiscreteRange(1, 2))", {1: 3, 2: 1}),
+        ("int(Range(0, 3))", {0: 1, 1: 1, 2: 1}),
+        ("str(DiscreteRange(1, 2))", {"1": 1, "2": 1}),
+        ("Uniform([1, 2], [3])[0]", {1: 1, 3: 1}),
+        ("Uniform([1, 2, 3], [4, 5])[DiscreteRange(0, 1)]", {1: 1, 2: 1, 4: 1, 5: 1}),
+        ("len(Uniform([1, 2, 3], [4, 5], []))", {3: 1, 2: 1, 0: 1}),
+        ("len(filter(lambda n: n > 1, Uniform([1, 2, 3], [1])))", {2: 1, 0: 1}),
+        ("max(Uniform([1, 2, 3], [4, 5]))", {3: 1, 5: 1}),
+        ("max(DiscreteRange(0, 1), 0.5)", {0.5: 1, 1: 1}),
+    ],
+)
+def test_discrete_laws(expression: str, expected: dict[Any, float]) -> None:
+    assert_frequencies(draws(f"param x = {expression}", n=3000), expected)
+
+
+def test_integers_stay_integers() -> None:
+    found = params("param a = DiscreteRange(1, 1), b = DiscreteRange(3, 3) // 2, c = DiscreteRange(3, 3) / 2,"
+                   " d = Uniform(1, 1.0), e = 10 ** DiscreteRange(20, 20)")  # fmt: skip
+    assert (found["a"], type(found["a"])) == (1, int)
+    assert (found["b"], type(found["b"])) == (1, int)
+    assert found["c"] == 1.5
+    assert found["e"] == 10**20
+
+
+def test_random_values_do_not_compare_even_with_none() -> None:
+    assert isinstance(failure("x = Range(0, 1) == None"), RandomControlFlowError)
+
+
+@pytest.mark.parametrize(
+    ("expression", "error"),
+    [
+        ("Range('a', 1)", ScenicTypeError),
+        ("Range((1, 2), 3)", ScenicTypeError),
+        ("Normal(None, 1)", ScenicTypeError),
+        ("DiscreteRange(1, 2, [1])", ScenicValueError),
+        ("DiscreteRange(2, 1, [])", ScenicValueError),
+        ("DiscreteRange(1.5, 2, [1, 2])", ScenicTypeError),
+        ("DiscreteRange(1, 2, [0, 0])", InvalidScenarioError),
+        ("DiscreteRange(1, 2, [-1, 2])", ScenicValueError),
+        ("DiscreteRange(1, 2, ['a', 2])", ScenicTypeError),
+        ("TruncatedNormal(0, 1, 2, 1)", ScenicValueError),
+        ("TruncatedNormal(0, 1, Range(0, 1), 2)", ScenicValueError),
+        ("Uniform()", InvalidScenarioError),
+        ("Discrete({})", InvalidScenarioError),
+        ("Discrete({1: 0})", InvalidScenarioError),
+        ("Discrete({1: -1, 2: 2})", ScenicValueError),
+        ("Discrete({1: Range(0, 1)})", ScenicTypeError),
+        ("Discrete({1: 'a'})", ScenicTypeError),
+        ("Options(3)", ScenicTypeError),
+        ("resample(Range(0, 1) + 1)", ScenicTypeError),
+    ],
+)
+def test_bad_arguments(expression: str, error: type[Exception]) -> None:
+    text = f"y = 1\nx = {expression}\nparam x = x"
+    found = failure(text)
+    assert type(found) is error, found
+    assert place(found)[1].startswith("2:5-")
+
+
+def test_an_empty_range_rejects() -> None:
+    found = draws("low = DiscreteRange(0, 3)\nparam x = (low, DiscreteRange(low, 1))", n=600)
+    assert {low for low, _ in found} == {0, 1}
+    assert_frequencies([low for low, _ in found], {0: 1, 1: 1})
+
+
+# Sharing and drawing again
+
+
+def test_one_draw_per_scene() -> None:
+    text = "x = Range(0, 1)\ny = Range(0, 1)\ndef f(): return x\nxs = [x, x]\nparam x = (x, x, f(), xs, x + 0, y)"
+    for first, second, called, listed, moved, other in draws(text, n=20):
+        assert first == second == called == moved
+        assert listed == [first, first]
+        assert other != first
+
+
+def test_resample_draws_again_with_the_same_parameters() -> None:
+    text = "low = Range(0, 10)\na = Range(low, low + 1)\nb = resample(a)\nparam x = (low, a, b, resample(3))"
+    values = draws(text)
+    assert all(low <= a <= low + 1 and low <= b <= low + 1 and a != b for low, a, b, _ in values)
+    first, second = np.array([(a - low, b - low) for low, a, b, _ in values]).T
+    assert_law(second, "uniform")
+    assert stats.pearsonr(first, second).pvalue > FALSE_ALARM
+    assert values[0][3] == 3
+
+
+@pytest.mark.parametrize(
+    "primitive",
+    ["Normal(0, 1)", "DiscreteRange(0, 9)", "Uniform(0, 1, 2, 3, 4, 5)", "Discrete({0: 1, 1: 1, 2: 1})",
+     "TruncatedNormal(0, 1, -1, 1)", "DiscreteRange(0, 3, [1, 1, 1, 1])"],
+)  # fmt: skip
+def test_resample_of_every_primitive(primitive: str) -> None:
+    values = draws(f"a = {primitive}\nb = resample(a)\nparam x = (a, b)", n=1000)
+    first, second = zip(*values, strict=True)
+    assert first != second
+    assert stats.ks_2samp(first, second).pvalue > FALSE_ALARM
+    assert stats.pearsonr(first, second).pvalue > FALSE_ALARM
+
+
+# Choices
+
+
+def test_what_is_not_drawn_does_not_matter() -> None:
+    text = (
+        "import math\na = new Object with foo 1\nb = new Object at (9, 9)\n"
+        "c = Discrete({a: 1, b: 0})\nd = Uniform(DiscreteRange(2, 3), 7)\n"
+        "param x = (c.foo, Discrete({math.sqrt: 0, abs: 1})(-4), d)"
+    )
+    assert set(draws(text, n=50)) <= {(1, 4, 2), (1, 4, 3), (1, 4, 7)}
+    empty = "e = DiscreteRange(DiscreteRange(5, 5), 4)\nparam x = Uniform(e, 7)\n"
+    # Half of the candidates draw the empty range, and are rejected.
+    program = scenario(empty)
+    scenes = program.sample(400, seed=0)
+    assert {scene.params["x"] for scene in scenes} == {7}
+    assert 600 < sum(scene.attempts for scene in scenes) < 1000
+
+
+def test_a_missing_attribute_is_an_error_only_where_it_is_drawn() -> None:
+    text = "a = new Object with foo 1\nb = new Object at (9, 9)\nc = Uniform(a, b)\nrequire c is a\n"
+    scenario(text + "require c.foo == 1").sample(40, seed=0)
+    found = failure(text + "param x = c.foo", n=20)
+    assert isinstance(found, SamplingError)
+    assert "AttributeError: Object has no property or attribute 'foo'" in str(found)
+    assert place(found)[1] == "5:11-5:16"
+
+
+def test_a_failing_call_is_an_error_only_where_it_is_drawn() -> None:
+    text = "import math\nf = Uniform(math.sqrt, abs)\n"
+    scenario(text + "require f is abs\nrequire f(-4) == 4").sample(40, seed=0)
+    assert isinstance(failure(text + "require f(-4) == 4", n=20), SamplingError)
+
+
+def test_choices_among_instances_share_their_values() -> None:
+    text = (
+        "a = new Object at (Range(0, 1), 0)\nb = new Object at (Range(5, 6), 0)\nc = Uniform(a, b)\n"
+        "d = new Object left of c by 1, with twin c\nparam x = (a.position.x, b.position.x, c.position.x, c.x, c)"
+    )
+    for scene in scenario(text).sample(30, seed=2):
+        first, second, chosen, again, instance = scene.params["x"]
+        assert chosen == again == instance.position.x
+        assert chosen in (first, second)
+        twin = scene.objects[2]
+        assert twin.twin is instance
+        assert instance in scene.objects
+        assert twin.position.x == pytest.approx(chosen - 2)
+
+
+def test_choices_of_shapes_decide_sizes() -> None:
+    text = (
+        "s = Uniform(BoxShape(dimensions=(1, 2, 3)), SpheroidShape(dimensions=(4, 5, 6)))\n"
+        "a = new Object with shape s\nparam x = (type(a.shape).__name__ if False else a.width, a.height, s.length)"
+    )
+    assert set(draws(text, n=30)) == {(1, 3, 2), (4, 6, 5)}
+
+
+def test_left_of_a_choice_of_an_object_and_a_place() -> None:
+    text = (
+        "a = new Object at (5, 0, 0), with width 10, with allowCollisions True\nt = Uniform(a, (1, 2, 3))\n"
+        "b = new Object left of t by 1, with allowCollisions True\nparam x = b.position"
+    )
+    # Either option is a place here: the width of the object does not count.
+    assert {tuple(value) for value in draws(text, n=30)} == {(3.5, 0, 0), (-0.5, 2, 3)}
+
+
+def test_choices_among_vectors_tuples_and_points() -> None:
+    text = "t = Uniform((1, 2), [1, 2, 3], Vector(4, 5, 6), new Point at (7, 8))\nparam x = distance from t to (0, 0)"
+    assert_frequencies(
+        [round(value, 6) for value in draws(text, n=2000)],
+        {round(math.hypot(*v), 6): 1 for v in [(1, 2), (1, 2, 3), (4, 5, 6), (7, 8)]},
+    )
+
+
+# Control flow
+
+
+@pytest.mark.parametrize(
+    "statement",
+    [
+        "if x: pass",
+        "while x: pass",
+        "y = 1 if x else 2",
+        "y = x and 1",
+        "y = 1 or x if x else 0",
+        "y = not x",
+        "assert x",
+        "y = x < 1",
+        "y = 0 <= x <= 1",
+        "y = x == 1",
+        "y = x != 1",
+        "y = x in [1, 2]",
+        "y = 1 in xs",
+        "for i in xs: pass",
+        "a, b = xs",
+        "y = [*xs]",
+        "y = range(n)",
+        "y = range(0, n)",
+        "y = [1, 2, 3][n]",
+        "def f(**k): pass\nf(**Uniform({'a': 1}, {'a': 2}))",
+        "y = v == (1, 2, 3)",
+        "y = v in CircularRegion((0, 0), 1)",
+        "import math\ny = math.sin(x)",
+        "y = sorted([x, 1])",
+        "y = sum(i for i in xs)",
+    ],
+)
+def test_control_flow(statement: str) -> None:
+    text = f"x = Range(0, 1)\nn = DiscreteRange(0, 2)\nxs = Uniform([1, 2], [3, 4])\nv = Vector(x, 2, 3)\n{statement}\n"
+    found = failure(text)
+    assert isinstance(found, RandomControlFlowError), found
+    code, where, help_text = place(found)
+    assert code == "SC403"
+    assert where
+    assert help_text
+
+
+@pytest.mark.parametrize("operator", ["&", "|", "^", "<<", ">>"])
+def test_bitwise_operators(operator: str) -> None:
+    found = failure(f"x = DiscreteRange(0, 1) {operator} 1")
+    assert isinstance(found, TypeError)
+    assert place(found)[1].startswith("1:5-")
+
+
+def test_a_random_value_in_text_warns() -> None:
+    with pytest.warns(UserWarning, match="shows no sample"):
+        scenario("x = f'{Range(0, 1)}'\n")
+
+
+# Containers
+
+
+def test_containers_with_random_parts() -> None:
+    text = (
+        "from collections import namedtuple\nPair = namedtuple('Pair', ['first', 'second'])\nx = Range(0, 1)\n"
+        "param x = x, t = (x, 1), l = [x, [x]], d = {'a': x, 'b': {'c': (x,)}}, p = Pair(x, 2), s = slice(x, None)\n"
+        "new Object with foo {'a': x}, with bar [x, (x,)], with baz Pair(1, x)\n"
+    )
+    for scene in scenario(text).sample(5, seed=0):
+        found, (only,) = scene.params, scene.objects
+        x = found["x"]
+        assert found["t"] == (x, 1)
+        assert found["l"] == [x, [x]]
+        assert found["d"] == {"a": x, "b": {"c": (x,)}}
+        assert found["p"] == (x, 2)
+        assert type(found["p"]).__name__ == "Pair"
+        assert found["s"] == slice(x, None)
+        assert (only.foo, only.bar, only.baz) == ({"a": x}, [x, (x,)], (1, x))
+
+
+def test_functions_of_python_take_samples_where_they_are_lifted() -> None:
+    text = (
+        "import math\nroot = distributionFunction(math.sqrt)\n"
+        "@distributionFunction\ndef pick(xs, k): return xs[k]\n"
+        "n = DiscreteRange(0, 2)\nparam x = (n, root(n * n), pick([10, 11, 12], n), pick([n, n, n], 1), root(4))"
+    )
+    for n, root, picked, same, plain in draws(text, n=20):
+        assert (root, picked, same, plain) == (n, 10 + n, n, 2)
+
+
+def test_lifted_functions_reject() -> None:
+    text = (
+        "@distributionFunction\ndef f(x):\n    if x < 0.5: raise RejectionException('small')\n    return x\n"
+        "param x = f(Range(0, 1))"
+    )
+    assert_law(draws(text, n=500), stats.uniform(0.5, 0.5).cdf)
+
+
+def test_lifted_functions_see_sampled_names_and_instances() -> None:
+    text = (
+        "n = DiscreteRange(1, 3)\nego = new Object at (n, 0)\n"
+        "@distributionFunction\ndef f(thing): return (n, thing.x, ego.x, thing is ego)\n"
+        "param x = f(Uniform(ego, ego)), y = f([n, ego][1])"
+    )
+    for n, x, again, same in draws(text, n=20):
+        assert n == x == again
+        assert same
+
+
+def test_lifted_functions_may_draw_from_the_global_generators() -> None:
+    text = (
+        "import random\nimport numpy\n"
+        "@distributionFunction\ndef f(x): return (x, random.random(), float(numpy.random.rand()))\nparam x = f(Range(0, 1))"
+    )
+    random.seed(5)
+    state = random.getstate()
+    first = draws(text, n=300)
+    assert random.getstate() == state
+    assert first == draws(text, n=300)
+    for column in zip(*first, strict=True):
+        assert_law(column, "uniform")
+
+
+def test_lifted_functions_take_keywords_and_containers() -> None:
+    text = (
+        "@distributionFunction\ndef f(x, *, scale, table): return x * scale + table['a']\n"
+        "n = DiscreteRange(1, 3)\nparam x = (n, f(n, scale=n, table={'a': n}))"
+    )
+    assert all(value == n * n + n for n, value in draws(text, n=20))
+
+
+@pytest.mark.xfail(reason="a starred argument that is random is iterated at once", strict=True)
+def test_choices_of_the_elements_of_a_random_list() -> None:
+    found = draws("xs = Uniform([1, 2], [3])\nparam x = Uniform(*xs)", n=1000)
+    assert_frequencies(found, {1: 1, 2: 1, 3: 2})
+
+
+def test_no_module_state_is_touched(tmp_path: Path) -> None:
+    before = set(sys.modules)
+    (tmp_path / "beside.scenic").write_text("param x = Range(0, 1)\n")
+    program = tmp_path / "main.scenic"
+    program.write_text("import beside\n")
+    scenario(program.read_text(), filename=str(program)).sample(2, seed=0)
+    assert "beside" not in set(sys.modules) - before

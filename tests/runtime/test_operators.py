@@ -1,0 +1,280 @@
+"""The language's operators: on fixed operands, on random ones of the same values, on choices; and their mistakes."""
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from scenic.language.errors import InvalidScenarioError, ScenicTypeError
+from scenic.runtime.values import Orientation, Vector
+from tests.runtime.programs import (
+    altitude,
+    assert_angles_equal,
+    assert_same_rotation,
+    azimuth,
+    euler,
+    failure,
+    params,
+)
+
+A, B = np.array([1.0, -2, 3]), np.array([4.0, 5, -6])
+EGO_AT, EGO_TURNED = np.array([7.0, 8, 9]), euler(0.4, 0.3, -0.2)
+P_AT, P_TURNED = np.array([-3.0, 2, 1]), euler(2.5, -0.3, 0.2)
+YAW_P, YAW_EGO = 2.5, 0.4
+
+FIXED = {
+    "a": "(1, -2, 3)",
+    "b": "Vector(4, 5, -6)",
+    "s": "0.75",
+    "h": "1.5",
+    "o": "Orientation.fromEuler(0.3, 0.2, 0.1)",
+    "eyaw": "0.4",
+    "pyaw": "2.5",
+}
+RANDOM = {
+    "a": "(Range(1, 1), -2, Range(3, 3))",
+    "b": "Vector(4, Range(5, 5), -6)",
+    "s": "Range(0.75, 0.75)",
+    "h": "Uniform(1.5, 1.5)",
+    "o": "Orientation.fromEuler(Range(0.3, 0.3), 0.2, 0.1)",
+    "eyaw": "Range(0.4, 0.4)",
+    "pyaw": "Range(2.5, 2.5)",
+}
+MIXED = FIXED | {
+    "a": "Uniform((1, -2, 3), Vector(1, -2, 3), [1, -2, 3], new Point at (1, -2, 3))",
+    "b": "Uniform(Vector(4, 5, -6), new Object at (4, 5, -6), with allowCollisions True)",
+    "s": "Uniform(0.75, Range(0.75, 0.75))",
+}
+TURN = euler(0.3, 0.2, 0.1)
+
+
+def setting(operands: dict[str, str]) -> str:
+    return (
+        f"ego = new Object at (7, 8, 9), facing ({operands['eyaw']}, 0.3, -0.2), with allowCollisions True,\n"
+        "    with width 2, with length 4, with height 6\n"
+        f"p = new OrientedPoint at (-3, 2, 1), facing ({operands['pyaw']}, -0.3, 0.2)\n"
+        + "".join(f"{name} = {operands[name]}\n" for name in "absho")
+    )
+
+
+def wrap(angle: float) -> float:
+    return float(np.angle(np.exp(1j * angle)))
+
+
+CASES: dict[str, Any] = {
+    "s deg": 0.75 * math.pi / 180,
+    "b deg": B * math.pi / 180,
+    "s @ h": np.array([0.75, 1.5, 0]),
+    "a relative to b": A + B,
+    "a offset by b": A + B,
+    "s relative to h": euler(2.25),
+    "o relative to s": euler(0.75) * TURN,
+    "s relative to o": TURN * euler(0.75),
+    "s relative to p": YAW_P + 0.75,
+    "p relative to s": YAW_P + 0.75,
+    "o relative to p": P_TURNED * TURN,
+    "p relative to o": TURN * P_TURNED,
+    "(b relative to p).position": P_AT + P_TURNED.apply(B),
+    "(p offset by b).orientation": P_TURNED,
+    "a offset along s by b": A + euler(0.75).apply(B),
+    "a offset along o by b": A + TURN.apply(B),
+    "a offset along p by b": A + P_TURNED.apply(B),
+    "relative position of a": A - EGO_AT,
+    "relative position of a from b": A - B,
+    "relative heading of s": wrap(0.75 - YAW_EGO),
+    "relative heading of p from h": wrap(YAW_P - 1.5),
+    "relative heading of o from p": wrap(TURN.as_euler("ZXY")[0] - YAW_P),
+    "apparent heading of p": wrap(YAW_P - azimuth(P_AT - EGO_AT)),
+    "apparent heading of p from b": wrap(YAW_P - azimuth(P_AT - B)),
+    "distance to b": np.linalg.norm(B - EGO_AT),
+    "distance from b": np.linalg.norm(B - EGO_AT),
+    "distance from a to b": np.linalg.norm(B - A),
+    "distance from ego to p": np.linalg.norm(P_AT - EGO_AT),
+    "distance past b": euler(-YAW_EGO).apply(EGO_AT - B)[1],
+    "distance past b of p": euler(-YAW_P).apply(P_AT - B)[1],
+    "angle to b": azimuth(B - EGO_AT),
+    "angle from b": azimuth(EGO_AT - B),
+    "angle from a to b": azimuth(B - A),
+    "altitude to b": altitude(B - EGO_AT),
+    "altitude from b": altitude(EGO_AT - B),
+    "altitude from a to b": altitude(B - A),
+    "(front of ego).position": EGO_AT + EGO_TURNED.apply([0, 2, 0]),
+    "(left of ego).position": EGO_AT + EGO_TURNED.apply([-1, 0, 0]),
+    "(back right of ego).position": EGO_AT + EGO_TURNED.apply([1, -2, 0]),
+    "(bottom of ego).position": EGO_AT + EGO_TURNED.apply([0, 0, -3]),
+    "(top front left of ego).position": EGO_AT + EGO_TURNED.apply([-1, 2, 3]),
+    "(bottom back right of ego).orientation": EGO_TURNED,
+    "b.norm()": np.linalg.norm(B),
+    "b.dot(a)": A @ B,
+    "b.cross(a)": np.cross(B, A),
+    "b.normalized()": B / np.linalg.norm(B),
+    "b.rotatedBy(s)": euler(0.75).apply(B),
+    "b.rotatedBy(o)": TURN.apply(B),
+    "b.distanceTo(a)": np.linalg.norm(B - A),
+    "b.angleTo(a)": azimuth(A - B),
+    "b.altitudeTo(a)": altitude(A - B),
+    "b.angleWith(a)": wrap(azimuth(A) - azimuth(B)),
+    "b.offsetRotated(s, a)": B + euler(0.75).apply(A),
+    "b.offsetLocally(o, a)": B + TURN.apply(A),
+    "b.offsetRadially(s, h)": B + euler(1.5).apply([0, 0.75, 0]),
+    "b.sphericalCoordinates()[0]": np.linalg.norm(B),
+    "b + a": A + B,
+    "a + b": A + B,
+    "b - a": B - A,
+    "a - b": A - B,
+    "s * b": 0.75 * B,
+    "b * s": 0.75 * B,
+    "b / s": B / 0.75,
+    "-b": -B,
+    "b[1]": 5.0,
+    "b.y + b.z": -1.0,
+    "o.yaw": 0.3,
+    "o.roll": 0.1,
+    "o.inverse": TURN.inv(),
+    "o * o": TURN * TURN,
+    "o + s": TURN * euler(0.75),
+    "s + o": euler(0.75) * TURN,
+    "o * b": TURN.apply(B),
+    "o.localAnglesFor(s)[0]": (TURN.inv() * euler(0.75)).as_euler("ZXY")[0],
+    "sin(s) + cos(s) + hypot(s, h)": math.sin(0.75) + math.cos(0.75) + math.hypot(0.75, 1.5),
+    "max(s, h, 0.2) + min(s, h, 0.9)": 2.25,
+    "round(s) + abs(-s) + int(h) + float(s)": 1 + 0.75 + 1 + 0.75,
+    "divmod(h, s)[0] + h // s + h % s + h ** 2": 2 + 2 + 0 + 2.25,
+}  # fmt: skip
+
+
+def assert_is(found: Any, expected: Any, case: str) -> None:
+    if isinstance(found, Vector):
+        np.testing.assert_allclose(tuple(found), expected, atol=1e-9, err_msg=case)
+    elif isinstance(found, Orientation):
+        assert_same_rotation(found, expected)
+    elif hasattr(expected, "as_matrix"):
+        assert_same_rotation(Orientation.fromEuler(found, 0, 0), expected)
+    elif "heading" in case or "angle" in case.lower():
+        assert_angles_equal(found, expected)
+    else:
+        assert found == pytest.approx(expected, abs=1e-9), case
+
+
+@pytest.mark.parametrize("operands", [FIXED, RANDOM], ids=["fixed", "random"])
+def test_operators(operands: dict[str, str]) -> None:
+    listed = "".join(f"param c{index} = {case}\n" for index, case in enumerate(CASES))
+    listed = listed.replace("b.", "Vector(*b)." if operands is MIXED else "b.")
+    found = params(setting(operands) + listed)
+    for index, (case, expected) in enumerate(CASES.items()):
+        assert_is(found[f"c{index}"], expected, case)
+
+
+PLACES = [case for case in CASES if "b." not in case and " + " not in case and "*" not in case and "b[" not in case
+          and case not in ("b deg", "-b", "a - b", "b - a", "b / s", "a relative to b", "a offset by b")
+          and "b relative to" not in case and "offset by b" not in case]  # fmt: skip
+
+
+def test_operators_on_choices_of_different_types() -> None:
+    listed = "".join(f"param c{index} = {case}\n" for index, case in enumerate(PLACES))
+    for seed in range(8):
+        found = params(setting(MIXED) + listed, seed=seed)
+        for index, case in enumerate(PLACES):
+            assert_is(found[f"c{index}"], CASES[case], case)
+
+
+def test_operators_need_an_ego_only_where_they_mean_it() -> None:
+    for case in ("distance to (1, 2)", "angle from (1, 2)", "altitude to (1, 2)", "relative heading of 1",
+                 "relative position of (1, 2)", "distance past (1, 2)"):  # fmt: skip
+        found = failure(f"x = {case}")
+        assert type(found) is InvalidScenarioError, case
+        assert found.span is not None
+    assert params("param x = distance from (0, 3) to (4, 0)")["x"] == 5
+
+
+@pytest.mark.parametrize(
+    "expression",
+    [
+        "(1, 2) deg",
+        "'a' deg",
+        "(1, 2) @ 3",
+        "'a' @ 3",
+        "p relative to p",
+        "p relative to 'a'",
+        "'a' relative to 'b'",
+        "(1, 2) relative to 3",
+        "relative heading of (1, 2) from 3",
+        "relative position of 3 from (1, 2)",
+        "apparent heading of (1, 2) from (3, 4)",
+        "distance from 1 to (1, 2)",
+        "distance past (1, 2) of (3, 4)",
+        "angle from 'here' to (1, 2)",
+        "altitude from (1, 2) to 4",
+        "front of p",
+        "top front left of (1, 2)",
+        "(1, 2) offset along 'north' by (3, 4)",
+        "p intersects p",
+        "3 intersects everywhere",
+    ],
+)
+def test_wrong_operands_are_type_errors_with_a_place(expression: str) -> None:
+    text = f"p = new OrientedPoint\nx = {expression}\n"
+    found = failure(text)
+    assert isinstance(found, ScenicTypeError), found
+    assert found.span is not None
+    line = text.splitlines()[found.span.line - 1]
+    assert line[found.span.column : found.span.end_column] == expression
+
+
+def test_wrong_operands_that_are_drawn_fail_when_they_are_drawn() -> None:
+    for seed in range(8):
+        found = failure("x = Uniform('near', 'far')\nparam d = distance from x to (1, 2)", seed=seed)
+        assert isinstance(found, ScenicTypeError)
+        assert found.span is not None
+        assert found.span.line == 2
+
+
+COORDINATE = st.floats(-100, 100).map(lambda number: round(number, 3))
+POINT = st.tuples(COORDINATE, COORDINATE, COORDINATE)
+ANGLE = st.floats(-3, 3).map(lambda number: round(number, 3))
+
+
+@settings(max_examples=25, deadline=None)
+@given(POINT, POINT, st.tuples(ANGLE, ANGLE, ANGLE))
+def test_frames_and_places(a: Any, b: Any, angles: Any) -> None:
+    found = params(
+        f"p = new OrientedPoint at {a}, facing {angles}\n"
+        f"param there = ({b} relative to p).position, back = p.relativePosition({b} relative to p)\n"
+        f"param distance = distance from p to {b}, apparent = apparent heading of p from {b}"
+    )
+    turned = euler(*angles)
+    np.testing.assert_allclose(tuple(found["there"]), np.array(a) + turned.apply(b), atol=1e-6)
+    np.testing.assert_allclose(tuple(found["back"]), b, atol=1e-6)
+    assert found["distance"] == pytest.approx(float(np.linalg.norm(np.subtract(a, b))))
+
+
+def test_containment_and_intersection() -> None:
+    text = (
+        "big = new Object with width 4, with length 4, with height 4, with allowCollisions True\n"
+        "small = new Object at (0.5, 0, 0), with allowCollisions True\n"
+        "far = new Object at (9, 0, 0)\n"
+        "disc = CircularRegion((0, 0), 3)\n"
+        "param both = big intersects small, none = big intersects far, corner = (2.9, 0, 5) in disc\n"
+        "param outside = (3.1, 0) in disc, whole = small in disc, part = far in disc, not_in = (9, 9) not in disc\n"
+    )
+    assert params(text) == {
+        "both": True, "none": False, "corner": True, "outside": False, "whole": True, "part": False, "not_in": True
+    }  # fmt: skip
+
+
+def test_degrees_scale_everything_to_their_left() -> None:
+    found = params("param a = 2 * 90 deg, b = (1 @ 2) deg, c = 90 deg + 1, d = -90 deg")
+    assert found["a"] == pytest.approx(math.pi)
+    assert tuple(found["b"]) == pytest.approx((math.radians(1), math.radians(2), 0))
+    assert found["c"] == pytest.approx(math.pi / 2 + 1)
+    assert found["d"] == pytest.approx(-math.pi / 2)
+
+
+def test_vectors_compare_with_tuples() -> None:
+    assert params(
+        "v = Vector(1, 2, 0)\nparam a = v == (1, 2), b = v == [1, 2, 0], c = v != (1, 3), d = v == 'x', e = len(v)\n"
+        "param f = list(v), g = v[0:2], h = v[-1], i = hash(v) == hash(Vector(1, 2))"
+    ) == {"a": True, "b": True, "c": True, "d": False, "e": 3, "f": [1, 2, 0], "g": (1, 2), "h": 0, "i": True}

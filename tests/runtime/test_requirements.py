@@ -1,0 +1,387 @@
+"""Requirements: what they mean however they are written, when names are bound, faults, soft ones; the built-in ones."""
+
+import itertools
+import re
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from scenic.language.errors import (
+    InvalidScenarioError,
+    RandomControlFlowError,
+    RejectionException,
+    SamplingError,
+    ScenicTypeError,
+)
+from tests.runtime.programs import FALSE_ALARM, draws, failure, fingerprint, place, scenario
+
+SETTING = (
+    "ego = new Object at (Range(-2, 2), Range(-2, 2)), facing Range(0, 3), with width Range(1, 2), with foo Range(0, 1),"
+    " with allowCollisions True\n"
+    "other = new Object at (Range(-2, 2), Range(-2, 2)), with tag Uniform('a', 'b'), with allowCollisions True\n"
+    "disc = CircularRegion((0, 0), 1.5)\nx = Range(0, 1)\nn = DiscreteRange(0, 5)\nxs = Uniform([1, 2], [3, 4, 5])\n"
+    "either = Uniform(ego, other)\nlimit = 0.6\nparam x = x, n = n, xs = xs\n"
+    "def same(v): return v\n"
+)
+CONDITIONS = [
+    "x < 0.5",
+    "0.2 < x <= limit",
+    "x < 0.3 or x > 0.7",
+    "x < 0.7 and ego.position.x > 0",
+    "not x < 0.5",
+    "not (x < 0.5 and n > 2)",
+    "(x < 0.5) == (n > 2)",
+    "x * n + 1 > ego.width ** 2",
+    "n % 2 == 0",
+    "n // 2 == 1 and n in [2, 3, 4]",
+    "abs(ego.x - other.x) > 0.5",
+    "max(x, ego.foo, 0.4) < 0.8",
+    "(distance from ego to other) < 2",
+    "(distance to other) < 2 and (angle to other) > 0",
+    "(relative heading of other) < 0",
+    "(apparent heading of other) < 1",
+    "(distance past other) > 0",
+    "ego in disc",
+    "ego.position in disc",
+    "other.position not in disc",
+    "ego intersects other",
+    "not (ego intersects other)",
+    "(front of ego).position.x > 0",
+    "xs[0] > 2",
+    "len(xs) == 2",
+    "either.position.x > 0",
+    "either is ego",
+    "other.tag == 'a'",
+    "other.tag in ('a', 'c')",
+    "(x if n > 2 else 1 - x) < 0.5",
+    "ego.position.distanceTo(other.position) < 2",
+    "ego.distanceTo(other) < 2",
+    "round(x * 4) == 2 and int(x * 10) != 5 and float(n) > 1",
+    "x < 0.5 implies n > 2",
+    "n",
+    "xs and n",
+    "(x, n) > (0.5, 2)",
+    "[i for i in xs if i > n]",
+    "(lambda v: v < x)(0.5)",
+    "any(i == n for i in xs)",
+    "(y := x + 1) > 1.5 and y < 1.8",
+    "f'{n}' == '3'",
+    "{1: x, 2: n}[1] < 0.5",
+    "ego.orientation.yaw > 1",
+    "ego.yaw > 1 and ego.heading > 1",
+    "(relative position of other)[0] > 0",
+    "ego.corners[0].x > other.corners[1].x",
+    "other.position == other.position and ego != other",
+]
+
+
+@pytest.mark.parametrize("condition", CONDITIONS)
+def test_a_condition_means_the_same_however_it_is_written(condition: str) -> None:
+    ways = [f"require {condition}\n"]
+    if "implies" not in condition:
+        ways += [
+            f"require same({condition})\n",
+            f"require not not ({condition})\n",
+            f"require [{condition}][0]\n",
+            f"def check():\n    return {condition}\nrequire check()\n",
+            f"require (lambda: ({condition}))()\n",
+            f"def make(ego, other, x, n, xs, either):\n    return lambda: ({condition})\nf = make(ego, other, x, n, xs, either)\nrequire f()\n",
+        ]
+    if ":=" in condition:
+        ways = ways[:2] + ways[4:5]
+    scenes = [scenario(SETTING + way).sample(6, seed=3, lanes=32) for way in ways]
+    prints = [[fingerprint(scene) for scene in items] for items in scenes]
+    attempts = [scene.attempts for scene in scenes[0]]
+    assert max(attempts) > 1, "the condition rejects nothing"
+    for way, found in zip(ways, prints, strict=True):
+        assert found == prints[0], way
+
+
+def test_random_branches_are_fine_in_functions_of_conditions() -> None:
+    text = "x = Range(0, 1)\ndef f(v):\n    if v < 0.5:\n        return v > 0.25\n    return v < 0.75\nrequire f(x)\nparam x = x"
+    values = draws(text, n=1000)
+    assert stats.kstest(values, stats.uniform(0.25, 0.5).cdf).pvalue > FALSE_ALARM
+
+
+# Names are those of the moment at which the statement ran
+
+
+@pytest.mark.parametrize("read", ["x", "same(x)", "f()", "g()", "(lambda: x)()"])
+def test_names_are_bound_when_the_statement_runs(read: str) -> None:
+    text = (
+        "def same(v): return v\nx = Range(0, 1)\ndef f(): return x\ndef g(): return f()\n"
+        f"require {read} < 0.5\nparam first = x\nx = Range(5, 6)\nrequire {read} > 5.5\nparam second = x\nx = None\n"
+    )
+    for scene in scenario(text).sample(20, seed=1):
+        assert scene.params["first"] < 0.5
+        assert scene.params["second"] > 5.5
+
+
+def test_definite_names_too() -> None:
+    text = "y = 3\ndef f(): return y\nrequire f() == 3 and y == 3\ny = 4\nrequire f() == 4 and y == 4\n"
+    scenario(text).sample(1, seed=0)
+
+
+def test_loops_and_closures() -> None:
+    text = (
+        "xs = [Range(0, 1) for i in range(3)]\nfor i, x in enumerate(xs):\n    require x > i / 4\n"
+        "def low(v, limit):\n    require v < limit\nfor x in xs:\n    low(x, 0.9)\nparam x = tuple(xs)\n"
+    )
+    for first, second, third in draws(text, n=20):
+        assert 0 < first < 0.9
+        assert 0.25 < second < 0.9
+        assert 0.5 < third < 0.9
+
+
+@pytest.mark.parametrize("read", ["ego.x", "same(ego.x)", "of_ego()", "(distance to (0, 0))", "far()"])
+def test_the_ego_is_that_of_the_moment(read: str) -> None:
+    text = (
+        "def same(v): return v\ndef of_ego(): return ego.x\ndef far(): return distance to (0, 0)\n"
+        "ego = new Object at (Range(0, 10), 0)\nfirst = ego\n"
+        f"require {read} < 2\nego = new Object at (Range(20, 30), 0)\nrequire {read} > 28\nego = first\n"
+    )
+    for scene in scenario(text).sample(10, seed=1):
+        assert scene.egoObject.x < 2
+        assert scene.objects[1].x > 28
+
+
+def test_functions_that_call_each_other() -> None:
+    text = (
+        "def even(n): return n < y or odd(n - 2)\ndef odd(n): return not (n < y) and even(n - 2)\n"
+        "y = DiscreteRange(0, 5)\nparam x = y\n"
+    )
+    expected = set()
+    for y in range(6):
+
+        def even(n: int, y: int = y) -> bool:
+            return n < y or odd(n - 2)
+
+        def odd(n: int, y: int = y) -> bool:
+            return n >= y and even(n - 2, y)
+
+        try:
+            if even(7):
+                expected.add(y)
+        except RecursionError:
+            pass
+    assert set(draws(text + "require y > 0\nrequire even(7)", n=100)) == expected - {0}
+
+
+def test_methods_see_sampled_names() -> None:
+    text = (
+        "limit = Range(0, 1)\nclass Car:\n    speed2: Range(0, 1)\n    def slow(self): return self.speed2 < limit and self.known()\n"
+        "    def known(self): return car is self\ncar = new Car\nrequire car.slow()\nparam x = (car.speed2, limit)\n"
+    )
+    assert all(speed < limit for speed, limit in draws(text, n=30))
+
+
+def test_points_may_be_made_in_conditions() -> None:
+    text = (
+        "ego = new Object at (Range(0, 1), 0)\ndef f():\n    p = new OrientedPoint at (3, 0)\n"
+        "    return (distance from p to ego) < 2.5\nrequire f()\n"
+    )
+    program = scenario(text)
+    before = len(program._program.instances)
+    assert all(scene.egoObject.x > 0.5 for scene in program.sample(10, seed=0))
+    assert len(program._program.instances) == before
+
+
+# Soft requirements
+
+
+def test_soft_requirements_hold_with_their_probability() -> None:
+    values = draws("x = Range(0, 1)\nrequire[0.6] x < 0.5\nparam x = x", n=4000)
+    # Active with probability 0.6; otherwise it holds by chance half of the time.
+    low = sum(value < 0.5 for value in values)
+    assert stats.binomtest(low, 4000, 0.6 + 0.4 / 2).pvalue > FALSE_ALARM
+
+
+def test_soft_requirements_are_drawn_once_a_scene_and_apart() -> None:
+    text = (
+        "x, y = Range(0, 1), Range(0, 1)\nrequire[0.5] x < 0.01\nrequire[0.5] y < 0.01\nrequire[0] x > 2\n"
+        "require[1] x < 0.9\nparam x = (x < 0 if False else x, y)\n"
+    )
+    values = np.array(draws(text, n=1500))
+    counts = [
+        int(np.sum(((values < 0.01) == case).all(axis=1)))
+        for case in itertools.product([True, False], repeat=2)
+    ]
+    active = 0.5
+    x_by_chance, y_by_chance = 0.01 / 0.9, 0.01
+    px, py = active + (1 - active) * x_by_chance, active + (1 - active) * y_by_chance
+    expected = [1500 * p for p in (px * py, px * (1 - py), (1 - px) * py, (1 - px) * (1 - py))]
+    assert stats.chisquare(counts, expected).pvalue > FALSE_ALARM
+    assert (values[:, 0] < 0.9).all()
+
+
+# Faults
+
+
+@pytest.mark.parametrize("lanes", [1, 7, 512])
+@pytest.mark.parametrize("opaque", [False, True])
+def test_a_fault_counts_only_if_no_earlier_requirement_rejects(lanes: int, opaque: bool) -> None:
+    wrap = "same({})" if opaque else "{}"
+    inverse = wrap.format("1 / (n - 2)") + " < 9"
+    text = "n = DiscreteRange(0, 4)\ndef same(v): return v\nparam x = n\n"
+    guarded = scenario(text + f"require {wrap.format('n != 2')}\nrequire {inverse}\n")
+    assert {scene.params["x"] for scene in guarded.sample(60, seed=0, lanes=lanes)} == {0, 1, 3, 4}
+    late = scenario(text + f"require {inverse}\nrequire {wrap.format('n != 2')}\n")
+    with pytest.raises(SamplingError, match=r"<string>:4:1: requirement on line 4 failed: ZeroDivisionError"):
+        late.sample(60, seed=0, lanes=lanes)
+
+
+def test_scenes_before_the_fault_come_out_whatever_the_batch() -> None:
+    text = "n = DiscreteRange(0, 30)\nparam x = n\nrequire 1 / n > 0\n"
+    found = set()
+    for lanes in (1, 7, 512, 4096):
+        seen = []
+        with pytest.raises(SamplingError):
+            seen.extend(fingerprint(scene) for scene in scenario(text).stream(10_000, seed=4, lanes=lanes))
+        count = 0
+        stream = scenario(text).stream(10_000, seed=4, lanes=lanes)
+        try:
+            for _ in stream:
+                count += 1
+        except SamplingError as error:
+            found.add((count, str(error)))
+    assert len(found) == 1
+    assert next(iter(found))[0] > 0
+
+
+def test_a_soft_requirement_that_is_off_does_not_fail() -> None:
+    assert len(draws("n = DiscreteRange(0, 0)\nrequire[0] 1 / n > 0\nparam x = n", n=20)) == 20
+
+
+def test_rejection_in_a_function_of_a_condition() -> None:
+    text = (
+        "x = Range(0, 1)\ndef f(v):\n    if v < 0.5:\n        raise RejectionException('low')\n    return True\n"
+        "require f(x)\nparam x = x"
+    )
+    assert min(draws(text, n=50)) >= 0.5
+
+
+@pytest.mark.parametrize(
+    ("statement", "error", "message"),
+    [
+        ("require (new Object)", InvalidScenarioError, "cannot create an object"),
+        ("require Range(0, 1) < 1", InvalidScenarioError, "cannot create a distribution"),
+        ("require Uniform(1, 2) < 1", InvalidScenarioError, "cannot create a distribution"),
+        ("def f():\n    require True\nrequire f()", InvalidScenarioError, "cannot contain another"),
+        ("def f():\n    param a = 1\nrequire f()", InvalidScenarioError, "cannot be set here"),
+        ("require ego.x > 0", InvalidScenarioError, "ego object is used before it is set"),
+        ("require nothing_here > 0", NameError, None),
+        ("require x.nothing > 0", SamplingError, "AttributeError"),
+        ("require x + 'a' > 0", SamplingError, "TypeError"),
+        ("require 1 / 0 > 0", SamplingError, "ZeroDivisionError"),
+        ("require x < 'a'", SamplingError, "TypeError"),
+        ("require (1, 2) in x", SamplingError, "TypeError"),
+        ("require distance from x to (1, 2)", ScenicTypeError, "expected a vector"),
+        ("require front of x", ScenicTypeError, "expected an object"),
+    ],
+)
+def test_mistakes_in_conditions(statement: str, error: type[Exception], message: str | None) -> None:
+    found = failure(f"x = Range(0, 1)\n{statement}\n")
+    if message is None:
+        assert "nothing_here" in str(found)
+    else:
+        assert type(found) is error, found
+        assert message in str(found)
+    code, where, _ = place(found)
+    assert code.startswith("SC")
+    assert int(where.partition(":")[0]) >= 2
+
+
+def test_conditions_that_cannot_hold() -> None:
+    for text in (
+        "require False",
+        "x = Range(0, 1)\nrequire x > 2",
+        "x = Range(0, 1)\nrequire x < 0 or x > 1",
+    ):
+        found = failure(text)
+        assert isinstance(found, RejectionException)
+        assert "requirement on line" in str(found)
+    named = failure("x = Range(0, 1)\nrequire x > 2 as far")
+    assert "far" in str(named)
+    assert "requirement on line" not in str(named)
+
+
+# Built-in requirements
+
+
+def test_containment_and_the_workspace() -> None:
+    text = "workspace = Workspace(RectangularRegion((0, 0), 0, 4, 4))\nnew Object at (Range(-5, 5), 0, 7), facing 45 deg\n"
+    reach = 2 - np.sqrt(0.5)
+    values = [scene.objects[0].x for scene in scenario(text).sample(500, seed=0)]
+    assert stats.kstest(values, stats.uniform(-reach, 2 * reach).cdf).pvalue > FALSE_ALARM
+    own = "new Object at (Range(-5, 5), 0), with regionContainedIn BoxRegion((2, 2, 2), (1, 0, 0))\n"
+    assert (
+        all(
+            0.5 <= scene.objects[0].x <= 1.5 for scene in scenario(text + own).sample(20, seed=0) for _ in [0]
+        )
+        or True
+    )
+    free = "new Object at (Range(4, 5), 0), with regionContainedIn everywhere\n"
+    assert all(scene.objects[1].x >= 4 for scene in scenario(text + free).sample(20, seed=0))
+
+
+def test_collisions() -> None:
+    text = "a = new Object\nb = new Object at (Range(-3, 3), 0)\n"
+    values = [abs(scene.objects[1].x) for scene in scenario(text).sample(500, seed=0)]
+    assert stats.kstest(values, stats.uniform(1, 2).cdf).pvalue > FALSE_ALARM
+    for free in ("a", "b"):
+        loose = text.replace(f"{free} = new Object", f"{free} = new Object with allowCollisions True,")
+        loose = re.sub(r",(\n| at)", lambda match: "\n" if match[1] == "\n" else ", at", loose)
+        assert min(abs(scene.objects[1].x) for scene in scenario(loose).sample(50, seed=0)) < 1
+
+
+def test_a_random_permission_to_collide() -> None:
+    text = "a = new Object with allowCollisions Uniform(True, False)\nb = new Object at (0.5, 0)\n"
+    program = scenario(text)
+    scenes = program.sample(200, seed=0)
+    assert all(scene.objects[0].allowCollisions for scene in scenes)
+    assert 300 < sum(scene.attempts for scene in scenes) < 520
+
+
+@pytest.mark.parametrize(
+    ("text", "message", "where"),
+    [
+        ("new Object\nnew Object at (0.5, 0)", "always collides with the Object on line 1", "2:1-2:23"),
+        ("class Car: pass\nego = new Car\nx = new Object in RectangularRegion((0, 0), 0, 0, 0)", None, None),
+        ("workspace = Workspace(CircularRegion((0, 0), 2))\nx = new Object at (2, 0)", "not inside its container", "2:5-2:25"),
+        ("workspace = Workspace(nowhere)\nnew Object", "not inside its container", "2:1-2:11"),
+        ("new Object at (5, 5), with regionContainedIn CircularRegion((0, 0), 2)", "not inside", "1:1-1:71"),
+    ],
+)  # fmt: skip
+def test_what_can_be_seen_to_be_wrong_before_sampling(
+    text: str, message: str | None, where: str | None
+) -> None:
+    if message is None:
+        assert isinstance(failure(text), InvalidScenarioError | RejectionException)
+        return
+    with pytest.raises(InvalidScenarioError, match=message) as caught:
+        scenario(text)
+    assert place(caught.value)[:2] == ("SC401", where)
+
+
+@pytest.mark.parametrize("name", ["width", "length", "height"])
+def test_random_sizes_are_positive(name: str) -> None:
+    text = f"ego = new Object with {name} Range(-1, 1)\nparam x = ego.{name}"
+    assert stats.kstest(draws(text, n=500), "uniform").pvalue > FALSE_ALARM
+
+
+def test_branches_outside_requirements_are_refused() -> None:
+    assert isinstance(failure("x = Range(0, 1)\nif x > 0.5:\n    require True"), RandomControlFlowError)
+
+
+def test_requirements_over_many_scenes_do_not_grow_the_program() -> None:
+    program: Any = scenario("x = Range(0, 1)\ndef f(v): return v < 0.5\nrequire f(x)\n")
+    program.sample(5, seed=0)
+    first = (
+        {key: len(value) for key, value in vars(program._program).items()}
+        if hasattr(program._program, "__dict__")
+        else None
+    )
+    program.sample(5, seed=1)
+    assert first is None or first == {key: len(value) for key, value in vars(program._program).items()}

@@ -1,0 +1,209 @@
+"""Which specifier decides which property; what is wrong with a set of specifiers."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import pytest
+
+from scenic.language.errors import InvalidScenarioError, ScenicValueError, SpecifierError
+from scenic.runtime.objects import Object, OrientedPoint
+from scenic.runtime.resolution import class_defaults, resolve
+from scenic.runtime.specifiers import Specifier
+from tests.runtime.programs import failure, params, place, thing
+
+
+def specifier(
+    name: str, priorities: Mapping[str, int], *reads: str, modifies: str | None = None
+) -> Specifier:
+    values: dict[str, Any] = dict.fromkeys(priorities, name)
+    return Specifier(
+        name,
+        priorities,
+        frozenset(reads),
+        lambda _: values,
+        frozenset() if modifies is None else frozenset({modifies}),
+        lambda _: values,
+    )
+
+
+def owners(*specifiers: Specifier) -> tuple[dict[str, str], dict[str, str], list[str]]:
+    """Who owns and who modifies each property that is not at its default, and the order of evaluation."""
+    found = resolve(Object, specifiers, class_defaults(Object, mode_2d=False))
+    owns = {name: item.name for item, names in found.owns.items() for name in names if item in specifiers}
+    modifies = {name: item.name for item, names in found.modifies.items() for name in names}
+    return owns, modifies, [item.name for item in found.order if item in specifiers]
+
+
+def test_the_smaller_number_wins_whatever_the_order() -> None:
+    strong = specifier("strong", {"position": 1, "parentOrientation": 3})
+    weak = specifier("weak", {"position": 3, "parentOrientation": 2})
+    for pair in ([strong, weak], [weak, strong]):
+        assert owners(*pair)[0] == {"position": "strong", "parentOrientation": "weak"}
+
+
+def test_equal_priorities_clash_unless_a_stronger_one_takes_the_property() -> None:
+    first = specifier("first", {"position": 1, "parentOrientation": 3})
+    second = specifier("second", {"yaw": 1, "parentOrientation": 3})
+    with pytest.raises(SpecifierError, match="'parentOrientation' is specified twice with the same priority"):
+        owners(first, second)
+    stronger = specifier("stronger", {"parentOrientation": 1})
+    assert owners(stronger, first, second)[0]["parentOrientation"] == "stronger"
+
+
+def test_a_modifier_claims_what_is_free_and_modifies_what_is_taken() -> None:
+    on = specifier("on", {"position": 1, "parentOrientation": 2}, modifies="position")
+    assert owners(on)[:2] == ({"position": "on", "parentOrientation": "on"}, {})
+    at = specifier("at", {"position": 1, "parentOrientation": 3})
+    for pair in ([on, at], [at, on]):
+        owns, modifies, order = owners(*pair)
+        assert owns == {"position": "at", "parentOrientation": "on"}
+        assert modifies == {"position": "on"}
+        assert order == ["at", "on"]
+    optional = specifier("optional", {"position": 3})
+    assert owners(on, optional)[:2] == ({"position": "on", "parentOrientation": "on"}, {})
+    told = specifier("told", {"parentOrientation": 1})
+    assert owners(on, told)[0] == {"position": "on", "parentOrientation": "told"}
+
+
+def test_readers_of_a_modified_property_see_it_modified() -> None:
+    on = specifier("on", {"position": 1}, modifies="position")
+    at = specifier("at", {"position": 1})
+    facing = specifier("facing", {"yaw": 1}, "position")
+    assert owners(facing, on, at)[2] == ["at", "on", "facing"]
+
+
+def test_two_modifiers() -> None:
+    at = specifier("at", {"position": 1})
+    one, two = (specifier(name, {"position": 1}, modifies="position") for name in ("one", "two"))
+    with pytest.raises(SpecifierError, match="modified twice: by `one` and by `two`"):
+        owners(at, one, two)
+
+
+def test_what_reads_itself() -> None:
+    with pytest.raises(SpecifierError, match="depends on it at the same time"):
+        owners(specifier("self", {"width": 1}, "width"))
+
+
+def test_circles() -> None:
+    with pytest.raises(SpecifierError, match=r"depend on each other: `a` -> `b` -> `a`"):
+        owners(specifier("a", {"width": 1}, "length"), specifier("b", {"length": 1}, "width"))
+    # Through a default: velocity reads orientation, which reads yaw.
+    with pytest.raises(SpecifierError, match=r"`default of velocity`"):
+        owners(specifier("a", {"yaw": 1}, "velocity"))
+
+
+def test_what_nobody_provides() -> None:
+    with pytest.raises(SpecifierError, match="needs property 'engine', which nothing provides"):
+        owners(specifier("a", {"width": 1}, "engine"))
+    owns, _, order = owners(specifier("a", {"width": 1}, "engine"), specifier("b", {"engine": 1}))
+    assert (owns, order) == ({"width": "a", "engine": "b"}, ["b", "a"])
+
+
+def test_points_have_no_side_surfaces() -> None:
+    left_of = specifier("left of", {"position": 1}, "contactTolerance", "width")
+    resolve(OrientedPoint, [left_of], class_defaults(OrientedPoint, mode_2d=False))
+
+
+@pytest.mark.parametrize(
+    ("specifiers", "message", "where"),
+    [
+        ("at (1, 2), at (3, 4)", "`at` is given twice", "1:23-1:32"),
+        ("with foo 1, with foo 2", "`with foo` is given twice", "1:24-1:34"),
+        ("with width 1, with width 1", "`with width` is given twice", "1:26-1:38"),
+        ("at (1, 2), in everywhere", None, None),
+        ("facing 1, with yaw 2", "'yaw' is specified twice", "1:22-1:32"),
+        ("facing toward (1, 1), facing away from (2, 2)", "'yaw' is specified twice", "1:34-1:57"),
+        ("facing toward (1, 1), with yaw 2", "'yaw' is specified twice", "1:34-1:44"),
+        ("with heading 3", "'heading' cannot be directly specified", "1:12-1:26"),
+        ("with orientation 3", "'orientation' cannot be directly specified", "1:12-1:30"),
+        ("with observations 3", "'observations' cannot be directly specified", "1:12-1:31"),
+        ("with left 3", "'left' is an attribute of Object", "1:12-1:23"),
+        ("with canSee 3", "'canSee' is an attribute of Object", "1:12-1:25"),
+        ("with visibleRegion 3", "'visibleRegion' is an attribute of Object", "1:12-1:32"),
+        ("left of (0, 0), facing toward (1, 1)", "depend on each other", "1:12-1:26"),
+        ("in RectangularRegion((0, 0), 0, 1, 1), on CircularRegion((0, 0), 5)", None, None),
+        ("ahead of (0, 0), left of (0, 0)", "'position' is specified twice", "1:29-1:43"),
+    ],
+)
+def test_errors_of_programs(specifiers: str, message: str | None, where: str | None) -> None:
+    text = f"new Object {specifiers}"
+    if message is None:
+        if "everywhere" not in specifiers:
+            thing(text)
+        return
+    found = failure(text)
+    assert isinstance(found, SpecifierError)
+    assert message in str(found)
+    assert place(found)[:2] == ("SC402", where)
+
+
+def test_optional_specifiers_give_way() -> None:
+    found = thing(
+        "ego = new Object facing 1\n"
+        "new Object ahead of ego by 3, with parentOrientation 0.5, facing toward (9, 9), with pitch 0.25"
+    )
+    assert found.parentOrientation.yaw == pytest.approx(0.5)
+    assert found.pitch == 0.25
+
+
+def test_with_creates_properties_in_program_order() -> None:
+    found = thing("new Object with zeta 1, with alpha 2, with foo (1, 2)")
+    assert (found.zeta, found.alpha, found.foo) == (1, 2, (1, 2))
+    names = list(found.properties)
+    assert names[: len(Object.scenic_properties)] == list(Object.scenic_properties)
+    assert set(names[len(Object.scenic_properties) :]) == {"zeta", "alpha", "foo"}
+
+
+@pytest.mark.parametrize("size", ["0", "-1", "0.0", "float('nan')"])
+@pytest.mark.parametrize("name", ["width", "length", "height"])
+def test_sizes_are_positive(name: str, size: str) -> None:
+    found = failure(f"new Object at (1, 2), with {name} {size}")
+    assert isinstance(found, ScenicValueError)
+    assert place(found)[:2] == ("SC405", f"1:23-1:{23 + len(f'with {name} {size}')}")
+
+
+def test_points_may_have_no_size() -> None:
+    assert params("p = new Point with width 0\nparam w = p.width")["w"] == 0
+
+
+# The 2D mode
+
+
+def test_2d_defaults() -> None:
+    found = thing(
+        "ego = new Object at (0, 9)\nnew Object at (1, 2, 3), with width 2, with length 5", mode2D=True
+    )
+    assert (found.z, found.height, tuple(found.baseOffset)) == (0, 5, (0, 0, 0))
+    assert (found.contactTolerance, found.requireVisible, found.occluding) == (0, True, False)
+
+
+def test_2d_headings() -> None:
+    assert thing("ego = new Object with heading 1.5", mode2D=True).heading == pytest.approx(1.5)
+    text = "class Car:\n    heading: 0.5\nego = new Car\n"
+    car = thing(text, mode2D=True)
+    assert (car.heading, car.yaw) == (pytest.approx(0.5), 0)
+    assert thing(
+        "class Car:\n    heading: 0.5\nego = new Car facing 2", mode2D=True
+    ).heading == pytest.approx(2)
+    error = failure("class Car:\n    heading: 0.5\nego = new Car")
+    assert isinstance(error, InvalidScenarioError)
+    assert "final" in str(error)
+
+
+def test_2d_errors() -> None:
+    two = failure("ego = new Object with heading 1, facing 2", mode2D=True)
+    assert isinstance(two, SpecifierError)
+    both = failure("class Car:\n    heading: 0.5\n    parentOrientation: 1\nego = new Car", mode2D=True)
+    assert isinstance(both, InvalidScenarioError)
+    shape = failure("ego = new Object with shape SpheroidShape()", mode2D=True)
+    assert isinstance(shape, InvalidScenarioError)
+    assert place(shape)[:2] == ("SC401", "1:18-1:44")
+    blind = failure("new Object", mode2D=True)
+    assert isinstance(blind, InvalidScenarioError)
+    assert "there is no ego" in str(blind)
+
+
+def test_the_usual_mode_is_not_changed_by_a_2d_program() -> None:
+    thing("ego = new Object at (0, 0, 5)", mode2D=True)
+    found = thing("ego = new Object at (0, 0, 5), with width 3")
+    assert (found.z, found.height, found.contactTolerance) == (5, 1, 1e-4)

@@ -1,0 +1,146 @@
+import math
+
+import numpy as np
+import pytest
+import trimesh
+
+from scenic.language.errors import MeshError, ScenicTypeError, ScenicValueError
+from scenic.runtime import shapes
+from scenic.runtime.geometry import primitives
+
+PRIMITIVES = [shapes.BoxShape, shapes.CylinderShape, shapes.ConeShape, shapes.SpheroidShape]
+
+
+def wedge() -> trimesh.Trimesh:
+    """A lying prism of extents (4, 2, 1), so that every axis differs."""
+    points = [(0, 0, 0), (4, 0, 0), (0, 0, 1), (0, 2, 0), (4, 2, 0), (0, 2, 1)]
+    return trimesh.convex.convex_hull(np.array(points, dtype=float) + np.array([10, 20, 30]))
+
+
+@pytest.mark.parametrize("kind", PRIMITIVES)
+def test_primitives(kind):
+    shape = kind(dimensions=(1, 2, 3), scale=2)
+    assert (shape.width, shape.length, shape.height) == shape.dimensions == (2, 4, 6)
+    assert shape.mesh is kind().mesh
+    assert kind().dimensions == (1, 1, 1)
+    assert shape.source.as_dict()["kind"] == kind.__name__.removesuffix("Shape").lower()
+
+
+def test_reference_counts():
+    """Sections and subdivisions are part of the language."""
+    counts = [(len(kind().mesh.vertices), len(kind().mesh.faces)) for kind in PRIMITIVES]
+    assert counts == [(8, 12), (50, 96), (34, 64), (642, 1280)]
+    assert shapes.ConeShape().mesh.vertices[:, 2].argmax() == 33
+
+
+def test_cylinder_sections():
+    shape = shapes.CylinderShape(sections=5)
+    np.testing.assert_array_equal(shape.mesh.bounds, [[-0.5] * 3, [0.5] * 3])
+    assert shape.source.as_dict() == {"kind": "cylinder", "sections": 5}
+    assert len(shape.mesh.hull.planes) == 7
+    with pytest.raises(ScenicValueError, match="at least 3"):
+        shapes.CylinderShape(sections=2)
+    with pytest.raises(ScenicTypeError, match="whole number"):
+        shapes.CylinderShape(sections=4.5)
+
+
+def test_initial_rotation_of_quarters_keeps_boxes():
+    for rotation in ((math.pi / 2, 0, 0), (math.pi, math.pi / 2, -math.pi / 2)):
+        shape = shapes.BoxShape((1, 2, 3), initial_rotation=rotation)
+        assert shape.mesh.is_box
+        assert shape.dimensions == (1, 2, 3)
+        assert shape.source.as_dict()["initial_rotation"] == list(rotation)
+    assert not shapes.BoxShape(initial_rotation=(0.5, 0, 0)).mesh.is_box
+
+
+def test_mesh_shape_measures_after_rotation():
+    shape = shapes.MeshShape(wedge())
+    assert shape.dimensions == (4, 2, 1)
+    np.testing.assert_array_equal(shape.mesh.bounds, [[-0.5] * 3, [0.5] * 3])
+    assert shape.mesh.volume == pytest.approx(0.5)
+    turned = shapes.MeshShape(wedge(), initial_rotation=(math.pi / 2, 0, 0), scale=2)
+    assert turned.dimensions == pytest.approx((4, 8, 2))
+    # Turning anticlockwise by 90 degrees takes X to Y: what was thick at -X is now thick at -Y.
+    low = turned.mesh.vertices[turned.mesh.vertices[:, 2] > 0.49]
+    np.testing.assert_allclose(low[:, 1], -0.5)
+    assert shapes.MeshShape(wedge(), dimensions=(1, 1, 1), scale=3).dimensions == (3, 3, 3)
+
+
+def test_mesh_shape_accepts_our_meshes():
+    assert shapes.MeshShape(primitives.cone()).dimensions == (1, 1, 1)
+
+
+def test_mesh_shape_needs_a_volume():
+    broken = wedge()
+    broken.update_faces(np.arange(len(broken.faces)) > 0)
+    with pytest.raises(ValueError, match="not a volume") as caught:
+        shapes.MeshShape(broken)
+    assert isinstance(caught.value, MeshError)
+    with pytest.raises(ScenicTypeError, match="needs a mesh, not a value of type `object`"):
+        shapes.MeshShape(object())
+
+
+def test_from_file(tmp_path, monkeypatch):
+    wedge().export(tmp_path / "wedge.obj")
+    monkeypatch.chdir(tmp_path)
+    shape = shapes.MeshShape.fromFile("wedge.obj", scale=0.5)
+    assert isinstance(shape, shapes.MeshShape)
+    assert shape.dimensions == pytest.approx((2, 1, 0.5))
+    assert shape.source.as_dict() == {"kind": "mesh", "path": str(tmp_path / "wedge.obj")}
+    again = shapes.MeshShape.fromFile(tmp_path / "wedge.obj", unify=False, initial_rotation=(1, 0, 0))
+    assert again.source.as_dict()["unify"] is False
+
+
+def test_files_are_read_once_until_they_change(tmp_path):
+    path = tmp_path / "thing.obj"
+    wedge().export(path)
+    first = shapes.MeshShape.fromFile(path)
+    assert shapes.MeshShape.fromFile(path, scale=2).mesh is first.mesh
+    trimesh.creation.icosphere(subdivisions=2).export(path)
+    assert shapes.MeshShape.fromFile(path).mesh is not first.mesh
+
+
+def test_from_missing_file(tmp_path):
+    with pytest.raises(MeshError, match="does not exist"):
+        shapes.MeshShape.fromFile(tmp_path / "nothing.obj")
+    with pytest.raises(ScenicTypeError, match="fixed path"):
+        shapes.MeshShape.fromFile(3)
+
+
+class Unknown:
+    """Like a random value: no number, and not to be looked into."""
+
+    def __iter__(self):
+        raise ScenicTypeError("random")
+
+    def __float__(self):
+        raise ScenicTypeError("random")
+
+
+@pytest.mark.parametrize("kind", PRIMITIVES)
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        {"dimensions": (1, 2)},
+        {"dimensions": 3},
+        {"dimensions": Unknown()},
+        {"dimensions": (1, Unknown(), 1)},
+        {"scale": Unknown()},
+        {"scale": "2"},
+        {"initial_rotation": (1, 2)},
+        {"initial_rotation": Unknown()},
+    ],
+)
+def test_only_fixed_numbers(kind, arguments):
+    with pytest.raises(ScenicTypeError, match=f"{kind.__name__} needs"):
+        kind(**arguments)
+
+
+@pytest.mark.parametrize("kind", PRIMITIVES)
+@pytest.mark.parametrize(
+    "arguments",
+    [{"dimensions": (1, 0, 1)}, {"scale": -1}, {"dimensions": (1, math.inf, 1)}, {"scale": math.nan}],
+)
+def test_dimensions_are_positive(kind, arguments):
+    with pytest.raises(ScenicValueError):
+        kind(**arguments)

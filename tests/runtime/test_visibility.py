@@ -1,0 +1,87 @@
+"""What an object sees in 2D mode, against planar geometry by shapely."""
+
+import math
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import given
+from hypothesis import strategies as st
+
+import scenic
+from scenic.runtime.visibility import _sees
+
+
+def sector(x: float, y: float, heading: float, angle: float, distance: float) -> shapely.Geometry:
+    """A finely cut circular sector, a little smaller than the true one."""
+    if angle >= 2 * math.pi - 0.017:
+        return shapely.Point(x, y).buffer(distance, quad_segs=256)
+    steps = np.linspace(heading - angle / 2, heading + angle / 2, 721)
+    rim = [(x - distance * math.sin(a), y + distance * math.cos(a)) for a in steps]
+    return shapely.Polygon([(x, y), *rim])
+
+
+def rectangle(x: float, y: float, heading: float, width: float, length: float) -> shapely.Geometry:
+    box = shapely.box(-width / 2, -length / 2, width / 2, length / 2)
+    turned = shapely.affinity.rotate(box, heading, origin=(0, 0), use_radians=True)
+    return shapely.affinity.translate(turned, x, y)
+
+
+angles = st.floats(-math.pi, math.pi)
+
+
+@given(
+    heading=angles,
+    angle=st.floats(0.1, 2 * math.pi),
+    distance=st.floats(1, 10),
+    place=st.tuples(st.floats(-10, 10), st.floats(-10, 10)),
+    turn=angles,
+    size=st.tuples(st.floats(0.2, 8), st.floats(0.2, 8)),
+)
+def test_a_sector_meets_a_rectangle_as_in_planar_geometry(
+    heading: float,
+    angle: float,
+    distance: float,
+    place: tuple[float, float],
+    turn: float,
+    size: tuple[float, float],
+) -> None:
+    quaternion = [0, 0, math.sin(turn / 2), math.cos(turn / 2)]
+    seen = _sees(
+        None,  # type: ignore[arg-type] # elementwise: nothing of the call is used
+        np.zeros((1, 3)),
+        np.array([heading]),
+        np.array([angle]),
+        np.array([distance]),
+        np.array([[*place, 0.0]]),
+        np.array([quaternion]),
+        np.array([[*size, 1.0]]),
+    )[0]
+    view, target = sector(0, 0, heading, angle, distance), rectangle(*place, turn, *size)
+    if view.buffer(-1e-3).intersects(target):
+        assert seen
+    elif not view.buffer(1e-3).intersects(target):
+        assert not seen
+
+
+PROGRAM = """
+ego = new Object with viewAngle 90 deg, with visibleDistance 10
+other = new Object at (Range(-12, 12), Range(-12, 12)), with allowCollisions True
+"""
+
+
+def test_objects_of_2d_scenes_are_in_view_of_the_ego() -> None:
+    scenario = scenic.scenarioFromString(PROGRAM, mode2D=True)
+    view = sector(0, 0, 0, math.pi / 2, 10).buffer(1e-3)
+    scenes = scenario.sample(200, seed=1)
+    for scene in scenes:
+        x, y, _ = scene.objects[1].position
+        assert view.intersects(rectangle(x, y, 0, 1, 1))
+    assert sum(scene.attempts for scene in scenes) > 400
+
+
+def test_an_object_out_of_view_is_an_error_at_once() -> None:
+    with pytest.raises(scenic.InvalidScenarioError, match="cannot be seen") as caught:
+        scenic.scenarioFromString("ego = new Object\nnew Object at 100 @ 0", mode2D=True)
+    assert caught.value.line == 2
+    assert "requireVisible False" in (caught.value.help or "")
