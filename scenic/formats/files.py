@@ -1,0 +1,136 @@
+"""Files that are complete or absent.
+
+A file is written under a temporary name in its own folder, flushed to the disk and only then given its name; on
+any error, Ctrl-C included, the temporary file is removed and what had the name before is untouched.
+"""
+
+import contextlib
+import os
+import secrets
+import stat
+from collections.abc import Iterator
+from pathlib import Path
+from typing import BinaryIO
+
+from scenic.language.errors import Located
+
+
+class OutputError(Located):
+    """A file that cannot be written, and why."""
+
+    code = "SC601"
+
+
+def _refusal(path: Path, reason: str, help: str | None = None) -> OutputError:
+    return OutputError(f"cannot write '{path}': {reason}", help=help)
+
+
+def _reason(error: OSError) -> str:
+    return (error.strerror or str(error)).lower()
+
+
+def _is_special(path: Path) -> bool:
+    """Whether the path names a device or a pipe, to which a name cannot be given anew."""
+    try:
+        mode = path.stat().st_mode
+    except OSError:
+        return False
+    return not stat.S_ISREG(mode) and not stat.S_ISDIR(mode)
+
+
+def check_writable(path: Path) -> None:
+    """Raise ``OutputError`` now if a file could not be written at ``path`` later."""
+    try:
+        mode = path.stat().st_mode
+    except FileNotFoundError:
+        pass
+    except OSError as error:
+        raise _refusal(path, _reason(error)) from error
+    else:
+        if stat.S_ISDIR(mode):
+            raise _refusal(path, "it is a folder", "give the name of a file in it")
+        if not os.access(path, os.W_OK):
+            raise _refusal(path, "permission denied")
+        if not stat.S_ISREG(mode):
+            return
+    check_folder(path.resolve().parent)
+
+
+def check_folder(folder: Path) -> None:
+    """Raise ``OutputError`` if no file can be made in ``folder``."""
+    if not folder.exists():
+        raise OutputError(f"the folder '{folder}' does not exist", help=f"make it first: mkdir -p '{folder}'")
+    if not folder.is_dir():
+        raise OutputError(f"'{folder}' is not a folder")
+    if not os.access(folder, os.W_OK | os.X_OK):
+        raise OutputError(f"no file can be made in the folder '{folder}': permission denied")
+
+
+@contextlib.contextmanager
+def writing(path: Path) -> Iterator[BinaryIO]:
+    """A binary file that gets the name ``path`` when the block ends well and vanishes when it does not.
+
+    Links are followed, so a link keeps pointing where it did. Devices and pipes are written to directly. The
+    permissions are those of the file replaced, else the usual ones of a new file.
+
+    Raises ``OutputError`` if the file cannot be made or written.
+    """
+    if _is_special(path):
+        try:
+            with path.open("wb") as device:
+                yield device
+        except BrokenPipeError:
+            raise
+        except OSError as error:
+            raise _refusal(path, _reason(error)) from error
+        return
+    target = path.resolve()
+    check_writable(target)
+    temporary = target.with_name(f".{target.name[:100]}.{secrets.token_hex(6)}.part")
+    try:
+        # The kernel applies the user's umask to these permissions.
+        descriptor = os.open(
+            temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0), 0o666
+        )
+    except OSError as error:
+        raise _refusal(path, _reason(error)) from error
+    try:
+        try:
+            with os.fdopen(descriptor, "wb") as stream:
+                yield stream
+                stream.flush()
+                with contextlib.suppress(FileNotFoundError):
+                    os.chmod(temporary, stat.S_IMODE(target.stat().st_mode))
+                os.fsync(stream.fileno())
+            os.replace(temporary, target)
+        except OSError as error:
+            raise _refusal(path, _reason(error)) from error
+        _flush_folder(target.parent)
+    except BaseException:
+        with contextlib.suppress(OSError):
+            os.unlink(temporary)
+        raise
+
+
+def write(path: Path, content: bytes) -> None:
+    """Write a whole file, or none; raises ``OutputError``."""
+    with writing(path) as stream:
+        stream.write(content)
+
+
+def _flush_folder(folder: Path) -> None:
+    """Make the new name itself last, on systems that can."""
+    with contextlib.suppress(OSError):
+        descriptor = os.open(folder, os.O_RDONLY)
+        try:
+            os.fsync(descriptor)
+        finally:
+            os.close(descriptor)
+
+
+def numbered(path: Path, k: int, count: int) -> Path:
+    """The file of scene ``k`` of ``count``: ``room.glb`` itself for one, ``room-007.glb`` for more."""
+    if count == 1:
+        return path
+    digits = max(3, len(str(count - 1)))
+    return path.with_name(f"{path.stem}-{k:0{digits}d}{path.suffix}")

@@ -1,0 +1,158 @@
+"""A scene as binary glTF 2.0 (``.glb``), which 3D programs and browsers read.
+
+Each object is a node with a name, a place, a rotation and a size; objects of one shape and colour share one mesh. One node
+above them turns Scenic's Z up into glTF's Y up. Class, name and index of each object are in the node's ``extras``.
+"""
+
+import json
+import struct
+from typing import Any, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from scenic.formats.instances import Instance, Surface, picture
+from scenic.formats.poses import Four
+from scenic.formats.scenes import Scene
+
+_FLOAT: Final = 5126
+_UINT16: Final = 5123
+_UINT32: Final = 5125
+_ARRAY_BUFFER: Final = 34962
+_ELEMENT_BUFFER: Final = 34963
+
+
+def glb(scene: Scene) -> bytes:
+    """The scene as the content of a ``.glb`` file."""
+    drawn = picture([scene])
+    buffers = _Buffers()
+    primitives = [buffers.surface(surface) for surface in drawn.surfaces]
+    materials: dict[Four, int] = {}
+    meshes: dict[tuple[int, Four], int] = {}
+    mesh_list: list[dict[str, Any]] = []
+    nodes: list[dict[str, Any]] = []
+    names: set[str] = set()
+    for index, instance in enumerate(drawn.scenes[0]):
+        key = (instance.surface, instance.color)
+        if key not in meshes:
+            meshes[key] = len(mesh_list)
+            material = materials.setdefault(instance.color, len(materials))
+            mesh_list.append({"primitives": [{**primitives[instance.surface], "material": material}]})
+        nodes.append(_node(instance, index, meshes[key], names))
+    root = {
+        "name": "scene",
+        # A quarter turn about X: Z up becomes Y up, and north (Y) becomes -Z, which is ahead in glTF.
+        "rotation": [-(0.5**0.5), 0.0, 0.0, 0.5**0.5],
+    }
+    if nodes:
+        root["children"] = list(range(len(nodes)))
+    document: dict[str, Any] = {
+        "asset": {"version": "2.0", "generator": "Scenic", "extras": {"seed": scene.seed, "k": scene.k}},
+        "scene": 0,
+        "scenes": [{"nodes": [len(nodes)]}],
+        "nodes": [*nodes, root],
+    }
+    if mesh_list:
+        document |= {
+            "meshes": mesh_list,
+            "materials": [_material(color) for color in materials],
+            "accessors": buffers.accessors,
+            "bufferViews": buffers.views,
+            "buffers": [{"byteLength": len(buffers.data)}],
+        }
+    return _container(json.dumps(document, separators=(",", ":")).encode(), bytes(buffers.data))
+
+
+def _node(instance: Instance, index: int, mesh: int, names: set[str]) -> dict[str, Any]:
+    """The node of an object, under a name that no other has."""
+    name, count = instance.label, 1
+    while name in names:
+        count += 1
+        name = f"{instance.label} {count}"
+    names.add(name)
+    return {
+        "name": name,
+        "mesh": mesh,
+        "translation": list(instance.position),
+        "rotation": _normalized(instance.quaternion),
+        "scale": list(instance.size),
+        "extras": {"class": instance.class_name, "index": index, "ego": instance.is_ego},
+    }
+
+
+def _normalized(quaternion: tuple[float, ...]) -> list[float]:
+    values = np.asarray(quaternion)
+    return [float(value) for value in values / np.linalg.norm(values)]
+
+
+def _material(color: Four) -> dict[str, Any]:
+    red, green, blue, alpha = color
+    material: dict[str, Any] = {
+        "pbrMetallicRoughness": {
+            "baseColorFactor": [*(_linear(value) for value in (red, green, blue)), alpha],
+            "metallicFactor": 0.0,
+            "roughnessFactor": 0.8,
+        }
+    }
+    if alpha < 1:
+        material["alphaMode"] = "BLEND"
+    return material
+
+
+def _linear(value: float) -> float:
+    """An sRGB component as linear light, which is what glTF's factors are (IEC 61966-2-1)."""
+    return value / 12.92 if value <= 0.04045 else ((value + 0.055) / 1.055) ** 2.4
+
+
+class _Buffers:
+    """The binary part and its descriptions."""
+
+    def __init__(self) -> None:
+        self.data = bytearray()
+        self.views: list[dict[str, Any]] = []
+        self.accessors: list[dict[str, Any]] = []
+
+    def surface(self, surface: Surface) -> dict[str, Any]:
+        """Store a surface; returns the primitive that uses it, without a material."""
+        vertices = surface.vertices.astype("<f4")
+        small = len(vertices) < 0xFFFF
+        indices = surface.faces.reshape(-1).astype("<u2" if small else "<u4")
+        positions = self._add(vertices, "VEC3", _FLOAT, _ARRAY_BUFFER)
+        # Limits are required of positions.
+        self.accessors[positions] |= {
+            "min": vertices.min(axis=0).tolist(),
+            "max": vertices.max(axis=0).tolist(),
+        }
+        return {
+            "attributes": {
+                "POSITION": positions,
+                "NORMAL": self._add(surface.normals.astype("<f4"), "VEC3", _FLOAT, _ARRAY_BUFFER),
+            },
+            "indices": self._add(indices, "SCALAR", _UINT16 if small else _UINT32, _ELEMENT_BUFFER),
+        }
+
+    def _add(self, values: npt.NDArray[Any], kind: str, component: int, target: int) -> int:
+        content = values.tobytes()
+        self.views.append(
+            {"buffer": 0, "byteOffset": len(self.data), "byteLength": len(content), "target": target}
+        )
+        self.data += content
+        self.data += b"\0" * (-len(self.data) % 4)
+        self.accessors.append(
+            {
+                "bufferView": len(self.views) - 1,
+                "componentType": component,
+                "count": len(values),
+                "type": kind,
+            }
+        )
+        return len(self.accessors) - 1
+
+
+def _container(document: bytes, binary: bytes) -> bytes:
+    """The two chunks of a GLB file behind its header; chunks are multiples of four bytes."""
+    document += b" " * (-len(document) % 4)
+    chunks = struct.pack("<II", len(document), 0x4E4F534A) + document
+    if binary:
+        chunks += struct.pack("<II", len(binary), 0x004E4942) + binary
+    return struct.pack("<III", 0x46546C67, 2, 12 + len(chunks)) + chunks

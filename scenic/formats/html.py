@@ -1,0 +1,129 @@
+"""Scenes as one HTML page that shows them in three dimensions; it needs no network and no other file.
+
+The page holds every mesh once and, for each scene, where it stands. The viewer itself is the plain JavaScript beside
+this module.
+"""
+
+import base64
+import html as markup
+import json
+from collections.abc import Iterable, Mapping
+from importlib import resources
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from scenic.formats.instances import Gallery, Instance, Surface
+from scenic.formats.json_lines import plain
+from scenic.formats.poses import euler_angles
+from scenic.formats.scenes import Scene
+from scenic.language.properties import properties_of
+
+
+class Page:
+    """A page in the making: scenes are added one by one, and are not kept."""
+
+    def __init__(self, title: str) -> None:
+        self._title = title
+        self._gallery = Gallery()
+        self._scenes: list[dict[str, Any]] = []
+
+    def __len__(self) -> int:
+        return len(self._scenes)
+
+    def add(self, scene: Scene) -> None:
+        """Put a scene on the page, after the others."""
+        self._scenes.append(
+            {
+                "seed": str(scene.seed),  # may be larger than JavaScript's numbers
+                "k": scene.k,
+                "attempts": scene.attempts,
+                "params": {str(name): _brief(value) for name, value in scene.params.items()},
+                "objects": [_object(instance) for instance in self._gallery.add(scene)],
+            }
+        )
+
+    def text(self) -> str:
+        """The text of the page, which needs at least one scene."""
+        data = {"meshes": [_mesh(surface) for surface in self._gallery.surfaces], "scenes": self._scenes}
+        text = json.dumps(data, allow_nan=False, separators=(",", ":"))
+        parts = {
+            "title": markup.escape(self._title),
+            "style": _asset("page.css"),
+            "script": _asset("viewer.js"),
+            # No text of the scenes may end the element that holds it.
+            "data": text.replace("<", "\\u003c"),
+        }
+        return _filled(_asset("page.html"), parts)
+
+
+def page(scenes: Iterable[Scene], title: str) -> str:
+    """The text of a page of these scenes, at least one."""
+    made = Page(title)
+    for scene in scenes:
+        made.add(scene)
+    return made.text()
+
+
+def _mesh(surface: Surface) -> dict[str, str]:
+    """Corners as 32-bit floats; normals as four 16-bit integers, the last for alignment; 32-bit indices."""
+    normals = np.zeros((len(surface.normals), 4), "<i2")
+    normals[:, :3] = np.round(surface.normals * 32767)
+    return {
+        "points": _packed(surface.vertices.astype("<f4")),
+        "normals": _packed(normals),
+        "indices": _packed(surface.faces.astype("<u4")),
+    }
+
+
+def _packed(values: npt.NDArray[Any]) -> str:
+    return base64.b64encode(values.tobytes()).decode("ascii")
+
+
+def _object(instance: Instance) -> dict[str, Any]:
+    """What the page says of an object: its place, and the properties that its class adds to the built-in ones."""
+    builtin = properties_of("Object")
+    return {
+        "mesh": instance.surface,
+        "class": instance.class_name,
+        "label": instance.label,
+        "position": instance.position,
+        "quaternion": instance.quaternion,
+        "euler": euler_angles(instance.quaternion),
+        "size": instance.size,
+        "color": instance.color,
+        "more": {
+            name: _brief(value)
+            for name, value in instance.thing.properties.items()
+            if name not in builtin and not name.startswith("_")
+        },
+    }
+
+
+def _brief(value: object) -> str:
+    """A value in a few words."""
+    match plain(value, {}):
+        case str() as text:
+            shown = text
+        case float() as real:
+            shown = f"{real:.6g}"
+        case {"$text": str() as text}:
+            shown = text
+        case other:
+            shown = json.dumps(other)
+    return shown if len(shown) <= 80 else shown[:79] + "…"
+
+
+def _filled(template: str, parts: Mapping[str, str]) -> str:
+    """The template with ``{{name}}`` replaced; what is put in is not searched again."""
+    pieces = template.split("{{")
+    result = [pieces[0]]
+    for piece in pieces[1:]:
+        name, _, rest = piece.partition("}}")
+        result += [parts[name], rest]
+    return "".join(result)
+
+
+def _asset(name: str) -> str:
+    return (resources.files("scenic.formats") / "viewer" / name).read_text(encoding="utf-8")

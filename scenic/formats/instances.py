@@ -1,0 +1,189 @@
+"""A scene as a picture needs it: triangle meshes, each used at several places, sizes and colours.
+
+The meshes are shared by all objects and scenes that use them. Their corners carry normals, so that round things
+look round and edges stay sharp.
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from scenic.formats.poses import Four, Triple, quaternion_of, rotation_matrix
+from scenic.formats.scenes import Scene, SceneObject, UnitMesh
+
+Array = npt.NDArray[np.float64]
+
+PALETTE: tuple[Triple, ...] = (
+    (0.36, 0.54, 0.74),
+    (0.87, 0.60, 0.33),
+    (0.44, 0.66, 0.45),
+    (0.76, 0.45, 0.47),
+    (0.58, 0.50, 0.73),
+    (0.65, 0.54, 0.45),
+    (0.82, 0.60, 0.74),
+    (0.55, 0.60, 0.62),
+    (0.75, 0.72, 0.40),
+    (0.38, 0.68, 0.71),
+)
+"""Colours of objects that have none of their own: one for each class, in order of appearance."""
+
+CREASE = np.cos(np.radians(35))
+"""Faces that meet at a smaller angle are shaded as one smooth surface."""
+
+
+@dataclass(frozen=True, slots=True)
+class Surface:
+    """A mesh in the unit box with a normal for every corner; corners at sharp edges occur several times.
+
+    ``vertices`` and ``normals`` have shape ``(v, 3)``, ``faces`` ``(f, 3)``.
+    """
+
+    vertices: Array
+    normals: Array
+    faces: npt.NDArray[np.int64]
+
+
+@dataclass(frozen=True, slots=True)
+class Instance:
+    """One object as it is drawn: a surface with a place, a rotation ``(x, y, z, w)``, a size and a colour."""
+
+    surface: int
+    thing: SceneObject
+    name: str | None
+    class_name: str
+    position: Triple
+    quaternion: Four
+    size: Triple
+    color: Four
+    is_ego: bool
+
+    @property
+    def label(self) -> str:
+        """The variable's name where it is known, else the class's."""
+        return self.name or ("ego" if self.is_ego else self.class_name)
+
+    def matrix(self) -> Array:
+        """The matrix, shape ``(4, 4)``, that takes the unit box to the object."""
+        matrix = np.eye(4)
+        matrix[:3, :3] = rotation_matrix(self.quaternion) * np.asarray(self.size)
+        matrix[:3, 3] = self.position
+        return matrix
+
+
+@dataclass(frozen=True, slots=True)
+class Picture:
+    """Scenes as drawn: the surfaces they share, and the instances of each scene."""
+
+    surfaces: tuple[Surface, ...]
+    scenes: tuple[tuple[Instance, ...], ...]
+
+
+class Gallery:
+    """Collects scenes to be drawn, one by one; it keeps what is drawn of them and not the scenes."""
+
+    def __init__(self) -> None:
+        self._surfaces: list[Surface] = []
+        # The mesh is kept beside its number: its identity stays taken while the table lives.
+        self._known: dict[int, tuple[UnitMesh, int]] = {}
+        self._colors: dict[str, Triple] = {}
+
+    @property
+    def surfaces(self) -> tuple[Surface, ...]:
+        """The meshes of all scenes added so far."""
+        return tuple(self._surfaces)
+
+    def add(self, scene: Scene) -> tuple[Instance, ...]:
+        """What is drawn of a scene: all but objects with ``render`` false and those of no size."""
+        instances = []
+        names = scene.names
+        for thing in scene.objects:
+            class_name = type(thing).__name__
+            size = (float(thing.width), float(thing.length), float(thing.height))
+            if not thing.properties.get("render", True) or min(size) <= 0:
+                continue
+            x, y, z = (float(value) for value in thing.position)
+            default = self._colors.setdefault(class_name, PALETTE[len(self._colors) % len(PALETTE)])
+            instances.append(
+                Instance(
+                    surface=self._number(thing.shape.mesh, size),
+                    thing=thing,
+                    name=names.get(thing),
+                    class_name=class_name,
+                    position=(x, y, z),
+                    quaternion=quaternion_of(thing),
+                    size=size,
+                    color=_color(thing, default),
+                    is_ego=thing is scene.egoObject,
+                )
+            )
+        return tuple(instances)
+
+    def _number(self, mesh: UnitMesh, size: Triple) -> int:
+        if id(mesh) not in self._known:
+            self._known[id(mesh)] = (mesh, len(self._surfaces))
+            self._surfaces.append(surface_of(mesh, size))
+        return self._known[id(mesh)][1]
+
+
+def picture(scenes: Iterable[Scene]) -> Picture:
+    """What is to be drawn of the scenes."""
+    gallery = Gallery()
+    drawn = tuple(gallery.add(scene) for scene in scenes)
+    return Picture(gallery.surfaces, drawn)
+
+
+def _color(thing: SceneObject, default: Triple) -> Four:
+    if thing.color is None:
+        return (*default, 1.0)
+    red, green, blue, *alpha = (float(value) for value in thing.color)
+    return (red, green, blue, alpha[0] if alpha else 1.0)
+
+
+def surface_of(mesh: UnitMesh, size: Triple) -> Surface:
+    """The mesh with normals that are shared across smooth edges and split at sharp ones.
+
+    ``size`` is a size the mesh is used at: angles between faces are those of the mesh at that size. The normals are
+    in the unit box, as the vertices are.
+    """
+    vertices = np.asarray(mesh.vertices, dtype=np.float64)
+    faces = np.asarray(mesh.faces, dtype=np.int64)
+    flat, area = _face_normals(vertices * size, faces)
+    corner_normals = _smooth(vertices, faces, flat, area)
+    # At the given size a normal n is n * size in the unit box (the inverse transpose of the scaling).
+    unit = corner_normals * size
+    unit /= np.maximum(np.linalg.norm(unit, axis=1, keepdims=True), 1e-30)
+    keys = np.column_stack([faces.reshape(-1), np.round(unit * 1024).astype(np.int64)])
+    _, first, index = np.unique(keys, axis=0, return_index=True, return_inverse=True)
+    return Surface(vertices[faces.reshape(-1)[first]], unit[first], index.reshape(-1, 3).astype(np.int64))
+
+
+def _face_normals(vertices: Array, faces: npt.NDArray[np.int64]) -> tuple[Array, Array]:
+    """Unit normals and areas of the faces."""
+    a, b, c = (vertices[faces[:, corner]] for corner in range(3))
+    normal = np.cross(b - a, c - a)
+    length = np.linalg.norm(normal, axis=1)
+    return normal / np.maximum(length, 1e-30)[:, None], length / 2
+
+
+def _smooth(vertices: Array, faces: npt.NDArray[np.int64], flat: Array, area: Array) -> Array:
+    """For every corner of every face, the mean normal of the faces round it that are smooth with this one.
+
+    Returns shape ``(3 f, 3)``; faces weigh by their area.
+    """
+    import scipy.sparse
+
+    count = len(faces)
+    corners = faces.reshape(-1)
+    owner = np.repeat(np.arange(count), 3)
+    # Pairs of (corner of a face, face at the same vertex): a product of two incidence matrices.
+    at_vertex = scipy.sparse.csr_array((np.ones(3 * count), (corners, owner)), shape=(len(vertices), count))
+    pairs = at_vertex[corners].tocoo()
+    corner, other = pairs.coords
+    smooth = np.einsum("ij,ij->i", flat[owner[corner]], flat[other]) > CREASE
+    corner, other = corner[smooth], other[smooth]
+    weighted = flat[other] * area[other, None]
+    total = np.column_stack([np.bincount(corner, weighted[:, axis], 3 * count) for axis in range(3)])
+    length = np.linalg.norm(total, axis=1, keepdims=True)
+    return np.where(length > 1e-30, total / np.maximum(length, 1e-30), flat[owner])

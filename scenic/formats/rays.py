@@ -1,0 +1,63 @@
+"""Ray casting: the one place that knows Embree (in single precision, which is enough for pictures)."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+Floats = npt.NDArray[np.float32]
+
+
+@dataclass(frozen=True, slots=True)
+class Hits:
+    """What rays met first, an entry for each ray: the triangle (-1 for none), the distance along the ray in lengths of
+    its direction, and the weights of the triangle's second and third corners.
+    """
+
+    triangle: npt.NDArray[np.int32]
+    distance: Floats
+    second: Floats
+    third: Floats
+
+
+class RayScene:
+    """Triangles that rays can be cast at; ``triangles`` has shape ``(n, 3, 3)``."""
+
+    def __init__(self, triangles: npt.NDArray[Any]) -> None:
+        from embreex import rtcore_scene
+        from embreex.mesh_construction import TriangleMesh
+
+        self._empty = len(triangles) == 0
+        self._scene: Any = rtcore_scene.EmbreeScene()
+        if not self._empty:
+            self._mesh: Any = TriangleMesh(self._scene, np.ascontiguousarray(triangles, dtype=np.float32))
+
+    def first_hits(self, origins: Floats, directions: Floats) -> Hits:
+        """What each ray meets first."""
+        count = len(origins)
+        if self._empty or not count:
+            return Hits(
+                np.full(count, -1, np.int32),
+                np.full(count, np.inf, np.float32),
+                *np.zeros((2, count), np.float32),
+            )
+        found: dict[str, Any] = self._scene.run(
+            np.ascontiguousarray(origins), np.ascontiguousarray(directions), output=True
+        )
+        triangle = found["primID"]
+        distance = np.where(triangle >= 0, found["tfar"], np.float32(np.inf))
+        return Hits(triangle, distance, found["u"], found["v"])
+
+    def blocked(self, origins: Floats, directions: Floats, reach: float = 1e30) -> npt.NDArray[np.bool_]:
+        """Whether each ray meets anything within ``reach`` lengths of its direction."""
+        count = len(origins)
+        if self._empty or not count:
+            return np.zeros(count, dtype=bool)
+        found: npt.NDArray[np.int32] = self._scene.run(
+            np.ascontiguousarray(origins),
+            np.ascontiguousarray(directions),
+            dists=np.full(count, reach, np.float32),
+            query="OCCLUDED",
+        )
+        return found >= 0

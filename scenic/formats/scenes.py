@@ -1,0 +1,104 @@
+"""What the writers need to know of a scene: structural types that the runtime's scenes and objects satisfy."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+
+class UnitMesh(Protocol):
+    """A closed triangle mesh scaled to the unit box."""
+
+    @property
+    def vertices(self) -> npt.NDArray[np.float64]:
+        """Corners, shape ``(v, 3)``, every coordinate in ``[-0.5, 0.5]``."""
+
+    @property
+    def faces(self) -> npt.NDArray[np.integer[Any]]:
+        """Triangles as indices of corners, shape ``(f, 3)``, anticlockwise seen from outside."""
+
+
+class ShapeSource(Protocol):
+    """Where a form comes from."""
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain data: ``kind``, and what else selects the mesh."""
+
+
+class Shape(Protocol):
+    """The form of an object, without its size and place."""
+
+    @property
+    def mesh(self) -> UnitMesh: ...
+
+    @property
+    def source(self) -> ShapeSource: ...
+
+
+class Quaternion(Protocol):
+    """A rotation; the scalar part is ``w``."""
+
+    @property
+    def x(self) -> float: ...
+    @property
+    def y(self) -> float: ...
+    @property
+    def z(self) -> float: ...
+    @property
+    def w(self) -> float: ...
+
+
+class SceneObject(Protocol):
+    """An object of a scene with all of its values drawn."""
+
+    @property
+    def position(self) -> Iterable[float]:
+        """Metres: X east, Y north, Z up."""
+
+    @property
+    def orientation(self) -> Quaternion: ...
+    @property
+    def yaw(self) -> float: ...
+    @property
+    def pitch(self) -> float: ...
+    @property
+    def roll(self) -> float: ...
+    @property
+    def width(self) -> float: ...
+    @property
+    def length(self) -> float: ...
+    @property
+    def height(self) -> float: ...
+    @property
+    def shape(self) -> Shape: ...
+    @property
+    def color(self) -> Sequence[float] | None: ...
+    @property
+    def properties(self) -> Mapping[str, object]: ...
+
+
+class Scene(Protocol):
+    """A sampled scene."""
+
+    @property
+    def seed(self) -> int: ...
+    @property
+    def k(self) -> int:
+        """The number of the scene among those of its seed, from 0."""
+
+    @property
+    def attempts(self) -> int:
+        """How many candidates were drawn until this one met every requirement."""
+
+    @property
+    def params(self) -> Mapping[str, object]: ...
+    @property
+    def objects(self) -> Sequence[SceneObject]:
+        """The ego first, when there is one."""
+
+    @property
+    def egoObject(self) -> SceneObject | None: ...
+    @property
+    def names(self) -> Mapping[Any, str]:
+        """The names of the program's variables that hold objects, as far as they are known."""

@@ -1,0 +1,736 @@
+"use strict";
+// The viewer of sampled scenes: plain JavaScript over WebGL 2, without any library and without the network.
+// Coordinates are Scenic's: X east, Y north, Z up, in metres. Matrices are column-major arrays of sixteen numbers.
+
+(() => {
+  const data = JSON.parse(document.getElementById("data").textContent);
+  const byId = (id) => document.getElementById(id);
+  const canvas = byId("view");
+  const gl = canvas.getContext("webgl2", { antialias: true, alpha: false });
+  if (!gl) {
+    byId("trouble").hidden = false;
+    byId("trouble").textContent = "This page needs WebGL 2, which this browser does not offer.";
+    return;
+  }
+
+  // ---- Small vector and matrix arithmetic -----------------------------------------------------------------------
+
+  const add = (a, b) => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
+  const sub = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+  const times = (a, s) => [a[0] * s, a[1] * s, a[2] * s];
+  const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+  const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+  const unit = (a) => times(a, 1 / Math.hypot(...a));
+
+  function product(a, b) {
+    const c = new Float32Array(16);
+    for (let j = 0; j < 4; j++) {
+      for (let i = 0; i < 4; i++) {
+        let sum = 0;
+        for (let k = 0; k < 4; k++) sum += a[k * 4 + i] * b[j * 4 + k];
+        c[j * 4 + i] = sum;
+      }
+    }
+    return c;
+  }
+
+  function lookAt(eye, ahead, up) {
+    const right = unit(cross(ahead, up));
+    const top = cross(right, ahead);
+    return new Float32Array([
+      right[0], top[0], -ahead[0], 0, right[1], top[1], -ahead[1], 0, right[2], top[2], -ahead[2], 0,
+      -dot(right, eye), -dot(top, eye), dot(ahead, eye), 1,
+    ]);
+  }
+
+  function perspective(fov, aspect, near, far) {
+    const f = 1 / Math.tan(fov / 2);
+    return new Float32Array([
+      f / aspect, 0, 0, 0, 0, f, 0, 0, 0, 0, (far + near) / (near - far), -1, 0, 0, (2 * far * near) / (near - far), 0,
+    ]);
+  }
+
+  function orthographic(half, near, far) {
+    return new Float32Array([
+      1 / half, 0, 0, 0, 0, 1 / half, 0, 0, 0, 0, 2 / (near - far), 0, 0, 0, (far + near) / (near - far), 1,
+    ]);
+  }
+
+  function rotation([x, y, z, w]) {
+    return [
+      [1 - 2 * (y * y + z * z), 2 * (x * y + z * w), 2 * (x * z - y * w)],
+      [2 * (x * y - z * w), 1 - 2 * (x * x + z * z), 2 * (y * z + x * w)],
+      [2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y)],
+    ]; // columns
+  }
+
+  // ---- Shaders --------------------------------------------------------------------------------------------------
+
+  const SOLID_VERTEX = `#version 300 es
+    layout(location = 0) in vec3 place;
+    layout(location = 1) in vec3 normal;
+    uniform mat4 camera, sunCamera, model;
+    uniform vec3 size;
+    out vec3 worldNormal, world, sunPlace;
+    void main() {
+      vec4 point = model * vec4(place, 1.0);
+      world = point.xyz;
+      // The model's columns are long as the size is; a normal needs the inverse.
+      worldNormal = mat3(model) * (normal / (size * size));
+      vec4 lit = sunCamera * point;
+      sunPlace = lit.xyz * 0.5 + 0.5;
+      gl_Position = camera * point;
+    }`;
+  const LIGHT = `
+    uniform highp sampler2DShadow shadows;
+    uniform vec3 sun;
+    uniform float texel, ambientScale;
+    float sunlight(vec3 place, vec3 normal) {
+      float facing = dot(normal, sun);
+      if (facing <= 0.0) return 0.0;
+      float bias = texel * (0.6 + 1.4 * sqrt(max(0.0, 1.0 - facing * facing)) / max(facing, 0.15));
+      float total = 0.0;
+      for (int i = -2; i <= 2; i++)
+        for (int j = -2; j <= 2; j++)
+          total += texture(shadows, vec3(place.xy + vec2(i, j) * texel * 0.8, place.z - bias));
+      bool inside = all(lessThan(abs(place - 0.5), vec3(0.5)));
+      return facing * (inside ? total / 25.0 : 1.0);
+    }
+    vec3 encode(vec3 light) {
+      light = clamp(light, 0.0, 1.0);
+      return mix(light * 12.92, 1.055 * pow(light, vec3(1.0 / 2.4)) - 0.055, step(0.0031308, light));
+    }
+    vec3 illuminate(vec3 color, vec3 normal, vec3 place) {
+      float up = normal.z * 0.5 + 0.5;
+      vec3 ambient = mix(vec3(0.30, 0.285, 0.27), vec3(0.56, 0.60, 0.64), up) * ambientScale;
+      return color * (ambient + sunlight(place, normal) * vec3(0.92, 0.88, 0.83));
+    }`;
+  const SOLID_FRAGMENT = `#version 300 es
+    precision highp float;
+    in vec3 worldNormal, world, sunPlace;
+    uniform vec4 color;
+    uniform vec3 eye;
+    uniform float glow;
+    out vec4 shown;
+    ${LIGHT}
+    void main() {
+      vec3 toEye = normalize(eye - world);
+      vec3 normal = normalize(worldNormal);
+      if (dot(normal, toEye) < 0.0) normal = -normal;
+      vec3 light = illuminate(color.rgb, normal, sunPlace);
+      float rim = pow(1.0 - max(dot(normal, toEye), 0.0), 2.0);
+      vec3 mark = glow > 0.75 ? vec3(0.15, 0.45, 1.0) : vec3(0.9, 0.75, 0.3);
+      light = mix(light, mark, glow * (0.25 + 0.6 * rim));
+      shown = vec4(encode(light), color.a);
+    }`;
+  const GROUND_VERTEX = `#version 300 es
+    layout(location = 0) in vec3 place;
+    uniform mat4 camera, sunCamera;
+    uniform vec3 middle;
+    uniform float extent;
+    out vec3 world, sunPlace;
+    void main() {
+      world = middle + vec3(place.xy * 2.0 * extent, 0.0);
+      sunPlace = (sunCamera * vec4(world, 1.0)).xyz * 0.5 + 0.5;
+      gl_Position = camera * vec4(world, 1.0);
+    }`;
+  const GROUND_FRAGMENT = `#version 300 es
+    precision highp float;
+    in vec3 world, sunPlace;
+    uniform vec3 ground, line, middle;
+    uniform float extent, spacing, lines;
+    out vec4 shown;
+    ${LIGHT}
+    float grid(float step) {
+      vec2 at = world.xy / step;
+      vec2 foot = max(fwidth(at), vec2(1e-5));
+      vec2 cover = clamp(1.1 - abs(at - round(at)) / foot, 0.0, 1.0) * clamp(1.5 - 5.0 * foot, 0.0, 1.0);
+      return max(cover.x, cover.y);
+    }
+    void main() {
+      float mark = lines * max(0.35 * grid(spacing), 0.7 * grid(spacing * 5.0));
+      vec3 color = illuminate(mix(ground, line, mark), vec3(0.0, 0.0, 1.0), sunPlace);
+      float away = length(world.xy - middle.xy) / extent;
+      float fade = 1.0 - smoothstep(0.35, 1.0, away);
+      shown = vec4(encode(color), fade);
+    }`;
+  const PLAIN_VERTEX = `#version 300 es
+    layout(location = 0) in vec3 place;
+    uniform mat4 camera, model;
+    void main() { gl_Position = camera * model * vec4(place, 1.0); }`;
+  const PLAIN_FRAGMENT = `#version 300 es
+    precision highp float;
+    uniform vec4 color;
+    out vec4 shown;
+    void main() { shown = color; }`;
+
+  function program(vertex, fragment) {
+    const made = gl.createProgram();
+    for (const [kind, text] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]]) {
+      const shader = gl.createShader(kind);
+      gl.shaderSource(shader, text);
+      gl.compileShader(shader);
+      if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS)) throw new Error(gl.getShaderInfoLog(shader));
+      gl.attachShader(made, shader);
+    }
+    gl.linkProgram(made);
+    if (!gl.getProgramParameter(made, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(made));
+    const places = {};
+    for (let i = 0; i < gl.getProgramParameter(made, gl.ACTIVE_UNIFORMS); i++) {
+      const { name } = gl.getActiveUniform(made, i);
+      places[name] = gl.getUniformLocation(made, name);
+    }
+    return { made, places };
+  }
+
+  const solid = program(SOLID_VERTEX, SOLID_FRAGMENT);
+  const groundProgram = program(GROUND_VERTEX, GROUND_FRAGMENT);
+  const plain = program(PLAIN_VERTEX, PLAIN_FRAGMENT);
+
+  // ---- Meshes ---------------------------------------------------------------------------------------------------
+
+  const bytes = (text) => Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+
+  function mesh(points, normals, indices) {
+    const array = gl.createVertexArray();
+    gl.bindVertexArray(array);
+    const store = (target, content) => {
+      gl.bindBuffer(target, gl.createBuffer());
+      gl.bufferData(target, content, gl.STATIC_DRAW);
+    };
+    store(gl.ARRAY_BUFFER, points);
+    gl.enableVertexAttribArray(0);
+    gl.vertexAttribPointer(0, 3, gl.FLOAT, false, 0, 0);
+    if (normals) {
+      store(gl.ARRAY_BUFFER, normals);
+      gl.enableVertexAttribArray(1);
+      gl.vertexAttribPointer(1, 3, gl.SHORT, true, 8, 0);
+    }
+    store(gl.ELEMENT_ARRAY_BUFFER, indices);
+    gl.bindVertexArray(null);
+    return { array, count: indices.length };
+  }
+
+  const meshes = data.meshes.map((item) =>
+    mesh(
+      new Float32Array(bytes(item.points).buffer),
+      new Int16Array(bytes(item.normals).buffer),
+      new Uint32Array(bytes(item.indices).buffer),
+    ));
+  const square = mesh(
+    new Float32Array([-0.5, -0.5, 0, 0.5, -0.5, 0, 0.5, 0.5, 0, -0.5, 0.5, 0]), null, new Uint32Array([0, 1, 2, 0, 2, 3]));
+  const cubeEdges = mesh(
+    new Float32Array([0, 1, 2, 3, 4, 5, 6, 7].flatMap((i) => [(i & 1) - 0.5, ((i >> 1) & 1) - 0.5, (i >> 2) - 0.5])),
+    null, new Uint32Array([0, 1, 2, 3, 4, 5, 6, 7, 0, 2, 1, 3, 4, 6, 5, 7, 0, 4, 1, 5, 2, 6, 3, 7]));
+
+  function draw(item, mode = gl.TRIANGLES) {
+    gl.bindVertexArray(item.array);
+    gl.drawElements(mode, item.count, gl.UNSIGNED_INT, 0);
+  }
+
+  // ---- Scenes ---------------------------------------------------------------------------------------------------
+
+  const linear = (value) => (value <= 0.04045 ? value / 12.92 : ((value + 0.055) / 1.055) ** 2.4);
+
+  for (const scene of data.scenes) {
+    const low = [Infinity, Infinity, Infinity];
+    const high = [-Infinity, -Infinity, -Infinity];
+    for (const thing of scene.objects) {
+      const columns = rotation(thing.quaternion);
+      const sides = columns.map((column, axis) => times(column, thing.size[axis]));
+      thing.model = new Float32Array([...sides[0], 0, ...sides[1], 0, ...sides[2], 0, ...thing.position, 1]);
+      thing.light = [...thing.color.slice(0, 3).map(linear), thing.color[3]];
+      thing.corners = [];
+      for (let i = 0; i < 8; i++) {
+        const signs = [(i & 1) - 0.5, ((i >> 1) & 1) - 0.5, (i >> 2) - 0.5];
+        let corner = thing.position;
+        signs.forEach((sign, axis) => { corner = add(corner, times(sides[axis], sign)); });
+        thing.corners.push(corner);
+        corner.forEach((value, axis) => {
+          low[axis] = Math.min(low[axis], value);
+          high[axis] = Math.max(high[axis], value);
+        });
+      }
+    }
+    if (!scene.objects.length) { low.fill(-0.5); high.fill(0.5); }
+    scene.middle = times(add(low, high), 0.5);
+    scene.radius = Math.max(Math.hypot(...sub(high, low)) / 2, 1e-3);
+    scene.low = low;
+    scene.high = high;
+  }
+  // One ground and one grid for all scenes, so that stepping through them does not make them jump.
+  const reach = Math.max(...data.scenes.map((scene) => scene.radius));
+  const lowest = Math.min(...data.scenes.map((scene) => scene.low[2]));
+  const groundHeight = lowest < 0 || lowest > 8 * reach ? lowest : 0;
+  const power = 10 ** Math.floor(Math.log10(reach / 6));
+  const spacing = [1, 2, 5, 10].map((step) => step * power)
+    .reduce((best, step) => (Math.abs(Math.log((step * 6) / reach)) < Math.abs(Math.log((best * 6) / reach)) ? step : best));
+
+  // ---- What is shown --------------------------------------------------------------------------------------------
+
+  const state = { scene: 0, near: -1, chosen: -1, grid: true, playing: 0, dark: false };
+  const view = { target: [0, 0, 0], distance: 10, azimuth: (-35 * Math.PI) / 180, elevation: (33 * Math.PI) / 180 };
+  const FOV = (38 * Math.PI) / 180;
+  const current = () => data.scenes[state.scene];
+
+  const ahead = () => [
+    Math.sin(view.azimuth) * Math.cos(view.elevation),
+    Math.cos(view.azimuth) * Math.cos(view.elevation),
+    -Math.sin(view.elevation),
+  ];
+  const rightward = () => [Math.cos(view.azimuth), -Math.sin(view.azimuth), 0];
+  const upward = () => cross(rightward(), ahead());
+  const eye = () => sub(view.target, times(ahead(), view.distance));
+
+  /** The nearest view in the present direction that shows all of the points. */
+  function frame(points) {
+    const aspect = canvas.clientWidth / Math.max(canvas.clientHeight, 1);
+    const t = Math.tan(FOV / 2) / 1.08;
+    const axes = [rightward(), upward(), ahead()];
+    const local = points.map((point) => axes.map((axis) => dot(axis, point)));
+    const bounds = [[t * aspect, 0], [t, 1]].map(([tangent, axis]) => {
+      const low = Math.max(...local.map((p) => p[axis] - tangent * p[2]));
+      const high = Math.min(...local.map((p) => p[axis] + tangent * p[2]));
+      return { low, high, tangent, depth: (high - low) / (2 * tangent) };
+    });
+    const depth = Math.min(bounds[0].depth, bounds[1].depth);
+    const side = bounds.map(({ low, high, tangent }) => (low + tangent * depth + high - tangent * depth) / 2);
+    const place = add(add(times(axes[0], side[0]), times(axes[1], side[1])), times(axes[2], depth));
+    const middle = times(points.reduce(add, [0, 0, 0]), 1 / points.length);
+    view.distance = Math.max(dot(sub(middle, place), axes[2]), reach * 1e-3);
+    view.target = add(place, times(axes[2], view.distance));
+    changed();
+  }
+
+  function wholeScene() {
+    const points = data.scenes.flatMap((scene) => scene.objects.flatMap((thing) => thing.corners));
+    frame(points.length ? points : [[-1, -1, -1], [1, 1, 1]]);
+  }
+
+  // ---- Drawing --------------------------------------------------------------------------------------------------
+
+  const SHADOW = 2048;
+  const shadowMap = gl.createTexture();
+  gl.bindTexture(gl.TEXTURE_2D, shadowMap);
+  gl.texStorage2D(gl.TEXTURE_2D, 1, gl.DEPTH_COMPONENT24, SHADOW, SHADOW);
+  for (const [name, value] of [
+    [gl.TEXTURE_MIN_FILTER, gl.LINEAR], [gl.TEXTURE_MAG_FILTER, gl.LINEAR],
+    [gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE], [gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE],
+    [gl.TEXTURE_COMPARE_MODE, gl.COMPARE_REF_TO_TEXTURE],
+  ]) gl.texParameteri(gl.TEXTURE_2D, name, value);
+  const shadowTarget = gl.createFramebuffer();
+  gl.bindFramebuffer(gl.FRAMEBUFFER, shadowTarget);
+  gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.TEXTURE_2D, shadowMap, 0);
+  gl.drawBuffers([gl.NONE]);
+
+  // Objects under the pointer are found by drawing their numbers as colours.
+  const pickColor = gl.createRenderbuffer();
+  const pickDepth = gl.createRenderbuffer();
+  const pickTarget = gl.createFramebuffer();
+  let pickSize = [0, 0];
+
+  const sun = unit([-0.55, -0.33, 0.77]);
+  let sunCamera = null;
+  let shadowsOf = -1;
+  let pickOf = "";
+  let pending = false;
+
+  function changed() {
+    if (!pending) {
+      pending = true;
+      requestAnimationFrame(render);
+    }
+  }
+
+  function drawShadows() {
+    const scene = current();
+    const half = scene.radius * 1.05;
+    sunCamera = product(
+      orthographic(half, 0, 4 * half), lookAt(add(scene.middle, times(sun, 2 * half)), times(sun, -1), [0, 1, 0]));
+    gl.bindFramebuffer(gl.FRAMEBUFFER, shadowTarget);
+    gl.viewport(0, 0, SHADOW, SHADOW);
+    gl.clear(gl.DEPTH_BUFFER_BIT);
+    gl.useProgram(plain.made);
+    gl.uniformMatrix4fv(plain.places.camera, false, sunCamera);
+    gl.enable(gl.POLYGON_OFFSET_FILL);
+    gl.polygonOffset(1.5, 2);
+    for (const thing of scene.objects) {
+      gl.uniformMatrix4fv(plain.places.model, false, thing.model);
+      draw(meshes[thing.mesh]);
+    }
+    gl.disable(gl.POLYGON_OFFSET_FILL);
+    shadowsOf = state.scene;
+  }
+
+  function viewCamera() {
+    const scene = current();
+    const middle = dot(sub(scene.middle, eye()), ahead());
+    const span = scene.radius + 6 * reach;
+    const far = Math.max(middle + span, view.distance * 2);
+    const near = Math.max(Math.min(middle - scene.radius * 1.2, view.distance * 0.9), far / 5000);
+    const aspect = canvas.width / canvas.height;
+    return product(perspective(FOV, aspect, near, far), lookAt(eye(), ahead(), upward()));
+  }
+
+  function lightUniforms(places) {
+    gl.uniform3fv(places.sun, sun);
+    gl.uniform1f(places.texel, 1 / SHADOW);
+    gl.uniform1f(places.ambientScale, state.dark ? 0.75 : 1);
+    gl.uniform1i(places.shadows, 0);
+    gl.uniformMatrix4fv(places.sunCamera, false, sunCamera);
+  }
+
+  function drawObject(thing, glow) {
+    gl.uniformMatrix4fv(solid.places.model, false, thing.model);
+    gl.uniform3fv(solid.places.size, thing.size);
+    gl.uniform4fv(solid.places.color, thing.light);
+    gl.uniform1f(solid.places.glow, glow);
+    draw(meshes[thing.mesh]);
+  }
+
+  function render() {
+    pending = false;
+    const ratio = Math.min(window.devicePixelRatio || 1, 2);
+    const width = Math.max(1, Math.round(canvas.clientWidth * ratio));
+    const height = Math.max(1, Math.round(canvas.clientHeight * ratio));
+    if (canvas.width !== width || canvas.height !== height) {
+      canvas.width = width;
+      canvas.height = height;
+    }
+    gl.enable(gl.DEPTH_TEST);
+    if (shadowsOf !== state.scene) drawShadows();
+    const scene = current();
+    const camera = viewCamera();
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    gl.viewport(0, 0, width, height);
+    const backdrop = state.dark ? [0.09, 0.106, 0.133] : [0.91, 0.925, 0.95];
+    gl.clearColor(...backdrop, 1);
+    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+    gl.activeTexture(gl.TEXTURE0);
+    gl.bindTexture(gl.TEXTURE_2D, shadowMap);
+
+    gl.useProgram(solid.made);
+    gl.uniformMatrix4fv(solid.places.camera, false, camera);
+    gl.uniform3fv(solid.places.eye, eye());
+    lightUniforms(solid.places);
+    const glow = (index) => (index === state.chosen ? 1 : index === state.near ? 0.5 : 0);
+    scene.objects.forEach((thing, index) => { if (thing.light[3] >= 1) drawObject(thing, glow(index)); });
+
+    gl.enable(gl.BLEND);
+    gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
+    gl.useProgram(groundProgram.made);
+    gl.uniformMatrix4fv(groundProgram.places.camera, false, camera);
+    lightUniforms(groundProgram.places);
+    gl.uniform3f(groundProgram.places.middle, scene.middle[0], scene.middle[1], groundHeight);
+    gl.uniform1f(groundProgram.places.extent, 5 * reach);
+    gl.uniform1f(groundProgram.places.spacing, spacing);
+    gl.uniform1f(groundProgram.places.lines, state.grid ? 1 : 0);
+    gl.uniform3fv(groundProgram.places.ground, state.dark ? [0.035, 0.04, 0.05] : [0.6, 0.62, 0.65]);
+    gl.uniform3fv(groundProgram.places.line, state.dark ? [0.13, 0.15, 0.18] : [0.26, 0.29, 0.33]);
+    if (eye()[2] > groundHeight) draw(square); // from below, the ground would only hide things
+
+    // Transparent objects, the farthest first.
+    gl.useProgram(solid.made);
+    gl.depthMask(false);
+    scene.objects.map((thing, index) => ({ thing, index, depth: dot(sub(thing.position, eye()), ahead()) }))
+      .filter(({ thing }) => thing.light[3] < 1)
+      .sort((a, b) => b.depth - a.depth)
+      .forEach(({ thing, index }) => drawObject(thing, glow(index)));
+    gl.depthMask(true);
+
+    if (state.chosen >= 0) {
+      gl.useProgram(plain.made);
+      gl.uniformMatrix4fv(plain.places.camera, false, camera);
+      gl.uniformMatrix4fv(plain.places.model, false, scene.objects[state.chosen].model);
+      gl.uniform4fv(plain.places.color, state.dark ? [0.45, 0.66, 1, 0.9] : [0.12, 0.4, 0.8, 0.8]);
+      draw(cubeEdges, gl.LINES);
+    }
+    gl.disable(gl.BLEND);
+    gl.bindVertexArray(null);
+    drawCompass();
+  }
+
+  /** The index of the object at a place of the canvas, -1 for none. */
+  function pick(x, y) {
+    const ratio = canvas.width / Math.max(canvas.clientWidth, 1);
+    const [width, height] = [canvas.width, canvas.height];
+    gl.bindFramebuffer(gl.FRAMEBUFFER, pickTarget);
+    if (pickSize[0] !== width || pickSize[1] !== height) {
+      pickSize = [width, height];
+      for (const [buffer, format, attachment] of [
+        [pickColor, gl.RGBA8, gl.COLOR_ATTACHMENT0], [pickDepth, gl.DEPTH_COMPONENT24, gl.DEPTH_ATTACHMENT],
+      ]) {
+        gl.bindRenderbuffer(gl.RENDERBUFFER, buffer);
+        gl.renderbufferStorage(gl.RENDERBUFFER, format, width, height);
+        gl.framebufferRenderbuffer(gl.FRAMEBUFFER, attachment, gl.RENDERBUFFER, buffer);
+      }
+      pickOf = "";
+    }
+    const camera = viewCamera();
+    const key = [state.scene, ...camera].join();
+    if (key !== pickOf) {
+      pickOf = key;
+      gl.viewport(0, 0, width, height);
+      gl.clearColor(0, 0, 0, 0);
+      gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+      gl.useProgram(plain.made);
+      gl.uniformMatrix4fv(plain.places.camera, false, camera);
+      current().objects.forEach((thing, index) => {
+        const code = index + 1;
+        gl.uniformMatrix4fv(plain.places.model, false, thing.model);
+        gl.uniform4f(plain.places.color, (code & 255) / 255, ((code >> 8) & 255) / 255, (code >> 16) / 255, 1);
+        draw(meshes[thing.mesh]);
+      });
+    }
+    const pixel = new Uint8Array(4);
+    gl.readPixels(Math.floor(x * ratio), height - 1 - Math.floor(y * ratio), 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    return pixel[0] + (pixel[1] << 8) + (pixel[2] << 16) - 1;
+  }
+
+  // ---- Page -----------------------------------------------------------------------------------------------------
+
+  const number = (value) => (Math.abs(value) >= 1e5 ? value.toExponential(2) : String(Number(value.toFixed(3))));
+  const triple = (values) => `(${values.map(number).join(", ")})`;
+  const degrees = (values) => triple(values.map((value) => Number(((value * 180) / Math.PI).toFixed(2)))) + "°";
+  const element = (kind, text, attributes = {}) =>
+    Object.assign(document.createElement(kind), { textContent: text, ...attributes });
+  const css = (color) => `rgb(${color.slice(0, 3).map((value) => Math.round(value * 255)).join(" ")})`;
+
+  function show(index) {
+    const same = current().objects[state.chosen]?.label;
+    state.scene = Math.max(0, Math.min(data.scenes.length - 1, index));
+    const scene = current();
+    // The selection stays with the object of the same place and name.
+    if (scene.objects[state.chosen]?.label !== same) state.chosen = -1;
+    state.near = -1;
+    byId("slider").value = state.scene;
+    byId("previous").disabled = state.scene === 0;
+    byId("next").disabled = state.scene === data.scenes.length - 1;
+    const params = Object.entries(scene.params).map(([name, value]) => ` · ${name} = ${value}`).join("");
+    byId("facts").textContent =
+      `Scene ${state.scene + 1} of ${data.scenes.length} · seed ${scene.seed}, k ${scene.k} · ` +
+      `${scene.attempts} ${scene.attempts === 1 ? "attempt" : "attempts"}${params}`;
+    const list = byId("objects");
+    const scrolled = list.scrollTop;
+    list.replaceChildren(...scene.objects.map((thing, k) => {
+      const row = element("li", "", { tabIndex: 0 });
+      const swatch = element("i", "");
+      swatch.style.background = css(thing.color);
+      row.append(swatch, element("span", thing.label), element("small", thing.class === thing.label ? "" : thing.class));
+      row.addEventListener("pointerenter", () => { state.near = k; mark(); });
+      row.addEventListener("pointerleave", () => { state.near = -1; mark(); });
+      row.addEventListener("click", () => choose(state.chosen === k ? -1 : k));
+      row.addEventListener("keydown", (event) => { if (event.key === "Enter") choose(k); });
+      row.addEventListener("dblclick", () => { choose(k); frame(thing.corners); });
+      return row;
+    }));
+    list.scrollTop = scrolled;
+    choose(state.chosen);
+  }
+
+  /** Shows in the list which object is near the pointer and which is selected. */
+  function mark() {
+    [...byId("objects").children].forEach((row, k) => {
+      row.classList.toggle("near", k === state.near);
+      row.classList.toggle("chosen", k === state.chosen);
+    });
+    changed();
+  }
+
+  function choose(index) {
+    state.chosen = index;
+    const details = byId("details");
+    details.hidden = index < 0;
+    byId("focus").disabled = index < 0;
+    if (index >= 0) {
+      const thing = current().objects[index];
+      const table = element("dl", "");
+      for (const [name, value] of [
+        ["class", thing.class], ["position", triple(thing.position) + " m"],
+        ["yaw, pitch, roll", degrees(thing.euler)], ["size", triple(thing.size) + " m"],
+        ...Object.entries(thing.more),
+      ]) table.append(element("dt", name), element("dd", String(value)));
+      details.replaceChildren(element("h2", thing.label), table);
+      byId("objects").children[index].scrollIntoView({ block: "nearest" });
+    }
+    mark();
+  }
+
+  function tip(index, x, y) {
+    const box = byId("tip");
+    box.hidden = index < 0;
+    if (index < 0) return;
+    const thing = current().objects[index];
+    const title = thing.label === thing.class ? thing.class : `${thing.label} (${thing.class})`;
+    box.textContent = `${title}\n${triple(thing.position)} m`;
+    box.style.left = `${Math.min(x + 14, canvas.clientWidth - box.offsetWidth - 4)}px`;
+    box.style.top = `${Math.min(y + 14, canvas.clientHeight - box.offsetHeight - 4)}px`;
+  }
+
+  function drawCompass() {
+    const axes = [["X", [1, 0, 0], "#d4483b"], ["Y", [0, 1, 0], "#3d9a4b"], ["Z", [0, 0, 1], "#3a77d0"]];
+    const [right, up, front] = [rightward(), upward(), ahead()];
+    const drawn = axes.map(([name, axis, color]) => ({ name, color, x: dot(axis, right), y: dot(axis, up), z: dot(axis, front) }))
+      .sort((a, b) => b.z - a.z)
+      .map(({ name, color, x, y }) =>
+        `<line x1="0" y1="0" x2="${x * 26}" y2="${-y * 26}" stroke="${color}" stroke-width="2.5" stroke-linecap="round"/>` +
+        `<text x="${x * 33}" y="${-y * 33}" fill="${color}" text-anchor="middle" dominant-baseline="central">${name}</text>`)
+      .join("");
+    byId("compass").innerHTML = `<svg viewBox="-40 -40 80 80">${drawn}</svg>`;
+  }
+
+  function setTheme(dark) {
+    state.dark = dark;
+    document.documentElement.dataset.theme = dark ? "dark" : "light";
+    changed();
+  }
+
+  function play(on) {
+    clearInterval(state.playing);
+    state.playing = on && data.scenes.length > 1
+      ? setInterval(() => show((state.scene + 1) % data.scenes.length), 900) : 0;
+    byId("play").textContent = state.playing ? "❚❚" : "▶";
+    byId("play").setAttribute("aria-label", state.playing ? "Pause" : "Play");
+  }
+
+  function fromAbove() {
+    view.azimuth = 0;
+    view.elevation = Math.PI / 2 - 1e-3;
+    wholeScene();
+  }
+
+  function fromTheSide() {
+    view.azimuth = (-35 * Math.PI) / 180;
+    view.elevation = (33 * Math.PI) / 180;
+    wholeScene();
+  }
+
+  const focus = () => { if (state.chosen >= 0) frame(current().objects[state.chosen].corners); };
+
+  byId("slider").max = data.scenes.length - 1;
+  byId("stepper").hidden = data.scenes.length === 1;
+  if (data.scenes.length === 1) byId("stepper").style.display = "none";
+  byId("slider").addEventListener("input", (event) => show(Number(event.target.value)));
+  byId("previous").addEventListener("click", () => show(state.scene - 1));
+  byId("next").addEventListener("click", () => show(state.scene + 1));
+  byId("play").addEventListener("click", () => play(!state.playing));
+  byId("theme").addEventListener("click", () => setTheme(!state.dark));
+  byId("whole").addEventListener("click", fromTheSide);
+  byId("above").addEventListener("click", fromAbove);
+  byId("focus").addEventListener("click", focus);
+
+  document.addEventListener("keydown", (event) => {
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    const typing = event.target.tagName === "INPUT" || event.target.tagName === "BUTTON";
+    const actions = {
+      ArrowLeft: () => show(state.scene - 1), ArrowRight: () => show(state.scene + 1),
+      PageUp: () => show(state.scene - 10), PageDown: () => show(state.scene + 10),
+      Home: () => show(0), End: () => show(data.scenes.length - 1),
+      " ": () => play(!state.playing), 0: fromTheSide, 5: fromAbove, f: focus,
+      g: () => { state.grid = !state.grid; changed(); }, t: () => setTheme(!state.dark), Escape: () => choose(-1),
+    };
+    const action = actions[event.key];
+    if (!action || (typing && (event.key === " " || event.target.tagName === "INPUT"))) return;
+    event.preventDefault();
+    action();
+  });
+
+  // ---- Mouse and touch ------------------------------------------------------------------------------------------
+
+  const pointers = new Map();
+  let travelled = 0;
+
+  function turn(dx, dy) {
+    view.azimuth += dx * 0.008;
+    view.elevation = Math.max(-1.55, Math.min(Math.PI / 2 - 1e-3, view.elevation + dy * 0.008));
+    changed();
+  }
+
+  function move(dx, dy) {
+    const scale = (2 * view.distance * Math.tan(FOV / 2)) / Math.max(canvas.clientHeight, 1);
+    view.target = add(view.target, add(times(rightward(), -dx * scale), times(upward(), dy * scale)));
+    changed();
+  }
+
+  /** Zooms by a factor, so that what is under the place (x, y) stays there. */
+  function zoom(factor, x, y) {
+    const distance = Math.max(reach * 1e-3, Math.min(reach * 60, view.distance * factor));
+    const scale = (2 * (view.distance - distance) * Math.tan(FOV / 2)) / Math.max(canvas.clientHeight, 1);
+    const [dx, dy] = [x - canvas.clientWidth / 2, canvas.clientHeight / 2 - y];
+    view.target = add(view.target, add(times(rightward(), dx * scale), times(upward(), dy * scale)));
+    view.distance = distance;
+    changed();
+  }
+
+  canvas.addEventListener("contextmenu", (event) => event.preventDefault());
+  canvas.addEventListener("pointerdown", (event) => {
+    canvas.setPointerCapture(event.pointerId);
+    pointers.set(event.pointerId, { x: event.offsetX, y: event.offsetY, button: event.button, shift: event.shiftKey });
+    travelled = 0;
+    tip(-1);
+  });
+  canvas.addEventListener("pointermove", (event) => {
+    const [x, y] = [event.offsetX, event.offsetY];
+    const pointer = pointers.get(event.pointerId);
+    if (!pointer) {
+      const near = pick(x, y);
+      tip(near, x, y);
+      if (near !== state.near) {
+        state.near = near;
+        mark();
+      }
+      return;
+    }
+    const [dx, dy] = [x - pointer.x, y - pointer.y];
+    travelled += Math.abs(dx) + Math.abs(dy);
+    if (pointers.size === 1) {
+      if (pointer.button === 0 && !pointer.shift) turn(dx, dy);
+      else move(dx, dy);
+    } else if (pointers.size === 2) {
+      const other = [...pointers.entries()].find(([id]) => id !== event.pointerId)[1];
+      const before = Math.hypot(pointer.x - other.x, pointer.y - other.y);
+      const after = Math.hypot(x - other.x, y - other.y);
+      if (before > 0 && after > 0) zoom(before / after, (x + other.x) / 2, (y + other.y) / 2);
+      move(dx / 2, dy / 2);
+    }
+    pointer.x = x;
+    pointer.y = y;
+  });
+  const release = (event) => {
+    const pointer = pointers.get(event.pointerId);
+    pointers.delete(event.pointerId);
+    if (event.type === "pointerup" && pointer && travelled < 5 && pointer.button === 0) {
+      const index = pick(event.offsetX, event.offsetY);
+      choose(index === state.chosen ? -1 : index);
+    }
+  };
+  canvas.addEventListener("pointerup", release);
+  canvas.addEventListener("pointercancel", release);
+  canvas.addEventListener("pointerleave", () => {
+    tip(-1);
+    state.near = -1;
+    mark();
+  });
+  canvas.addEventListener("wheel", (event) => {
+    event.preventDefault();
+    const lines = event.deltaMode === 1 ? 16 : 1;
+    zoom(Math.exp(Math.max(-120, Math.min(120, event.deltaY * lines)) * 0.0015), event.offsetX, event.offsetY);
+  }, { passive: false });
+  canvas.addEventListener("dblclick", (event) => {
+    const index = pick(event.offsetX, event.offsetY);
+    if (index >= 0) {
+      choose(index);
+      focus();
+    }
+  });
+  canvas.addEventListener("webglcontextlost", () => {
+    byId("trouble").hidden = false;
+    byId("trouble").textContent = "The graphics of this page were reset; load it again.";
+  });
+  new ResizeObserver(changed).observe(canvas);
+
+  setTheme(window.matchMedia?.("(prefers-color-scheme: dark)").matches ?? false);
+  show(0);
+  wholeScene();
+})();

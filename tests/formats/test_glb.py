@@ -1,0 +1,80 @@
+import io
+import json
+import struct
+from typing import Any
+
+import numpy as np
+import pytest
+import trimesh
+
+from scenic.formats.glb import glb
+from tests.formats.stand_ins import BALL, Chair, Object, Scene, Turn
+
+
+def document_of(content: bytes) -> dict[str, Any]:
+    (length,) = struct.unpack_from("<I", content, 12)
+    return json.loads(content[20 : 20 + length])
+
+
+def test_another_program_finds_the_same_geometry() -> None:
+    chair = Chair(position=(1, 2, 3), orientation=Turn.by(0.5, 0.4, 0.3), width=2, length=3, height=0.5)
+    ball = Object(position=(-4, 0, 1), shape=BALL, color=(1, 0.5, 0, 0.5))
+    content = glb(Scene([chair, ball], names={chair: "seat"}))
+    loaded = trimesh.load_scene(io.BytesIO(content), file_type="glb")
+    assert set(loaded.graph.nodes_geometry) == {"seat", "Object"}
+    # glTF's Y is up: what was at (x, y, z) is at (x, z, -y).
+    to_scenic = np.array([[1, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1]])
+    for name, thing in (("seat", chair), ("Object", ball)):
+        matrix, geometry = loaded.graph[name]
+        found = loaded.geometry[geometry].copy().apply_transform(to_scenic @ matrix)
+        expected = trimesh.Trimesh(thing.shape.mesh.vertices, thing.shape.mesh.faces)
+        turn = thing.orientation
+        expected.apply_scale([thing.width, thing.length, thing.height])
+        expected.apply_transform(trimesh.transformations.quaternion_matrix([turn.w, turn.x, turn.y, turn.z]))
+        expected.apply_translation(thing.position)
+        np.testing.assert_allclose(found.bounds, expected.bounds, atol=1e-5)
+        found.merge_vertices(merge_norm=True)
+        assert found.is_watertight
+        assert found.volume == pytest.approx(expected.volume, rel=1e-4)
+        np.testing.assert_allclose(found.center_mass, expected.center_mass, atol=1e-5)
+
+
+def test_shapes_and_colours_are_stored_once() -> None:
+    red, blue = (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)
+    content = glb(Scene([Object(color=color) for color in (red, red, blue, blue, blue)]))
+    document = document_of(content)
+    assert len(document["materials"]) == len(document["meshes"]) == 2
+    assert len(document["accessors"]) == 3
+    assert [node["mesh"] for node in document["nodes"][:5]] == [0, 0, 1, 1, 1]
+
+
+def test_names_are_unique_and_ordered() -> None:
+    document = document_of(glb(Scene([Chair(), Chair(), Object()])))
+    assert [node["name"] for node in document["nodes"]] == ["Chair", "Chair 2", "Object", "scene"]
+    assert document["nodes"][1]["extras"] == {"class": "Chair", "index": 1, "ego": False}
+
+
+def test_transparent_colours_are_blended() -> None:
+    (material,) = document_of(glb(Scene([Object(color=(0.5, 0.5, 0.5, 0.25))])))["materials"]
+    assert material["alphaMode"] == "BLEND"
+    assert material["pbrMetallicRoughness"]["baseColorFactor"] == pytest.approx([0.2140411] * 3 + [0.25])
+
+
+def test_structure_follows_the_container_format() -> None:
+    content = glb(Scene([Object(shape=BALL), Chair()]))
+    magic, version, length = struct.unpack_from("<4sII", content)
+    assert (magic, version, length) == (b"glTF", 2, len(content))
+    document = document_of(content)
+    for view in document["bufferViews"]:
+        assert view["byteOffset"] % 4 == 0
+        assert view["byteOffset"] + view["byteLength"] <= document["buffers"][0]["byteLength"]
+
+
+def test_a_scene_without_objects() -> None:
+    content = glb(Scene([]))
+    assert document_of(content)["nodes"][0]["name"] == "scene"
+    assert not trimesh.load_scene(io.BytesIO(content), file_type="glb").geometry
+
+
+def test_equal_scenes_give_equal_files() -> None:
+    assert glb(Scene([Object(), Chair(shape=BALL)])) == glb(Scene([Object(), Chair(shape=BALL)]))

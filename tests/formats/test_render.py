@@ -1,0 +1,104 @@
+import io
+import sys
+
+import numpy as np
+import PIL.Image
+import pytest
+
+from scenic.formats.camera import corners, framing, ground_height
+from scenic.formats.instances import picture
+from scenic.formats.png import MissingLibraryError, png
+from scenic.formats.render import render
+from tests.formats.stand_ins import BALL, Object, Scene
+
+SMALL = (96, 72)
+RED, GREEN = (0.9, 0.1, 0.1), (0.1, 0.8, 0.1)
+
+
+def pixels(*objects: Object) -> np.ndarray:
+    return render(picture([Scene(list(objects))]), 0, SMALL).astype(int)
+
+
+def share(image: np.ndarray, channel: int) -> float:
+    """The part of the pixels in which one colour dominates."""
+    others = [other for other in range(3) if other != channel]
+    return float(np.mean(image[..., channel] > 1.5 * image[..., others].max(axis=-1)))
+
+
+def test_objects_are_seen_in_their_colours() -> None:
+    image = pixels(Object(color=RED), Object(position=(2, 0, 0), color=GREEN, shape=BALL))
+    assert image.shape == (72, 96, 3)
+    assert share(image, 0) > 0.03
+    assert share(image, 1) > 0.03
+    assert share(image, 2) == 0
+
+
+def test_east_is_to_the_right_and_up_is_up() -> None:
+    def middle(image: np.ndarray, channel: int) -> np.ndarray:
+        others = [other for other in range(3) if other != channel]
+        return np.argwhere(image[..., channel] > 1.5 * image[..., others].max(axis=-1)).mean(axis=0)
+
+    image = pixels(Object(color=RED), Object(position=(3, 0, 0), color=GREEN))
+    assert middle(image, 1)[1] > middle(image, 0)[1] + 10
+    image = pixels(Object(color=RED), Object(position=(0, 0, 3), color=GREEN))
+    assert middle(image, 1)[0] < middle(image, 0)[0] - 10
+
+
+def test_a_shadow_falls_on_the_ground_to_the_north_east() -> None:
+    lone = pixels(Object(color=GREEN, position=(0, 0, 0.5)))
+    ground = lone[..., 2] > lone[..., 1] * 0.8
+    brightness = lone.sum(axis=-1)
+    assert brightness[ground].min() < 0.75 * brightness[ground].max()
+
+
+def test_what_is_transparent_is_seen_through() -> None:
+    behind = Object(position=(-0.57 * 2, 0.82 * 2, -1.3), color=RED, width=1.5, length=1.5, height=1.5)
+    opaque = pixels(Object(width=3, height=3, color=(0.1, 0.1, 0.9), length=0.1), behind)
+    glass = pixels(Object(width=3, height=3, color=(0.1, 0.1, 0.9, 0.2), length=0.1), behind)
+    assert glass[..., 0].sum() > opaque[..., 0].sum()
+
+
+def test_images_are_deterministic() -> None:
+    scene = Scene([Object(shape=BALL), Object(position=(1, 1, 0))])
+    assert png(scene, SMALL) == png(scene, SMALL)
+
+
+def test_png_is_an_image_of_the_size_asked_for() -> None:
+    image = PIL.Image.open(io.BytesIO(png(Scene([Object()]), SMALL)))
+    assert (image.format, image.size, image.mode) == ("PNG", SMALL, "RGB")
+
+
+def test_a_scene_without_objects_is_a_picture_of_the_ground() -> None:
+    assert pixels().shape == (72, 96, 3)
+
+
+def test_the_camera_sees_every_corner_and_is_no_farther_than_needed() -> None:
+    things = [Object(position=(5, -3, 1), width=4), Object(position=(-9, 8, 20)), Object(height=12.0)]
+    instances = picture([Scene(things)]).scenes[0]
+    camera = framing(instances, 4 / 3)
+    relative = corners(instances) - camera.eye
+    depth = relative @ camera.ahead
+    assert depth.min() > 0
+    x = relative @ camera.right / depth / camera.tangents[0]
+    y = relative @ camera.up / depth / camera.tangents[1]
+    assert max(np.abs(x).max(), np.abs(y).max()) == pytest.approx(1 / 1.06, abs=1e-6)
+
+
+def test_ground_height() -> None:
+    def height(*objects: Object) -> float:
+        return ground_height(corners(picture([Scene(list(objects))]).scenes[0]))
+
+    assert height(Object(position=(0, 0, 0.5))) == 0
+    assert height(Object()) == -0.5
+    assert height(Object(position=(0, 0, 3))) == 0
+    assert height(Object(position=(0, 0, 1000.5))) == 1000
+
+
+def test_without_pillow_the_way_to_get_it_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "PIL", None)
+    monkeypatch.setitem(sys.modules, "PIL.Image", None)
+    with pytest.raises(MissingLibraryError) as caught:
+        png(Scene([Object()]), SMALL)
+    diagnostic = caught.value.diagnostic()
+    assert diagnostic.code == "SC604"
+    assert "pip install 'scenic-lang[view]'" in (diagnostic.help or "")
