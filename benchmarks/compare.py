@@ -1,0 +1,207 @@
+"""Compare with another implementation of the language: ``python -m benchmarks.compare --reference PATH``.
+
+PATH is a command that samples a program and prints what it did, called as
+
+    PATH FILE.scenic -n N --seed S --max-iterations M --time --observe x=1
+
+It prints a line of JSON for each scene with ``iterations`` (candidates drawn) and ``seconds``.
+
+Both implementations sample the same programs, in turns, each time in a process of its own; start-up and compilation are not
+counted, and each process first finds a scene that is not counted either. For each program, the table shows medians over the
+turns: seconds a scene, candidates a second, and their ratios. Two laws of candidates may differ where one implementation prunes
+better; ``--no-prune`` turns ours off.
+
+Run by hand on a quiet machine; nothing here is a test.
+"""
+
+import argparse
+import json
+import platform
+import shlex
+import statistics
+import subprocess
+import sys
+import time
+from dataclasses import dataclass
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+
+HERE = Path(__file__).parent
+PROGRAMS = ("room_with_toys", "chairs_at_table", "overtaking")
+REFERENCE_SCENES = {"room_with_toys": 1, "chairs_at_table": 3, "overtaking": 8}
+OUR_SCENES = 200
+SECONDS = 600
+"""Longer than this no process runs."""
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """What one process did."""
+
+    scenes: int
+    candidates: int
+    seconds: float
+
+    @property
+    def seconds_a_scene(self) -> float:
+        """Seconds for one accepted scene."""
+        return self.seconds / self.scenes if self.scenes else float("nan")
+
+    @property
+    def candidates_a_second(self) -> float:
+        """Candidates drawn and judged in one second."""
+        return self.candidates / self.seconds
+
+
+def ours(program: str, seed: int, scenes: int, prune: bool) -> Run:
+    """Sample with this implementation, in a fresh process."""
+    command = [sys.executable, "-m", "benchmarks.compare", "--child", program, "--seed", str(seed)]
+    command += ["--our-scenes", str(scenes), *([] if prune else ["--no-prune"])]
+    result = subprocess.run(
+        command, cwd=HERE.parent, capture_output=True, text=True, timeout=SECONDS, check=False
+    )
+    if result.returncode:
+        raise SystemExit(f"{program}: our run failed\n{result.stderr}")
+    return Run(**json.loads(result.stdout))
+
+
+def child(program: str, seed: int, scenes: int, prune: bool) -> None:
+    """What the fresh process does: prints a `Run` as JSON."""
+    from scenic.pipeline import load
+    from scenic.runtime.sampling.report import Exhausted
+
+    scenario = load(HERE / f"{program}.scenic", prune=prune)
+    for _ in scenario.stream(1, seed=seed + 1_000_000, max_attempts=None, time_limit=None):
+        pass
+    started = time.perf_counter()
+    found, candidates = 0, 0
+    for result in scenario.stream(scenes, seed=seed, max_attempts=None, time_limit=SECONDS / 4):
+        candidates += result.attempts
+        if not isinstance(result, Exhausted):
+            found += 1
+            _ = [
+                thing.position for thing in result.objects
+            ]  # scenes make their objects when they are looked at
+    print(json.dumps({"scenes": found, "candidates": candidates, "seconds": time.perf_counter() - started}))
+
+
+def reference(command: str, program: str, seed: int, scenes: int, limit: int) -> Run:
+    """Sample with the other implementation."""
+    arguments = [
+        *shlex.split(command),
+        str(HERE / f"{program}.scenic"),
+        "-n",
+        str(scenes + 1),
+        "--seed",
+        str(seed),
+    ]
+    arguments += ["--max-iterations", str(limit), "--time", "--observe", "x=1"]
+    try:
+        result = subprocess.run(arguments, capture_output=True, text=True, timeout=SECONDS, check=False)
+        output = result.stdout
+    except subprocess.TimeoutExpired as expired:
+        output = expired.stdout.decode() if isinstance(expired.stdout, bytes) else expired.stdout or ""
+        output = output.rpartition("\n")[0]
+    rows = [row for row in map(json.loads, output.splitlines()) if "iterations" in row]
+    if not rows:
+        raise SystemExit(
+            f"{program}: the reference found no scene: {output.strip() or 'nothing was printed'}"
+        )
+    counted = rows[1:] or rows
+    return Run(
+        len(counted), sum(row["iterations"] for row in counted), sum(row["seconds"] for row in counted)
+    )
+
+
+def release(name: str) -> str:
+    """A package with its version."""
+    try:
+        return f"{name} {version(name)}"
+    except PackageNotFoundError:
+        return f"{name} from a checkout"
+
+
+def machine() -> str:
+    """The processor, as far as the system tells."""
+    model = platform.processor() or platform.machine()
+    try:
+        for line in Path("/proc/cpuinfo").read_text().splitlines():
+            if line.startswith("model name"):
+                model = line.split(":", 1)[1].strip()
+                break
+    except OSError:
+        pass
+    return f"{model}, {platform.system()} {platform.release()}"
+
+
+def main() -> None:
+    """Print the table."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--reference", metavar="PATH", help="command of the other implementation")
+    parser.add_argument("--repeats", type=int, default=3, help="turns for each program (default 3)")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument(
+        "--max-iterations", type=int, default=3000, help="the reference's limit for one scene"
+    )
+    parser.add_argument("--our-scenes", type=int, default=OUR_SCENES)
+    parser.add_argument("--no-prune", action="store_true")
+    parser.add_argument("--program", action="append", choices=PROGRAMS, help="only this one; repeatable")
+    parser.add_argument("--child", choices=PROGRAMS, help=argparse.SUPPRESS)
+    options = parser.parse_args()
+    prune = not options.no_prune
+    if options.child:
+        child(options.child, options.seed, options.our_scenes, prune)
+        return
+    names = ("scenic-lang", "numpy", "scipy", "python-fcl")
+    print(f"Python {platform.python_version()}, {', '.join(map(release, names))}; {machine()}")
+    print(
+        f"seed {options.seed}, {options.repeats} turns, medians; ours: {options.our_scenes} scenes a turn, ",
+        end="",
+    )
+    print("pruned" if prune else "not pruned")
+    if options.reference:
+        print(f"reference: {options.reference}")
+    header = f"{'program':18} {'':10} {'scenes':>7} {'cand./scene':>12} {'s/scene':>10} {'cand./s':>12}"
+    print(f"\n{header}\n{'-' * len(header)}")
+    for program in options.program or PROGRAMS:
+        compare(program, options, prune)
+
+
+def compare(program: str, options: argparse.Namespace, prune: bool) -> None:
+    """Run one program in turns and print its lines."""
+    mine: list[Run] = []
+    theirs: list[Run] = []
+    for turn in range(options.repeats):
+        seed = options.seed + turn
+        mine.append(ours(program, seed, options.our_scenes, prune))
+        if options.reference:
+            scenes = REFERENCE_SCENES[program]
+            theirs.append(reference(options.reference, program, seed, scenes, options.max_iterations))
+    show(program, "ours", mine)
+    if theirs:
+        show("", "reference", theirs)
+        faster = median(theirs, "seconds_a_scene") / median(mine, "seconds_a_scene")
+        more = median(mine, "candidates_a_second") / median(theirs, "candidates_a_second")
+        print(f"{'':18} {'ratio':10} {'':>7} {'':>12} {faster:>9.0f}x {more:>11.0f}x")
+
+
+def median(runs: list[Run], what: str) -> float:
+    """The median over the turns."""
+    return float(statistics.median(getattr(run, what) for run in runs))
+
+
+def show(program: str, who: str, runs: list[Run]) -> None:
+    """Print a line of the table."""
+    scenes = sum(run.scenes for run in runs)
+    each = sum(run.candidates for run in runs) / scenes if scenes else float("nan")
+    print(
+        f"{program:18} {who:10} {scenes:>7} {each:>12.1f} {median(runs, 'seconds_a_scene'):>10.4g} "
+        f"{median(runs, 'candidates_a_second'):>12,.0f}",
+        flush=True,
+    )
+
+
+if __name__ == "__main__":
+    main()
