@@ -26,6 +26,8 @@ def check(analysis: Analysis) -> None:
     if missing:
         raise GrammarError(f"`@recover` names rules that do not exist: {sorted(missing)}")
     for rule in analysis.rules.values():
+        if any(analysis.is_nullable(alternative.items) for alternative in rule.alternatives):
+            raise GrammarError(f"rule {rule.name!r} can match nothing: make it optional where it is used")
         _check_shadowing(analysis, rule)
         _check_twins(rule)
         for alternative in rule.alternatives:

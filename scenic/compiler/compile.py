@@ -39,7 +39,7 @@ def lower_text(text: str, *, filename: str) -> Lowered:
     try:
         with recursion_limit(DEEPEST):
             resolution = resolve(parsed.tree, source)
-            found.extend(finding for finding in resolution.diagnostics if finding not in found)
+            found = list(dict.fromkeys([*found, *resolution.diagnostics]))
             module = None if _has_errors(found) else lower(parsed.tree, resolution)
     except RecursionError:
         return Lowered(None, (*found, _too_deep(source)))

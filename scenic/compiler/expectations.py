@@ -39,6 +39,7 @@ _UNMISTAKABLE: Final = SPECIFIER_KINDS - {HARD_KEYWORDS["at"], HARD_KEYWORDS["in
 """The first words of specifiers that are no operators."""
 
 _CONNECTORS: Final = frozenset(OPERATORS[mark] for mark in (",", ";", ":", "="))
+_POSTFIX: Final = frozenset(OPERATORS[mark] for mark in ("(", "[", "."))
 _KEYWORD_KINDS: Final = frozenset(HARD_KEYWORDS.values())
 _NAME_LABELS: Final = frozenset({"a name", "a parameter", "a parameter's name", "the name of a module"})
 
@@ -105,7 +106,9 @@ class Expectations:
         words = {each for each in expected if isinstance(each, str)}
         if len(words) > 1:
             words.discard("a statement")
-        if len(kinds & INFIX_KINDS) > 3:
+        if (kinds | words) - _POSTFIX:
+            kinds -= _POSTFIX
+        if len(kinds & INFIX_KINDS) > 5:
             kinds -= INFIX_KINDS
             words.add("an operator")
             if NEWLINE in kinds:
@@ -156,10 +159,11 @@ class Expectations:
         if kind in _KEYWORD_KINDS and (
             expected & _NAME_LABELS
             or ("an argument" in expected and self._kinds[token + 1] == OPERATORS["="])
-            or NAME in expected
-            and len(expected) == 1
+            or expected == {NAME}
         ):
-            return Problem("SC110", place, f"`{text}` is a keyword and cannot be a name", "choose another name")
+            return Problem(
+                "SC110", place, f"`{text}` is a keyword and cannot be a name", "choose another name"
+            )
         return self._special_word(start, token, expected)
 
     def _special_word(self, start: int, token: int, expected: set[int | str]) -> Problem | None:

@@ -130,6 +130,10 @@ class Recovery:
 
     def _explain(self, start: int, farthest: int, expected: set[Any], failure: Problem | None) -> None:
         farthest = max(start, farthest)
+        if start in self._reported:
+            # The beginning is wrong already, and what follows it is not worth a second message.
+            self._reported.add(farthest)
+            return
         if failure is not None:
             self._add(failure, farthest)
             return
@@ -148,27 +152,33 @@ class Recovery:
         lines = self.tokens.lines
         return any(lines[start] <= line <= lines[end] for line in self._lexical_lines)
 
-    def _skip(self, rule: str, start: int, farthest: int) -> tuple[tree.ErrorStatement, int]:
-        """Skip the statement at ``start``, of which ``farthest`` is the token that cannot be right."""
+    def _skip(self, rule: str, start: int, farthest: int) -> tuple[ast.AST, int]:
+        """Skip the statement at ``start``, of which ``farthest`` is the token that cannot be right.
+
+        A clause of ``match`` becomes one that matches anything, so that the tree has the nodes that it should.
+        """
         kinds = self._kinds
-        inner_rule = "class_item" if kinds[start] == HARD_KEYWORDS["class"] else "statement"
         position = start
         body: list[Any] = []
         while True:
-            position, found = self._skip_line(position, inner_rule)
+            position, found = self._skip_line(position)
             body += found or []
             if position >= farthest or kinds[position] in (DEDENT, ENDMARKER):
                 break
         if found is not None:
             # The clauses after a block whose beginning was wrong mean nothing without it.
             while kinds[position] in _CONTINUATIONS and self._starts_clause(position):
-                position, found = self._skip_line(position, inner_rule)
+                position, found = self._skip_line(position)
                 body += found or []
         last = position - 1
         while last > start and kinds[last] in (NEWLINE, INDENT, DEDENT):
             last -= 1
         place = (*self.actions.place_of_token(start)[:2], *self.actions.place_of_token(last)[2:])
-        return make(tree.ErrorStatement, place, body=body), position
+        node: ast.AST = make(tree.ErrorStatement, place, body=body)
+        if rule == "case_block":
+            pattern = make(ast.MatchAs, place, pattern=None, name=None)
+            node = make(ast.match_case, None, pattern=pattern, guard=None, body=[node])
+        return node, position
 
     def _starts_clause(self, position: int) -> bool:
         """Whether the line at ``position`` has a block."""
@@ -177,15 +187,21 @@ class Recovery:
             position += 1
         return kinds[position + 1] == INDENT
 
-    def _skip_line(self, position: int, rule: str) -> tuple[int, list[Any] | None]:
+    def _skip_line(self, position: int) -> tuple[int, list[Any] | None]:
         """Skip to the end of the line, and over its block, whose statements are returned."""
         kinds = self._kinds
+        start = position
         while kinds[position] not in (NEWLINE, ENDMARKER):
             position += 1
         if kinds[position] == NEWLINE:
             position += 1
         if kinds[position] != INDENT:
             return position, None
+        rule = "statement"
+        if kinds[start] == HARD_KEYWORDS["class"]:
+            rule = "class_item"
+        elif kinds[start] == SOFT_KEYWORDS["match"] and kinds[position + 1] == SOFT_KEYWORDS["case"]:
+            rule = "case_block"
         body, position = self.statements(rule, position + 1)
         return position + (kinds[position] == DEDENT), body
 

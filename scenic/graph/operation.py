@@ -176,6 +176,11 @@ class Operation:
     pure: bool = True
 
 
+def by_lane(_call: Call, *_columns: Column) -> Column:
+    """The NumPy reading of an operation that is only ever evaluated by its ``python`` function, lane by lane."""
+    raise AssertionError("evaluated lane by lane")
+
+
 def always(kind: Kind) -> KindRule:
     """The rule of an operation whose result is of one kind whatever its operands."""
     return lambda _operands, _payload: kind

@@ -101,6 +101,12 @@ class Unsupported:
     def __getattr__(self, attribute: str) -> Any:
         raise unsupported(f"`{self._name}.{attribute}`")
 
+    def __mro_entries__(self, _bases: Any) -> Any:
+        raise unsupported(f"`{self._name}`")
+
+    def __instancecheck__(self, _instance: Any) -> Any:
+        raise unsupported(f"`{self._name}`")
+
 
 class GlobalParameters:
     """The program's parameters, read by attribute or index."""

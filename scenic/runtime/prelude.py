@@ -42,6 +42,7 @@ from scenic.runtime.regions.base import Region, Workspace
 from scenic.runtime.resolution import build
 from scenic.runtime.samples import Sample
 from scenic.runtime.specifiers import BUILDERS, Specifier
+from scenic.runtime.spreading import spread
 from scenic.runtime.values import (
     OrientationMethods,
     Random,
@@ -251,6 +252,10 @@ class Prelude:
     def convert(self, name: str, *args: Any) -> Any:
         """``int(x)``, ``float(x)``, ``str(x)``."""
         return convert(name, *args)
+
+    def spread(self, function: Any, parts: Sequence[tuple[bool, Any]], keywords: Mapping[str, Any]) -> Any:
+        """``function(a, *b, k=c)``, where ``parts`` tells of each argument whether it is starred."""
+        return spread(function, parts, keywords)
 
     # Statements
 

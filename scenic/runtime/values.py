@@ -15,7 +15,7 @@ import numpy as np
 from scenic.graph import node as graph
 from scenic.graph.kinds import Kind
 from scenic.graph.node import Node
-from scenic.graph.operation import Call, Operation, always
+from scenic.graph.operation import Call, Operation, always, by_lane
 from scenic.graph.operations import TABLE
 from scenic.language.errors import (
     InvalidScenarioError,
@@ -575,14 +575,14 @@ CODEC = ValueCodec()
 _TUPLE = Operation(
     "tuple",
     always(Kind.OTHER),
-    lambda _call, *_columns: np.empty(0),
+    by_lane,
     "A tuple with random parts.",
     python=lambda *parts: parts,
 )
 _LIST = Operation(
     "list",
     always(Kind.OTHER),
-    lambda _call, *_columns: np.empty(0),
+    by_lane,
     "A list with random parts.",
     python=lambda *parts: list(parts),
 )
@@ -743,12 +743,8 @@ def _call_later(function: Node, args: Sequence[Any], kwargs: dict[str, Any]) -> 
     def invoke(target: Any, *values: Any) -> Any:
         return target(*values[:positional], **dict(zip(names, values[positional:], strict=True)))
 
-    operation = Operation("call", always(Kind.OTHER), _CALL_BATCH, "A call of a random value.", python=invoke)
+    operation = Operation("call", always(Kind.OTHER), by_lane, "A call of a random value.", python=invoke)
     return graph.apply(operation, operands, span=here())
-
-
-def _CALL_BATCH(_call: Call, *_columns: Any) -> Any:
-    raise AssertionError("evaluated lane by lane")
 
 
 def _attribute_of_option(option: Node, name: str) -> Node:
@@ -778,7 +774,7 @@ _MISSING = Operation(
     pure=False,
 )
 _GETATTR = Operation(
-    "attribute", always(Kind.OTHER), _CALL_BATCH, "An attribute of a random value.", python=getattr
+    "attribute", always(Kind.OTHER), by_lane, "An attribute of a random value.", python=getattr
 )
 
 
@@ -904,7 +900,7 @@ def _coerce_later(value: Random, kind: Kind, function: Callable[..., Any], what:
     operation = Operation(
         f"to {kind.value}",
         always(kind),
-        _CALL_BATCH,
+        by_lane,
         "A coercion that has to wait for the sampled value.",
         python=lambda sampled: function(sampled, what),
     )

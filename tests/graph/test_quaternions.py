@@ -93,6 +93,12 @@ def test_normalize_angle(angle):
     assert abs(turns - round(turns)) < 1e-9
 
 
+@given(unit_quaternions)
+def test_from_axes(q):
+    axes = Rotation.from_quat(q).as_matrix().T
+    assert same_rotation(quaternions.from_axes(*axes), q)
+
+
 def test_normalize_angle_at_the_ends():
     np.testing.assert_array_equal(
         quaternions.normalize_angle([math.pi, -math.pi, 3 * math.pi, -0.0]),
@@ -128,6 +134,7 @@ def test_batches_and_strides_do_not_matter(batch):
         lambda i: quaternions.from_euler(*np.moveaxis(euler[i], -1, 0)),
         lambda i: np.stack(quaternions.to_euler(q[i]), axis=-1),
         lambda i: quaternions.to_matrix(p[i]),
+        lambda i: quaternions.from_axes(*np.moveaxis(quaternions.to_matrix(p[i]), -1, 0)),
         lambda i: quaternions.normalize_angle(v[i]),
     ]
     for function in functions:

@@ -60,6 +60,15 @@ def place(error: BaseException) -> tuple[str, str, str | None]:
     return found.code, where, found.help
 
 
+def marked(text: str) -> tuple[str, tuple[int, int, int]]:
+    """A text without its marks, and line, first and last column (from 0) of what they mark."""
+    before, _, rest = text.partition("«")
+    inside, _, after = rest.partition("»")
+    line = before.count("\n") + 1
+    column = len(before) - (before.rfind("\n") + 1)
+    return before + inside + after, (line, column, column + len(inside))
+
+
 def plain(value: Any) -> Any:
     """A sampled value as nested tuples of Python's own types, for bitwise comparison."""
     if isinstance(value, Vector):

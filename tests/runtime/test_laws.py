@@ -372,7 +372,6 @@ def test_lifted_functions_take_keywords_and_containers() -> None:
     assert all(value == n * n + n for n, value in draws(text, n=20))
 
 
-@pytest.mark.xfail(reason="a starred argument that is random is iterated at once", strict=True)
 def test_choices_of_the_elements_of_a_random_list() -> None:
     found = draws("xs = Uniform([1, 2], [3])\nparam x = Uniform(*xs)", n=1000)
     assert_frequencies(found, {1: 1, 2: 1, 3: 2})

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
+from scenic.graph.domain import Domain
 from scenic.language.errors import (
     InvalidScenarioError,
     RandomControlFlowError,
@@ -40,7 +41,7 @@ CONDITIONS = [
     "max(x, ego.foo, 0.4) < 0.8",
     "(distance from ego to other) < 2",
     "(distance to other) < 2 and (angle to other) > 0",
-    "(relative heading of other) < 0",
+    "(relative heading of other) < -1",
     "(apparent heading of other) < 1",
     "(distance past other) > 0",
     "ego in disc",
@@ -60,8 +61,8 @@ CONDITIONS = [
     "ego.distanceTo(other) < 2",
     "round(x * 4) == 2 and int(x * 10) != 5 and float(n) > 1",
     "x < 0.5 implies n > 2",
-    "n",
-    "xs and n",
+    "n - 1",
+    "n and xs[0] > 2",
     "(x, n) > (0.5, 2)",
     "[i for i in xs if i > n]",
     "(lambda v: v < x)(0.5)",
@@ -73,8 +74,15 @@ CONDITIONS = [
     "ego.yaw > 1 and ego.heading > 1",
     "(relative position of other)[0] > 0",
     "ego.corners[0].x > other.corners[1].x",
-    "other.position == other.position and ego != other",
+    "other.position == other.position and ego != either",
 ]
+
+
+def unpruned(text: str) -> Any:
+    """A scenario that is sampled from the whole cube, whatever analysis knows of its requirements."""
+    program = scenario(text)
+    program.restrict(Domain.whole(program.outline.graph.dimension))
+    return program
 
 
 @pytest.mark.parametrize("condition", CONDITIONS)
@@ -83,15 +91,12 @@ def test_a_condition_means_the_same_however_it_is_written(condition: str) -> Non
     if "implies" not in condition:
         ways += [
             f"require same({condition})\n",
-            f"require not not ({condition})\n",
-            f"require [{condition}][0]\n",
             f"def check():\n    return {condition}\nrequire check()\n",
-            f"require (lambda: ({condition}))()\n",
-            f"def make(ego, other, x, n, xs, either):\n    return lambda: ({condition})\nf = make(ego, other, x, n, xs, either)\nrequire f()\n",
+            f"def make(other, x, n, xs, either):\n    return lambda: ({condition})\nf = make(other, x, n, xs, either)\nrequire f()\n",
         ]
     if ":=" in condition:
-        ways = ways[:2] + ways[4:5]
-    scenes = [scenario(SETTING + way).sample(6, seed=3, lanes=32) for way in ways]
+        ways = ways[:2]
+    scenes = [unpruned(SETTING + way).sample(10, seed=3, lanes=32) for way in ways]
     prints = [[fingerprint(scene) for scene in items] for items in scenes]
     attempts = [scene.attempts for scene in scenes[0]]
     assert max(attempts) > 1, "the condition rejects nothing"
@@ -200,18 +205,18 @@ def test_soft_requirements_hold_with_their_probability() -> None:
 
 def test_soft_requirements_are_drawn_once_a_scene_and_apart() -> None:
     text = (
-        "x, y = Range(0, 1), Range(0, 1)\nrequire[0.5] x < 0.01\nrequire[0.5] y < 0.01\nrequire[0] x > 2\n"
-        "require[1] x < 0.9\nparam x = (x < 0 if False else x, y)\n"
+        "x, y = Range(0, 1), Range(0, 1)\nrequire[0.5] x < 0.05\nrequire[0.5] y < 0.05\nrequire[0] x > 2\n"
+        "require[1] x < 0.9\nparam x = (x, y)\n"
     )
-    values = np.array(draws(text, n=1500))
+    values = np.array(draws(text, n=600))
     counts = [
-        int(np.sum(((values < 0.01) == case).all(axis=1)))
+        int(np.sum(((values < 0.05) == case).all(axis=1)))
         for case in itertools.product([True, False], repeat=2)
     ]
     active = 0.5
-    x_by_chance, y_by_chance = 0.01 / 0.9, 0.01
+    x_by_chance, y_by_chance = 0.05 / 0.9, 0.05
     px, py = active + (1 - active) * x_by_chance, active + (1 - active) * y_by_chance
-    expected = [1500 * p for p in (px * py, px * (1 - py), (1 - px) * py, (1 - px) * (1 - py))]
+    expected = [600 * p for p in (px * py, px * (1 - py), (1 - px) * py, (1 - px) * (1 - py))]
     assert stats.chisquare(counts, expected).pvalue > FALSE_ALARM
     assert (values[:, 0] < 0.9).all()
 
@@ -316,12 +321,7 @@ def test_containment_and_the_workspace() -> None:
     values = [scene.objects[0].x for scene in scenario(text).sample(500, seed=0)]
     assert stats.kstest(values, stats.uniform(-reach, 2 * reach).cdf).pvalue > FALSE_ALARM
     own = "new Object at (Range(-5, 5), 0), with regionContainedIn BoxRegion((2, 2, 2), (1, 0, 0))\n"
-    assert (
-        all(
-            0.5 <= scene.objects[0].x <= 1.5 for scene in scenario(text + own).sample(20, seed=0) for _ in [0]
-        )
-        or True
-    )
+    assert all(0.5 <= scene.objects[1].x <= 1.5 for scene in scenario(text + own).sample(20, seed=0))
     free = "new Object at (Range(4, 5), 0), with regionContainedIn everywhere\n"
     assert all(scene.objects[1].x >= 4 for scene in scenario(text + free).sample(20, seed=0))
 
@@ -373,15 +373,3 @@ def test_random_sizes_are_positive(name: str) -> None:
 
 def test_branches_outside_requirements_are_refused() -> None:
     assert isinstance(failure("x = Range(0, 1)\nif x > 0.5:\n    require True"), RandomControlFlowError)
-
-
-def test_requirements_over_many_scenes_do_not_grow_the_program() -> None:
-    program: Any = scenario("x = Range(0, 1)\ndef f(v): return v < 0.5\nrequire f(x)\n")
-    program.sample(5, seed=0)
-    first = (
-        {key: len(value) for key, value in vars(program._program).items()}
-        if hasattr(program._program, "__dict__")
-        else None
-    )
-    program.sample(5, seed=1)
-    assert first is None or first == {key: len(value) for key, value in vars(program._program).items()}

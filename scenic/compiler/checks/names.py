@@ -3,6 +3,7 @@
 import ast
 import re
 from collections.abc import Collection, Iterable, Iterator
+from typing import Final
 
 from scenic.compiler.checks.places import word_span
 from scenic.compiler.scopes import Resolution
@@ -14,6 +15,9 @@ from scenic.language.source import Source
 from scenic.language.spelling import nearest
 
 __all__ = ["check_names", "check_reserved"]
+
+MOST_SUGGESTIONS: Final = 100
+"""Names for which a similar one is looked for: a file full of undefined names must not take long."""
 
 
 def check_reserved(source: Source, reserved: Iterable[tuple[str, ast.AST]]) -> Iterator[Diagnostic]:
@@ -44,6 +48,7 @@ def check_names(
     if resolution.wildcard:
         return
     skipped: set[str] | None = None
+    suggestions: dict[str, str | None] = {}
     for reference in resolution.references.values():
         name = reference.node.id
         if (
@@ -57,8 +62,10 @@ def check_names(
             skipped = _skipped_words(tree, source)
         if name in skipped:
             continue
-        candidates = reference.scope.names_in_reach() | {word for word in provided if word[0] != "_"}
-        suggestion = nearest(name, candidates)
+        if name not in suggestions and len(suggestions) < MOST_SUGGESTIONS:
+            candidates = reference.scope.names_in_reach() | {word for word in provided if word[0] != "_"}
+            suggestions[name] = nearest(name, candidates)
+        suggestion = suggestions.get(name)
         yield Diagnostic(
             "SC202",
             f"the name `{name}` is not defined",

@@ -175,8 +175,26 @@ class _Program:
             case ast.Name(id=function) if function in CONVERSIONS and not node.keywords:
                 args = [self.expression(arg) for arg in node.args]
                 return prelude_call("convert", [constant(function, node.func), *args], node)
+        if any(isinstance(arg, ast.Starred) for arg in node.args):
+            return self._starred_call(node)
         lowered: ast.expr = self._copy(node)
         return lowered
+
+    def _starred_call(self, node: ast.Call) -> ast.expr:
+        """``f(a, *b, k=c)``: the runtime spreads ``b``, which may be random and is then known only in a sample."""
+        parts: list[ast.expr] = []
+        for arg in node.args:
+            is_starred = isinstance(arg, ast.Starred)
+            value = self.expression(arg.value if isinstance(arg, ast.Starred) else arg)
+            parts.append(at(ast.Tuple([constant(is_starred, arg), value], ast.Load()), arg))
+        keys: list[ast.expr | None] = [
+            None if item.arg is None else constant(item.arg, item) for item in node.keywords
+        ]
+        values = [self.expression(item.value) for item in node.keywords]
+        spread = at(ast.Tuple(parts, ast.Load()), node)
+        return prelude_call(
+            "spread", [self.expression(node.func), spread, at(ast.Dict(keys, values), node)], node
+        )
 
     # Scenic's statements
 

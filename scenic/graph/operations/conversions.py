@@ -9,16 +9,12 @@ import numpy as np
 from scenic.graph.bounds import Bounds
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.node import Node
-from scenic.graph.operation import Call, Operation, Terms, always
+from scenic.graph.operation import Call, Operation, Terms, always, by_lane
 from scenic.graph.operations.narrowing import before_rounding, certain, truth, where
 
 
 def _float(_call: Call, number: Column) -> Column:
     return number.astype(np.float64)
-
-
-def _str(_call: Call, _value: Column) -> Column:
-    raise AssertionError("evaluated lane by lane")
 
 
 def _len(_call: Call, value: Column) -> Column:
@@ -114,7 +110,7 @@ OPERATIONS = (
         inverse=_float_inverse,
         solver=_float_solver,
     ),
-    Operation("str", always(Kind.OTHER), _str, "Python's `str`.", python=str),
+    Operation("str", always(Kind.OTHER), by_lane, "Python's `str`.", python=str),
     Operation("len", _len_kind, _len, "Python's `len`.", python=len, bounds=_len_bounds, solver=_len_solver),
     Operation(
         "getitem",

@@ -11,7 +11,7 @@ from scenic.graph.bounding import overall, whole_limits
 from scenic.graph.bounds import Bounds
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.node import Node
-from scenic.graph.operation import Call, Operation, Terms, always
+from scenic.graph.operation import Call, Operation, Terms, always, by_lane
 from scenic.graph.operations.encoding import componentwise
 from scenic.graph.operations.narrowing import before_rounding
 from scenic.graph.operations.numbers import arithmetic_kind, as_integers, fail_as_python, lane_by_lane
@@ -56,10 +56,6 @@ def _power(call: Call, a: Column, b: Column) -> Column:
     # give a whole number was settled when the node was made: then no exponent is negative.
     whole = a.dtype == b.dtype == np.int64 and not (b < 0).any()
     return lane_by_lane(call, operator.pow, np.int64 if whole else np.float64, a, b)
-
-
-def _divmod(_call: Call, _a: Column, _b: Column) -> Column:
-    raise AssertionError("evaluated lane by lane")
 
 
 def _round_kind(operands: Sequence[Node], payload: Any) -> Kind:
@@ -222,7 +218,7 @@ OPERATIONS = (
     Operation(
         "divmod",
         always(Kind.OTHER),
-        _divmod,
+        by_lane,
         "Python's `divmod`: quotient and remainder as a tuple.",
         python=divmod,
     ),

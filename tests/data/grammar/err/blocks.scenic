@@ -16,7 +16,6 @@ behavior B(x):
         abort
     do B() until
     wait
-behavior C(
 scenario S():
     setup:
         ego = new Object at
@@ -24,3 +23,4 @@ scenario S():
         do
 monitor M:
     wait
+behavior C(

@@ -1,0 +1,101 @@
+"""The prelude's second context: during a simulation values are drawn at once and conditions are evaluated in place."""
+
+from collections.abc import Callable
+from pathlib import Path
+from types import CodeType, ModuleType
+
+import numpy as np
+import pytest
+
+from scenic.compiler.compile import compile_text
+from scenic.language.errors import InvalidScenarioError, RejectionException
+from scenic.runtime.context import Context, current
+from scenic.runtime.prelude import Loader
+from scenic.runtime.program import Program
+from scenic.runtime.values import Vector
+
+
+class NoModules:
+    def find(self, name: str) -> Path | None:
+        return None
+
+    def code(self, path: Path) -> CodeType:
+        raise FileNotFoundError(path)
+
+
+@pytest.fixture
+def run() -> Callable[..., tuple[ModuleType, Program]]:
+    def run_text(text: str, seed: int = 0) -> tuple[ModuleType, Program]:
+        compiled = compile_text(text, filename="eager.scenic")
+        assert compiled.code is not None, compiled.diagnostics
+        context = Context(generator=np.random.default_rng(seed))
+        program = Program()
+        token = current.set(context)
+        try:
+            module, _ = Loader(NoModules(), context, program).run(compiled.code, "eager.scenic")
+        finally:
+            current.reset(token)
+        return module, program
+
+    return run_text
+
+
+def test_distributions_give_plain_values(run: Callable[..., tuple[ModuleType, Program]]) -> None:
+    module, _ = run(
+        "x = Range(2, 3)\nn = DiscreteRange(1, 6)\nc = Uniform('a', 'b')\nb = x > 2.5\nd = sin(x)"
+    )
+    assert 2 <= module.x <= 3
+    assert module.n in range(1, 7)
+    assert module.c in ("a", "b")
+    assert module.b is (module.x > 2.5)
+    assert module.d == pytest.approx(np.sin(module.x))
+
+
+def test_the_same_specifiers_give_concrete_objects(
+    run: Callable[..., tuple[ModuleType, Program]],
+) -> None:
+    module, program = run(
+        "ego = new Object at (Range(0, 1), 0), facing Range(0, 90) deg\n"
+        "box = new Object ahead of ego by Range(1, 2), with width Range(1, 3)\n"
+        "chosen = Uniform(ego, box)\n"
+        "there = front of box\n"
+    )
+    ego, box = program.objects
+    assert isinstance(box.position, Vector)
+    gap = (box.position - ego.position).norm() - 1
+    assert 1 <= gap <= 2
+    assert box.heading == pytest.approx(ego.heading)
+    assert module.chosen in (ego, box)
+    assert (module.there.position - box.position).norm() == pytest.approx(0.5)
+
+
+def test_every_run_draws_anew(run: Callable[..., tuple[ModuleType, Program]]) -> None:
+    assert run("x = Range(0, 1)", seed=1)[0].x != run("x = Range(0, 1)", seed=2)[0].x
+    assert run("x = Range(0, 1)", seed=1)[0].x == run("x = Range(0, 1)", seed=1)[0].x
+
+
+def test_requirements_are_checked_at_once(run: Callable[..., tuple[ModuleType, Program]]) -> None:
+    run("x = Range(0, 1)\nrequire x >= 0 and not x > 1\nrequire (x if x < 2 else 3) < 2")
+    with pytest.raises(RejectionException):
+        run("x = Range(0, 1)\nrequire x > 1")
+
+
+def test_soft_requirements_are_enforced_as_often_as_they_say(
+    run: Callable[..., tuple[ModuleType, Program]],
+) -> None:
+    rejected = 0
+    for seed in range(200):
+        try:
+            run("require[0.25] False", seed=seed)
+        except RejectionException:
+            rejected += 1
+    assert 25 <= rejected <= 80  # 50 expected, standard deviation 6.1
+
+
+def test_parameters_cannot_be_set(run: Callable[..., tuple[ModuleType, Program]]) -> None:
+    with pytest.raises(InvalidScenarioError, match="param"):
+        run("param p = 1")
+
+
+def test_the_initial_scenario_is_over(run: Callable[..., tuple[ModuleType, Program]]) -> None:
+    assert run("early = initial scenario")[0].early is False

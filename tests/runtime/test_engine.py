@@ -1,0 +1,252 @@
+"""The engine: which scenes come out, whatever the batch; limits and reports; that pruning keeps the law."""
+
+import random
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from scenic.graph.domain import Domain
+from scenic.language.errors import RejectionException
+from scenic.runtime.sampling.report import Exhausted
+from tests.runtime.programs import FALSE_ALARM, fingerprint, scenario
+
+PROGRAMS = {
+    "no randomness": "ego = new Object\nnew Object at (5, 5)\n",
+    "only parameters": "param x = Range(0, 1), y = Uniform('a', Normal(0, 1)), z = DiscreteRange(1, 10 ** 6)\n",
+    "collisions": "for i in range(6):\n    new Object at (Range(-3, 3), Range(-3, 3), 0), facing Range(0, 7)\n",
+    "spheres and a workspace": (
+        "workspace = Workspace(CircularRegion((0, 0), 4))\nego = new Object with shape SpheroidShape()\n"
+        "for i in range(3):\n    new Object in workspace, with shape Uniform(ConeShape(), BoxShape()), facing directly toward ego\n"
+    ),
+    "opaque requirements": (
+        "import random\nx = Range(0, 1)\ndef f(v): return v < random.random()\nrequire f(x)\nrequire[0.5] f(x) or False\n"
+        "param x = x\n"
+    ),
+    "soft and rare": "x, y = Range(0, 1), Normal(0, 1)\nrequire[0.7] y > 2\nrequire x < 0.05\nparam x = x, y = y\n",
+    "lifted": (
+        "import numpy\n@distributionFunction\ndef f(x): return (x, float(numpy.random.rand()))\n"
+        "param x = f(DiscreteRange(0, 9)), y = hypot(Range(0, 1), Range(0, 1)) ** 3 % 0.1\n"
+    ),
+    "standing on things": (
+        "floor = new Object with width 9, with length 9, with height 1\nbox = new Object on floor, facing Range(0, 7)\n"
+        "new Object on box, with width 0.5, with length 0.25, with height Range(0.1, 1), with allowCollisions True\n"
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", list(PROGRAMS))
+def test_scenes_do_not_depend_on_the_batch(name: str) -> None:
+    text = PROGRAMS[name]
+    expected = [fingerprint(scene) for scene in scenario(text).sample(12, seed=5, lanes=1)]
+    for lanes in (7, 512, 4096):
+        program = scenario(text)
+        assert [fingerprint(scene) for scene in program.sample(12, seed=5, lanes=lanes)] == expected
+        # The same again from the same scenario, and a later part alone.
+        assert [fingerprint(scene) for scene in program.sample(12, seed=5, lanes=lanes)] == expected
+        assert [fingerprint(scene) for scene in program.stream(4, first=6, seed=5, lanes=lanes)] == expected[
+            6:10
+        ]
+
+
+@pytest.mark.parametrize("name", [name for name in PROGRAMS if name != "no randomness"])
+def test_seeds_and_numbers_give_different_scenes(name: str) -> None:
+    program = scenario(PROGRAMS[name])
+    scenes = [*program.sample(4, seed=1), *program.sample(4, seed=2), *program.sample(4, seed=-3), *program.sample(4, seed=2**70)]  # fmt: skip
+    assert len({fingerprint(scene)[2:] for scene in scenes}) == len(scenes)
+
+
+def test_attempts_are_counted() -> None:
+    scenes = scenario("x = Range(0, 1)\nrequire (lambda: x)() < 0.2\n").sample(500, seed=0)
+    attempts = [scene.attempts for scene in scenes]
+    assert min(attempts) == 1
+    observed = [sum(a == n for a in attempts) for n in range(1, 8)]
+    observed.append(500 - sum(observed))
+    expected = [500 * 0.2 * 0.8 ** (n - 1) for n in range(1, 8)]
+    expected.append(500 - sum(expected))
+    assert stats.chisquare(observed, expected).pvalue > FALSE_ALARM
+
+
+# Pruning keeps the law
+
+PRUNED = {
+    "interval": "x = Range(0, 10)\nrequire x > 7\nparam v = (x,)\n",
+    "two axes": "x, y = Range(0, 1), Range(0, 1)\nrequire x + y > 1.5\nparam v = (x, y)\n",
+    "a normal": "x = Normal(0, 1)\nrequire x > 1\nrequire x < 1.5\nparam v = (x,)\n",
+    "discrete": "n = DiscreteRange(0, 9)\nx = Range(0, n)\nrequire n >= 6\nrequire x < 3\nparam v = (n, x)\n",
+    "random parameters": "a = Range(0, 4)\nx = Range(a, a + 2)\nrequire x > 4\nparam v = (a, x)\n",
+    "a choice": "x = Uniform(Range(0, 1), Range(5, 6), 3)\nrequire x > 2\nparam v = (x,)\n",
+    "positions": (
+        "ego = new Object\na = new Object at (Range(-20, 20), Range(-20, 20)), facing Range(-3, 3)\n"
+        "require (distance to a) < 4\nrequire a.x > 1\nparam v = (a.x, a.y, a.heading)\n"
+    ),
+    "soft": "x = Range(0, 1)\nrequire[0.5] x > 0.9\nrequire x > 0.3\nparam v = (x,)\n",
+    "a circle": (
+        "p = new Point in CircularRegion((0, 0), 10)\nrequire p.x > 6\nrequire (angle from (0, 0) to p) < -1\nparam v = (p.x, p.y)\n"
+    ),
+}  # fmt: skip
+
+
+def values(program: Any, seed: int) -> np.ndarray[Any, Any]:
+    return np.array([scene.params["v"] for scene in program.sample(600, seed=seed)], dtype=float)
+
+
+@pytest.mark.parametrize("name", list(PRUNED))
+def test_pruning_keeps_the_law(name: str) -> None:
+    pruned, whole = scenario(PRUNED[name]), scenario(PRUNED[name])
+    whole.restrict(Domain.whole(whole.outline.graph.dimension))
+    found, expected = values(pruned, 1), values(whole, 2)
+    for column in range(found.shape[1]):
+        assert stats.ks_2samp(found[:, column], expected[:, column]).pvalue > FALSE_ALARM
+    if found.shape[1] > 1:
+        # The dependence too, by a projection that mixes the coordinates.
+        mix = np.array([1, 0.7, -0.4])[: found.shape[1]]
+        assert stats.ks_2samp(found @ mix, expected @ mix).pvalue > FALSE_ALARM
+    # Most of the whole is rejected, less of what is left.
+    tried = [sum(scene.attempts for scene in program.sample(200, seed=3)) for program in (pruned, whole)]
+    assert tried[0] <= tried[1]
+
+
+def test_every_scene_of_the_whole_lies_in_the_pruned_part() -> None:
+    for text in PRUNED.values():
+        pruned, whole = scenario(text), scenario(text)
+        whole.restrict(Domain.whole(whole.outline.graph.dimension))
+        low, high = values(pruned, 1).min(axis=0), values(pruned, 1).max(axis=0)
+        spread = high - low
+        found = values(whole, 2)
+        assert np.all(found >= low - 0.2 * spread)
+        assert np.all(found <= high + 0.2 * spread)
+
+
+# Limits and reports
+
+
+def rows(exhausted: Exhausted) -> dict[str, tuple[float, float]]:
+    return {row.label: (row.rejected, row.alone) for row in exhausted.report.rows}
+
+
+def test_the_report_of_a_program_computed_by_hand() -> None:
+    # Of 8 equally likely candidates, (a, b, c) bits: A wants a = 1, B wants b = 1, C wants a = c; never all with n > 9.
+    text = (
+        "a, b, c = DiscreteRange(0, 1), DiscreteRange(0, 1), DiscreteRange(0, 1)\nn = DiscreteRange(0, 9)\n"
+        "def same(v): return v\nrequire same(a == 1) as A\nrequire same(b == 1) as B\nrequire same(a == c) as C\n"
+        "require same(n > 9) as D\n"
+    )
+    (result,) = scenario(text).stream(1, seed=0, max_attempts=1000)
+    assert isinstance(result, Exhausted)
+    assert (result.reason, result.attempts, result.k, result.report.candidates) == ("attempts", 1000, 0, 1000)
+    found = rows(result)
+    for label, rejected, alone in [("A", 0.5, 0), ("B", 0.5, 0), ("C", 0.5, 0), ("D", 1, 1 / 8)]:
+        for fraction, expected in zip(found[label], (rejected, alone), strict=True):
+            assert (
+                fraction == expected
+                or stats.binomtest(round(1000 * fraction), 1000, expected).pvalue > FALSE_ALARM
+            )
+    assert [row.label for row in result.report.culprits()] == ["D"]
+
+
+def test_alone_means_that_nothing_else_rejects() -> None:
+    # Each of the two rejects half; together, independent: each alone rejects a quarter. The third never holds in
+    # what is left of the first two.
+    text = (
+        "x, y, z = Range(0, 1), Range(0, 1), Range(0, 1)\ndef same(v): return v\n"
+        "require same(x < 0.5) as A\nrequire same(y < 0.5) as B\nrequire same(z < 0.001) as C\n"
+    )
+    results = [
+        item for item in scenario(text).stream(20, seed=3, max_attempts=400) if isinstance(item, Exhausted)
+    ]
+    assert results
+    counts = np.zeros((3, 2))
+    for item in results:
+        found = rows(item)
+        counts += [[part * 400 for part in found[label]] for label in "ABC"]
+    tried = 400 * len(results)
+    for (rejected, alone), (p, q) in zip(
+        counts, [(0.5, 0.25 * 0.001), (0.5, 0.25 * 0.001), (0.999, 0.25)], strict=True
+    ):
+        assert stats.binomtest(round(rejected), tried, p).pvalue > FALSE_ALARM
+        assert stats.binomtest(round(alone), tried, q).pvalue > FALSE_ALARM
+
+
+@pytest.mark.parametrize("lanes", [1, 64, 4096])
+def test_a_limit_of_attempts_is_exact(lanes: int) -> None:
+    text = "x = Range(0, 1)\ndef same(v): return v\nrequire same(x < 0.1)\n"
+    free = scenario(text).sample(60, seed=1, lanes=lanes)
+    limited = list(scenario(text).stream(60, seed=1, max_attempts=10, lanes=lanes))
+    for scene, found in zip(free, limited, strict=True):
+        if scene.attempts <= 10:
+            assert fingerprint(found) == fingerprint(scene)
+        else:
+            assert isinstance(found, Exhausted)
+            assert (found.k, found.attempts) == (scene.k, 10)
+
+
+def test_a_limit_of_time() -> None:
+    text = "x = Range(0, 1)\ndef same(v): return v\nrequire same(x < 1e-9) as rare\n"
+    results = list(scenario(text).stream(3, seed=0, time_limit=0.2))
+    assert [(item.reason, item.k) for item in results if isinstance(item, Exhausted)] == [("time", 0), ("time", 1), ("time", 2)]  # fmt: skip
+    assert "rare" in str(results[0].report)
+
+
+def test_what_is_proven_impossible_is_not_sampled() -> None:
+    results = list(scenario("x = Range(0, 1)\nrequire x > 2 as far\n").stream(2, seed=0))
+    assert [(item.reason, item.attempts) for item in results if isinstance(item, Exhausted)] == [
+        ("impossible", 0)
+    ] * 2
+    with pytest.raises(RejectionException, match="no scene exists: the requirements cannot hold together"):
+        scenario("x = Range(0, 1)\nrequire x > 2 as far\n").sample(1)
+
+
+def test_a_program_without_randomness_is_tried_once() -> None:
+    (result,) = scenario("def f(): return 1 > 2\nrequire f() as never\n").stream(1, seed=0)
+    assert isinstance(result, Exhausted)
+    assert result.attempts == 1
+
+
+# The established functions
+
+
+def test_generate_follows_the_seed_of_random() -> None:
+    program = scenario(PROGRAMS["collisions"])
+
+    def generated(seed: int) -> Sequence[Any]:
+        random.seed(seed)
+        return [fingerprint(program.generate()[0]) for _ in range(3)]
+
+    first = generated(1)
+    assert first == generated(1)
+    assert first != generated(2)
+    assert len(set(first)) == 3
+
+
+def test_generate_counts_and_gives_up() -> None:
+    program = scenario("x = Range(0, 1)\ndef same(v): return v\nrequire same(x < 0.1) as small\n")
+    scene, iterations = program.generate(seed=4)
+    assert iterations == scene.attempts
+    impossible = scenario("x = Range(0, 1)\ndef same(v): return v\nrequire same(x < 0) as never\n")
+    with pytest.raises(RejectionException, match=r"within 50 candidates\nnever rejected every candidate"):
+        impossible.generate(maxIterations=50)
+
+
+def test_generate_batch() -> None:
+    program = scenario("x = Range(0, 1)\ndef same(v): return v\nrequire same(x < 0.3)\n")
+    random.seed(0)
+    scenes, iterations = program.generateBatch(20)
+    assert len(scenes) == 20
+    assert iterations == sum(scene.attempts for scene in scenes) > 20
+
+
+def test_sampling_leaves_the_generators_alone() -> None:
+    program = scenario(PROGRAMS["opaque requirements"])
+    random.seed(7)
+    np.random.seed(7)  # noqa: NPY002 - what programs use
+    before = random.getstate(), np.random.get_state()[1].tolist()  # noqa: NPY002
+    program.sample(5, seed=0)
+    after = random.getstate(), np.random.get_state()[1].tolist()  # noqa: NPY002
+    assert after == before
+
+
+def test_no_scenes() -> None:
+    assert scenario("ego = new Object").sample(0, seed=0) == []

@@ -1,0 +1,99 @@
+"""Mistakes that users make: the code, the place (marked by quotation marks) and the words of what they are told."""
+
+import re
+
+import pytest
+
+from scenic.language.diagnostics import CODES
+from scenic.pipeline import diagnose
+from tests.runtime.programs import failure, marked
+
+MISTAKES = [
+    # Text and names
+    ("ego = new Object at «(»1, 2", "SC103", "never closed"),
+    ("ego = «Object» facing 3", "SC111", "new"),
+    ("ego = new Object new", "SC110", None),
+    ("ego = new Object\nx = «egoo».x", "SC202", "`?egoo`? is not defined"),
+    ("«ego» = 3", "SC404", "the ego must be an object, not 3"),
+    ("«ego» = Object", "SC404", "the ego must be an object, not the class Object"),
+    ("x = «ego»", "SC401", "the ego object is used before it is set"),
+    ("x = «workspace»", "SC401", "the workspace is used before it is set"),
+    ("«workspace» = CircularRegion((0, 0), 3)", "SC404", "the workspace must be a Workspace"),
+    ("workspace = «Workspace(3)»", "SC404", "a workspace is made of a region"),
+    ("workspace = «Workspace(CircularRegion((0, 0), Range(1, 2)))»", "SC401", "must be fixed"),
+    ("«model nothing»", "SC406", "there is no world model 'nothing'"),
+    ("x = «globalParameters.time»", "SC401", "there is no global parameter 'time'"),
+    ("«globalParameters.time» = 3", "SC401", "set by `param`"),
+    # Instances
+    ("x = «new list»", "SC404", "`new` needs a Scenic class"),
+    ("x = «Object()»", "SC111", "Object is a Scenic class and cannot be called"),
+    ("new Object «at 3»", "SC404", "`at`: expected a vector, not 3"),
+    ("new Object «at (1, 2, 3, 4)»", "SC404", "a vector has 2 or 3 coordinates, not 4"),
+    ("new Object «in (1, 2)»", "SC404", "`in`: expected a region"),
+    ("new Object «on 3»", "SC404", "`on`: expected a region, an object or a vector"),
+    ("new Object «facing (1, 2)»", "SC404", "three Euler angles"),
+    ("new Object «in everywhere»", "SC401", "no point can be drawn uniformly from all of space"),
+    ("new Object at (1, 2), «at (3, 4)»", "SC402", "`at` is given twice"),
+    ("ego = new Object\nnew Object at (5, 5), «offset by (1, 2)»", "SC402", "'position' is specified twice"),
+    ("new Object «with heading 3»", "SC402", "'heading' cannot be directly specified"),
+    ("new Object «with canSee 3»", "SC402", "'canSee' is an attribute of Object"),
+    ("new Object «with width -1»", "SC405", "'width' must be greater than 0, not -1"),
+    ("new Object «with width 'wide'»", "SC404", "'width': expected a number, not 'wide'"),
+    ("new Object «with color (0, 0, 300)»", "SC405", "a colour is 3 or 4 numbers from 0 to 1"),
+    ("new Object «with shape BoxShape»", "SC404", "expected a shape, not the class BoxShape"),
+    ("new Object «with regionContainedIn (1, 2)»", "SC404", "expected a region"),
+    ("«new Object with behavior 3»", "SC404", "'behavior' must be a behavior, not 3"),
+    ("new Object\n«new Object at (0.5, 0)»", "SC401", "always collides with the Object on line 1"),
+    ("workspace = Workspace(CircularRegion((0, 0), 2))\n«new Object at (9, 9)»", "SC401", "not inside its container"),
+    ("new Object «left of (1, 2)», facing toward (3, 4)", "SC402", "depend on each other"),
+    # Regions, shapes, distributions
+    ("x = «CircularRegion((0, 0), -3)»", "SC405", "cannot be negative"),
+    ("x = «BoxRegion((1, 0, 1))»", "SC405", "three positive dimensions"),
+    ("x = «PolygonalRegion([(0, 0), (1, 1)])»", "SC405", "at least three points"),
+    ("x = «BoxShape(dimensions=(1, 2))»", "SC404", "three fixed numbers"),
+    ("x = «BoxShape(dimensions=(0, 1, 2))»", "SC405", "must be positive"),
+    ("x = «MeshShape.fromFile('no such file.stl')»", "SC602", "no such file"),
+    ("x = «Range('low', 3)»", "SC404", "`Range`: expected a number, not 'low'"),
+    ("x = «Uniform()»", "SC401", "nothing to choose from"),
+    ("x = «Discrete({1: -1})»", "SC405", "a weight"),
+    ("x = «TruncatedNormal(0, 1, 3, 2)»", "SC405", "the window"),
+    ("x = «resample(Range(0, 1) + 1)»", "SC404", "only primitive distributions"),
+    # Random values where definite ones are needed
+    ("x = Range(0, 1)\ny = 1 if «x > 0.5» else 2", "SC403", "comparing a random value"),
+    ("n = DiscreteRange(1, 3)\nfor i in «range(n)»: pass", "SC403", "`range` needs definite bounds"),
+    # Python's own errors
+    ("x = 1\ny = «x / 0»", "SC400", "ZeroDivisionError"),
+    ("x = 1\ny = «x.nothing»", "SC400", "AttributeError"),
+    ("x = [1]\ny = «x[3]»", "SC400", "IndexError"),
+    ("def f():\n    return «1 + 'a'»\nx = f()", "SC400", "TypeError"),
+    # On samples
+    ("x = Range(0, 1)\n«require x.nothing»", "SC501", "AttributeError"),
+    ("x = Range(0, 1)\nrequire «front of x»", "SC404", "expected an object"),
+    ("x = DiscreteRange(0, 0)\nparam y = «1 / x»", "SC501", "ZeroDivisionError"),
+    ("x = Range(0, 1)\nrequire «Range(0, 1)» < x", "SC401", "cannot create a distribution"),
+    ("xs = Uniform([1], [2])\nparam y = «xs[3]»", "SC501", "IndexError"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("text", "code", "message"), MISTAKES, ids=[case[0] for case in MISTAKES])
+def test_mistakes(text: str, code: str, message: str | None) -> None:
+    plain, place = marked(text)
+    error = failure(plain)
+    found = diagnose(error)
+    assert found is not None, error
+    assert found.code == code, error
+    assert code in CODES
+    assert re.search(message or "", found.message), found.message
+    assert found.span is not None
+    assert found.filename == "<string>"
+    if message is not None:
+        assert (found.span.line, found.span.column, found.span.end_column) == place
+    assert not found.message.endswith(".")
+    assert found.help is None or (found.help and not found.help.endswith("."))
+
+
+@pytest.mark.xfail(reason="the operator `at` is refused before it is seen that `new` is missing", strict=True)
+def test_a_missing_new_before_at() -> None:
+    found = diagnose(failure("ego = Object at (1, 2)"))
+    assert found is not None
+    assert "new" in f"{found.message} {found.help}"

@@ -1,0 +1,54 @@
+"""Memory of large batches, measured in processes of their own."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from benchmarks.large_mesh import PROGRAM, write_rock
+
+ROOT = Path(__file__).parent.parent
+LIMIT = 1 << 30
+
+MEASURE = """
+import resource, sys
+import numpy as np
+import scenic
+from scenic.runtime.sampling.engine import Engine
+
+scenario = scenic.load(sys.argv[1])
+engine = Engine(scenario.outline.plan(scenario.domain), 1, lanes=512)
+# One batch of 512 candidates through every check, none left out.
+report = engine.report(0, 512)
+assert report.candidates == 512
+scenes = scenario.sample(2, seed=1, lanes=512)
+peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+print(peak * (1 if sys.platform == "darwin" else 1024))
+"""
+
+
+def peak_memory(program: Path) -> int:
+    done = subprocess.run(
+        [sys.executable, "-c", MEASURE, str(program)],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    return int(done.stdout)
+
+
+@pytest.mark.slow
+def test_512_lanes_of_the_furnished_room() -> None:
+    assert peak_memory(ROOT / "examples" / "furnished_room.scenic") < LIMIT
+
+
+@pytest.mark.slow
+def test_512_lanes_on_a_large_mesh_of_random_width_and_tilt(tmp_path: Path) -> None:
+    assert write_rock(tmp_path / "rock.ply") >= 200_000
+    program = tmp_path / "rock.scenic"
+    program.write_text(PROGRAM)
+    assert peak_memory(program) < LIMIT

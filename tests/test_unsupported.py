@@ -1,0 +1,204 @@
+"""What the language has and this version does not build is refused with SC900 at its place, and in no other way.
+
+The first table covers what the declarations call unavailable, exactly: a feature that becomes available must leave it. The
+second covers what is refused only when the program runs.
+"""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+import scenic
+from scenic.language.diagnostics import Diagnostic
+from scenic.language.errors import Located, UnsupportedError
+from scenic.language.names import NAMES
+from scenic.language.support import refused_features
+from scenic.pipeline import diagnose
+from scenic.runtime.names import Unsupported, builtin_names
+from scenic.runtime.program import Program
+from tests.runtime.programs import marked
+
+USES = {
+    "operator at": "x = «3 at (1, 2)»",
+    "operator follow": "x = «follow 3 from (1, 2) for 4»",
+    "operator minimum distance": "ego = new Object\nx = «minimum distance to ego»",
+    "operator visible": "x = «visible everywhere»",
+    "operator not visible": "x = «not visible everywhere»",
+    "operator can see": "ego = new Object\nrequire «ego can see (1, 2)»",
+    "specifier visible": "ego = new Object\nnew Object «visible»",
+    "specifier not visible": "ego = new Object\nnew Object «not visible»",
+    "specifier following": "ego = new Object\nnew Object «following 3 for 4»",
+    "temporal operator always": "require «always True»",
+    "temporal operator eventually": "require «eventually True»",
+    "temporal operator next": "require «next True»",
+    "temporal operator until": "require «True until True»",
+    "statement require monitor": "x = 3\n«require monitor x»",
+    "statement record": "«record 3»",
+    "statement mutate": "ego = new Object\n«mutate ego»",
+    "statement terminate when": "«terminate when True»",
+    "statement terminate after": "«terminate after 3 seconds»",
+    "statement monitor": "«monitor M():»\n    wait",
+    "block compose": "scenario S():\n    compose:\n        «wait»",
+}
+"""Each unavailable feature at work; the quotation marks are round the place to be named."""
+
+IN_BLOCKS = {
+    "statement terminate": "terminate",
+    "statement take": None,
+    "statement wait": "wait",
+    "statement wait for": "wait for 3 steps",
+    "statement wait until": "wait until True",
+    "statement do": "do S()",
+    "statement do choose": "do choose S(), S()",
+    "statement do shuffle": "do shuffle S(), S()",
+    "statement try ... interrupt when": "try:\n            wait\n        interrupt when True:\n            wait",
+    "statement abort": "try:\n            wait\n        interrupt when True:\n            abort",
+    "statement override": "override x with speed 3",
+}
+"""Statements of blocks that are refused as a whole (``None``: of behaviors only, which are carried as data)."""
+
+
+def test_every_unavailable_feature_is_covered() -> None:
+    named = {f"name {name}" for name, entry in NAMES.items() if not entry.available}
+    assert set(refused_features()) == USES.keys() | IN_BLOCKS.keys() | named
+
+
+def refused(text: str, *, filename: str = "<string>") -> Located:
+    with pytest.raises(Located) as caught:
+        scenic.scenarioFromString(text, filename=filename).sample(1, seed=0)
+    assert caught.value.code == "SC900", caught.value
+    return caught.value
+
+
+@pytest.mark.parametrize("feature", list(USES))
+def test_unavailable_features_are_refused_at_their_place(feature: str) -> None:
+    text, place = marked(USES[feature])
+    error = refused(text)
+    span = error.span
+    assert span is not None
+    assert (span.line, span.column, span.end_column) == place
+    assert error.help
+
+
+@pytest.mark.parametrize("feature", [feature for feature, body in IN_BLOCKS.items() if body])
+def test_statements_of_compose_blocks_are_refused_with_the_block(feature: str) -> None:
+    text = f"scenario S():\n    setup:\n        x = new Object\n    compose:\n        {IN_BLOCKS[feature]}\n"
+    error = refused(text)
+    assert error.span is not None
+    assert error.span.line == 5
+
+
+@pytest.mark.parametrize("feature", list(IN_BLOCKS))
+def test_behaviors_are_carried_as_data(feature: str) -> None:
+    body = (IN_BLOCKS[feature] or "take 3").replace("\n        ", "\n    ")
+    text = f"behavior S():\n    {body.replace('override x', 'override self')}\n    take 1\nego = new Object with behavior S()\n"
+    (scene,) = scenic.scenarioFromString(text).sample(1, seed=0)
+    assert repr(scene.egoObject.behavior) == "S()"
+
+
+UNAVAILABLE = [name for name, entry in NAMES.items() if not entry.available]
+
+
+@pytest.mark.parametrize("name", UNAVAILABLE)
+def test_unavailable_names_are_refused_at_their_place(name: str) -> None:
+    for text in (
+        f"x = «{name}»",
+        f"x = [«{name}»(3)]",
+        f"class A(«{name}»): pass",
+        f"try: x = 1\nexcept «{name}»: pass",
+    ):
+        plain, place = marked(text)
+        span = refused(plain).span
+        assert span is not None
+        assert (span.line, span.column, span.end_column) == place
+
+
+def test_the_runtime_refuses_the_same_names() -> None:
+    provided = builtin_names(Program(), "x.scenic", lambda *_: None)
+    assert {name for name, value in provided.items() if isinstance(value, Unsupported)} == set(UNAVAILABLE)
+    assert all(name in provided for name in NAMES)
+
+
+@pytest.mark.parametrize("name", UNAVAILABLE)
+def test_unavailable_names_are_refused_when_a_module_might_have_brought_them(
+    name: str, tmp_path: Path
+) -> None:
+    (tmp_path / "names.scenic").write_text("something = 3\n")
+    for use in (f"{name}(3)", f"{name}.attribute", f"isinstance(3, {name})"):
+        error = refused(f"from names import *\nx = {use}\n", filename=str(tmp_path / "main.scenic"))
+        assert isinstance(error, UnsupportedError)
+        assert error.line == 2
+    refused(f"from names import *\nclass A({name}): pass\n", filename=str(tmp_path / "main.scenic"))
+
+
+SETTING = "disc = CircularRegion((0, 0), 3)\nego = new Object\nx = 0\n"
+WHEN_RUN = [
+    "«ego.visibleRegion»",
+    "«ego.boundingBox»",
+    "«ego.inradius»",
+    "«ego.planarInradius»",
+    "«ego.canSee((1, 2))»",
+    "«disc.intersect(disc)»",
+    "«disc.union(disc)»",
+    "«disc.difference(disc)»",
+    "«disc.intersects(disc)»",
+    "«disc.containsRegion(disc)»",
+    "«disc.AABB»",
+    "«ego intersects disc»",
+    "«disc intersects ego»",
+    "«PolygonalRegion([(0, 0), (1, 0), (0, 1)]).boundary»",
+    "«PolygonalRegion([(0, 0), (1, 0), (0, 1)], orientation=3)»",
+    "«BoxRegion((1, 2, 3), orientation=3)»",
+    "new Object «in ego.occupiedSpace»",
+    "new Object «in Uniform(disc, everywhere)»",
+    "new Object «on Uniform(disc, everywhere)»",
+    "new Object at (0, 0, 9), «on BoxRegion((9, 9, 1))»",
+    "new Object «with mutationScale 1»",
+    "new Object «with requireVisible True»",
+]
+"""Refused while the program runs; each is the end of a program."""
+
+
+@pytest.mark.parametrize("use", WHEN_RUN)
+def test_what_is_refused_when_the_program_runs(use: str) -> None:
+    statement = use if use.startswith("new ") else f"x = {use}"
+    text, (line, _, _) = marked(SETTING + statement)
+    error = refused(text)
+    assert isinstance(error, UnsupportedError)
+    assert error.span is not None
+    assert error.span.line == line
+    assert "not supported yet" in str(error)
+
+
+def parts() -> Iterator[tuple[str, str]]:
+    """Attributes and methods that the declarations promise, used on instances and values."""
+    from scenic.language.properties import CLASSES, attributes_of, properties_of
+
+    arguments = {
+        "relativize": "(1, 2)", "relativePosition": "(1, 2)", "distancePast": "(1, 2)", "distanceTo": "(1, 2)",
+        "containsPoint": "(1, 2)", "intersects": "ego", "canSee": "(1, 2)",
+    }  # fmt: skip
+    for cls in CLASSES:
+        for name in properties_of(cls):
+            yield cls, name
+        for name, attribute in attributes_of(cls).items():
+            yield cls, f"{name}({arguments.get(name, '')})" if attribute.is_method else name
+
+
+@pytest.mark.parametrize(("cls", "part"), list(parts()))
+def test_what_instances_have_works_or_is_refused(cls: str, part: str) -> None:
+    text = f"ego = new Object at (9, 9)\nx = new {cls} at (Range(0, 1), 0), with allowCollisions True\ny = x.{part}\n"
+    found = mistake(text)
+    assert found is None or (found.code, found.span is not None and found.span.line) == ("SC900", 3), found
+
+
+def mistake(text: str) -> Diagnostic | None:
+    try:
+        scenic.scenarioFromString(text).sample(1, seed=0)
+    except Exception as error:
+        found = diagnose(error)
+        if found is None:
+            raise
+        return found
+    return None
