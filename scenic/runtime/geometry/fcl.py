@@ -31,6 +31,12 @@ class Surface:
         self._moving: Any = fcl.CollisionObject(model, fcl.Transform())
         self._request: Any = fcl.CollisionRequest(num_max_contacts=1, enable_contact=False)
 
+    @classmethod
+    def of_faces(cls, vertices: Floats, faces: Indices) -> "Surface":
+        """The surface of some faces, without the vertices of others: handing those over is what takes the time."""
+        used, numbers = np.unique(faces, return_inverse=True)
+        return cls(vertices[used], numbers.reshape(faces.shape))
+
     def touches(self, other: "Surface") -> bool:
         """Whether the surfaces share a point, the other one where it was placed last (if it was) in this frame."""
         import fcl

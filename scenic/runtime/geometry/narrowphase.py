@@ -130,7 +130,7 @@ def _mapped_surfaces_touch(large: Mesh, large_poses: Poses, small: Mesh, small_p
         if near.any():
             faces = small.faces[near]
             still = _surface_around(large, vertices[faces])
-            result[entry] = still is not None and still.touches(Surface(vertices, faces))
+            result[entry] = still is not None and still.touches(Surface.of_faces(vertices, faces))
     return result
 
 

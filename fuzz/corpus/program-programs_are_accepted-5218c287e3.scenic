@@ -1,0 +1,3 @@
+x = new Object, 
+    with y (lambda: f'{ {1: 2} !r:{x}>}'),
+    facing visible[0]

@@ -1,0 +1,3 @@
+with (follow altitude from
+ M & f for self
+   ):wait

@@ -1,0 +1,4 @@
+do shufflecomment  ] 
+@ False
+async def f[y, ** M#(*, self):
+	abort

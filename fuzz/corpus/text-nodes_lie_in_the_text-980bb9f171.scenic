@@ -1,0 +1,1 @@
+assert Object \    , x; waitimport f.f;f'@ x async \    def ego[wait   ](** x) -> \
