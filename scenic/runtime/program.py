@@ -9,6 +9,7 @@ from scenic.graph.node import Node
 from scenic.language.spans import Span
 from scenic.runtime.objects import Object, Point
 from scenic.runtime.regions.base import Workspace
+from scenic.runtime.samples import Globals
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,6 +43,8 @@ class Program:
     simulator: Callable[[], Any] | None = None
     places: dict[int, tuple[Span | None, str | None]] = field(default_factory=dict)
     """Where each instance was created, by its identity: span and file."""
+    names: Globals = field(default_factory=Globals)
+    """Global names as they are when the program has run, for the functions and methods in its scenes."""
 
 
 @dataclass(slots=True)

@@ -39,7 +39,7 @@ class Scene:
         self._program = program
         self._ego = ego
         self._names = names
-        self._sample = Sample(self._lookup)
+        self._sample = Sample(self._lookup, program.names)
         self._objects: tuple[Any, ...] | None = None
         self._params: dict[str, Any] | None = None
 

@@ -158,3 +158,15 @@ def test_points_have_the_attributes_of_their_position() -> None:
     missing = failure("p = new Point\nx = p.nothing")
     assert isinstance(missing, AttributeError)
     assert "'nothing'" in str(missing)
+
+
+def test_methods_of_sampled_instances_see_the_sample() -> None:
+    program = scenario(
+        "limit = Range(0, 1)\nclass Car:\n    tank: Range(0, 1)\n    def left_over(self): return self.tank - limit\n"
+        "    def partner(self): return twin\ntwin = new Car at (5, 5)\nego = new Car\nparam limit = limit\n"
+    )
+    for scene in program.sample(5, seed=0):
+        ego, twin = scene.objects[0], scene.objects[1]
+        assert ego.left_over() == ego.tank - scene.params["limit"]
+        assert twin.left_over() == twin.tank - scene.params["limit"]
+        assert ego.partner() is twin

@@ -92,7 +92,6 @@ def test_mistakes(text: str, code: str, message: str | None) -> None:
     assert found.help is None or (found.help and not found.help.endswith("."))
 
 
-@pytest.mark.xfail(reason="the operator `at` is refused before it is seen that `new` is missing", strict=True)
 def test_a_missing_new_before_at() -> None:
     found = diagnose(failure("ego = Object at (1, 2)"))
     assert found is not None

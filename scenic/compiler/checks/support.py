@@ -6,12 +6,13 @@ from typing import Final
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.places import header_span
-from scenic.compiler.scopes import Resolution
+from scenic.compiler.scopes import BindingKind, Resolution
 from scenic.compiler.traversal import parts
 from scenic.language.diagnostics import Diagnostic, Severity
 from scenic.language.keywords import TEMPORAL_OPERATORS
 from scenic.language.names import NAMES
 from scenic.language.operators import OPERATORS
+from scenic.language.properties import CLASSES
 from scenic.language.source import Source
 from scenic.language.specifiers import SPECIFIERS
 from scenic.language.statements import STATEMENTS
@@ -31,11 +32,36 @@ def check_support(
     while stack:
         node = stack.pop()
         feature = _refused(node, resolution) if node.__class__ in _CHECKED else None
-        if feature is not None and node not in misplaced:
+        forgotten = _class_without_new(node, resolution)
+        if forgotten is not None:
+            yield _missing_new(forgotten, source)
+        elif feature is not None and node not in misplaced:
             yield _refusal(feature, node, source)
         if isinstance(node, scenic.ScenarioDef) and node.compose and not COMPOSE_AVAILABLE:
             yield _refusal("the compose block of a scenario", node.compose[0], source)
         stack.extend(reversed(_children(node)))
+
+
+def _class_without_new(node: ast.AST, resolution: Resolution) -> ast.Name | None:
+    """The class in ``C at position``, which reads as the operator but can only be meant as a specifier."""
+    match node:
+        case scenic.Operation(operator="at", operands=[ast.Name(id=name) as cls, *_]):
+            reference = resolution.references.get(cls)
+            binding = None if reference is None else reference.binding
+            is_class = name in CLASSES if binding is None else binding.kinds == {BindingKind.CLASS}
+            return cls if is_class else None
+    return None
+
+
+def _missing_new(cls: ast.Name, source: Source) -> Diagnostic:
+    return Diagnostic(
+        "SC111",
+        f"`new` is missing before `{cls.id}`",
+        header_span(source, cls),
+        Severity.ERROR,
+        source.filename,
+        f"to create an object write `new {cls.id} at ...`",
+    )
 
 
 def _refusal(feature: str, node: ast.AST, source: Source) -> Diagnostic:

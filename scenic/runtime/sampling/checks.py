@@ -54,6 +54,24 @@ class Check(Protocol):
     def nodes(self) -> Sequence[Node]:
         """The nodes whose values it needs."""
 
+    def parts(self, batch: Batch) -> Sequence["Part"]:
+        """The requirements that it consists of, each with its own verdict, for reports."""
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """One requirement in a report: what it is called, where it comes from, in which lanes it holds."""
+
+    label: str
+    span: Span | None
+    holds: Mask
+
+
+def _only_part(check: Check, batch: Batch) -> Sequence[Part]:
+    verdict = check.test(batch)
+    holds = verdict.holds if verdict.failed is None else verdict.holds & ~verdict.failed
+    return [Part(check.label, check.span, holds)]
+
 
 @dataclass(slots=True)
 class NodeCheck:
@@ -79,6 +97,9 @@ class NodeCheck:
         failed = status == FAULT
         return Verdict(holds, failed if failed.any() else None)
 
+    def parts(self, batch: Batch) -> Sequence[Part]:
+        return _only_part(self, batch)
+
 
 @dataclass(slots=True)
 class DrawingCheck:
@@ -102,6 +123,9 @@ class DrawingCheck:
         failed = status == FAULT
         return Verdict(status == OK, failed if failed.any() else None)
 
+    def parts(self, batch: Batch) -> Sequence[Part]:
+        return _only_part(self, batch)
+
 
 @dataclass(frozen=True, slots=True)
 class ObjectNodes:
@@ -112,6 +136,9 @@ class ObjectNodes:
     size: Node
     shape: Node
     allow_collisions: Node
+    label: str
+    """What the object is called in reports."""
+    span: Span | None
 
     def body(self, batch: Batch) -> Body:
         """The object's body in every lane."""
@@ -121,7 +148,7 @@ class ObjectNodes:
 
     @property
     def all(self) -> tuple[Node, ...]:
-        """Every node, in the order of the fields."""
+        """Every node, in the order of `body_operands`, then whether collisions are allowed."""
         return self.position, self.orientation, self.size, self.shape, self.allow_collisions
 
 
@@ -144,3 +171,16 @@ class CollisionCheck:
     def test(self, batch: Batch) -> Verdict:
         bodies = [item.body(batch) for item in self.objects]
         return Verdict(collide(bodies, self.pairs, lanes=len(batch)).free)
+
+    def parts(self, batch: Batch) -> Sequence[Part]:
+        bodies = [item.body(batch) for item in self.objects]
+        found = collide(bodies, self.pairs, lanes=len(batch), exhaustive=True).pairs
+        assert found is not None
+        return [
+            Part(
+                f"collision of {self.objects[first].label} and {self.objects[second].label}",
+                self.objects[second].span,
+                ~found[:, pair],
+            )
+            for pair, (first, second) in enumerate(self.pairs.tolist())
+        ]

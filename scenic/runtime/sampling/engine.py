@@ -313,22 +313,20 @@ class Engine:
         which the engine happens to make the checks.
         """
         count = max(1, min(attempts, REPORT_CANDIDATES))
-        rejected = np.zeros((len(self.plan.checks), count), dtype=np.bool_)
-        for start in range(0, count, self.lanes):
-            numbers = np.arange(start, min(start + self.lanes, count))
-            batch = self._batch(np.full(len(numbers), k), numbers)
-            for index, check in enumerate(self.plan.checks):
-                verdict = check.test(batch)
-                holds = verdict.holds if verdict.failed is None else verdict.holds & ~verdict.failed
-                rejected[index, numbers] = ~holds
-        others = rejected.sum(axis=0)
-        rows = tuple(
-            RejectionRow(
-                check.label,
-                check.span,
-                float(rejected[index].mean()),
-                float((rejected[index] & (others == 1)).mean()),
-            )
-            for index, check in enumerate(self.plan.checks)
+        batches = [
+            [
+                part
+                for check in self.plan.checks
+                for part in check.parts(self._batch(np.full(len(numbers), k), numbers))
+            ]
+            for numbers in np.split(np.arange(count), range(self.lanes, count, self.lanes))
+        ]
+        rejected = np.array(
+            [~np.concatenate([part.holds for part in parts]) for parts in zip(*batches, strict=True)]
         )
+        alone = rejected & (rejected.sum(axis=0) == 1) if len(rejected) else rejected
+        rows = [
+            RejectionRow(part.label, part.span, float(mine.mean()), float(only.mean()))
+            for part, mine, only in zip(batches[0], rejected, alone, strict=True)
+        ]
         return RejectionReport(count, tuple(row for row in rows if row.rejected > 0))

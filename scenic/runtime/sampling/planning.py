@@ -193,7 +193,7 @@ def _visibility(program: Program, ego: Object | None) -> list[Check]:
 
 def _collisions(program: Program) -> list[Check]:
     objects = program.objects
-    nodes = [ObjectNodes(*map(as_node, (*body_operands(item), item.allowCollisions))) for item in objects]
+    nodes = [_object_nodes(program, item) for item in objects]
     fixed = [all(node.is_constant for node in item.all[:4]) for item in nodes]
     pairs = []
     for second in range(len(objects)):
@@ -208,6 +208,14 @@ def _collisions(program: Program) -> list[Check]:
     if not pairs:
         return []
     return [CollisionCheck(nodes, np.array(pairs, dtype=np.intp))]
+
+
+def _object_nodes(program: Program, item: Object) -> ObjectNodes:
+    span, _ = _place(program, item)
+    label = _name(item) if span is None else f"{_name(item)} (line {span.line})"
+    values = (*body_operands(item), item.allowCollisions)
+    position, orientation, size, shape, allowed = (as_node(value) for value in values)
+    return ObjectNodes(position, orientation, size, shape, allowed, label, span)
 
 
 def _check_fixed_pair(
