@@ -139,6 +139,14 @@ def diagnose(error: BaseException) -> Diagnostic | None:
     place = locate(error.__traceback__) if error.__traceback__ is not None else None
     if place is None:
         return None
+    if isinstance(error, ModuleNotFoundError):
+        return Diagnostic(
+            "SC406",
+            f"there is no module {error.name!r}",
+            place.span,
+            filename=place.filename,
+            help="modules are .scenic files beside the program, or anything that Python can import",
+        )
     return Diagnostic(
         "SC400",
         f"{type(error).__name__}: {error}",
@@ -203,9 +211,12 @@ def _scenario(
             mode_2d=mode_2d,
         )
     except RejectionException as error:
+        place = locate(error.__traceback__) if error.__traceback__ is not None else None
         raise InvalidScenarioError(
             "the program rejected itself while it ran: every scene would be rejected",
-            filename=filename,
+            span=None if place is None else place.span,
+            filename=filename if place is None else place.filename,
+            help="raise `RejectionException` only in what is evaluated on samples",
         ) from error
     except Located as error:
         if error.span is None or error.filename is None:

@@ -174,7 +174,6 @@ def test_errors_in_modules_have_their_file(folder: Any) -> None:
     assert syntax.value.line == 1
 
 
-@pytest.mark.xfail(reason="the error names the main file, not the module's", strict=True)
 def test_errors_of_requirements_in_modules_have_their_file(folder: Any) -> None:
     folder.write(main="import parts\n", parts="x = Range(0, 1)\nrequire 1 / 0 > x\n")
     with pytest.raises(Located) as caught:

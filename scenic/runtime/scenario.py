@@ -173,13 +173,13 @@ class Scenario:
         cause, check = error.__cause__, error.check
         if isinstance(cause, Located) and not isinstance(cause, SamplingError):
             cause.span = cause.span or check.span
-            cause.filename = cause.filename or self.filename
+            cause.filename = cause.filename or check.filename or self.filename
             return cause
         what = "unknown error" if cause is None else f"{type(cause).__name__}: {cause}"
         return SamplingError(
             f"{check.label} failed: {what}",
             span=check.span,
-            filename=self.filename,
+            filename=check.filename or self.filename,
             help="this came up in a sampled candidate; guard against the value, or reject it by an earlier "
             "`require`",
         )

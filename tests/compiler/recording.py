@@ -92,6 +92,10 @@ class Recorder:
         self._note("convert")
         return {"int": int, "float": float, "str": str}[name](*args)
 
+    def spread(self, function: Any, parts: Sequence[tuple[bool, Any]], keywords: dict[str, Any]) -> Any:
+        arguments = [item for starred, value in parts for item in (value if starred else (value,))]
+        return function(*arguments, **keywords)
+
     def param(self, values: dict[str, Any]) -> None:
         self._note("param")
         self.parameters.update(values)

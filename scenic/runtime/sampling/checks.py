@@ -47,6 +47,7 @@ class Check(Protocol):
     fallible: bool
     probability: float
     cost: float
+    filename: str | None
 
     def test(self, batch: Batch) -> Verdict:
         """Evaluate the check in every lane of the batch."""
@@ -84,6 +85,7 @@ class NodeCheck:
     fallible: bool
     probability: float = 1.0
     cost: float = 1.0
+    filename: str | None = None
 
     def nodes(self) -> Sequence[Node]:
         return [self.node]
@@ -112,6 +114,7 @@ class DrawingCheck:
     position: int = DRAWING
     probability: float = 1.0
     cost: float = 2.0
+    filename: str | None = None
 
     def nodes(self) -> Sequence[Node]:
         return [self.node]
@@ -164,6 +167,7 @@ class CollisionCheck:
     fallible: bool = False
     probability: float = 1.0
     cost: float = 100.0
+    filename: str | None = None
 
     def nodes(self) -> Sequence[Node]:
         return [node for item in self.objects for node in item.all]

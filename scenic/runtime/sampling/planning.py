@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -88,7 +89,7 @@ def _drawing(outputs: Sequence[Node]) -> list[Check]:
             sources[node] = None
         stack.extend(reversed(node.operands))
     return [
-        DrawingCheck(node, f"drawing a value ({node.operation.name})", _span(node), is_fallible(node))
+        DrawingCheck(node, _REJECTING.get(node.operation.name, "value"), _span(node), is_fallible(node))
         for node in sources
         if not _always_lands(node)
     ]
@@ -243,7 +244,16 @@ def _requirements(program: Program) -> list[Check]:
         if node.is_constant and node.value:
             continue
         checks.append(
-            NodeCheck(node, item.label, item.span, position, is_fallible(node), item.probability, cost=2)
+            NodeCheck(
+                node,
+                item.label,
+                item.span,
+                position,
+                is_fallible(node),
+                item.probability,
+                cost=2,
+                filename=item.filename,
+            )
         )
     return checks
 
@@ -254,7 +264,16 @@ def _name(item: Any) -> str:
 
 # Which nodes can fail
 
-_REJECTING = frozenset({"discrete range", "surface face", "landing face", "plane projection"})
+_REJECTING = MappingProxyType(
+    {
+        "discrete range": "whole number in the range",
+        "surface face": "surface to stand on",
+        "landing face": "place to land on, for `on`",
+        "plane projection": "place to land on, for `on`",
+    }
+)
+"""Operations that may have no value in some lane: what is missing there."""
+
 _FALLIBLE = frozenset(
     {
         "divide",
