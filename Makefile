@@ -31,7 +31,7 @@ types: $(STAMP)
 	$(BIN)/mypy
 
 fuzz: $(STAMP)
-	$(BIN)/python -m fuzz $(if $(MINUTES),--minutes $(MINUTES))
+	$(BIN)/python -m fuzz $(if $(MINUTES),--minutes $(MINUTES)) $(FUZZ)
 
 # Regenerates the parser after a change of grammar/scenic.gram (imports notice a stale one too).
 generate: $(STAMP)

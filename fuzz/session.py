@@ -79,8 +79,15 @@ def signature_of(name: str, error: BaseException) -> Signature:
     return Signature(name, type(error).__name__, detail)
 
 
-def run_round(report: Report, *, seed_of_round: int, until: float, examples: int = _ROUND) -> None:
-    """Try some programs and some mutants. Stops at the time ``until`` (of `time.monotonic`), except to shrink.
+def run_round(
+    report: Report,
+    *,
+    seed_of_round: int,
+    until: float,
+    examples: int = _ROUND,
+    of_programs: Sequence[Property] = OF_PROGRAMS,
+) -> None:
+    """Try some programs and some mutants on the properties of each. Stops at the time ``until`` (of `time.monotonic`), except to shrink.
 
     What is found is entered in ``report``. Failures known to it are counted and not shrunk again.
     """
@@ -96,7 +103,7 @@ def run_round(report: Report, *, seed_of_round: int, until: float, examples: int
         report.mutants += 1
         return text
 
-    search(report, programs(aims=aims), try_program, OF_PROGRAMS, seed_of_round, until, examples)
+    search(report, programs(aims=aims), try_program, of_programs, seed_of_round, until, examples)
     search(report, mutated(from_grammar()), try_mutant, OF_TEXTS, seed_of_round, until, examples // 2)
 
 

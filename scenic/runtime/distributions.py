@@ -8,20 +8,45 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
+from scenic.graph.kinds import Kind
 from scenic.graph.node import apply as apply_node
+from scenic.graph.node import axis, constant
 from scenic.graph.operations import TABLE
 from scenic.language.errors import InvalidScenarioError, ScenicTypeError, ScenicValueError
-from scenic.runtime.context import here
+from scenic.runtime.context import current, here, uniform_draw
 from scenic.runtime.values import (
     Random,
     as_node,
     as_value,
     describe,
-    draw,
+    evaluate,
     is_number,
     is_random,
     to_scalar,
 )
+
+
+def draw(operation: str, *operands: Any, payload: Any = None) -> Any:
+    """A primitive random value: the operation's first operand is an axis of its own.
+
+    In a simulation it is drawn at once. Raises `InvalidScenarioError` inside a requirement.
+    """
+    context = current.get()
+    if context is not None and context.evaluating:
+        raise InvalidScenarioError(
+            "a requirement cannot create a distribution",
+            span=here(),
+            help="draw the value before the `require` statement and use it there",
+        )
+    nodes = [as_node(operand) for operand in operands]
+    uniform = uniform_draw()
+    entry = TABLE[operation]
+    if uniform is not None:
+        first = constant(uniform, Kind.SCALAR, uniform)
+        return evaluate(entry, [first, *nodes], payload)
+    span = here()
+    node = apply_node(entry, [axis(span), *nodes], payload, span)
+    return as_value(node, lambda: draw(operation, *operands, payload=payload))
 
 
 def Range(low: Any, high: Any) -> Any:

@@ -27,6 +27,7 @@ from scenic.language.errors import (
 from scenic.runtime import conditions, names
 from scenic.runtime.context import Context, here
 from scenic.runtime.functions import convert
+from scenic.runtime.methods import OrientationMethods, VectorMethods
 from scenic.runtime.objects import Object, Point
 from scenic.runtime.operators import OPERATORS
 from scenic.runtime.program import (
@@ -44,9 +45,7 @@ from scenic.runtime.samples import Sample
 from scenic.runtime.specifiers import BUILDERS, Specifier
 from scenic.runtime.spreading import spread
 from scenic.runtime.values import (
-    OrientationMethods,
     Random,
-    VectorMethods,
     as_node,
     as_value,
     describe,

@@ -23,13 +23,58 @@ from scenic.language.errors import (
     ScenicTypeError,
     UnsupportedError,
 )
-from scenic.runtime.context import current, here, uniform_draw
+from scenic.runtime.context import here, uniform_draw
+from scenic.runtime.methods import Arithmetic, Operand, OrientationMethods, VectorMethods
 
 LARGEST_INTEGER = 2**62
 """Integers beyond this are kept as Python objects."""
 
 
-class Random:
+class Hooks(Operand):
+    """How the methods of values apply operations; see `scenic.runtime.methods`."""
+
+    __slots__ = ()
+
+    @staticmethod
+    def _operate(name: str, *operands: Any, payload: Any = None) -> Any:
+        return operate(name, *operands, payload=payload)
+
+    @staticmethod
+    def _vector(x: Any, y: Any, z: Any = 0) -> Any:
+        return vector(x, y, z)
+
+    @staticmethod
+    def _to_vector(value: Any) -> Any:
+        return to_vector(value)
+
+    @staticmethod
+    def _to_orientation(value: Any) -> Any:
+        return to_orientation(value)
+
+    @staticmethod
+    def _is_vector(value: Any) -> bool:
+        return is_vector(value)
+
+    @staticmethod
+    def _is_orientation(value: Any) -> bool:
+        return is_orientation(value)
+
+    @staticmethod
+    def _with_vector(name: str, left: Any, right: Any) -> Any:
+        try:
+            return operate(name, to_vector(left), to_vector(right))
+        except ScenicTypeError:
+            return NotImplemented
+
+    @staticmethod
+    def _with_number(name: str, left: Any, right: Any) -> Any:
+        is_scalar = is_number(right) or isinstance(right, Random)
+        if is_scalar and not is_vector(right) and not is_orientation(right):
+            return operate(name, left, to_scalar(right))
+        return NotImplemented
+
+
+class Random(Arithmetic, Hooks):
     """A value that is drawn when a scene is sampled.
 
     Arithmetic, indexing, calling and attribute access give further random values. Anything that needs a definite
@@ -42,68 +87,6 @@ class Random:
     def __init__(self, node: Node, again: "Callable[[], Any] | None" = None) -> None:
         self.node = node
         self._again = again
-
-    # Arithmetic
-
-    def __add__(self, other: Any) -> Any:
-        return operate("add", self, other)
-
-    def __radd__(self, other: Any) -> Any:
-        return operate("add", other, self)
-
-    def __sub__(self, other: Any) -> Any:
-        return operate("subtract", self, other)
-
-    def __rsub__(self, other: Any) -> Any:
-        return operate("subtract", other, self)
-
-    def __mul__(self, other: Any) -> Any:
-        return operate("multiply", self, other)
-
-    def __rmul__(self, other: Any) -> Any:
-        return operate("multiply", other, self)
-
-    def __truediv__(self, other: Any) -> Any:
-        return operate("divide", self, other)
-
-    def __rtruediv__(self, other: Any) -> Any:
-        return operate("divide", other, self)
-
-    def __floordiv__(self, other: Any) -> Any:
-        return operate("floor divide", self, other)
-
-    def __rfloordiv__(self, other: Any) -> Any:
-        return operate("floor divide", other, self)
-
-    def __mod__(self, other: Any) -> Any:
-        return operate("modulo", self, other)
-
-    def __rmod__(self, other: Any) -> Any:
-        return operate("modulo", other, self)
-
-    def __divmod__(self, other: Any) -> Any:
-        return operate("divmod", self, other)
-
-    def __rdivmod__(self, other: Any) -> Any:
-        return operate("divmod", other, self)
-
-    def __pow__(self, other: Any) -> Any:
-        return operate("power", self, other)
-
-    def __rpow__(self, other: Any) -> Any:
-        return operate("power", other, self)
-
-    def __neg__(self) -> Any:
-        return operate("negative", self)
-
-    def __pos__(self) -> Any:
-        return operate("positive", self)
-
-    def __abs__(self) -> Any:
-        return operate("absolute", self)
-
-    def __round__(self, digits: Any = None) -> Any:
-        return operate("round", self) if digits is None else operate("round", self, digits)
 
     # Parts
 
@@ -187,132 +170,7 @@ class Random:
         return self._again()
 
 
-class VectorMethods:
-    """What a vector can do, definite or random."""
-
-    __slots__ = ()
-
-    @property
-    def x(self) -> Any:
-        """East, in metres."""
-        return operate("component", self, payload=0)
-
-    @property
-    def y(self) -> Any:
-        """North, in metres."""
-        return operate("component", self, payload=1)
-
-    @property
-    def z(self) -> Any:
-        """Up, in metres."""
-        return operate("component", self, payload=2)
-
-    def norm(self) -> Any:
-        """Euclidean length."""
-        return operate("norm", self)
-
-    def dot(self, other: Any) -> Any:
-        """Scalar product."""
-        return operate("dot", self, to_vector(other))
-
-    def cross(self, other: Any) -> Any:
-        """Vector product."""
-        return operate("cross", self, to_vector(other))
-
-    def normalized(self) -> Any:
-        """The unit vector of the same direction; the zero vector stays as it is."""
-        return operate("normalized", self)
-
-    def rotatedBy(self, rotation: Any) -> Any:
-        """Rotated by an orientation, or by an angle about the vertical axis (radians, anticlockwise)."""
-        return operate("rotate", to_orientation(rotation), self)
-
-    def distanceTo(self, other: Any) -> Any:
-        """Distance to another point, or to the nearest point of a region."""
-        measure = getattr(other, "distance_from", None)
-        return operate("distance", self, to_vector(other)) if measure is None else measure(self)
-
-    def angleTo(self, other: Any) -> Any:
-        """Azimuth of the direction to ``other`` (radians, from North, anticlockwise)."""
-        return operate("azimuth", operate("subtract", to_vector(other), self))
-
-    azimuthTo = angleTo
-
-    def altitudeTo(self, other: Any) -> Any:
-        """Altitude of the direction to ``other`` (radians above the horizon)."""
-        return operate("altitude", operate("subtract", to_vector(other), self))
-
-    def angleWith(self, other: Any) -> Any:
-        """Signed angle in the plane from this vector to ``other`` (radians, within [-pi, pi])."""
-        return operate(
-            "normalize angle",
-            operate("subtract", operate("azimuth", to_vector(other)), operate("azimuth", self)),
-        )
-
-    def offsetRotated(self, rotation: Any, offset: Any) -> Any:
-        """This point displaced by ``offset`` read in the frame ``rotation``."""
-        return operate("add", self, operate("rotate", to_orientation(rotation), to_vector(offset)))
-
-    def offsetLocally(self, orientation: Any, offset: Any) -> Any:
-        """This point displaced by ``offset`` read in the frame ``orientation``."""
-        return self.offsetRotated(orientation, offset)
-
-    def offsetRadially(self, radius: Any, heading: Any) -> Any:
-        """This point displaced by ``radius`` metres in the direction ``heading``."""
-        return self.offsetRotated(heading, vector(0, radius, 0))
-
-    def sphericalCoordinates(self) -> Any:
-        """Length, azimuth (not normalised) and altitude, as a vector."""
-        azimuth = operate("azimuth", self)
-        return vector(self.norm(), azimuth, operate("altitude", self))
-
-    def toVector(self) -> Any:
-        """The vector itself; points and objects have the same method."""
-        return self
-
-    def __add__(self, other: Any) -> Any:
-        return _with_vector("add", self, other)
-
-    def __radd__(self, other: Any) -> Any:
-        return _with_vector("add", self, other)
-
-    def __sub__(self, other: Any) -> Any:
-        return _with_vector("subtract", self, other)
-
-    def __rsub__(self, other: Any) -> Any:
-        return _with_vector("subtract", other, self)
-
-    def __mul__(self, other: Any) -> Any:
-        return _with_number("multiply", self, other)
-
-    __rmul__ = __mul__
-
-    def __truediv__(self, other: Any) -> Any:
-        return _with_number("divide", self, other)
-
-    def __neg__(self) -> Any:
-        return operate("negative", self)
-
-    def __pos__(self) -> Any:
-        return self
-
-    def __len__(self) -> int:
-        return 3
-
-    def __getitem__(self, index: Any) -> Any:
-        if isinstance(index, int) and -3 <= index < 3:
-            return operate("component", self, payload=index % 3)
-        if isinstance(index, slice):
-            return (self.x, self.y, self.z)[index]
-        if isinstance(index, int):
-            raise IndexError("a vector has three components")
-        raise TypeError(f"a vector is indexed by 0, 1 or 2, not by {index!r}")
-
-    def __iter__(self) -> Iterator[Any]:
-        return iter((self.x, self.y, self.z))
-
-
-class Vector(VectorMethods):
+class Vector(VectorMethods, Hooks):
     """A definite vector: three floats, in metres. ``Vector(x, y, z)`` with a random coordinate is a random vector."""
 
     __slots__ = ("_row",)
@@ -362,63 +220,7 @@ class Vector(VectorMethods):
         return np.array(self._row, dtype=dtype)
 
 
-class OrientationMethods:
-    """What an orientation can do, definite or random."""
-
-    __slots__ = ()
-
-    @property
-    def yaw(self) -> Any:
-        """Rotation about Z, the first of the intrinsic Euler angles (radians)."""
-        return operate("euler", self, payload=0)
-
-    @property
-    def pitch(self) -> Any:
-        """Rotation about the new X (radians)."""
-        return operate("euler", self, payload=1)
-
-    @property
-    def roll(self) -> Any:
-        """Rotation about the new Y (radians)."""
-        return operate("euler", self, payload=2)
-
-    @property
-    def eulerAngles(self) -> Any:
-        """Yaw, pitch and roll."""
-        return (self.yaw, self.pitch, self.roll)
-
-    @property
-    def inverse(self) -> Any:
-        """The opposite rotation."""
-        return operate("inverse", self)
-
-    def localAnglesFor(self, other: Any) -> Any:
-        """Euler angles of ``other`` in this frame."""
-        return operate("compose", self.inverse, to_orientation(other)).eulerAngles
-
-    def toOrientation(self) -> Any:
-        """The orientation itself."""
-        return self
-
-    def toHeading(self) -> Any:
-        """Global yaw."""
-        return self.yaw
-
-    def __mul__(self, other: Any) -> Any:
-        if is_orientation(other):
-            return operate("compose", self, other)
-        if is_vector(other):
-            return operate("rotate", self, to_vector(other))
-        return NotImplemented
-
-    def __add__(self, other: Any) -> Any:
-        return operate("compose", self, to_orientation(other))
-
-    def __radd__(self, other: Any) -> Any:
-        return operate("compose", to_orientation(other), self)
-
-
-class Orientation(OrientationMethods):
+class Orientation(OrientationMethods, Hooks):
     """A definite orientation: a unit quaternion. Made by `fromEuler` or `fromQuaternion`."""
 
     __slots__ = ("_row",)
@@ -660,29 +462,6 @@ def evaluate(operation: Operation, nodes: Sequence[Node], payload: Any) -> Any:
     return CODEC.decode(kind, column[0])
 
 
-def draw(operation: str, *operands: Any, payload: Any = None) -> Any:
-    """A primitive random value: the operation's first operand is an axis of its own.
-
-    In a simulation it is drawn at once. Raises `InvalidScenarioError` inside a requirement.
-    """
-    context = current.get()
-    if context is not None and context.evaluating:
-        raise InvalidScenarioError(
-            "a requirement cannot create a distribution",
-            span=here(),
-            help="draw the value before the `require` statement and use it there",
-        )
-    nodes = [as_node(operand) for operand in operands]
-    uniform = uniform_draw()
-    entry = TABLE[operation]
-    if uniform is not None:
-        first = graph.constant(uniform, Kind.SCALAR, uniform)
-        return evaluate(entry, [first, *nodes], payload)
-    span = here()
-    node = graph.apply(entry, [graph.axis(span), *nodes], payload, span)
-    return as_value(node, lambda: draw(operation, *operands, payload=payload))
-
-
 def uniform() -> Any:
     """One axis of the cube as a value: uniform on (0, 1)."""
     drawn = uniform_draw()
@@ -905,16 +684,3 @@ def _coerce_later(value: Random, kind: Kind, function: Callable[..., Any], what:
         python=lambda sampled: function(sampled, what),
     )
     return apply(operation, value)
-
-
-def _with_vector(name: str, left: Any, right: Any) -> Any:
-    try:
-        return operate(name, to_vector(left), to_vector(right))
-    except ScenicTypeError:
-        return NotImplemented
-
-
-def _with_number(name: str, left: Any, right: Any) -> Any:
-    if is_number(right) or (isinstance(right, Random) and not is_vector(right) and not is_orientation(right)):
-        return operate(name, left, to_scalar(right))
-    return NotImplemented
