@@ -85,7 +85,7 @@ def test_the_command_reports_and_succeeds(capsys: pytest.CaptureFixture[str]):
 def test_the_command_shows_failures_and_saves_them(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ):
-    def one_round(report: Report, *, seed_of_round: int, until: float) -> None:
+    def one_round(report: Report, *, seed_of_round: int, **_options: object) -> None:
         search_planted(report, seed_of_round)
 
     monkeypatch.setattr(command, "run_round", one_round)
