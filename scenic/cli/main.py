@@ -17,6 +17,7 @@ import click
 from scenic.cli.output import FINDINGS, INTERNAL, INTERRUPTED, exit_code, show_diagnostics
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.errors import Located, ParseCompileError
+from scenic.language.spelling import nearest
 
 __all__ = ["main", "scenic"]
 
@@ -47,6 +48,17 @@ class _Commands(click.Group):
         module, function, _ = _COMMANDS[cmd_name]
         command: click.Command = getattr(import_module(module), function)
         return command
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        try:
+            return super().resolve_command(ctx, args)
+        except click.UsageError as error:
+            similar = nearest(args[0], _COMMANDS)
+            if similar is None:
+                raise
+            raise click.UsageError(f"{error.message} Did you mean {similar!r}?", ctx) from None
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         with formatter.section("Commands"):

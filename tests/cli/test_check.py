@@ -110,6 +110,12 @@ def test_wrong_usage(arguments: list[str]) -> None:
     assert "Traceback" not in result.stderr
 
 
+def test_a_misspelt_command_names_the_one_meant() -> None:
+    done = run("chek", "x.scenic")
+    assert done.returncode == 2
+    assert "Did you mean 'check'?" in done.stderr
+
+
 def test_help_and_version() -> None:
     result = run("--help")
     assert result.returncode == 0
