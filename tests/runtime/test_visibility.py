@@ -85,3 +85,16 @@ def test_an_object_out_of_view_is_an_error_at_once() -> None:
         scenic.scenarioFromString("ego = new Object\nnew Object at 100 @ 0", mode2D=True)
     assert caught.value.line == 2
     assert "requireVisible False" in (caught.value.help or "")
+
+
+def test_whether_an_object_must_be_seen_may_be_random() -> None:
+    text = (
+        "ego = new Object with viewAngle 90 deg, with visibleDistance 10\n"
+        "other = new Object at (0, Range(5, 50)), with requireVisible Uniform(True, False)\n"
+    )
+    scenes = scenic.scenarioFromString(text, mode2D=True).sample(300, seed=4)
+    kept = {True: [], False: []}
+    for scene in scenes:
+        other = scene.objects[1]
+        kept[other.requireVisible].append(other.position.y)
+    assert max(kept[True]) <= 10.5 < max(kept[False])

@@ -14,7 +14,7 @@ from scenic.graph.node import Graph, Node
 from scenic.graph.operations import TABLE
 from scenic.language.errors import InvalidScenarioError, UnsupportedError
 from scenic.language.spans import Span
-from scenic.runtime.conditions import truth
+from scenic.runtime.conditions import connect, truth
 from scenic.runtime.geometry.collision import collide
 from scenic.runtime.objects import Object
 from scenic.runtime.program import Program, Requirement
@@ -107,7 +107,7 @@ def _span(node: Node) -> Span | None:
     return node.span if isinstance(node.span, Span) else None
 
 
-def _place(program: Program, item: Any) -> Any:
+def _place(program: Program, item: Any) -> tuple[Span | None, str | None]:
     return program.places.get(id(item), (None, None))
 
 
@@ -144,20 +144,26 @@ def _containment(program: Program, workspace: Workspace) -> list[Check]:
             raise InvalidScenarioError(
                 f"`regionContainedIn` must be a region, not {region!r}", span=_place(program, item)[0]
             )
-        span, filename = _place(program, item)
-        node = truth(region.footprint.containsObject(item))
-        if not node.is_constant:
-            checks.append(
-                NodeCheck(node, f"{_name(item)} inside its container", span, BUILT_IN, False, cost=20)
-            )
-        elif not node.value:
-            raise InvalidScenarioError(
-                f"this {_name(item)} is not inside its container, {region!r}",
-                span=span,
-                filename=filename,
-                help="move or shrink it, or enlarge the workspace or its `regionContainedIn`",
-            )
+        checks += _required(
+            truth(region.footprint.containsObject(item)),
+            f"{_name(item)} inside its container",
+            _place(program, item),
+            f"this {_name(item)} is not inside its container, {region!r}",
+            "move or shrink it, or enlarge the workspace or its `regionContainedIn`",
+        )
     return checks
+
+
+def _required(
+    node: Node, label: str, place: tuple[Span | None, str | None], never: str, help: str
+) -> list[Check]:
+    """The check of a built-in requirement: none where it always holds; an error, ``never``, where it never does."""
+    span, filename = place
+    if not node.is_constant:
+        return [NodeCheck(node, label, span, BUILT_IN, False, cost=20, filename=filename)]
+    if not node.value:
+        raise InvalidScenarioError(never, span=span, filename=filename, help=help)
+    return []
 
 
 def _visibility(program: Program, ego: Object | None) -> list[Check]:
@@ -177,18 +183,14 @@ def _visibility(program: Program, ego: Object | None) -> list[Check]:
             )
         node = truth(sees_in_plane(ego, item))
         if is_random(wanted):
-            node = as_node(operate("or", operate("not", wanted), Random(node)))
-        if not node.is_constant:
-            checks.append(
-                NodeCheck(node, f"{_name(item)} visible from the ego", span, BUILT_IN, False, cost=20)
-            )
-        elif not node.value:
-            raise InvalidScenarioError(
-                f"this {_name(item)} cannot be seen from the ego",
-                span=span,
-                filename=filename,
-                help="move it into view, or write `with requireVisible False`",
-            )
+            node = connect("or", [connect("not", [truth(wanted)]), node])
+        checks += _required(
+            node,
+            f"{_name(item)} visible from the ego",
+            (span, filename),
+            f"this {_name(item)} cannot be seen from the ego",
+            "move it into view, or write `with requireVisible False`",
+        )
     return checks
 
 
