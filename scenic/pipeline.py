@@ -2,15 +2,11 @@
 
 import difflib
 import inspect
-import random
 import sys
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from pathlib import Path
 from types import CodeType, FrameType, ModuleType
 from typing import Any
-
-import numpy as np
 
 from scenic.analysis.contraction import contract
 from scenic.analysis.facts import Condition
@@ -31,6 +27,7 @@ from scenic.runtime.context import Context, current
 from scenic.runtime.objects import Object, Point
 from scenic.runtime.prelude import Loader
 from scenic.runtime.program import Module, Program, ScenarioClass, ScenarioInstance
+from scenic.runtime.randomness import preserved, seed_globals
 from scenic.runtime.scenario import Scenario
 from scenic.runtime.values import is_random
 
@@ -198,7 +195,8 @@ def _scenario(
     modules = Loader(_Modules(Path(filename).parent), context, program, model=model)
     token = current.set(context)
     try:
-        with _fixed_randomness():
+        with preserved():
+            seed_globals(PROGRAM_SEED)
             module, state = modules.run(compiled.code, filename, {SOURCE_NAME: Source(text, filename)})
             _run_chosen(module, state, chosen)
         _settle_parameters(program, strict=strict_params)
@@ -230,19 +228,6 @@ def _scenario(
         pruning = contract(scenario.outline.graph, conditions(scenario))
         scenario.restrict(pruning.domain, impossible=[item.label for item in pruning.impossible])
     return scenario
-
-
-@contextmanager
-def _fixed_randomness() -> Iterator[None]:
-    """Python's and NumPy's global generators at a fixed seed, and as they were afterwards."""
-    python_state, numpy_state = random.getstate(), np.random.get_state()  # noqa: NPY002 - what programs use
-    random.seed(PROGRAM_SEED)
-    np.random.seed(PROGRAM_SEED)  # noqa: NPY002
-    try:
-        yield
-    finally:
-        random.setstate(python_state)
-        np.random.set_state(numpy_state)  # noqa: NPY002
 
 
 def _run_chosen(module: ModuleType, state: Module, chosen: str | None) -> None:

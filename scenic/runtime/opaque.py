@@ -4,7 +4,6 @@ What such code does cannot be known before it runs. So it gets concrete values, 
 concrete values too; analysis sees nothing of it.
 """
 
-import random
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -16,6 +15,7 @@ from scenic.graph.node import Node, apply
 from scenic.graph.operation import OK, Call, Operation, always
 from scenic.language.errors import RejectionException
 from scenic.runtime.context import Context, current, here
+from scenic.runtime.randomness import preserved, seed_globals
 from scenic.runtime.samples import Globals, Sample, dependencies
 from scenic.runtime.values import CODEC, as_value
 
@@ -64,30 +64,27 @@ def evaluated(call: Call, columns: Sequence[Column]) -> list[Any]:
     seeds = call.seeds().tolist()
     context = code.context
     was_evaluating = context is not None and context.evaluating
-    python_state, numpy_state = random.getstate(), np.random.get_state()  # noqa: NPY002 - the program's own
     token = current.set(context)
     try:
         if context is not None:
             context.evaluating = True
-        for lane in np.flatnonzero(~absent).tolist():
-            sample = Sample(_row(code, columns, lane), code.names)
-            random.seed(seeds[lane])
-            np.random.seed(seeds[lane] & 0xFFFFFFFF)  # noqa: NPY002 - the program may draw from it
-            try:
-                args = [sample.value(item) for item in code.args]
-                keywords = {name: sample.value(item) for name, item in code.keywords.items()}
-                results[lane] = sample.value(code.function)(*args, **keywords)
-            except RejectionException:
-                rejected[lane] = True
-            except Exception as problem:  # noqa: BLE001 - whatever the program raises is that lane's fault
-                failed[lane] = True
-                error = problem if error is None else error
+        with preserved():
+            for lane in np.flatnonzero(~absent).tolist():
+                sample = Sample(_row(code, columns, lane), code.names)
+                seed_globals(seeds[lane])
+                try:
+                    args = [sample.value(item) for item in code.args]
+                    keywords = {name: sample.value(item) for name, item in code.keywords.items()}
+                    results[lane] = sample.value(code.function)(*args, **keywords)
+                except RejectionException:
+                    rejected[lane] = True
+                except Exception as problem:  # noqa: BLE001 - whatever the program raises is that lane's fault
+                    failed[lane] = True
+                    error = problem if error is None else error
     finally:
         if context is not None:
             context.evaluating = was_evaluating
         current.reset(token)
-        random.setstate(python_state)
-        np.random.set_state(numpy_state)  # noqa: NPY002
     if error is not None:
         call.fault(failed, error)
     call.reject(rejected)
