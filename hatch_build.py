@@ -10,7 +10,7 @@ from typing import Any
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
 
-class GenerateParser(BuildHookInterface):  # type: ignore[type-arg]
+class GenerateParser(BuildHookInterface):  # type: ignore[type-arg] # the builder's configuration, of no interest here
     """Writes ``scenic/compiler/_generated`` before the files are collected."""
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:

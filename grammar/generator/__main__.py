@@ -13,7 +13,7 @@ def main() -> int:
     try:
         generate(ROOT / "grammar" / "scenic.gram", ROOT / "scenic" / "compiler" / "_generated")
     except GrammarError as problem:
-        print(f"grammar/scenic.gram: {problem}", file=sys.stderr)  # noqa: T201
+        print(f"grammar/scenic.gram: {problem}", file=sys.stderr)  # noqa: T201 - a command prints
         return 1
     return 0
 

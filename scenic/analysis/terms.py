@@ -122,7 +122,7 @@ class Questions:
     def _spent(self) -> int:
         """The count of all questions so far; z3 keeps one for the context, which is ours alone."""
         statistics = self._solver.statistics()
-        return int(statistics.get_key_value("rlimit count")) if "rlimit count" in statistics.keys() else 0  # noqa: SIM118
+        return int(statistics.get_key_value("rlimit count")) if "rlimit count" in statistics.keys() else 0  # noqa: SIM118 - z3's object has no `in`
 
     def contradiction(self, members: Sequence[int]) -> tuple[int, ...] | None:
         """A smallest-possible part of ``members`` that cannot hold together: taking any of it away would mend it.

@@ -60,7 +60,7 @@ def joined(actions: Reader, tokens: Tokens, pieces: Sequence[Any], place: Place)
                 )
         node = ast.JoinedStr(values=_merged(found))
     _put(node, place)
-    return node  # type: ignore[no-any-return]
+    return node  # type: ignore[no-any-return] # `node` is one of two classes of `ast`
 
 
 def _first(piece: Any) -> int:

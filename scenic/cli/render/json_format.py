@@ -19,7 +19,7 @@ __all__ = ["VERSION", "render_json"]
 VERSION: Final = 1
 
 
-def render_json(diagnostics: Sequence[Diagnostic], sources: Sources, colour: bool) -> str:  # noqa: ARG001
+def render_json(diagnostics: Sequence[Diagnostic], sources: Sources, colour: bool) -> str:  # noqa: ARG001 - as every renderer
     """All diagnostics as one JSON object."""
     return (
         json.dumps({"version": VERSION, "diagnostics": [_plain(item) for item in diagnostics]}, indent=2)

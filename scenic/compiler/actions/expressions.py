@@ -18,7 +18,7 @@ class ExpressionActions(CommonActions):
             if kind is ast.keyword or kind is tuple:
                 break
         else:
-            return (items, [], None)  # type: ignore[return-value]
+            return (items, [], None)  # type: ignore[return-value] # the parser gives lists; a copy would cost every call
         if kind is tuple and len(items) == 1:
             return ([items[0][0]], [], items[0][0])
         positional: list[Any] = []
