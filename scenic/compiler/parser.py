@@ -13,10 +13,11 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 from scenic.compiler.actions import Actions, Problem
+from scenic.compiler.actions.common import Place
 from scenic.compiler.generated import WORDS, build_parser
 from scenic.compiler.lexer import Tokens, lex
 from scenic.compiler.recovery import Recovery
-from scenic.language.diagnostics import Diagnostic
+from scenic.language.diagnostics import Diagnostic, Edit, Fix, Label
 from scenic.language.source import Source
 from scenic.language.spans import Span
 
@@ -61,12 +62,26 @@ def parse(text: str, *, filename: str = "<string>") -> ParseResult:
 
 
 def _diagnostic(problem: Problem, source: Source) -> Diagnostic:
-    line, column, end_line, end_column = problem.place
+    fix = None
+    if problem.fix is not None:
+        title, edits = problem.fix
+        fix = Fix(title, tuple(Edit(_span(place, source), text) for place, text in edits))
+    return Diagnostic(
+        problem.code,
+        problem.message,
+        _span(problem.place, source),
+        filename=source.filename,
+        help=problem.help,
+        labels=tuple(Label(_span(place, source), text) for place, text in problem.labels),
+        fix=fix,
+    )
+
+
+def _span(place: Place, source: Source) -> Span:
+    line, column, end_line, end_column = place
     start = (line, source.character(line, column))
     end = max(start, (end_line, source.character(end_line, end_column)))
-    return Diagnostic(
-        problem.code, problem.message, Span(*start, *end), filename=source.filename, help=problem.help
-    )
+    return Span(*start, *end)
 
 
 def _order(diagnostic: Diagnostic) -> tuple[int, int, str, str]:

@@ -29,6 +29,25 @@ class Label:
 
 
 @dataclass(frozen=True, slots=True)
+class Edit:
+    """One change of a text: what stands at ``span`` is replaced by ``text``."""
+
+    span: Span
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Fix:
+    """A repair that a machine can apply: all ``edits`` at once, none of which overlap.
+
+    ``title`` says what it does, in the imperative.
+    """
+
+    title: str
+    edits: tuple[Edit, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class Diagnostic:
     """One problem.
 
@@ -43,6 +62,7 @@ class Diagnostic:
     filename: str | None = None
     help: str | None = None
     labels: tuple[Label, ...] = field(default=())
+    fix: Fix | None = None
 
     def __post_init__(self) -> None:
         if self.code not in CODES:

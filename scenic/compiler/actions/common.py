@@ -21,6 +21,9 @@ class Problem:
     place: Place
     message: str
     help: str | None = None
+    labels: tuple[tuple[Place, str], ...] = ()
+    fix: tuple[str, tuple[tuple[Place, str], ...]] | None = None
+    """The title of the repair, and what replaces what."""
 
 
 Node = TypeVar("Node", bound=ast.AST)
