@@ -9,6 +9,7 @@ from grammar.generator.analysis import same_item
 from grammar.generator.checks import value_item
 from grammar.generator.items import ItemWriter
 from grammar.generator.model import (
+    ERROR,
     KINDS,
     Alternative,
     BlockEnded,
@@ -22,6 +23,7 @@ from grammar.generator.model import (
     Repeat,
     Token,
     TokenChoice,
+    is_varied,
 )
 from grammar.generator.writing import plus
 
@@ -75,7 +77,7 @@ class ChoiceWriter(ItemWriter):
             else:
                 groups.append([branch])
         what = "kinds[p]"
-        if len(groups) > 1 and not self.recording:
+        if len(groups) > 1 and self.fast:
             what = self.fresh("k")
             self.line(f"{what} = kinds[p]")
         for index, group in enumerate(groups):
@@ -134,7 +136,7 @@ class ChoiceWriter(ItemWriter):
         if isinstance(item, Token | TokenChoice):
             self.tokens(group, mark, what, mode)
             return
-        if later is not None and not self.recording and not isinstance(item, Look | Cut | BlockEnded):
+        if later is not None and self.fast and not isinstance(item, Look | Cut | BlockEnded):
             rests = [branch.alternative.items[branch.position :] for branch in group]
             if not any(self.analysis.is_nullable(rest) for rest in rests):
                 first = frozenset().union(*(self.analysis.first_of(rest) for rest in rests))
@@ -161,7 +163,7 @@ class ChoiceWriter(ItemWriter):
             alternative = branch.alternative
             if alternative.action is None and value_item(alternative, "") is self.next_of(branch):
                 return self.fresh("u")
-        return None
+        return self.fresh("u") if self.tracing and is_varied(self.next_of(group[0]).item) else None
 
     def advance(self, group: list[Branch], variable: str | None, mode: Mode) -> None:
         """Go on with the items after the next one of ``group``."""
@@ -199,13 +201,13 @@ class ChoiceWriter(ItemWriter):
         tests: list[str] = []
         start = group[0].start
         before = group[0].tokens
-        # In the recording parser the tests move ``p`` on, and captures are counted back from it.
+        # But in the fast parser the tests move ``p`` on, and captures are counted back from it.
         captures: list[tuple[str, int]] = []
         while isinstance(item := self.next_of(group[0]).item, Token | TokenChoice):
             variable = self.variable_of(group)
             offset = len(tests)
             tests.append(self.token_test(item, what if offset == 0 else f"kinds[p + {offset}]"))
-            if variable is not None and start is not None and not self.recording:
+            if variable is not None and start is not None and self.fast:
                 variable = plus(start, before + offset)
             elif variable is not None:
                 captures.append((variable, offset))
@@ -222,23 +224,23 @@ class ChoiceWriter(ItemWriter):
             if len(group) > 1 or group[0].done:
                 break
         with self.block(f"if {' and '.join(tests)}:"):
-            if self.recording:
-                for variable, offset in captures:
-                    self.line(f"{variable} = p - {len(tests) - offset}")
-            else:
+            if self.fast:
                 for variable, offset in captures:
                     self.line(f"{variable} = {plus('p', offset)}")
                 self.line(
                     f"p += {len(tests)}" if start is None else f"p = {plus(start, before + len(tests))}"
                 )
+            else:
+                for variable, offset in captures:
+                    self.line(f"{variable} = p - {len(tests) - offset}")
             inner = "p"
             if sum(1 for _ in self.split(group)) > 1:
                 inner = self.fresh("m")
                 self.line(f"{inner} = p")
             self.choice(group, inner, mode)
-            if mark is not None and not self.recording:
+            if mark is not None and self.fast:
                 self.reset(mark)
-        if mark is not None and self.recording:
+        if mark is not None and not self.fast:
             self.reset(mark)
 
     def step(self, group: list[Branch], mode: Mode) -> None:
@@ -272,7 +274,13 @@ class ChoiceWriter(ItemWriter):
                     self.gather(item, target, element)
                     self.advance(group, variable, mode)
             case Look():
-                self.look(item, lambda: self.advance(group, variable, mode))
+
+                def then() -> None:
+                    if self.tracing and variable is not None:
+                        self.line(f"{variable} = int(p)")
+                    self.advance(group, variable, mode)
+
+                self.look(item, then)
             case BlockEnded():
                 with self.block(f"if kinds[p - 1] == {KINDS['DEDENT']}:"):
                     self.advance(group, variable, mode)
@@ -292,6 +300,7 @@ class ChoiceWriter(ItemWriter):
         if alternative.action is None:
             chosen = value_item(alternative, mode.rule)
             index = next(i for i, named in enumerate(alternative.items) if named is chosen)
+            self.used(branch, mode)
             self.result(str(branch.variables[index]), mode)
             return
         names = {
@@ -311,7 +320,7 @@ class ChoiceWriter(ItemWriter):
     def make(self, branch: Branch, translated: Translated, mode: Mode) -> None:
         end = "e"
         if translated.place:
-            if branch.start is not None and not self.recording:
+            if branch.start is not None and self.fast:
                 end = plus(branch.start, branch.tokens - 1)
                 if (
                     end != branch.start
@@ -323,7 +332,9 @@ class ChoiceWriter(ItemWriter):
             else:
                 self.line("e = p - 1")
             if self.analysis.ends_with_layout(branch.alternative.items):
-                with self.block("while kinds[e] < 4:"):
+                # In a text with a mistake, a token without text may stand after the end of the source.
+                gap = f" or (kinds[e] == {ERROR} and not texts[e])" if self.recording else ""
+                with self.block(f"while kinds[e] < 4{gap}:"):
                     self.line("e -= 1")
         if translated.node is not None:
             name, fields = translated.node
@@ -335,13 +346,37 @@ class ChoiceWriter(ItemWriter):
                 )
                 fields = f"{fields}, {places}" if fields else places
             self.line(f"n.__dict__ = {{{fields}}}")
+            self.used(branch, mode)
             self.result("n", mode)
         elif translated.may_fail and translated.value not in branch.variables:
             self.line(f"r = {translated.value}")
             with self.block("if r is not None:"):
+                self.used(branch, mode)
                 self.result("r", mode)
         else:
+            self.used(branch, mode)
             self.result(str(translated.value), mode)
+
+    def used(self, branch: Branch, mode: Mode) -> None:
+        """In the tracing parser, note on the way that an alternative matched, and with which optional parts."""
+        if not self.tracing:
+            return
+        values = [
+            str(variable)
+            for named, variable in zip(branch.alternative.items, branch.variables, strict=True)
+            if is_varied(named.item)
+        ]
+        number = self.number_of(mode.rule, branch.alternative, has_operand=mode.operand is not None)
+        self.line(f"p = p.after({', '.join([repr(mode.rule), str(number), *values])})")
+
+    def number_of(self, rule: str, alternative: Alternative, *, has_operand: bool) -> int:
+        """The number of an alternative in its rule, from 1; its left operand may be cut off."""
+        return next(
+            number
+            for number, each in enumerate(self.grammar.rules[rule].alternatives, 1)
+            if each.items[1 if has_operand else 0 :] == alternative.items
+            and each.action == alternative.action
+        )
 
     def result(self, value: str, mode: Mode) -> None:
         if mode.again:

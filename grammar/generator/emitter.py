@@ -2,9 +2,10 @@
 
 The state is the index ``p`` of the next token, shared by all functions as a closure variable. A function returns what
 the rule matched and leaves ``p`` behind it, or returns ``None`` and leaves ``p`` anywhere: whoever tries something else
-then puts it back. Two parsers are emitted from one grammar. The fast one looks at the next token to choose among
+then puts it back. Three parsers are emitted from one grammar. The fast one looks at the next token to choose among
 alternatives. The recording one tries them all, notes how far it came and what would have gone on there, and lets
-``recover`` run the loops over statements; it is used only on statements that are known to be wrong.
+``recover`` run the loops over statements; it is used only on statements that are known to be wrong. The tracing one
+tries them all, too, and its position carries the alternatives that led to it: see ``grammar.tracing``, its only user.
 """
 
 from grammar.generator.actions import OPERATORS
@@ -13,7 +14,7 @@ from grammar.generator.rules import RuleWriter
 
 
 class Emitter(RuleWriter):
-    """Emits one of the two parsers as a module."""
+    """Emits one of the parsers as a module."""
 
     def emit(self, header: str) -> str:
         """The text of the module."""
@@ -45,6 +46,8 @@ class Emitter(RuleWriter):
             if names:
                 origin = "ast" if module == "ast" else "scenic.compiler.tree"
                 self.line(f"from {origin} import ({', '.join(names)})")
+        if self.tracing:
+            self.line("from grammar.tracing import Position")
         self.line("")
         self.line("new = AST.__new__")
         for name in sorted(translator.used_operators):
@@ -67,9 +70,10 @@ class Emitter(RuleWriter):
         extra = ", recover" if self.recording else ""
         self.line(f"def build(kinds, texts, lines, columns, end_lines, end_columns, actions{extra}):")
         self.depth = 1
-        self.line("p = 0")
-        if self.recording:
-            self.recorder()
+        self.line("p = Position(0)" if self.tracing else "p = 0")
+        if not self.fast:
+            for line in (RECORDER if self.recording else TRACER).splitlines():
+                self.line(line)
         else:
             operators = self.grammar.vocabulary.operators
             openers = sorted(operators[text] for text in "([{" if text in operators)
@@ -81,10 +85,6 @@ class Emitter(RuleWriter):
         for name in self.analysis.memoised:
             self.line(f"memo_{name} = {{}}")
         self.depth = 0
-
-    def recorder(self) -> None:
-        for line in RECORDER.splitlines():
-            self.line(line)
 
     def ending(self) -> None:
         for number, operators in enumerate(self.tables):
@@ -106,7 +106,7 @@ class Emitter(RuleWriter):
                 self.line("nonlocal far, expected, label, label_at")
                 self.line("outer = far, expected, label, label_at, quiet")
                 self.line("far, expected, label, label_at, quiet = -1, set(), None, -1, 0")
-            self.line("p = position")
+            self.line("p = Position(position)" if self.tracing else "p = position")
             self.line("r = rules[rule]()")
             if self.recording:
                 self.line("found = far, expected")
@@ -159,6 +159,29 @@ def missed(kind):
         far = p
         expected = set()
     expected.add(label if label_at == p else kind)
+"""
+
+TRACER = """\
+def expect(kind):
+    nonlocal p
+    if kinds[p] == kind:
+        p += 1
+        return True
+    return False
+
+def expect_name():
+    nonlocal p
+    if kinds[p] >= 256:
+        p += 1
+        return True
+    return False
+
+def expect_any(wanted):
+    nonlocal p
+    if kinds[p] in wanted:
+        p += 1
+        return True
+    return False
 """
 
 AHEAD = """\

@@ -25,11 +25,11 @@ class ItemWriter(Writer):
                 self.line(f"{target} = parse_{item.rule}()")
             case Token() | TokenChoice():
                 with self.block(f"if {self.token_test(item, 'kinds[p]')}:"):
-                    if self.recording:
-                        self.line(f"{target} = p - 1")
-                    else:
+                    if self.fast:
                         self.line(f"{target} = p")
                         self.line("p += 1")
+                    else:
+                        self.line(f"{target} = p - 1")
                 with self.block("else:"):
                     self.line(f"{target} = None")
             case Gather():
@@ -50,7 +50,7 @@ class ItemWriter(Writer):
         self.line(f"{target} = None")
         mark = self.fresh("m")
         header = "if True:"
-        if not self.recording:
+        if self.fast:
             header = f"if {self.kinds(self.first_of_item(item), 'kinds[p]')}:"
         with self.block(header):
             self.line(f"{mark} = p")
@@ -66,7 +66,7 @@ class ItemWriter(Writer):
         self.line(f"{target} = []")
         element, mark = self.fresh("u"), self.fresh("m")
         header = "while True:"
-        if not self.recording:
+        if self.fast:
             header = f"while {self.kinds(self.first_of_item(inner), 'kinds[p]')}:"
         with self.block(header):
             self.line(f"{mark} = p")
@@ -82,14 +82,14 @@ class ItemWriter(Writer):
         if not isinstance(item.separator, Token):
             raise GrammarError(f"a separator has to be a token: {item.separator}")
         test = self.token_test(item.separator, "kinds[p]")
-        header = "while True:" if self.recording else f"while {test}:"
+        header = f"while {test}:" if self.fast else "while True:"
         with self.block(header):
             self.line(f"{mark} = p")
-            if self.recording:
+            if self.fast:
+                self.line("p += 1")
+            else:
                 with self.block(f"if not {test}:"):
                     self.line("break")
-            else:
-                self.line("p += 1")
             self.value(item.item, element)
             with self.block(f"if {element} is None:"):
                 self.line(f"p = {mark}")
@@ -141,7 +141,7 @@ class ItemWriter(Writer):
         if not isinstance(inner, Token | TokenChoice):
             raise GrammarError(f"looking ahead at this needs a rule of its own: {inner}")
         kinds = self.analysis.kinds_of(inner)
-        if self.recording and item.positive:
+        if not self.fast and item.positive:
             # What is looked for is also what was expected.
             mark = self.fresh("m")
             self.line(f"{mark} = p")

@@ -84,6 +84,13 @@ class BlockEnded:
 Item: TypeAlias = Token | TokenChoice | Reference | Optional | Repeat | Gather | Look | Cut | BlockEnded
 
 
+def is_varied(item: Item) -> bool:
+    """Whether what an item matches has one of several forms: absent or there, one or several, this or that token."""
+    if isinstance(item, Look):
+        return item.positive and isinstance(item.item, TokenChoice)
+    return isinstance(item, Optional | Repeat | Gather | TokenChoice)
+
+
 @dataclass(frozen=True, slots=True)
 class Named:
     """An item and the variable that its value gets, if any."""
@@ -159,6 +166,9 @@ KINDS = {
     "NAME": 256,
 }
 """The kinds that the lexer fixes."""
+
+ERROR = 9
+"""The kind of what is no token; nothing in a grammar matches it."""
 
 FIRST_WORD_KIND = 16
 NAME = KINDS["NAME"]

@@ -19,7 +19,7 @@ class RuleWriter(ChoiceWriter):
         step = self.analysis.steps.get(rule.name)
         memoised = self.analysis.memoised
         if step is not None:
-            self.loop(rule.name, step.tails, step.variable, repeated=step.repeated)
+            self.loop(rule.name, step.tails, step.variable, repeated=step.repeated, plain=self.plain(step))
             self.step_rule(rule, step)
         elif self.analysis.is_left_recursive(rule):
             self.left_recursive(rule)
@@ -46,6 +46,15 @@ class RuleWriter(ChoiceWriter):
         header = "if True:" if kinds is None else f"if {self.kinds(kinds, 'kinds[s]')}:"
         with self.block(header):
             self.line(f"hit = memo_{name}.get(s)")
+            if self.tracing:
+                # What is kept is the way through this rule alone; the ways to it differ.
+                with self.block("if hit is None:"):
+                    self.line("p = Position(s)")
+                    self.line(f"r = {function}()")
+                    self.line(f"hit = memo_{name}[s] = (r, p)")
+                self.line("p = s.through(hit[1])")
+                self.line("return hit[0]")
+                return
             with self.block("if hit is not None:"):
                 self.line("p = hit[1]")
                 self.line("return hit[0]")
@@ -70,8 +79,27 @@ class RuleWriter(ChoiceWriter):
             self.line("label, label_at = saved")
             self.line("return r")
 
-    def loop(self, name: str, tails: Sequence[Alternative], variable: str, *, repeated: bool) -> None:
-        """Emit the function that applies the operators of a step to an operand, as far as they go."""
+    def plain(self, step: Step) -> int:
+        """The number of the alternative of a step that is just its operand."""
+        return next(
+            number
+            for number, each in enumerate(self.grammar.rules[step.rule].alternatives, 1)
+            if [named.item for named in each.items] == [Reference(step.operand)]
+        )
+
+    def loop(
+        self,
+        name: str,
+        tails: Sequence[Alternative],
+        variable: str,
+        *,
+        repeated: bool,
+        plain: int | None = None,
+    ) -> None:
+        """Emit the function that applies the operators of a step to an operand, as far as they go.
+
+        ``plain`` is the number of the alternative that matched if there are none, where that is not known before.
+        """
         if not tails:
             return
         with self.function(f"loop_{name}", f"v_{variable}, s"):
@@ -80,6 +108,8 @@ class RuleWriter(ChoiceWriter):
                 self.line("m = p")
                 self.choice(branches, "m", Mode(name, variable, again=repeated))
                 self.line("p = m")
+                if self.tracing and plain is not None and not repeated:
+                    self.line(f"p = p.after({name!r}, {plain})")
                 self.line(f"return v_{variable}")
 
     def left_recursive(self, rule: Rule) -> None:
@@ -115,7 +145,7 @@ class RuleWriter(ChoiceWriter):
                 self.general(step, prefixes)
         with self.function(f"parse_{name}"):
             self.line("s = p")
-            if not self.recording and analysis.bottom(name) != name:
+            if self.fast and analysis.bottom(name) != name:
                 self.short_cut(name)
             if memoised is not None:
                 self.memo(name, general, memoised)
@@ -168,9 +198,12 @@ class RuleWriter(ChoiceWriter):
             self.choice(prefixes, "s", Mode(step.rule))
             self.line("p = s")
         self.operand(step)
+        if self.tracing and (step.repeated or not step.tails):
+            with self.block("if r is not None:"):
+                self.line(f"p = p.after({step.rule!r}, {self.plain(step)})")
         if step.tails:
             continuations = self.analysis.continuations(step.rule)
-            test = "" if self.recording else f" and {self.kinds(continuations, 'kinds[p]')}"
+            test = f" and {self.kinds(continuations, 'kinds[p]')}" if self.fast else ""
             with self.block(f"if r is not None{test}:"):
                 self.line(f"return loop_{step.rule}(r, s)")
         self.line("return r")
@@ -183,7 +216,7 @@ class RuleWriter(ChoiceWriter):
         )
         others = [each for each in rule.alternatives if each is not name]
         if (
-            self.recording
+            not self.fast
             or step.operand in self.analysis.steps
             or name is None
             or any(NAME in self.analysis.first_of(each.items) for each in others)

@@ -2,6 +2,7 @@
 
 from grammar.generator.analysis import Analysis
 from grammar.generator.model import KINDS, Alternative, Reference, Token
+from grammar.generator.precedence import Content, Form, Part, Precedence, Slot
 
 
 def emit_tables(analysis: Analysis, header: str) -> str:
@@ -42,8 +43,51 @@ def emit_tables(analysis: Analysis, header: str) -> str:
         f"SPECIFIER_KINDS = frozenset({specifiers!r})",
         '"""The kinds of tokens with which a specifier starts."""',
         "",
+        *_precedence(Precedence(analysis)),
+        "",
     ]
     return "\n".join(lines)
+
+
+def _precedence(precedence: Precedence) -> list[str]:
+    """The lines that hold the ladders and the forms; `scenic.compiler.precedence` says what the places mean."""
+    lines = ["LADDERS = {"]
+    lines += [f"    {ladder!r}: {tuple(steps)!r}," for ladder, steps in precedence.ladders.items()]
+    lines += ["}", '"""The rules of each ladder of operators with their levels, loosest first."""', ""]
+    for name, forms, comment in (
+        ("FORMS", precedence.forms, "All ways to write an operator"),
+        ("SPECIFIER_FORMS", precedence.specifiers, "All ways to write a specifier"),
+    ):
+        lines += [f"{name} = (", *(f"    {_form(form)!r}," for form in forms), ")"]
+        lines += [f'"""{comment}, for `scenic.compiler.precedence`."""', ""]
+    return lines
+
+
+def _form(form: Form) -> tuple[object, ...]:
+    return (
+        form.rule,
+        form.level.ladder,
+        form.level.number,
+        tuple(_part(part) for part in form.parts),
+        form.fixity,
+        form.associativity,
+        form.yields_to,
+        form.followed_by,
+        form.node,
+        form.operator,
+        form.targets,
+        form.absent,
+    )
+
+
+def _part(part: Part) -> tuple[object, ...]:
+    match part:
+        case Slot():
+            return ("slot", part.level.ladder, part.level.number, part.also)
+        case Content():
+            return ("content", part.rule, part.optional)
+        case _:
+            return ("word", part)
 
 
 def _ladder_of(analysis: Analysis) -> list[str]:

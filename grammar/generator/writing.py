@@ -11,10 +11,13 @@ from grammar.generator.model import NAME, Token, TokenChoice
 class Writer:
     """Lines of code, with what they need: variables, sets of kinds, translated actions."""
 
-    def __init__(self, analysis: Analysis, *, recording: bool) -> None:
+    def __init__(self, analysis: Analysis, *, recording: bool = False, tracing: bool = False) -> None:
         self.analysis = analysis
         self.grammar = analysis.grammar
         self.recording = recording
+        self.tracing = tracing
+        # The fast parser looks at the next token before it tries something; the others try everything.
+        self.fast = not (recording or tracing)
         self.translator = Translator()
         self.lines: list[str] = []
         self.depth = 0
@@ -62,7 +65,7 @@ class Writer:
 
     def token_test(self, item: Token | TokenChoice, what: str) -> str:
         kinds = self.analysis.kinds_of(item)
-        if not self.recording:
+        if self.fast:
             return self.kinds(kinds, what)
         if len(kinds) == 1:
             return f"expect({next(iter(kinds))})"

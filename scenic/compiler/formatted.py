@@ -17,7 +17,7 @@ Place = tuple[int, int, int, int]
 class Reader(Protocol):
     """What is needed of `scenic.compiler.actions.Actions`."""
 
-    def fail(self, place: Place, message: str, *, help: str | None = None) -> None: ...
+    def fail(self, place: Place, message: str, *, help: str | None = None, code: str = ...) -> None: ...
 
     def literal_problem(self, index: int, message: str) -> None: ...
 
@@ -125,11 +125,21 @@ def replacement_field(
     """The nodes of ``{value=!conversion:specification}``: a constant first if it has the ``=``."""
     code = -1
     if conversion is not None:
+        mark_end = (tokens.end_lines[conversion - 1], tokens.end_columns[conversion - 1])
+        if (tokens.lines[conversion], tokens.columns[conversion]) != mark_end:
+            actions.fail(
+                actions.place_of_token(conversion),
+                "the conversion of an f-string has to come right after the `!`",
+                help="remove the space between them",
+                code="SC105",
+            )
+            return None
         if tokens.texts[conversion] not in ("s", "r", "a"):
             actions.fail(
                 actions.place_of_token(conversion),
                 f"`{tokens.texts[conversion]}` is no conversion of an f-string",
                 help="use `!s`, `!r` or `!a`",
+                code="SC105",
             )
             return None
         code = ord(tokens.texts[conversion])

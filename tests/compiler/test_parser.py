@@ -1,23 +1,16 @@
-"""The trees of right programs: golden files, precedence, and equality with Python's own parser."""
+"""The trees of right programs: precedence, and Python's own syntax; those of Scenic are in test_golden_trees."""
 
 import ast
-import io
-import keyword
 import sys
-import sysconfig
-import tokenize
-import warnings
 from pathlib import Path
 
 import pytest
 
 from scenic.compiler import tree
-from scenic.compiler.generated import HARD_KEYWORDS
 from scenic.compiler.parser import parse
-from tests.compiler.tree_text import tree_text
+from tests.compiler.python_trees import difference
 
 DATA = Path(__file__).parent.parent / "data" / "grammar"
-OWN_WORDS = HARD_KEYWORDS.keys() - set(keyword.kwlist)
 
 
 def check(text: str) -> ast.Module:
@@ -34,15 +27,6 @@ def pairs(name: str) -> list[tuple[str, str]]:
     return found  # type: ignore[return-value]
 
 
-@pytest.mark.parametrize("path", sorted((DATA / "ok").glob("*.scenic")), ids=lambda path: path.stem)
-def test_golden_trees(path: Path, request: pytest.FixtureRequest) -> None:
-    found = tree_text(check(path.read_text(encoding="utf-8")))
-    golden = path.with_suffix(".tree")
-    if request.config.getoption("--update-golden"):
-        golden.write_text(found, encoding="utf-8")
-    assert found == golden.read_text(encoding="utf-8")
-
-
 @pytest.mark.parametrize(("bare", "reading"), pairs("precedence.txt"))
 def test_precedence_of_expressions(bare: str, reading: str) -> None:
     assert ast.dump(check(f"x = {bare}")) == ast.dump(check(f"x = {reading}"))
@@ -51,27 +35,6 @@ def test_precedence_of_expressions(bare: str, reading: str) -> None:
 @pytest.mark.parametrize(("bare", "reading"), pairs("temporal.txt"))
 def test_precedence_of_conditions(bare: str, reading: str) -> None:
     assert ast.dump(check(f"require {bare}")) == ast.dump(check(f"require {reading}"))
-
-
-def test_places_nest_and_follow_the_text() -> None:
-    for path in (DATA / "ok").glob("*.scenic"):
-        text = path.read_text(encoding="utf-8")
-        lines = text.encode().split(b"\n")
-        for node in ast.walk(check(text)):
-            if isinstance(node, ast.JoinedStr) or not hasattr(node, "lineno"):
-                continue
-            start, end = (node.lineno, node.col_offset), (node.end_lineno, node.end_col_offset)
-            assert start < end
-            # A place starts and ends with a character that is no blank.
-            assert lines[node.lineno - 1][node.col_offset : node.col_offset + 1].strip()
-            assert lines[node.end_lineno - 1][node.end_col_offset - 1 : node.end_col_offset].strip()
-            for child in ast.iter_child_nodes(node):
-                if hasattr(child, "lineno") and not isinstance(node, ast.JoinedStr | ast.FormattedValue):
-                    outer = start
-                    if getattr(node, "decorator_list", None):
-                        outer = min(start, (node.decorator_list[0].lineno, node.decorator_list[0].col_offset))
-                    assert outer <= (child.lineno, child.col_offset)
-                    assert (child.end_lineno, child.end_col_offset) <= end
 
 
 def test_names_are_normalised() -> None:
@@ -145,76 +108,8 @@ k}'''
 """.replace("lambda *, a, /: 1", "lambda *, a: 1")
 
 
-def without_places_in_formatted_strings(tree: ast.AST) -> ast.AST:
-    """Before Python 3.12, places inside f-strings were those of something else."""
-    if sys.version_info < (3, 12):
-        for node in ast.walk(tree):
-            if isinstance(node, ast.JoinedStr):
-                for inner in ast.walk(node):
-                    if inner is not node and hasattr(inner, "lineno"):
-                        inner.lineno = inner.end_lineno = inner.col_offset = inner.end_col_offset = 0
-    return tree
-
-
-def dump(tree: ast.AST) -> str:
-    return ast.dump(without_places_in_formatted_strings(tree), include_attributes=True)
-
-
 def test_python_statements_have_the_trees_of_python() -> None:
-    assert dump(check(PYTHON)) == dump(ast.parse(PYTHON))
-
-
-def reads_otherwise(text: str, expected: ast.Module) -> bool:
-    """Whether a Python module means something else, or nothing, in Scenic."""
-    before = ""
-    for word in tokenize.generate_tokens(io.StringIO(text).readline):
-        if word.type in (tokenize.COMMENT, tokenize.NL):
-            continue
-        if word.type == tokenize.NAME and word.string in OWN_WORDS:
-            return True
-        # `take(3)` is a statement if it begins one, and `visible[x]` an operator.
-        if before in ("take", "record", "simulator", "visible") and word.string in ("(", "[", "+", "-"):
-            return True
-        before = word.string
-    for node in ast.walk(expected):
-        if isinstance(node, ast.BinOp) and isinstance(node.op, ast.MatMult):
-            return True
-        if isinstance(node, ast.ClassDef) and any(isinstance(each, ast.AnnAssign) for each in node.body):
-            return True
-    return False
-
-
-def check_modules(paths: list[Path]) -> int:
-    compared = 0
-    for path in paths:
-        try:
-            text = path.read_text(encoding="utf-8")
-            with warnings.catch_warnings():
-                warnings.simplefilter("ignore")
-                expected = ast.parse(text)
-            if reads_otherwise(text, expected):
-                continue
-        except (SyntaxError, UnicodeDecodeError, ValueError, tokenize.TokenError):
-            continue
-        assert dump(check(text)) == dump(expected), path
-        compared += 1
-    return compared
-
-
-STANDARD_LIBRARY = sorted(
-    path
-    for path in Path(sysconfig.get_path("stdlib")).rglob("*.py")
-    if "site-packages" not in path.parts and "lib2to3" not in path.parts
-)
-
-
-def test_a_sample_of_the_standard_library() -> None:
-    assert check_modules(STANDARD_LIBRARY[7::97]) > 5
-
-
-@pytest.mark.slow
-def test_a_quarter_of_the_standard_library() -> None:
-    assert check_modules(STANDARD_LIBRARY[::4]) > 100
+    assert difference(check(PYTHON), ast.parse(PYTHON)) is None
 
 
 @pytest.mark.skipif(sys.version_info >= (3, 12), reason="the running Python has these nodes")
@@ -232,7 +127,7 @@ def test_syntax_newer_than_the_running_python(text: str) -> None:
     "text", ["type X = int", "type X[T] = list[T]", "def f[T: int, *U, **P](): pass", "class C[T]: pass"]
 )
 def test_syntax_of_python_3_12(text: str) -> None:
-    assert dump(check(text)) == dump(ast.parse(text))
+    assert difference(check(text), ast.parse(text)) is None
 
 
 def test_nested_quotes_in_formatted_strings() -> None:

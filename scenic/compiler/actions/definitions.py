@@ -41,16 +41,20 @@ class DefinitionActions(TargetActions):
                 place = place_of(key)
             starred = bare is not None or result.vararg is not None
             if result.kwarg is not None:
-                self.fail(place, "nothing can follow a parameter with `**`")
+                self._misordered(place, "nothing can follow a parameter with `**`", "move it to the front")
                 return None
             if key == "/":
                 if starred or result.posonlyargs or not result.args:
-                    self.fail(place, "`/` has to stand once, after the first parameters and before `*`")
+                    self._misordered(
+                        place,
+                        "`/` has to stand once, after the first parameters and before `*`",
+                        "the order is `positional, /, any, *, keyword`",
+                    )
                     return None
                 result.posonlyargs, result.args = result.args, []
             elif key == "*":
                 if starred:
-                    self.fail(place, "there can be only one `*`")
+                    self._misordered(place, "there can be only one `*`", "remove one of them")
                     return None
                 if isinstance(value, int):
                     bare = value
@@ -65,13 +69,24 @@ class DefinitionActions(TargetActions):
                 if value is not None:
                     result.defaults.append(value)
                 elif result.defaults:
-                    self.fail(place, "a parameter without a default follows one with a default")
+                    self._misordered(
+                        place,
+                        "a parameter without a default follows one with a default",
+                        "give it a default, or move it to the front",
+                    )
                     return None
                 result.args.append(key)
         if bare is not None and not result.kwonlyargs:
-            self.fail(self.place_of_token(bare), "a parameter has to follow the bare `*`")
+            self._misordered(
+                self.place_of_token(bare),
+                "a parameter has to follow the bare `*`",
+                "remove `*`, or add a parameter",
+            )
             return None
         return result
+
+    def _misordered(self, place: Place, message: str, help: str) -> None:
+        self.fail(place, message, help=help, code="SC126")
 
     def type_parameter(self, kind: str, name: int, bound: ast.expr | None, place: Place) -> Any:
         node_class = getattr(ast, kind, None)
@@ -150,7 +165,12 @@ class DefinitionActions(TargetActions):
         interrupts, handlers, orelse, final, node_class = rest
         for handler in handlers[:-1]:
             if handler.type is None:
-                self.fail(place_of(handler), "an `except` without an expression has to be the last one")
+                self.fail(
+                    place_of(handler),
+                    "an `except` without an expression has to be the last one",
+                    help="it would take all exceptions before the others could",
+                    code="SC116",
+                )
                 return None
         fields = {"body": body, "handlers": handlers, "orelse": orelse or [], "finalbody": final or []}
         if interrupts is not None:

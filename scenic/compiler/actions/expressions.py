@@ -30,10 +30,20 @@ class ExpressionActions(CommonActions):
                 keywords.append(item)
                 unpacked = unpacked or item.arg is None
             elif kind is tuple:
-                self.fail(place_of(item[0]), "a generator that is not the only argument needs parentheses")
+                self.fail(
+                    place_of(item[0]),
+                    "a generator that is not the only argument needs parentheses",
+                    help="put parentheses around it",
+                    code="SC125",
+                )
                 return None
             elif unpacked and kind is ast.Starred:
-                self.fail(place_of(item), "an argument with `*` cannot follow one with `**`")
+                self.fail(
+                    place_of(item),
+                    "an argument with `*` cannot follow one with `**`",
+                    help="move it to the front",
+                    code="SC126",
+                )
                 return None
             elif keywords and kind is not ast.Starred:
                 after = "an argument with `**`" if unpacked else "a keyword argument"
@@ -41,6 +51,7 @@ class ExpressionActions(CommonActions):
                     place_of(item),
                     f"a positional argument cannot follow {after}",
                     help="move it to the front",
+                    code="SC126",
                 )
                 return None
             else:

@@ -22,6 +22,7 @@ class StatementActions(DefinitionActions, ExpressionActions):
                     place_of(statement),
                     f"`{word}` has to stand before all other statements",
                     help="move it to the front",
+                    code="SC132",
                 )
         return True
 
@@ -34,12 +35,21 @@ class StatementActions(DefinitionActions, ExpressionActions):
                     place_of(statement),
                     f"a monitor has no `{word}`",
                     help="only behaviors and scenarios have guards",
+                    code="SC132",
                 )
         return True
 
     def one_block(self, body: list[ast.stmt]) -> tuple[Any, ...]:
         """The parts of a scenario that is all set-up."""
-        self.no_later_guard(body)
+        for statement in body:
+            word = _guard_word(statement)
+            if word is not None:
+                self._report(
+                    place_of(statement),
+                    f"a scenario without `setup` and `compose` has no `{word}`",
+                    help="put the other statements into `setup:`",
+                    code="SC132",
+                )
         if _docstring(body[0]) is not None:
             return (body[0], [], body[1:], None)
         return (None, [], body, None)
@@ -100,6 +110,7 @@ class StatementActions(DefinitionActions, ExpressionActions):
                 place_of(target),
                 "a record has either a name or a target, not both",
                 help="remove `as` or `to`",
+                code="SC116",
             )
         return True
 
@@ -107,8 +118,13 @@ class StatementActions(DefinitionActions, ExpressionActions):
         """The value of a probability; one that cannot be is reported, and moved to where it can."""
         value = self.number_value(index)
         if isinstance(value, complex) or not 0 <= value <= 1:
-            self._report(self.place_of_token(index), "a probability has to lie between 0 and 1")
-            return 1.0
+            self._report(
+                self.place_of_token(index),
+                "a probability has to lie between 0 and 1",
+                help="write 80% as `0.8`, for example",
+                code="SC131",
+            )
+            return 0.5  # a value about which nothing else can be said
         return float(value)
 
     def is_requirement(self, condition: ast.expr) -> bool:
@@ -136,6 +152,7 @@ class StatementActions(DefinitionActions, ExpressionActions):
                     place_of(node),
                     f"`{node.operator}` cannot stand inside a conditional expression",
                     help="write the cases as `(c implies a) and (not c implies b)`",
+                    code="SC117",
                 )
                 return
             if (
@@ -147,6 +164,7 @@ class StatementActions(DefinitionActions, ExpressionActions):
                     place_of(node),
                     f"malformed use of the temporal operator `{node.func.id}`",
                     help="a temporal operator cannot be part of an ordinary expression",
+                    code="SC117",
                 )
                 return
             for value in vars(node).values():

@@ -39,7 +39,10 @@ class TargetActions(CommonActions):
                 self.fail(
                     place_of(target),
                     f"cannot {verb} {what}",
-                    help="use `==` to compare" if verb == "assign to" else None,
+                    help="only names, attributes, items, and lists of them can stand here; `==` compares values"
+                    if verb == "assign to"
+                    else "only names, attributes and items can be deleted",
+                    code="SC123",
                 )
                 return None
         return node
@@ -55,7 +58,9 @@ class TargetActions(CommonActions):
             node.ctx = STORE
             return True
         self.fail(
-            place_of(node), f"only a name, an attribute or an item can be annotated, not {describe(node)}"
+            place_of(node),
+            f"only a name, an attribute or an item can be annotated, not {describe(node)}",
+            code="SC123",
         )
         return False
 
@@ -67,7 +72,12 @@ class TargetActions(CommonActions):
         if isinstance(node, ast.Name | ast.Attribute | ast.Subscript):
             node.ctx = STORE
             return True
-        self.fail(place_of(node), f"{describe(node)} cannot be changed by an operator and assigned at once")
+        self.fail(
+            place_of(node),
+            f"{describe(node)} cannot be changed by an operator and assigned at once",
+            help="change its parts one by one",
+            code="SC123",
+        )
         return False
 
     def deletable(self, targets: Iterable[ast.expr]) -> bool:

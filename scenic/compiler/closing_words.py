@@ -1,0 +1,325 @@
+"""Who gets a closing word that the innermost operator must leave to one around it.
+
+The parser reads from left to right and gives `from`, `to` and `of` to the innermost operator that can use them. In
+``follow distance to x from b for c`` that leaves none for `follow`, which cannot do without; likewise, in
+``require new C at x and always y`` the specifier takes all that it can. Trying every sharing of the words would take
+exponential time, so that for a text which the parser refused the words are counted instead: an operator that can do
+without a word gets one only if enough are left for those that cannot. Where it gets none, the operand around it is
+put into parentheses that are not in the text; nodes do not show parentheses, so the tree is that of the text.
+
+All takes one pass over the tokens.
+"""
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Final, Literal, NamedTuple, TypeAlias
+
+from scenic.compiler.generated import HARD_KEYWORDS, OPERATORS, SOFT_KEYWORDS
+from scenic.compiler.lexer import FSTRING_START, NAME, NEWLINE, NUMBER, STRING, Tokens
+
+__all__ = ["Operand", "closed_operands", "in_parentheses"]
+
+_FROM: Final = HARD_KEYWORDS["from"]
+_TO: Final = HARD_KEYWORDS["to"]
+_OF: Final = HARD_KEYWORDS["of"]
+_FOR: Final = HARD_KEYWORDS["for"]
+_NOT: Final = HARD_KEYWORDS["not"]
+_IF: Final = HARD_KEYWORDS["if"]
+_ELSE: Final = HARD_KEYWORDS["else"]
+_LAMBDA: Final = HARD_KEYWORDS["lambda"]
+_NEW: Final = HARD_KEYWORDS["new"]
+_REQUIRE: Final = HARD_KEYWORDS["require"]
+_VISIBLE: Final = SOFT_KEYWORDS["visible"]
+_FOLLOW: Final = SOFT_KEYWORDS["follow"]
+
+_MEASURES: Final = frozenset(SOFT_KEYWORDS[word] for word in ("distance", "angle", "altitude"))
+_RELATIONS: Final = frozenset(SOFT_KEYWORDS[word] for word in ("position", "heading"))
+_NOT_CLOSING: Final = {
+    _FROM: frozenset({_VISIBLE, SOFT_KEYWORDS["away"], HARD_KEYWORDS["yield"]}),
+    _TO: frozenset({SOFT_KEYWORDS["relative"]}),
+    _OF: frozenset(
+        SOFT_KEYWORDS[word] for word in ("front", "back", "left", "right", "top", "bottom", "ahead")
+    ),
+}
+"""Words that make one operator with the word after them."""
+
+_OPENERS: Final = frozenset(OPERATORS[text] for text in "([{")
+_CLOSERS: Final = frozenset(OPERATORS[text] for text in ")]}")
+_COMMA: Final = OPERATORS[","]
+_COLON: Final = OPERATORS[":"]
+_SEMICOLON: Final = OPERATORS[";"]
+_ENDS: Final = frozenset({OPERATORS["="], OPERATORS[":="]})
+
+_CONNECTIVES: Final = frozenset({HARD_KEYWORDS["and"], HARD_KEYWORDS["or"]})
+_LADDER_ENDS: Final = frozenset({HARD_KEYWORDS["until"], SOFT_KEYWORDS["implies"]})
+_TEMPORAL: Final = frozenset(SOFT_KEYWORDS[word] for word in ("always", "eventually", "next"))
+_LADDER: Final = (
+    _CONNECTIVES | _LADDER_ENDS | _TEMPORAL | {_REQUIRE, _NOT, _IF, _ELSE, OPERATORS["("], OPERATORS["]"]}
+)
+"""After these, a parenthesis in a condition may hold a condition."""
+
+_MOST_SEARCHED: Final = 100
+"""So many operators around a closing word are considered; keeps the time linear."""
+
+_OPERAND_STARTS: Final = frozenset(
+    {NUMBER, STRING, FSTRING_START, _NOT, _NEW, _LAMBDA, *_OPENERS}
+    | {HARD_KEYWORDS[word] for word in ("None", "True", "False", "await")}
+    | {OPERATORS["..."], OPERATORS["~"]}
+)
+
+
+class Operand(NamedTuple):
+    """The tokens from ``first`` up to ``end`` (exclusive) are one operand.
+
+    ``start`` and ``stop`` are the places (line and column in bytes) of the first token of its simple statement or header
+    and of the token after that.
+    """
+
+    first: int
+    end: int
+    start: tuple[int, int]
+    stop: tuple[int, int]
+
+
+class _Open(NamedTuple):
+    """An operator begins whose operand at ``first`` may go on to the closing word ``wants``; it may be a must."""
+
+    wants: int
+    must: bool
+    first: int
+
+
+class _Close(NamedTuple):
+    """A closing word."""
+
+    kind: int
+    token: int
+
+
+_Event: TypeAlias = _Open | _Close | Literal["if", "else"]
+
+
+@dataclass(slots=True)
+class _Frame:
+    """What is between two brackets, or two commas in them.
+
+    ``regions`` are the events of the expression, and of the first two operands of each `follow` that is not closed.
+    """
+
+    condition: bool = False
+    lambdas: int = 0
+    new: int | None = None
+    regions: list[list[_Event]] = field(default_factory=lambda: [[]])
+
+
+def closed_operands(tokens: Tokens) -> list[Operand]:
+    """The operands in ``tokens`` that have to end before a closing word, although one within them could use it."""
+    scan = _Scan(tokens.kinds)
+    found: list[Operand] = []
+    lines, columns = tokens.lines, tokens.columns
+    start = 0
+    for index, kind in enumerate(tokens.kinds):
+        if kind in (NEWLINE, _SEMICOLON):
+            places = (lines[start], columns[start]), (lines[index], columns[index])
+            found += (Operand(*each, *places) for each in scan.statement(start, index))
+            start = index + 1
+    return found
+
+
+def in_parentheses(tokens: Tokens, operands: Iterable[Operand]) -> Tokens:
+    """``tokens`` with parentheses of no width around ``operands``."""
+    opened: dict[int, int] = {}
+    closed: dict[int, int] = {}
+    for operand in operands:
+        opened[operand.first] = opened.get(operand.first, 0) + 1
+        closed[operand.end] = closed.get(operand.end, 0) + 1
+    result = replace(tokens, kinds=[], texts=[], lines=[], columns=[], end_lines=[], end_columns=[])
+    lists = (result.lines, result.columns, result.end_lines, result.end_columns)
+    before = 0
+    for index in sorted(opened.keys() | closed.keys()):
+        _extend(result, tokens, before, index)
+        before = index
+        count = closed.get(index, 0)
+        result.kinds += [OPERATORS[")"]] * count
+        result.texts += [")"] * count
+        end = tokens.end_lines[index - 1], tokens.end_columns[index - 1]
+        for each, value in zip(lists, end * 2, strict=True):
+            each += [value] * count
+        count = opened.get(index, 0)
+        result.kinds += [OPERATORS["("]] * count
+        result.texts += ["("] * count
+        start = tokens.lines[index], tokens.columns[index]
+        for each, value in zip(lists, start * 2, strict=True):
+            each += [value] * count
+    _extend(result, tokens, before, len(tokens.kinds))
+    return result
+
+
+def _extend(result: Tokens, tokens: Tokens, start: int, end: int) -> None:
+    result.kinds += tokens.kinds[start:end]
+    result.texts += tokens.texts[start:end]
+    result.lines += tokens.lines[start:end]
+    result.columns += tokens.columns[start:end]
+    result.end_lines += tokens.end_lines[start:end]
+    result.end_columns += tokens.end_columns[start:end]
+
+
+class _Scan:
+    """Reads the tokens of statements."""
+
+    def __init__(self, kinds: Sequence[int]) -> None:
+        self._kinds = kinds
+        self._found: list[tuple[int, int]] = []
+
+    def statement(self, start: int, end: int) -> Iterator[tuple[int, int]]:
+        """The operands in the tokens of one simple statement or header: their first tokens and those after them."""
+        kinds = self._kinds
+        # What can be wrong here takes an operator that must have its words, or a condition with an instance.
+        if not {_FOLLOW, _NOT, _LAMBDA, _REQUIRE}.isdisjoint(kinds[start:end]):
+            self._found = []
+            self._read(start, end)
+            yield from self._found
+
+    def _read(self, start: int, end: int) -> None:
+        kinds = self._kinds
+        frames = [_Frame()]
+        index = start
+        while index < end:
+            kind = kinds[index]
+            frame = frames[-1]
+            if kind in _OPENERS:
+                group = frame.condition and (kinds[index - 1] in _LADDER or index == start)
+                frames.append(_Frame(condition=group and kind == OPERATORS["("]))
+            elif kind in _CLOSERS:
+                self._end(frame)
+                if len(frames) > 1:
+                    frames.pop()
+            elif kind == _REQUIRE:
+                frame.condition = True
+            elif kind == _LAMBDA:
+                frame.lambdas += 1
+            elif kind == _COLON and frame.lambdas:
+                frame.lambdas -= 1
+            elif kind in _ENDS or kind == _COLON or (kind == _COMMA and not frame.lambdas):
+                self._end(frame)
+            else:
+                index = self._word(frame, index)
+            index += 1
+        for frame in frames:
+            self._end(frame)
+
+    def _word(self, frame: _Frame, index: int) -> int:
+        """Note what the word at ``index`` begins or closes; the index of the last token that belongs to it."""
+        kinds = self._kinds
+        kind, after = kinds[index], kinds[index + 1]
+        events = frame.regions[-1]
+        if kind in _MEASURES and after in (_FROM, _TO):
+            events.append(self._open(_FROM if after == _TO else _TO, index + 2))
+            return index + 1
+        if kind in _RELATIONS and after == _OF:
+            events.append(self._open(_FROM, index + 2))
+            return index + 1
+        if kind == SOFT_KEYWORDS["distance"] and after == SOFT_KEYWORDS["past"]:
+            events.append(self._open(_OF, index + 2))
+            return index + 1
+        if kind == _FOLLOW and (after >= NAME or after in _OPERAND_STARTS or after == OPERATORS["-"]):
+            frame.regions.append([_Open(_FROM, True, index + 1)])
+        elif kind in _NOT_CLOSING and kinds[index - 1] not in _NOT_CLOSING[kind]:
+            events.append(_Close(kind, index))
+        elif kind == _FOR:
+            if len(frame.regions) > 1:
+                self._share(frame.regions.pop())
+            else:
+                self._end(frame)
+        elif kind == _IF:
+            events.append("if")
+        elif kind == _ELSE:
+            events.append("else")
+        elif kind == _NEW and frame.new is None:
+            frame.new = index
+        elif kind in _LADDER_ENDS:
+            frame.new = None
+        elif kind in _TEMPORAL and frame.condition and frame.new is not None:
+            self._temporal(frame, index)
+        return index
+
+    def _temporal(self, frame: _Frame, index: int) -> None:
+        """End an instance before the connective whose right operand is the temporal operator at ``index``."""
+        kinds = self._kinds
+        if kinds[index + 1] < NAME and kinds[index + 1] not in _OPERAND_STARTS:
+            return
+        before = index - 1
+        while kinds[before] == _NOT:
+            before -= 1
+        if kinds[before] in _CONNECTIVES and frame.new is not None:
+            self._found.append((frame.new, before))
+            frame.new = None
+
+    def _open(self, wants: int, first: int) -> _Open:
+        """An operator with the operand at ``first``; where that is no operand for its short form, it is a must."""
+        kind = self._kinds[first]
+        must = kind == _LAMBDA or (kind == _NOT and self._kinds[first + 1] != _VISIBLE)
+        return _Open(wants, must, first)
+
+    def _end(self, frame: _Frame) -> None:
+        """An expression ends; a `follow` without its `for` is beyond help."""
+        self._share(frame.regions[0])
+        frame.regions = [[]]
+        frame.lambdas = 0
+
+    def _share(self, events: Sequence[_Event]) -> None:
+        """Share out the closing words among operators, each word to the innermost one that may have it."""
+        words = dict.fromkeys(_NOT_CLOSING, 0)
+        """How many of each are left, less those that operators to come must have."""
+        needed = dict.fromkeys(_NOT_CLOSING, 0)
+        """How many of each the open operators must have."""
+        for event in events:
+            if isinstance(event, _Close):
+                words[event.kind] += 1
+            elif isinstance(event, _Open):
+                words[event.wants] -= event.must
+        stack: list[_Open | None] = []
+        for event in events:
+            if isinstance(event, _Open):
+                stack.append(event)
+                needed[event.wants] += event.must
+                words[event.wants] += event.must
+            elif event == "if":
+                stack.append(None)
+            elif event == "else":
+                while stack:
+                    dropped = stack.pop()
+                    if dropped is None:
+                        break
+                    needed[dropped.wants] -= dropped.must
+            else:
+                assert isinstance(event, _Close)
+                words[event.kind] -= 1
+                self._close(event, stack, needed, enough=words[event.kind] >= needed[event.kind])
+
+    def _close(
+        self, word: _Close, stack: list[_Open | None], needed: dict[int, int], *, enough: bool
+    ) -> None:
+        passed_over = False
+        place = len(stack) - 1
+        lowest = max(0, len(stack) - _MOST_SEARCHED)
+        while place >= lowest:
+            entry = stack[place]
+            if entry is None:
+                # Within the test of a conditional expression nothing outside can be closed.
+                return
+            if entry.wants == word.kind:
+                if entry.must or enough:
+                    break
+                passed_over = True
+            elif entry.must:
+                return
+            place -= 1
+        if place < lowest:
+            return
+        taker = stack[place]
+        assert taker is not None
+        needed[taker.wants] -= taker.must
+        del stack[place:]
+        if passed_over:
+            self._found.append((taker.first, word.token))

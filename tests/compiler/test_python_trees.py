@@ -1,0 +1,191 @@
+"""Python's syntax has the trees of Python: compared with CPython's on all modules at hand, positions included.
+
+Modules with a construct that Scenic reads otherwise may differ. Each such construct is a rule of `python_trees`, with
+a test of its own here; what the rules excused is printed.
+"""
+
+import ast
+import gc
+import sysconfig
+import warnings
+from collections import Counter
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy
+import pytest
+import scipy
+import trimesh
+
+from scenic.compiler.parser import parse
+from tests.compiler.python_trees import RULES, difference, modules, reasons, words_of
+
+SHARDS = 16
+FAST_SHARDS = 4
+"""The fast tests take one module of `STRIDE`, in so many parts; the slow ones take the rest."""
+STRIDE = 11
+
+FOLDERS = [
+    Path(sysconfig.get_path("stdlib")),
+    *(Path(str(package.__file__)).parent for package in (numpy, scipy, trimesh)),
+]
+MODULES = [path for folder in FOLDERS for path in modules(folder)]
+
+
+def check_modules(paths: Sequence[Path]) -> None:
+    """Every module has the tree of CPython, or a reason not to; few have one."""
+    counts: Counter[str] = Counter()
+    excused = 0
+    for number, path in enumerate(paths):
+        try:
+            text = path.read_text(encoding="utf-8")
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                expected = ast.parse(text)
+        except (SyntaxError, UnicodeDecodeError, ValueError):
+            counts["not Python, or not UTF-8"] += 1
+            continue
+        result = parse(text)
+        found = str(result.diagnostics[0]) if result.diagnostics else difference(result.tree, expected)
+        if found is None:
+            counts["equal"] += 1
+        else:
+            why = list(reasons(text, expected))
+            assert why, f"{path}: {found}"
+            excused += 1
+            counts.update(why)
+            print(f"{path}: {', '.join(why)}")
+        if number % 50 == 0:
+            gc.collect()
+    print(", ".join(f"{reason}: {count}" for reason, count in counts.most_common()))
+    assert counts["equal"] > 0.7 * len(paths)
+    assert excused < 0.2 * len(paths)
+
+
+SAMPLE = MODULES[::STRIDE]
+REST = [path for index, path in enumerate(MODULES) if index % STRIDE]
+
+
+@pytest.mark.parametrize("shard", range(FAST_SHARDS))
+def test_a_sample_of_the_modules(shard: int) -> None:
+    check_modules(SAMPLE[shard::FAST_SHARDS])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("shard", range(SHARDS))
+def test_all_other_modules(shard: int) -> None:
+    check_modules(REST[shard::SHARDS])
+
+
+# What Scenic reads otherwise: the text, the rule that excuses it, and the tree it has in Scenic, if any.
+
+OTHERWISE = [
+    ("new = 1\n", "keyword_as_name", None),
+    ("x.at(3)\n", "keyword_as_name", None),
+    ("f(by=3)\n", "keyword_as_name", None),
+    ("def until(): pass\n", "keyword_as_name", None),
+    ("import on\n", "keyword_as_name", None),
+    (
+        "x = a @ b\n",
+        "at_between_operands",
+        "Assign([Name('x', Store())], Operation('@', [Name('a', Load()), Name('b', Load())]))",
+    ),
+    (
+        "x = a @ b @ -c\n",
+        "at_between_operands",
+        (
+            "Assign([Name('x', Store())], "
+            "Operation('@', [Operation('@', [Name('a', Load()), Name('b', Load())]), UnaryOp(USub(), Name('c', Load()))]))"
+        ),
+    ),
+    (
+        "class C:\n  x: int\n",
+        "annotation_in_class",
+        None,
+    ),
+    (
+        "class C:\n  x: (1, 2)\n",
+        "annotation_in_class",
+        "ClassDef('C', [], [], [PropertyDef('x', [], Tuple([Constant(1), Constant(2)], Load()))], [])",
+    ),
+    ("class C:\n  x: int = 3\n", "annotation_in_class", None),
+    ("class C: x: int = 3\n", "annotation_in_class", None),
+    ("take(3)\n", "statement_of_soft_keyword", "Take([Constant(3)])"),
+    ("take[3]\n", "statement_of_soft_keyword", "Take([List([Constant(3)], Load())])"),
+    ("take - 3\n", "statement_of_soft_keyword", "Take([UnaryOp(USub(), Constant(3))])"),
+    (
+        "record(x)\n",
+        "statement_of_soft_keyword",
+        "Record(None, Name('x', Load()), None, None, None, None)",
+    ),
+    ("simulator(x)\n", "statement_of_soft_keyword", "Simulator(Name('x', Load()))"),
+    (
+        "visible(x)\n",
+        "statement_of_soft_keyword",
+        "Expr(Operation('visible', [Name('x', Load()), None]))",
+    ),
+    (
+        "y = visible[x]\n",
+        "statement_of_soft_keyword",
+        "Assign([Name('y', Store())], Operation('visible', [List([Name('x', Load())], Load()), None]))",
+    ),
+]
+
+
+@pytest.mark.parametrize(("text", "rule", "tree"), OTHERWISE)
+def test_what_scenic_reads_otherwise(text: str, rule: str, tree: str | None) -> None:
+    expected = ast.parse(text)
+    assert list(reasons(text, expected)) == [rule]
+    result = parse(text)
+    assert result.diagnostics or difference(result.tree, expected) is not None
+    if tree is not None:
+        assert not result.diagnostics
+        assert ast.dump(result.tree.body[0], annotate_fields=False) == tree
+
+
+def test_every_rule_has_a_test() -> None:
+    assert {rule.__name__ for rule in RULES} == {rule for _, rule, _ in OTHERWISE}
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "@new_decorator\ndef f(): pass\n",  # `@` not between operands
+        "x: int = 3\n",
+        "def f():\n  x: int\n",
+        "class C:\n  def f(self):\n    x: int\n",
+        "take = 3\n",
+        "take.record(3)\n",
+        "x = record\n",
+        "visible.x = 3\n",
+        "x @= y\n",
+    ],
+)
+def test_what_scenic_reads_alike(text: str) -> None:
+    expected = ast.parse(text)
+    words = words_of(text)
+    assert not any(rule(words, expected) for rule in RULES)
+    result = parse(text)
+    assert not result.diagnostics
+    assert difference(result.tree, expected) is None
+
+
+def test_the_comparison_sees_what_a_dump_shows() -> None:
+    base = "x = f(1, 'a', *b)\nif a < b:\n  c: int = lambda d, e=3: None\n"
+    for text in (
+        base,
+        base.replace("1", "2"),
+        base.replace("1", "True"),
+        base.replace("1", "1.0"),
+        base.replace("'a'", "b'a'"),
+        base.replace("*b", "b"),
+        base.replace("<", ">"),
+        base.replace(" = f", "  = f"),
+        base.replace("c:", "(c):"),
+        base.replace(", e=3", ""),
+        base.replace("d,", "e,"),
+        base + "pass\n",
+    ):
+        left, right = ast.parse(base), ast.parse(text)
+        same = ast.dump(left, include_attributes=True) == ast.dump(right, include_attributes=True)
+        assert (difference(left, right) is None) == same == (text == base)
