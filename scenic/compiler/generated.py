@@ -83,6 +83,9 @@ OPERATORS: Final[Mapping[str, int]] = _tables.OPERATORS
 STATEMENT_STARTERS: Final[frozenset[str]] = _tables.STATEMENT_STARTERS
 INFIX_KINDS: Final[frozenset[int]] = _tables.INFIX_KINDS
 SPECIFIER_KINDS: Final[frozenset[int]] = _tables.SPECIFIER_KINDS
+LADDERS: Final[Mapping[str, tuple[tuple[str, int], ...]]] = _tables.LADDERS
+FORMS: Final[tuple[tuple[Any, ...], ...]] = _tables.FORMS
+SPECIFIER_FORMS: Final[tuple[tuple[Any, ...], ...]] = _tables.SPECIFIER_FORMS
 
 build_parser: Final[Callable[..., Any]] = _parser.build
 
