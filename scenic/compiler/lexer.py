@@ -1,6 +1,6 @@
 """From source text to tokens, as CPython 3.12 reads it.
 
-One regular expression matches a token with the blanks before it, and the loop of `_Lexer.run` sorts the
+One regular expression matches a token with the blanks before it, and the loop of `Lexer.run` sorts the
 matches into parallel lists, which is what the parser reads fastest. Whatever is rare (indentation that
 changes, f-strings, errors) is in the methods around it.
 
@@ -13,7 +13,7 @@ from bisect import bisect_left, bisect_right
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from itertools import islice
-from typing import Final, NamedTuple
+from typing import ClassVar, Final, NamedTuple
 
 from scenic.compiler import lexemes, lexical_errors
 from scenic.language.diagnostics import Diagnostic
@@ -64,18 +64,23 @@ class Tokens:
 
 def lex(text: str, words: Mapping[str, int]) -> Tokens:
     """Split ``text`` into tokens; ``words`` gives the kind of each keyword and operator. Never raises."""
+    return prepared(text, words, Lexer)
+
+
+def prepared(text: str, words: Mapping[str, int], lexer: "type[Lexer]") -> Tokens:
+    """What ``lexer`` makes of a text, without its byte order mark and with line ends as it wants them."""
     text = text.removeprefix("\ufeff")
     if "\r" in text:
         text = text.replace("\r\n", "\n").replace("\r", "\n")
     if text and not text.endswith("\n"):
         text += "\n"
-    tokens = _Lexer(text, words).run()
+    tokens = lexer(text, words).run()
     if not text.isascii():
         _count_bytes(tokens)
     return tokens
 
 
-class _Bracket(NamedTuple):
+class Bracket(NamedTuple):
     """An opening bracket that is not closed yet.
 
     ``closer`` is what closes it, or nothing if it opens a replacement field of an f-string, so that the
@@ -107,10 +112,10 @@ class _Field:
 
     string: _FormattedString
     in_specification: bool
-    outer_brackets: list[_Bracket]
+    outer_brackets: list[Bracket]
 
 
-class _Lexer:
+class Lexer:
     """The state of one run.
 
     Places are offsets in the text. Methods that read on return where to; they may put other values into
@@ -131,13 +136,16 @@ class _Lexer:
         "words",
     )
 
+    careful: ClassVar[bool] = False
+    """Whether the methods that are called only then doubt what they read (see `scenic.compiler.careful`)."""
+
     def __init__(self, text: str, words: Mapping[str, int]) -> None:
         self.text = text
         self.words = words
         self.tokens = Tokens(text)
         self.line = 1
         self.line_start = 0
-        self.brackets: list[_Bracket] = []
+        self.brackets: list[Bracket] = []
         self.fields: list[_Field] = []
         # The open blocks: width of their indentation, with tabs of eight and with tabs of one.
         self.indents = [(0, 0)]
@@ -162,7 +170,7 @@ class _Lexer:
         kinds, texts, columns, end_columns = tokens.kinds, tokens.texts, tokens.columns, tokens.end_columns
         add_kind, add_text = kinds.append, texts.append
         add_column, add_end_column = columns.append, end_columns.append
-        kind_of, name_kind = words.get, NAME
+        kind_of, name_kind, careful = words.get, NAME, self.careful
         line_start = self.line_start
         for found in lexemes.TOKEN.finditer(text, pos):
             group = found.lastindex or 0
@@ -180,7 +188,7 @@ class _Lexer:
                 add_text(word)
                 add_column(column)
                 add_end_column(column + 1)
-                brackets.append(_Bracket(lexical_errors.CLOSER_OF[word], word, self.line, column))
+                brackets.append(Bracket(lexical_errors.CLOSER_OF[word], word, self.line, column))
             elif group == 3:  # CLOSER
                 word = text[start]
                 if brackets and brackets[-1][0] == word:
@@ -198,6 +206,10 @@ class _Lexer:
                     if lexemes.STATEMENT_WORD.match(text, end):
                         self.never_closed(start)
                         return self.start_line(self.line_start)
+                    if careful:
+                        leap = self.line_in_brackets(start, end)
+                        if leap is not None:
+                            return leap
                     line_start = self.line_start
                 else:
                     column = start - line_start
@@ -208,7 +220,7 @@ class _Lexer:
                     self.next_lines(start, end)
                     line_start = self.line_start
                     white = text[line_start:end]
-                    if white != self.white:
+                    if white != self.white or careful:
                         return self.start_line(line_start)
             elif group == 5:  # COLON, and an exclamation mark
                 if fields and len(brackets) == 1:
@@ -227,6 +239,9 @@ class _Lexer:
                 else:
                     self.add(NUMBER, start, end)
             elif group == 7:  # TEXT
+                if careful and self.text_is_open(start, end):
+                    quotes = len(text[start:end]) - len(text[start:end].lstrip("bBrRuU")) + 3
+                    return self.open_text(start, start + quotes)
                 self.add(STRING, start, end)
                 if "\n" in text[start:end]:
                     self.lines_within(start, end)
@@ -312,7 +327,7 @@ class _Lexer:
             return self.continued_indentation(start)
         white = text[start:end]
         if white != self.white:
-            self.indent(*_measure(white), white, end)
+            self.indent(*measure(white), white, end)
         return end
 
     def comment_lines(self, start: int, end: int, line: int) -> None:
@@ -343,11 +358,15 @@ class _Lexer:
                     self.report(lexical_errors.unmatched_unindent(self.here(self.line_start, end)))
                     indents[-1] = (column, strict_column)
                     return
-                indents.pop()
-                self.add_empty(DEDENT, end)
+                self.close_level(end)
             mixed = strict_column != indents[-1][1]
         if mixed:
             self.report(lexical_errors.mixed_indentation(self.here(self.line_start, end)))
+
+    def close_level(self, end: int) -> None:
+        """Close the innermost block before the token at ``end``."""
+        self.indents.pop()
+        self.add_empty(DEDENT, end)
 
     def continued_indentation(self, start: int) -> int:
         """A line that starts with a backslash: the blanks before the first one are its indentation."""
@@ -388,7 +407,13 @@ class _Lexer:
         """The text ends with a backslash and a line end."""
         line, column = self.line - 1, end - 2 - (self.text.rfind("\n", 0, end - 1) + 1)
         self.report(lexical_errors.continuation_at_end(Span(line, column, line, column + 1)))
-        self.add_empty(ERROR, end)
+        self.fill_lines()
+        tokens = self.tokens
+        tokens.kinds.append(ERROR)
+        tokens.texts.append("\\")
+        tokens.lines.append(line)
+        tokens.columns.append(column)
+        tokens.end_columns.append(column + 1)
 
     def end(self, pos: int) -> None:
         """Close what is open, and fill the lists that hold the same for nearly every token."""
@@ -397,8 +422,8 @@ class _Lexer:
             self.never_closed(pos)
         elif tokens.kinds and tokens.kinds[-1] not in (NEWLINE, INDENT, DEDENT):
             self.add_empty(NEWLINE, pos)
-        for _ in self.indents[1:]:
-            self.add_empty(DEDENT, pos)
+        while len(self.indents) > 1:
+            self.close_level(pos)
         self.add_empty(ENDMARKER, pos)
         self.fill_lines()
         tokens.end_lines = tokens.lines.copy()
@@ -414,10 +439,17 @@ class _Lexer:
         tokens = self.tokens
         opener = self.brackets[-1]
         is_field = not opener.closer
-        self.report(lexical_errors.never_closed(opener.opener, opener.span, is_field=is_field))
         self.fields.clear()
         self.brackets = []
         self.fill_lines()
+        index = len(tokens.kinds) - 1
+        # The last token may be a string of several lines.
+        several = self.multiline and self.multiline[-1][0] == index
+        last = (self.multiline[-1][1] if several else tokens.lines[index], tokens.end_columns[index])
+        noticed = Span(*last, *last)
+        self.report(
+            lexical_errors.never_closed(opener.opener, opener.span, is_field=is_field, noticed=noticed)
+        )
         # The tokens stand at the line end, and the present line may be a later one.
         line, line_start = self.line, self.line_start
         if pos < line_start:
@@ -453,6 +485,20 @@ class _Lexer:
             brackets.pop()
         return start + 1
 
+    def line_in_brackets(self, start: int, end: int) -> int | None:
+        """Where to go on if the line with its first token at ``end`` does not go on with the open brackets."""
+        return None
+
+    # Strings.
+
+    def text_is_open(self, start: int, end: int) -> bool:
+        """Whether a string that is closed only seems to be."""
+        return False
+
+    def open_text(self, start: int, end: int) -> int:
+        """Go on after a string of several lines that is not closed; ``end`` is after its quotes."""
+        return end
+
     # f-strings.
 
     def in_field(self, start: int) -> int:
@@ -476,6 +522,9 @@ class _Lexer:
             pattern = lexemes.literal(quote, specification=in_specification, raw=string.raw)
             found = pattern.match(text, pos)
             start, pos = found.span() if found else (pos, pos)
+            if pos == len(text) and text.endswith("\n", start, pos):
+                # It is never closed, and the last line end may not be in the source.
+                pos -= 1
             if pos > start:
                 self.add(FSTRING_MIDDLE, start, pos)
                 middle = self.tokens.texts[-1]
@@ -485,7 +534,7 @@ class _Lexer:
                     self.lines_within(start, pos)
             if text.startswith("{", pos):
                 self.fields.append(_Field(string, in_specification, self.brackets))
-                self.brackets = [_Bracket("", "{", self.line, pos - self.line_start)]
+                self.brackets = [Bracket("", "{", self.line, pos - self.line_start)]
                 self.add(self.words["{"], pos, pos + 1)
                 return pos + 1
             if text.startswith("}", pos):
@@ -577,7 +626,8 @@ class _Lexer:
             return self.close_early(start)
         self.report(lexical_errors.open_string(quote, self.here(start, end)))
         rest = lexemes.OPEN_STRING.match(text, end)
-        stop = len(text) if len(quote) == 3 or rest is None else rest.end()
+        # The last line end may not be in the source, and ends the statement.
+        stop = max(end, len(text) - 1) if len(quote) == 3 or rest is None else rest.end()
         self.add(ERROR, start, stop)
         if "\n" in text[start:stop]:
             self.lines_within(start, stop)
@@ -631,7 +681,7 @@ class _Lexer:
             self.report(lexical_errors.invalid_character(character, self.here(pos, pos + 1)))
 
 
-def _measure(white: str) -> tuple[int, int]:
+def measure(white: str) -> tuple[int, int]:
     """The width of an indentation with tabs to the next multiple of eight, and with tabs of one."""
     if not white.strip(" "):
         return len(white), len(white)

@@ -28,13 +28,17 @@ def needless_closer(closer: str, span: Span) -> Diagnostic:
     return Diagnostic("SC103", f"`{closer}` closes no bracket", span, help=f"remove `{closer}`")
 
 
-def never_closed(opener: str, span: Span, *, is_field: bool) -> Diagnostic:
-    """A bracket, or the brace of a replacement field, is still open at the end of the statement."""
+def never_closed(opener: str, span: Span, *, is_field: bool, noticed: Span | None = None) -> Diagnostic:
+    """A bracket, or the brace of a replacement field, is still open at the end of the statement, ``noticed``."""
     if is_field:
         return Diagnostic(
             "SC105", "this replacement field of an f-string is never closed", span, help="add `}`"
         )
-    return Diagnostic("SC103", f"`{opener}` is never closed", span, help=f"add `{CLOSER_OF[opener]}`")
+    closer = CLOSER_OF[opener]
+    labels: tuple[Label, ...] = ()
+    if noticed is not None and (noticed.line, noticed.column) > (span.end_line, span.end_column):
+        labels = (Label(noticed, f"`{closer}` is missing here at the latest"),)
+    return Diagnostic("SC103", f"`{opener}` is never closed", span, help=f"add `{closer}`", labels=labels)
 
 
 def closed_early(span: Span, opener: str, opener_span: Span) -> Diagnostic:
@@ -63,6 +67,24 @@ def unmatched_unindent(span: Span) -> Diagnostic:
         "unindent does not match any outer indentation level",
         span,
         help="align the line with the block that it belongs to",
+    )
+
+
+def unexpected_indent(span: Span) -> Diagnostic:
+    return Diagnostic(
+        "SC102",
+        "this line is indented more than the one before, which begins no block",
+        span,
+        help="align it with the line before",
+    )
+
+
+def conflict_marker(span: Span) -> Diagnostic:
+    return Diagnostic(
+        "SC110",
+        "a merge conflict is not resolved",
+        span,
+        help="keep the lines that are wanted, and remove the others and the markers",
     )
 
 
@@ -107,7 +129,11 @@ def invalid_character(character: str, span: Span) -> Diagnostic:
         message = f"invalid character `{character}`" + (f" (U+{code:04X})" if code > 127 else "")
     else:
         message = f"invalid non-printable character U+{code:04X}"
-    if character in "“”„«»‘’‚":
+    if character == "`":
+        message, advice = "invalid character: a backtick", "use the plain quotes `\"` or `'`"
+    elif character == "?":
+        advice = "write `a if condition else b` for a choice between two values"
+    elif character in "“”„«»‘’‚":
         advice = "use the plain quotes `\"` or `'`"
     elif character == "!":
         advice = "write `not` or `!=`"

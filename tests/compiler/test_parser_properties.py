@@ -4,7 +4,6 @@ import ast
 import gc
 import sys
 from collections.abc import Callable
-from pathlib import Path
 
 import pytest
 from hypothesis import given, settings
@@ -12,9 +11,12 @@ from hypothesis import strategies as st
 
 from scenic.compiler.generated import WORDS
 from scenic.compiler.parser import ParseResult, parse
+from tests.compiler.golden_cases import SCENIC_FILES, read_cases
 
-DATA = Path(__file__).parent.parent / "data" / "grammar"
-PROGRAMS = [path.read_text(encoding="utf-8") for path in sorted(DATA.glob("ok/*.scenic"))]
+PROGRAMS = [
+    "".join(f"{case.source}\n" for case in read_cases(path)[1] if not case.source.startswith((" ", "\t")))
+    for path in SCENIC_FILES
+]
 PIECES = [
     *WORDS,
     "x",

@@ -1,0 +1,387 @@
+"""Tokens of a text that is known to be wrong, read so that each mistake spoils no more than its own statement.
+
+The ordinary lexer believes what it reads: an open bracket or string goes on until it is closed, and every change of indentation
+is a block. That is right for right programs, and the only right thing. Once the parser has refused a text, `lex_carefully`
+reads it again and doubts: it looks at indentation, and at whether a line looks like the start of a statement, to find where a
+bracket or a string was left open; it repairs indentation that belongs to no block; and it leaves out the markers of a merge.
+"""
+
+import re
+from collections.abc import Mapping
+from typing import Final
+
+from scenic.compiler import lexemes, lexical_errors
+from scenic.compiler.generated import HARD_KEYWORDS, OPERATORS, SOFT_KEYWORDS
+from scenic.compiler.lexer import (
+    DEDENT,
+    ERROR,
+    INDENT,
+    MOST_DIAGNOSTICS,
+    NEWLINE,
+    STRING,
+    Bracket,
+    Lexer,
+    Tokens,
+    measure,
+    prepared,
+)
+
+__all__ = ["lex_carefully"]
+
+_HEADERS: Final = frozenset(
+    [
+        HARD_KEYWORDS[word]
+        for word in ("async", "class", "def", "elif", "else", "except", "finally", "for", "if")
+    ]
+    + [HARD_KEYWORDS[word] for word in ("try", "while", "with")]
+    + [SOFT_KEYWORDS[word] for word in ("behavior", "case", "compose", "interrupt", "match", "monitor")]
+    + [SOFT_KEYWORDS[word] for word in ("scenario", "setup")]
+)
+"""The first words of lines that begin a block."""
+
+_COLON: Final = OPERATORS[":"]
+_COMMA: Final = OPERATORS[","]
+
+_MOST_TOKENS_SEARCHED: Final = 2000
+_MOST_CHARACTERS_SEARCHED: Final = 300
+_MOST_BRACKETS_COMPARED: Final = 20
+"""So far is looked around from one place; keeps the time linear."""
+
+_HEADER_END: Final = re.compile(r"[^\n:#]*+:")
+
+_TARGET: Final = r"[A-Za-z_][\w.]*+(?:\[[^\]\n]{0,40}+\])?+"
+
+_STATEMENT: Final = re.compile(
+    # Words that start nothing but statements,
+    r"(?:assert|break|class|continue|def|del|do|except|finally|from|global|import|nonlocal|pass|raise|require|return"
+    r"|try|while)(?=[ \t:(\n\[])"
+    # those that start other things as well, if their line ends as it must,
+    r"|(?:async|elif|else|for|if|with|match|case)\b[^\n]*+(?<=:)(?:[ \t]*+(?:\#[^\n]*+)?+)(?=\n)"
+    r"|(?:behavior|monitor|scenario)[ \t]++\w++[ \t]*+[(:]"
+    r"|(?:setup|compose|precondition|invariant)[ \t]*+:|interrupt[ \t]++when\b"
+    r"|(?:model|mutate|override|param|record|simulator|take|terminate|type)[ \t]++(?:['\"(]|[A-Za-z_\d])"
+    r"|wait[ \t]++(?:for|until)\b|(?:abort|mutate|terminate|wait)[ \t]*+(?=[#\n])"
+    r"|new[ \t]++[A-Z]|@[A-Za-z_]"
+    # and assignments.
+    rf"|(?:\*?{_TARGET}[ \t]*+,[ \t]*+){{0,8}}+\*?{_TARGET}[ \t]*+(?:[-+*/%&|^@]|//|\*\*|<<|>>)?=(?!=)"
+)
+"""A line that starts so is a statement if it is indented no more than the statement around it."""
+
+_CALL: Final = re.compile(
+    r"[A-Za-z_][\w.]*+\([^\n]*+(?<=\))[ \t]*+(?=\n)|[a-z]\w*+(?:\[[a-z, ]++\])?+:[ \t]++\S"
+)
+"""So is one that starts so, in a bracket but not in a string: a call on a line of its own, a property."""
+
+_SPECIFIER: Final = re.compile(
+    r"(?:with[ \t]++\w++|at|on|in|facing|(?:left|right|ahead)[ \t]++of|behind|above|below|beyond"
+    r"|offset[ \t]++(?:by|along)|contained[ \t]++in|following|apparently[ \t]++facing|(?:not[ \t]++)?+visible)"
+    r"[ \t]++(?![=:,.])[^\n]*+(?<![:\n])\n"
+)
+_CONFLICT: Final = re.compile(r"(<{7}|={7}|>{7}|\|{7})(?:[ \t][^\n]*+)?+\n")
+_CONFLICT_END: Final = re.compile(r"^>{7}(?:[ \t][^\n]*+)?+\n", re.MULTILINE)
+_MARKS: Final = re.compile(r"\"[^\"\n]*+\"|'[^'\n]*+'|([()\[\]{}])|\#")
+
+
+def lex_carefully(text: str, words: Mapping[str, int]) -> Tokens:
+    """As `scenic.compiler.lexer.lex`, for a text with a mistake."""
+    return prepared(text, words, _CarefulLexer)
+
+
+class _CarefulLexer(Lexer):
+    __slots__ = ("columns", "conflicts_end", "in_conflict", "phantoms", "shifted", "specifiers")
+
+    careful = True
+
+    def __init__(self, text: str, words: Mapping[str, int]) -> None:
+        super().__init__(text, words)
+        # The indentation of lines on which brackets are open.
+        self.columns: dict[int, int] = {}
+        # Whether a line has said that a merge conflict begins.
+        self.in_conflict = False
+        # Whether the end of one may still come.
+        self.conflicts_end = True
+        # How many levels of indentation there are with one that begins no block.
+        self.phantoms: set[int] = set()
+        # How many levels there are with one that holds specifiers.
+        self.specifiers: set[int] = set()
+        # The level (a number of levels) that a line was indented less than, and its column.
+        self.shifted: tuple[int, int] | None = None
+
+    # Lines and indentation.
+
+    def start_line(self, pos: int) -> int:
+        text = self.text
+        while True:
+            found = lexemes.LINE_START.match(text, pos)
+            start = found.start(1) if found else pos
+            marker = _CONFLICT.match(text, start)
+            if marker is None:
+                return super().start_line(pos)
+            if start != pos:
+                self.comment_lines(pos, start, self.line)
+                self.line += text.count("\n", pos, start)
+                self.line_start = start
+            pos = self.conflict(marker)
+
+    def conflict(self, marker: re.Match[str]) -> int:
+        """Leave out the line with a marker, which is the present one, and the second side of a conflict."""
+        end = marker.end()
+        if marker[1][0] == "<":
+            self.in_conflict = True
+        if marker[1][0] == "<" or not self.in_conflict:
+            self.report(lexical_errors.conflict_marker(self.here(*marker.span(1))))
+        elif marker[1][0] == ">":
+            self.in_conflict = False
+        else:
+            last = _CONFLICT_END.search(self.text, end) if self.conflicts_end else None
+            self.conflicts_end = last is not None
+            self.in_conflict = False
+            if last is not None:
+                self.fill_lines()
+                self.line += self.text.count("\n", marker.start(), last.end() - 1)
+                end = last.end()
+        self.next_line(end)
+        return end
+
+    def indent(self, column: int, strict_column: int, white: str, end: int) -> None:
+        indents = self.indents
+        self.white = white
+        top, strict_top = indents[-1]
+        if column > top:
+            if self.shifted == (len(indents), column) and not self.block_begins(end):
+                # Back in the block that the lines before were indented less than.
+                self.shifted = None
+                indents[-1] = (column, strict_column)
+                return
+            mixed = strict_column <= strict_top
+            indents.append((column, strict_column))
+            if self.block_begins(end):
+                if self.tokens.kinds[-2] == _COMMA:
+                    self.specifiers.add(len(indents))
+                self.add(INDENT, self.line_start, end)
+            else:
+                self.phantoms.add(len(indents))
+                if not mixed:
+                    self.report(lexical_errors.unexpected_indent(self.here(self.line_start, end)))
+        else:
+            while column < indents[-1][0]:
+                if column > indents[-2][0] and self.shifted != (len(indents) - 1, column):
+                    # Between two levels: take the line for one of the inner block.
+                    self.report(lexical_errors.unmatched_unindent(self.here(self.line_start, end)))
+                    if len(indents) in self.specifiers:
+                        # No statement stands among specifiers.
+                        self.close_level(end)
+                        indents.append((column, strict_column))
+                        self.phantoms.add(len(indents))
+                        return
+                    self.shifted = (len(indents), indents[-1][0])
+                    indents[-1] = (column, strict_column)
+                    return
+                self.close_level(end)
+                if column > indents[-1][0]:
+                    self.shifted = None
+                    indents[-1] = (column, strict_column)
+            mixed = strict_column != indents[-1][1]
+            indents[-1] = (column, strict_column)
+        if mixed:
+            self.report(lexical_errors.mixed_indentation(self.here(self.line_start, end)))
+
+    def close_level(self, end: int) -> None:
+        if len(self.indents) in self.phantoms:
+            self.phantoms.discard(len(self.indents))
+        else:
+            self.add_empty(DEDENT, end)
+        self.specifiers.discard(len(self.indents))
+        self.indents.pop()
+
+    def block_begins(self, end: int) -> bool:
+        """Whether the logical line before begins a block, or the line at ``end`` looks like one of specifiers."""
+        kinds = self.tokens.kinds
+        if len(kinds) < 2 or kinds[-1] != NEWLINE:
+            return False
+        if kinds[-2] in (_COLON, _COMMA):
+            return True
+        return kinds[self.statement_start()] in _HEADERS or _SPECIFIER.match(self.text, end) is not None
+
+    def statement_start(self) -> int:
+        """The first token of the logical line that the tokens end with."""
+        kinds = self.tokens.kinds
+        first = len(kinds) - 1
+        least = max(0, first - _MOST_TOKENS_SEARCHED)
+        while first > least and kinds[first - 1] not in (NEWLINE, INDENT, DEDENT):
+            first -= 1
+        return first
+
+    # Brackets.
+
+    def line_in_brackets(self, start: int, end: int) -> int | None:
+        """A line starts in brackets, with its first token at ``end``: does it go on with them?
+
+        ``start`` is the line end before. Returns where to go on if it does not.
+        """
+        text = self.text
+        marker = _CONFLICT.match(text, self.line_start)
+        if marker is not None:
+            return self.conflict(marker)
+        if self.fields or end == len(text):
+            return None
+        column = measure(text[self.line_start : end])[0]
+        self.columns[self.line] = column
+        if text[end] in ")]}":
+            self.close_inner(text[end], column)
+            return None
+        if not self.broken_off(column, end):
+            return None
+        self.never_closed(start)
+        return self.start_line(self.line_start)
+
+    def broken_off(self, column: int, end: int) -> bool:
+        text = self.text
+        if column <= self.indents[-1][0] and (_STATEMENT.match(text, end) or _CALL.match(text, end)):
+            return True
+        kinds = self.tokens.kinds
+        if kinds[-1] != _COLON:
+            return False
+        # A header that ends with its colon, although a bracket is open.
+        first = self.statement_start()
+        return kinds[first] in _HEADERS and first + 1 < len(kinds) and not self.header_goes_on(end)
+
+    def header_goes_on(self, pos: int) -> bool:
+        """Whether the open bracket is closed after ``pos``, and a colon ends the header then; the last colon was in the bracket."""
+        rest = self.text[pos : pos + _MOST_CHARACTERS_SEARCHED]
+        depth = len(self.brackets)
+        for offset, mark in enumerate(rest):
+            if mark in "([{":
+                depth += 1
+            elif mark in ")]}":
+                depth -= 1
+                if depth == 0:
+                    return _HEADER_END.match(rest, offset + 1) is not None
+        return False
+
+    def close_inner(self, closer: str, column: int) -> None:
+        """A line starts with ``closer``: by its indentation it may close an outer bracket, and the inner ones are open."""
+        brackets = self.brackets
+        inner = brackets[-1]
+        if len(brackets) < 2 or self.column_of(inner) <= column:
+            return
+        for index in range(len(brackets) - 2, max(-1, len(brackets) - _MOST_BRACKETS_COMPARED), -1):
+            if self.column_of(brackets[index]) <= column:
+                if brackets[index].closer == closer and self.column_of(brackets[index]) == column:
+                    first = brackets[index + 1]
+                    self.report(lexical_errors.never_closed(first.opener, first.span, is_field=False))
+                    del brackets[index + 1 :]
+                    self.add_empty(ERROR, self.line_start)
+                return
+
+    def column_of(self, bracket: Bracket) -> int:
+        """The indentation of the line that a bracket is on."""
+        return self.columns.get(bracket.line, self.indents[-1][0])
+
+    def odd_closer(self, start: int) -> int:
+        brackets, closer = self.brackets, self.text[start]
+        if self.fields or not brackets or len(self.tokens.diagnostics) >= MOST_DIAGNOSTICS:
+            return super().odd_closer(start)
+        innermost = brackets[-1]
+        span = self.here(start, start + 1)
+        self.add(ERROR, start, start + 1)
+        self.report(lexical_errors.wrong_closer(closer, span, innermost.opener, innermost.span))
+        # It may stand for the closer that is wanted, close a bracket further out, or be one too many. The brackets that
+        # come on the same line tell.
+        wanted = self.wanted_closers()
+        choices = [wanted[1:], wanted]
+        if closer in wanted:
+            choices.insert(0, wanted[wanted.index(closer) + 1 :])
+        rest = self.closers(start + 1)
+        likely = [rest]
+        if self.text[self.line_start : start].strip():
+            # At the end of the line, what was open at its beginning should be open.
+            opened_here = sum(bracket.line == self.line for bracket in brackets[-_MOST_BRACKETS_COMPARED:])
+            likely.insert(0, rest + wanted[opened_here:])
+        matching = [each for left in likely for each in choices if each == left]
+        matching += [each for each in choices if each.startswith(rest)]
+        best = (matching or choices)[0]
+        del brackets[len(brackets) - (len(wanted) - len(best)) :]
+        return start + 1
+
+    def wanted_closers(self) -> str:
+        """What closes the open brackets, innermost first."""
+        return "".join(bracket.closer for bracket in self.brackets[: -_MOST_BRACKETS_COMPARED - 1 : -1])
+
+    def closers(self, pos: int, *, in_text: bool = False) -> str:
+        """The closing brackets in the rest of a line, as far as they are not opened there."""
+        text = self.text
+        farthest = min(len(text), pos + _MOST_CHARACTERS_SEARCHED)
+        end = text.find("\n", pos, farthest)
+        if end < 0:
+            end = farthest
+        opened: list[str] = []
+        closing = []
+        for found in _MARKS.finditer(text, pos, end):
+            marks = [found[1]] if found[1] else [each for each in found[0] if in_text and each in "()[]{}"]
+            if found[0] == "#":
+                break
+            for mark in marks:
+                if mark in lexical_errors.CLOSER_OF:
+                    opened.append(mark)
+                elif opened:
+                    opened.pop()
+                else:
+                    closing.append(mark)
+        return "".join(closing)
+
+    # Strings.
+
+    def open_string(self, start: int, end: int) -> int:
+        text = self.text
+        triple = text[end - 3 : end] in ('"""', "'''")
+        if triple:
+            return self.open_text(start, end)
+        closing = self.closers(end, in_text=True)
+        stop = super().open_string(start, end)
+        # The brackets around it were to be closed after it.
+        if self.fields:
+            if len(self.fields[-1].string.quote) == 1:
+                self.leave(self.fields[-1].string)
+        elif closing and self.wanted_closers().startswith(closing):
+            del self.brackets[len(self.brackets) - len(closing) :]
+        return stop
+
+    def text_is_open(self, start: int, end: int) -> bool:
+        """Whether the quotes that end a text of several lines look like those that begin the next one."""
+        text = self.text
+        if text[end - 3 : end] not in ('"""', "'''"):
+            return False
+        if text[end].isalnum():
+            return True
+        line_start = text.rfind("\n", start, end) + 1
+        before = text[line_start : end - 3].strip()
+        return before[-1:] in ("=", "(", ",", "[") and _STATEMENT.match(before + "\n") is not None
+
+    def open_text(self, start: int, end: int) -> int:
+        """A text is not closed: go on at the next line that looks like a statement; ``end`` is after its quotes."""
+        text = self.text
+        quote = text[end - 3 : end]
+        self.report(lexical_errors.open_string(quote, self.here(start, end)))
+        column = self.indents[-1][0]
+        line_end = text.index("\n", end)
+        while line_end + 1 < len(text):
+            found = lexemes.LINE_START.match(text, line_end + 1)
+            first = found.end() if found else line_end + 1
+            line_start = text.rfind("\n", line_end, first) + 1
+            if first < len(text):
+                if measure(text[line_start:first])[0] <= column and _STATEMENT.match(text, first):
+                    break
+                line_end = text.index("\n", first)
+            else:
+                line_end = len(text) - 1
+        kinds = self.tokens.kinds
+        if not kinds or kinds[-1] in (NEWLINE, INDENT, DEDENT):
+            # A docstring: what follows it should not suffer for its quotes.
+            self.add(STRING, start, line_end)
+            self.tokens.texts[-1] = quote * 2
+        else:
+            self.add(ERROR, start, line_end)
+        if "\n" in text[start:line_end]:
+            self.lines_within(start, line_end)
+        return line_end
