@@ -27,6 +27,7 @@ _COMMANDS: Final[Mapping[str, tuple[str, str, str]]] = MappingProxyType(
         "sample": ("scenic.cli.sample", "sample", "Sample scenes from a program."),
         "ast": ("scenic.cli.syntax_tree", "syntax_tree", "Show the syntax tree of a program."),
         "python": ("scenic.cli.python_code", "python_code", "Show the Python code that a program becomes."),
+        "explain": ("scenic.cli.explain", "explain", "Explain a diagnostic by its code."),
         "lsp": ("scenic.cli.lsp", "lsp", "Start the language server, for editors."),
     }
 )

@@ -13,7 +13,7 @@ from scenic.language.spans import Span
 
 
 class Severity(StrEnum):
-    """How bad it is; only errors make ``scenic check`` fail."""
+    """How bad it is: errors keep a program from being compiled; errors and warnings make ``scenic check`` fail."""
 
     ERROR = "error"
     WARNING = "warning"
@@ -83,15 +83,56 @@ CODES: Final = MappingProxyType(
         "SC110": "invalid syntax",
         "SC111": "missing `new`",
         "SC112": "nesting too deep",
+        "SC113": "missing comma",
+        "SC114": "missing word",
+        "SC115": "form of an older dialect",
+        "SC116": "clauses in the wrong order",
+        "SC117": "misused temporal operator",
+        "SC118": "misspelt keyword",
+        "SC119": "keyword used as a name",
         "SC120": "syntax newer than the running Python",
+        "SC121": "missing colon",
+        "SC122": "`=` where a value is compared",
+        "SC123": "cannot be assigned",
+        "SC124": "form of Python 2",
+        "SC125": "missing parentheses around an operand",
+        "SC126": "arguments or parameters in the wrong order",
+        "SC127": "missing block",
+        "SC128": "missing unit of a duration",
+        "SC129": "form of another language",
+        "SC130": "unknown attribute of a property",
+        "SC131": "impossible probability",
+        "SC132": "guard in the wrong place",
+        "SC133": "missing parentheses of a definition",
+        "SC134": "clause without its beginning",
+        "SC135": "object made like a call",
         # Names and placement.
         "SC200": "reserved name",
         "SC201": "statement in the wrong place",
         "SC202": "undefined name",
+        "SC203": "unknown class",
+        "SC204": "name used before its definition",
+        "SC205": "unused local variable",
+        "SC206": "unused import",
+        "SC207": "name of the language hidden",
+        "SC208": "definition replaced before it is used",
+        "SC209": "the ego does not exist yet",
         "SC210": "duplicate definition",
+        "SC211": "wrong arguments",
         "SC220": "a literal was required",
         # Meaning, found without running the program.
         "SC300": "misspelt property",
+        "SC301": "conflicting specifiers",
+        "SC302": "degrees where radians are meant",
+        "SC303": "unreachable code",
+        "SC304": "endless loop within one step",
+        "SC305": "nothing that takes time",
+        "SC306": "condition that is always the same",
+        "SC307": "suspicious expression",
+        "SC308": "specifiers that depend on each other",
+        "SC309": "default value that is changed",
+        "SC390": "ignore comment that silences nothing",
+        "SC391": "ignore comment that cannot be understood",
         # Found while the program runs.
         "SC400": "the program raised an exception",
         "SC401": "invalid scenario",
@@ -110,6 +151,7 @@ CODES: Final = MappingProxyType(
         "SC603": "unknown parameter",
         "SC604": "bad option",
         "SC605": "scenario cannot be chosen",
+        "SC606": "bad configuration",
         # Found by analysis.
         "SC700": "requirements contradict each other",
         "SC701": "requirement always holds",

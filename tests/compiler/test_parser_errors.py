@@ -90,7 +90,7 @@ def test_the_file_is_named() -> None:
 
 def test_a_message_for_what_can_be_read_nevertheless_keeps_the_tree() -> None:
     result = parse("behavior B():\n    take x\n    precondition: y\nparam a = 1, a = 2\nrequire[7] x\n")
-    assert [each.code for each in result.diagnostics] == ["SC110", "SC210", "SC110"]
+    assert [each.code for each in result.diagnostics] == ["SC132", "SC210", "SC131"]
     assert [type(each) for each in result.tree.body] == [tree.BehaviorDef, tree.Param, tree.Require]
 
 

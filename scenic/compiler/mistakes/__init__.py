@@ -1,0 +1,106 @@
+"""Known mistakes: one small rule each, which says what a person may have meant.
+
+A rule looks at a `Situation` and gives a problem, or ``None`` if it is not its mistake. The first of `RULES` that gives
+one is believed, so they go from the unmistakable to the merely likely.
+"""
+
+from collections.abc import Callable
+from typing import Final
+
+from scenic.compiler.actions import Problem
+from scenic.compiler.mistakes import blocks, elsewhere, instances, operators, python, statements, words
+from scenic.compiler.mistakes.blocks import header_without_colon
+from scenic.compiler.mistakes.situation import Situation
+from scenic.compiler.mistakes.trial import Trials
+
+__all__ = ["RULES", "Situation", "Trials", "explain", "header_without_colon"]
+
+Rule = Callable[[Situation], Problem | None]
+
+RULES: Final[tuple[Rule, ...]] = (
+    # Forms that nothing else looks like.
+    python.replacement_field,
+    elsewhere.else_if,
+    blocks.clause_without_beginning,
+    statements.parts_of_scenario,
+    statements.definition_without_name,
+    blocks.try_alone,
+    blocks.missing_block,
+    blocks.unexpected_indent,
+    python.two_commas,
+    statements.monitor_without_parentheses,
+    statements.definition_without_parentheses,
+    statements.constructor,
+    statements.attribute_of_property,
+    python.print_statement,
+    python.except_of_several,
+    python.raise_of_two,
+    elsewhere.import_from,
+    elsewhere.declaration,
+    instances.missing_class,
+    instances.dotted_class,
+    instances.call_of_class,
+    instances.new_as_operand,
+    operators.after_degrees,
+    statements.probability,
+    statements.message_of_requirement,
+    statements.setting_of_parameter,
+    statements.initial_or_final_clause,
+    instances.missing_comma_between_lines,
+    statements.stray_specifier,
+    # Those that a trial confirms.
+    instances.comma_after_class,
+    python.trailing_comma,
+    words.misspelt,
+    statements.target_first,
+    words.order_of_corners,
+    operators.loose_prefix_operator,
+    statements.annotated_property,
+    elsewhere.operator,
+    elsewhere.increment,
+    elsewhere.first_word,
+    python.misplaced_walrus,
+    python.keyword_assigned,
+    instances.missing_new,
+    instances.equals_in_specifier,
+    instances.unbracketed_coordinates,
+    python.missing_loop_word,
+    python.missing_comma_of_import,
+    python.bare_generator,
+    python.call_without_parentheses,
+    statements.clauses_out_of_order,
+    words.between,
+    words.kind_of_heading,
+    words.operator_without_left_side,
+    words.missing_word,
+    words.missing_operand,
+    words.wrong_word,
+    words.needless_word,
+    instances.missing_comma_between_specifiers,
+    instances.foreign_clause,
+    operators.chained_temporal,
+    operators.temporal_elsewhere,
+    operators.temporal_after_operand,
+    operators.temporal_operand,
+    blocks.missing_colon,
+    python.assignment_in_condition,
+    python.missing_comma,
+    # Those that are only likely.
+    words.perhaps_misspelt,
+    python.conditional_without_else,
+    python.missing_dictionary_value,
+    statements.missing_unit,
+    statements.not_a_plain_name,
+    python.keyword_as_name,
+    operators.loose_operand,
+    statements.statement_in_expression,
+)
+
+
+def explain(at: Situation) -> Problem | None:
+    """What the first rule that knows the mistake says, ``None`` if none does."""
+    for rule in RULES:
+        problem = rule(at)
+        if problem is not None:
+            return problem
+    return None

@@ -1,0 +1,206 @@
+"""Mistakes in what begins a block, belongs to one, or goes on after one."""
+
+from dataclasses import replace
+from typing import Final
+
+from scenic.compiler.actions import Problem
+from scenic.compiler.lexer import DEDENT, INDENT, NEWLINE
+from scenic.compiler.mistakes.elsewhere import first_word
+from scenic.compiler.mistakes.situation import Situation, insertion
+from scenic.compiler.mistakes.trial import Change
+from scenic.compiler.mistakes.words import misspelt
+
+__all__ = [
+    "clause_without_beginning",
+    "header_without_colon",
+    "missing_block",
+    "missing_colon",
+    "try_alone",
+    "unexpected_indent",
+]
+
+_HEADERS: Final = {
+    "if": "`if`", "elif": "`elif`", "else": "`else`", "for": "`for`", "while": "`while`", "with": "`with`",
+    "try": "`try`", "except": "`except`", "finally": "`finally`", "def": "a function", "class": "a class",
+    "async": "`async`", "match": "`match`", "case": "`case`", "behavior": "a behavior", "monitor": "a monitor",
+    "scenario": "a scenario", "setup": "`setup`", "compose": "`compose`", "interrupt": "`interrupt when`",
+    "precondition": "`precondition`", "invariant": "`invariant`",
+}  # fmt: skip
+"""What starts with a line that ends in a colon, and what messages call it."""
+
+
+def missing_colon(at: Situation) -> Problem | None:
+    """``if x``, ``def f()``, ``while x {``."""
+    first = at.word(at.first)
+    if not at.expects(":") or first not in _HEADERS or at.opener(at.token) is not None:
+        return None
+    what = f"the colon after the header of {_HEADERS[first]} is missing"
+    if first in ("else", "try", "finally", "setup", "compose", "precondition", "invariant"):
+        what = f"the colon after `{first}` is missing"
+    if at.at_end():
+        if not _begins_block(at) and not at.repairs(insertion(at.token, ":"), context="block"):
+            return None
+        return _colon(at, what, [insertion(at.token, ":")])
+    if at.found == "{" and at.token == at.end - 1:
+        return at.problem(
+            "SC129", at.here(), "a block begins with `:`, not with `{`", "write `:`, and indent the block"
+        )
+    if at.found in ("then", "do") and at.token == at.end - 1:
+        change = Change(at.token, at.token + 1, (":",))
+        return at.problem(
+            "SC129",
+            at.here(),
+            f"a block begins with `:`, not with `{at.found}`",
+            "write `:`",
+            fix=("write `:`", [change]),
+        )
+    if at.found == ";" or (at.found == "=" and first not in ("else", "try")):
+        return None
+    changes = [insertion(at.token, ":")]
+    return _colon(at, what, changes) if at.repairs(*changes) else None
+
+
+def _begins_block(at: Situation) -> bool:
+    kinds = at.tokens.kinds
+    return at.end + 1 < len(kinds) and kinds[at.end] == NEWLINE and kinds[at.end + 1] == INDENT
+
+
+def _colon(at: Situation, message: str, changes: list[Change]) -> Problem:
+    header = at.words(at.first, at.token)
+    advice = f"write `{header}:`" if len(header) < 40 else "end the line with `:`"
+    problem = at.problem("SC121", at.gap(at.token), message, advice, fix=("insert `:`", changes))
+    if problem.fix is None:
+        # The block may be missing, too; the colon is right all the same.
+        problem = replace(problem, fix=("Insert `:`", ((at.gap(at.token), ":"),)))
+    return problem
+
+
+def header_without_colon(at: Situation) -> Problem | None:
+    """``setup``, ``compose`` and the like before a block; without the colon they are names."""
+    if at.word(at.first) not in ("setup", "compose") or at.end != at.first + 1:
+        return None
+    return _colon(at.elsewhere(at.start, at.end), f"the colon after `{at.word(at.first)}` is missing", [])
+
+
+def missing_block(at: Situation) -> Problem | None:
+    """The header of a block is followed by no indented line."""
+    if INDENT not in at.expected and at.expected != {"an indented block"}:
+        return None
+    header = at.token - 1
+    while header > 0 and at.tokens.kinds[header] in (NEWLINE, DEDENT, INDENT):
+        header -= 1
+    line, _ = at.trials.line(header)
+    first = at.tokens.texts[line]
+    what = _HEADERS.get(first, "this line")
+    labels = ((at.place(line, header + 1), "the block belongs to this line"),) if header > 0 else ()
+    if at.tokens.texts[header] == ",":
+        return at.problem(
+            "SC127",
+            at.here(),
+            "after a comma at the end of the line, specifiers have to follow, indented",
+            "indent the lines of the specifiers",
+            labels=labels,
+        )
+    return at.problem(
+        "SC127",
+        at.here(),
+        f"{what} needs an indented block" if first in _HEADERS else "an indented block has to follow",
+        "indent the lines of the block; `pass` stands for an empty one",
+        labels=labels,
+    )
+
+
+def unexpected_indent(at: Situation) -> Problem | None:
+    """A line that is indented more than it can be."""
+    if at.token >= len(at.tokens.kinds) or at.tokens.kinds[at.token] != INDENT:
+        return None
+    return at.problem("SC102", at.here(), "this line is indented more than it can be", "indent it less")
+
+
+def clause_without_beginning(at: Situation) -> Problem | None:
+    """`else` without `if`, `case` without `match`."""
+    word = at.word(at.first)
+    beginnings = {
+        "elif": "`if`",
+        "else": "`if`, `for`, `while` or `try`",
+        "except": "`try`",
+        "finally": "`try`",
+        "interrupt": "`try`",
+        "case": "`match`",
+    }
+    if word not in beginnings or at.first != at.start:
+        return None
+    if word == "case" and (at.token != at.first + 1 or not at.starts_operand(at.token)):
+        return None
+    if word == "interrupt" and at.found != "when":
+        return None
+    if word in ("elif", "else", "except", "finally") and at.token != at.first:
+        return None
+    if word == "else" and at.word(at.first + 1) == "if":
+        return None
+    previous = _clause_before(at)
+    if previous is not None:
+        return at.problem(
+            "SC116",
+            at.place(at.first),
+            f"`{word}` cannot follow `{at.tokens.texts[previous]}`",
+            f"the order is {_CLAUSES.get(at.tokens.texts[previous], _CLAUSES['except'])}",
+            labels=((at.place(previous), f"`{at.tokens.texts[previous]}` stands here"),),
+        )
+    header = at.header()
+    if word == "case" and header is not None:
+        wrong = misspelt(header) or first_word(header)
+        if wrong is not None:
+            return wrong
+    return at.problem(
+        "SC134",
+        at.place(at.first),
+        f"`{word}` has no {beginnings[word]} that it could belong to",
+        f"align it with its {beginnings[word]}, between which and it no other statement stands",
+    )
+
+
+def _clause_before(at: Situation) -> int | None:
+    """The beginning of the clause before this one, if it is one after which this one cannot come."""
+    kinds = at.tokens.kinds
+    index = at.first - 1
+    if index < 0 or kinds[index] != DEDENT:
+        return None
+    depth = 0
+    while index > 0:
+        depth += (kinds[index] == DEDENT) - (kinds[index] == INDENT)
+        if depth == 0:
+            break
+        index -= 1
+    if index < 2:
+        return None
+    first, _ = at.trials.line(index - 2)
+    return first if at.tokens.texts[first] in _CLAUSES else None
+
+
+_CLAUSES: Final = {
+    "else": "`if`, `elif`, `else`",
+    "except": "`try`, `interrupt when`, `except`, `else`, `finally`",
+    "finally": "`try`, `interrupt when`, `except`, `else`, `finally`",
+}
+"""Clauses after which not every clause can come, and the order of clauses there."""
+
+
+def try_alone(at: Situation) -> Problem | None:
+    """`try` without any clause."""
+    if not at.expects("`except`, `finally` or `interrupt when`"):
+        return None
+    place = at.trials.line(at.start)
+    if at.is_plain_name(at.token):
+        # A misspelt clause?
+        clause = at.elsewhere(at.token, at.token + 1)
+        wrong = misspelt(clause) or first_word(clause)
+        if wrong is not None:
+            return wrong
+    return at.problem(
+        "SC134",
+        at.here(),
+        "`try` needs a clause: `except`, `finally` or `interrupt when`",
+        "add one after the block, indented like `try`",
+        labels=((at.place(place[0]), "the `try` is here"),),
+    )

@@ -1,0 +1,153 @@
+"""Forms of other languages."""
+
+from collections.abc import Sequence
+from typing import Final
+
+from scenic.compiler.actions import Problem
+from scenic.compiler.mistakes.situation import Situation
+from scenic.compiler.mistakes.trial import Change
+
+__all__ = ["declaration", "else_if", "first_word", "import_from", "increment", "operator"]
+
+_PAIRS: Final = {
+    ("&", "&"): "and",
+    ("|", "|"): "or",
+    ("=", ">"): ">=",
+    ("=", "<"): "<=",
+    ("==", "="): "==",
+    ("!=", "="): "!=",
+    ("<", ">"): "!=",
+}
+"""Operators of other languages, as they are read here, and what they are here."""
+
+_FIRST_WORDS: Final = {
+    "function": ("def",),
+    "func": ("def",),
+    "fn": ("def",),
+    "fun": ("def",),
+    "sub": ("def",),
+    "define": ("def",),
+    "switch": ("match",),
+    "select": ("match",),
+    "foreach": ("for",),
+    "catch": ("except",),
+    "throw": ("raise",),
+    "using": ("with", "import"),
+    "include": ("import",),
+    "unless": ("if", "not"),
+    "loop": ("while",),
+    "struct": ("class",),
+    "agent": ("class",),
+}
+"""The first words of statements of other languages, and those of ours that mean the same."""
+
+_TYPES: Final = frozenset(
+    ("var", "let", "const", "auto", "int", "float", "double", "string", "bool", "str", "def")
+)
+
+
+def else_if(at: Situation) -> Problem | None:
+    """``else if x:``."""
+    if at.found != "if" or at.before != "else":
+        return None
+    change = Change(at.token - 1, at.token + 1, ("elif",))
+    return at.problem(
+        "SC129",
+        at.place(at.token - 1, at.token + 1),
+        "a further condition is introduced by `elif`, not by `else if`",
+        "write `elif`",
+        fix=("replace `else if` by `elif`", [change]),
+    )
+
+
+def operator(at: Situation) -> Problem | None:
+    """``a && b``, ``a => b``, ``a === b``."""
+    for first in (at.token - 1, at.token):
+        meant = _PAIRS.get((at.word(first), at.word(first + 1)))
+        if meant is None or not at.adjacent(first):
+            continue
+        change = Change(first, first + 2, (meant,))
+        if not at.helps(change):
+            continue
+        written = at.word(first) + at.word(first + 1)
+        return at.problem(
+            "SC129",
+            at.place(first, first + 2),
+            f"there is no operator `{written}`",
+            f"write `{meant}`",
+            fix=(f"replace `{written}` by `{meant}`", [change]),
+        )
+    return None
+
+
+def increment(at: Situation) -> Problem | None:
+    """``x++``."""
+    first = at.token - 2
+    mark = at.before
+    if not at.at_end() or mark not in ("+", "-") or at.word(first) != mark or not at.adjacent(first):
+        return None
+    change = Change(first, at.token, (f"{mark}=", "1"))
+    return at.problem(
+        "SC129",
+        at.place(first, at.token),
+        f"there is no operator `{mark}{mark}`",
+        f"write `{at.words(at.first, first)} {mark}= 1`",
+        fix=(f"replace it by `{mark}= 1`", [change]),
+    )
+
+
+def first_word(at: Situation) -> Problem | None:
+    """``function f():``, ``switch x:``, ``throw E()``."""
+    word = at.word(at.first)
+    meant = _FIRST_WORDS.get(word.lower())
+    if meant is None or at.token > at.first + 2:
+        return None
+    choices: Sequence[tuple[str, ...]] = [meant] if word == "unless" else [(each,) for each in meant]
+    for words in choices:
+        change = Change(at.first, at.first + 1, words)
+        if at.repairs(change) or (at.word(at.end - 1) == ":" and at.repairs(change, context="block")):
+            shown = " ".join(words)
+            return at.problem(
+                "SC129",
+                at.place(at.first),
+                f"there is no statement `{word}`",
+                f"write `{shown}`",
+                fix=(f"replace it by `{shown}`", [change]),
+            )
+    return None
+
+
+def declaration(at: Situation) -> Problem | None:
+    """``var x = 3``, ``float y = 2``."""
+    declares = at.token == at.first + 1 and at.word(at.token + 1) == "="
+    if at.word(at.first) not in _TYPES or not (declares or at.found == "="):
+        return None
+    change = Change(at.first, at.first + 1, ())
+    if not at.repairs(change):
+        return None
+    name = at.word(at.first + 1)
+    return at.problem(
+        "SC129",
+        at.place(at.first),
+        "variables are not declared: assigning one makes it",
+        f"write `{name} = ...`",
+        fix=(f"remove `{at.word(at.first)}`", [change]),
+    )
+
+
+def import_from(at: Situation) -> Problem | None:
+    """``import x from y``."""
+    if at.word(at.first) != "import" or at.found != "from":
+        return None
+    names, module = at.words(at.first + 1, at.token), at.words(at.token + 1, at.end)
+    changes = [
+        Change(at.first, at.first + 1, ("from", *module.split(), "import")),
+        Change(at.token, at.end, ()),
+    ]
+    return at.problem(
+        "SC116",
+        at.here(),
+        "the module has to stand before the names that are imported from it",
+        f"write `from {module} import {names}`",
+        fix=("put the module first", changes) if module.isidentifier() else None,
+    )

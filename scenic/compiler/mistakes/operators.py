@@ -1,0 +1,245 @@
+"""Operands that need parentheses, and temporal operators where they have no meaning."""
+
+from typing import Final
+
+from scenic.compiler.actions import Problem
+from scenic.compiler.mistakes.situation import Situation, insertion
+
+__all__ = [
+    "after_degrees",
+    "chained_temporal",
+    "loose_operand",
+    "loose_prefix_operator",
+    "temporal_after_operand",
+    "temporal_elsewhere",
+    "temporal_operand",
+]
+
+_PREFIX_OPERATORS: Final = frozenset(
+    [(word, mark) for word in ("distance", "angle", "altitude") for mark in ("to", "from")]
+    + [("distance", "past"), ("relative", "heading"), ("relative", "position"), ("apparent", "heading")]
+    + [("minimum", "distance"), ("initial", "scenario")]
+    + [(word, "of") for word in ("front", "back", "left", "right", "top", "bottom")]
+    + [(word, side) for word in ("front", "back") for side in ("left", "right")]
+    + [(word, face) for word in ("top", "bottom") for face in ("front", "back")]
+)
+"""The first words of prefix operators, of which the first is a name where no such operator can stand."""
+
+_TIGHT_OPERATORS: Final = frozenset(["+", "-", "*", "/", "//", "%", "@", "**", "~", "<<", ">>", "at"])
+
+_LOOSER: Final = frozenset(
+    [
+        ",",
+        ")",
+        "]",
+        "}",
+        ":",
+        ";",
+        "=",
+        "==",
+        "!=",
+        "<",
+        "<=",
+        ">",
+        ">=",
+        "and",
+        "or",
+        "if",
+        "else",
+        "for",
+        "in",
+        "is",
+        "not",
+        "as",
+        "seconds",
+        "steps",
+        "relative",
+        "offset",
+        "can",
+        "visible",
+        "intersects",
+        "|",
+        "^",
+        "&",
+        "implies",
+        "until",
+    ]
+)
+"""Where the operand of a prefix operator ends at the latest."""
+
+_TEMPORAL: Final = ("always", "eventually", "next")
+
+
+def loose_prefix_operator(at: Situation) -> Problem | None:
+    """``5 + distance to a``: a prefix operator is looser than the operator before it."""
+    first = at.token - 1
+    follows = (at.before, at.found) in _PREFIX_OPERATORS
+    if not follows and at.before in ("follow", "visible") and at.starts_operand(at.token):
+        follows = at.word(first - 1) in _TIGHT_OPERATORS
+    if not follows:
+        return None
+    operator = at.word(first - 1)
+    if operator not in _TIGHT_OPERATORS:
+        return None
+    changes = [insertion(first, "("), insertion(_end_of_operand(at), ")")]
+    shown = f"{at.before} {at.found}" if at.before not in ("follow", "visible") else at.before
+    return at.problem(
+        "SC125",
+        at.place(first, at.token + 1) if shown != at.before else at.place(first),
+        f"`{shown}` is looser than the `{operator}` before it",
+        f"put parentheses around `{shown} ...`",
+        fix=("add parentheses", changes),
+    )
+
+
+def _end_of_operand(at: Situation) -> int:
+    """Where what starts before the mistake ends: at a looser operator, a closing bracket, or the end of the line."""
+    depth = 0
+    follows = at.before == "follow"
+    for index in range(at.token + 1, at.end):
+        word = at.word(index)
+        if word in ("(", "[", "{"):
+            depth += 1
+        elif depth and word in (")", "]", "}"):
+            depth -= 1
+        elif word == "for" and follows:
+            follows = False
+        elif not depth and word in _LOOSER:
+            return index
+    return at.end
+
+
+def loose_operand(at: Situation) -> Problem | None:
+    """``a + not b``, ``x == lambda: 3``, ``1 + yield x``."""
+    if at.before == "not" and at.expects("visible") and at.starts_operand(at.token):
+        # The operator `not visible` could have stood here.
+        first = at.token - 1
+        changes = [insertion(first, "("), insertion(_end_of_operand(at), ")")]
+        operator = at.word(first - 1)
+        if not at.repairs(*changes):
+            return None
+        return at.problem(
+            "SC125",
+            at.place(first),
+            f"`not` is looser than the `{operator}` before it",
+            "put parentheses around `not ...`",
+            fix=("add parentheses", changes),
+        )
+    if at.found not in ("not", "lambda", "yield") or not at.expects("an expression"):
+        return None
+    changes = [insertion(at.token, "("), insertion(_end_of_operand(at), ")")]
+    wide = [insertion(at.token, "("), insertion(at.end - (at.word(at.end - 1) == ":"), ")")]
+    if at.found != "not":
+        changes = wide
+    if not at.repairs(*changes):
+        return None
+    what = f"`{at.found}` is looser than the `{at.before}` before it"
+    return at.problem(
+        "SC125",
+        at.here(),
+        what,
+        f"put parentheses around `{at.found} ...`",
+        fix=("add parentheses", changes),
+    )
+
+
+def after_degrees(at: Situation) -> Problem | None:
+    """``a deg ** 2``, ``a deg.x``: nothing tight can follow `deg`."""
+    if at.before != "deg" or at.found not in ("**", ".", "(", "[") or at.token - 2 < at.first:
+        return None
+    operand = at.token - 2
+    changes = [insertion(operand, "("), insertion(at.token, ")")]
+    return at.problem(
+        "SC125",
+        at.here(),
+        f"`{at.found}` is tighter than the `deg` before it",
+        f"put parentheses around `{at.word(operand)} deg`",
+        fix=("add parentheses", changes),
+    )
+
+
+# Temporal operators.
+
+
+def _requirement(at: Situation) -> bool:
+    return at.word(at.first) == "require"
+
+
+def temporal_elsewhere(at: Situation) -> Problem | None:
+    """``x = always y``, ``if a until b:``."""
+    if _requirement(at):
+        return None
+    if at.before in _TEMPORAL and at.starts_operand(at.token):
+        word, place = at.before, at.place(at.token - 1)
+        if (
+            not at.helps(insertion(at.token, "("))
+            and at.word(at.token - 2) not in _CONTEXT
+            and at.token > at.first + 1
+        ):
+            return None
+    elif at.found in ("until", "implies") and at.expects("and") and at.word(at.first) not in ("do", "wait"):
+        word, place = at.found, at.here()
+    else:
+        return None
+    return at.problem(
+        "SC117",
+        place,
+        f"the temporal operator `{word}` can stand only in the condition of `require`",
+        f"write `require {'... ' if word in ('until', 'implies') else ''}{word} ...`",
+    )
+
+
+_CONTEXT: Final = frozenset(
+    ["=", "==", "and", "or", "not", "if", "when", "(", ",", ":", "while", "return", "assert", "in"]
+) | {""}
+
+
+def chained_temporal(at: Situation) -> Problem | None:
+    """``require a until b until c``."""
+    if not _requirement(at) or at.found not in ("until", "implies"):
+        return None
+    earlier = [index for index in range(at.first, at.token) if at.word(index) == at.found]
+    if not earlier:
+        return None
+    labels = ((at.place(earlier[-1]), f"this `{at.found}` has its operands"),)
+    return at.problem(
+        "SC117",
+        at.here(),
+        f"`{at.found}` takes exactly two operands",
+        "put parentheses around two of them",
+        labels=labels,
+    )
+
+
+def temporal_after_operand(at: Situation) -> Problem | None:
+    """``require a always b``."""
+    if not _requirement(at) or at.found not in _TEMPORAL or not at.helps(insertion(at.token, "and")):
+        return None
+    return at.problem(
+        "SC117",
+        at.here(),
+        f"an operator is missing before `{at.found}`",
+        f"join the conditions with `and`, `or`, `implies` or `until`: `{at.before} implies {at.found} ...`",
+    )
+
+
+def temporal_operand(at: Situation) -> Problem | None:
+    """``require 3 < always x``: a temporal operator where an ordinary expression has to stand."""
+    if not _requirement(at):
+        return None
+    if at.before in _TEMPORAL and at.starts_operand(at.token):
+        word, place, operator = at.before, at.place(at.token - 1), at.word(at.token - 2)
+    elif at.found in ("until", "implies") and at.opener(at.token) is not None:
+        word, place, operator = at.found, at.here(), "("
+    else:
+        return None
+    if operator in ("(", "[", "{", ",", "if", "else", ":"):
+        message = f"the temporal operator `{word}` cannot be part of an ordinary expression"
+    else:
+        message = f"the temporal operator `{word}` cannot be an operand of `{operator}`"
+    return at.problem(
+        "SC117",
+        place,
+        message,
+        "temporal operators join conditions only with `and`, `or`, `not` and each other",
+    )

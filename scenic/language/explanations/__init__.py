@@ -1,0 +1,83 @@
+"""The page of each diagnostic code: what is wrong, why, an example with its message, and the repair.
+
+The pages are the files ``SCnnn.md`` beside this module. `explanation` reads one; the tests run all of them.
+"""
+
+import re
+from dataclasses import dataclass
+from importlib import resources
+from typing import Final
+
+from scenic.language.diagnostics import CODES, Severity
+
+__all__ = ["Explanation", "explanation"]
+
+
+@dataclass(frozen=True, slots=True)
+class Explanation:
+    """A page in its parts.
+
+    ``text`` is all of it, in Markdown. ``language`` is that of the example and its repair: ``scenic``, or ``toml``,
+    ``sh`` or ``text`` where what is wrong is no program. ``reason`` says why the tests do not run an example that is
+    a program, ``None`` if they do. ``line``, ``column`` (both from 1), ``message`` and ``help`` are those of the example's
+    diagnostic; one without a place has ``None``.
+    """
+
+    code: str
+    title: str
+    text: str
+    language: str
+    reason: str | None
+    example: str
+    line: int | None
+    column: int | None
+    severity: Severity
+    message: str
+    help: str | None
+    repair: str
+
+
+def explanation(code: str) -> Explanation:
+    """The page of ``code``.
+
+    Raises `KeyError` if there is no such code, and `ValueError` if its page is not as pages have to be.
+    """
+    if code not in CODES:
+        raise KeyError(code)
+    text = resources.files(__name__).joinpath(f"{code}.md").read_text(encoding="utf-8")
+    found = _PAGE.fullmatch(text)
+    if found is None or found["code"] != code:
+        raise ValueError(f"the page of {code} has not the form of a page")
+    return Explanation(
+        code,
+        found["title"],
+        text,
+        found["language"],
+        found["reason"],
+        found["example"],
+        int(found["line"]) if found["line"] else None,
+        int(found["column"]) if found["column"] else None,
+        Severity(found["severity"]),
+        found["message"],
+        found["help"],
+        found["repair"],
+    )
+
+
+_PAGE: Final = re.compile(
+    r"\# (?P<code>SC\d{3}): (?P<title>[^\n]+)\n\n"
+    r"(?:Not executed: (?P<reason>[^\n]+)\n\n)?"
+    r"(?:(?!\#).*\n)+?"
+    r"\#\# Example\n\n"
+    r"(?:[^`\n].*\n\n)*"
+    r"```(?P<language>scenic|toml|sh|text)\n(?P<example>(?:(?!```).*\n)+)```\n\n"
+    r"\#\# Message\n\n"
+    r"```text\n"
+    r"(?:(?P<line>\d+):(?P<column>\d+): )?(?P<severity>error|warning|information)\[(?P=code)\]: (?P<message>[^\n]+)\n"
+    r"(?:help: (?P<help>[^\n]+)\n)?"
+    r"```\n\n"
+    r"\#\# Repair\n\n"
+    r"(?:(?!\#|```).*\n)+"
+    r"```(?P=language)\n(?P<repair>(?:(?!```).*\n)+)```\n"
+)
+"""The form of a page."""
