@@ -7,14 +7,19 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from scenic.compiler.compile import compile_text
+from scenic.compiler.ignores import apply_ignores
 from scenic.language.diagnostics import Diagnostic
 
 __all__ = ["check_text", "in_order"]
 
 
 def check_text(text: str, *, filename: str) -> tuple[Diagnostic, ...]:
-    """What the lexer, the parser, the resolver and the compiler have to say, in order of place."""
-    return in_order(compile_text(text, filename=filename).diagnostics, filename=filename)
+    """What the lexer, the parser, the resolver and the compiler have to say, in order of place.
+
+    Without what comments of the program silence, and with what is wrong with these comments.
+    """
+    found = in_order(compile_text(text, filename=filename, thorough=True).diagnostics, filename=filename)
+    return in_order(apply_ignores(text, found, filename=filename), filename=filename)
 
 
 def in_order(diagnostics: Iterable[Diagnostic], *, filename: str) -> tuple[Diagnostic, ...]:

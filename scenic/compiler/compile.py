@@ -5,6 +5,7 @@ import warnings
 from dataclasses import dataclass
 from types import CodeType
 
+from scenic.compiler.checks import lint
 from scenic.compiler.lowering import lower
 from scenic.compiler.parser import DEEPEST, parse, recursion_limit
 from scenic.compiler.resolver import resolve
@@ -31,27 +32,31 @@ class Compiled:
     diagnostics: tuple[Diagnostic, ...]
 
 
-def lower_text(text: str, *, filename: str) -> Lowered:
-    """Parses, checks and lowers a program. Whatever is wrong with it is in the diagnostics."""
+def lower_text(text: str, *, filename: str, thorough: bool = False) -> Lowered:
+    """Parses, checks and lowers a program. Whatever is wrong with it is in the diagnostics.
+
+    If ``thorough``, so is what is legal but hardly meant, and what will fail once it is reached.
+    """
     source = Source(text, filename)
     parsed = parse(source.text, filename=filename)
     found = list(parsed.diagnostics)
     try:
         with recursion_limit(DEEPEST):
             resolution = resolve(parsed.tree, source)
-            found = list(dict.fromkeys([*found, *resolution.diagnostics]))
+            hints = lint(parsed.tree, source, resolution) if thorough else ()
+            found = list(dict.fromkeys([*found, *resolution.diagnostics, *hints]))
             module = None if _has_errors(found) else lower(parsed.tree, resolution)
     except RecursionError:
         return Lowered(None, (*found, _too_deep(source)))
     return Lowered(module, tuple(found))
 
 
-def compile_text(text: str, *, filename: str) -> Compiled:
-    """Compiles a program; ``filename`` is what tracebacks will name.
+def compile_text(text: str, *, filename: str, thorough: bool = False) -> Compiled:
+    """Compiles a program; ``filename`` is what tracebacks will name, ``thorough`` as in `lower_text`.
 
     Python's own complaints about the program become diagnostics at their place.
     """
-    lowered = lower_text(text, filename=filename)
+    lowered = lower_text(text, filename=filename, thorough=thorough)
     if lowered.module is None:
         return Compiled(None, lowered.diagnostics)
     source = Source(text, filename)
@@ -118,4 +123,11 @@ def _python_warning(line: int, message: str, source: Source) -> Diagnostic:
     text = source.line(line)
     end = len(text.rstrip())
     span = Span(line, min(end, len(text) - len(text.lstrip())), line, end) if line >= 1 else None
-    return Diagnostic("SC110", message, span, Severity.WARNING, source.filename)
+    return Diagnostic(
+        "SC307",
+        message,
+        span,
+        Severity.WARNING,
+        source.filename,
+        "Python would warn of this: write what is meant",
+    )

@@ -11,16 +11,21 @@ from types import MappingProxyType
 from typing import Any, Final, NamedTuple
 
 from scenic.compiler import tree as scenic
-from scenic.compiler.checks import check
+from scenic.compiler.checks import NOTED, check
+from scenic.compiler.garbage import no_garbage_collection
 from scenic.compiler.scopes import PROVIDED, Binding, BindingKind, Reference, Resolution, Scope, ScopeKind
-from scenic.compiler.traversal import parts, walk
+from scenic.compiler.traversal import FIELDS, parts, walk
 from scenic.language.names import RESERVED, TRACKED
 from scenic.language.source import Source
+from scenic.language.spelling import nearest
 
 __all__ = ["resolve"]
 
 _REFLECTION: Final = frozenset({"exec", "globals", "vars"})
 """Builtins with which programs may bind names in ways that the text does not show."""
+
+_READING: Final = frozenset({"dir", "eval", "locals"})
+"""Builtins with which programs may read names in ways that the text does not show."""
 
 
 def resolve(tree: ast.Module, source: Source) -> Resolution:
@@ -28,18 +33,30 @@ def resolve(tree: ast.Module, source: Source) -> Resolution:
 
     Never raises on any tree that the parser makes; what is wrong is in ``diagnostics``, ordered by place.
     """
-    collector = _Collector(tree)
-    collector.walk()
-    resolution = collector.finish()
-    diagnostics = check(
-        tree,
-        source,
-        resolution,
-        reserved=collector.reserved,
-        tolerated=collector.tolerated,
-        provided=PROVIDED,
-    )
+    with no_garbage_collection():
+        collector = _Collector(tree)
+        collector.walk()
+        if any(_brings_names(source.line(node.lineno)) for node in collector.broken()):
+            collector.admit_unseen_names()
+        resolution = collector.finish()
+        diagnostics = check(
+            tree,
+            source,
+            resolution,
+            reserved=collector.reserved,
+            provided=PROVIDED,
+        )
     return replace(resolution, diagnostics=diagnostics)
+
+
+def _brings_names(line: str) -> bool:
+    """Whether a line that could not be parsed may have been one that brings names that the text does not show."""
+    words = line.split(maxsplit=1)
+    if not words:
+        return False
+    return (
+        words[0] == "model" or nearest(words[0], ("model",)) is not None or ("import" in line and "*" in line)
+    )
 
 
 class _Event(NamedTuple):
@@ -63,23 +80,56 @@ class _Collector:
         self._uses: list[tuple[ast.Name, Scope]] = []
         self._nonlocals: dict[ast.AST, Scope] = {}
         self._plain_targets: set[ast.AST] = set()
+        self._nodes: dict[type[ast.AST], list[tuple[Any, Scope]]] = {cls: [] for cls in NOTED}
+        self._pending: list[tuple[Scope, list[Any]]] = []
         self.tolerated: set[ast.AST] = set()
         """Names read where a ``NameError`` is caught."""
         self.reserved: list[tuple[str, ast.AST]] = []
         """Bindings of names that the program must not bind."""
 
     def walk(self) -> None:
-        stack: list[_Task] = [(child, self._module) for child in reversed(self._tree.body)]
-        handlers = _HANDLERS
-        while stack:
-            node, scope = stack.pop()
-            handler = handlers.get(type(node))
-            if handler is None:
-                tasks = [(child, scope) for child in parts(node)]
-            else:
-                tasks = list(handler(self, node, scope))
-            tasks.reverse()
-            stack.extend(tasks)
+        """Visit every node once, scope by scope. Most nodes belong to the scope of what they are part of."""
+        pending = self._pending
+        pending.append((self._module, list(self._tree.body)))
+        handlers, fields, noted, uses = _HANDLERS, FIELDS, self._nodes, self._uses
+        while pending:
+            scope, stack = pending.pop()
+            while stack:
+                node = stack.pop()
+                cls = node.__class__
+                if cls is ast.Name:
+                    uses.append((node, scope))
+                    if node.ctx.__class__ is not ast.Load and node not in self._plain_targets:
+                        self._events.append(_Event(scope, node.id, BindingKind.VARIABLE, node))
+                    continue
+                if cls is ast.Constant:
+                    continue
+                found = noted.get(cls)
+                if found is not None:
+                    found.append((node, scope))
+                handler = handlers.get(cls)
+                if handler is not None:
+                    for part, owner in handler(self, node, scope):
+                        if owner is scope:
+                            stack.append(part)
+                        else:
+                            pending.append((owner, [part]))
+                    continue
+                # What is no node (an absent part, a name) has no fields.
+                for field in fields.get(cls, ()):
+                    part = node.__dict__.get(field)
+                    if part.__class__ is list:
+                        stack.extend(part)
+                    elif part is not None:
+                        stack.append(part)
+
+    def broken(self) -> list[Any]:
+        """The statements that could not be parsed."""
+        return [node for node, _ in self._nodes.get(scenic.ErrorStatement, ())]
+
+    def admit_unseen_names(self) -> None:
+        """Reckon with names that the text does not show."""
+        self._module.wildcard = True
 
     def finish(self) -> Resolution:
         bound = {(event.scope, event.name) for event in self._events}
@@ -89,12 +139,29 @@ class _Collector:
             else:
                 self._bind(event, bound)
         references: dict[ast.AST, Reference] = {}
+        reflective = False
+        meanings: dict[tuple[Scope, str], Binding | None] = {}
         for node, scope in self._uses:
-            reference = Reference(node, scope, scope.lookup(node.id))
-            references[node] = reference
-            if reference.binding is None and node.id in _REFLECTION:
-                self._module.wildcard = True
-        return Resolution(self._module, self._scopes, references, self._nonlocals)
+            name = node.id
+            key = (scope, name)
+            if key in meanings:
+                binding = meanings[key]
+            else:
+                binding = meanings[key] = scope.lookup(name)
+            references[node] = Reference(node, scope, binding)
+            if binding is None and (name in _REFLECTION or name in _READING):
+                reflective = True
+                if name in _REFLECTION:
+                    self._module.wildcard = True
+        return Resolution(
+            self._module,
+            self._scopes,
+            references,
+            self._nonlocals,
+            self._nodes,
+            self.tolerated,
+            reflective,
+        )
 
     def _bind(self, event: _Event, bound: set[tuple[Scope, str]]) -> None:
         scope = event.scope
@@ -232,12 +299,6 @@ class _Collector:
         self._uses.append((node.target, scope))
         yield node.value, scope
 
-    def name(self, node: ast.Name, scope: Scope) -> Iterable[_Task]:
-        self._uses.append((node, scope))
-        if not isinstance(node.ctx, ast.Load) and node not in self._plain_targets:
-            self._note(scope, node.id, BindingKind.VARIABLE, node)
-        return ()
-
     # Statements
 
     def assignment(self, node: ast.Assign, scope: Scope) -> Iterable[_Task]:
@@ -316,7 +377,6 @@ def _handlers() -> Mapping[type[ast.AST], Callable[[_Collector, Any, Scope], Ite
         ast.DictComp: _Collector.comprehension,
         ast.GeneratorExp: _Collector.comprehension,
         ast.NamedExpr: _Collector.walrus,
-        ast.Name: _Collector.name,
         ast.Assign: _Collector.assignment,
         ast.Import: _Collector.importation,
         ast.ImportFrom: _Collector.import_from,

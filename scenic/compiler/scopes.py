@@ -5,10 +5,10 @@ A scope is built once by `scenic.compiler.resolver` and only read afterwards. No
 
 import ast
 import builtins
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
-from typing import Final
+from typing import Any, Final
 
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.names import NAMES, TRACKED
@@ -151,12 +151,19 @@ class Resolution:
     ``scopes`` gives the scope that a node opens, ``references`` what a name means, ``nonlocals`` the scope in which a
     ``nonlocal`` statement stands. Names bound by other nodes than
     ``ast.Name`` (functions, parameters, imports, captures) are found through `Binding.sites`.
+
+    ``nodes`` lists the nodes of the classes that the checks look for, each with the scope in which it stands, in no
+    particular order. ``tolerated`` are the names read where a missing name is provided for. ``reflective`` tells
+    whether the program may read and bind names in ways that the text does not show (``globals()``, ``exec``).
     """
 
     module: Scope
     scopes: Mapping[ast.AST, Scope]
     references: Mapping[ast.AST, Reference]
     nonlocals: Mapping[ast.AST, Scope]
+    nodes: Mapping[type[ast.AST], Sequence[tuple[Any, Scope]]]
+    tolerated: Collection[ast.AST] = frozenset()
+    reflective: bool = False
     diagnostics: tuple[Diagnostic, ...] = ()
 
     def binding(self, name: ast.Name) -> Binding | None:

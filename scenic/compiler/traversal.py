@@ -6,7 +6,7 @@ from typing import Final
 
 from scenic.compiler import tree
 
-__all__ = ["parts", "walk"]
+__all__ = ["FIELDS", "parts", "walk"]
 
 _PLAIN: Final = frozenset(
     {
@@ -39,7 +39,7 @@ _PLAIN: Final = frozenset(
 """Fields that never hold parts, in any class of node."""
 
 
-_FIELDS: Final[dict[object, tuple[str, ...]]] = {
+FIELDS: Final[dict[object, tuple[str, ...]]] = {
     cls: tuple(field for field in cls._fields if field not in _PLAIN)
     for cls in (*vars(ast).values(), *vars(tree).values())
     if isinstance(cls, type) and issubclass(cls, ast.AST)
@@ -51,7 +51,7 @@ def parts(node: ast.AST) -> list[ast.AST]:
     """The nodes directly in a node, in order; no contexts and no operators of Python's."""
     found: list[ast.AST] = []
     values = node.__dict__
-    for field in _FIELDS[node.__class__]:
+    for field in FIELDS[node.__class__]:
         value = values.get(field)
         if value.__class__ is list:
             found.extend([part for part in value if isinstance(part, ast.AST)])

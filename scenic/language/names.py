@@ -1,5 +1,6 @@
 """The names that are always in scope (sections 7.2, 8 and 9 of the specification), as data."""
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
@@ -7,6 +8,7 @@ from types import MappingProxyType
 from typing import Final
 
 __all__ = [
+    "ANGLE_METHODS",
     "CONVERSIONS",
     "LIFTED_FUNCTIONS",
     "LIFTED_METHODS",
@@ -35,7 +37,8 @@ class Name:
     """One provided name.
 
     ``signature`` is how it is called, or the bare name of something that is not called. ``lifted`` marks the functions
-    that take random arguments, so that a call in a condition can become part of the value graph.
+    that take random arguments, so that a call in a condition can become part of the value graph. ``angles`` are the
+    parameters whose numbers are angles in radians.
     """
 
     name: str
@@ -44,24 +47,50 @@ class Name:
     documentation: str
     lifted: bool = False
     available: bool = True
+    angles: tuple[str, ...] = ()
+
+    @property
+    def parameters(self) -> tuple[str, ...]:
+        """The names of its positional parameters, as far as the signature names them."""
+        inside = self.signature.partition("(")[2].removesuffix(")")
+        # Defaults may hold commas in brackets; names of parameters never follow an opening bracket.
+        flat = re.sub(r"\([^()]*\)|\{[^{}]*\}", "", inside)
+        return tuple(part.partition("=")[0].strip() for part in flat.split(",") if part.strip())
 
 
 def _name(
-    signature: str, kind: NameKind, documentation: str, *, lifted: bool = False, available: bool = True
+    signature: str,
+    kind: NameKind,
+    documentation: str,
+    *,
+    lifted: bool = False,
+    available: bool = True,
+    angles: tuple[str, ...] = (),
 ) -> Name:
-    return Name(signature.partition("(")[0], kind, signature, documentation, lifted, available)
+    return Name(signature.partition("(")[0], kind, signature, documentation, lifted, available, angles)
 
 
-def _function(signature: str, documentation: str, *, lifted: bool = False, available: bool = True) -> Name:
-    return _name(signature, NameKind.FUNCTION, documentation, lifted=lifted, available=available)
+def _function(
+    signature: str,
+    documentation: str,
+    *,
+    lifted: bool = False,
+    available: bool = True,
+    angles: tuple[str, ...] = (),
+) -> Name:
+    return _name(
+        signature, NameKind.FUNCTION, documentation, lifted=lifted, available=available, angles=angles
+    )
 
 
 def _distribution(signature: str, documentation: str, *, available: bool = True) -> Name:
     return _name(signature, NameKind.DISTRIBUTION, documentation, available=available)
 
 
-def _region(signature: str, documentation: str, *, available: bool = True) -> Name:
-    return _name(signature, NameKind.REGION, documentation, available=available)
+def _region(
+    signature: str, documentation: str, *, available: bool = True, angles: tuple[str, ...] = ()
+) -> Name:
+    return _name(signature, NameKind.REGION, documentation, available=available, angles=angles)
 
 
 def _shape(signature: str, documentation: str) -> Name:
@@ -118,8 +147,8 @@ _ALL = (
     _exception("PreconditionViolation", "A precondition does not hold.", available=False),
     _exception("InvariantViolation", "An invariant does not hold.", available=False),
     # Functions
-    _function("sin(x)", "The sine of an angle in radians.", lifted=True),
-    _function("cos(x)", "The cosine of an angle in radians.", lifted=True),
+    _function("sin(x)", "The sine of an angle in radians.", lifted=True, angles=("x",)),
+    _function("cos(x)", "The cosine of an angle in radians.", lifted=True, angles=("x",)),
     _function("hypot(x, y, ...)", "The length of the vector with these coordinates.", lifted=True),
     _function("max(a, b, ...)", "The largest of its arguments.", lifted=True),
     _function("min(a, b, ...)", "The smallest of its arguments.", lifted=True),
@@ -183,8 +212,13 @@ _ALL = (
         "SectorRegion(center, radius, heading, angle)",
         "A sector of a disc in a horizontal plane.",
         available=False,
+        angles=("heading", "angle"),
     ),
-    _region("RectangularRegion(position, heading, width, length)", "A rectangle in a horizontal plane."),
+    _region(
+        "RectangularRegion(position, heading, width, length)",
+        "A rectangle in a horizontal plane.",
+        angles=("heading",),
+    ),
     _region(
         "MeshVolumeRegion(mesh, dimensions=None, position=None, rotation=None)",
         "The inside of a closed mesh.",
@@ -218,6 +252,11 @@ RESERVED: Final = frozenset({*TRACKED, *CONVERSIONS, "globalParameters"})
 
 LIFTED_FUNCTIONS: Final = frozenset(name.name for name in _ALL if name.lifted)
 """Functions whose calls in a condition may become part of the value graph."""
+
+ANGLE_METHODS: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType(
+    {"fromEuler": ("yaw", "pitch", "roll"), "rotatedBy": ("angle",)}
+)
+"""Parameters of methods whose numbers are angles in radians."""
 
 LIFTED_METHODS: Final = frozenset(
     {

@@ -18,12 +18,14 @@ class Operand:
     """One operand of an operator or specifier.
 
     ``type`` is the wanted type in the words of the language's manual. ``default`` says in words what is meant when
-    the text leaves the operand out; ``None`` when it may not.
+    the text leaves the operand out; ``None`` when it may not. ``angle`` tells whether a plain number, and each in a
+    tuple, is read as an angle in radians.
     """
 
     name: str
     type: str
     default: str | None = None
+    angle: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +33,8 @@ class Operator:
     """One operator: its name in the tree, its operands in order, and what a reader should know.
 
     ``forms`` are all ways to write it, operands by their names. ``available`` tells whether this version builds it;
-    a program that uses an operator that is not available is refused where it stands.
+    a program that uses an operator that is not available is refused where it stands. ``angle`` tells whether the result
+    is an angle in radians.
     """
 
     name: str
@@ -40,6 +43,7 @@ class Operator:
     forms: tuple[str, ...]
     documentation: str
     available: bool = True
+    angle: bool = False
 
 
 EGO: Final = "the ego"
@@ -125,7 +129,7 @@ _ALL = (
         "offset along",
         (
             Operand("position", "vector"),
-            Operand("direction", "heading, orientation or field"),
+            Operand("direction", "heading, orientation or field", angle=True),
             Operand("offset", "vector"),
         ),
         "vector",
@@ -141,10 +145,11 @@ _ALL = (
     ),
     Operator(
         "relative heading",
-        (Operand("heading", "heading"), Operand("base", "heading", EGO)),
+        (Operand("heading", "heading", angle=True), Operand("base", "heading", EGO, angle=True)),
         "scalar",
         ("relative heading of heading", "relative heading of heading from base"),
         "The difference of two global headings, between -pi and pi.",
+        angle=True,
     ),
     Operator(
         "apparent heading",
@@ -152,6 +157,7 @@ _ALL = (
         "scalar",
         ("apparent heading of target", "apparent heading of target from viewpoint"),
         "The heading of the target relative to the line of sight from the viewpoint.",
+        angle=True,
     ),
     Operator(
         "distance",
@@ -192,6 +198,7 @@ _ALL = (
         "scalar",
         ("angle to end", "angle from start", "angle from start to end", "angle to end from start"),
         "The heading of the line from one position to another: 0 is North (+Y), and it grows anticlockwise.",
+        angle=True,
     ),
     Operator(
         "altitude",
@@ -204,6 +211,7 @@ _ALL = (
             "altitude to end from start",
         ),
         "The angle of the line from one position to another above the horizontal plane.",
+        angle=True,
     ),
     Operator(
         "follow",

@@ -24,6 +24,7 @@ class BuiltinProperty:
     """One property as one built-in class defines it.
 
     ``type`` and ``default`` are in the words of the manual. ``needs`` are the properties that the default reads.
+    ``angle`` tells whether numbers in the value are angles in radians.
     """
 
     name: str
@@ -34,6 +35,7 @@ class BuiltinProperty:
     dynamic: bool = False
     final: bool = False
     additive: bool = False
+    angle: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,7 +98,13 @@ _POINT = BuiltinClass(
             "None",
             "The direction in which `on` projects a position onto a surface.",
         ),
-        _P("viewAngles", "pair of scalars", "(360 deg, 180 deg)", "Horizontal and vertical angle of view."),
+        _P(
+            "viewAngles",
+            "pair of scalars",
+            "(360 deg, 180 deg)",
+            "Horizontal and vertical angle of view.",
+            angle=True,
+        ),
         _P("visibleDistance", "scalar", "50", "How far it sees, in metres."),
         _P(
             "viewRayDensity",
@@ -144,9 +152,24 @@ _ORIENTED_POINT = BuiltinClass(
             "0",
             "Rotation about the Z axis of the parent orientation, in radians.",
             dynamic=True,
+            angle=True,
         ),
-        _P("pitch", "scalar", "0", "Rotation about the X axis after the yaw, in radians.", dynamic=True),
-        _P("roll", "scalar", "0", "Rotation about the Y axis after yaw and pitch, in radians.", dynamic=True),
+        _P(
+            "pitch",
+            "scalar",
+            "0",
+            "Rotation about the X axis after the yaw, in radians.",
+            dynamic=True,
+            angle=True,
+        ),
+        _P(
+            "roll",
+            "scalar",
+            "0",
+            "Rotation about the Y axis after yaw and pitch, in radians.",
+            dynamic=True,
+            angle=True,
+        ),
         _P(
             "parentOrientation",
             "orientation",
@@ -170,22 +193,31 @@ _ORIENTED_POINT = BuiltinClass(
             ("orientation",),
             dynamic=True,
             final=True,
+            angle=True,
         ),
-        _P("viewAngle", "scalar", "360 deg", "Horizontal angle of view; the older form of `viewAngles`."),
+        _P(
+            "viewAngle",
+            "scalar",
+            "360 deg",
+            "Horizontal angle of view; the older form of `viewAngles`.",
+            angle=True,
+        ),
         _P(
             "viewAngles",
             "pair of scalars",
             "(viewAngle, 180 deg)",
             "Horizontal and vertical angle of view.",
             ("viewAngle",),
+            angle=True,
         ),
-        _P("headingStdDev", "scalar", "5 deg", "Standard deviation of the noise on the yaw."),
+        _P("headingStdDev", "scalar", "5 deg", "Standard deviation of the noise on the yaw.", angle=True),
         _P(
             "orientationStdDev",
             "vector",
             "(headingStdDev, 0, 0)",
             "Standard deviations of the noise on yaw, pitch and roll.",
             ("headingStdDev",),
+            angle=True,
         ),
         _P(
             "mutator",

@@ -36,6 +36,8 @@ class SpecifierDeclaration:
     whose value, given by another specifier, this one may adjust. ``needs`` are the properties of the new object that
     the value always depends on; more may follow from the operands. ``group`` says which half of the object's pose it
     gives, for ordering documentation and completion: ``"position"``, ``"orientation"`` or ``"general"``.
+    ``needs_beside_vector`` are the properties that the value needs if the first operand is a mere position.
+    ``reads_ego`` tells whether the value depends on the ego whatever the operands are.
     """
 
     name: str
@@ -47,6 +49,8 @@ class SpecifierDeclaration:
     documentation: str
     modifies: tuple[str, ...] = ()
     available: bool = True
+    needs_beside_vector: tuple[str, ...] = ()
+    reads_ego: bool = False
 
 
 _PREFERRED = "the region has a preferred orientation"
@@ -66,6 +70,7 @@ def _beside(name: str, axis: str, extent: str) -> SpecifierDeclaration:
         (f"{name} reference", f"{name} reference by distance"),
         f"Places the object on the {axis} side of the reference, in the reference's frame, so that their bounding "
         "boxes are the given distance apart. Next to an object and without a distance they all but touch.",
+        needs_beside_vector=("orientation",),
     )
 
 
@@ -130,15 +135,17 @@ _ALL = (
         "position",
         ("offset by offset",),
         "Places the object at an offset from the ego, in the ego's frame.",
+        reads_ego=True,
     ),
     SpecifierDeclaration(
         "offset along",
-        (Operand("direction", "heading, orientation or field"), Operand("offset", "vector")),
+        (Operand("direction", "heading, orientation or field", angle=True), Operand("offset", "vector")),
         (Specified("position", 1), Specified("parentOrientation", 3)),
         (),
         "position",
         ("offset along direction by offset",),
         "Places the object at an offset from the ego, in the frame of the direction.",
+        reads_ego=True,
     ),
     SpecifierDeclaration(
         "beyond",
@@ -197,7 +204,7 @@ _ALL = (
     ),
     SpecifierDeclaration(
         "facing",
-        (Operand("direction", "heading, orientation, Euler angles or field"),),
+        (Operand("direction", "heading, orientation, Euler angles or field", angle=True),),
         (Specified("yaw", 1), Specified("pitch", 1), Specified("roll", 1)),
         ("parentOrientation",),
         "orientation",
@@ -242,7 +249,7 @@ _ALL = (
     ),
     SpecifierDeclaration(
         "apparently facing",
-        (Operand("heading", "heading"), Operand("viewpoint", "vector", EGO)),
+        (Operand("heading", "heading", angle=True), Operand("viewpoint", "vector", EGO)),
         (Specified("yaw", 1),),
         ("position", "parentOrientation"),
         "orientation",

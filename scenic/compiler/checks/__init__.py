@@ -1,17 +1,67 @@
-"""The checks of a program that need neither its running nor its modules: one module per kind of rule."""
+"""The checks of a program that need neither its running nor its modules: one module per kind of rule.
+
+`check` finds what no program may contain; it is part of every compilation. `lint` finds what is legal, or fails only
+when it is reached, and is hardly meant. The resolver notes the nodes that the rules look for while it walks the tree, so
+that no rule has to walk it again.
+"""
 
 import ast
 from collections.abc import Collection, Iterable, Iterator
+from typing import Final
 
-from scenic.compiler.checks.declarations import check_declarations
-from scenic.compiler.checks.names import check_names, check_reserved
-from scenic.compiler.checks.placement import check_placement
-from scenic.compiler.checks.support import check_support
+from scenic.compiler import tree as scenic
+from scenic.compiler.checks import (
+    angles,
+    arguments,
+    conditions,
+    declarations,
+    defaults,
+    flow,
+    instances,
+    names,
+    order,
+    placement,
+    specifiers,
+    support,
+    uses,
+)
+from scenic.compiler.checks.context import Context, NodeRule, ProgramRule
+from scenic.compiler.garbage import no_garbage_collection
 from scenic.compiler.scopes import Resolution
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.source import Source
 
-__all__ = ["check"]
+__all__ = ["NOTED", "check", "lint"]
+
+_NODE_RULES: Final[tuple[tuple[type[ast.AST], NodeRule], ...]] = tuple(
+    rule for module in (angles, arguments, conditions, specifiers) for rule in module.RULES.items()
+)
+_PROGRAM_RULES: Final[tuple[ProgramRule, ...]] = (
+    defaults.check_defaults,
+    flow.check_flow,
+    instances.check_instances,
+    order.check_order,
+    uses.check_uses,
+)
+
+NOTED: Final = frozenset(
+    {
+        ast.AnnAssign,
+        ast.Assign,
+        ast.AsyncFunctionDef,
+        ast.Attribute,
+        ast.FunctionDef,
+        ast.Import,
+        ast.ImportFrom,
+        ast.Return,
+        ast.Subscript,
+        scenic.BehaviorDef,
+        scenic.Model,
+        scenic.MonitorDef,
+        *(cls for cls, _ in _NODE_RULES),
+    }.union(declarations.NOTED, names.NOTED, placement.NOTED, support.NOTED)
+)
+"""The classes of nodes that rules look for, wherever in the tree they stand."""
 
 
 def check(
@@ -20,24 +70,39 @@ def check(
     resolution: Resolution,
     *,
     reserved: Iterable[tuple[str, ast.AST]],
-    tolerated: Collection[ast.AST],
     provided: Collection[str],
 ) -> tuple[Diagnostic, ...]:
-    """All findings about a module, ordered by place.
+    """What no program may contain, ordered by place.
 
-    ``reserved`` are the places where the program binds a name that it must not bind, ``tolerated`` the names read
-    where a missing name is provided for, ``provided`` the names in scope that nothing binds.
+    ``reserved`` are the places where the program binds a name that it must not bind, ``provided`` the names in scope
+    that nothing binds.
     """
+    context = Context(tree, source, resolution)
 
     def findings() -> Iterator[Diagnostic]:
-        yield from check_reserved(source, reserved)
-        yield from check_names(tree, source, resolution, tolerated, provided)
-        misplaced = dict(check_placement(tree, source))
+        yield from names.check_reserved(context, reserved)
+        yield from names.check_names(context, provided)
+        misplaced = dict(placement.check_placement(context))
         yield from misplaced.values()
-        yield from check_support(tree, source, resolution, misplaced)
-        yield from check_declarations(tree, source, resolution)
+        yield from support.check_support(context, misplaced)
+        yield from declarations.check_declarations(context)
 
     return tuple(sorted(findings(), key=_order))
+
+
+def lint(tree: ast.Module, source: Source, resolution: Resolution) -> tuple[Diagnostic, ...]:
+    """What a program may contain but hardly means, and what is bound to fail when it is reached; ordered by place."""
+    context = Context(tree, source, resolution)
+
+    def findings() -> Iterator[Diagnostic]:
+        for cls, rule in _NODE_RULES:
+            for node, scope in resolution.nodes.get(cls, ()):
+                yield from rule(node, scope, context)
+        for program_rule in _PROGRAM_RULES:
+            yield from program_rule(context)
+
+    with no_garbage_collection():
+        return tuple(sorted(dict.fromkeys(findings()), key=_order))
 
 
 def _order(diagnostic: Diagnostic) -> tuple[int, int, str]:

@@ -3,24 +3,31 @@
 import ast
 import re
 from collections.abc import Collection, Iterable, Iterator
-from typing import Final
+from typing import Any, Final
 
+from scenic.compiler import tree as scenic
+from scenic.compiler.checks.arguments import kind_of
+from scenic.compiler.checks.blocks import position
+from scenic.compiler.checks.context import Context
 from scenic.compiler.checks.places import word_span
-from scenic.compiler.scopes import Resolution
-from scenic.compiler.traversal import walk
-from scenic.compiler.tree import ErrorStatement
-from scenic.language.diagnostics import Diagnostic, Severity
-from scenic.language.names import CONVERSIONS, TRACKED
-from scenic.language.source import Source
+from scenic.compiler.scopes import Binding, Reference, ScopeKind
+from scenic.language.diagnostics import Diagnostic, Label
+from scenic.language.names import CONVERSIONS, NAMES, TRACKED, NameKind
+from scenic.language.properties import CLASSES
 from scenic.language.spelling import nearest
 
-__all__ = ["check_names", "check_reserved"]
+__all__ = ["NOTED", "check_names", "check_reserved"]
+
+NOTED: Final = (scenic.ErrorStatement, scenic.New)
 
 MOST_SUGGESTIONS: Final = 100
 """Names for which a similar one is looked for: a file full of undefined names must not take long."""
 
+_NOT_SCENIC: Final = frozenset({NameKind.DISTRIBUTION, NameKind.FUNCTION, NameKind.REGION, NameKind.SHAPE})
+"""Kinds of provided names that are no classes of objects, whatever they are in Python."""
 
-def check_reserved(source: Source, reserved: Iterable[tuple[str, ast.AST]]) -> Iterator[Diagnostic]:
+
+def check_reserved(context: Context, reserved: Iterable[tuple[str, ast.AST]]) -> Iterator[Diagnostic]:
     """SC200: bindings of names with a fixed meaning (section 1.3)."""
     for name, site in reserved:
         if name in TRACKED:
@@ -32,56 +39,159 @@ def check_reserved(source: Source, reserved: Iterable[tuple[str, ast.AST]]) -> I
         else:
             message = f"`{name}` cannot be bound"
             help_ = "set global parameters with `param name = value`"
-        yield Diagnostic(
-            "SC200", message, word_span(source, site, name), Severity.ERROR, source.filename, help_
-        )
+        yield context.error("SC200", message, word_span(context.source, site, name), help_)
 
 
-def check_names(
-    tree: ast.Module,
-    source: Source,
-    resolution: Resolution,
-    tolerated: Collection[ast.AST],
-    provided: Collection[str],
-) -> Iterator[Diagnostic]:
-    """SC202: names that are read and that nothing binds."""
+def check_names(context: Context, provided: Collection[str]) -> Iterator[Diagnostic]:
+    """SC202: names that are read and that nothing binds; SC203: classes after ``new`` that are none."""
+    classes = {node.cls: scope for node, scope in context.nodes(scenic.New)}
+    for name in classes:
+        yield from _no_class(context, name)
+    resolution = context.resolution
     if resolution.wildcard:
         return
     skipped: set[str] | None = None
     suggestions: dict[str, str | None] = {}
+    elsewhere: dict[str, Binding] | None = None
     for reference in resolution.references.values():
-        name = reference.node.id
-        if (
-            reference.binding is not None
-            or name in provided
-            or reference.node in tolerated
-            or isinstance(reference.node.ctx, ast.Store)
-        ):
+        if reference.binding is not None:
+            continue
+        node = reference.node
+        name = node.id
+        if name in provided or node in resolution.tolerated or isinstance(node.ctx, ast.Store):
             continue
         if skipped is None:
-            skipped = _skipped_words(tree, source)
+            skipped = _skipped_words(context)
+            elsewhere = _bound_somewhere(context)
         if name in skipped:
+            continue
+        if context.broken:
+            # Its binding may be among what is broken: once is enough.
+            skipped.add(name)
+        if node in classes:
+            if name not in suggestions and len(suggestions) < MOST_SUGGESTIONS:
+                suggestions[name] = nearest(name, _classes_in_reach(reference))
+            yield _unknown_class(context, reference, suggestions.get(name))
+            continue
+        if _names_property(context, reference):
+            yield _without_self(context, reference)
+            continue
+        if elsewhere is not None and name in elsewhere:
+            yield _out_of_reach(context, reference, elsewhere[name])
             continue
         if name not in suggestions and len(suggestions) < MOST_SUGGESTIONS:
             candidates = reference.scope.names_in_reach() | {word for word in provided if word[0] != "_"}
             suggestions[name] = nearest(name, candidates)
         suggestion = suggestions.get(name)
-        yield Diagnostic(
+        yield context.error(
             "SC202",
             f"the name `{name}` is not defined",
-            source.span(reference.node),
-            Severity.ERROR,
-            source.filename,
+            node,
             f"did you mean `{suggestion}`?" if suggestion else "define it before it is used, or import it",
+            fix=context.replacement(f"Write `{suggestion}`", node, suggestion) if suggestion else None,
         )
 
 
-def _skipped_words(tree: ast.Module, source: Source) -> set[str]:
+def _skipped_words(context: Context) -> set[str]:
     """All words in statements that could not be parsed: they may bind any of them."""
     words: set[str] = set()
-    for node in walk(tree):
-        if isinstance(node, ErrorStatement):
-            span = source.span(node)
-            for line in range(span.line, span.end_line + 1):
-                words.update(re.findall(r"\w+", source.line(line)))
+    for node, _ in context.nodes(scenic.ErrorStatement):
+        span = context.source.span(node)
+        for line in range(span.line, span.end_line + 1):
+            words.update(re.findall(r"\w+", context.source.line(line)))
     return words
+
+
+def _bound_somewhere(context: Context) -> dict[str, Binding]:
+    """The first binding of each name in any scope but the module's."""
+    found: dict[str, Binding] = {}
+    for scope in context.resolution.scopes.values():
+        if scope.kind not in (ScopeKind.MODULE, ScopeKind.PROPERTY):
+            for name, binding in scope.bindings.items():
+                found.setdefault(name, binding)
+    return found
+
+
+def _out_of_reach(context: Context, reference: Reference, binding: Binding) -> Diagnostic:
+    """A name that only other scopes bind."""
+    name = reference.node.id
+    scope = binding.scope
+    if scope.kind is ScopeKind.CLASS:
+        within = f"the body of the class `{scope.name}`"
+        help_ = f"write `{scope.name}.{name}`, or `self.{name}` in a method"
+    elif scope.kind in (ScopeKind.COMPREHENSION, ScopeKind.LAMBDA):
+        within = f"a {scope.kind}"
+        help_ = f"a name bound in a {scope.kind} exists only there"
+    else:
+        within = f"the {scope.kind} `{scope.name}`"
+        help_ = "what is bound in there exists only there: bind the name here, or return the value"
+    first = min(binding.sites, key=position)
+    return context.error(
+        "SC202",
+        f"the name `{name}` is not defined here, only in {within}",
+        reference.node,
+        help_,
+        labels=(Label(word_span(context.source, first, name), "bound here"),),
+    )
+
+
+def _names_property(context: Context, reference: Reference) -> bool:
+    """Whether a name in the default of a property can only mean another property of the same object."""
+    for scope in reference.scope.ancestors():
+        if scope.kind is ScopeKind.PROPERTY and scope.parent is not None:
+            properties = context.classes.of(scope.parent.node)
+            return properties is not None and reference.node.id in properties
+    return False
+
+
+def _without_self(context: Context, reference: Reference) -> Diagnostic:
+    name = reference.node.id
+    return context.error(
+        "SC202",
+        f"the name `{name}` is not defined; the property of the object is `self.{name}`",
+        reference.node,
+        f"write `self.{name}`",
+        fix=context.replacement(f"Write `self.{name}`", reference.node, f"self.{name}"),
+    )
+
+
+def _no_class(context: Context, name: ast.Name) -> Iterator[Diagnostic]:
+    """A name after ``new`` that certainly means something else than a class."""
+    provided = context.provided(name)
+    if provided is not None and provided in NAMES and NAMES[provided].kind in _NOT_SCENIC:
+        what = f"`{provided}` is a {NAMES[provided].kind} of the language, not a class of objects"
+        yield context.error("SC203", what, name, f"leave out `new`: write `{NAMES[provided].signature}`")
+        return
+    definition: Any = context.definition(name)
+    labels: tuple[Label, ...] = ()
+    if definition is not None and not isinstance(definition, ast.ClassDef):
+        what = kind_of(definition)
+        labels = (Label(word_span(context.source, definition, name.id), "defined here"),)
+        help_ = f"leave out `new`: write `{name.id}(...)`"
+        yield context.error("SC203", f"`{name.id}` is a {what}, not a class", name, help_, labels=labels)
+        return
+    value = context.constant(name)
+    if value is not None:
+        labels = (context.label(value, "its value"),)
+        help_ = "name a class, for example `Object`"
+        yield context.error("SC203", f"`{name.id}` is a plain value, not a class", name, help_, labels=labels)
+
+
+def _classes_in_reach(reference: Reference) -> set[str]:
+    return set(CLASSES) | {
+        binding.name
+        for scope in reference.scope.ancestors()
+        for binding in scope.bindings.values()
+        if any(isinstance(site, ast.ClassDef) for site in binding.sites)
+    }
+
+
+def _unknown_class(context: Context, reference: Reference, suggestion: str | None) -> Diagnostic:
+    name = reference.node.id
+    return context.error(
+        "SC203",
+        f"there is no class `{name}`",
+        reference.node,
+        f"did you mean `{suggestion}`?" if suggestion else f"define `class {name}:`, or import it",
+        fix=context.replacement(f"Write `{suggestion}`", reference.node, suggestion) if suggestion else None,
+    )

@@ -2,47 +2,72 @@
 
 import ast
 from collections.abc import Container, Iterator
-from typing import Final
+from typing import Any, Final
 
 from scenic.compiler import tree as scenic
-from scenic.compiler.checks.places import header_span
-from scenic.compiler.scopes import BindingKind, Resolution
-from scenic.compiler.traversal import parts
-from scenic.language.diagnostics import Diagnostic, Severity
+from scenic.compiler.checks.blocks import in_compose, position
+from scenic.compiler.checks.context import Context
+from scenic.compiler.checks.instances import missing_new
+from scenic.compiler.scopes import BindingKind, Resolution, Scope, ScopeKind
+from scenic.language.diagnostics import Diagnostic
 from scenic.language.keywords import TEMPORAL_OPERATORS
 from scenic.language.names import NAMES
 from scenic.language.operators import OPERATORS
 from scenic.language.properties import CLASSES
-from scenic.language.source import Source
 from scenic.language.specifiers import SPECIFIERS
 from scenic.language.statements import STATEMENTS
 from scenic.language.support import COMPOSE_AVAILABLE
 
-__all__ = ["check_support"]
+__all__ = ["NOTED", "check_support"]
+
+_STATEMENTS: Final = tuple(
+    getattr(scenic, statement.node) for statement in STATEMENTS.values() if not statement.available
+)
+NOTED: Final = (scenic.Operation, scenic.Specifier, scenic.Temporal, scenic.ScenarioDef, *_STATEMENTS)
+"""The nodes that a feature can belong to, beside names."""
+
+_NAMES: Final = frozenset(name.name for name in NAMES.values() if not name.available)
 
 
-def check_support(
-    tree: ast.Module, source: Source, resolution: Resolution, misplaced: Container[ast.AST]
-) -> Iterator[Diagnostic]:
+def check_support(context: Context, misplaced: Container[ast.AST]) -> Iterator[Diagnostic]:
     """SC900: every use of a feature that is declared but not available, but for statements that are misplaced anyway.
 
-    The bodies of behaviors are carried as data until there are simulations, so nothing in them is refused.
+    The bodies of behaviors are carried as data until there are simulations, so nothing in them is refused; what stands
+    in a block whose beginning is wrong may be in such a body.
     """
-    stack: list[ast.AST] = [tree]
-    while stack:
-        node = stack.pop()
-        feature = _refused(node, resolution) if node.__class__ in _CHECKED else None
-        forgotten = _class_without_new(node, resolution)
-        if forgotten is not None:
-            yield _missing_new(forgotten, source)
-        elif feature is not None and node not in misplaced:
-            yield _refusal(feature, node, source)
-        if isinstance(node, scenic.ScenarioDef) and node.compose and not COMPOSE_AVAILABLE:
-            yield _refusal("the compose block of a scenario", node.compose[0], source)
-        stack.extend(reversed(_children(node)))
+    resolution = context.resolution
+    gaps = [node for node, _ in context.nodes(scenic.ErrorStatement)]
+    for cls in NOTED:
+        for node, scope in context.nodes(cls):
+            if cls is scenic.Operation:
+                forgotten = _class_without_new(node, resolution)
+                if forgotten is not None:
+                    if not _carried(node, scope):
+                        yield missing_new(forgotten, context, f"new {forgotten.id} at ...")
+                    continue
+            feature = _refused(node)
+            if (
+                feature is not None
+                and node not in misplaced
+                and not _carried(node, scope)
+                and not any(_within(node, gap) for gap in gaps)
+            ):
+                yield _refusal(feature, node, context)
+            if (
+                cls is scenic.ScenarioDef
+                and node.compose
+                and not COMPOSE_AVAILABLE
+                and not _carried(node, scope)
+            ):
+                yield _refusal("the compose block of a scenario", node.compose[0], context)
+    if not resolution.wildcard:
+        for reference in resolution.references.values():
+            name = reference.node
+            if name.id in _NAMES and reference.binding is None and not _carried(name, reference.scope):
+                yield _refusal(f"`{name.id}`", name, context)
 
 
-def _class_without_new(node: ast.AST, resolution: Resolution) -> ast.Name | None:
+def _class_without_new(node: scenic.Operation, resolution: Resolution) -> ast.Name | None:
     """The class in ``C at position``, which reads as the operator but can only be meant as a specifier."""
     match node:
         case scenic.Operation(operator="at", operands=[ast.Name(id=name) as cls, *_]):
@@ -53,64 +78,34 @@ def _class_without_new(node: ast.AST, resolution: Resolution) -> ast.Name | None
     return None
 
 
-def _missing_new(cls: ast.Name, source: Source) -> Diagnostic:
-    return Diagnostic(
-        "SC111",
-        f"`new` is missing before `{cls.id}`",
-        header_span(source, cls),
-        Severity.ERROR,
-        source.filename,
-        f"to create an object write `new {cls.id} at ...`",
-    )
+def _refusal(feature: str, node: ast.AST, context: Context) -> Diagnostic:
+    return context.error("SC900", f"{feature} is not supported in this version", node, "leave it out for now")
 
 
-def _refusal(feature: str, node: ast.AST, source: Source) -> Diagnostic:
-    return Diagnostic(
-        "SC900",
-        f"{feature} is not supported in this version",
-        header_span(source, node),
-        Severity.ERROR,
-        source.filename,
-        "leave it out for now",
-    )
-
-
-def _refused(node: ast.AST, resolution: Resolution) -> str | None:
+def _refused(node: Any) -> str | None:
     """What the program asks for here, if it cannot have it."""
     match node:
-        case scenic.Operation(operator=name) if not OPERATORS[name].available:
-            return f"the operator `{name}`"
-        case scenic.Specifier(specifier=name) if not SPECIFIERS[name].available:
-            return f"the specifier `{name}`"
-        case scenic.Temporal(operator=name) if not TEMPORAL_OPERATORS[name].available:
-            return f"the temporal operator `{name}`"
-        case ast.Name(id=name) if name in NAMES and not NAMES[name].available:
-            reference = resolution.references.get(node)
-            shadowed = reference is None or reference.binding is not None or resolution.wildcard
-            return None if shadowed else f"`{name}`"
+        case scenic.Operation(operator=name):
+            return None if OPERATORS[name].available else f"the operator `{name}`"
+        case scenic.Specifier(specifier=name):
+            return None if SPECIFIERS[name].available else f"the specifier `{name}`"
+        case scenic.Temporal(operator=name):
+            return None if TEMPORAL_OPERATORS[name].available else f"the temporal operator `{name}`"
     statement = STATEMENTS.get(type(node).__name__)
-    if statement is not None and not statement.available:
-        return f"`{statement.title}`"
-    return None
+    return None if statement is None or statement.available else f"`{statement.title}`"
 
 
-def _children(node: ast.AST) -> list[ast.AST]:
-    if isinstance(node, scenic.BehaviorDef):
-        return [node.args]
-    if isinstance(node, scenic.MonitorDef):
-        return []
-    if isinstance(node, scenic.ScenarioDef) and not COMPOSE_AVAILABLE:
-        return [part for part in (node.args, *(node.setup or ())) if part is not None]
-    return parts(node)
+def _carried(node: Any, scope: Scope) -> bool:
+    """Whether a node stands in code that is kept as data, to be run by simulations only."""
+    for outer in scope.ancestors():
+        if outer.kind in (ScopeKind.BEHAVIOR, ScopeKind.MONITOR):
+            return True
+        if outer.kind is ScopeKind.SCENARIO and not COMPOSE_AVAILABLE:
+            scenario: Any = outer.node
+            if in_compose(node, scenario) or any(_within(node, guard) for guard in scenario.guards):
+                return True
+    return False
 
 
-_CHECKED: Final = frozenset(
-    {
-        ast.Name,
-        scenic.Operation,
-        scenic.Specifier,
-        scenic.Temporal,
-        *(getattr(scenic, node) for node in STATEMENTS),
-    }
-)
-"""The nodes that a feature can belong to."""
+def _within(node: Any, outer: Any) -> bool:
+    return position(outer) <= position(node) < (outer.end_lineno, outer.end_col_offset)

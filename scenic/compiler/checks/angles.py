@@ -1,0 +1,170 @@
+"""Degrees where radians are meant: numbers that are no angle in radians, in places declared to take one."""
+
+import ast
+import math
+from collections.abc import Iterator
+from typing import Any, Final
+
+from scenic.compiler import tree as scenic
+from scenic.compiler.checks.context import Context, NodeRule
+from scenic.compiler.scopes import Scope
+from scenic.language.diagnostics import Diagnostic
+from scenic.language.names import ANGLE_METHODS, NAMES, NameKind
+from scenic.language.operators import OPERATORS, Operand
+from scenic.language.properties import CLASSES, properties_of
+from scenic.language.specifiers import SPECIFIERS
+
+__all__ = ["RULES"]
+
+_LARGEST: Final = 2 * math.pi
+"""A number beyond a full turn is taken for degrees."""
+
+_DEEPEST: Final = 20
+"""How far sums and the like are looked into: nobody writes an angle that is nested deeper."""
+
+_PROPERTIES: Final = frozenset(
+    name for cls in CLASSES for name, entry in properties_of(cls).items() if entry.angle
+)
+_COMPOSING: Final = frozenset({"relative to", "offset by"})
+"""Operators whose operands are angles where the result is one."""
+
+
+def _specifier(node: scenic.Specifier, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+    if node.property is not None:
+        if node.property in _PROPERTIES:
+            yield from _found(context, node.operands[0], f"`{node.property}` is")
+    elif node.specifier in SPECIFIERS:
+        yield from _operands(context, node.operands, SPECIFIERS[node.specifier].operands)
+
+
+def _operation(node: scenic.Operation, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+    if node.operator in OPERATORS:
+        yield from _operands(context, node.operands, OPERATORS[node.operator].operands)
+
+
+def _operands(
+    context: Context, found: list[ast.expr | None], declared: tuple[Operand, ...]
+) -> Iterator[Diagnostic]:
+    for value, operand in zip(found, declared, strict=False):
+        if operand.angle:
+            yield from _found(context, value, f"a {operand.name} is")
+
+
+def _property(node: scenic.PropertyDef, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+    if node.name in _PROPERTIES:
+        yield from _found(context, node.value, f"`{node.name}` is")
+
+
+def _call(node: ast.Call, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+    function = node.func
+    if isinstance(function, ast.Name):
+        if function.id not in NAMES or context.provided(function) is None:
+            return
+        declared = NAMES[function.id]
+        if not declared.angles:
+            return
+        angles, parameters = declared.angles, declared.parameters
+    elif isinstance(function, ast.Attribute) and function.attr in ANGLE_METHODS:
+        angles = parameters = ANGLE_METHODS[function.attr]
+    else:
+        return
+    if any(isinstance(argument, ast.Starred) for argument in node.args):
+        return
+    given = dict(zip(parameters, node.args, strict=False))
+    given.update((keyword.arg, keyword.value) for keyword in node.keywords if keyword.arg is not None)
+    for name in angles:
+        if name in given:
+            yield from _found(context, given[name], f"the {name} is" if name != "x" else "the argument is")
+
+
+def _comparison(node: ast.Compare, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+    """``(relative heading of x) < 30``: an angle against a number that is none."""
+    sides = [node.left, *node.comparators]
+    if any(_is_angle(side, context) for side in sides):
+        for side in sides:
+            yield from _found(context, side, "the other side is")
+
+
+def _is_angle(node: ast.expr, context: Context) -> bool:
+    while isinstance(node, ast.Call) and len(node.args) == 1 and context.provided(node.func) == "abs":
+        node = node.args[0]
+    return (
+        isinstance(node, scenic.Operation) and node.operator in OPERATORS and OPERATORS[node.operator].angle
+    )
+
+
+def _found(context: Context, value: ast.expr | None, what: str) -> Iterator[Diagnostic]:
+    """What is to be said about a value that stands where an angle is expected."""
+    places = list(_degrees(value, context))
+    if places:
+        written = context.text(places[0])
+        yield context.warning(
+            "SC302",
+            f"{what} an angle in radians, and {_number(places[0], context):g} is more than a full turn",
+            places[0],
+            f"write `{written} deg` if degrees are meant"
+            if written
+            else "write `deg` after it if degrees are meant",
+            fix=context.insertion("Add `deg`", *((place, " deg") for place in places)),
+        )
+
+
+def _degrees(value: ast.expr | None, context: Context, depth: int = _DEEPEST) -> Iterator[ast.expr]:
+    """The parts of an angle that read as degrees, each of which ``deg`` can follow."""
+    if value is None or not depth:
+        return
+    if isinstance(value, ast.Tuple | ast.List):
+        # `deg` cannot follow a tuple, and who writes one of its angles in degrees writes all of them so.
+        if any(list(_degrees(item, context, depth - 1)) for item in value.elts):
+            yield from (item for item in value.elts if _largest([item]))
+    elif isinstance(value, ast.BinOp) and isinstance(value.op, ast.Add | ast.Sub):
+        yield from _degrees(value.left, context, depth - 1)
+        yield from _degrees(value.right, context, depth - 1)
+    elif isinstance(value, ast.IfExp):
+        yield from _degrees(value.body, context, depth - 1)
+        yield from _degrees(value.orelse, context, depth - 1)
+    elif isinstance(value, scenic.Operation) and value.operator in _COMPOSING:
+        for operand in value.operands:
+            if not isinstance(operand, ast.Tuple | ast.List):
+                yield from _degrees(operand, context, depth - 1)
+    elif _number(value, context) > _LARGEST:
+        yield value
+
+
+def _number(value: ast.expr, context: Context) -> float:
+    """The size of the largest number that a literal is, or that a distribution is made of; 0 for all else."""
+    if isinstance(value, ast.Call):
+        provided = context.provided(value.func)
+        if provided is None or provided not in NAMES or NAMES[provided].kind is not NameKind.DISTRIBUTION:
+            return 0
+        return _largest(value.args)
+    return _largest([value])
+
+
+def _largest(values: list[ast.expr]) -> float:
+    found = 0.0
+    for value in values:
+        literal: Any = value.operand if isinstance(value, ast.UnaryOp) else value
+        if (
+            isinstance(literal, ast.Constant)
+            and isinstance(literal.value, int | float)
+            and not isinstance(literal.value, bool)
+        ):
+            found = max(found, _size(literal.value))
+    return found
+
+
+def _size(value: float) -> float:
+    try:
+        return abs(float(value))
+    except OverflowError:
+        return math.inf
+
+
+RULES: Final[dict[type[ast.AST], NodeRule]] = {
+    ast.Call: _call,
+    ast.Compare: _comparison,
+    scenic.Operation: _operation,
+    scenic.PropertyDef: _property,
+    scenic.Specifier: _specifier,
+}

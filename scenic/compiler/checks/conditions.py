@@ -1,0 +1,183 @@
+"""Conditions that are the same whatever happens, as far as their literals tell."""
+
+import ast
+import operator
+from collections.abc import Callable, Iterator, Mapping
+from types import MappingProxyType
+from typing import Any, Final
+
+from scenic.compiler import tree as scenic
+from scenic.compiler.checks.arguments import required_parameters
+from scenic.compiler.checks.context import Context, NodeRule
+from scenic.compiler.scopes import Scope
+from scenic.language.diagnostics import Diagnostic, Edit, Fix
+from scenic.language.spans import Span
+
+__all__ = ["RULES", "truth"]
+
+_COMPARISONS: Final[Mapping[type[ast.cmpop], Callable[[Any, Any], Any]]] = MappingProxyType(
+    {
+        ast.Eq: operator.eq,
+        ast.NotEq: operator.ne,
+        ast.Lt: operator.lt,
+        ast.LtE: operator.le,
+        ast.Gt: operator.gt,
+        ast.GtE: operator.ge,
+    }
+)
+
+
+def truth(condition: ast.expr) -> bool | None:
+    """Whether a condition always or never holds, by its literals alone; ``None`` if that cannot be told."""
+    negated = False
+    while isinstance(condition, ast.UnaryOp) and isinstance(condition.op, ast.Not):
+        negated = not negated
+        condition = condition.operand
+    found = _truth(condition)
+    return None if found is None else found != negated
+
+
+def _truth(condition: ast.expr) -> bool | None:
+    match condition:
+        case ast.Constant():
+            return bool(condition.value)
+        case ast.Tuple() | ast.List() | ast.Set():
+            if any(isinstance(item, ast.Starred) for item in condition.elts):
+                return None
+            return bool(condition.elts)
+        case ast.BoolOp():
+            # Operands that are no literals may be of any truth, so only one that decides alone tells.
+            deciding = isinstance(condition.op, ast.Or)
+            found = [_simple_truth(value) for value in condition.values]
+            if deciding in found:
+                return deciding
+            return None if None in found else not deciding
+        case ast.Compare(left=left, ops=[op], comparators=[right]) if type(op) in _COMPARISONS:
+            first, second = _number(left), _number(right)
+            if first is None or second is None:
+                return None
+            return bool(_COMPARISONS[type(op)](first, second))
+    return None
+
+
+def _simple_truth(value: ast.expr) -> bool | None:
+    """The truth of an operand that is a plain literal."""
+    return bool(value.value) if isinstance(value, ast.Constant) else None
+
+
+def _number(value: ast.expr) -> int | float | None:
+    sign = 1
+    if isinstance(value, ast.UnaryOp) and isinstance(value.op, ast.USub):
+        sign, value = -1, value.operand
+    if isinstance(value, ast.Constant) and isinstance(value.value, int | float):
+        return sign * value.value
+    return None
+
+
+def _require(node: scenic.Require, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+    found = list(_constant(node.condition, context, "requirement", literals=True))
+    yield from found
+    if not found and node.probability in (0, 1):
+        yield from _needless_probability(node, context)
+
+
+def _needless_probability(node: scenic.Require, context: Context) -> Iterator[Diagnostic]:
+    span = context.span(node)
+    line = context.source.line(span.line)
+    start, end = line.find("[", span.column), line.find("]", span.column)
+    if not span.column < start < end:
+        return
+    place = Span(span.line, start, span.line, end + 1)
+    if node.probability == 1:
+        # What follows must not become a part of the word.
+        blank = "" if line[end + 1 : end + 2].isspace() else " "
+        fix = Fix("Remove the probability", (Edit(place, blank),))
+        message, help_ = "a requirement of probability 1 is a plain requirement", "leave out the brackets"
+        yield context.warning("SC306", message, place, help_, fix=fix)
+    else:
+        message = "a requirement of probability 0 is never enforced"
+        yield context.warning("SC306", message, place, "remove it, or give it a larger probability")
+
+
+def _branch(node: ast.If | ast.IfExp, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+    if isinstance(node, ast.If) and _makes_generator(node.body):
+        return
+    yield from _constant(node.test, context, "condition", literals=True)
+
+
+def _loop(node: ast.While, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+    if _makes_generator(node.body):
+        return
+    if truth(node.test) is False:
+        yield from _constant(node.test, context, "condition", literals=True)
+    else:
+        # `while True` is the way to write an endless loop.
+        yield from _constant(node.test, context, "condition", literals=False)
+
+
+def _makes_generator(body: list[ast.stmt]) -> bool:
+    """Whether a block holds a lone ``yield``: it may be there to make a generator of a function."""
+    return len(body) == 1 and isinstance(body[0], ast.Expr) and isinstance(body[0].value, ast.Yield)
+
+
+def _constant(condition: ast.expr, context: Context, what: str, *, literals: bool) -> Iterator[Diagnostic]:
+    """SC306 for a condition that is known beforehand."""
+    known = truth(condition)
+    if known is not None:
+        if not literals:
+            return
+        if isinstance(condition, ast.Tuple) and condition.elts:
+            message = f"this {what} is a tuple, which is always true"
+            help_ = "join the conditions with `and`"
+        else:
+            message = f"this {what} {'always' if known else 'never'} holds"
+            help_ = "remove it, or write what it depends on"
+        yield context.warning("SC306", message, condition, help_)
+        return
+    definition: Any = context.definition(condition)
+    if isinstance(definition, ast.FunctionDef | ast.AsyncFunctionDef):
+        name = definition.name
+        yield context.warning(
+            "SC306",
+            f"this {what} is the function `{name}` itself, which is always true",
+            condition,
+            f"call it: `{name}({', '.join(required_parameters(definition))})`",
+            fix=None
+            if required_parameters(definition)
+            else context.insertion("Call the function", (condition, "()")),
+        )
+
+
+def _comparison(node: ast.Compare, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+    """``x == x``; ``x != x`` is how one asks for a value that is not a number."""
+    left = node.left
+    for op, right in zip(node.ops, node.comparators, strict=False):
+        if type(op) is not ast.NotEq and _same(left, right):
+            always = isinstance(op, ast.Eq | ast.LtE | ast.GtE | ast.Is)
+            text = context.text(left) or "a value"
+            yield context.warning(
+                "SC306",
+                f"`{text}` is compared with itself, which {'always' if always else 'never'} holds",
+                node,
+                "compare it with something else",
+            )
+            return
+        left = right
+
+
+def _same(first: ast.expr, second: ast.expr) -> bool:
+    """Whether two expressions are the same name, or the same attribute of the same name."""
+    while isinstance(first, ast.Attribute) and isinstance(second, ast.Attribute):
+        if first.attr != second.attr:
+            return False
+        first, second = first.value, second.value
+    return isinstance(first, ast.Name) and isinstance(second, ast.Name) and first.id == second.id
+
+
+RULES: Final[dict[type[ast.AST], NodeRule]] = {
+    ast.Compare: _comparison,
+    ast.If: _branch,
+    ast.IfExp: _branch,
+    ast.While: _loop,
+    scenic.Require: _require,
+}

@@ -1,0 +1,249 @@
+"""What every rule is given: the program, what its names mean, and the making of diagnostics."""
+
+import ast
+from collections.abc import Callable, Iterator, Mapping
+from functools import cached_property
+from typing import Any, Final
+
+from scenic.compiler import tree as scenic
+from scenic.compiler.checks.blocks import Block, blocks, position
+from scenic.compiler.checks.classes import Classes
+from scenic.compiler.checks.places import header_span
+from scenic.compiler.scopes import Binding, Resolution, Scope, ScopeKind
+from scenic.language.diagnostics import Diagnostic, Edit, Fix, Label, Severity
+from scenic.language.source import Source
+from scenic.language.spans import Span
+
+__all__ = ["DEFINITIONS", "Context", "Definition", "NodeRule", "ProgramRule"]
+
+DEFINITIONS: Final = (
+    ast.FunctionDef,
+    ast.AsyncFunctionDef,
+    ast.ClassDef,
+    scenic.BehaviorDef,
+    scenic.MonitorDef,
+    scenic.ScenarioDef,
+)
+"""Statements that bind a name to something that can be called, instantiated or run."""
+
+Definition = (
+    ast.FunctionDef
+    | ast.AsyncFunctionDef
+    | ast.ClassDef
+    | scenic.BehaviorDef
+    | scenic.MonitorDef
+    | scenic.ScenarioDef
+)
+
+
+class Context:
+    """A program under examination. What several rules need is computed once, when it is first asked for."""
+
+    def __init__(self, tree: ast.Module, source: Source, resolution: Resolution) -> None:
+        self.tree = tree
+        self.source = source
+        self.resolution = resolution
+
+    # What the program is
+
+    @cached_property
+    def blocks(self) -> tuple[Block, ...]:
+        """Every list of statements, outer ones before those in them."""
+        return tuple(blocks(self.tree))
+
+    @cached_property
+    def classes(self) -> Classes:
+        """The properties of the classes that the program uses."""
+        return Classes(self.definition, self.provided)
+
+    @cached_property
+    def broken(self) -> bool:
+        """Whether parts could not be parsed: then nothing can be said to be missing or unused."""
+        return bool(self.nodes(scenic.ErrorStatement))
+
+    def nodes(self, cls: type[ast.AST]) -> list[tuple[Any, Scope]]:
+        """All nodes of a class, with their scopes."""
+        return list(self.resolution.nodes.get(cls, ()))
+
+    @cached_property
+    def loads(self) -> Mapping[Binding, list[ast.Name]]:
+        """Where the value of each binding is read."""
+        found: dict[Binding, list[ast.Name]] = {}
+        for reference in self.resolution.references.values():
+            if reference.binding is not None and isinstance(reference.node.ctx, ast.Load):
+                found.setdefault(reference.binding, []).append(reference.node)
+        return found
+
+    @cached_property
+    def _last_wildcard(self) -> tuple[int, int]:
+        """The last place where names come in that the text does not show; they may replace those before."""
+        stars = [
+            node for node, _ in self.nodes(ast.ImportFrom) if any(alias.name == "*" for alias in node.names)
+        ]
+        models = [node for node, _ in self.nodes(scenic.Model)]
+        return max(map(position, (*stars, *models)), default=(0, 0))
+
+    def definition(self, name: ast.expr | None) -> Definition | None:
+        """The one definition that an expression can only mean; ``None`` if there may be others, or decorators."""
+        if not isinstance(name, ast.Name) or self.resolution.reflective:
+            return None
+        binding = self.resolution.binding(name)
+        if binding is None or len(binding.sites) != 1:
+            return None
+        [site] = binding.sites
+        if not isinstance(site, DEFINITIONS) or getattr(site, "decorator_list", None):
+            return None
+        return site if position(site) >= self._last_wildcard else None
+
+    def provided(self, name: ast.expr | None) -> str | None:
+        """The name that an expression is, if it means what the language provides under that name."""
+        if not isinstance(name, ast.Name) or self.resolution.wildcard:
+            return None
+        reference = self.resolution.references.get(name)
+        return name.id if reference is not None and reference.binding is None else None
+
+    def constant(self, name: ast.Name) -> ast.expr | None:
+        """The literal that is certainly the value of a name: a number, text or collection assigned just once."""
+        binding = self.resolution.binding(name)
+        if binding is None or len(binding.sites) != 1 or self.resolution.reflective:
+            return None
+        value = self.assigned.get(binding.sites[0])
+        literal = isinstance(value, ast.Constant | ast.List | ast.Tuple | ast.Dict | ast.Set | ast.JoinedStr)
+        return value if literal and position(value) >= self._last_wildcard else None
+
+    @cached_property
+    def assigned(self) -> Mapping[ast.AST, ast.expr]:
+        """The value of each name that is the whole target of an assignment."""
+        found: dict[ast.AST, ast.expr] = {}
+        for node, _ in self.nodes(ast.Assign):
+            found.update((target, node.value) for target in node.targets if isinstance(target, ast.Name))
+        for node, _ in self.nodes(ast.AnnAssign):
+            if isinstance(node.target, ast.Name) and node.value is not None:
+                found[node.target] = node.value
+        return found
+
+    @cached_property
+    def imports(self) -> Mapping[ast.AST, tuple[Any, bool, list[Any]]]:
+        """Of each imported name: the statement, whether it is an attempt that may fail, and the block it stands in."""
+        return {
+            alias: (statement, isinstance(block.owner, ast.Try | ast.ExceptHandler), block.statements)
+            for block in self.blocks
+            for statement in block.statements
+            if isinstance(statement, ast.Import | ast.ImportFrom)
+            for alias in statement.names
+        }
+
+    @cached_property
+    def attributes(self) -> frozenset[str]:
+        """The names of all attributes that the program reads or writes."""
+        return frozenset(node.attr for node, _ in self.nodes(ast.Attribute))
+
+    @cached_property
+    def stored_attributes(self) -> frozenset[str]:
+        """The names of all attributes that the program writes."""
+        return frozenset(
+            node.attr for node, _ in self.nodes(ast.Attribute) if not isinstance(node.ctx, ast.Load)
+        )
+
+    @cached_property
+    def read_sites(self) -> frozenset[ast.AST]:
+        """The nodes that bind what is read somewhere."""
+        return frozenset(site for binding in self.loads for site in binding.sites)
+
+    @cached_property
+    def owners(self) -> Mapping[str, list[Scope]]:
+        """The classes of the program that define an attribute or method of each name."""
+        found: dict[str, list[Scope]] = {}
+        for scope in self.resolution.scopes.values():
+            if scope.kind is ScopeKind.CLASS:
+                for name in scope.bindings:
+                    found.setdefault(name, []).append(scope)
+        return found
+
+    @cached_property
+    def returning(self) -> frozenset[Scope | None]:
+        """The scopes of the functions whose calls may give anything else than ``None``."""
+        return frozenset(
+            scope
+            for cls in (ast.Return, ast.Yield, ast.YieldFrom)
+            for node, scope in self.nodes(cls)
+            if cls is not ast.Return or node.value is not None
+        )
+
+    @cached_property
+    def mentions(self) -> Mapping[str, list[tuple[int, int]]]:
+        """Where each name is read or written, in order."""
+        found: dict[str, list[tuple[int, int]]] = {}
+        for reference in self.resolution.references.values():
+            found.setdefault(reference.node.id, []).append(position(reference.node))
+        for places in found.values():
+            places.sort()
+        return found
+
+    # What is said about it
+
+    def error(
+        self,
+        code: str,
+        message: str,
+        place: ast.AST | Span,
+        help_: str,
+        *,
+        labels: tuple[Label, ...] = (),
+        fix: Fix | None = None,
+    ) -> Diagnostic:
+        """An error at a place; of a node that spans several lines, at the first."""
+        span = self.span(place)
+        return Diagnostic(code, message, span, Severity.ERROR, self.source.filename, help_, labels, fix)
+
+    def warning(
+        self,
+        code: str,
+        message: str,
+        place: ast.AST | Span,
+        help_: str,
+        *,
+        labels: tuple[Label, ...] = (),
+        fix: Fix | None = None,
+    ) -> Diagnostic:
+        """A warning at a place; of a node that spans several lines, at the first."""
+        span = self.span(place)
+        return Diagnostic(code, message, span, Severity.WARNING, self.source.filename, help_, labels, fix)
+
+    def label(self, place: ast.AST | Span, text: str) -> Label:
+        """A second place."""
+        return Label(self.span(place), text)
+
+    def span(self, place: ast.AST | Span) -> Span:
+        """The place of a node on its first line."""
+        return place if isinstance(place, Span) else header_span(self.source, place)
+
+    def text(self, node: ast.AST) -> str | None:
+        """The text of a node; ``None`` if it takes several lines."""
+        span = self.source.span(node)
+        return (
+            self.source.line(span.line)[span.column : span.end_column] if span.end_line == span.line else None
+        )
+
+    def insertion(self, title: str, *places: tuple[ast.AST, str]) -> Fix:
+        """A repair that adds a text after each of some nodes."""
+        ends = ((self.source.span(node), text) for node, text in places)
+        return Fix(
+            title,
+            tuple(
+                Edit(Span(span.end_line, span.end_column, span.end_line, span.end_column), text)
+                for span, text in ends
+            ),
+        )
+
+    def replacement(self, title: str, place: ast.AST | Span, text: str) -> Fix:
+        """A repair that puts a text in the place of a node."""
+        span = place if isinstance(place, Span) else self.source.span(place)
+        return Fix(title, (Edit(span, text),))
+
+
+NodeRule = Callable[[Any, Scope, Context], Iterator[Diagnostic]]
+"""What is said about one node, which stands in a scope."""
+
+ProgramRule = Callable[[Context], Iterator[Diagnostic]]
+"""What is said about a program as a whole."""

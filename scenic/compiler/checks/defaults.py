@@ -1,0 +1,93 @@
+"""Default values that all calls share and that the body changes."""
+
+import ast
+import re
+from collections.abc import Iterator
+from typing import Any, Final
+
+from scenic.compiler import tree as scenic
+from scenic.compiler.checks.context import Context
+from scenic.language.diagnostics import Diagnostic
+
+__all__ = ["check_defaults"]
+
+_MUTATING: Final = frozenset(
+    {
+        "add",
+        "append",
+        "clear",
+        "discard",
+        "extend",
+        "insert",
+        "pop",
+        "popitem",
+        "remove",
+        "reverse",
+        "setdefault",
+        "sort",
+        "update",
+    }
+)
+"""Methods of lists, dictionaries and sets that change them."""
+
+
+_KEPT: Final = re.compile(r"^_|cache|memo", re.IGNORECASE)
+"""Names of parameters whose defaults are meant to last from call to call."""
+
+
+def check_defaults(context: Context) -> Iterator[Diagnostic]:
+    """SC309: a list, dictionary or set that is the default of a parameter and changed in the body."""
+    changed: dict[ast.AST, ast.AST] | None = None
+    for cls in (
+        ast.FunctionDef,
+        ast.AsyncFunctionDef,
+        scenic.BehaviorDef,
+        scenic.MonitorDef,
+        scenic.ScenarioDef,
+    ):
+        for node, _ in context.nodes(cls):
+            args = node.args
+            if args is None or not (args.defaults or args.kw_defaults):
+                continue
+            positional = [*args.posonlyargs, *args.args]
+            pairs = [
+                *zip(positional[len(positional) - len(args.defaults) :], args.defaults, strict=False),
+                *zip(args.kwonlyargs, args.kw_defaults, strict=False),
+            ]
+            for arg, default in pairs:
+                if not _mutable(default, context):
+                    continue
+                changed = _changed(context) if changed is None else changed
+                if arg not in changed or _KEPT.search(arg.arg):
+                    continue
+                yield context.warning(
+                    "SC309",
+                    f"the default of `{arg.arg}` is made once, and changed by every call that uses it",
+                    default,
+                    f"use `None` as the default, and make the value in the body when `{arg.arg}` is `None`",
+                    labels=(context.label(changed[arg], "changed here"),),
+                )
+
+
+def _mutable(default: ast.expr | None, context: Context) -> bool:
+    if isinstance(default, ast.Call):
+        return context.provided(default.func) in ("dict", "list", "set")
+    return isinstance(default, ast.Dict | ast.List | ast.Set)
+
+
+def _changed(context: Context) -> dict[ast.AST, ast.AST]:
+    """The parameters, bound just once, whose values are changed, and where."""
+    found: dict[ast.AST, ast.AST] = {}
+
+    def note(target: Any, place: ast.AST) -> None:
+        binding = context.resolution.binding(target) if isinstance(target, ast.Name) else None
+        if binding is not None and len(binding.sites) == 1:
+            found.setdefault(binding.sites[0], place)
+
+    for node, _ in context.nodes(ast.Call):
+        if isinstance(node.func, ast.Attribute) and node.func.attr in _MUTATING:
+            note(node.func.value, node)
+    for node, _ in context.nodes(ast.Subscript):
+        if not isinstance(node.ctx, ast.Load):
+            note(node.value, node)
+    return found

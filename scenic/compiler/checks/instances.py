@@ -1,0 +1,38 @@
+"""Classes of objects where an instance is meant: older programs made objects without `new`."""
+
+import ast
+from collections.abc import Iterator
+
+from scenic.compiler.checks.context import Context
+from scenic.language.diagnostics import Diagnostic, Edit, Fix, Severity
+from scenic.language.spans import Span
+
+__all__ = ["check_instances", "missing_new"]
+
+
+def check_instances(context: Context) -> Iterator[Diagnostic]:
+    """SC111: ``ego = Car``, and a class that is a whole statement."""
+    for block in context.blocks:
+        for statement in block.statements:
+            match statement:
+                case ast.Assign(targets=[*_, ast.Name(id="ego")], value=ast.Name() as cls):
+                    severity = Severity.ERROR
+                case ast.Expr(value=ast.Name() as cls):
+                    severity = Severity.WARNING
+                case _:
+                    continue
+            if context.classes.properties(cls) is not None:
+                yield missing_new(cls, context, f"new {cls.id}", severity)
+
+
+def missing_new(
+    cls: ast.Name, context: Context, example: str, severity: Severity = Severity.ERROR
+) -> Diagnostic:
+    """SC111 at a class; ``example`` is what to write instead."""
+    message, help_ = f"`new` is missing before `{cls.id}`", f"to create an object write `{example}`"
+    if severity is not Severity.ERROR:
+        # The statement does nothing, but it is no mistake for certain.
+        return context.warning("SC111", message, cls, help_)
+    span = context.source.span(cls)
+    start = Span(span.line, span.column, span.line, span.column)
+    return context.error("SC111", message, cls, help_, fix=Fix("Insert `new`", (Edit(start, "new "),)))

@@ -1,0 +1,208 @@
+"""What is used at the top level before it exists: names, and the ego."""
+
+import ast
+import sys
+from bisect import bisect_right
+from collections.abc import Iterator
+from typing import Any, Final
+
+from scenic.compiler import tree as scenic
+from scenic.compiler.checks.blocks import in_compose, position
+from scenic.compiler.checks.context import Context
+from scenic.compiler.checks.places import word_span
+from scenic.compiler.scopes import PROVIDED, Scope, ScopeKind
+from scenic.language.diagnostics import Diagnostic, Label
+from scenic.language.operators import EGO, OPERATORS
+from scenic.language.specifiers import SPECIFIERS
+
+__all__ = ["check_order"]
+
+_DEFERRED: Final[tuple[type[ast.AST], ...]] = (
+    scenic.Record,
+    scenic.Simulator,
+    scenic.TerminateWhen,
+    *(getattr(ast, name) for name in ("TypeAlias",) if hasattr(ast, name)),
+)
+"""Statements whose expressions are evaluated later."""
+
+
+def check_order(context: Context) -> Iterator[Diagnostic]:
+    """SC204 and SC209."""
+    if context.broken:
+        return
+    starts = [position(statement) for statement in context.tree.body]
+    yield from _names(context, starts)
+    yield from _ego(context, starts)
+
+
+def _statement(starts: list[tuple[int, int]], node: ast.AST) -> int:
+    """The index of the statement of the module in which a node stands."""
+    return bisect_right(starts, position(node)) - 1
+
+
+def _names(context: Context, starts: list[tuple[int, int]]) -> Iterator[Diagnostic]:
+    resolution = context.resolution
+    if resolution.wildcard or resolution.reflective or _postpones_annotations(context):
+        return
+    module = resolution.module
+    body = context.tree.body
+    first: dict[str, int] = {}
+    reported: set[str] = set()
+    for binding in module.bindings.values():
+        if binding.name not in PROVIDED:
+            first[binding.name] = min(_statement(starts, site) for site in binding.sites)
+    for reference in resolution.references.values():
+        node = reference.node
+        name = node.id
+        if reference.scope is not module or name not in first or name in reported:
+            continue
+        if not isinstance(node.ctx, ast.Load) or node in resolution.tolerated:
+            continue
+        here = _statement(starts, node)
+        if here < 0 or here > first[name] or isinstance(body[here], _DEFERRED):
+            continue
+        binding = module.bindings[name]
+        if here == first[name]:
+            # `x = x + 1`: the value is computed first.
+            statement = body[here]
+            if not isinstance(statement, ast.Assign) or any(
+                context.assigned.get(site) is not statement.value
+                for site in binding.sites
+                if _statement(starts, site) == here
+            ):
+                continue
+        if reference.binding is not binding:
+            continue
+        reported.add(name)
+        site = min(binding.sites, key=position)
+        yield context.error(
+            "SC204",
+            f"`{name}` is used before it is defined",
+            node,
+            "move the definition before this line",
+            labels=(Label(word_span(context.source, site, name), "defined here"),),
+        )
+
+
+def _ego(context: Context, starts: list[tuple[int, int]]) -> Iterator[Diagnostic]:
+    """SC209: a use of the ego, said or implied, before the first assignment to it."""
+    if context.resolution.reflective or context.nodes(scenic.Model):
+        return
+    module = context.resolution.module
+    assignments = [
+        (reference.node, reference.scope)
+        for reference in context.resolution.references.values()
+        if reference.node.id == "ego" and not isinstance(reference.node.ctx, ast.Load)
+    ]
+    end = len(context.tree.body)
+    for statement, _ in (*context.nodes(ast.Import), *context.nodes(ast.ImportFrom)):
+        if not _is_python(statement):
+            # A Scenic module brings its ego along.
+            end = min(end, _statement(starts, statement) - 1)
+    uses = list(_uses(context))
+    own = [item for item in assignments if not _in_scenario(item[1])]
+    yield from _ego_of(context, module, context.tree.body, own, uses, end)
+    scenarios = context.nodes(scenic.ScenarioDef)
+    if own or end < len(context.tree.body):
+        return
+    for scenario, outer in scenarios:
+        # A scenario that another one runs has the ego of that one from the beginning.
+        if outer is module and (len(scenarios) == 1 or scenario.name == "Main"):
+            scope = context.resolution.scopes[scenario]
+            setting = [item for item in assignments if scope in item[1].ancestors()]
+            within = [(node, where) for node, where in uses if not in_compose(node, scenario)]
+            setup = scenario.setup or []
+            if setting:
+                yield from _ego_of(context, scope, setup, setting, within, len(setup))
+
+
+def _ego_of(
+    context: Context,
+    scope: Scope,
+    body: list[ast.stmt],
+    assignments: list[tuple[ast.Name, Scope]],
+    uses: list[tuple[ast.AST, Scope]],
+    end: int,
+) -> Iterator[Diagnostic]:
+    """SC209 in the statements of one body up to the index ``end``, both with the scopes in which they stand."""
+    if not body or any(where is not scope for _, where in assignments):
+        return  # A function that sets it may be called at any time.
+    starts = [position(statement) for statement in body]
+    setting = min((node for node, _ in assignments), key=position, default=None)
+    first = len(body) if setting is None else _statement(starts, setting)
+    early = []
+    for node, where in uses:
+        index = _statement(starts, node)
+        if where is not scope or not 0 <= index <= min(first, end) or isinstance(body[index], _DEFERRED):
+            continue
+        if setting is None or index < first or _in_value(body[index], node):
+            early.append(node)
+    if not early:
+        return
+    place = min(early, key=position)
+    missing = "not set yet" if setting is not None else "never set"
+    if isinstance(place, ast.Name):
+        message = (
+            "the ego is used before it is set" if setting is not None else "the ego is used, and never set"
+        )
+    else:
+        message = f"`{_title(place)}` refers to the ego, which is {missing}"
+    # The ego of a scenario may also come from the one that runs it.
+    say = context.error if scope is context.resolution.module else context.warning
+    yield say(
+        "SC209",
+        message,
+        place,
+        "move `ego = ...` before this line"
+        if setting is not None
+        else "set it before with `ego = new Object ...`",
+        labels=() if setting is None else (context.label(setting, "set here"),),
+    )
+
+
+def _in_scenario(scope: Scope) -> bool:
+    """Whether code in a scope sets the ego of a scenario of its own, not that of the module."""
+    own = (ScopeKind.SCENARIO, ScopeKind.BEHAVIOR, ScopeKind.MONITOR)
+    return any(outer.kind in own for outer in scope.ancestors())
+
+
+def _uses(context: Context) -> Iterator[tuple[ast.AST, Scope]]:
+    """Everything that reads the ego, and the scope in which it stands."""
+    for reference in context.resolution.references.values():
+        node = reference.node
+        if node.id == "ego" and isinstance(node.ctx, ast.Load) and node not in context.resolution.tolerated:
+            yield node, reference.scope
+    for node, scope in context.nodes(scenic.Operation):
+        if node.operator in OPERATORS and _implied(node, OPERATORS[node.operator].operands):
+            yield node, scope
+    for node, scope in context.nodes(scenic.Specifier):
+        declared = SPECIFIERS.get(node.specifier)
+        if declared is not None and (declared.reads_ego or _implied(node, declared.operands)):
+            yield node, scope
+
+
+def _implied(node: Any, declared: Any) -> bool:
+    return any(
+        value is None and operand.default == EGO
+        for value, operand in zip(node.operands, declared, strict=False)
+    )
+
+
+def _title(node: Any) -> str:
+    name: str = node.operator if isinstance(node, scenic.Operation) else node.specifier
+    return name
+
+
+def _in_value(statement: ast.stmt, node: ast.AST) -> bool:
+    """Whether a node stands in the value of an assignment, which is computed before the ego is set."""
+    return isinstance(statement, ast.Assign) and position(node) >= position(statement.value)
+
+
+def _postpones_annotations(context: Context) -> bool:
+    return any(node.module == "__future__" for node, _ in context.nodes(ast.ImportFrom))
+
+
+def _is_python(node: Any) -> bool:
+    modules = [alias.name for alias in node.names] if isinstance(node, ast.Import) else [node.module or ""]
+    level = getattr(node, "level", 0)
+    return not level and all(module.partition(".")[0] in sys.stdlib_module_names for module in modules)

@@ -1,0 +1,188 @@
+"""Names that are bound in vain: never read, hidden, or bound again before they are read."""
+
+import ast
+import sys
+from bisect import bisect_left
+from collections.abc import Iterator
+from typing import Any, Final
+
+from scenic.compiler import tree as scenic
+from scenic.compiler.checks.arguments import kind_of
+from scenic.compiler.checks.blocks import position
+from scenic.compiler.checks.context import DEFINITIONS, Context
+from scenic.compiler.checks.places import word_span
+from scenic.compiler.scopes import Binding, BindingKind, Scope, ScopeKind
+from scenic.language.diagnostics import Diagnostic, Edit, Fix, Label
+from scenic.language.names import NAMES, NameKind
+from scenic.language.spans import Span
+
+__all__ = ["check_uses"]
+
+_PYTHON_MODULES: Final = sys.stdlib_module_names | {"numpy", "scipy", "shapely", "trimesh"}
+"""Modules that are certainly no Scenic modules: importing one of those has effects, used or not."""
+
+_HIDEABLE: Final = frozenset({NameKind.FUNCTION, NameKind.VALUE})
+"""Kinds of provided names that may be hidden without a word: ordinary words are among them."""
+
+_HIDING: Final = frozenset(
+    {
+        BindingKind.BEHAVIOR,
+        BindingKind.CAPTURE,
+        BindingKind.CLASS,
+        BindingKind.EXCEPTION,
+        BindingKind.FUNCTION,
+        BindingKind.MONITOR,
+        BindingKind.PARAMETER,
+        BindingKind.SCENARIO,
+        BindingKind.VARIABLE,
+    }
+)
+"""How a name of the language is hidden by mistake; an import of that name is meant."""
+
+
+def check_uses(context: Context) -> Iterator[Diagnostic]:
+    """SC205 to SC208."""
+    scopes = {context.resolution.module, *context.resolution.scopes.values()}
+    certain = not (context.resolution.reflective or context.broken)
+    for scope in scopes:
+        for binding in scope.bindings.values():
+            if binding.name in NAMES:
+                yield from _hidden(binding, context)
+            if certain and binding not in context.loads:
+                yield from _unused(binding, scope, context)
+    if certain:
+        yield from _replaced(context)
+
+
+def _hidden(binding: Binding, context: Context) -> Iterator[Diagnostic]:
+    """SC207."""
+    declared = NAMES[binding.name]
+    if declared.kind in _HIDEABLE or not binding.kinds <= _HIDING or binding.scope.kind is ScopeKind.CLASS:
+        return
+    first = min(binding.sites, key=position)
+    yield context.warning(
+        "SC207",
+        f"`{binding.name}` hides the {declared.kind} of the language with that name",
+        word_span(context.source, first, binding.name),
+        "use another name",
+    )
+
+
+def _unused(binding: Binding, scope: Scope, context: Context) -> Iterator[Diagnostic]:
+    """SC205 and SC206, about a binding that is never read."""
+    if binding.name.startswith("_"):
+        return
+    if binding.kinds <= {BindingKind.MODULE, BindingKind.IMPORTED}:
+        yield from _unused_import(binding, scope, context)
+    elif (
+        binding.kinds == {BindingKind.VARIABLE}
+        and scope.kind in (ScopeKind.FUNCTION, ScopeKind.BEHAVIOR, ScopeKind.MONITOR)
+        # The variables of behaviors and monitors can be read from outside, as attributes.
+        and (scope.kind is ScopeKind.FUNCTION or binding.name not in context.attributes)
+        and all(_plain(context.assigned.get(site)) for site in binding.sites)
+    ):
+        first = min(binding.sites, key=position)
+        yield context.warning(
+            "SC205",
+            f"the variable `{binding.name}` is never read",
+            first,
+            f"remove it, or call it `_{binding.name}` if that is meant",
+        )
+
+
+def _plain(value: ast.expr | None) -> bool:
+    """Whether a value is assigned to a name alone, and is none of those whose making alone has a purpose."""
+    return value is not None and not isinstance(value, scenic.New)
+
+
+def _unused_import(binding: Binding, scope: Scope, context: Context) -> Iterator[Diagnostic]:
+    if len(binding.sites) != 1 or scope.kind is ScopeKind.CLASS or binding.name in _exported(context):
+        return
+    [site] = binding.sites
+    found = context.imports.get(site)
+    if not isinstance(site, ast.alias) or found is None or site.asname == site.name:
+        return
+    statement, guarded, _ = found
+    if guarded or not _has_no_effects(statement, site, context):
+        return
+    span = context.source.span(site)
+    yield context.warning(
+        "SC206",
+        f"`{binding.name}` is imported and never used",
+        word_span(context.source, site, binding.name.partition(".")[0]),
+        "remove the import",
+        fix=Fix("Remove the import", (_removal(statement, site, span, context),)),
+    )
+
+
+def _has_no_effects(statement: Any, site: ast.alias, context: Context) -> bool:
+    """Whether nothing is lost without this name: not even the objects that importing a Scenic module creates."""
+    if isinstance(statement, ast.Import):
+        return site.name.partition(".")[0] in _PYTHON_MODULES
+    module = statement.module or ""
+    if module == "__future__":
+        return False
+    if not statement.level and module.partition(".")[0] in _PYTHON_MODULES:
+        return True
+    # The module is imported all the same for the sake of another name.
+    return any(other in context.read_sites for other in statement.names if other is not site)
+
+
+def _removal(statement: Any, site: ast.alias, span: Span, context: Context) -> Edit:
+    """The edit that removes one name of an import, or all of the statement with the only name."""
+    names = statement.names
+    if len(names) == 1:
+        whole = context.source.span(statement)
+        line = context.source.line(whole.end_line)
+        before = context.source.line(whole.line)[: whole.column]
+        alone = not before.strip() and not line[whole.end_column :].strip()
+        owner = context.imports[site][2]
+        if alone and len(owner) > 1 and whole.end_line < len(context.source.lines):
+            return Edit(Span(whole.line, 0, whole.end_line + 1, 0), "")
+        return Edit(whole, "pass")
+    index = names.index(site)
+    if index + 1 < len(names):
+        following = context.source.span(names[index + 1])
+        return Edit(Span(span.line, span.column, following.line, following.column), "")
+    previous = context.source.span(names[index - 1])
+    return Edit(Span(previous.end_line, previous.end_column, span.end_line, span.end_column), "")
+
+
+def _exported(context: Context) -> set[str]:
+    """The names in ``__all__``."""
+    binding = context.resolution.module.bindings.get("__all__")
+    if binding is None:
+        return set()
+    return {
+        part.value
+        for site in binding.sites
+        for part in ast.walk(context.assigned.get(site) or ast.Pass())
+        if isinstance(part, ast.Constant) and isinstance(part.value, str)
+    }
+
+
+def _replaced(context: Context) -> Iterator[Diagnostic]:
+    """SC208: two definitions of one name in one block, without a use between them."""
+    for _, statements, _ in context.blocks:
+        last: dict[str, Any] = {}
+        for statement in statements:
+            if not isinstance(statement, DEFINITIONS):
+                continue
+            name = statement.name
+            first = last.get(name)
+            last[name] = statement
+            if first is None or name == "_":
+                continue
+            if any(getattr(node, "decorator_list", None) for node in (first, statement)):
+                continue
+            mentions = context.mentions.get(name, [])
+            following = bisect_left(mentions, position(first))
+            if following < len(mentions) and mentions[following] < position(statement):
+                continue
+            yield context.warning(
+                "SC208",
+                f"this replaces the {kind_of(first)} `{name}`, which has not been used",
+                word_span(context.source, statement, name),
+                "remove one of the definitions, or use another name",
+                labels=(Label(word_span(context.source, first, name), "first defined here"),),
+            )

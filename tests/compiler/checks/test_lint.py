@@ -1,0 +1,184 @@
+"""What programs may contain but hardly mean: data files with everything that must be found in them, and nothing else.
+
+In the data files a comment below a line marks what must be found there: carets under the place, the code, and how the
+message begins. The ``#`` counts as a caret if one follows it directly.
+"""
+
+import ast
+import re
+from pathlib import Path
+
+import pytest
+
+from scenic.compiler.check import check_text
+from scenic.compiler.checks import lint
+from scenic.compiler.parser import parse
+from scenic.compiler.resolver import resolve
+from scenic.language.diagnostics import CODES, Diagnostic, Fix, Severity
+from scenic.language.names import NAMES
+from scenic.language.source import Source
+
+FOLDER = Path(__file__).parents[2] / "data" / "checks" / "lint"
+CASES = sorted(FOLDER.glob("*.scenic"))
+MARK = re.compile(r"^( *)#( *)(\^+) (SC\d+)(?: (.*))?$")
+ERRORS = {"SC202", "SC203", "SC204", "SC209", "SC211", "SC301", "SC308"}
+
+
+def marks(text: str) -> list[tuple[int, int, int, str, str]]:
+    """Line, first and last column, code and beginning of the message of what is expected."""
+    found = []
+    line = 0
+    for number, content in enumerate(text.split("\n"), 1):
+        mark = MARK.match(content)
+        if mark is None:
+            line = number
+            continue
+        start = mark.start(3) if mark[2] else mark.start(3) - 1
+        found.append((line, start, mark.end(3), mark[4], mark[5] or ""))
+    return sorted(found)
+
+
+def place(diagnostic: Diagnostic) -> tuple[int, int, int, str]:
+    span = diagnostic.span
+    assert span is not None
+    return span.line, span.column, span.end_column, diagnostic.code
+
+
+def findings(text: str) -> list[Diagnostic]:
+    """What the checks say, without features that are not built yet and without syntax errors."""
+    return [item for item in check_text(text, filename="f") if item.code[2] in "23"]
+
+
+def applied(text: str, fix: Fix) -> str:
+    """A text after a repair."""
+    lines = text.split("\n")
+    starts = [0]
+    for line in lines:
+        starts.append(starts[-1] + len(line) + 1)
+    for edit in sorted(fix.edits, key=lambda edit: edit.span, reverse=True):
+        span = edit.span
+        start, end = starts[span.line - 1] + span.column, starts[span.end_line - 1] + span.end_column
+        text = text[:start] + edit.text + text[end:]
+    return text
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: case.stem)
+def test_marked_programs(case: Path) -> None:
+    text = case.read_text(encoding="utf-8")
+    found = findings(text)
+    expected = marks(text)
+    assert [place(item) for item in found] == [mark[:4] for mark in expected]
+    for item, mark in zip(found, expected, strict=True):
+        assert item.message.startswith(mark[4]), item.message
+        assert item.help
+        in_scenario = item.code == "SC209" and "scenario " in text
+        error = item.code in ERRORS and not in_scenario
+        assert item.severity is (Severity.ERROR if error else Severity.WARNING)
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: case.stem)
+def test_repairs_repair(case: Path) -> None:
+    """After a repair nothing is said any more about what it repairs, and nothing else is said."""
+    text = case.read_text(encoding="utf-8")
+    before = findings(text)
+    for item in before:
+        if item.fix is not None:
+            repaired = applied(text, item.fix)
+            after = [(other.code, other.message) for other in findings(repaired)]
+            assert len(after) < len(before)
+            for other in before:
+                if (other.code, other.message) in after:
+                    after.remove((other.code, other.message))
+            assert after == [], item
+
+
+def test_every_code_of_these_rules_has_a_case() -> None:
+    marked = {mark[3] for case in CASES for mark in marks(case.read_text(encoding="utf-8"))}
+    elsewhere = {"SC200", "SC201", "SC210", "SC220", "SC307", "SC390", "SC391"}
+    assert {code for code in CODES if code[2] in "23"} - elsewhere == marked
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("class Car:\n    width: 2\nego = Car\n", [("error", 3, 6)]),
+        ("x = ego = Object\n", [("error", 1, 10)]),
+        ("if Range(0, 1) > 2:\n    OrientedPoint\n", [("warning", 2, 4)]),
+        ("kind = Object\nkind\nRange\nnew kind\nego = new Object\n", []),
+        ("def f():\n    Object = 3\n    Object\n", []),
+    ],
+)
+def test_a_class_is_no_instance(text: str, expected: list[tuple[str, int, int]]) -> None:
+    found = [item for item in check_text(text, filename="f") if item.code == "SC111"]
+    places = [(item.severity.value, item.span.line, item.span.column) for item in found if item.span]
+    assert places == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "help_"),
+    [
+        ("new Object facing 90", "write `90 deg` if degrees are meant"),
+        ("def f(depth): return depth\nf(depht=3)", "did you mean `depth`?"),
+        ("class Chair: pass\nnew Chiar", "did you mean `Chair`?"),
+        ("new Objcet", "did you mean `Object`?"),
+        ("def f(): return 1\nx = new Object\nrequire f", "call it: `f()`"),
+    ],
+)
+def test_help(text: str, help_: str) -> None:
+    assert help_ in {item.help for item in findings(text)}
+
+
+def test_labels_name_the_second_place() -> None:
+    [finding] = findings("new Object at (1, 2), with width 3, in everywhere")
+    [label] = finding.labels
+    assert (label.span.column, label.text) == (11, "first given here")
+
+
+def test_angles_are_declared_of_parameters_that_exist() -> None:
+    declared = [name for name in NAMES.values() if name.angles]
+    assert declared
+    for name in declared:
+        assert set(name.angles) <= set(name.parameters)
+    assert NAMES["BoxShape"].parameters == ("dimensions", "scale")
+    assert NAMES["everywhere"].parameters == ()
+
+
+def test_heading_can_be_given_in_two_dimensions_only() -> None:
+    [finding] = findings("new Object with heading 3")
+    assert (finding.code, finding.severity) == ("SC301", Severity.WARNING)
+
+
+def test_complaints_of_python_have_their_own_code() -> None:
+    [finding] = findings("x = 3\nprint(x is 3)")
+    assert (finding.code, finding.severity) == ("SC307", Severity.WARNING)
+
+
+def test_compiling_is_not_held_up_by_hints() -> None:
+    from scenic.compiler.compile import compile_text
+
+    text = "import os\nnew Object facing 90, facing 30"
+    assert compile_text(text, filename="f").code is not None
+    assert compile_text(text, filename="f").diagnostics == ()
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "if x:\n  y\n" + "elif x:\n  return\n" * 3000,
+        "def f():\n    while True:\n        " + "; ".join(["x = 1"] * 5000),
+        "x = " + "-" * 5000 + "1",
+        "new Object facing " + " + ".join(["1"] * 5000),
+        "new Object facing " + "(" * 2000 + "90,".join([""] * 2000) + ")" * 2000,
+        "require " + "abs(" * 2000 + "(angle to x)" + ")" * 2000 + " < 3",
+        "x = " + " relative to ".join(["90"] * 3000),
+        "new Object " + ", ".join(["with width 3"] * 2000),
+        "require " + "not " * 5000 + "True",
+        "def f(): pass\n" * 3000,
+        "\n".join(f"import a{i}\ndef f{i}(x=[]): x.append(a{i})\nf{i}(1, 2)" for i in range(1000)),
+    ],
+)
+def test_large_programs(text: str) -> None:
+    tree = parse(text).tree
+    source = Source(text, "f")
+    assert all(isinstance(item, Diagnostic) for item in lint(tree, source, resolve(tree, source)))
+    assert isinstance(tree, ast.Module)

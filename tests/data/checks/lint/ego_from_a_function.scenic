@@ -1,0 +1,4 @@
+def create():
+    ego = new Object
+create()
+new Object ahead of ego

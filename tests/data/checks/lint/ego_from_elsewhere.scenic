@@ -1,0 +1,2 @@
+import room
+new Object ahead of ego

@@ -1,0 +1,4 @@
+import os
+import sys
+#      ^^^ SC206
+__all__ = ["os"]
