@@ -17,14 +17,16 @@ LAYERS = {
     "runtime": {"graph", "language"},
     "analysis": {"graph", "runtime", "language", "compiler"},
     "formats": {"runtime", "language"},
+    "configuration": {"language"},
     "ide": {"compiler", "language"},
-    "lsp": {"ide", "language"},
+    "lsp": {"ide", "language", "configuration"},
 }
 """What each layer may import of the others."""
 
 LIBRARIES = {
     "language": set(),
     "compiler": set(),
+    "configuration": set(),
     "graph": {"numpy", "scipy"},
     "ide": set(),
     "lsp": {"pygls", "lsprotocol"},

@@ -1,57 +1,258 @@
 """``scenic check``: what is wrong with programs, found without running them."""
 
+import os
 import sys
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from typing import Final
 
 import click
 
-from scenic.cli.output import exit_code, has_colours, summary
-from scenic.cli.render import FORMATS, Sources
-from scenic.compiler.check import check_text, in_order
+from scenic.cli.checking import Fixing, Outcome, Task, check_file, fault
+from scenic.cli.discovery import STANDARD_INPUT, discover
+from scenic.cli.output import FINDINGS, exit_code, has_colours, show_diagnostics, summary
+from scenic.cli.render import FORMATS, Report, Sources, render
+from scenic.configuration.project import PLAIN, Configurations, read_configuration
 from scenic.language.diagnostics import Diagnostic, Severity
 from scenic.language.errors import ScenicError
-from scenic.language.source import read_source
+from scenic.language.selection import is_selector, similar_selector
+from scenic.language.source import Source
 
 __all__ = ["check"]
 
+_FAILING: Final = (Severity.ERROR, Severity.WARNING)
+
+_ENOUGH_BYTES: Final = 30_000 if sys.platform == "linux" else 100_000
+"""Programs of fewer bytes together are checked sooner by this process alone.
+
+It checks some 250 kB a second; two processes need 25 ms to begin where they are forked (with what this process must
+import for it), and 120 ms where they start afresh. Half the time for the programs must outweigh that.
+"""
+
+_PATIENCE: Final = 1.0
+"""Seconds after which progress is shown on a terminal."""
+
+
+def _selectors(_context: click.Context, _option: click.Parameter, given: tuple[str, ...]) -> tuple[str, ...]:
+    codes = tuple(code for each in given for part in each.split(",") if (code := part.strip()))
+    for code in codes:
+        if not is_selector(code):
+            meant = similar_selector(code)
+            advice = f"Did you mean {meant!r}?" if meant else "'scenic explain' lists all codes."
+            raise click.BadParameter(f"there is no code {code!r}. {advice}")
+    return codes
+
 
 @click.command()
-@click.argument("files", nargs=-1, required=True, metavar="FILE...")
+@click.argument("paths", nargs=-1, metavar="[PATH]...")
 @click.option(
     "--format",
     "output_format",
-    type=click.Choice(sorted(FORMATS)),
+    type=click.Choice(list(FORMATS)),
     default="text",
     show_default=True,
     help="How to print what is found.",
 )
+@click.option(
+    "--select",
+    metavar="CODES",
+    multiple=True,
+    callback=_selectors,
+    help="Show these codes only: SC304, or SC3 for all that begin so; with commas between, or repeated.",
+)
+@click.option(
+    "--ignore", metavar="CODES", multiple=True, callback=_selectors, help="Do not show these codes."
+)
+@click.option("--fix", is_flag=True, help="Make the repairs that are certain, in the files.")
+@click.option("--diff", is_flag=True, help="Show these repairs as a patch instead, and change nothing.")
 @click.option("--deep", is_flag=True, help="Run the programs, and add what analysis proves about them.")
-def check(files: tuple[str, ...], output_format: str, deep: bool) -> int:
+@click.option("--config", metavar="FILE", help="Take [tool.scenic] from this file, for all programs.")
+@click.option("--no-config", is_flag=True, help="Read no configuration.")
+@click.option(
+    "--stdin-filename", metavar="NAME", help="What to call standard input; its configuration is that of NAME."
+)
+@click.option(
+    "-j",
+    "--jobs",
+    metavar="N",
+    type=click.IntRange(min=1),
+    help="Use up to N processes.  [default: usable CPUs]",
+)
+@click.option("--exit-zero", is_flag=True, help="Exit with 0 although there are findings.")
+def check(
+    paths: tuple[str, ...],
+    output_format: str,
+    select: tuple[str, ...],
+    ignore: tuple[str, ...],
+    fix: bool,
+    diff: bool,
+    deep: bool,
+    config: str | None,
+    no_config: bool,
+    stdin_filename: str | None,
+    jobs: int | None,
+    exit_zero: bool,
+) -> int:
     """Report what is wrong with programs.
 
-    Runs none of the program's code, unless --deep is given. Exit codes: 0 no errors (there may be warnings),
-    1 errors, 2 wrong usage, or a file that cannot be read.
+    Each PATH is a file, a folder that is searched for *.scenic and *.sc, or - for standard input; without any, the
+    current folder is searched. Runs none of the programs' code, unless --deep is given.
+
+    Exit codes: 0 clean, 1 findings (errors or warnings; with --diff: something to repair), 2 wrong usage, or a file
+    that cannot be read, 70 an internal error, 130 interrupted.
     """
+    if fix and diff:
+        raise click.UsageError("--fix and --diff exclude each other.")
+    if config is not None and no_config:
+        raise click.UsageError("--config and --no-config exclude each other.")
+    if deep and STANDARD_INPUT in paths:
+        raise click.UsageError("--deep runs files; it cannot be used with standard input.")
+    fixed_configuration = PLAIN if no_config else None if config is None else read_configuration(config)
+    configurations = Configurations(fixed_configuration)
+    found = discover(paths, configurations)
+    fixing = Fixing.MAKE if fix else Fixing.SHOW if diff else Fixing.NONE
     sources = Sources()
-    found: list[Diagnostic] = []
-    for file in dict.fromkeys(files):
-        found += _check(file, sources, deep=deep)
-    sys.stdout.write(FORMATS[output_format](found, sources, has_colours(sys.stdout)))
-    if output_format == "text" and (found or sys.stderr.isatty()):
+    problems = list(found.problems)
+    tasks: list[Task] = []
+    for file in found.files:
+        name, text = file, None
+        if file == STANDARD_INPUT:
+            name = stdin_filename or "<stdin>"
+            try:
+                data = sys.stdin.buffer.read()
+                Source.decode(data, name)
+            except ScenicError as error:
+                problems.append(error.diagnostic())
+                continue
+            text = data.decode()  # with its byte order mark, for --fix
+            sources.add(Source(text, name))
+        rules = configurations.of_file(name).rules_for(name, select, ignore)
+        tasks.append(Task(name, rules, deep=deep, fixing=fixing, text=text))
+    problems = [*configurations.problems, *problems]
+    if not found.files and not problems:
+        click.echo("warning: there are no Scenic files under the given paths", err=True)
+    outcomes = _outcomes(tasks, jobs)
+    for outcome in outcomes:
+        sys.stderr.write(outcome.trace)
+    diagnostics = [*problems, *(item for outcome in outcomes for item in outcome.diagnostics)]
+    fixed = sum(outcome.fixed for outcome in outcomes)
+    if diff:
+        return _show_diff(outcomes, diagnostics, fixed)
+    for task, outcome in zip(tasks, outcomes, strict=True):
+        if outcome.text is not None:
+            # Standard output is for the repaired text; what is left to say goes beside it.
+            sources.add(Source(outcome.text, task.filename))
+            sys.stdout.write(outcome.text)
+            output_format = "beside"
+    code = exit_code(diagnostics, failing=_FAILING)
+    if exit_zero and code == FINDINGS:
+        code = 0
+    if output_format == "beside":
+        show_diagnostics(diagnostics, sources)
+        return code
+    report = Report(diagnostics, sources, len(tasks), fixed, code, has_colours(sys.stdout))
+    sys.stdout.write(render(output_format, report))
+    if output_format == "text" and (diagnostics or fixed or sys.stderr.isatty()):
         sys.stdout.flush()
-        count = len(set(files))
-        sys.stderr.write(f"{summary(found)} in {count} file{'s' if count > 1 else ''}\n")
-    return exit_code(found)
+        sys.stderr.write(_conclusion(report))
+    return code
 
 
-def _check(file: str, sources: Sources, *, deep: bool) -> tuple[Diagnostic, ...]:
+def _conclusion(report: Report) -> str:
+    files = f"{report.files} file{'' if report.files == 1 else 's'}"
+    text = f"{summary(report.diagnostics)} in {files}"
+    repairable = sum(item.fix is not None for item in report.diagnostics)
+    if report.fixed:
+        text += f"; {_repairs(report.fixed)} made"
+    elif repairable:
+        text += f"; {repairable} can be repaired with --fix"
+    first = next((item.code for item in report.diagnostics if item.severity is Severity.ERROR), None)
+    if first is not None:
+        text += f"\nfor more about an error: scenic explain {first}"
+    return f"{text}\n"
+
+
+def _repairs(count: int) -> str:
+    return f"{count} repair{'' if count == 1 else 's'}"
+
+
+def _show_diff(outcomes: Sequence[Outcome], diagnostics: Sequence[Diagnostic], fixed: int) -> int:
+    """Show the repairs; of the diagnostics, only those that kept a file from being looked at."""
+    sys.stdout.write("".join(outcome.diff for outcome in outcomes))
+    sys.stdout.flush()
+    show_diagnostics(diagnostics)
+    changed = sum(bool(outcome.diff) for outcome in outcomes)
+    if changed:
+        sys.stderr.write(f"{_repairs(fixed)} would be made in {changed} file{'' if changed == 1 else 's'}\n")
+    return exit_code(diagnostics, failing=_FAILING) or (FINDINGS if changed else 0)
+
+
+def _outcomes(tasks: Sequence[Task], jobs: int | None) -> list[Outcome]:
+    """What comes of the tasks, in their order."""
+    outcomes: dict[int, Outcome] = {}
+    with _progress(len(tasks)) as advance:
+        for index, outcome in _results(tasks, jobs):
+            outcomes[index] = outcome
+            advance(len(outcomes))
+    return [outcomes[index] for index in range(len(tasks))]
+
+
+def _results(tasks: Sequence[Task], jobs: int | None) -> Iterator[tuple[int, Outcome]]:
+    if jobs == 1 or len(tasks) < 2 or not _pays(tasks):
+        yield from ((index, check_file(task)) for index, task in enumerate(tasks))
+        return
+    from scenic.cli.workers import run, usable_cpus  # takes a while to import
+
+    yield from run(check_file, tasks, jobs=jobs or usable_cpus(), lost=_lost)
+
+
+def _pays(tasks: Sequence[Task]) -> bool:
+    """Whether the tasks take longer than to start other processes."""
+    total = 0
+    for task in tasks:
+        try:
+            total += os.stat(task.filename).st_size if task.text is None else len(task.text)
+        except OSError:
+            continue
+        if task.deep or total > _ENOUGH_BYTES:
+            return True
+    return False
+
+
+def _lost(task: Task, code: int) -> Outcome:
+    """What is said of a file whose check ended the process that made it."""
+    how = f"by signal {-code}" if code < 0 else f"with code {code}"
+    return Outcome((fault(task.filename, f"the process that checked this file ended {how}"),))
+
+
+@contextmanager
+def _progress(count: int) -> "Iterator[_Advance]":
+    """A line on the error stream that says how far it is, if that is a terminal and it takes long."""
+    advance = _Advance(count)
     try:
-        source = read_source(file)
-    except ScenicError as error:
-        return (error.diagnostic(),)
-    sources.add(source)
-    found = check_text(source.text, filename=file)
-    if deep and not any(item.severity is Severity.ERROR for item in found):
-        from scenic.pipeline import deep_check  # brings in NumPy, z3 and the geometry libraries
+        yield advance
+    finally:
+        advance.clear()
 
-        found = in_order((*found, *deep_check(file)), filename=file)
-    return found
+
+class _Advance:
+    """Shows how many files are checked."""
+
+    def __init__(self, count: int) -> None:
+        self._count = count
+        self._next = time.monotonic() + _PATIENCE
+        self._on = sys.stderr.isatty()
+        self._shown = False
+
+    def __call__(self, done: int) -> None:
+        now = time.monotonic()
+        if self._on and now >= self._next:
+            self._next, self._shown = now + 0.1, True
+            sys.stderr.write(f"\rchecked {done} of {self._count} files")
+            sys.stderr.flush()
+
+    def clear(self) -> None:
+        if self._shown:
+            sys.stderr.write("\r\x1b[K")
+            sys.stderr.flush()

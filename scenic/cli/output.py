@@ -2,7 +2,7 @@
 
 import os
 import sys
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from typing import Final, TextIO
 
 from scenic.cli.render import Sources, render_text
@@ -22,7 +22,7 @@ __all__ = [
 
 CLEAN: Final = 0
 FINDINGS: Final = 1
-"""The program has errors."""
+"""The program has errors; of ``scenic check``: or warnings."""
 USAGE: Final = 2
 """The command was called wrongly: an unknown option, a file that cannot be read or written."""
 INTERNAL: Final = 70
@@ -30,17 +30,17 @@ INTERNAL: Final = 70
 INTERRUPTED: Final = 130
 """Ended with Ctrl-C (128 + SIGINT, as shells have it)."""
 
-_OF_USAGE: Final = frozenset({"SC600", "SC601", "SC603", "SC604", "SC605"})
+_OF_USAGE: Final = frozenset({"SC600", "SC601", "SC603", "SC604", "SC605", "SC606"})
 
 
-def exit_code(diagnostics: Iterable[Diagnostic]) -> int:
-    """The exit code that these ask for: the worst of them."""
-    errors = {item.code for item in diagnostics if item.severity is Severity.ERROR}
-    if not errors:
+def exit_code(diagnostics: Iterable[Diagnostic], *, failing: Collection[Severity] = (Severity.ERROR,)) -> int:
+    """The exit code that these ask for: the worst of them; ``failing`` are the severities that count."""
+    codes = {item.code for item in diagnostics if item.severity in failing}
+    if not codes:
         return CLEAN
-    if "SC999" in errors:
+    if "SC999" in codes:
         return INTERNAL
-    return USAGE if errors & _OF_USAGE else FINDINGS
+    return USAGE if codes & _OF_USAGE else FINDINGS
 
 
 def has_colours(stream: TextIO) -> bool:

@@ -2,14 +2,18 @@
 
 from scenic.compiler.check import check_text
 from scenic.language.diagnostics import Diagnostic
+from scenic.language.selection import Rules
 
 __all__ = ["diagnostics"]
 
 
-def diagnostics(text: str, *, filename: str) -> tuple[Diagnostic, ...]:
-    """The findings of the static check, in order of place. Runs none of the program, and never raises."""
+def diagnostics(text: str, *, filename: str, rules: Rules | None = None) -> tuple[Diagnostic, ...]:
+    """The findings of the static check that the rules leave, in order of place.
+
+    Runs none of the program, and never raises.
+    """
     try:
-        return check_text(text, filename=filename)
+        found = check_text(text, filename=filename)
     except Exception as error:  # noqa: BLE001 - an editor must go on; the fault is shown in the document
         return (
             Diagnostic(
@@ -19,3 +23,4 @@ def diagnostics(text: str, *, filename: str) -> tuple[Diagnostic, ...]:
                 help="this is a fault of scenic, not of your program; please report it with the program",
             ),
         )
+    return found if rules is None else rules.apply(found)

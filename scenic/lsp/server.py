@@ -6,16 +6,21 @@ It runs none of the code of the programs that it is shown.
 import asyncio
 import os
 import sys
+from collections.abc import Sequence
 from contextlib import redirect_stdout
 from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
 from typing import Final
 
 from lsprotocol import types
 from pygls.lsp.server import LanguageServer
 
+from scenic.configuration.project import Configurations
 from scenic.ide.diagnostics import diagnostics
 from scenic.ide.hover import hover
-from scenic.language.source import Source
+from scenic.language.diagnostics import Diagnostic
+from scenic.language.errors import ScenicError
+from scenic.language.source import Source, read_source
 from scenic.lsp import convert
 
 __all__ = ["ScenicServer", "create_server", "serve"]
@@ -31,6 +36,8 @@ class ScenicServer(LanguageServer):
         # Whole documents with each change: the library's edits of parts count other line ends than the protocol.
         super().__init__("scenic", _version(), text_document_sync_kind=types.TextDocumentSyncKind.Full)
         self._pending: dict[str, asyncio.TimerHandle] = {}
+        self._troubled: dict[str, set[str]] = {}
+        """By document: the files of settings whose problems are shown because of it."""
         self.is_shut_down = False
 
     @property
@@ -49,10 +56,13 @@ class ScenicServer(LanguageServer):
         self._pending[uri] = asyncio.get_running_loop().call_later(PAUSE, self.check, uri)
 
     def check(self, uri: str) -> None:
-        """Check a document and publish what is found."""
+        """Check a document and publish what is found, by the rules of the project that it belongs to."""
         self.forget(uri)
         source = self.source(uri)
-        found = diagnostics(source.text, filename=source.filename)
+        # Read each time: it may have changed, and it is small.
+        configurations = Configurations()
+        rules = configurations.of_file(source.filename).rules_for(source.filename)
+        found = diagnostics(source.text, filename=source.filename, rules=rules)
         self.text_document_publish_diagnostics(
             types.PublishDiagnosticsParams(
                 uri,
@@ -60,6 +70,27 @@ class ScenicServer(LanguageServer):
                 self.workspace.get_text_document(uri).version,
             )
         )
+        self.show_problems(uri, configurations.problems)
+
+    def show_problems(self, document: str, problems: Sequence[Diagnostic]) -> None:
+        """Publish what is wrong with the settings of a document, and take back what no longer is."""
+        by_file: dict[str, list[Diagnostic]] = {filename: [] for filename in self._troubled.pop(document, ())}
+        for item in problems:
+            if item.filename is not None:
+                by_file.setdefault(os.path.abspath(item.filename), []).append(item)
+        for filename, found in by_file.items():
+            uri = Path(filename).as_uri()
+            try:
+                source = read_source(filename)
+            except ScenicError:
+                source = Source("", filename)
+            self.text_document_publish_diagnostics(
+                types.PublishDiagnosticsParams(
+                    uri, [convert.to_diagnostic(item, source, uri, self.encoding) for item in found]
+                )
+            )
+        if problems:
+            self._troubled[document] = {filename for filename, found in by_file.items() if found}
 
     def forget(self, uri: str) -> None:
         """Give up a check that has not begun yet."""

@@ -65,7 +65,8 @@ def test_errors_are_shown_with_their_place(bad: Path) -> None:
 def test_json(good: Path, bad: Path) -> None:
     clean = run("check", "--format", "json", good)
     assert clean.returncode == 0
-    assert json.loads(clean.stdout) == {"version": 1, "diagnostics": []}
+    numbers = dict.fromkeys(("errors", "warnings", "information", "fixable", "fixed"), 0)
+    assert json.loads(clean.stdout) == {"version": 1, "diagnostics": [], "summary": {"files": 1, **numbers}}
     result = run("check", "--format", "json", bad, good)
     assert (result.returncode, result.stderr) == (1, "")
     found = json.loads(result.stdout)["diagnostics"]
@@ -80,10 +81,13 @@ def test_json(good: Path, bad: Path) -> None:
 
 def test_files_that_cannot_be_read(tmp_path: Path, good: Path) -> None:
     missing = tmp_path / "missing.scenic"
-    result = run("check", missing, tmp_path, good)
+    warned = tmp_path / "warned.scenic"
+    warned.write_text("ego = new Object with wdth 3\n")
+    result = run("check", missing, good, warned)
     assert result.returncode == 2
-    assert result.stdout.count("error[SC600]") == 2
+    assert result.stdout.count("error[SC600]") == 1
     assert f"--> {missing}\n" in result.stdout
+    assert "warning[SC300]" in result.stdout
     assert "Traceback" not in result.stderr
     for command in ("ast", "python"):
         other = run(command, missing)
@@ -101,7 +105,17 @@ def test_other_encodings(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "arguments", [["check"], ["check", "--frmat", "x"], ["chek"], ["check", "--format", "xml", "f"]]
+    "arguments",
+    [
+        ["check", "--frmat", "x"],
+        ["chek"],
+        ["check", "--format", "xml", "f"],
+        ["check", "--select", "SC8", "f"],
+        ["check", "--fix", "--diff", "f"],
+        ["check", "--config", "f", "--no-config", "f"],
+        ["check", "--deep", "-"],
+        ["check", "--jobs", "0", "f"],
+    ],
 )
 def test_wrong_usage(arguments: list[str]) -> None:
     result = run(*arguments)
@@ -158,7 +172,7 @@ def test_closed_pipe(bad: Path) -> None:
 
 def test_interruption(good: Path) -> None:
     code = (
-        "import sys, time, scenic.cli.main, scenic.cli.check as check\n"
+        "import sys, time, scenic.cli.main, scenic.cli.checking as check\n"
         "def slow(*_, **__):\n    print('ready', flush=True)\n    time.sleep(60)\n"
         "check.check_text = slow\n"
         "sys.argv[1:1] = ['check']\n"
@@ -185,7 +199,7 @@ def test_interruption(good: Path) -> None:
 
 def test_internal_errors_ask_for_a_report(good: Path) -> None:
     code = (
-        "import sys, scenic.cli.main, scenic.cli.check as check\n"
+        "import sys, scenic.cli.main, scenic.cli.checking as check\n"
         "def fail(*_, **__): raise ZeroDivisionError('oops')\n"
         "check.check_text = fail\n"
         "sys.argv[1:1] = ['check']\n"
@@ -193,8 +207,9 @@ def test_internal_errors_ask_for_a_report(good: Path) -> None:
     )
     result = run(good, code=code)
     assert result.returncode == 70
-    assert "error[SC999]: internal error: ZeroDivisionError: oops" in result.stderr
-    assert "please report" in result.stderr
+    assert "error[SC999]: internal error: ZeroDivisionError: oops" in result.stdout
+    assert f"--> {good}\n" in result.stdout
+    assert "please report" in result.stdout
     assert ", in fail" in result.stderr
 
 
@@ -273,6 +288,9 @@ def test_deep_trees_are_refused_in_words(tmp_path: Path) -> None:
 
 def test_deep_adds_what_analysis_proves(good: Path) -> None:
     result = run("check", "--deep", "--format", "json", good)
-    assert result.returncode == 0, result.stderr
+    assert result.returncode == 1, result.stderr
     (found,) = json.loads(result.stdout)["diagnostics"]
     assert (found["code"], found["severity"], found["span"]["line"]) == ("SC701", "warning", 2)
+    good.write_text(GOOD.replace("> 0", "> 0  # scenic: ignore[SC701]"))
+    assert run("check", "--deep", good).returncode == 0
+    assert run("check", good).returncode == 0

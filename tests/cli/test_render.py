@@ -1,12 +1,15 @@
 import json
+import re
 from pathlib import Path
+from typing import Any
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from scenic.cli.output import exit_code, summary
-from scenic.cli.render import Sources, render_json, render_text
-from scenic.language.diagnostics import Diagnostic, Label, Severity
+from scenic.cli.render import FORMATS, Report, Sources, render, render_text
+from scenic.language.diagnostics import Diagnostic, Edit, Fix, Label, Severity
 from scenic.language.source import Source
 from scenic.language.spans import Span
 
@@ -91,9 +94,6 @@ def test_anything_can_be_shown(text: str, line: int, column: int, more: int, end
     lines = shown(text, diagnostic)
     assert lines[0] == "error[SC103]: bad"
     assert all(character.isprintable() for each in lines for character in each)
-    assert (
-        json.loads(render_json([diagnostic], Sources(), False))["diagnostics"][0]["span"]["line"] == line + 1
-    )
 
 
 def test_exit_codes_and_summary() -> None:
@@ -106,5 +106,218 @@ def test_exit_codes_and_summary() -> None:
         2,
     ]
     assert exit_code([unreadable, Diagnostic("SC999", "fault")]) == 70
+    both = (Severity.ERROR, Severity.WARNING)
+    known = at(1, 0, 1, 0, severity=Severity.INFORMATION)
+    assert [exit_code(each, failing=both) for each in ([], [known], [warning], [warning, unreadable])] == [
+        0,
+        0,
+        1,
+        2,
+    ]
+    assert exit_code([Diagnostic("SC606", "bad")]) == 2
     assert summary([error, error, warning]) == "2 errors, 1 warning"
     assert summary([]) == "no problems"
+
+
+def fixed(text: str, help: str | None = None, title: str = "Write it so") -> Diagnostic:
+    return at(1, 0, 1, 1, help=help, fix=Fix(title, (Edit(Span(1, 0, 1, 1), text),)))
+
+
+@pytest.mark.parametrize(
+    ("diagnostic", "advice"),
+    [
+        (fixed("ab"), ["write it so: `ab`"]),
+        (fixed("ab", "did you mean `ab`?"), ["did you mean `ab`?"]),
+        (fixed("ab", "look", "Write `ab`"), ["look", "write `ab`"]),
+        (fixed(""), ["write it so"]),
+        (fixed("a\nb"), ["write it so"]),
+        (fixed("", "write it so"), ["write it so"]),
+    ],
+)
+def test_repairs_are_shown_where_they_say_more(diagnostic: Diagnostic, advice: list[str]) -> None:
+    assert [line.removeprefix("  = help: ") for line in shown("x", diagnostic) if "= help" in line] == advice
+
+
+ODD = Diagnostic(
+    "SC300",
+    "50% of: a,b\nmore",
+    Span(2, 1, 2, 4),
+    Severity.WARNING,
+    "a b,é%:1.scenic",
+    "do",
+    (Label(Span(1, 0, 1, 2), "here \ud800"),),
+    Fix("Repair", (Edit(Span(2, 1, 2, 1), "x"), Edit(Span(2, 3, 3, 0), ""))),
+)
+UNREADABLE = Diagnostic("SC600", "no such file", filename="/elsewhere/x.scenic")
+MISCONFIGURED = Diagnostic("SC606", "bad", Span(1, 0, 1, 1), filename="pyproject.toml")
+NOTED = at(1, 0, 2, 1, severity=Severity.INFORMATION)
+
+
+def test_json() -> None:
+    report = Report([ODD, UNREADABLE, NOTED], files=2, fixed=4)
+    content = json.loads(render("json", report))
+    assert content["version"] == 1
+    assert content["summary"] == {
+        "files": 2,
+        "errors": 1,
+        "warnings": 1,
+        "information": 1,
+        "fixable": 1,
+        "fixed": 4,
+    }
+    first, second, _ = content["diagnostics"]
+    assert first["fix"] == {
+        "title": "Repair",
+        "edits": [
+            {"span": {"line": 2, "column": 2, "end_line": 2, "end_column": 2}, "text": "x"},
+            {"span": {"line": 2, "column": 4, "end_line": 3, "end_column": 1}, "text": ""},
+        ],
+    }
+    assert (second["fix"], second["span"], second["help"]) == (None, None, None)
+
+
+def test_github() -> None:
+    assert render("github", Report([ODD, UNREADABLE, NOTED])).split("\n") == [
+        (
+            "::warning title=scenic SC300,file=a b%2Cé%25%3A1.scenic,line=2,endLine=2,col=2,endColumn=5"
+            "::SC300: 50%25 of: a,b%0Amore%0Ahelp: do"
+        ),
+        "::error title=scenic SC600,file=/elsewhere/x.scenic::SC600: no such file",
+        "::notice title=scenic SC103,file=f.scenic,line=1,endLine=2::SC103: bad",
+        "",
+    ]
+    windows = Diagnostic("SC600", "a\r\nb")
+    assert render("github", Report([windows])) == "::error title=scenic SC600::SC600: a%0D%0Ab\n"
+
+
+def sarif(*diagnostics: Diagnostic, code: int = 1) -> dict[str, Any]:
+    text = render("sarif", Report(diagnostics, exit_code=code))
+    text.encode("utf-8")
+    log = json.loads(text)
+    assert (log["version"], len(log["runs"])) == ("2.1.0", 1)
+    run: dict[str, Any] = log["runs"][0]
+    return run
+
+
+REGION = {"startLine", "startColumn", "endLine", "endColumn"}
+"""As the schema has it: the properties of each object, those required first, and what their values are."""
+
+
+def check_message(message: dict[str, str]) -> None:
+    assert set(message) == {"text"}
+    assert message["text"]
+
+
+def check_place(place: dict[str, Any]) -> None:
+    assert {"artifactLocation"} <= set(place) <= {"artifactLocation", "region"}
+    check_artifact(place["artifactLocation"])
+    if "region" in place:
+        check_region(place["region"])
+
+
+def check_artifact(artifact: dict[str, str]) -> None:
+    assert {"uri"} <= set(artifact) <= {"uri", "uriBaseId"}
+    # RFC 3986, section 2: what else may stand in a URI is percent-encoded.
+    assert re.fullmatch(r"(?:[A-Za-z0-9._~:/?#\[\]@!$&'()*+,;=-]|%[0-9A-F]{2})+", artifact["uri"])
+    assert artifact["uri"].startswith("file:///") is ("uriBaseId" not in artifact)
+
+
+def check_region(region: dict[str, int]) -> None:
+    assert set(region) == REGION
+    assert all(isinstance(value, int) and value >= 1 for value in region.values())
+    assert (region["startLine"], region["startColumn"]) <= (region["endLine"], region["endColumn"])
+
+
+def check_structure(run: dict[str, Any]) -> None:
+    """What the schema of SARIF 2.1.0 asks of the parts that are used (sections 3.14 to 3.58 of the standard)."""
+    assert set(run) == {"tool", "invocations", "originalUriBaseIds", "columnKind", "results"}
+    assert run["columnKind"] in ("utf16CodeUnits", "unicodeCodePoints")
+    assert all(base["uri"].endswith("/") for base in run["originalUriBaseIds"].values())
+    driver = run["tool"]["driver"]
+    assert driver["name"] == "scenic"
+    rules = driver["rules"]
+    assert len({rule["id"] for rule in rules}) == len(rules)
+    for rule in rules:
+        assert set(rule) == {"id", "shortDescription", "help"}
+        check_message(rule["shortDescription"])
+        assert rule["help"]["text"]
+        assert set(rule["help"]) <= {"text", "markdown"}
+    (invocation,) = run["invocations"]
+    assert isinstance(invocation["executionSuccessful"], bool)
+    assert isinstance(invocation["exitCode"], int)
+    notes = [
+        note
+        for kind in ("toolExecutionNotifications", "toolConfigurationNotifications")
+        for note in invocation.get(kind, [])
+    ]
+    for note in notes:
+        assert {"level", "message"} <= set(note) <= {"level", "message", "locations", "associatedRule"}
+        assert rules[note["associatedRule"]["index"]]["id"] == note["associatedRule"]["id"]
+    allowed = {"ruleId", "ruleIndex", "level", "message", "locations", "relatedLocations", "fixes"}
+    for result in run["results"]:
+        assert {"ruleId", "ruleIndex", "level", "message"} <= set(result) <= allowed
+        assert rules[result["ruleIndex"]]["id"] == result["ruleId"]
+        for fix in result.get("fixes", []):
+            assert set(fix) == {"description", "artifactChanges"}
+            check_message(fix["description"])
+            for change in fix["artifactChanges"]:
+                check_artifact(change["artifactLocation"])
+                assert change["replacements"]
+                for replacement in change["replacements"]:
+                    check_region(replacement["deletedRegion"])
+                    assert set(replacement) <= {"deletedRegion", "insertedContent"}
+    for item in (*notes, *run["results"]):
+        assert item["level"] in ("none", "note", "warning", "error")
+        check_message(item["message"])
+        for location in (*item.get("locations", []), *item.get("relatedLocations", [])):
+            assert set(location) <= {"id", "physicalLocation", "message"}
+            check_place(location["physicalLocation"])
+
+
+def test_sarif(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    run = sarif(ODD, UNREADABLE, MISCONFIGURED, NOTED, Diagnostic("SC999", "fault"), code=2)
+    check_structure(run)
+    (invocation,) = run["invocations"]
+    assert (invocation["executionSuccessful"], invocation["exitCode"]) == (False, 2)
+    assert [note["message"]["text"] for note in invocation["toolExecutionNotifications"]] == [
+        "no such file",
+        "fault",
+    ]
+    assert len(invocation["toolConfigurationNotifications"]) == 1
+    assert run["originalUriBaseIds"] == {"%SRCROOT%": {"uri": f"{tmp_path.as_uri()}/"}}
+    odd, noted = run["results"]
+    assert [odd["level"], noted["level"]] == ["warning", "note"]
+    assert odd["message"]["text"] == "50% of: a,b\nmore\nhelp: do"
+    assert odd["locations"][0]["physicalLocation"] == {
+        "artifactLocation": {"uri": "a%20b%2C%C3%A9%25%3A1.scenic", "uriBaseId": "%SRCROOT%"},
+        "region": {"startLine": 2, "startColumn": 2, "endLine": 2, "endColumn": 5},
+    }
+    assert odd["relatedLocations"][0]["id"] == 1
+    (change,) = odd["fixes"][0]["artifactChanges"]
+    assert [each.get("insertedContent") for each in change["replacements"]] == [{"text": "x"}, None]
+    place = invocation["toolExecutionNotifications"][0]["locations"][0]["physicalLocation"]
+    assert place == {"artifactLocation": {"uri": "file:///elsewhere/x.scenic"}}
+    check_structure(sarif(code=0))
+
+
+def test_sarif_explains_its_rules() -> None:
+    (rule,) = sarif(ODD)["tool"]["driver"]["rules"]
+    assert rule["shortDescription"] == {"text": "misspelt property"}
+    (rule,) = sarif(at(1, 0, 1, 0, severity=Severity.WARNING))["tool"]["driver"]["rules"]
+    assert rule["id"] == "SC103"
+    page = sarif(Diagnostic("SC390", "m"))["tool"]["driver"]["rules"][0]["help"]
+    assert page["markdown"].startswith("# SC390: ")
+
+
+@given(st.text(max_size=20), st.text(max_size=20).filter(lambda name: "\0" not in name))
+def test_any_text_in_any_format(text: str, filename: str) -> None:
+    diagnostic = Diagnostic(
+        "SC103", text, Span(1, 0, 1, 0), filename=filename, help=text, fix=fixed(text, title=text).fix
+    )
+    report = Report([diagnostic])
+    for name in FORMATS:
+        assert render(name, report)
+    assert json.loads(render("json", report))["diagnostics"][0]["message"] == text
+    assert render("github", report).count("\n") == 1
+    check_artifact(sarif(diagnostic)["results"][0]["locations"][0]["physicalLocation"]["artifactLocation"])

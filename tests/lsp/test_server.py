@@ -197,3 +197,20 @@ def test_the_editor_goes_away(client: Client) -> None:
     assert client.process.stdin is not None
     client.process.stdin.close()
     assert client.process.wait(PATIENCE) == 0
+
+
+def test_settings_and_ignore_comments_hold_in_the_editor(client: Client, tmp_path: Path) -> None:
+    settings = tmp_path / "pyproject.toml"
+    settings.write_text('[tool.scenic]\nignore = ["SC390"]\nseverity = { SC300 = "error" }\nselct = []\n')
+    uri = (tmp_path / "room.scenic").as_uri()
+    client.start()
+    client.open(uri, "ego = new Object with wdth 3\nx = 1  # scenic: ignore\n")
+    (found,) = client.published(uri)["diagnostics"]
+    assert (found["code"], found["severity"]) == ("SC300", 1)
+    (problem,) = client.published(settings.as_uri())["diagnostics"]
+    assert (problem["code"], problem["range"]["start"]) == ("SC606", {"line": 3, "character": 0})
+
+    settings.write_text("[tool.scenic]\n")
+    client.change(uri, "ego = new Object with wdth 3  # scenic: ignore[SC300]\n", 2)
+    assert client.published(uri)["diagnostics"] == []
+    assert client.published(settings.as_uri())["diagnostics"] == []

@@ -1,18 +1,29 @@
-"""How diagnostics are shown: one module per output format, each with a function from diagnostics to text."""
+"""How diagnostics are shown: one module per output format, each with a function from a report to text."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
+from importlib import import_module
 from types import MappingProxyType
 from typing import Final
 
-from scenic.cli.render.json_format import render_json
+from scenic.cli.render.report import Report
 from scenic.cli.render.sources import Sources
 from scenic.cli.render.text_format import render_text
-from scenic.language.diagnostics import Diagnostic
 
-__all__ = ["FORMATS", "Renderer", "Sources", "render_json", "render_text"]
+__all__ = ["FORMATS", "Report", "Sources", "render", "render_text"]
 
-Renderer = Callable[[Sequence[Diagnostic], Sources, bool], str]
-"""From diagnostics, the source texts, and whether to use colours."""
+FORMATS: Final[Mapping[str, tuple[str, str]]] = MappingProxyType(
+    {
+        "text": ("scenic.cli.render.text_format", "render_report"),
+        "json": ("scenic.cli.render.json_format", "render_json"),
+        "sarif": ("scenic.cli.render.sarif_format", "render_sarif"),
+        "github": ("scenic.cli.render.github_format", "render_github"),
+    }
+)
+"""The output formats by name: module, which is imported when it is wanted, and function in it."""
 
-FORMATS: Final[Mapping[str, Renderer]] = MappingProxyType({"text": render_text, "json": render_json})
-"""The output formats by name."""
+
+def render(name: str, report: Report) -> str:
+    """A report in one of the formats."""
+    module, function = FORMATS[name]
+    renderer: Callable[[Report], str] = getattr(import_module(module), function)
+    return renderer(report)

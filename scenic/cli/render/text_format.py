@@ -5,12 +5,13 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final
 
+from scenic.cli.render.report import Report
 from scenic.cli.render.sources import Sources
 from scenic.language.diagnostics import Diagnostic, Severity
 from scenic.language.source import Source
 from scenic.language.spans import Span
 
-__all__ = ["render_text"]
+__all__ = ["render_report", "render_text"]
 
 _RESET: Final = "\x1b[0m"
 _BOLD: Final = "\x1b[1m"
@@ -34,6 +35,11 @@ def render_text(diagnostics: Sequence[Diagnostic], sources: Sources, colour: boo
         lines = _block(diagnostic, sources.get(diagnostic.filename), _Paint(colour))
         blocks.append("\n".join(lines) + "\n\n")
     return "".join(blocks)
+
+
+def render_report(report: Report) -> str:
+    """The diagnostics of a report, without its numbers, which go elsewhere."""
+    return render_text(report.diagnostics, report.sources, report.colour)
 
 
 class _Paint:
@@ -74,10 +80,28 @@ def _block(diagnostic: Diagnostic, source: Source | None, paint: _Paint) -> Iter
     if source is not None and marks:
         yield f"{margin} {paint('|', _BLUE)}"
         yield from _snippet(marks, source, width, paint)
+    advice = list(_advice(diagnostic))
+    if advice and marks:
+        yield f"{margin} {paint('|', _BLUE)}"
+    for text in advice:
+        yield f"{margin} {paint('=', _BLUE)} {paint('help', _BOLD)}: {_visible(text)}"
+
+
+def _advice(diagnostic: Diagnostic) -> Iterator[str]:
+    """What to do: the help, and the repair if that says more."""
     if diagnostic.help:
-        if marks:
-            yield f"{margin} {paint('|', _BLUE)}"
-        yield f"{margin} {paint('=', _BLUE)} {paint('help', _BOLD)}: {_visible(diagnostic.help)}"
+        yield diagnostic.help
+    fix = diagnostic.fix
+    if fix is None or fix.title.lower() == (diagnostic.help or "").lower():
+        return
+    title = fix.title[:1].lower() + fix.title[1:]
+    text = fix.edits[0].text.strip() if len(fix.edits) == 1 else ""
+    if text and len(text) <= _WIDEST and "\n" not in text:
+        if text in (diagnostic.help or ""):
+            return
+        yield title if text in title else f"{title}: `{text}`"
+    else:
+        yield title
 
 
 def _marks(diagnostic: Diagnostic, span: Span, source: Source, colour: str) -> Iterator[_Mark]:

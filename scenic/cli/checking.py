@@ -1,0 +1,131 @@
+"""The check of one file with all that belongs to it: what ``scenic check`` does for each of its files."""
+
+import re
+import traceback
+from dataclasses import dataclass, replace
+from enum import Enum
+from pathlib import Path
+from typing import Final
+
+from scenic.compiler.check import check_text, in_order
+from scenic.compiler.ignores import apply_ignores
+from scenic.language.diagnostics import Diagnostic, Severity
+from scenic.language.errors import Located
+from scenic.language.selection import Rules
+from scenic.language.source import Source, read_source
+
+__all__ = ["Fixing", "Outcome", "Task", "check_file", "fault"]
+
+_LINE: Final = re.compile(r"[^\n]*\n|[^\n]+")
+_FRAMES: Final = 6
+"""So many frames of an internal error are shown."""
+
+
+class Fixing(Enum):
+    """What to do with the repairs that diagnostics carry."""
+
+    NONE = "none"
+    MAKE = "make"
+    SHOW = "show"
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """A file to check.
+
+    ``text`` is its content if that is not in the file: standard input.
+    """
+
+    filename: str
+    rules: Rules
+    deep: bool = False
+    fixing: Fixing = Fixing.NONE
+    text: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What came of a task.
+
+    ``fixed`` counts the repairs made or shown; ``text`` is the text after them, of a file that is not written;
+    ``diff`` shows them. ``trace`` says where a fault of ours happened.
+    """
+
+    diagnostics: tuple[Diagnostic, ...]
+    fixed: int = 0
+    diff: str = ""
+    text: str | None = None
+    trace: str = ""
+
+
+def check_file(task: Task) -> Outcome:
+    """Check a file. Whatever goes wrong is a diagnostic."""
+    try:
+        if task.fixing is Fixing.NONE:
+            return Outcome(_check(task))
+        return _repair(task)
+    except Located as error:
+        return Outcome((replace(error.diagnostic(), filename=error.filename or task.filename),))
+    except Exception as error:  # noqa: BLE001 - the other files are to be checked all the same
+        lines = traceback.format_list(traceback.extract_tb(error.__traceback__)[-_FRAMES:])
+        return Outcome((fault(task.filename, f"{type(error).__name__}: {error}"),), trace="".join(lines))
+
+
+def fault(filename: str, what: str) -> Diagnostic:
+    """A fault of ours, met with a file."""
+    return Diagnostic(
+        "SC999",
+        f"internal error: {what}",
+        filename=filename,
+        help="this is a fault of scenic, not of your program; please report it with the program",
+    )
+
+
+def _check(task: Task) -> tuple[Diagnostic, ...]:
+    source = Source(task.text, task.filename) if task.text is not None else read_source(task.filename)
+    found = check_text(source.text, filename=task.filename)
+    if task.deep and not any(item.severity is Severity.ERROR for item in found):
+        found = in_order((*found, *_deep(task, source)), filename=task.filename)
+    return task.rules.apply(found)
+
+
+def _deep(task: Task, source: Source) -> tuple[Diagnostic, ...]:
+    from scenic.pipeline import deep_check  # brings in NumPy, z3 and the geometry libraries
+
+    found = deep_check(task.filename)
+    return apply_ignores(source.text, found, filename=task.filename, complain=False)
+
+
+def _repair(task: Task) -> Outcome:
+    from scenic.compiler.fixes import repair
+
+    if task.text is None:
+        read_source(task.filename)  # says in words what is wrong with the file
+        before = Path(task.filename).read_bytes().decode("utf-8")
+    else:
+        before = task.text
+    repaired = repair(before, filename=task.filename, shown=task.rules.apply)
+    changed = repaired.text != before
+    if task.fixing is Fixing.SHOW:
+        diff = _diff(before, repaired.text, task.filename) if changed else ""
+        return Outcome((), repaired.count, diff)
+    if task.text is not None:
+        return Outcome(repaired.diagnostics, repaired.count, text=repaired.text)
+    if changed:
+        from scenic.formats.files import write
+
+        write(Path(task.filename), repaired.text.encode("utf-8"))
+    return Outcome(
+        _check(replace(task, fixing=Fixing.NONE)) if task.deep else repaired.diagnostics, repaired.count
+    )
+
+
+def _diff(before: str, after: str, filename: str) -> str:
+    """The changes as a patch, with the line ends of the file."""
+    import difflib  # not needed by those who only look
+
+    old, new = (_LINE.findall(text) for text in (before, after))
+    return "".join(
+        line if line.endswith("\n") else f"{line}\n\\ No newline at end of file\n"
+        for line in difflib.unified_diff(old, new, filename, filename)
+    )

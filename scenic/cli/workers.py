@@ -1,0 +1,119 @@
+"""Runs a function on many arguments in several processes.
+
+The processes are ours alone: each gets one argument at a time over a pipe, so that it is known which one a process was
+at when it died. On systems where that is safe they are forked, which takes milliseconds; elsewhere each starts afresh.
+"""
+
+import contextlib
+import multiprocessing
+import os
+import signal
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from multiprocessing.connection import Connection, wait
+from multiprocessing.process import BaseProcess, parent_process
+from typing import Any, Final, TypeVar
+
+__all__ = ["DEFAULT_METHOD", "run", "usable_cpus"]
+
+_Argument = TypeVar("_Argument")
+_Result = TypeVar("_Result")
+
+DEFAULT_METHOD: Final = "fork" if sys.platform == "linux" else "spawn"
+
+
+def usable_cpus() -> int:
+    """How many processors this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0)) or 1
+    return os.cpu_count() or 1
+
+
+def run(
+    function: Callable[[_Argument], _Result],
+    arguments: Sequence[_Argument],
+    *,
+    jobs: int,
+    lost: Callable[[_Argument, int], _Result],
+    method: str = DEFAULT_METHOD,
+) -> Iterator[tuple[int, _Result]]:
+    """Call ``function``, which raises nothing, on each of the arguments; yields index and result as they come.
+
+    Where a process dies, ``lost`` makes the result from the argument that it was at and its exit code, and another
+    process takes its place. When the iterator is closed, which Ctrl-C does too, the processes are ended.
+    """
+    context: Any = multiprocessing.get_context(method)
+    waiting = list(enumerate(arguments))[::-1]
+    busy: dict[Connection, tuple[BaseProcess, int]] = {}
+    processes: list[BaseProcess] = []
+
+    def start() -> tuple[Connection, BaseProcess]:
+        ours, theirs = context.Pipe()
+        process = context.Process(target=_work, args=(function, theirs), daemon=True)
+        with _no_interruption():
+            process.start()
+        theirs.close()
+        processes.append(process)
+        return ours, process
+
+    def give(connection: Connection, process: BaseProcess) -> None:
+        """The next argument to a process, or the message that there is none."""
+        with contextlib.suppress(BrokenPipeError):  # if it died, that is noticed when its answer is read
+            if not waiting:
+                connection.send(None)
+                return
+            index, argument = waiting.pop()
+            busy[connection] = (process, index)
+            connection.send((argument,))
+
+    try:
+        for _ in range(min(jobs, len(waiting))):
+            give(*start())
+        while busy:
+            ready: list[Any] = wait(list(busy))  # what a connection is differs between systems
+            for connection in ready:
+                process, index = busy.pop(connection)
+                try:
+                    result = connection.recv()
+                except (EOFError, ConnectionResetError):
+                    process.join()
+                    yield index, lost(arguments[index], process.exitcode or 0)
+                    if waiting:
+                        give(*start())
+                else:
+                    give(connection, process)
+                    yield index, result
+    finally:
+        for process in processes:
+            process.terminate()
+        for process in processes:
+            process.join()
+
+
+def _work(function: Callable[[Any], Any], connection: Connection) -> None:
+    """What a process does: answers until there is nothing left to do, or its parent has gone."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent ends us
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    if hasattr(signal, "pthread_sigmask"):
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
+    parent = parent_process()
+    sentinels = [] if parent is None else [parent.sentinel]
+    with contextlib.suppress(EOFError, BrokenPipeError):  # the parent has gone
+        while connection in wait([connection, *sentinels]):
+            message = connection.recv()
+            if message is None:
+                return
+            connection.send(function(*message))
+
+
+@contextlib.contextmanager
+def _no_interruption() -> Iterator[None]:
+    """Lets a new process inherit that Ctrl-C waits, until it has said that it ignores it."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)

@@ -1,0 +1,115 @@
+r"""Applies the repairs that diagnostics carry.
+
+Texts here are as they stand in the file: with their byte order mark and their line ends, which repairs leave alone.
+"""
+
+import re
+from bisect import bisect_right
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+from scenic.compiler.check import check_text
+from scenic.language.diagnostics import Diagnostic, Edit, Fix, Severity
+
+__all__ = ["Repaired", "apply_fixes", "repair"]
+
+_LINE_END: Final = re.compile(r"\r\n|\r|\n")
+_MOST_ROUNDS: Final = 20
+"""A repair may make another one possible; more rounds than this would mean that two undo each other."""
+
+
+@dataclass(frozen=True, slots=True)
+class Repaired:
+    """A text after its repairs: how many were made, and what is still to be said about it."""
+
+    text: str
+    count: int
+    diagnostics: tuple[Diagnostic, ...]
+
+
+def repair(
+    text: str, *, filename: str, shown: Callable[[Sequence[Diagnostic]], Sequence[Diagnostic]]
+) -> Repaired:
+    """Make the repairs of the diagnostics that ``shown`` leaves, again and again until none is left.
+
+    A repair that would leave the program with more errors than before is not made.
+    """
+    count = 0
+    found = check_text(text, filename=filename)
+    seen = {text}
+    for _ in range(_MOST_ROUNDS):
+        fixes = list(dict.fromkeys(item.fix for item in shown(found) if item.fix is not None))
+        if not fixes:
+            break
+        better = _attempt(text, fixes, found, filename) or _one_by_one(text, fixes, found, filename)
+        if better is None or better[0] in seen:
+            break
+        text, made, found = better
+        seen.add(text)
+        count += made
+    return Repaired(text, count, tuple(shown(found)))
+
+
+_Attempt = tuple[str, int, tuple[Diagnostic, ...]]
+
+
+def _attempt(text: str, fixes: Sequence[Fix], before: Sequence[Diagnostic], filename: str) -> _Attempt | None:
+    """The text with all repairs that do not overlap, unless it has more errors than before."""
+    repaired, made = apply_fixes(text, fixes)
+    if repaired == text:
+        return None
+    found = check_text(repaired, filename=filename)
+    return None if _errors(found) > _errors(before) else (repaired, made, found)
+
+
+def _one_by_one(
+    text: str, fixes: Sequence[Fix], before: Sequence[Diagnostic], filename: str
+) -> _Attempt | None:
+    """The text with the first repair that does no harm by itself."""
+    if len(fixes) == 1:
+        return None
+    return next(filter(None, (_attempt(text, [fix], before, filename) for fix in fixes)), None)
+
+
+def _errors(diagnostics: Iterable[Diagnostic]) -> int:
+    return sum(item.severity is Severity.ERROR for item in diagnostics)
+
+
+def apply_fixes(text: str, fixes: Iterable[Fix]) -> tuple[str, int]:
+    """Make all repairs that do not overlap, the earlier in the text first; also says how many those are."""
+    starts = [int(text.startswith("\ufeff")), *(found.end() for found in _LINE_END.finditer(text))]
+    line_end = found[0] if (found := _LINE_END.search(text)) is not None else "\n"
+
+    def offset(line: int, column: int) -> int:
+        if line > len(starts):
+            return len(text)
+        # A column past the end of its line means that end.
+        end = _LINE_END.search(text, starts[line - 1])
+        return min(starts[line - 1] + column, len(text) if end is None else end.start())
+
+    def place(edit: Edit) -> tuple[int, int, str]:
+        span = edit.span
+        replacement = edit.text.replace("\n", line_end)
+        return offset(span.line, span.column), offset(span.end_line, span.end_column), replacement
+
+    taken: list[tuple[int, int, str]] = []
+    made = 0
+    for edits in sorted(sorted(map(place, fix.edits)) for fix in fixes if fix.edits):
+        if not any(_clash(edit, taken) for edit in edits):
+            taken = sorted(taken + edits)
+            made += 1
+    for start, end, replacement in reversed(taken):
+        text = text[:start] + replacement + text[end:]
+    return text, made
+
+
+def _clash(edit: tuple[int, int, str], taken: Sequence[tuple[int, int, str]]) -> bool:
+    """Whether an edit touches one of those taken, which are in order; two insertions at one place do."""
+    start, end, _ = edit
+    index = bisect_right(taken, start, key=lambda each: each[0])
+    before = taken[index - 1] if index else None
+    after = taken[index] if index < len(taken) else None
+    if before is not None and (before[1] > start or before[:2] == (start, end) or before[0] == start):
+        return True
+    return after is not None and after[0] < end

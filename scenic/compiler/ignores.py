@@ -1,0 +1,310 @@
+"""Comments that silence diagnostics: ``# scenic: ignore[SC304]`` and ``# scenic: ignore-file[SC304]``.
+
+A comment speaks of the diagnostics that start on its own line. On the first or the last line of a statement that is
+written over several lines (of a compound statement: of its header), it speaks of all that start in these lines.
+``ignore-file`` speaks of the whole file, and stands before the first statement. Without codes a comment silences
+warnings and information; with codes, errors too, but never those that are always shown (`is_lasting`).
+
+Comments are those of the lexer: a string that holds such a text is none.
+"""
+
+import re
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from typing import Final
+
+from scenic.compiler.generated import WORDS
+from scenic.compiler.lexer import DEDENT, ENDMARKER, INDENT, NEWLINE, Tokens, lex
+from scenic.language.diagnostics import Diagnostic, Edit, Fix, Severity
+from scenic.language.selection import is_lasting, is_selector, similar_selector
+from scenic.language.source import Source
+from scenic.language.spans import Span
+from scenic.language.spelling import nearest
+
+__all__ = ["BAD", "UNUSED", "apply_ignores"]
+
+UNUSED: Final = "SC390"
+BAD: Final = "SC391"
+_OWN: Final = (UNUSED, BAD)
+
+# Compiled when they are first needed: most programs have no such comment.
+_DIRECTIVE: Final = (
+    r"#[ \t]*scenic[ \t]*:[ \t]*(?P<word>[A-Za-z][A-Za-z_-]*)"
+    r"[ \t]*(?:\[(?P<codes>[^\[\]#]*)(?P<close>\])?)?"
+)
+_BARE_CODES: Final = r"[ \t:=(]*(?P<codes>SC[0-9]+(?:[ \t]*,[ \t]*SC[0-9]+)*)\)?"
+_CODE: Final = r"[^\s,](?:[^,]*[^\s,])?"
+_STATIC: Final = ("SC1", "SC2", "SC3", "SC9")
+"""Beginnings of the codes that are found without running the program; others may be found by ``--deep``."""
+
+
+def apply_ignores(
+    text: str, diagnostics: Sequence[Diagnostic], *, filename: str, complain: bool = True
+) -> tuple[Diagnostic, ...]:
+    """The diagnostics that no comment silences, and unless ``complain`` is false those about the comments.
+
+    Comments that silence nothing are only complained of in a program without errors: with errors, not everything
+    has been looked for.
+    """
+    if "scenic" not in text or re.search(_DIRECTIVE, text) is None:
+        return tuple(diagnostics)
+    source = Source(text, filename)
+    tokens = lex(source.text, WORDS)
+    comments = list(_comments(tokens, source))
+    if not comments:
+        return tuple(diagnostics)
+    has_errors = any(item.severity is Severity.ERROR for item in diagnostics)
+    silenced = _Silencer(comments, _statements(tokens))
+    kept = [item for item in diagnostics if not silenced(item)]
+    if complain:
+        own = [found for comment in comments for found in _bad(comment, source)]
+        if not has_errors:
+            own += [
+                found for each in comments for found in _unused(each, source, lambda code: code not in _OWN)
+            ]
+        kept += [item for item in own if not silenced(item)]
+        if not has_errors:
+            kept += [found for each in comments for found in _unused(each, source, _OWN.__contains__)]
+    return tuple(kept)
+
+
+@dataclass(slots=True)
+class _Code:
+    """One code of a comment; ``used`` once it has silenced something."""
+
+    text: str
+    span: Span
+    used: bool = False
+
+
+@dataclass(slots=True)
+class _Comment:
+    """An ignore comment.
+
+    ``span`` reaches from its ``#`` to its last code, ``brackets`` is what stands between ``[`` and ``]``.
+    """
+
+    span: Span
+    whole_file: bool
+    codes: list[_Code] = field(default_factory=list)
+    brackets: Span | None = None
+    problem: Diagnostic | None = None
+    used: bool = False
+
+    def silences(self, diagnostic: Diagnostic) -> bool:
+        if self.problem is not None and not self.codes:
+            return False
+        if not self.codes and self.brackets is None:
+            if diagnostic.severity is Severity.ERROR or diagnostic.code in _OWN:
+                return False
+            self.used = True
+            return True
+        for code in self.codes:
+            if diagnostic.code.startswith(code.text) and is_selector(code.text):
+                code.used = self.used = True
+                return True
+        return False
+
+
+class _Silencer:
+    """Finds the comment that silences a diagnostic, and notes its use."""
+
+    def __init__(self, comments: Sequence[_Comment], statements: Sequence[tuple[int, int]]) -> None:
+        self._of_file = [comment for comment in comments if comment.whole_file]
+        self._of_line: dict[int, list[_Comment]] = {}
+        for comment in comments:
+            if not comment.whole_file:
+                self._of_line.setdefault(comment.span.line, []).append(comment)
+        own = {line: tuple(there) for line, there in self._of_line.items()}
+        for first, last in statements:
+            for edge in (first, last):
+                for line in range(first, last + 1) if edge in own else ():
+                    if line != edge:
+                        self._of_line.setdefault(line, []).extend(own[edge])
+
+    def __call__(self, diagnostic: Diagnostic) -> bool:
+        if is_lasting(diagnostic):
+            return False
+        here = [] if diagnostic.span is None else self._of_line.get(diagnostic.span.line, [])
+        return any(comment.silences(diagnostic) for comment in (*here, *self._of_file))
+
+
+def _statements(tokens: Tokens) -> list[tuple[int, int]]:
+    """First and last line of each logical line that is written over several lines.
+
+    Specifiers that go on after a comma in an indented block belong to the line that they begin on.
+    """
+    found: list[tuple[int, int]] = []
+    first: int | None = None
+    continued = False
+    kinds = tokens.kinds
+    for index, (kind, line) in enumerate(zip(kinds, tokens.lines, strict=True)):
+        if kind == NEWLINE:
+            if index and tokens.texts[index - 1] == "," and kinds[index + 1] != DEDENT:
+                continued = continued or kinds[index + 1] == INDENT
+                if continued:
+                    continue
+            if first is not None and line > first:
+                found.append((first, line))
+            first, continued = None, False
+        elif first is None and kind not in (INDENT, DEDENT, ENDMARKER):
+            first = line
+    return found
+
+
+def _comments(tokens: Tokens, source: Source) -> Iterator[_Comment]:
+    first = next(
+        (
+            line
+            for kind, line in zip(tokens.kinds, tokens.lines, strict=True)
+            if kind not in (NEWLINE, INDENT, DEDENT)
+        ),
+        1,
+    )
+    for line, column, text in tokens.comments:
+        for match in re.finditer(_DIRECTIVE, text):
+            comment = _comment(match, line, column, source, before_program=line < first)
+            if comment is not None:
+                yield comment
+
+
+def _comment(
+    match: re.Match[str], line: int, column: int, source: Source, *, before_program: bool
+) -> _Comment | None:
+    def span(start: int, end: int) -> Span:
+        return Span(line, column + start, line, column + end)
+
+    word = match["word"]
+    whole = span(match.start(), match.end() if match["codes"] is not None else match.end("word"))
+
+    def bad(message: str, advice: str, place: Span = whole, fix: Fix | None = None) -> Diagnostic:
+        return Diagnostic(BAD, message, place, Severity.WARNING, source.filename, advice, fix=fix)
+
+    if word not in ("ignore", "ignore-file"):
+        meant = nearest(word, ("ignore", "ignore-file"))
+        if meant is None and word.lower() not in ("ignore", "ignore-file"):
+            return None
+        meant = meant or word.lower()
+        place = span(match.start("word"), match.end("word"))
+        problem = bad(
+            f"`{word}` silences nothing",
+            f"did you mean `{meant}`?",
+            place,
+            Fix(f"Write `{meant}`", (Edit(place, meant),)),
+        )
+        return _Comment(whole, False, problem=problem)
+    comment = _Comment(whole, word == "ignore-file")
+    if match["codes"] is None:
+        bare = re.compile(_BARE_CODES, re.IGNORECASE).match(match.string, match.end("word"))
+        if bare is not None:
+            place = span(match.end("word"), bare.end())
+            codes = ", ".join(each.strip().upper() for each in bare["codes"].split(","))
+            comment.span = span(match.start(), bare.end())
+            comment.problem = bad(
+                "the codes of an ignore comment stand in brackets",
+                f"write `{word}[{codes}]`",
+                place,
+                Fix(f"Write `[{codes}]`", (Edit(place, f"[{codes}]"),)),
+            )
+            return comment
+    else:
+        start, end = match.span("codes")
+        comment.brackets = span(start, end)
+        comment.codes = [
+            _Code(each[0], span(each.start(), each.end()))
+            for each in re.compile(_CODE).finditer(match.string, start, end)
+        ]
+        if match["close"] is None:
+            comment.problem = bad("the bracket of this ignore comment is not closed", "add `]`")
+            comment.codes = []
+            return comment
+        if not comment.codes:
+            comment.problem = bad(
+                "this ignore comment names no codes",
+                "name codes between the brackets, or leave the brackets out to silence all warnings",
+            )
+    if comment.whole_file and not before_program:
+        comment.problem = bad(
+            "`ignore-file` stands after the first statement, where it silences nothing",
+            "move it to the top of the file",
+        )
+        comment.codes = []
+    return comment
+
+
+def _bad(comment: _Comment, source: Source) -> Iterator[Diagnostic]:
+    """What cannot be understood of a comment."""
+    if comment.problem is not None:
+        yield comment.problem
+    for code in comment.codes:
+        if not is_selector(code.text):
+            meant = similar_selector(code.text)
+            advice = "`scenic explain` lists all codes" if meant is None else f"did you mean `{meant}`?"
+            certain = meant is not None and meant.endswith(code.text.upper())
+            fix = None if meant is None or not certain else Fix(f"Write `{meant}`", (Edit(code.span, meant),))
+            yield Diagnostic(
+                BAD,
+                f"there is no code `{code.text}`",
+                code.span,
+                Severity.WARNING,
+                source.filename,
+                advice,
+                fix=fix,
+            )
+
+
+def _unused(comment: _Comment, source: Source, concerns: Callable[[str], bool]) -> Iterator[Diagnostic]:
+    """What a comment silences in vain, of the codes that are of concern."""
+    if comment.problem is not None:
+        return
+    if comment.brackets is None:
+        if not comment.used and concerns(""):
+            yield _in_vain(
+                "this ignore comment silences nothing", comment.span, source, _removal(comment, source)
+            )
+        return
+    useless = [
+        code
+        for code in comment.codes
+        if not code.used and concerns(code.text) and (code.text == "SC" or code.text.startswith(_STATIC))
+    ]
+    useless = [code for code in useless if is_selector(code.text)]
+    if not useless:
+        return
+    names = ", ".join(f"`{code.text}`" for code in useless)
+    if len(useless) == len(comment.codes):
+        yield _in_vain(
+            f"this comment ignores {names}, but there is nothing to ignore",
+            comment.span,
+            source,
+            _removal(comment, source),
+        )
+        return
+    kept = ", ".join(code.text for code in comment.codes if code not in useless)
+    fix = Fix(f"Remove {names}", (Edit(comment.brackets, kept),))
+    yield _in_vain(
+        f"this comment ignores {names}, but there is nothing to ignore", useless[0].span, source, fix
+    )
+
+
+def _in_vain(message: str, span: Span, source: Source, fix: Fix) -> Diagnostic:
+    return Diagnostic(UNUSED, message, span, Severity.WARNING, source.filename, _lower(fix.title), fix=fix)
+
+
+def _lower(title: str) -> str:
+    return title[:1].lower() + title[1:]
+
+
+def _removal(comment: _Comment, source: Source) -> Fix:
+    """Removes a comment with the reason after it, with its line if that holds nothing else."""
+    line = comment.span.line
+    content = source.line(line)
+    other = content.find("#", comment.span.end_column)
+    before = content[: comment.span.column].rstrip()
+    if other >= 0:
+        span = Span(line, comment.span.column, line, other)
+    elif before or line >= len(source.lines):
+        span = Span(line, len(before), line, len(content))
+    else:
+        span = Span(line, 0, line + 1, 0)
+    return Fix("Remove the comment", (Edit(span, ""),))
