@@ -13,7 +13,7 @@ from bisect import bisect_left, bisect_right
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from itertools import islice
-from typing import ClassVar, Final, NamedTuple
+from typing import ClassVar, Final, NamedTuple, TypeAlias
 
 from scenic.compiler import lexemes, lexical_errors
 from scenic.language.diagnostics import Diagnostic
@@ -60,6 +60,21 @@ class Tokens:
     end_columns: list[int] = field(default_factory=list)
     comments: list[tuple[int, int, str]] = field(default_factory=list)
     diagnostics: list[Diagnostic] = field(default_factory=list)
+
+    def lists(self) -> "TokenLists":
+        """What a parser reads; it looks at a few tokens after the present one, so the kinds go on a little."""
+        return (
+            [*self.kinds, 0, 0, 0, 0],
+            self.texts,
+            self.lines,
+            self.columns,
+            self.end_lines,
+            self.end_columns,
+        )
+
+
+TokenLists: TypeAlias = tuple[list[int], list[str], list[int], list[int], list[int], list[int]]
+"""Kinds, texts, lines, columns, end lines and end columns."""
 
 
 def lex(text: str, words: Mapping[str, int]) -> Tokens:

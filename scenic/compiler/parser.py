@@ -139,16 +139,7 @@ def _parse_file(tokens: Tokens, actions: Actions) -> ast.Module | None:
     """The tree of a text without mistakes, ``None`` if it has one."""
     if tokens.diagnostics:
         return None
-    # The parser looks at a few tokens after the present one.
-    run = build_parser(
-        [*tokens.kinds, 0, 0, 0, 0],
-        tokens.texts,
-        tokens.lines,
-        tokens.columns,
-        tokens.end_lines,
-        tokens.end_columns,
-        actions,
-    )
+    run = build_parser(*tokens.lists(), actions)
     try:
         tree: ast.Module | None = run("file", 0)[0]
     except RecursionError:

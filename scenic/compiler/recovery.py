@@ -68,16 +68,8 @@ class Recovery:
         self.actions = actions
         self.problems: list[Problem] = []
         self.expectations = Expectations(tokens)
-        self._kinds = [*tokens.kinds, 0, 0, 0, 0]
-        lists = (
-            self._kinds,
-            tokens.texts,
-            tokens.lines,
-            tokens.columns,
-            tokens.end_lines,
-            tokens.end_columns,
-            actions,
-        )
+        lists = (*tokens.lists(), actions)
+        self._kinds = lists[0]
         self._fast = build_parser(*lists)
         self._recording = build_recording_parser(*lists, self.statements)
         self._done: dict[tuple[str, int], tuple[list[Any], int]] = {}

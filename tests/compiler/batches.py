@@ -27,15 +27,7 @@ def _parse_lines(lines: Sequence[str], shared_words: bool) -> list[ast.stmt | No
     tokens = lex("\n".join(lines) + "\n", WORDS)
     assert not tokens.diagnostics
     actions = Actions(tokens)
-    run: Callable[[str, int], tuple[ast.stmt | None, int]] = build_parser(
-        [*tokens.kinds, 0, 0, 0, 0],
-        tokens.texts,
-        tokens.lines,
-        tokens.columns,
-        tokens.end_lines,
-        tokens.end_columns,
-        actions,
-    )
+    run: Callable[[str, int], tuple[ast.stmt | None, int]] = build_parser(*tokens.lists(), actions)
     found: list[ast.stmt | None] = []
     start = 0
     for line in lines:

@@ -35,16 +35,8 @@ def parser() -> TracingParser:
 
 def trace(text: str) -> Trace:
     tokens = lex(text, WORDS)
-    lists = (
-        [*tokens.kinds, 0, 0, 0, 0],
-        tokens.texts,
-        tokens.lines,
-        tokens.columns,
-        tokens.end_lines,
-        tokens.end_columns,
-    )
     with recursion_limit(20_000):
-        return parser().parse(lists, Actions(tokens))
+        return parser().parse(tokens.lists(), Actions(tokens))
 
 
 @cache

@@ -32,7 +32,7 @@ _HEADERS: Final = {
 def missing_colon(at: Situation) -> Problem | None:
     """``if x``, ``def f()``, ``while x {``."""
     first = at.word(at.first)
-    if not at.expects(":") or first not in _HEADERS or at.opener(at.token) is not None:
+    if not at.expects(":") or first not in _HEADERS or at.opener(at.token) is not None or _has_colon(at):
         return None
     what = f"the colon after the header of {_HEADERS[first]} is missing"
     if first in ("else", "try", "finally", "setup", "compose", "precondition", "invariant"):
@@ -58,6 +58,19 @@ def missing_colon(at: Situation) -> Problem | None:
         return None
     changes = [insertion(at.token, ":")]
     return _colon(at, what, changes) if at.repairs(*changes) else None
+
+
+def _has_colon(at: Situation) -> bool:
+    """Whether the header has its colon, and the mistake is after it, in ``if a: b c``; of lambdas come others."""
+    depth = colons = 0
+    for word in at.tokens.texts[at.first : at.token]:
+        if word in ("(", "[", "{"):
+            depth += 1
+        elif word in (")", "]", "}"):
+            depth -= 1
+        elif depth == 0:
+            colons += (word == ":") - (word == "lambda")
+    return colons > 0
 
 
 def _begins_block(at: Situation) -> bool:

@@ -134,16 +134,7 @@ class Trials:
         tokens = result.tokens
         blocks = _Blocks()
         try:
-            blocks.run = build_recording_parser(
-                tokens.kinds,
-                tokens.texts,
-                tokens.lines,
-                tokens.columns,
-                tokens.end_lines,
-                tokens.end_columns,
-                Actions(tokens),
-                blocks,
-            )
+            blocks.run = build_recording_parser(*tokens.lists(), Actions(tokens), blocks)
             node, reached, farthest, _ = blocks.run(rule, 0)
         except RecursionError:
             return _FAILED
