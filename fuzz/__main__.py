@@ -1,84 +1,141 @@
-"""``python -m fuzz``: fuzz the front end for a while and report."""
+"""``python -m fuzz``: fuzz the front end for a while, or to a number of programs, and report."""
 
 import argparse
+import math
 import secrets
 import sys
 import time
-from itertools import count
+from collections.abc import Sequence
+from typing import Final
 
 from fuzz import corpus
+from fuzz.coverage import Share
 from fuzz.grammar import derivations
-from fuzz.properties import OF_PROGRAMS, OF_TEXTS
-from fuzz.session import Failure, Report, run_round
+from fuzz.session import Failure, Report
+from fuzz.temporal import OF_FORMULAS
+from fuzz.workers import Budget, WorkerDied, run, usable_processors
+
+__all__ = ["main"]
+
+_SECONDS: Final = 30.0
+_OF_PARSING: Final = ("making", "making mutants", "parsing_gives_a_tree", "nodes_lie_in_the_text")
+"""What the rate of the parsing properties is made of: that there is a tree, and where its parts are."""
+_REQUIRED: Final = (100.0, 95.0)
+"""Shares of Scenic's and of Python's alternatives, in percent, that ``--require-coverage`` asks for."""
+_SHOWN: Final = 20
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Run until the time is over; return 1 if anything was found."""
+    """Run until the budget is spent; return 1 if anything was found, or too little covered."""
     options = _options().parse_args(arguments)
-    seconds = options.minutes * 60 if options.minutes is not None else options.seconds
     seed = options.seed if options.seed is not None else secrets.randbelow(1 << 32)
-    print(f"fuzzing for {seconds:g} s with seed {seed}", flush=True)
+    jobs = options.jobs or usable_processors()
+    counted = options.programs is not None or options.mutants is not None
+    seconds = options.minutes * 60 if options.minutes is not None else options.seconds
+    if seconds is None and not counted:
+        seconds = _SECONDS
+    limit = f"for {seconds:g} s" if seconds is not None else "to the given numbers"
+    print(f"fuzzing {limit} with seed {seed} and {jobs} workers", flush=True)
     derivations()
-    report = Report()
-    start = time.monotonic()
-    until = start + seconds
-    for round_number in count():
-        if time.monotonic() >= until or (options.rounds is not None and round_number >= options.rounds):
-            break
-        known = len(report.failures)
-        # Rounds differ in their seeds, and the first one has that of the run.
-        of_programs = OF_TEXTS if options.texts_only else OF_PROGRAMS
-        run_round(report, seed_of_round=seed + round_number, until=until, of_programs=of_programs)
-        for failure in report.failures[known:]:
-            _show(failure, save=not options.no_save)
-    _summary(report, time.monotonic() - start, seed)
-    return 1 if report.failures else 0
+    start = time.time()
+    budget = Budget(
+        seed,
+        math.inf if seconds is None else start + seconds,
+        options.programs,
+        options.mutants,
+        options.first,
+    )
+    report, died = run(
+        budget, jobs=jobs, on_failure=lambda failure: _show(failure, start, save=not options.no_save)
+    )
+    short = _summary(report, died, time.time() - start, seed)
+    if short and options.require_coverage:
+        print("the coverage falls short of what is required")
+    return 1 if report.failures or died or (short and options.require_coverage) else 0
 
 
 def _options() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="python -m fuzz", description=__doc__)
     duration = parser.add_mutually_exclusive_group()
-    duration.add_argument("--seconds", type=float, default=30.0, help="how long to run (default: 30)")
+    duration.add_argument(
+        "--seconds", type=float, help="how long to run (default: 30, if no numbers are given)"
+    )
     duration.add_argument("--minutes", type=float, help="how long to run, in minutes")
+    parser.add_argument("--programs", type=int, help="how many programs to try, at most")
+    parser.add_argument("--mutants", type=int, help="how many mutants to try, at most")
+    parser.add_argument("--first", action="store_true", help="stop when something is found")
     parser.add_argument("--seed", type=int, help="the seed of the first round (default: a random one)")
-    parser.add_argument("--rounds", type=int, help="stop after so many rounds, too")
+    parser.add_argument("--jobs", type=int, help="worker processes (default: one for each usable processor)")
     parser.add_argument(
-        "--texts-only",
+        "--require-coverage",
         action="store_true",
-        help="check what must hold of any text, not that every sentence of the grammar is accepted: words that an "
-        "inner operator takes first make a few of them be refused (see docs/fuzzing.md)",
+        help="fail, too, if not {:g} %% of the alternatives of Scenic's rules and {:g} %% of Python's are used".format(
+            *_REQUIRED
+        ),
     )
     parser.add_argument("--no-save", action="store_true", help="do not write failures to fuzz/corpus")
     return parser
 
 
-def _show(failure: Failure, *, save: bool) -> None:
-    print(f"\nFAILED {failure.signature.property} (seed {failure.seed}): {failure.signature.detail}")
-    # A text may hold characters that no terminal can show.
-    shown = failure.text.encode("utf-8", "backslashreplace").decode()
-    print("".join(f"    | {line}\n" for line in shown.split("\n")), end="")
-    print(f"    = {failure.text!r}")
+def _show(failure: Failure, start: float, *, save: bool) -> None:
+    signature, seconds = failure.signature, failure.found_at - start
+    print(f"\nFAILED {signature.property} (seed {failure.seed}) after {seconds:.1f} s: {signature.detail}")
+    _quote(failure.text)
+    if failure.mutant is not None:
+        print(f"    made from {failure.mutant.original!r}")
     print("".join(f"    {line}\n" for line in failure.reason.rstrip().split("\n")), end="")
     if save:
-        path = corpus.save(failure.text, failure.signature.property, of_grammar=failure.of_grammar)
+        name = failure.signature.property
+        of_formulas = any(each.name == name for each in OF_FORMULAS)
+        path = corpus.save(failure.text, name, of_grammar=failure.of_grammar, of_formulas=of_formulas)
         print(f"    saved as {path.name}")
     sys.stdout.flush()
 
 
-def _summary(report: Report, seconds: float, seed: int) -> None:
-    total = report.programs + report.mutants
-    alternatives = derivations().countable
-    covered = len(alternatives & report.covered)
+def _quote(text: str) -> None:
+    # A text may hold characters that no terminal can show.
+    shown = text.encode("utf-8", "backslashreplace").decode()
+    print("".join(f"    | {line}\n" for line in shown.split("\n")), end="")
+    print(f"    = {text!r}")
+
+
+def _summary(report: Report, died: Sequence[WorkerDied], seconds: float, seed: int) -> bool:
+    """Print what a run did; tell whether its coverage falls short."""
+    total = report.programs + report.mutants + report.formulas
     print(
-        f"\n{report.programs} programs ({report.tokens} tokens) and {report.mutants} mutants in {seconds:.1f} s: "
+        f"\n{report.programs} programs ({report.tokens} tokens), {report.mutants} mutants and {report.formulas} formulas "
+        f"in {seconds:.1f} s: "
         f"{total / max(seconds, 1e-9):.0f}/s, {report.checks} checks"
     )
-    print(f"alternatives of the grammar: {covered} of {len(alternatives)} covered")
-    if missing := report.missing:
-        print("not covered: " + ", ".join(map(str, missing[:20])) + (" ..." if len(missing) > 20 else ""))
+    parsing = sum(report.seconds.get(name, 0.0) for name in _OF_PARSING)
+    if report.programs and parsing:
+        texts = report.programs + report.mutants
+        print(f"making and parsing alone: {texts / parsing:.0f}/s in each worker")
+        print(f"programs that pass all checks and are lowered: {100 * report.sound / report.programs:.0f} %")
+        print("milliseconds for each text:")
+        for name, spent in sorted(report.seconds.items(), key=lambda item: -item[1]):
+            print(f"    {1000 * spent / texts:7.3f}  {name}")
+    shares = report.coverage.shares()
+    for share in shares:
+        print(share)
+        _missing(share)
     for signature, times in report.repeated.most_common():
         print(f"again {times} times: {signature.property}: {signature.detail}")
-    print(f"{len(report.failures)} failures; seed {seed}")
+    for each in died:
+        print(f"DIED {each}")
+    print(f"{len(report.failures) + len(died)} failures; seed {seed}")
+    return any(
+        100 * share.covered < required * share.total
+        for share, required in zip(shares, _REQUIRED, strict=True)
+    )
+
+
+def _missing(share: Share) -> None:
+    lines = share.explained()
+    for line in lines[:_SHOWN]:
+        print(f"    not used: {line}")
+    if len(lines) > _SHOWN:
+        print(f"    and {len(lines) - _SHOWN} more")
 
 
 if __name__ == "__main__":

@@ -15,24 +15,36 @@ FOLDER: Final = Path(__file__).resolve().parent / "corpus"
 
 
 class Entry(NamedTuple):
-    """A program of the corpus; ``of_grammar`` tells whether the grammar made it, or a mutation did."""
+    """A program of the corpus; ``of_grammar`` tells whether the grammar made it, or a mutation did.
+
+    ``of_formulas`` tells whether it is a formula, and broke a property of these.
+    """
 
     path: Path
     text: str
     of_grammar: bool
+    of_formulas: bool = False
 
 
 def entries(folder: Path | None = None) -> Iterator[Entry]:
     """All programs of a folder, by default `FOLDER`, in the order of their names."""
     for path in sorted((folder or FOLDER).glob("*.scenic")):
         text = path.read_bytes().decode("utf-8", "surrogatepass")
-        yield Entry(path, text, path.name.startswith("program-"))
+        is_formula = path.name.startswith("formula-")
+        yield Entry(path, text, is_formula or path.name.startswith("program-"), is_formula)
 
 
-def save(text: str, property_name: str, *, of_grammar: bool, folder: Path | None = None) -> Path:
+def save(
+    text: str,
+    property_name: str,
+    *,
+    of_grammar: bool,
+    of_formulas: bool = False,
+    folder: Path | None = None,
+) -> Path:
     """Write a program into a folder, by default `FOLDER`, and return where."""
     data = text.encode("utf-8", "surrogatepass")
-    kind = "program" if of_grammar else "text"
+    kind = "formula" if of_formulas else "program" if of_grammar else "text"
     name = f"{kind}-{property_name}-{hashlib.sha256(data).hexdigest()[:10]}.scenic"
     path = (folder or FOLDER) / name
     path.parent.mkdir(parents=True, exist_ok=True)

@@ -10,8 +10,10 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Final, NamedTuple, TypeAlias
+from types import MappingProxyType
+from typing import Final, TypeAlias
 
+from fuzz.weights import WEIGHTS
 from grammar.generator import read_grammar, read_grammar_text
 from grammar.generator.model import (
     Alternative,
@@ -28,23 +30,12 @@ from grammar.generator.model import (
     Rule,
     Token,
 )
+from grammar.tracing import AlternativeId, choices
 
 __all__ = ["AlternativeId", "Derivations", "Option", "load"]
 
 _INFINITE: Final = 10**6
-_NAMES: Final = ((Reference("EXPRESSION_NAME"),), (Reference("PLAIN_NAME"),), (Token("NAME", literal=False),))
-_NAME_WEIGHT: Final = 8.0
 _HERE: Final = Path(__file__).resolve().parent
-
-
-class AlternativeId(NamedTuple):
-    """An alternative of a rule of the grammar; ``number`` counts from 1."""
-
-    rule: str
-    number: int
-
-    def __str__(self) -> str:
-        return f"{self.rule}/{self.number}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,10 +75,14 @@ _Path: TypeAlias = tuple[_Source, ...]
 class Derivations:
     """All options of all rules of a grammar, narrowed by a second one.
 
+    ``weights`` says how often an alternative, or those of a rule, are chosen, compared to others.
+
     Raises `GrammarError` if the narrowing refers to what the grammar does not have.
     """
 
-    def __init__(self, grammar: Grammar, narrowing: Grammar) -> None:
+    def __init__(
+        self, grammar: Grammar, narrowing: Grammar, weights: Mapping[str, float] = MappingProxyType({})
+    ) -> None:
         self.grammar = grammar
         self._alternatives = {
             AlternativeId(rule.name, number): alternative
@@ -112,6 +107,15 @@ class Derivations:
         ]:
             self._sources[name] = (self._source_of(self._resolve(name)),)
         self._heights = self._all_heights()
+        self._weights = {self._weighted(name): weight for name, weight in weights.items()}
+
+    def _weighted(self, name: str) -> AlternativeId | str:
+        """What a name in the table of weights means: an alternative, or all that a rule has."""
+        if "__" in name:
+            return self._resolve(name)
+        if name not in self._sources:
+            raise GrammarError(f"weights: there is no rule {name!r}")
+        return name
 
     # Reading the narrowing.
 
@@ -169,25 +173,16 @@ class Derivations:
             raise GrammarError(f"narrowing: {name!r} means {len(candidates)} alternatives, not one")
         return AlternativeId(rule, candidates[0])
 
+    def alternative(self, identity: AlternativeId) -> Alternative:
+        """The alternative of the grammar with this identity."""
+        return self._alternatives[identity]
+
     # Options.
 
     @cached_property
     def countable(self) -> frozenset[AlternativeId]:
         """The alternatives whose coverage is counted: all that the start rule needs, but trivial groups."""
-        seen: set[str] = set()
-        found: set[AlternativeId] = set()
-        stack = [self.grammar.start]
-        while stack:
-            rule = self.grammar.rules[stack.pop()]
-            if rule.name in seen:
-                continue
-            seen.add(rule.name)
-            for number, alternative in enumerate(rule.alternatives, 1):
-                if not (rule.lifted and len(rule.alternatives) == 1):
-                    found.add(AlternativeId(rule.name, number))
-                items = [named.item for named in alternative.items if not isinstance(named.item, Look)]
-                stack += [item.rule for item in _within(items) if isinstance(item, Reference)]
-        return frozenset(found)
+        return frozenset(choice.alternative for choice in choices(self.grammar) if not choice.item)
 
     @cached_property
     def options(self) -> Mapping[str, tuple[Option, ...]]:
@@ -217,12 +212,15 @@ class Derivations:
         found: list[tuple[_Path, float]] = []
         for source in self._sources[rule]:
             target = _only_reference(source.items)
+            own = self._weights.get(source.rule, 1.0)
+            for alternative in source.counts_as:
+                own *= self._weights.get(alternative, 1.0)
             if target is None:
-                found.append(((source,), _NAME_WEIGHT if source.items in _NAMES else 1.0))
+                found.append(((source,), own))
             elif target not in seen and target != rule:
                 inner = self._flattened(target, seen | {rule})
                 # Otherwise the many operators would crowd out the few other statements.
-                factor = len(inner) ** 0.5 / sum(weight for _, weight in inner)
+                factor = own * len(inner) ** 0.5 / sum(weight for _, weight in inner)
                 found += (((source, *path), weight * factor) for path, weight in inner)
         return found
 
@@ -304,7 +302,9 @@ def load() -> Derivations:
     """The derivations of ``grammar/scenic.gram``."""
     narrowing = (_HERE / "narrowing.gram").read_text(encoding="utf-8")
     return Derivations(
-        read_grammar(_HERE.parent / "grammar" / "scenic.gram"), read_grammar_text(narrowing, digest="")
+        read_grammar(_HERE.parent / "grammar" / "scenic.gram"),
+        read_grammar_text(narrowing, digest=""),
+        WEIGHTS,
     )
 
 

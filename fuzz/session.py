@@ -1,26 +1,43 @@
-"""A long run: rounds of programs and of mutants, until the time is over; failures are shrunk and collected."""
+"""A run: rounds of programs, of formulas and of mutants, tried on the properties of each; failures are shrunk and collected."""
 
 import contextlib
 import io
+import re
 import time
 import traceback
 from collections import Counter
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
-from typing import Final, NamedTuple, TypeVar
+from dataclasses import dataclass, field, replace
+from typing import Final, NamedTuple
 
-from hypothesis import HealthCheck, Phase, given, seed, settings
+from hypothesis import HealthCheck, Phase, given, settings
+from hypothesis import strategies as st
 from hypothesis.errors import Flaky
-from hypothesis.strategies import SearchStrategy
+from hypothesis.strategies import DrawFn, SearchStrategy
 
+from fuzz.coverage import Coverage
 from fuzz.derivations import AlternativeId
-from fuzz.grammar import Program, derivations, from_grammar, programs
-from fuzz.mutations import mutated
+from fuzz.draws import Draws, HypothesisDraws, RandomDraws, replayed
+from fuzz.grammar import Program, make_program
+from fuzz.mutations import Mutant, make_mutant
 from fuzz.properties import OF_PROGRAMS, OF_TEXTS, Case, Property, Violation
+from fuzz.temporal import OF_FORMULAS, make_formula
+from scenic.language.diagnostics import Severity
 
-__all__ = ["Failure", "Report", "Signature", "run_round", "search", "signature_of"]
+__all__ = ["Failure", "Report", "Signature", "run_round", "shrink", "signature_of", "try_text"]
 
-_ROUND: Final = 200
+PROGRAMS: Final = 200
+MUTANTS: Final = 100
+FORMULAS: Final = 20
+"""The sizes of a round."""
+_LONGEST: Final = 40.0
+"""For so many seconds a failure is shrunk at most."""
+_UNFINISHED: Final = frozenset({"SC900", "SC120"})
+"""Errors of programs that are right, but need more than this version, or the running Python, has."""
+_WORDS: Final = 8
+_ROUNDS_APART: Final = 1 << 20
+
+Sample = Program | Mutant
 
 
 class Signature(NamedTuple):
@@ -33,13 +50,19 @@ class Signature(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Failure:
-    """A shrunk text for which a property does not hold, and why not."""
+    """A shrunk text for which a property does not hold, and why not.
+
+    ``mutant`` is the text with the program it was made from, if a mutation made it.
+    """
 
     signature: Signature
     text: str
     of_grammar: bool
     seed: int
     reason: str
+    mutant: Mutant | None = None
+    found_at: float = field(default_factory=time.time, compare=False)
+    """When it was found, before it was shrunk (by `time.time`)."""
 
 
 @dataclass(slots=True)
@@ -48,31 +71,55 @@ class Report:
 
     programs: int = 0
     mutants: int = 0
+    formulas: int = 0
     tokens: int = 0
     checks: int = 0
-    covered: set[AlternativeId] = field(default_factory=set)
+    sound: int = 0
+    """Programs with no errors but those of `_UNFINISHED`."""
+    seconds: dict[str, float] = field(default_factory=dict)
+    """The processor time that making programs and mutants took, and each property."""
+    coverage: Coverage = field(default_factory=Coverage)
     failures: list[Failure] = field(default_factory=list)
     repeated: Counter[Signature] = field(default_factory=Counter)
 
-    @property
-    def missing(self) -> tuple[AlternativeId, ...]:
-        """The alternatives that no program has used."""
-        return tuple(sorted(derivations().countable - self.covered))
+    def spend(self, name: str, since: float) -> None:
+        """Note that ``name`` took the processor time since ``since`` (of `time.process_time`)."""
+        self.seconds[name] = self.seconds.get(name, 0.0) + time.process_time() - since
+
+    def merge(self, other: "Report") -> None:
+        """Add what another worker did. Of equal failures the shortest is kept."""
+        self.programs += other.programs
+        self.mutants += other.mutants
+        self.formulas += other.formulas
+        self.tokens += other.tokens
+        self.checks += other.checks
+        self.sound += other.sound
+        for name, seconds in other.seconds.items():
+            self.seconds[name] = self.seconds.get(name, 0.0) + seconds
+        self.coverage.add(other.coverage.covered)
+        self.repeated += other.repeated
+        for failure in other.failures:
+            if any(known.signature == failure.signature for known in self.failures):
+                self.repeated[failure.signature] += 1
+            else:
+                self.failures.append(failure)
 
 
 class _Stop(BaseException):
-    """Ends a round whose time is over; not an `Exception`, so that Hypothesis lets it through."""
+    """Ends shrinking that takes too long; not an `Exception`, so that Hypothesis lets it through."""
 
 
 class _Failed(Exception):
-    """A new failure, which Hypothesis is to shrink."""
+    """The failure that Hypothesis is to shrink."""
 
 
 def signature_of(name: str, error: BaseException) -> Signature:
     """The signature of the exception that a property raised."""
     if isinstance(error, Violation):
-        # The words of the message, without places and names.
-        detail = " ".join(word for word in str(error).split() if word.isalpha())
+        # The first words of the message, without places and what is quoted of the text.
+        first, _, _ = str(error).partition("\n")
+        unquoted = re.sub(r"'[^']*'|\"[^\"]*\"|`[^`]*`", "", first)
+        detail = " ".join([word for word in unquoted.split() if word.isalpha()][:_WORDS])
     else:
         frame = traceback.extract_tb(error.__traceback__)[-1]
         detail = f"{frame.filename.rpartition('/')[2]}:{frame.lineno}"
@@ -84,88 +131,171 @@ def run_round(
     *,
     seed_of_round: int,
     until: float,
-    examples: int = _ROUND,
+    programs: int = PROGRAMS,
+    mutants: int = MUTANTS,
+    formulas: int = FORMULAS,
     of_programs: Sequence[Property] = OF_PROGRAMS,
+    of_texts: Sequence[Property] = OF_TEXTS,
+    of_formulas: Sequence[Property] = OF_FORMULAS,
+    first: bool = False,
 ) -> None:
-    """Try some programs and some mutants on the properties of each. Stops at the time ``until`` (of `time.monotonic`), except to shrink.
+    """Try some programs, some formulas, and some mutants of the programs, on the properties of each, up to the time ``until`` (of `time.monotonic`).
 
-    What is found is entered in ``report``. Failures known to it are counted and not shrunk again.
+    What is found is entered in ``report``. Failures known to it are counted and not shrunk again. If ``first``, nothing more is
+    tried once something has failed.
     """
-    aims = report.missing or tuple(sorted(derivations().countable))
-
-    def try_program(program: Program) -> str:
+    aims = report.coverage.aims or None
+    pool: list[tuple[str, Sequence[int]]] = []
+    for number in range(programs):
+        if time.monotonic() >= until or (first and report.failures):
+            return
+        start = time.process_time()
+        draws = RandomDraws(seed_of_round * _ROUNDS_APART + number)
+        program = make_program(draws, aims=aims)
+        pool.append((program.text, tuple(draws.choices)))
+        report.spend("making", start)
         report.programs += 1
         report.tokens += len(program.pieces)
-        report.covered |= program.alternatives
-        return program.text
-
-    def try_mutant(text: str) -> str:
+        case = Case(program.text)
+        try_text(report, case, of_programs, _program_again(aims), draws.choices, seed_of_round)
+        start = time.process_time()
+        report.coverage.note(program)
+        report.spend("tracing", start)
+        report.sound += _is_sound(case)
+    for number in range(formulas):
+        if time.monotonic() >= until or (first and report.failures):
+            return
+        start = time.process_time()
+        # Formulas have numbers that no program or mutant has.
+        draws = RandomDraws((seed_of_round + 1) * _ROUNDS_APART - 1 - number)
+        formula = make_formula(draws)
+        report.spend("making formulas", start)
+        report.formulas += 1
+        try_text(report, Case(formula.text), of_formulas, make_formula, draws.choices, seed_of_round)
+    if not pool:
+        return
+    for number in range(mutants):
+        if time.monotonic() >= until or (first and report.failures):
+            return
+        start = time.process_time()
+        draws = RandomDraws(seed_of_round * _ROUNDS_APART + programs + number)
+        mutant = _mutant_of(pool, draws)
+        report.spend("making mutants", start)
         report.mutants += 1
+        case = Case(mutant.text, mutant)
+        try_text(report, case, of_texts, _mutant_again(aims), draws.choices, seed_of_round)
+
+
+def _is_sound(case: Case) -> bool:
+    """Whether a program passes all checks, so that it is lowered or only waits for a feature."""
+    try:
+        found = case.checked
+    except Exception:  # noqa: BLE001 - whatever it is, a property has said so already
+        return False
+    return all(each.code in _UNFINISHED for each in found if each.severity is Severity.ERROR)
+
+
+def _mutant_of(pool: Sequence[tuple[str, Sequence[int]]], draws: RandomDraws) -> Mutant:
+    """A mutant of programs of the same round, with choices as if these had been made now."""
+
+    def pick() -> str:
+        # Replaying makes the program instead of picking it.
+        text, choices = pool[draws.pick(len(pool))]
+        draws.extend(choices)
         return text
 
-    search(report, programs(aims=aims), try_program, of_programs, seed_of_round, until, examples)
-    search(report, mutated(from_grammar()), try_mutant, OF_TEXTS, seed_of_round, until, examples // 2)
+    return make_mutant(draws, pick(), pick)
 
 
-_Drawn = TypeVar("_Drawn")
+def _program_again(aims: Sequence[AlternativeId] | None) -> Callable[[Draws], Sample]:
+    return lambda draws: make_program(draws, aims=aims)
 
 
-def search(
+def _mutant_again(aims: Sequence[AlternativeId] | None) -> Callable[[Draws], Sample]:
+    def make(draws: Draws) -> Mutant:
+        def another() -> str:
+            return make_program(draws, aims=aims).text
+
+        return make_mutant(draws, another(), another)
+
+    return make
+
+
+def try_text(
     report: Report,
-    strategy: SearchStrategy[_Drawn],
-    note: Callable[[_Drawn], str],
+    case: Case,
     properties: Sequence[Property],
-    seed_of_round: int,
-    until: float,
-    examples: int,
+    again: Callable[[Draws], Sample],
+    choices: Sequence[int],
+    seed: int,
 ) -> None:
-    """Try what a strategy makes on ``properties``; ``note`` counts it and gives its text.
+    """Try a text on ``properties``. At most one new failure is shrunk and entered in ``report``.
 
-    At most one new failure is found, shrunk and entered in ``report``.
+    ``again`` makes the text from the numbers ``choices``, and shorter ones from others.
     """
-    known = {failure.signature for failure in report.failures}
-    found: list[Failure] = []
+    for each in properties:
+        report.checks += 1
+        start = time.process_time()
+        error = _fault(each, case)
+        report.spend(each.name, start)
+        if error is not None:
+            signature = signature_of(each.name, error)
+            if any(known.signature == signature for known in report.failures):
+                report.repeated[signature] += 1
+                continue
+            reason = "".join(traceback.format_exception(error)[-3:])
+            first = Failure(signature, case.text, case.mutant is None, seed, reason, _mutant(case))
+            report.failures.append(shrink(first, each, again, choices))
+            return
 
-    def attempt(drawn: _Drawn) -> None:
-        # While a failure is being shrunk, the clock does not matter and nothing counts.
-        if found:
-            text = drawn.text if isinstance(drawn, Program) else str(drawn)
-        else:
-            if time.monotonic() >= until:
-                raise _Stop
-            text = note(drawn)
-        case = Case(text)
-        for each in properties:
-            if not found:
-                report.checks += 1
-            try:
-                each.holds(case)
-            except Exception as error:
-                signature = signature_of(each.name, error)
-                if signature in known:
-                    if not found:
-                        report.repeated[signature] += 1
-                    continue
-                if found and signature != found[-1].signature:
-                    # Shrinking must not slip from one failure to another.
-                    continue
-                reason = "".join(traceback.format_exception(error)[-3:])
-                found.append(Failure(signature, text, isinstance(drawn, Program), seed_of_round, reason))
-                raise _Failed(str(signature)) from error
+
+def _fault(broken: Property, case: Case) -> Exception | None:
+    """What a property raises."""
+    try:
+        broken.holds(case)
+    except Exception as error:  # noqa: BLE001 - whatever is raised is what the fuzzer looks for
+        return error
+    return None
+
+
+def _mutant(case: Case) -> Mutant | None:
+    return case.mutant if isinstance(case.mutant, Mutant) else None
+
+
+def shrink(
+    failure: Failure, broken: Property, again: Callable[[Draws], Sample], choices: Sequence[int]
+) -> Failure:
+    """The same failure with as short a text as Hypothesis finds, starting with the one made from ``choices``."""
+    found = [failure]
+    until = time.monotonic() + _LONGEST
+
+    def attempt(sample: Sample) -> None:
+        if time.monotonic() >= until:
+            raise _Stop
+        mutant = sample if isinstance(sample, Mutant) else None
+        error = _fault(broken, Case(sample.text, mutant, thorough=True))
+        # Shrinking must not slip from one failure to another.
+        if error is not None and signature_of(broken.name, error) == failure.signature:
+            reason = "".join(traceback.format_exception(error)[-3:])
+            found.append(replace(failure, text=sample.text, reason=reason, mutant=mutant))
+            raise _Failed(str(failure.signature)) from error
 
     test = settings(
-        max_examples=examples,
         deadline=None,
-        database=None,
-        phases=(Phase.generate, Phase.shrink),
+        database=replayed(choices),
+        phases=(Phase.reuse, Phase.shrink),
         report_multiple_bugs=False,
         suppress_health_check=list(HealthCheck),
-    )(seed(seed_of_round)(given(strategy)(attempt)))
-    with contextlib.redirect_stdout(io.StringIO()):
-        try:
-            test()
-        except _Stop:
-            pass
-        except (_Failed, Flaky):
-            # Hypothesis tries the shortest one last. What fails only sometimes is a failure, too.
-            report.failures.append(found[-1])
+    )(given(_samples(again))(attempt))
+    with contextlib.redirect_stdout(io.StringIO()), contextlib.suppress(_Stop, _Failed, Flaky):
+        # Hypothesis tries the shortest one last. What fails only sometimes is a failure, too.
+        test()
+    return found[-1]
+
+
+def _samples(again: Callable[[Draws], Sample]) -> SearchStrategy[Sample]:
+    @st.composite
+    def sample(draw: DrawFn) -> Sample:
+        return again(HypothesisDraws(draw))
+
+    return sample()

@@ -467,3 +467,13 @@ def test_hostile_texts(text: str) -> None:
     tokens = lex(text, WORDS)
     assert tokens.kinds[-1] == lexer.ENDMARKER
     assert tokens.diagnostics or "if" in text or text.isspace()
+
+
+@pytest.mark.parametrize(
+    "text", ['("""\n= 1 ==', '("""a\nbcd"""\n', '(f"""a\nbcd"""\n', '["\\\n    workspace']
+)
+def test_an_open_bracket_is_noticed_at_the_end_of_the_last_token(text: str) -> None:
+    [problem] = [each for each in lex(text, WORDS).diagnostics if each.code == "SC103"]
+    [label] = problem.labels
+    line = text.split("\n")[1]
+    assert (label.span.line, label.span.column) == (2, len(line))

@@ -280,3 +280,38 @@ def test_of_many_mistakes_the_first_are_explained_and_the_tree_is_whole() -> Non
     result = parse("x = = 3\ny = 4\n" * 2000)
     assert len(result.diagnostics) == MOST_PROBLEMS
     assert statements(result.tree.body) == ["ErrorStatement", "Assign"] * 2000
+
+
+# Found by the fuzzer.
+
+
+def test_clauses_of_match_are_no_statements() -> None:
+    result = parse("match:\n    case\n    case 1:\n        x\n")
+    [gap] = result.tree.body
+    assert isinstance(gap, tree.ErrorStatement)
+    assert statements(gap.body) == ["ErrorStatement", "Expr"]
+
+
+def test_only_lines_that_make_instances_go_on_with_specifiers() -> None:
+    [problem] = parse("with a as b: break\n    below x\n").diagnostics
+    assert (problem.code, problem.fix) == ("SC102", None)
+    [problem] = parse("new Object at 3\n    below x\n").diagnostics
+    assert (problem.code, problem.fix is None) == ("SC113", False)
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["def f(p:\n    int): x x\n", "if x in {a:\n    1}: x x\n", "behavior B(p:\n    q,\n    r): x x\n"],
+)
+def test_a_colon_at_the_end_of_a_line_need_not_be_that_of_the_header(text: str) -> None:
+    [problem] = parse(text).diagnostics
+    assert problem.span is not None
+    assert (problem.code, problem.span.line) == ("SC110", text.count("\n"))
+
+
+@pytest.mark.parametrize("text", ["def f(p): x x\n", "if a: x x\n", "if lambda: 3: x x\n", "class C: x x\n"])
+def test_a_header_with_its_colon_lacks_none(text: str) -> None:
+    [problem] = parse(text).diagnostics
+    assert problem.code == "SC110"
+    [problem] = parse(text.replace(": x x", " x x")).diagnostics
+    assert problem.code in ("SC110", "SC121")

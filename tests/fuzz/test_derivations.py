@@ -96,3 +96,14 @@ def test_the_narrowing_fits_the_grammar():
     # Every rule that a file needs has sentences, and none is out of reach.
     assert {each.rule for each in derivations.countable} <= derivations.options.keys()
     assert all(option.height < 10 for options in derivations.options.values() for option in options)
+
+
+def test_weights_say_how_often_what_is_chosen():
+    grammars = read_grammar_text(GRAMMAR), read_grammar_text(NARROWING)
+    plain, weighted = Derivations(*grammars), Derivations(*grammars, {"sum__2": 5, "atom": 3})
+    for before, after in zip(plain.options["sum"], weighted.options["sum"], strict=True):
+        factor = {"atom": None, "sum": 5 if "sum/2" in map(str, before.counts_as) else 1}[before.rule]
+        assert factor is None or after.weight == factor * before.weight
+    assert {option.weight for option in weighted.options["atom"]} == {3}
+    with pytest.raises(GrammarError, match="weights: there is no rule 'product'"):
+        Derivations(*grammars, {"product": 2})

@@ -1,11 +1,13 @@
 """Mutations: each one happens, and most of what they make is no program any more."""
 
-import pytest
-from hypothesis import HealthCheck, Phase, find, given, settings
-from hypothesis import strategies as st
+from collections.abc import Callable
 
+import pytest
+from hypothesis import HealthCheck, Phase, given, settings
+
+from fuzz.draws import RandomDraws
 from fuzz.grammar import from_grammar
-from fuzz.mutations import mutated
+from fuzz.mutations import Mutant, make_mutant, mutated
 from scenic.compiler.parser import parse
 
 SETTINGS = settings(
@@ -16,6 +18,15 @@ SETTINGS = settings(
     phases=(Phase.generate,),
     suppress_health_check=list(HealthCheck),
 )
+
+
+def search(wanted: Callable[[Mutant], bool], original: str, other: str = "") -> Mutant:
+    """A mutant of the wanted kind, with one mutation."""
+    for seed in range(20_000):
+        mutant = make_mutant(RandomDraws(seed), original, lambda: other, most=1)
+        if wanted(mutant):
+            return mutant
+    raise AssertionError("there is none")
 
 
 @pytest.mark.parametrize(
@@ -32,15 +43,11 @@ SETTINGS = settings(
     ],
 )
 def test_it_happens_that(name: str, result: str):
-    assert (
-        find(mutated(st.just("if x:\n    y\n"), most=1), lambda text: text == result, settings=SETTINGS)
-        == result
-    )
+    assert search(lambda mutant: mutant.text == result, "if x:\n    y\n")
 
 
 def test_it_happens_that_part_of_another_program_gets_in():
-    texts = st.sampled_from(["a + b\n", "class C"])
-    find(mutated(texts, most=1), lambda text: "class" in text and "+" in text, settings=SETTINGS)
+    assert search(lambda mutant: "class" in mutant.text and "+" in mutant.text, "a + b\n", "class C")
 
 
 def test_most_mutants_are_no_programs():
@@ -48,8 +55,49 @@ def test_most_mutants_are_no_programs():
 
     @settings(SETTINGS, max_examples=60)
     @given(mutated(from_grammar()))
-    def check(text: str) -> None:
-        wrong.append(bool(parse(text).diagnostics))
+    def check(mutant: Mutant) -> None:
+        wrong.append(bool(parse(mutant.text).diagnostics))
 
     check()
     assert sum(wrong) > len(wrong) / 3
+
+
+@settings(SETTINGS, max_examples=150)
+@given(mutated(from_grammar()))
+def test_a_mutant_knows_where_it_was_changed(mutant: Mutant):
+    text, original = mutant.text, mutant.original
+    assert 0 <= mutant.start <= mutant.end <= len(text)
+    assert text[: mutant.start] == original[: mutant.start]
+    rest = len(text) - mutant.end
+    assert mutant.start + rest <= len(original)
+    assert text[mutant.end :] == original[len(original) - rest :]
+    if text == original:
+        assert mutant.start == len(text)
+    elif mutant.start < min(len(text), len(original)):
+        assert text[mutant.start] != original[mutant.start]
+
+
+@pytest.mark.parametrize(
+    ("original", "text", "start", "end"),
+    [
+        ("a b c", "a c", 2, 2),
+        ("a b c", "a b b c", 4, 6),
+        ("a b", "a", 1, 1),
+        ("a", "a", 1, 1),
+        ("aa", "aaa", 2, 3),
+        ("x = 1", "x  1", 2, 2),
+    ],
+)
+def test_the_changed_part(original: str, text: str, start: int, end: int):
+    found = search(lambda mutant: mutant.text == text, original)
+    assert (found.start, found.end) == (start, end)
+
+
+def test_half_of_the_mutants_have_one_mutation():
+    counts = []
+    for seed in range(400):
+        draws = RandomDraws(seed)
+        make_mutant(draws, "x", lambda: "y")
+        # The first number decides how many there are.
+        counts.append(draws.choices[0] < 2)
+    assert 160 < sum(counts) < 240

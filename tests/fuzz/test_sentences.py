@@ -36,9 +36,7 @@ def test_an_unknown_rule_is_refused():
 
 
 @settings(QUICK)
-@given(
-    programs("statement", limits=Limits(depth=0, expansions=0), aims=[]) if False else programs("statement")
-)
+@given(programs("statement"))
 def test_brackets_and_blocks_are_balanced(program: Program):
     brackets = blocks = strings = 0
     for piece in program.pieces:

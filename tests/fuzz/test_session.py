@@ -1,102 +1,192 @@
 """Long runs: a fixed short one of the real thing, and what becomes of failures."""
 
+import ast
 import math
 import time
+from functools import cache
 from pathlib import Path
 
 import pytest
+from hypothesis import HealthCheck, Phase, given, settings
 
 from fuzz import __main__ as command
-from fuzz import corpus
-from fuzz.grammar import Program, derivations, programs
+from fuzz import corpus, workers
+from fuzz.draws import RandomDraws, replayed
+from fuzz.grammar import Program, make_program, programs
 from fuzz.properties import OF_PROGRAMS, OF_TEXTS, Case, Property, Violation
-from fuzz.session import Report, run_round, search
-
-ROUNDS = 4
+from fuzz.session import Report, run_round
+from fuzz.temporal import OF_FORMULAS
+from scenic.compiler import tree as scenic
 
 
 def test_the_front_end_withstands_a_short_run():
     report = Report()
-    for number in range(ROUNDS):
-        run_round(report, seed_of_round=number, until=math.inf, examples=100)
+    for number in range(2):
+        run_round(report, seed_of_round=number, until=math.inf, programs=80, mutants=40)
     assert not report.failures, "\n\n".join(
         f"{failure.signature}\n{failure.text!r}\n{failure.reason}" for failure in report.failures
     )
-    assert report.programs + report.mutants >= ROUNDS * 120
-    assert len(report.missing) <= 0.35 * len(derivations().countable), report.missing
+    assert (report.programs, report.mutants, report.formulas) == (160, 80, 40)
+    # Most programs are such that they reach the end of the compiler.
+    assert report.sound > 0.6 * report.programs
+
+
+@pytest.mark.slow
+def test_everything_is_covered_soon_whatever_the_seed():
+    for seed in (17, 990):
+        report = Report()
+        for number in range(20):
+            run_round(
+                report,
+                seed_of_round=seed + number,
+                until=math.inf,
+                mutants=0,
+                formulas=0,
+                of_programs=(),
+                of_texts=(),
+            )
+            if not report.coverage.aims:
+                break
+        assert [share.explained() for share in report.coverage.shares()] == [[], []]
 
 
 @pytest.mark.parametrize("entry", list(corpus.entries()), ids=lambda entry: entry.path.name)
 def test_what_once_failed_is_right_now(entry: corpus.Entry):
-    case = Case(entry.text)
+    case = Case(entry.text, thorough=True)
     for each in OF_PROGRAMS if entry.of_grammar else OF_TEXTS:
+        each.holds(case)
+    for each in OF_FORMULAS if entry.of_formulas else ():
         each.holds(case)
 
 
-def no_lambda(case: Case) -> None:
-    if "lambda" in case.text:
-        raise Violation("there is a lambda")
+def lambda_in_a_specifier(case: Case) -> None:
+    for node in ast.walk(case.result.tree):
+        if isinstance(node, scenic.Specifier) and any(
+            isinstance(part, ast.Lambda) for part in ast.walk(node)
+        ):
+            raise Violation("there is a lambda in a specifier")
 
 
-def no_division(case: Case) -> None:
-    if " / " in case.text:
-        raise ZeroDivisionError
+def division(case: Case) -> None:
+    for node in ast.walk(case.result.tree):
+        if isinstance(node, ast.Div):
+            raise ZeroDivisionError
 
 
-PLANTED = (Property("no_lambda", no_lambda), Property("no_division", no_division))
+def compose_block(case: Case) -> None:
+    for node in ast.walk(case.result.tree):
+        if isinstance(node, scenic.ScenarioDef) and node.compose:
+            raise Violation("there is a compose block")
 
 
-def search_planted(report: Report, seed: int, *, until: float = math.inf) -> None:
-    def note(program: Program) -> str:
-        report.programs += 1
-        return program.text
-
-    search(report, programs(), note, PLANTED, seed, until, 200)
+def gap(case: Case) -> None:
+    if any(isinstance(node, scenic.ErrorStatement) for node in ast.walk(case.result.tree)):
+        raise Violation("there is a gap")
 
 
-def test_failures_are_shrunk_and_each_is_reported_once():
+PLANTED = tuple(map(Property.of, (lambda_in_a_specifier, division, compose_block)))
+
+
+@cache
+def planted_run() -> Report:
     report = Report()
-    for seed in range(3):
-        search_planted(report, seed)
-    assert sorted(failure.signature[:2] for failure in report.failures) == [
-        ("no_division", "ZeroDivisionError"),
-        ("no_lambda", "Violation"),
-    ]
-    assert all(len(failure.text) <= 60 for failure in report.failures)
-    assert all(failure.of_grammar and failure.reason for failure in report.failures)
+    run_round(report, seed_of_round=1, until=math.inf, of_programs=PLANTED, of_texts=(Property.of(gap),))
+    return report
+
+
+@pytest.mark.slow
+def test_failures_are_shrunk_to_small_programs_and_each_is_reported_once():
+    report = planted_run()
+    lengths = {failure.signature.property: len(failure.text) for failure in report.failures}
+    assert len(lengths) == len(report.failures)
+    assert lengths["lambda_in_a_specifier"] <= 120
+    assert lengths["division"] <= 60
+    assert lengths["compose_block"] <= 100
+    assert lengths["gap"] <= 80
     assert sum(report.repeated.values()) > 0
+    for failure in report.failures:
+        assert failure.reason
+        assert failure.seed == 1
+        assert failure.of_grammar == (failure.mutant is None) == (failure.signature.property != "gap")
 
 
 def test_a_run_ends_when_its_time_is_over():
     report = Report()
-    search_planted(report, 0, until=time.monotonic() - 1)
-    assert report.programs == 0
+    run_round(report, seed_of_round=0, until=time.monotonic() - 1)
+    assert report.programs == report.mutants == 0
     assert not report.failures
 
 
+@pytest.mark.parametrize("seed", range(8))
+def test_what_was_made_from_random_numbers_is_made_again_from_them(seed: int):
+    draws = RandomDraws(seed)
+    program = make_program(draws)
+    texts: list[str] = []
+
+    @settings(
+        database=replayed(draws.choices),
+        phases=(Phase.reuse,),
+        deadline=None,
+        suppress_health_check=list(HealthCheck),
+    )
+    @given(programs())
+    def check(again: Program) -> None:
+        texts.append(again.text)
+
+    check()
+    assert texts == [program.text]
+
+
 def test_the_command_reports_and_succeeds(capsys: pytest.CaptureFixture[str]):
-    assert command.main(["--seconds", "0.3", "--seed", "5"]) == 0
+    assert command.main(["--programs", "30", "--mutants", "11", "--seed", "5", "--jobs", "1"]) == 0
     output = capsys.readouterr().out
     assert "with seed 5" in output
-    assert "alternatives of the grammar" in output
+    assert "30 programs" in output
+    assert ", 11 mutants and 20 formulas" in output
+    assert "alternatives of Scenic's rules" in output
     assert "0 failures; seed 5" in output
 
 
+def test_too_little_coverage_can_be_a_failure(capsys: pytest.CaptureFixture[str]):
+    assert command.main(["--programs", "3", "--seed", "5", "--jobs", "1", "--require-coverage"]) == 1
+    assert "the coverage falls short" in capsys.readouterr().out
+
+
+@pytest.mark.slow
 def test_the_command_shows_failures_and_saves_them(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ):
-    def one_round(report: Report, *, seed_of_round: int, **_options: object) -> None:
-        search_planted(report, seed_of_round)
+    def one_round(report: Report, **_options: object) -> None:
+        report.failures += planted_run().failures
 
-    monkeypatch.setattr(command, "run_round", one_round)
+    monkeypatch.setattr(workers, "run_round", one_round)
     monkeypatch.setattr(command.corpus, "FOLDER", tmp_path)
-    assert command.main(["--seed", "0", "--rounds", "1"]) == 1
+    assert command.main(["--seed", "0", "--programs", "1", "--jobs", "1"]) == 1
     output = capsys.readouterr().out
-    assert "FAILED no_" in output
-    assert "(seed 0)" in output
-    [entry] = corpus.entries(tmp_path)
-    assert f"    | {entry.text.strip()}\n" in output
-    assert entry.of_grammar
+    assert "FAILED gap" in output
+    assert "(seed 1)" in output
+    found = list(corpus.entries(tmp_path))
+    assert sum(entry.of_grammar for entry in found) == len(found) - 1 >= 2
+    for entry in found:
+        assert f"    | {entry.text.splitlines()[0]}\n" in output
+
+
+@pytest.mark.slow
+def test_workers_share_the_work(capsys: pytest.CaptureFixture[str]):
+    assert (
+        command.main(["--programs", "450", "--mutants", "10", "--seed", "5", "--jobs", "2", "--no-save"]) == 0
+    )
+    output = capsys.readouterr().out
+    assert "2 workers" in output
+    assert "450 programs" in output
+    assert "and 10 mutants" in output
+
+
+def test_a_budget_is_shared_among_the_rounds():
+    budget = workers.Budget(seed=0, programs=450, mutants=10)
+    sizes = [budget.round(number) for number in range(4)]
+    assert sizes == [(150, 3), (150, 3), (150, 4), None]
+    assert workers.Budget(seed=0).round(10**6) is not None
 
 
 def saved(folder: Path, text: str, name: str, of_grammar: bool) -> Path:

@@ -12,6 +12,7 @@ import pytest
 
 from scenic.compiler.check import check_text
 from scenic.compiler.checks import lint
+from scenic.compiler.fixes import apply_fixes
 from scenic.compiler.parser import parse
 from scenic.compiler.resolver import resolve
 from scenic.language.diagnostics import CODES, Diagnostic, Fix, Severity
@@ -182,3 +183,17 @@ def test_large_programs(text: str) -> None:
     source = Source(text, "f")
     assert all(isinstance(item, Diagnostic) for item in lint(tree, source, resolve(tree, source)))
     assert isinstance(tree, ast.Module)
+
+
+@pytest.mark.parametrize(
+    ("text", "repaired"),
+    [
+        ("require[1]ego\n", "require ego\n"),
+        ("require[1](ego)\n", "require (ego)\n"),
+        ("require[1] ego\n", "require ego\n"),
+    ],
+)
+def test_a_probability_is_taken_away_from_between_words(text: str, repaired: str) -> None:
+    [found] = [each for each in check_text(text, filename="f") if each.code == "SC306"]
+    assert found.fix is not None
+    assert apply_fixes(text, [found.fix]) == (repaired, 1)

@@ -1,0 +1,2 @@
+behavior simulator(p:
+     Range):lambda z3

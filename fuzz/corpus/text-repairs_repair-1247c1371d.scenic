@@ -1,0 +1,1 @@
+with None offset  by CircularRegion:break    below

@@ -1,0 +1,433 @@
+"""Faults to plant: what a careless change of the compiler might do.
+
+Each is a few replacements of text, made in a copy of the project (see `fuzz.faults`). A replacement whose text does not
+occur exactly once is an error, so that the list cannot fall behind the code that it speaks of.
+
+Replacements in ``grammar/`` make a parser that does not do what the grammar says: it is generated from the changed
+grammar, and then the grammar is put back, so that the programs are still made from the right one.
+"""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+__all__ = ["FAULTS", "GENERATED", "Change", "Fault"]
+
+GENERATED: Final = ("parser", "recording")
+"""The generated modules that a change in ``grammar/`` makes wrong, if nothing else is said."""
+
+_GRAMMAR: Final = "grammar/scenic.gram"
+_LEXER: Final = "scenic/compiler/lexer.py"
+_EXPRESSIONS: Final = "scenic/compiler/unparser/expressions.py"
+_STATEMENTS: Final = "scenic/compiler/unparser/scenic_statements.py"
+_LOWERING: Final = "scenic/compiler/lowering/program.py"
+_RESOLVER: Final = "scenic/compiler/resolver.py"
+_RECOVERY: Final = "scenic/compiler/recovery.py"
+_EMITTED: Final = "scenic/compiler/_generated/parser.py"
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """Replaces the only occurrence of ``old`` in the file ``path``."""
+
+    path: str
+    old: str
+    new: str
+
+    def apply(self, root: Path) -> None:
+        """Make the change below ``root``; raises `LookupError` if there is no such text, or more than one."""
+        file = root / self.path
+        text = file.read_text(encoding="utf-8")
+        found = text.count(self.old)
+        if found != 1:
+            raise LookupError(f"{self.path}: this occurs {found} times, not once: {self.old!r}")
+        file.write_text(text.replace(self.old, self.new), encoding="utf-8")
+
+
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """A fault: its name, where it is, what is wrong then.
+
+    Of the modules made from a changed grammar only those named in ``generated`` are used.
+    """
+
+    name: str
+    place: str
+    what: str
+    changes: tuple[Change, ...]
+    generated: tuple[str, ...] = GENERATED
+
+
+def _without(path: str, text: str) -> Change:
+    return Change(path, text, "")
+
+
+_SWAPPED: Final = (
+    Change(
+        _GRAMMAR,
+        "a=bitxor '^' b=bitand { BinOp(left=a, op=BITXOR",
+        "a=bitxor '&' b=bitand { BinOp(left=a, op=BITAND",
+    ),
+    Change(
+        _GRAMMAR,
+        "a=bitand '&' b=shift { BinOp(left=a, op=BITAND",
+        "a=bitand '^' b=shift { BinOp(left=a, op=BITXOR",
+    ),
+)
+
+FAULTS: Final = (
+    # The generated parser.
+    Fault(
+        "dropped-form",
+        "parser",
+        "`apparent heading of x` without `from` is not read",
+        (
+            _without(
+                _GRAMMAR,
+                '    | "apparent" "heading" \'of\' a=prefix { Operation(operator="apparent heading", operands=[a, None]) }\n',
+            ),
+        ),
+    ),
+    Fault(
+        "dropped-statement",
+        "parser",
+        "`terminate after` is not read",
+        (_without(_GRAMMAR, '    | "terminate" "after" a=duration { TerminateAfter(duration=a) }\n'),),
+    ),
+    Fault("swapped-precedence", "parser", "`^` binds tighter than `&`", _SWAPPED),
+    Fault(
+        "right-associative-minus",
+        "parser",
+        "`a - b - c` is read as `a - (b - c)`",
+        (
+            Change(
+                _GRAMMAR,
+                "a=sum '-' b=term { BinOp(left=a, op=SUB, right=b) }",
+                "a=term '-' b=sum { BinOp(left=a, op=SUB, right=b) }",
+            ),
+        ),
+    ),
+    Fault(
+        "right-associative-until",
+        "parser",
+        "`a until b until c` is accepted, and read as `a until (b until c)`",
+        (
+            Change(
+                _GRAMMAR,
+                "a=temporal_above 'until' b=temporal_above {",
+                "a=temporal_above 'until' b=temporal_until {",
+            ),
+        ),
+    ),
+    Fault(
+        "not-visible-as-not",
+        "parser",
+        "`not visible x` is read as `not (visible x)`",
+        (
+            Change(
+                _GRAMMAR,
+                'inversion["an expression"]:\n    | &(\'not\' "visible") a=comparison\n',
+                'inversion["an expression"]:\n',
+            ),
+        ),
+    ),
+    Fault(
+        "exchanged-operands",
+        "parser",
+        "`distance to x from y` is the distance from x to y",
+        (
+            Change(
+                _GRAMMAR,
+                "    | \"distance\" 'to' b=expression 'from' a=prefix { Operation(operator=\"distance\", operands=[a, b]) }",
+                "    | \"distance\" 'to' b=expression 'from' a=prefix { Operation(operator=\"distance\", operands=[b, a]) }",
+            ),
+        ),
+    ),
+    Fault(
+        "exchanged-clauses",
+        "parser",
+        "`beyond a by b from c` is read as `beyond a by c from b`",
+        (
+            Change(
+                _GRAMMAR,
+                'Specifier(specifier="beyond", property=None, operands=[a, b, c]) }',
+                'Specifier(specifier="beyond", property=None, operands=[a, c or b, c and b]) }',
+            ),
+        ),
+    ),
+    Fault(
+        "hasty-soft-keyword",
+        "parser",
+        "a line that begins with `wait` is a `wait` statement, whatever follows",
+        (
+            Change(
+                _GRAMMAR, "    | a=soft_statement &(NEWLINE | ';') { a }\n", "    | a=soft_statement { a }\n"
+            ),
+        ),
+    ),
+    Fault(
+        "lost-else",
+        "parser",
+        "the `else` of a `while` is read and forgotten",
+        (
+            Change(
+                _GRAMMAR,
+                "While(test=a, body=b, orelse=c or []) }",
+                "While(test=a, body=b, orelse=[]) }",
+            ),
+        ),
+    ),
+    Fault(
+        "shared-memo",
+        "parser",
+        "two rules keep their results in the same dictionary",
+        (
+            _without(_EMITTED, "    memo_prefix = {}\n"),
+            Change(_EMITTED, "    memo_inversion = {}\n", "    memo_inversion = memo_prefix = {}\n"),
+        ),
+    ),
+    Fault(
+        "lost-default",
+        "parser",
+        "the default of a keyword-only parameter is lost",
+        (
+            Change(
+                "scenic/compiler/actions/definitions.py",
+                "result.kw_defaults.append(value)",
+                "result.kw_defaults.append(None)",
+            ),
+        ),
+    ),
+    # The table of precedence, which the unparser goes by.
+    Fault("wrong-table", "table", "`^` stands below `&` in the table of precedence", _SWAPPED, ("tables",)),
+    # The lexer.
+    Fault(
+        "long-words",
+        "lexer",
+        "a word ends one column too late",
+        (
+            Change(
+                _LEXER,
+                "add_end_column(end - line_start)\n            elif group == 2:",
+                "add_end_column(end - line_start + 1)\n            elif group == 2:",
+            ),
+        ),
+    ),
+    Fault(
+        "columns-in-characters",
+        "lexer",
+        "columns count characters, not bytes of UTF-8",
+        (Change(_LEXER, "        _count_bytes(tokens)\n", "        pass\n"),),
+    ),
+    Fault(
+        "uncounted-line",
+        "lexer",
+        "a line that is continued by a backslash does not count",
+        (
+            Change(
+                _LEXER,
+                "            self.next_line(end)\n            if end == len(text):",
+                "            self.line_start = end\n            if end == len(text):",
+            ),
+        ),
+    ),
+    # What becomes of mistakes.
+    Fault(
+        "swallowed-statement",
+        "recovery",
+        "with a statement that is wrong, the next one is skipped",
+        (
+            Change(
+                _RECOVERY,
+                "        position = self._line_end(start)\n        if kinds[position] == NEWLINE:\n            position += 1\n"
+                "        if kinds[position] != INDENT:\n            return position, []\n",
+                "        position = self._line_end(start)\n        if kinds[position] == NEWLINE:\n            position += 1\n"
+                "        if kinds[position] not in (INDENT, DEDENT, ENDMARKER):\n            position = self._line_end(position) + 1\n"
+                "        if kinds[position] != INDENT:\n            return position, []\n",
+            ),
+        ),
+    ),
+    Fault(
+        "lost-diagnostic",
+        "recovery",
+        "a mistake that an action finds is not reported",
+        (
+            Change(
+                _RECOVERY, "            self._add(failure, farthest)\n", "            self._note(farthest)\n"
+            ),
+        ),
+    ),
+    Fault(
+        "places-in-bytes",
+        "recovery",
+        "columns of diagnostics count bytes, not characters",
+        (
+            Change(
+                "scenic/compiler/parser.py",
+                "start = (line, source.character(line, column))",
+                "start = (line, column)",
+            ),
+        ),
+    ),
+    # The unparser.
+    Fault(
+        "unhandled-node",
+        "unparser",
+        "`wait until` is not in the table of statements",
+        (_without(_STATEMENTS, "        tree.WaitUntil: ProgramWriter.wait_until,\n"),),
+    ),
+    Fault(
+        "lost-name",
+        "unparser",
+        "`as` after `require monitor` is not written",
+        (
+            Change(
+                _STATEMENTS,
+                'self.lines.append(f"{indent}require monitor {monitor}{_as(node.name)}")',
+                'self.lines.append(f"{indent}require monitor {monitor}")',
+            ),
+        ),
+    ),
+    Fault(
+        "lost-clause",
+        "unparser",
+        "`every` of `record` is not written",
+        (Change(_STATEMENTS, '(("after", node.after), ("every", node.every))', '(("after", node.after),)'),),
+    ),
+    Fault(
+        "lost-parentheses",
+        "unparser",
+        "right operands have no parentheses where left ones need none",
+        (
+            Change(
+                _EXPRESSIONS,
+                "texts = [WRITERS[right.__class__](self, right, plan.right, after, closer, plan.lead), plan.text]",
+                "texts = [WRITERS[right.__class__](self, right, plan.left, after, closer, plan.lead), plan.text]",
+            ),
+        ),
+    ),
+    Fault(
+        "lost-conversion",
+        "unparser",
+        "`!r` in an f-string is not written",
+        (
+            Change(
+                _EXPRESSIONS,
+                'conversion = f"!{chr(node.conversion)}" if node.conversion != -1 else ""',
+                'conversion = ""',
+            ),
+        ),
+    ),
+    # Lowering.
+    Fault(
+        "lost-decorator",
+        "lowering",
+        "functions lose their decorators",
+        (
+            Change(
+                _LOWERING,
+                "    def function_definition(self, node: Any) -> Any:\n        return self._kept(node, self._copy(node))",
+                "    def function_definition(self, node: Any) -> Any:\n        return self._kept(node, self._copy(node, decorator_list=[]))",
+            ),
+        ),
+    ),
+    Fault(
+        "lost-keyword",
+        "lowering",
+        "keyword arguments beside a starred one lose their names",
+        (
+            Change(
+                _LOWERING,
+                "None if item.arg is None else constant(item.arg, item) for item in node.keywords",
+                "None for item in node.keywords",
+            ),
+        ),
+    ),
+    Fault(
+        "lost-place",
+        "lowering",
+        "calls of the runtime have the place where their operator begins",
+        (
+            Change(
+                "scenic/compiler/lowering/build.py",
+                "    return at(ast.Call(callee, list(args), constants), origin)\n",
+                "    return start_of(ast.Call(callee, list(args), constants), origin)\n",
+            ),
+        ),
+    ),
+    Fault(
+        "unlowered-else",
+        "lowering",
+        "what stands after `else` is left as it is",
+        (
+            Change(
+                _LOWERING,
+                "            if field in changes:\n",
+                '            if field in changes or field == "orelse":\n',
+            ),
+        ),
+    ),
+    # Resolution of names, and checks.
+    Fault(
+        "missed-comprehension",
+        "resolver",
+        "comprehensions have no scope of their own",
+        (
+            Change(
+                _RESOLVER,
+                '        inner = self._open(ScopeKind.COMPREHENSION, "<comprehension>", node, scope)\n',
+                "        inner = scope\n",
+            ),
+        ),
+    ),
+    Fault(
+        "escaped-parameter",
+        "resolver",
+        "the parameters of a lambda belong to the scope around it",
+        (
+            Change(
+                _RESOLVER,
+                "        yield from self._parameters(node.args, scope, inner)\n        yield node.body, inner",
+                "        yield from self._parameters(node.args, scope, scope)\n        yield node.body, inner",
+            ),
+        ),
+    ),
+    Fault(
+        "open-class",
+        "resolver",
+        "functions see the names of the class around them",
+        (
+            Change(
+                "scenic/compiler/scopes.py",
+                "reachable = scope.kind is not ScopeKind.CLASS or transparent",
+                "reachable = True",
+            ),
+        ),
+    ),
+    Fault(
+        "raising-check",
+        "checks",
+        "the check of names expects statements in what could not be parsed",
+        (
+            Change(
+                "scenic/compiler/checks/names.py",
+                "        span = context.source.span(node)\n        for line in range(span.line",
+                "        span = context.source.span(node.body[0])\n        for line in range(span.line",
+            ),
+        ),
+    ),
+    # The tools.
+    Fault(
+        "other-columns",
+        "server",
+        "columns in UTF-16 count a character beyond the basic plane once",
+        (
+            Change(
+                "scenic/lsp/convert.py",
+                'return len(text.encode("utf-16-le", "surrogatepass")) // 2',
+                "return len(text)",
+            ),
+        ),
+    ),
+)
+"""All faults."""

@@ -1,0 +1,73 @@
+"""Lowering loses nothing: whatever is written in a program is in its code, at its place."""
+
+import ast
+from collections import Counter
+from collections.abc import Iterator
+from typing import Any, Final
+
+from fuzz.properties.case import Case, Property, Violation, place
+from fuzz.properties.lowering import lowered
+from scenic.compiler import tree as scenic
+
+__all__ = ["OF_TEXTS"]
+
+
+def lowering_loses_nothing(case: Case) -> None:
+    """All names and constants of a program are in its lowered tree, and what stands at the place of each expression.
+
+    Behaviors are not looked into: what they do is compiled only where there are simulations.
+    """
+    found = lowered(case)
+    if found is None:
+        return
+    there: Counter[str] = Counter()
+    places = set()
+    for node in ast.walk(found.module):
+        there.update(_words(node))
+        if isinstance(node, ast.expr):
+            places.add(place(node))
+    wanted: Counter[str] = Counter()
+    for node in _compiled(found.tree):
+        wanted.update(_words(node))
+        if isinstance(node, ast.expr) and place(node) not in places:
+            raise Violation(f"nothing stands at the place of {type(node).__name__}, {place(node)}")
+    lost = wanted - there
+    if lost:
+        raise Violation(f"lost: {', '.join(sorted(lost))}")
+
+
+def _compiled(tree: ast.Module) -> Iterator[ast.AST]:
+    """The nodes of a tree that have code."""
+    stack: list[ast.AST] = [tree]
+    while stack:
+        node = stack.pop()
+        yield node
+        match node:
+            case scenic.BehaviorDef():
+                stack.append(node.args)
+            case scenic.ScenarioDef():
+                stack.extend(node.setup or ())
+                if node.args is not None:
+                    stack.append(node.args)
+            case _:
+                stack.extend(ast.iter_child_nodes(node))
+
+
+def _words(node: Any) -> Iterator[str]:
+    """The names in a node itself, and its value if it is a constant."""
+    if isinstance(node, ast.Constant):
+        yield node.value if isinstance(node.value, str) else repr(node.value)
+        return
+    for name in node._fields:
+        value = getattr(node, name, None)
+        if (
+            isinstance(value, str)
+            and not isinstance(node, scenic.Temporal)
+            and name not in ("moment", "unit")
+        ):
+            yield value
+        elif isinstance(value, list):
+            yield from (each for each in value if isinstance(each, str))
+
+
+OF_TEXTS: Final = (Property.of(lowering_loses_nothing, one_in=2),)

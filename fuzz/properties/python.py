@@ -1,0 +1,147 @@
+"""What is Python in a program is what Python says: its trees, and the scopes of its names."""
+
+import ast
+import dis
+import sys
+import warnings
+from collections.abc import Iterator
+from types import CodeType
+from typing import Any, Final
+
+from fuzz.properties.case import FILENAME, Case, Property, Violation, place
+from fuzz.properties.differences import difference
+from scenic.compiler import tree as scenic
+from scenic.compiler.resolver import resolve
+from scenic.compiler.scopes import Reference, Scope, ScopeKind
+from scenic.language.names import RESERVED, TRACKED
+
+__all__ = ["OF_TEXTS", "plain_statements"]
+
+_OURS: Final = (scenic.ScenicStatement, scenic.ScenicExpression, scenic.ScenicPart)
+
+
+def plain_statements(tree: ast.Module) -> Iterator[tuple[ast.stmt, int]]:
+    """The statements of a module in which nothing of Scenic's is, and the line after that of the statement before."""
+    line = 1
+    for node in tree.body:
+        if not any(isinstance(part, _OURS) for part in ast.walk(node)):
+            yield node, min(line, node.lineno)
+        line = (node.end_lineno or node.lineno) + 1
+
+
+def python_reads_the_same(case: Case) -> None:
+    """A statement of Python's syntax has the tree that Python gives it, at the same places, if Python accepts it."""
+    if case.has_error:
+        return
+    lines = case.lines
+    for node, first in plain_statements(case.result.tree):
+        text = "\n" * (first - 1) + "\n".join(lines[first - 1 : node.end_lineno]) + "\n"
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                body = ast.parse(text).body
+        except (SyntaxError, ValueError, RecursionError, MemoryError):
+            # Other statements on the line may be Scenic's, and Python may be older than what it is to read.
+            continue
+        theirs = next((each for each in body if place(each) == place(node)), None)
+        if theirs is None:
+            raise Violation(f"Python has no statement where this {type(node).__name__} is, {place(node)}")
+        # Before 3.12 Python did not know the places of what is in f-strings.
+        is_formatted = any(isinstance(part, ast.JoinedStr) for part in ast.walk(node))
+        where = difference(node, theirs, places=sys.version_info >= (3, 12) or not is_formatted)
+        if where is not None:
+            raise Violation(f"not as in Python: {where}")
+
+
+_LOCAL: Final = frozenset({ScopeKind.FUNCTION, ScopeKind.LAMBDA, ScopeKind.COMPREHENSION})
+_INSTRUCTIONS: Final = (
+    (("FAST", "DEREF", "CLASSDEREF"), "local"),
+    (("GLOBAL",), "global"),
+    (("NAME",), "by name"),
+)
+
+
+def names_mean_what_python_says(case: Case) -> None:
+    """The names in statements of Python's syntax are local, or not, as they are in the code that Python makes of them."""
+    if case.has_error:
+        return
+    tree = case.result.tree
+    references: dict[Any, Reference] = {}
+    codes: list[CodeType] = []
+    resolution = None
+    for node, _ in plain_statements(tree):
+        if not any(isinstance(part, _SCOPED) for part in ast.walk(node)):
+            continue
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                codes.append(compile(ast.Module([node], []), FILENAME, "exec", dont_inherit=True))
+        except (SyntaxError, ValueError, RecursionError):
+            continue
+        if resolution is None:
+            resolution = resolve(tree, case.source)
+        for part in ast.walk(node):
+            if isinstance(part, ast.Name) and part in resolution.references:
+                references[place(part), part.id] = resolution.references[part]
+    for code in codes:
+        _check_names(code, references)
+
+
+_SCOPED: Final = (
+    ast.FunctionDef,
+    ast.AsyncFunctionDef,
+    ast.Lambda,
+    ast.ClassDef,
+    ast.ListComp,
+    ast.SetComp,
+    ast.DictComp,
+    ast.GeneratorExp,
+)
+
+
+def _check_names(code: CodeType, references: dict[Any, Reference]) -> None:
+    for instruction in dis.get_instructions(code):
+        at = instruction.positions
+        name = instruction.argval
+        if (
+            at is None
+            or not isinstance(name, str)
+            or name.startswith("__")
+            or name in RESERVED
+            or name in TRACKED
+        ):
+            continue
+        found = references.get((((at.lineno, at.col_offset), (at.end_lineno, at.end_col_offset)), name))
+        kind = _kind(instruction.opname)
+        if found is None or kind is None:
+            continue
+        scope = None if found.binding is None else found.binding.scope
+        if kind not in _expected(scope):
+            what = "nothing" if scope is None else f"a name of the {scope.kind} {scope.name}"
+            raise Violation(
+                f"`{name}` at {at.lineno}:{at.col_offset} is {what}, but {kind} in {code.co_name}"
+            )
+    for constant in code.co_consts:
+        if isinstance(constant, CodeType):
+            _check_names(constant, references)
+
+
+def _kind(instruction: str) -> str | None:
+    action, _, rest = instruction.partition("_")
+    if action not in ("LOAD", "STORE", "DELETE"):
+        return None
+    return next((kind for words, kind in _INSTRUCTIONS if rest in words), None)
+
+
+def _expected(scope: Scope | None) -> tuple[str, ...]:
+    if scope is not None and scope.kind in _LOCAL:
+        return ("local",)
+    if scope is not None and scope.kind is ScopeKind.CLASS:
+        return ("by name",)
+    return ("global", "by name")
+
+
+OF_TEXTS: Final = (
+    Property.of(python_reads_the_same, one_in=2),
+    Property.of(names_mean_what_python_says, one_in=2),
+)

@@ -1,0 +1,124 @@
+"""All tools say the same, at the same places."""
+
+import json
+from typing import Any, Final
+
+from lsprotocol import types
+
+from fuzz.properties.case import FILENAME, Case, Property, Violation, describe, spans_of
+from scenic.cli.checking import Task, check_file
+from scenic.cli.render import FORMATS, Report, render
+from scenic.ide.diagnostics import diagnostics
+from scenic.language.diagnostics import Diagnostic
+from scenic.language.selection import Rules
+from scenic.language.source import Source
+from scenic.language.spans import Span
+from scenic.lsp.convert import to_diagnostic
+
+__all__ = ["OF_TEXTS"]
+
+_URI: Final = "file:///fuzz.scenic"
+_ENCODINGS: Final = {
+    types.PositionEncodingKind.Utf8: "utf-8",
+    types.PositionEncodingKind.Utf16: "utf-16-le",
+    types.PositionEncodingKind.Utf32: "utf-32-le",
+}
+_UNIT: Final = {"utf-8": 1, "utf-16-le": 2, "utf-32-le": 4}
+
+
+def check_and_server_agree(case: Case) -> None:
+    """The command ``check``, the check itself and the editor's diagnostics say the same."""
+    expected = case.checked
+    shown = {
+        "the editor": diagnostics(case.text, filename=FILENAME),
+        "the command": check_file(Task(FILENAME, Rules(), text=case.text)).diagnostics,
+    }
+    for who, found in shown.items():
+        if found != expected:
+            said = next((describe(each) for each in found if each not in expected), "less")
+            raise Violation(f"{who} says: {said}")
+
+
+def places_survive_conversion(case: Case) -> None:
+    """What an editor or another program is told is the same as what the check says, in any encoding of columns."""
+    found = case.checked
+    for kind, encoding in _ENCODINGS.items():
+        for each in found:
+            _check_protocol(each, case.source, kind, encoding)
+    report = Report(found)
+    for name in FORMATS:
+        text = render(name, report)
+        if name == "json":
+            said = json.loads(text)["diagnostics"]
+            if said != [_plain(each) for each in found]:
+                raise Violation("the JSON says something else")
+
+
+def _check_protocol(
+    item: Diagnostic, source: Source, kind: types.PositionEncodingKind, encoding: str
+) -> None:
+    made = to_diagnostic(item, source, _URI, kind)
+    if made.code != item.code or not made.message.startswith(item.message):
+        raise Violation(f"the protocol says something else: {describe(item)}")
+    expected = [item.span, *(label.span for label in item.labels)]
+    ranges = [made.range, *(each.location.range for each in made.related_information or ())]
+    if len(ranges) != len(expected):
+        raise Violation(f"the protocol has other labels: {describe(item)}")
+    for span, given in zip(expected, ranges, strict=True):
+        back = (*_column(given.start, source, encoding), *_column(given.end, source, encoding))
+        if span is not None and back != _clipped(span, source):
+            raise Violation(f"{span} comes back from {encoding} as {back}: {describe(item)}")
+
+
+def _column(position: types.Position, source: Source, encoding: str) -> tuple[int, int]:
+    """A position of the protocol in lines and characters, computed from the encoded line."""
+    data = source.line(position.line + 1).encode(encoding, "surrogatepass")
+    before = data[: position.character * _UNIT[encoding]]
+    return position.line + 1, len(before.decode(encoding, "surrogatepass"))
+
+
+def _clipped(span: Span, source: Source) -> tuple[int, int, int, int]:
+    """A span whose columns do not go past the ends of their lines, as no position of the protocol can."""
+    column = min(span.column, len(source.line(span.line)))
+    return span.line, column, span.end_line, min(span.end_column, len(source.line(span.end_line)))
+
+
+def _plain(item: Diagnostic) -> dict[str, Any]:
+    """What JSON should say of a diagnostic."""
+    spans = [None if span is None else _json_span(span) for _, span in spans_of(item)]
+    labels = spans[1 : 1 + len(item.labels)]
+    edits = spans[1 + len(item.labels) :]
+    return {
+        "code": item.code,
+        "severity": str(item.severity),
+        "message": item.message,
+        "help": item.help,
+        "filename": item.filename,
+        "span": spans[0],
+        "labels": [
+            {"span": span, "text": label.text} for span, label in zip(labels, item.labels, strict=True)
+        ],
+        "fix": None
+        if item.fix is None
+        else {
+            "title": item.fix.title,
+            "edits": [
+                {"span": span, "text": edit.text} for span, edit in zip(edits, item.fix.edits, strict=True)
+            ],
+        },
+    }
+
+
+def _json_span(span: Span) -> dict[str, int]:
+    return {
+        "line": span.line,
+        "column": span.column + 1,
+        "end_line": span.end_line,
+        "end_column": span.end_column + 1,
+    }
+
+
+OF_TEXTS: Final = (
+    Property.of(check_and_server_agree, one_in=5),
+    Property.of(places_survive_conversion, one_in=20),
+)

@@ -1,0 +1,49 @@
+"""Shorter texts that still fail, for texts that nothing says how they were made: lines are left out, then tokens, then characters."""
+
+import re
+from collections.abc import Callable, Sequence
+from typing import Final
+
+__all__ = ["shrunk"]
+
+_UNITS: Final = (
+    re.compile(r"[^\n]*\n|[^\n]+"),
+    re.compile(r"\n[ \t\f]*|[ \t\f]+|\w+|[^\w\s]|\s"),
+    re.compile(r".", re.DOTALL),
+)
+"""Lines, rough tokens, characters."""
+_MOST: Final = 2000
+"""So many texts are tried."""
+
+
+def shrunk(text: str, fails: Callable[[str], bool], *, most: int = _MOST) -> str:
+    """A part of ``text`` for which ``fails`` holds as it does for ``text``, after trying at most ``most`` others."""
+    budget = most
+
+    def still_fails(candidate: str) -> bool:
+        nonlocal budget
+        budget -= 1
+        return budget >= 0 and fails(candidate)
+
+    before = None
+    while text != before and budget > 0:
+        before = text
+        for unit in _UNITS:
+            text = "".join(_without_needless(unit.findall(text), still_fails))
+    return text
+
+
+def _without_needless(units: Sequence[str], fails: Callable[[str], bool]) -> list[str]:
+    """Leaves out runs of units, from long ones to single ones."""
+    kept = list(units)
+    size = len(kept)
+    while size > 1:
+        size = (size + 1) // 2
+        start = 0
+        while start < len(kept):
+            rest = kept[:start] + kept[start + size :]
+            if len(rest) < len(kept) and fails("".join(rest)):
+                kept = rest
+            else:
+                start += size
+    return kept

@@ -1,0 +1,209 @@
+"""Runs on several processors: each worker takes every n-th round, and the reports are put together."""
+
+import contextlib
+import math
+import multiprocessing
+import os
+import queue
+import signal
+import sys
+import time
+import traceback
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Final
+
+from fuzz.session import MUTANTS, PROGRAMS, Failure, Report, run_round
+
+__all__ = ["Budget", "WorkerDied", "run", "usable_processors"]
+
+_PATIENCE: Final = 0.2
+
+
+@dataclass(frozen=True, slots=True)
+class Budget:
+    """How much to try: until the time ``deadline`` (of `time.time`), and at most so many programs and mutants.
+
+    Round ``k`` has the seed ``seed + k``. If ``first``, a worker stops when it has found something, and the others after their rounds.
+    """
+
+    seed: int
+    deadline: float = math.inf
+    programs: int | None = None
+    mutants: int | None = None
+    first: bool = False
+
+    def round(self, number: int) -> tuple[int, int] | None:
+        """How many programs and mutants round ``number`` has; ``None`` if it is not to be run."""
+        if self.programs is None and self.mutants is None:
+            return PROGRAMS, MUTANTS
+        programs, mutants = self.programs or 0, self.mutants or 0
+        rounds = max(1, -(-programs // PROGRAMS), -(-mutants // PROGRAMS))
+        if number >= rounds:
+            return None
+        return _share(programs, rounds, number), _share(mutants, rounds, number)
+
+
+def _share(total: int, parts: int, number: int) -> int:
+    return total * (number + 1) // parts - total * number // parts
+
+
+@dataclass(frozen=True, slots=True)
+class WorkerDied:
+    """A worker that ended without a report, as one does whose interpreter crashes."""
+
+    worker: int
+    exit_code: int | None
+    seed: int
+    """That of the round it was in."""
+    reason: str = ""
+
+    def __str__(self) -> str:
+        text = f"worker {self.worker} died with exit code {self.exit_code} in the round with seed {self.seed}"
+        return f"{text}\n{self.reason}".rstrip()
+
+
+def usable_processors() -> int:
+    """The number of processors that this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+def run(
+    budget: Budget, *, jobs: int, on_failure: Callable[[Failure], None]
+) -> tuple[Report, tuple[WorkerDied, ...]]:
+    """Run rounds until the budget is spent, or the user interrupts; ``on_failure`` is told of each new failure at once."""
+    if jobs == 1:
+        report = Report()
+        with contextlib.suppress(KeyboardInterrupt):
+            _rounds(
+                report, budget, 0, 1, on_failure=on_failure, should_stop=lambda: False, begin=lambda _: None
+            )
+        return report, ()
+    return _Team(budget, jobs, on_failure).run()
+
+
+def _rounds(
+    report: Report,
+    budget: Budget,
+    first: int,
+    step: int,
+    *,
+    on_failure: Callable[[Failure], None],
+    should_stop: Callable[[], bool],
+    begin: Callable[[int], None],
+) -> None:
+    number = first
+    while (sizes := budget.round(number)) is not None:
+        remaining = budget.deadline - time.time()
+        if remaining <= 0 or should_stop():
+            return
+        begin(budget.seed + number)
+        known = len(report.failures)
+        run_round(
+            report,
+            seed_of_round=budget.seed + number,
+            until=time.monotonic() + remaining,
+            programs=sizes[0],
+            mutants=sizes[1],
+            first=budget.first,
+        )
+        for failure in report.failures[known:]:
+            on_failure(failure)
+        if budget.first and report.failures:
+            return
+        number += step
+
+
+class _Team:
+    """Worker processes, and what they said."""
+
+    def __init__(self, budget: Budget, jobs: int, on_failure: Callable[[Failure], None]) -> None:
+        # New interpreters: what this one has in memory is not to matter.
+        context = multiprocessing.get_context("spawn")
+        self._messages: Any = context.Queue()
+        self._stop: Any = context.Event()
+        self._processes: list[Any] = [
+            context.Process(
+                target=_work, args=(number, jobs, budget, self._messages, self._stop), daemon=True
+            )
+            for number in range(jobs)
+        ]
+        self._seeds = [budget.seed + number for number in range(jobs)]
+        self._on_failure = on_failure
+        self._first = budget.first
+        self._report = Report()
+        self._waiting = set(range(jobs))
+        self._died: list[WorkerDied] = []
+
+    def run(self) -> tuple[Report, tuple[WorkerDied, ...]]:
+        for process in self._processes:
+            process.start()
+        interrupted = False
+        while self._waiting:
+            try:
+                self._listen()
+            except KeyboardInterrupt:
+                if interrupted:
+                    break
+                # The workers end their round; a second interruption ends them.
+                interrupted = True
+                self._stop.set()
+        for process in self._processes:
+            if process.is_alive() and self._waiting:
+                process.terminate()
+            process.join()
+        return self._report, tuple(self._died)
+
+    def _listen(self) -> None:
+        try:
+            worker, message = self._messages.get(timeout=_PATIENCE)
+        except queue.Empty:
+            for number in sorted(self._waiting):
+                process = self._processes[number]
+                if not process.is_alive() and self._messages.empty():
+                    self._lose(number, process.exitcode)
+            return
+        match message:
+            case int():
+                self._seeds[worker] = message
+            case Failure():
+                if not any(known.signature == message.signature for known in self._report.failures):
+                    self._report.failures.append(message)
+                    self._on_failure(message)
+                    if self._first:
+                        self._stop.set()
+            case Report():
+                self._waiting.discard(worker)
+                # Its failures are known.
+                message.failures.clear()
+                self._report.merge(message)
+            case str():
+                self._lose(worker, None, message)
+
+    def _lose(self, worker: int, exit_code: int | None, reason: str = "") -> None:
+        if worker in self._waiting:
+            self._waiting.discard(worker)
+            self._died.append(WorkerDied(worker, exit_code, self._seeds[worker], reason))
+
+
+def _work(number: int, jobs: int, budget: Budget, messages: Any, stop: Any) -> None:
+    """What a worker process does."""
+    # The process that started it decides what an interruption means.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    report = Report()
+    try:
+        _rounds(
+            report,
+            budget,
+            number,
+            jobs,
+            on_failure=lambda failure: messages.put((number, failure)),
+            should_stop=stop.is_set,
+            begin=lambda seed: messages.put((number, seed)),
+        )
+        messages.put((number, report))
+    except Exception:  # noqa: BLE001 - the process that started this one tells of it
+        messages.put((number, traceback.format_exc()))
+    sys.stdout.flush()
