@@ -87,7 +87,13 @@ def _show(failure: Failure, start: float, *, save: bool) -> None:
     if save:
         name = failure.signature.property
         of_formulas = any(each.name == name for each in OF_FORMULAS)
-        path = corpus.save(failure.text, name, of_grammar=failure.of_grammar, of_formulas=of_formulas)
+        path = corpus.save(
+            failure.text,
+            name,
+            of_grammar=failure.of_grammar,
+            of_formulas=of_formulas,
+            original=None if failure.mutant is None else failure.mutant.original,
+        )
         print(f"    saved as {path.name}")
     sys.stdout.flush()
 

@@ -237,14 +237,15 @@ class _CarefulLexer(Lexer):
 
     def broken_off(self, column: int, end: int) -> bool:
         text = self.text
-        if column <= self.indents[-1][0] and (_STATEMENT.match(text, end) or _CALL.match(text, end)):
-            return True
         kinds = self.tokens.kinds
-        if kinds[-1] != _COLON:
+        looks_new = column <= self.indents[-1][0] and (_STATEMENT.match(text, end) or _CALL.match(text, end))
+        if not looks_new and kinds[-1] != _COLON:
             return False
-        # A header that ends with its colon, although a bracket is open.
         first = self.statement_start()
-        return kinds[first] in _HEADERS and first + 1 < len(kinds) and not self.header_goes_on(end)
+        if kinds[first] in _HEADERS and first + 1 < len(kinds):
+            # A parameter with an annotation looks like a property; and a header may end with its colon although a bracket is open.
+            return not self.header_goes_on(end)
+        return bool(looks_new)
 
     def header_goes_on(self, pos: int) -> bool:
         """Whether the open bracket is closed after ``pos``, and a colon ends the header then; the last colon was in the bracket."""

@@ -301,7 +301,15 @@ def test_only_lines_that_make_instances_go_on_with_specifiers() -> None:
 
 @pytest.mark.parametrize(
     "text",
-    ["def f(p:\n    int): x x\n", "if x in {a:\n    1}: x x\n", "behavior B(p:\n    q,\n    r): x x\n"],
+    [
+        "def f(p:\n    int): x x\n",
+        "if x in {a:\n    1}: x x\n",
+        "behavior B(p:\n    q,\n    r): x x\n",
+        # These look like a property, a call, an assignment on lines of their own.
+        "scenario S(*\np: C, **q): x x\n",
+        "def f(a=\nrun(3)\n): x x\n",
+        "behavior B(\np=3): x x\n",
+    ],
 )
 def test_a_colon_at_the_end_of_a_line_need_not_be_that_of_the_header(text: str) -> None:
     [problem] = parse(text).diagnostics

@@ -3,6 +3,7 @@
 import ast
 import math
 import time
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
@@ -50,9 +51,14 @@ def test_everything_is_covered_soon_whatever_the_seed():
         assert [share.explained() for share in report.coverage.shares()] == [[], []]
 
 
+@dataclass(frozen=True)
+class _Made:
+    original: str
+
+
 @pytest.mark.parametrize("entry", list(corpus.entries()), ids=lambda entry: entry.path.name)
 def test_what_once_failed_is_right_now(entry: corpus.Entry):
-    case = Case(entry.text, thorough=True)
+    case = Case(entry.text, None if entry.original is None else _Made(entry.original), thorough=True)
     for each in OF_PROGRAMS if entry.of_grammar else OF_TEXTS:
         each.holds(case)
     for each in OF_FORMULAS if entry.of_formulas else ():
@@ -191,6 +197,11 @@ def test_a_budget_is_shared_among_the_rounds():
 
 def saved(folder: Path, text: str, name: str, of_grammar: bool) -> Path:
     return corpus.save(text, name, of_grammar=of_grammar, folder=folder)
+
+
+def test_the_corpus_holds_the_program_that_a_text_was_made_from(tmp_path: Path):
+    path = corpus.save("x +", "some_property", of_grammar=False, original="x + \ud800", folder=tmp_path)
+    assert list(corpus.entries(tmp_path)) == [corpus.Entry(path, "x +", False, False, "x + \ud800")]
 
 
 def test_the_corpus_holds_any_text(tmp_path: Path):
