@@ -11,6 +11,7 @@ from typing import Final
 from fuzz import corpus
 from fuzz.coverage import Share
 from fuzz.grammar import derivations
+from fuzz.properties import OF_PROGRAMS
 from fuzz.session import Failure, Report
 from fuzz.temporal import OF_FORMULAS
 from fuzz.workers import Budget, WorkerDied, run, usable_processors
@@ -44,6 +45,7 @@ def main(arguments: list[str] | None = None) -> int:
         options.programs,
         options.mutants,
         options.first,
+        options.only,
     )
     report, died = run(
         budget, jobs=jobs, on_failure=lambda failure: _show(failure, start, save=not options.no_save)
@@ -64,6 +66,13 @@ def _options() -> argparse.ArgumentParser:
     parser.add_argument("--programs", type=int, help="how many programs to try, at most")
     parser.add_argument("--mutants", type=int, help="how many mutants to try, at most")
     parser.add_argument("--first", action="store_true", help="stop when something is found")
+    parser.add_argument(
+        "--only",
+        type=_property_names,
+        default=frozenset(),
+        metavar="NAMES",
+        help="try these properties alone, with commas between",
+    )
     parser.add_argument("--seed", type=int, help="the seed of the first round (default: a random one)")
     parser.add_argument("--jobs", type=int, help="worker processes (default: one for each usable processor)")
     parser.add_argument(
@@ -75,6 +84,14 @@ def _options() -> argparse.ArgumentParser:
     )
     parser.add_argument("--no-save", action="store_true", help="do not write failures to fuzz/corpus")
     return parser
+
+
+def _property_names(text: str) -> frozenset[str]:
+    names = frozenset(text.split(","))
+    known = {each.name for each in (*OF_PROGRAMS, *OF_FORMULAS)}
+    if unknown := names - known:
+        raise argparse.ArgumentTypeError(f"there is no property {min(unknown)!r}; they are {sorted(known)}")
+    return names
 
 
 def _show(failure: Failure, start: float, *, save: bool) -> None:

@@ -35,6 +35,8 @@ _BANS: Final[Mapping[str, Ban]] = {
     # Temporal operators where a name was meant; and the operands of a specifier reach as far as possible,
     # so that in `new C at x and always y` the word `always` would be a name.
     "require_statement": Ban(frozenset({"always", "eventually", "next"}), frozenset({"new"})),
+    # `facing toward not visible from x` faces something, whatever comes then.
+    "specifier": Ban(frozenset({"toward", "away", "directly"}), frozenset()),
     # `record final x every 2 seconds` has no `every`, and in `record initial scenario` the value is `scenario`.
     "record_statement": Ban(frozenset({"initial", "final"}), frozenset({"initial"})),
     # `match [final]:` begins like a property.

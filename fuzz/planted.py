@@ -178,12 +178,15 @@ FAULTS: Final = (
         ),
     ),
     Fault(
-        "shared-memo",
+        "standing-memo",
         "parser",
-        "two rules keep their results in the same dictionary",
+        "what `new` made is remembered, but not where it ended",
         (
-            _without(_EMITTED, "    memo_prefix = {}\n"),
-            Change(_EMITTED, "    memo_inversion = {}\n", "    memo_inversion = memo_prefix = {}\n"),
+            Change(
+                _EMITTED,
+                "            hit = memo_new_expression.get(s)\n            if hit is not None:\n                p = hit[1]\n",
+                "            hit = memo_new_expression.get(s)\n            if hit is not None:\n",
+            ),
         ),
     ),
     Fault(

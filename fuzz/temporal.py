@@ -27,6 +27,7 @@ from fuzz.grammar import Program, derivations
 from fuzz.layout import lay_out
 from fuzz.properties.case import Case, Property, Violation, describe
 from fuzz.properties.differences import difference
+from fuzz.properties.operands import OF_FORMULAS as OF_EXCHANGED
 from fuzz.terminals import FIXED, Piece, Shape
 from fuzz.traces import Formula, State, atoms_of, conditional, formula_of, holds, text_of, verdict
 from grammar.generator import read_grammar_text
@@ -485,8 +486,8 @@ def _formula_of_climbed(climbed: Tree) -> Formula:
     return (form.words[0], *operands)
 
 
-OF_FORMULAS: Final[tuple[Property, ...]] = tuple(
-    map(
+OF_FORMULAS: Final[tuple[Property, ...]] = (
+    *map(
         Property.of,
         (
             formulas_are_accepted,
@@ -497,6 +498,7 @@ OF_FORMULAS: Final[tuple[Property, ...]] = tuple(
             operators_over_states_wait,
             static_formulas_are_lowered_as_meant,
         ),
-    )
+    ),
+    *OF_EXCHANGED,
 )
 """What must hold of every formula that the temporal rules derive."""

@@ -9,11 +9,13 @@ import signal
 import sys
 import time
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
-from fuzz.session import MUTANTS, PROGRAMS, Failure, Report, run_round
+from fuzz.properties import OF_PROGRAMS, OF_TEXTS, Property
+from fuzz.session import FORMULAS, MUTANTS, PROGRAMS, Failure, Report, run_round
+from fuzz.temporal import OF_FORMULAS
 
 __all__ = ["Budget", "WorkerDied", "run", "usable_processors"]
 
@@ -22,9 +24,10 @@ _PATIENCE: Final = 0.2
 
 @dataclass(frozen=True, slots=True)
 class Budget:
-    """How much to try: until the time ``deadline`` (of `time.time`), and at most so many programs and mutants.
+    """What to try: until the time ``deadline`` (of `time.time`), and at most so many programs and mutants.
 
     Round ``k`` has the seed ``seed + k``. If ``first``, a worker stops when it has found something, and the others after their rounds.
+    ``only`` names the properties to be tried; without names, all are.
     """
 
     seed: int
@@ -32,6 +35,11 @@ class Budget:
     programs: int | None = None
     mutants: int | None = None
     first: bool = False
+    only: frozenset[str] = frozenset()
+
+    def chosen(self, properties: Sequence[Property]) -> tuple[Property, ...]:
+        """Those of ``properties`` that are to be tried."""
+        return tuple(each for each in properties if not self.only or each.name in self.only)
 
     def round(self, number: int) -> tuple[int, int] | None:
         """How many programs and mutants round ``number`` has; ``None`` if it is not to be run."""
@@ -107,6 +115,10 @@ def _rounds(
             until=time.monotonic() + remaining,
             programs=sizes[0],
             mutants=sizes[1],
+            formulas=FORMULAS if budget.chosen(OF_FORMULAS) else 0,
+            of_programs=budget.chosen(OF_PROGRAMS),
+            of_texts=budget.chosen(OF_TEXTS),
+            of_formulas=budget.chosen(OF_FORMULAS),
             first=budget.first,
         )
         for failure in report.failures[known:]:
@@ -193,6 +205,8 @@ def _work(number: int, jobs: int, budget: Budget, messages: Any, stop: Any) -> N
     # The process that started it decides what an interruption means.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     report = Report()
+    # If that is killed, nobody is left to report to.
+    parent = os.getppid()
     try:
         _rounds(
             report,
@@ -200,7 +214,7 @@ def _work(number: int, jobs: int, budget: Budget, messages: Any, stop: Any) -> N
             number,
             jobs,
             on_failure=lambda failure: messages.put((number, failure)),
-            should_stop=stop.is_set,
+            should_stop=lambda: stop.is_set() or os.getppid() != parent,
             begin=lambda seed: messages.put((number, seed)),
         )
         messages.put((number, report))

@@ -8,10 +8,13 @@ from typing import Final
 
 from fuzz.properties import (
     acceptance,
+    columns,
     content,
     forms,
     lowering,
+    neighbours,
     operands,
+    parsers,
     parsing,
     python,
     recovery,
@@ -31,8 +34,10 @@ PARSING: Final = (
     *parsing.OF_TEXTS,
     *trees.OF_TEXTS,
     *tokens.OF_TEXTS,
+    *columns.OF_TEXTS,
     *forms.OF_TEXTS,
     *python.OF_TEXTS,
+    *parsers.OF_TEXTS,
     *recovery.OF_TEXTS,
 )
 """What must hold of the parser alone, for every text."""
@@ -40,6 +45,7 @@ PARSING: Final = (
 OF_TEXTS: Final = (
     *PARSING,
     *round_trip.OF_TEXTS,
+    *neighbours.OF_TEXTS,
     *operands.OF_TEXTS,
     *lowering.OF_TEXTS,
     *content.OF_TEXTS,

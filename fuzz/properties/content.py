@@ -1,4 +1,4 @@
-"""Lowering loses nothing: whatever is written in a program is in its code, at its place."""
+"""Nothing is lost: what is written in a program is in its tree, and that in its code, at its place."""
 
 import ast
 from collections import Counter
@@ -8,6 +8,7 @@ from typing import Any, Final
 from fuzz.properties.case import Case, Property, Violation, place
 from fuzz.properties.lowering import lowered
 from scenic.compiler import tree as scenic
+from scenic.compiler.lexer import NAME, NUMBER
 
 __all__ = ["OF_TEXTS"]
 
@@ -70,4 +71,33 @@ def _words(node: Any) -> Iterator[str]:
             yield from (each for each in value if isinstance(each, str))
 
 
-OF_TEXTS: Final = (Property.of(lowering_loses_nothing, one_in=2),)
+def parsing_loses_nothing(case: Case) -> None:
+    """All names of a program are in its tree, and as many numbers as it has."""
+    if case.has_error:
+        return
+    written: Counter[str] = Counter()
+    numbers = 0
+    for kind, text in zip(case.tokens.kinds, case.tokens.texts, strict=True):
+        # Soft keywords may be names, or not.
+        if kind == NAME:
+            written[text] += 1
+        numbers += kind == NUMBER
+    there: Counter[str] = Counter()
+    for node in ast.walk(case.result.tree):
+        for word in _words(node):
+            there.update(word.split("."))
+        if isinstance(node, ast.FormattedValue) and node.conversion >= 0:
+            there[chr(node.conversion)] += 1
+        values = (getattr(node, name, None) for name in _NUMBERS)
+        numbers -= sum(
+            isinstance(value, int | float | complex) and not isinstance(value, bool) for value in values
+        )
+        numbers -= isinstance(name := getattr(node, "name", None), str) and name[:1] in "0123456789."
+    lost = written - there
+    if lost or numbers > 0:
+        raise Violation(f"not in the tree: {', '.join(sorted(lost)) or f'{numbers} numbers'}")
+
+
+_NUMBERS: Final = ("value", "probability")
+
+OF_TEXTS: Final = (Property.of(parsing_loses_nothing), Property.of(lowering_loses_nothing, one_in=2))

@@ -3,8 +3,8 @@
 import ast
 import copy
 import random
-from collections.abc import Iterator
-from typing import Any, Final
+from collections.abc import Iterator, Sequence
+from typing import Any, Final, TypeAlias
 
 from fuzz.properties.case import Case, Property, Violation, describe
 from fuzz.properties.differences import difference
@@ -14,10 +14,22 @@ from scenic.compiler.parser import parse
 from scenic.compiler.unparser import unparse
 from scenic.language.diagnostics import Severity
 
-__all__ = ["OF_TEXTS"]
+__all__ = ["OF_FORMULAS", "OF_TEXTS"]
 
-_OPERATORS: Final = (ast.BinOp, ast.UnaryOp, ast.BoolOp, ast.Compare, ast.IfExp, ast.Await, scenic.Operation)
+_OPERATORS: Final = (
+    ast.BinOp,
+    ast.UnaryOp,
+    ast.BoolOp,
+    ast.Compare,
+    ast.IfExp,
+    ast.Await,
+    scenic.Operation,
+    scenic.Temporal,
+)
 _MOST: Final = 3
+_ATTEMPTS: Final = 4
+
+_Place: TypeAlias = tuple[Any, str, int | None]
 
 
 def operands_can_be_exchanged(case: Case) -> None:
@@ -25,14 +37,29 @@ def operands_can_be_exchanged(case: Case) -> None:
     if case.has_error:
         return
     tree = case.fresh_tree()
+    _exchange(tree, (_places(tree), _places_in_conditions(tree)), random.Random(case.number))
+
+
+def conditions_can_be_exchanged(case: Case) -> None:
+    """The same of the conditions of `require` alone, with more exchanges."""
+    if case.has_error:
+        return
     draw = random.Random(case.number)
-    kinds = [places for places in (_places(tree), _places_in_conditions(tree)) if len(places) > 1]
+    for _ in range(_ATTEMPTS):
+        tree = case.fresh_tree()
+        _exchange(tree, (_places_in_conditions(tree),), draw)
+
+
+def _exchange(tree: ast.Module, kinds: Sequence[Sequence[_Place]], draw: random.Random) -> None:
+    """Put operands in the places of others of their kind, and see whether the tree is still written as it should be."""
+    kinds = [places for places in kinds if len(places) > 1]
     if not kinds:
         return
     for places in kinds:
         for _ in range(draw.randint(1, _MOST)):
             node, name, index = draw.choice(places)
-            given = copy.deepcopy(_get(*draw.choice(places)))
+            donors = [place for place in places if isinstance(_get(*place), _OPERATORS)]
+            given = copy.deepcopy(_get(*draw.choice(donors if donors and draw.random() < 0.7 else places)))
             if index is None:
                 setattr(node, name, given)
             else:
@@ -48,9 +75,9 @@ def operands_can_be_exchanged(case: Case) -> None:
     operators_follow_the_table(Case(written))
 
 
-def _places(tree: ast.AST) -> list[tuple[Any, str, int | None]]:
+def _places(tree: ast.AST) -> list[_Place]:
     """The operands of a tree, outside of conditions and patterns, where not every operator can stand."""
-    found: list[tuple[Any, str, int | None]] = []
+    found: list[_Place] = []
     stack: list[ast.AST] = [tree]
     while stack:
         node = stack.pop()
@@ -63,7 +90,7 @@ def _places(tree: ast.AST) -> list[tuple[Any, str, int | None]]:
     return found
 
 
-def _operands(node: ast.AST) -> Iterator[tuple[Any, str, int | None]]:
+def _operands(node: ast.AST) -> Iterator[_Place]:
     for name in node._fields:
         value = getattr(node, name)
         if isinstance(value, ast.expr):
@@ -72,10 +99,11 @@ def _operands(node: ast.AST) -> Iterator[tuple[Any, str, int | None]]:
             yield from ((node, name, index) for index, each in enumerate(value) if isinstance(each, ast.expr))
 
 
-def _places_in_conditions(tree: ast.AST) -> list[tuple[Any, str, int | None]]:
-    """The operands of the operators of conditions: all may be conditions."""
-    found: list[tuple[Any, str, int | None]] = []
-    stack = [node.condition for node in ast.walk(tree) if isinstance(node, scenic.Require)]
+def _places_in_conditions(tree: ast.AST) -> list[_Place]:
+    """Conditions, and the operands of their operators, all of which may be conditions."""
+    requirements = [node for node in ast.walk(tree) if isinstance(node, scenic.Require)]
+    found: list[_Place] = [(node, "condition", None) for node in requirements]
+    stack = [node.condition for node in requirements]
     while stack:
         node = stack.pop()
         if isinstance(node, scenic.Temporal | ast.BoolOp) or (
@@ -92,3 +120,4 @@ def _get(node: Any, name: str, index: int | None) -> Any:
 
 
 OF_TEXTS: Final = (Property.of(operands_can_be_exchanged, one_in=3),)
+OF_FORMULAS: Final = (Property.of(conditions_can_be_exchanged),)

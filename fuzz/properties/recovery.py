@@ -3,7 +3,8 @@
 A program was changed between two places, and is none any more. Then an error must be reported near the change, and not at
 the end of the file, or at a statement that has nothing to do with it. What is near:
 
-- It begins with the statement that holds the first change. If the change touches the beginning of that statement, or the
+- It begins with the line of the statement that holds the first change: what stands before a `;` may be read as
+  something else with it. If the change touches the beginning of that statement, or the
   space before it, then with the statement or header before, to which the change may belong as well: a header whose
   block is gone is wrong itself.
 - It ends with the first line of the statement, or clause, after the one that holds the last change; where a header was
@@ -95,7 +96,7 @@ def region(original: str, text: str) -> Region | None:
     program = _Program(old, before)
     start, end = program.touched(first, last, layout="\n" in new[first : len(new) - rest])
     end = _extended(after.spans(lex(new, WORDS)), new, start, max(end, last) + shift)
-    return Region(start, program.after(max(end - shift, last)) + shift)
+    return Region(program.line_start(start), program.after(max(end - shift, last)) + shift)
 
 
 class _Program:
@@ -115,11 +116,13 @@ class _Program:
             (offsets.of_bytes(*start), offsets.of_bytes(*end)) for start, end in _extents(parse(text).tree)
         )
         starts = {start for start, _ in self._statements}
+        self._line_starts: list[int] = []
         fresh = True
         for kind, line, column in zip(tokens.kinds, tokens.lines, tokens.columns, strict=True):
             if kind not in _LAYOUT and fresh:
-                starts.add(offsets.of_bytes(line, column))
+                self._line_starts.append(offsets.of_bytes(line, column))
             fresh = kind in _LAYOUT
+        starts.update(self._line_starts)
         self._starts = sorted(starts)
 
     def touched(self, first: int, last: int, *, layout: bool) -> tuple[int, int]:
@@ -153,6 +156,11 @@ class _Program:
             if statement[1] >= end and statement[1] - statement[0] <= found[1] - found[0]:
                 found = statement
         return found
+
+    def line_start(self, offset: int) -> int:
+        """The start of the line that an offset lies in."""
+        index = bisect_right(self._line_starts, offset) - 1
+        return min(offset, self._line_starts[index]) if index >= 0 else offset
 
     def after(self, end: int) -> int:
         """The end of the line of the next statement or clause from an offset on; of the text, if there is none."""

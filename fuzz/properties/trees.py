@@ -153,6 +153,7 @@ def nodes_lie_in_the_text(case: Case) -> None:
     tokens = case.tokens
     starts = set(zip(tokens.lines, tokens.columns, strict=True))
     ends = set(zip(tokens.end_lines, tokens.end_columns, strict=True))
+    loose: set[ast.AST] = set()
     stack: list[tuple[ast.AST, Any, Any]] = [(case.result.tree, (1, 0), (len(widths), widths[-1] + 1))]
     while stack:
         node, outer_start, outer_end = stack.pop()
@@ -171,7 +172,7 @@ def nodes_lie_in_the_text(case: Case) -> None:
                 # The column after the last one is that of the line end.
                 if not (1 <= line <= len(widths) and 0 <= column <= widths[line - 1] + 1):
                     raise Violation(f"{_where(node)} lies outside the text")
-            if start not in starts:
+            if start not in starts and node not in loose:
                 raise Violation(f"{_where(node)} does not start at a token")
             if end not in ends:
                 raise Violation(f"{_where(node)} does not end at the end of a token, but at {end}")
@@ -182,6 +183,9 @@ def nodes_lie_in_the_text(case: Case) -> None:
             if getattr(node, "decorator_list", None):
                 # Decorators stand before what they decorate.
                 start = _start(located.decorator_list[0], start)
+        if isinstance(node, ast.JoinedStr):
+            # The text of a field with `=` starts with the blanks after the brace.
+            loose.update(node.values)
         rows = list(_rows(node))
         for row in rows:
             _check_order(node, row)

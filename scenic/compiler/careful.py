@@ -47,7 +47,7 @@ _MOST_CHARACTERS_SEARCHED: Final = 300
 _MOST_BRACKETS_COMPARED: Final = 20
 """So far is looked around from one place; keeps the time linear."""
 
-_HEADER_END: Final = re.compile(r"[^\n:#]*+:")
+_HEADER_END: Final = re.compile(r"(?:[^\n:#\\]|\\\n)*+:")
 
 _TARGET: Final = r"[A-Za-z_][\w.]*+(?:\[[^\]\n]{0,40}+\])?+"
 

@@ -78,7 +78,7 @@ def _errors(diagnostics: Iterable[Diagnostic]) -> int:
 
 def apply_fixes(text: str, fixes: Iterable[Fix]) -> tuple[str, int]:
     """Make all repairs that do not overlap, the earlier in the text first; also says how many those are."""
-    starts = [int(text.startswith("\ufeff")), *(found.end() for found in _LINE_END.finditer(text))]
+    starts = [len(text) - len(text.lstrip("\ufeff")), *(found.end() for found in _LINE_END.finditer(text))]
     line_end = found[0] if (found := _LINE_END.search(text)) is not None else "\n"
 
     def offset(line: int, column: int) -> int:

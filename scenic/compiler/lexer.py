@@ -84,7 +84,7 @@ def lex(text: str, words: Mapping[str, int]) -> Tokens:
 
 def prepared(text: str, words: Mapping[str, int], lexer: "type[Lexer]") -> Tokens:
     """What ``lexer`` makes of a text, without its byte order mark and with line ends as it wants them."""
-    text = text.removeprefix("\ufeff")
+    text = text.lstrip("\ufeff")
     if "\r" in text:
         text = text.replace("\r\n", "\n").replace("\r", "\n")
     if text and not text.endswith("\n"):

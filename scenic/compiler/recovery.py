@@ -48,7 +48,8 @@ _CLOSERS: Final = (")", "]", "}")
 _OF_STATEMENTS: Final = ("statement", "class_item")
 """The rules of blocks that hold statements."""
 
-_CLAUSED: Final = _CLAUSES | {HARD_KEYWORDS["for"], _IF, _WHILE, _TRY, _INTERRUPT}
+_SEMICOLON: Final = OPERATORS[";"]
+_CLAUSED: Final = _CLAUSES | {HARD_KEYWORDS["for"], HARD_KEYWORDS["async"], _IF, _WHILE, _TRY, _INTERRUPT}
 """First words of statements that may have further clauses, and of those."""
 
 MOST_PROBLEMS: Final = 200
@@ -432,6 +433,8 @@ class Recovery:
         kinds = self._kinds
         if kinds[last] == _COMMA:
             return True
+        if kinds[last] == _SEMICOLON:
+            return False
         while last >= 0 and kinds[last] not in (NEWLINE, INDENT, DEDENT):
             if kinds[last] in (_NEW, _OVERRIDE):
                 return True

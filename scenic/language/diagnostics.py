@@ -11,6 +11,9 @@ from typing import Final
 
 from scenic.language.spans import Span
 
+_LONGEST: Final = 2000
+"""The characters of a message, about; of a longer one the middle is left out."""
+
 
 class Severity(StrEnum):
     """How bad it is: errors keep a program from being compiled; errors and warnings make ``scenic check`` fail."""
@@ -67,6 +70,10 @@ class Diagnostic:
     def __post_init__(self) -> None:
         if self.code not in CODES:
             raise ValueError(f"unknown diagnostic code {self.code!r}")
+        if len(self.message) > _LONGEST:
+            # It quotes a name, and a name may be of any length.
+            half = _LONGEST // 2
+            object.__setattr__(self, "message", f"{self.message[:half]} … {self.message[-half:]}")
 
 
 CODES: Final = MappingProxyType(

@@ -27,7 +27,7 @@ class Source:
     lines: tuple[str, ...] = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        text = self.text.removeprefix(_BYTE_ORDER_MARK)
+        text = self.text.lstrip(_BYTE_ORDER_MARK)
         if "\r" in text:
             text = text.replace("\r\n", "\n").replace("\r", "\n")
         object.__setattr__(self, "text", text)
@@ -40,7 +40,7 @@ class Source:
         Raises `ScenicError` with code SC107 and the place of the first bad byte.
         """
         try:
-            return data.decode("utf-8").removeprefix(_BYTE_ORDER_MARK)
+            return data.decode("utf-8").lstrip(_BYTE_ORDER_MARK)
         except UnicodeDecodeError as error:
             raise _not_utf8(data, error.start, filename) from None
 
@@ -110,7 +110,7 @@ def _unreadable(filename: str, message: str, advice: str) -> ScenicError:
 
 
 def _not_utf8(data: bytes, bad: int, filename: str) -> ScenicError:
-    before = data[:bad].decode("utf-8").removeprefix(_BYTE_ORDER_MARK)
+    before = data[:bad].decode("utf-8").lstrip(_BYTE_ORDER_MARK)
     lines = before.replace("\r\n", "\n").replace("\r", "\n").split("\n")
     line, column = len(lines), len(lines[-1])
     if data.startswith((b"\xff\xfe", b"\xfe\xff")):

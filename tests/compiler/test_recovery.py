@@ -308,7 +308,7 @@ def test_only_lines_that_make_instances_go_on_with_specifiers() -> None:
         # These look like a property, a call, an assignment on lines of their own.
         "scenario S(*\np: C, **q): x x\n",
         "def f(a=\nrun(3)\n): x x\n",
-        "behavior B(\np=3): x x\n",
+        "behavior B(\np=3) \\\n: x x\n",
     ],
 )
 def test_a_colon_at_the_end_of_a_line_need_not_be_that_of_the_header(text: str) -> None:
@@ -323,3 +323,14 @@ def test_a_header_with_its_colon_lacks_none(text: str) -> None:
     assert problem.code == "SC110"
     [problem] = parse(text.replace(": x x", " x x")).diagnostics
     assert problem.code in ("SC110", "SC121")
+
+
+@pytest.mark.parametrize("header", ["for x in y", "async for x in y", "while x", "if x"])
+def test_a_mistake_after_else_leaves_the_statement_whole(header: str) -> None:
+    result = parse(f"{header}:\n    pass\nelse:\n    pass\n    take 1,\n    pass\n")
+    [problem] = result.diagnostics
+    assert problem.span is not None
+    assert problem.span.line == 5
+    [node] = result.tree.body
+    assert isinstance(node, ast.For | ast.AsyncFor | ast.While | ast.If)
+    assert statements(node.orelse) == ["Pass", "ErrorStatement", "Pass"]

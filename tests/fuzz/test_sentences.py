@@ -82,7 +82,8 @@ def test_the_number_of_expansions_is_bounded():
     check()
 
 
-@pytest.mark.parametrize(("word", "most"), [("until", 40), ("interrupt", 60), ("@", 25)])
+@pytest.mark.slow
+@pytest.mark.parametrize(("word", "most"), [("until", 90), ("interrupt", 90), ("@", 40)])
 def test_shrinking_ends_in_small_programs(word: str, most: int):
     found = find(
         programs(),

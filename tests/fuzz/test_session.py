@@ -185,7 +185,19 @@ def test_workers_share_the_work(capsys: pytest.CaptureFixture[str]):
     output = capsys.readouterr().out
     assert "2 workers" in output
     assert "450 programs" in output
-    assert "and 10 mutants" in output
+    assert " 10 mutants" in output
+
+
+def test_properties_can_be_chosen(capsys: pytest.CaptureFixture[str]):
+    chosen = ["--only", "parsing_gives_a_tree,programs_are_accepted"]
+    assert command.main(["--programs", "3", "--mutants", "2", "--seed", "5", "--jobs", "1", *chosen]) == 0
+    output = capsys.readouterr().out
+    assert "parsing_gives_a_tree" in output
+    assert "written_trees_read_the_same" not in output
+    assert " 0 formulas" in output
+    with pytest.raises(SystemExit):
+        command.main(["--only", "parsing"])
+    assert "there is no property 'parsing'" in capsys.readouterr().err
 
 
 def test_a_budget_is_shared_among_the_rounds():
