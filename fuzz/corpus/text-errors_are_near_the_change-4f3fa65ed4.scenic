@@ -1,0 +1,2 @@
+scenario S:
+    setup: pass; bottomback left of S
