@@ -53,7 +53,8 @@ def main(arguments: list[str] | None = None) -> int:
     short = _summary(report, died, time.time() - start, seed)
     if short and options.require_coverage:
         print("the coverage falls short of what is required")
-    return 1 if report.failures or died or (short and options.require_coverage) else 0
+    serious = [each for each in report.failures if each.signature.property not in options.tolerate]
+    return 1 if serious or died or (short and options.require_coverage) else 0
 
 
 def _options() -> argparse.ArgumentParser:
@@ -72,6 +73,13 @@ def _options() -> argparse.ArgumentParser:
         default=frozenset(),
         metavar="NAMES",
         help="try these properties alone, with commas between",
+    )
+    parser.add_argument(
+        "--tolerate",
+        type=_property_names,
+        default=frozenset(),
+        metavar="NAMES",
+        help="show failures of these properties, but do not fail because of them",
     )
     parser.add_argument("--seed", type=int, help="the seed of the first round (default: a random one)")
     parser.add_argument("--jobs", type=int, help="worker processes (default: one for each usable processor)")

@@ -3,6 +3,7 @@
 import ast
 import random
 from collections.abc import Iterator
+from itertools import pairwise
 from typing import Any, Final
 
 from fuzz.properties.case import Case, Property, Violation, describe, is_syntax_error
@@ -49,12 +50,14 @@ def mistakes_leave_the_rest_alone(case: Case) -> None:
 
 
 def _places(tree: ast.Module) -> Iterator[tuple[int, int]]:
-    """Line and column of each statement that is not the first of its block; guards have to stand together."""
+    """Line and column of each statement that begins a line, not the first of its block; guards have to stand together."""
     for node in ast.walk(tree):
         for _, block in ast.iter_fields(node):
             if isinstance(block, list):
-                for each in block[1:]:
-                    if isinstance(each, ast.stmt) and not isinstance(each, scenic.Guard):
+                for before, each in pairwise(block):
+                    if not isinstance(each, ast.stmt) or isinstance(each, scenic.Guard):
+                        continue
+                    if each.lineno > (before.end_lineno or 0):
                         decorators = getattr(each, "decorator_list", None)
                         yield decorators[0].lineno if decorators else each.lineno, each.col_offset
 

@@ -2,6 +2,7 @@
 
 import ast
 import dis
+import random
 import sys
 import warnings
 from collections.abc import Iterator
@@ -62,29 +63,92 @@ _INSTRUCTIONS: Final = (
 
 
 def names_mean_what_python_says(case: Case) -> None:
-    """The names in statements of Python's syntax are local, or not, as they are in the code that Python makes of them."""
+    """The names of a program are local, or not, as they are in the code that Python makes of it without what is Scenic's.
+
+    Its statements are put into functions and classes, and names that are read are exchanged for others that are bound nearby, in
+    reach or not.
+    """
     if case.has_error:
         return
-    tree = case.result.tree
-    references: dict[Any, Reference] = {}
-    codes: list[CodeType] = []
-    resolution = None
-    for node, _ in plain_statements(tree):
-        if not any(isinstance(part, _SCOPED) for part in ast.walk(node)):
-            continue
-        try:
-            with warnings.catch_warnings():
-                warnings.simplefilter("ignore")
-                codes.append(compile(ast.Module([node], []), FILENAME, "exec", dont_inherit=True))
-        except (SyntaxError, ValueError, RecursionError):
-            continue
-        if resolution is None:
-            resolution = resolve(tree, case.source)
-        for part in ast.walk(node):
-            if isinstance(part, ast.Name) and part in resolution.references:
-                references[place(part), part.id] = resolution.references[part]
-    for code in codes:
-        _check_names(code, references)
+    draw = random.Random(case.number)
+    for node in case.fresh_tree().body:
+        if any(isinstance(part, _SCOPED) for part in ast.walk(node)):
+            try:
+                tree = _within(_Plain().visit(node), draw.choice(_AROUND))
+                _exchange_names(tree, draw)
+                with warnings.catch_warnings():
+                    warnings.simplefilter("ignore")
+                    code = compile(tree, FILENAME, "exec", dont_inherit=True)
+            except (SyntaxError, ValueError, RecursionError):
+                # It may be no program of Python's, or none any more.
+                continue
+            found = resolve(tree, case.source).references
+            _check_names(
+                code,
+                {(place(part), part.id): each for part, each in found.items() if isinstance(part, ast.Name)},
+            )
+
+
+class _Plain(ast.NodeTransformer):
+    """Puts plain Python in the places of what is Scenic's: the expressions in it, assignments for properties, otherwise nothing."""
+
+    def visit(self, node: ast.AST) -> Any:
+        if isinstance(node, _APART):
+            return ast.copy_location(ast.Pass(), node)
+        self.generic_visit(node)
+        if isinstance(node, scenic.PropertyDef):
+            target = ast.copy_location(ast.Name(id=node.name, ctx=ast.Store()), node)
+            return ast.copy_location(ast.Assign(targets=[target], value=node.value), node)
+        if isinstance(node, scenic.ScenicExpression | scenic.ScenicStatement):
+            values = ast.copy_location(ast.Tuple(elts=list(_values(node)), ctx=ast.Load()), node)
+            is_statement = isinstance(node, ast.stmt)
+            return ast.copy_location(ast.Expr(value=values), node) if is_statement else values
+        return node
+
+
+_APART: Final = (
+    scenic.BehaviorDef,
+    scenic.MonitorDef,
+    scenic.ScenarioDef,
+    scenic.Guard,
+    scenic.TryInterrupt,
+)
+
+
+def _values(node: ast.AST) -> Iterator[ast.expr]:
+    """The expressions in a node of Scenic's, and in its parts."""
+    for part in ast.iter_child_nodes(node):
+        if isinstance(part, ast.expr):
+            yield part
+        else:
+            yield from _values(part)
+
+
+_AROUND: Final = ("pass", "class Around: pass", "def around(): pass", "class Around:\n    def around(): pass")
+
+
+def _within(node: ast.stmt, around: str) -> ast.Module:
+    """A module of a statement that is put in the place of `pass` in the text ``around``."""
+    tree = ast.parse(around)
+    block: list[ast.stmt] = tree.body
+    while not isinstance(block[0], ast.Pass):
+        holder: Any = ast.copy_location(block[0], node)
+        block = holder.body
+    block[0] = node
+    return tree
+
+
+def _exchange_names(tree: ast.Module, draw: random.Random) -> None:
+    nodes = list(ast.walk(tree))
+    read = [node for node in nodes if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load)]
+    bound = {node.arg for node in nodes if isinstance(node, ast.arg)}
+    bound |= {node.id for node in nodes if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)}
+    bound |= {node.name for node in nodes if isinstance(node, ast.FunctionDef | ast.ClassDef)}
+    names = sorted(bound - set(RESERVED) - set(TRACKED))
+    if names and draw.random() < 0.7:
+        for node in draw.sample(read, len(read) // 2 + len(read) % 2):
+            if node.id not in RESERVED and node.id not in TRACKED:
+                node.id = draw.choice(names)
 
 
 _SCOPED: Final = (

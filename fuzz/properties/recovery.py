@@ -163,11 +163,11 @@ class _Program:
         return min(offset, self._line_starts[index]) if index >= 0 else offset
 
     def after(self, end: int) -> int:
-        """The end of the line of the next statement or clause from an offset on; of the text, if there is none."""
-        index = bisect_left(self._starts, end)
-        if index == len(self._starts):
+        """The end of the next line of statements, or clause, from an offset on; of the text, if there is none."""
+        index = bisect_left(self._line_starts, end)
+        if index == len(self._line_starts):
             return self._length + 1
-        line_end = bisect_left(self._line_ends, self._starts[index])
+        line_end = bisect_left(self._line_ends, self._line_starts[index])
         return self._line_ends[line_end] if line_end < len(self._line_ends) else self._length + 1
 
 

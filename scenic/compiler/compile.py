@@ -99,7 +99,7 @@ def _python_error(error: SyntaxError, source: Source) -> Diagnostic:
     message = error.msg
     if "duplicate argument" in message:
         code = "SC210"
-    elif "outside" in message or "at module level" in message:
+    elif "outside" in message or "inside async" in message or "at module level" in message:
         code = "SC201"
     else:
         code = "SC110"

@@ -5,6 +5,7 @@ list of nodes for a replacement field, and a triple (start, parts, end) for an f
 """
 
 import ast
+import sys
 from collections.abc import Iterable, Sequence
 from typing import Any, Protocol
 
@@ -58,7 +59,14 @@ def joined(actions: Reader, tokens: Tokens, pieces: Sequence[Any], place: Place)
                 found.append(
                     _constant(values[piece], actions.place_of_token(piece), actions.string_kind(piece))
                 )
-        node = ast.JoinedStr(values=_merged(found))
+        values_of_node = _merged(found)
+        if sys.version_info < (3, 12):
+            # Here the prefix of the first string is that of all.
+            kind = None if isinstance(pieces[0], tuple) else actions.string_kind(pieces[0])
+            for part in values_of_node:
+                if isinstance(part, ast.Constant):
+                    part.kind = kind
+        node = ast.JoinedStr(values=values_of_node)
     _put(node, place)
     return node  # type: ignore[no-any-return] # `node` is one of two classes of `ast`
 

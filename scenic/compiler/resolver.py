@@ -307,6 +307,12 @@ class _Collector:
         yield node.value, scope
         yield from ((target, scope) for target in node.targets)
 
+    def annotation(self, node: ast.AnnAssign, scope: Scope) -> Iterable[_Task]:
+        if isinstance(node.target, ast.Name) and not node.simple and node.value is None:
+            # As in Python, `(x): int` binds nothing.
+            self._plain_targets.add(node.target)
+        return [(child, scope) for child in parts(node)]
+
     def importation(self, node: ast.Import, scope: Scope) -> Iterable[_Task]:
         for alias in node.names:
             name = alias.asname or alias.name.partition(".")[0]
@@ -377,6 +383,7 @@ def _handlers() -> Mapping[type[ast.AST], Callable[[_Collector, Any, Scope], Ite
         ast.DictComp: _Collector.comprehension,
         ast.GeneratorExp: _Collector.comprehension,
         ast.NamedExpr: _Collector.walrus,
+        ast.AnnAssign: _Collector.annotation,
         ast.Assign: _Collector.assignment,
         ast.Import: _Collector.importation,
         ast.ImportFrom: _Collector.import_from,

@@ -112,6 +112,15 @@ def test_scopes() -> None:
     assert binding_scopes("scenario S(x):\n new Object at x", "x") == {ScopeKind.SCENARIO}
 
 
+def test_annotations_bind_names_unless_in_parentheses() -> None:
+    for target, kind in (
+        ("x: int", ScopeKind.FUNCTION),
+        ("(x): int = 1", ScopeKind.FUNCTION),
+        ("(x): int", None),
+    ):
+        assert binding_scopes(f"def f():\n    {target}\n    return x\n", "x") == {kind}
+
+
 def test_kinds_of_bindings() -> None:
     text = "import a\nfrom b import c\ndef f(): pass\nclass C: pass\nbehavior B():\n    wait\nx = 1\nx: int\n"
     kinds = {name: binding.kinds for name, binding in resolved(text).module.bindings.items()}

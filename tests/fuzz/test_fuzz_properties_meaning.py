@@ -128,6 +128,12 @@ def test_statements_that_python_has_not_are_noticed():
         python.python_reads_the_same(case)
 
 
+def with_names_exchanged(text: str) -> None:
+    """Tries a text often: each time other names are exchanged, if any."""
+    for number in range(30):
+        python.names_mean_what_python_says(Case(f"{text}# {number}\n", thorough=True))
+
+
 @pytest.mark.parametrize(
     ("text", "kind"),
     [
@@ -138,7 +144,7 @@ def test_statements_that_python_has_not_are_noticed():
     ],
 )
 def test_missed_scopes_are_noticed(text: str, kind: ScopeKind, monkeypatch: pytest.MonkeyPatch):
-    python.names_mean_what_python_says(Case(text, thorough=True))
+    with_names_exchanged(text)
     lookup = Scope.lookup
 
     def one_too_far_out(self: Scope, name: str) -> Any:
@@ -146,8 +152,8 @@ def test_missed_scopes_are_noticed(text: str, kind: ScopeKind, monkeypatch: pyte
         return None if found is not None and found.scope.kind is kind else found
 
     monkeypatch.setattr(Scope, "lookup", one_too_far_out)
-    with pytest.raises(Violation, match=r"`y` at .* is nothing, but local"):
-        python.names_mean_what_python_says(Case(text, thorough=True))
+    with pytest.raises(Violation, match=r"`\w+` at .* is nothing, but local"):
+        with_names_exchanged(text)
 
 
 def test_names_of_classes_are_out_of_reach(monkeypatch: pytest.MonkeyPatch):
@@ -157,8 +163,13 @@ def test_names_of_classes_are_out_of_reach(monkeypatch: pytest.MonkeyPatch):
         return next((each.bindings[name] for each in self.ancestors() if name in each.bindings), None)
 
     monkeypatch.setattr(Scope, "lookup", anywhere)
-    with pytest.raises(Violation, match=r"`x` at .* is a name of the class C, but global"):
-        python.names_mean_what_python_says(Case(text, thorough=True))
+    with pytest.raises(Violation, match=r"`\w+` at .* is a name of the class \w+, but global"):
+        with_names_exchanged(text)
+
+
+def test_names_in_what_is_scenics_count():
+    text = "def f(a):\n    new C at [b for b in a], with c (lambda d: d)\n    require always a\n    take a\n"
+    with_names_exchanged(text)
 
 
 # Operators.

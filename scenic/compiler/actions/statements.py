@@ -177,6 +177,7 @@ class StatementActions(DefinitionActions, ExpressionActions):
 def _guard_word(statement: ast.stmt) -> str | None:
     if (
         isinstance(statement, ast.AnnAssign)
+        and statement.simple
         and isinstance(statement.target, ast.Name)
         and statement.target.id in ("precondition", "invariant")
         and statement.value is None

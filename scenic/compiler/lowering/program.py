@@ -268,6 +268,14 @@ class _Program:
     def function_definition(self, node: Any) -> Any:
         return self._kept(node, self._copy(node))
 
+    def implication(self, node: scenic.Temporal) -> ast.expr:
+        """One that is part of a leaf of a condition. No other temporal operator can be: they are not available yet."""
+        if node.operator != "implies":
+            raise InternalError(f"{node.operator} has no lowering")
+        premise, conclusion = (self.expression(operand) for operand in node.operands)
+        failed = at(ast.UnaryOp(ast.Not(), premise), node.operands[0])
+        return at(ast.BoolOp(ast.Or(), [failed, conclusion]), node)
+
     def behavior(self, node: scenic.BehaviorDef) -> Any:
         # A static scene carries behaviors as data: what they do is compiled only where there are simulations.
         match node.body[:1]:
@@ -391,6 +399,7 @@ def _rules() -> Mapping[type[ast.AST], Callable[[_Program, Any], Any]]:
         ast.ExceptHandler: _Program.exception_handler,
         ast.match_case: _Program.match_case,
         scenic.Operation: _Program.operation,
+        scenic.Temporal: _Program.implication,
         scenic.New: _Program.new,
         scenic.Param: _Program.param,
         scenic.Model: _Program.model,

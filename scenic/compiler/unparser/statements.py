@@ -289,17 +289,24 @@ class StatementWriter(PatternWriter):
                 value = self.expression(statement.value, _END)
                 self.lines.append(f"{indent}{statement.name}{attributes}: {value}")
             elif kind is ast.AnnAssign:
-                self.annotated_in_class(statement, indent)
+                self.annotated_in_class(statement, indent, node.body[place - 1] if place else None)
             elif place == 0 and _is_documentation(statement):
                 self.documentation(statement, indent)
             else:
                 self.table[kind](self, statement, indent)
             previous = kind
 
-    def annotated_in_class(self, node: ast.AnnAssign, indent: str) -> None:
-        """What would be a property without parentheses around the target."""
+    def annotated_in_class(self, node: ast.AnnAssign, indent: str, before: ast.stmt | None) -> None:
+        """What would be a property on a line of its own, or without parentheses around the target."""
         if node.simple:
-            raise UnparseError("an annotation of a name has no text in a class, where it is a property", node)
+            if before is None or hasattr(before, "body") or isinstance(before, tree.ScenicStatement):
+                raise UnparseError(
+                    "an annotation of a name has no text here in a class, where it is a property", node
+                )
+            self.annotation(node, self.expression(node.target, ":"), "")
+            last = self.lines.pop()
+            self.lines[-1] += f"; {last}"
+            return
         self.annotation(node, f"({self.expression(node.target, ')')})", indent)
 
     def refuse(self, node: ast.stmt, indent: str) -> None:

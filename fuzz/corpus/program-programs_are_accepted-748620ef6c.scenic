@@ -1,0 +1,2 @@
+behavior B():
+    (invariant): self

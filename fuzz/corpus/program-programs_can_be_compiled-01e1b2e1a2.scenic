@@ -1,0 +1,1 @@
+require Range and None * {x := Range for x in Range} implies Range

@@ -1,0 +1,2 @@
+match Range:
+    case * c, * c: pass

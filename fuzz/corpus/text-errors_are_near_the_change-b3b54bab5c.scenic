@@ -1,0 +1,7 @@
+pass
+@ None
+@ ()
+@ Range
+class C:
+ pass; pass
+    pass
