@@ -79,7 +79,7 @@ def _options() -> argparse.ArgumentParser:
         type=_property_names,
         default=frozenset(),
         metavar="NAMES",
-        help="show failures of these properties, but do not fail because of them",
+        help="show failures of these properties (or all), but do not fail because of them",
     )
     parser.add_argument("--seed", type=int, help="the seed of the first round (default: a random one)")
     parser.add_argument("--jobs", type=int, help="worker processes (default: one for each usable processor)")
@@ -95,8 +95,8 @@ def _options() -> argparse.ArgumentParser:
 
 
 def _property_names(text: str) -> frozenset[str]:
-    names = frozenset(text.split(","))
     known = {each.name for each in (*OF_PROGRAMS, *OF_FORMULAS)}
+    names = frozenset(known if text == "all" else text.split(","))
     if unknown := names - known:
         raise argparse.ArgumentTypeError(f"there is no property {min(unknown)!r}; they are {sorted(known)}")
     return names

@@ -2,6 +2,7 @@
 
 import ast
 import keyword
+import unicodedata
 from collections.abc import Sequence
 from typing import ClassVar, Final
 
@@ -229,7 +230,8 @@ def _annotated_name(node: ast.stmt) -> str:
 
 def _name(name: str) -> str:
     """A name that may also be written as a string."""
-    if name.isidentifier() and name not in HARD_KEYWORDS and not keyword.iskeyword(name):
+    is_word = name.isidentifier() and unicodedata.normalize("NFKC", name) == name
+    if is_word and name not in HARD_KEYWORDS and not keyword.iskeyword(name):
         return name
     return strings.plain(name, nested=False)
 
