@@ -12,6 +12,7 @@ from typing import Final
 
 from fuzz import corpus
 from fuzz.draws import RandomDraws
+from fuzz.limits import time_limit
 from fuzz.mutations import make_mutant
 from fuzz.properties import OF_TEXTS, PARSING, Case, Property
 from fuzz.session import Signature, signature_of
@@ -112,7 +113,8 @@ class Target:
 
 def _fault(broken: Property, case: Case) -> Exception | None:
     try:
-        broken.holds(case)
+        with time_limit():
+            broken.holds(case)
     except Exception as error:  # noqa: BLE001 - whatever is raised is what the fuzzer looks for
         return error
     return None

@@ -11,6 +11,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.processes import interruptible
+
 ROOT = Path(__file__).parents[2]
 GOOD = "ego = new Object at (1, 2, 0), with width 3\nrequire ego.position.x > 0\n"
 BAD = "x = 1\nego = new Object at (1, 2\nrequire x >\n"
@@ -184,6 +186,7 @@ def test_interruption(good: Path) -> None:
         env=ENVIRONMENT,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
+        preexec_fn=interruptible,
         text=True,
     )
     try:

@@ -12,6 +12,7 @@ import pytest
 
 from scenic.cli.discovery import discover
 from scenic.configuration.project import PLAIN, Configurations
+from tests.processes import interruptible
 
 ROOT = Path(__file__).parents[2]
 WARNED = "ego = new Object with wdth 3\n"
@@ -302,6 +303,7 @@ def test_interruption_of_several_processes() -> None:
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
+        preexec_fn=interruptible,
         start_new_session=True,
     )
     try:
