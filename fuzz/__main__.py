@@ -29,8 +29,10 @@ _SHOWN: Final = 20
 def main(arguments: list[str] | None = None) -> int:
     """Run until the budget is spent; return 1 if anything was found, or too little covered."""
     options = _options().parse_args(arguments)
+    if options.jobs is not None and options.jobs < 0:
+        raise SystemExit("the number of worker processes cannot be negative")
     seed = options.seed if options.seed is not None else secrets.randbelow(1 << 32)
-    jobs = options.jobs or usable_processors()
+    jobs = usable_processors() if options.jobs is None else options.jobs
     counted = options.programs is not None or options.mutants is not None
     seconds = options.minutes * 60 if options.minutes is not None else options.seconds
     if seconds is None and not counted:
@@ -50,6 +52,8 @@ def main(arguments: list[str] | None = None) -> int:
     report, died = run(
         budget, jobs=jobs, on_failure=lambda failure: _show(failure, start, save=not options.no_save)
     )
+    for each in died:
+        _show_death(each, start, save=not options.no_save)
     short = _summary(report, died, time.time() - start, seed)
     if short and options.require_coverage:
         print("the coverage falls short of what is required")
@@ -82,7 +86,11 @@ def _options() -> argparse.ArgumentParser:
         help="show failures of these properties (or all), but do not fail because of them",
     )
     parser.add_argument("--seed", type=int, help="the seed of the first round (default: a random one)")
-    parser.add_argument("--jobs", type=int, help="worker processes (default: one for each usable processor)")
+    parser.add_argument(
+        "--jobs",
+        type=int,
+        help="worker processes (default: one for each usable processor); with 0 this process does the work",
+    )
     parser.add_argument(
         "--require-coverage",
         action="store_true",
@@ -123,6 +131,14 @@ def _show(failure: Failure, start: float, *, save: bool) -> None:
     sys.stdout.flush()
 
 
+def _show_death(died: WorkerDied, start: float, *, save: bool) -> None:
+    print(f"\nDIED after {died.found_at - start:.1f} s: {died}")
+    _quote(died.text)
+    if save and died.again:
+        path = corpus.save(died.text, "interpreter_survives", of_grammar=False)
+        print(f"    saved as {path.name}")
+
+
 def _quote(text: str) -> None:
     # A text may hold characters that no terminal can show.
     shown = text.encode("utf-8", "backslashreplace").decode()
@@ -152,8 +168,6 @@ def _summary(report: Report, died: Sequence[WorkerDied], seconds: float, seed: i
         _missing(share)
     for signature, times in report.repeated.most_common():
         print(f"again {times} times: {signature.property}: {signature.detail}")
-    for each in died:
-        print(f"DIED {each}")
     print(f"{len(report.failures) + len(died)} failures; seed {seed}")
     return any(
         100 * share.covered < required * share.total

@@ -39,7 +39,7 @@ _REQUIRED: Final = 0.95
 _SHRINKING: Final = 180.0
 """So much longer than its time a run may take: to start, and to shrink what it found at the last moment."""
 _HASH: Final = re.compile(r'GRAMMAR_HASH = "\w+"')
-_FOUND: Final = re.compile(r"^FAILED \w+ \(seed \d+\) after (\d+\.\d) s:", re.MULTILINE)
+_FOUND: Final = re.compile(r"^(?:FAILED \w+ \(seed \d+\)|DIED) after (\d+\.\d) s:", re.MULTILINE)
 _NO_FAULT: Final = Fault("none", "", "nothing is wrong", ())
 _LONGEST: Final = 60
 """Longer programs are cut in the table."""

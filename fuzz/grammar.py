@@ -180,6 +180,8 @@ class _State:
     """In how many statements whose specifiers stand on lines of their own."""
     generous: bool = False
     """Whether the next item belongs to what was aimed at, and so should have all its parts."""
+    sees: int = 0
+    """After how many tokens the specifier `visible` ended last."""
     alone: bool = False
     """Whether the row to be made next has to be of one item."""
 
@@ -278,6 +280,8 @@ class _Generator:
         if option.rule == "specifier":
             state.specified = True
             state.claimed = claimed
+            if state.pieces[-1].text == "visible":
+                state.sees = len(state.pieces)
 
     def _inside(self, step: Step, item: Item) -> None:
         """Emit an item within a scope or block of its own."""
@@ -440,6 +444,9 @@ class _Generator:
         if 0 < state.read == len(state.pieces) and (state.pieces[-1].text, text) in self._operator_starts:
             # The name `distance` before `to` would begin an operator: see docs/fuzzing.md.
             state.pieces[-1] = Piece(_HARMLESS, Shape.WORD)
+        if text == "from" and 0 < state.sees == len(state.pieces):
+            # The specifier `visible` would take the word: it gets one of its own.
+            state.pieces += Piece(text, Shape.WORD), Piece(_HARMLESS, Shape.WORD)
         state.pieces.append(Piece(text, Shape.WORD if text.isidentifier() else Shape.OPERATOR))
 
     def _terminal(self, kind: str) -> None:

@@ -280,6 +280,30 @@ FAULTS: Final = (
         (_without(_STATEMENTS, "        tree.WaitUntil: ProgramWriter.wait_until,\n"),),
     ),
     Fault(
+        "endless-loop",
+        "unparser",
+        "writing `mutate x` does not come to an end",
+        (
+            Change(
+                _STATEMENTS,
+                """text += f" {', '.join([each.id for each in node.targets])}"\n""",
+                """while text: text = f"{indent}mutate"\n""",
+            ),
+        ),
+    ),
+    Fault(
+        "crash",
+        "unparser",
+        "writing `terminate after x` ends the interpreter",
+        (
+            Change(
+                _STATEMENTS,
+                'self.lines.append(f"{indent}terminate after {self.duration(node.duration)}")',
+                "import os; os.abort()",
+            ),
+        ),
+    ),
+    Fault(
         "lost-name",
         "unparser",
         "`as` after `require monitor` is not written",

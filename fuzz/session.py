@@ -19,12 +19,13 @@ from fuzz.coverage import Coverage
 from fuzz.derivations import AlternativeId
 from fuzz.draws import Draws, HypothesisDraws, RandomDraws, replayed
 from fuzz.grammar import Program, make_program
+from fuzz.limits import SECONDS, TookTooLongError, limited
 from fuzz.mutations import Mutant, make_mutant
 from fuzz.properties import OF_PROGRAMS, OF_TEXTS, Case, Property, Violation
 from fuzz.temporal import OF_FORMULAS, make_formula
 from scenic.language.diagnostics import Severity
 
-__all__ = ["Failure", "Report", "Signature", "run_round", "shrink", "signature_of", "try_text"]
+__all__ = ["Failure", "Report", "Signature", "fault_of", "run_round", "shrink", "signature_of", "try_text"]
 
 PROGRAMS: Final = 200
 MUTANTS: Final = 100
@@ -32,6 +33,8 @@ FORMULAS: Final = 20
 """The sizes of a round."""
 _LONGEST: Final = 40.0
 """For so many seconds a failure is shrunk at most."""
+_ENDLESS: Final = 0.5
+"""What takes longer than this is still far too long, where shorter texts are looked for that take too long."""
 _UNFINISHED: Final = frozenset({"SC900", "SC120"})
 """Errors of programs that are right, but need more than this version, or the running Python, has."""
 _WORDS: Final = 8
@@ -120,6 +123,9 @@ def signature_of(name: str, error: BaseException) -> Signature:
         first, _, _ = str(error).partition("\n")
         unquoted = re.sub(r"'[^']*'|\"[^\"]*\"|`[^`]*`", "", first)
         detail = " ".join([word for word in unquoted.split() if word.isalpha()][:_WORDS])
+    elif isinstance(error, TookTooLongError):
+        # Where it was when the time was over is a matter of chance.
+        detail = "it does not end"
     else:
         frame = traceback.extract_tb(error.__traceback__)[-1]
         detail = f"{frame.filename.rpartition('/')[2]}:{frame.lineno}"
@@ -138,12 +144,14 @@ def run_round(
     of_texts: Sequence[Property] = OF_TEXTS,
     of_formulas: Sequence[Property] = OF_FORMULAS,
     first: bool = False,
+    trying: Callable[[str], None] | None = None,
 ) -> None:
     """Try some programs, some formulas, and some mutants of the programs, on the properties of each, up to the time ``until`` (of `time.monotonic`).
 
     What is found is entered in ``report``. Failures known to it are counted and not shrunk again. If ``first``, nothing more is
-    tried once something has failed.
+    tried once something has failed. ``trying`` is told of each text before.
     """
+    trying = trying or (lambda _text: None)
     aims = report.coverage.aims or None
     pool: list[tuple[str, Sequence[int]]] = []
     for number in range(programs):
@@ -156,8 +164,11 @@ def run_round(
         report.spend("making", start)
         report.programs += 1
         report.tokens += len(program.pieces)
+        trying(program.text)
         case = Case(program.text)
-        try_text(report, case, of_programs, _program_again(aims), draws.choices, seed_of_round)
+        if not try_text(report, case, of_programs, _program_again(aims), draws.choices, seed_of_round):
+            # Else tracing it might fail in the same way.
+            continue
         start = time.process_time()
         report.coverage.note(program)
         report.spend("tracing", start)
@@ -171,6 +182,7 @@ def run_round(
         formula = make_formula(draws)
         report.spend("making formulas", start)
         report.formulas += 1
+        trying(formula.text)
         try_text(report, Case(formula.text), of_formulas, make_formula, draws.choices, seed_of_round)
     if not pool:
         return
@@ -182,6 +194,7 @@ def run_round(
         mutant = _mutant_of(pool, draws)
         report.spend("making mutants", start)
         report.mutants += 1
+        trying(mutant.text)
         case = Case(mutant.text, mutant)
         try_text(report, case, of_texts, _mutant_again(aims), draws.choices, seed_of_round)
 
@@ -190,7 +203,7 @@ def _is_sound(case: Case) -> bool:
     """Whether a program passes all checks, so that it is lowered or only waits for a feature."""
     try:
         found = case.checked
-    except Exception:  # noqa: BLE001 - whatever it is, a property has said so already
+    except Exception:  # noqa: BLE001 - a property says so, if it is among those that are tried
         return False
     return all(each.code in _UNFINISHED for each in found if each.severity is Severity.ERROR)
 
@@ -228,17 +241,19 @@ def try_text(
     again: Callable[[Draws], Sample],
     choices: Sequence[int],
     seed: int,
-) -> None:
-    """Try a text on ``properties``. At most one new failure is shrunk and entered in ``report``.
+) -> bool:
+    """Try a text on ``properties``; tell whether all hold. At most one new failure is shrunk and entered in ``report``.
 
     ``again`` makes the text from the numbers ``choices``, and shorter ones from others.
     """
+    right = True
     for each in properties:
         report.checks += 1
         start = time.process_time()
-        error = _fault(each, case)
+        error = fault_of(each, case)
         report.spend(each.name, start)
         if error is not None:
+            right = False
             signature = signature_of(each.name, error)
             if any(known.signature == signature for known in report.failures):
                 report.repeated[signature] += 1
@@ -246,14 +261,18 @@ def try_text(
             reason = "".join(traceback.format_exception(error)[-3:])
             first = Failure(signature, case.text, case.mutant is None, seed, reason, _mutant(case))
             report.failures.append(shrink(first, each, again, choices))
-            return
+            break
+    return right
 
 
-def _fault(broken: Property, case: Case) -> Exception | None:
-    """What a property raises."""
+def fault_of(
+    broken: Property, case: Case, *, seconds: float = SECONDS
+) -> Exception | TookTooLongError | None:
+    """What a property raises: that it took longer than ``seconds`` of processor time, too."""
     try:
-        broken.holds(case)
-    except Exception as error:  # noqa: BLE001 - whatever is raised is what the fuzzer looks for
+        with limited(seconds):
+            broken.holds(case)
+    except (Exception, TookTooLongError) as error:  # noqa: BLE001 - whatever is raised is what the fuzzer looks for
         return error
     return None
 
@@ -268,12 +287,14 @@ def shrink(
     """The same failure with as short a text as Hypothesis finds, starting with the one made from ``choices``."""
     found = [failure]
     until = time.monotonic() + _LONGEST
+    endless = failure.signature.exception == TookTooLongError.__name__
 
     def attempt(sample: Sample) -> None:
         if time.monotonic() >= until:
             raise _Stop
         mutant = sample if isinstance(sample, Mutant) else None
-        error = _fault(broken, Case(sample.text, mutant, thorough=True))
+        seconds = _ENDLESS if endless else SECONDS
+        error = fault_of(broken, Case(sample.text, mutant, thorough=True), seconds=seconds)
         # Shrinking must not slip from one failure to another.
         if error is not None and signature_of(broken.name, error) == failure.signature:
             reason = "".join(traceback.format_exception(error)[-3:])

@@ -14,7 +14,7 @@ from fuzz import corpus
 from fuzz.draws import RandomDraws
 from fuzz.mutations import make_mutant
 from fuzz.properties import OF_TEXTS, PARSING, Case, Property
-from fuzz.session import Signature, signature_of
+from fuzz.session import Signature, fault_of, signature_of
 from fuzz.shrinking import shrunk
 from scenic.compiler.generated import HARD_KEYWORDS, OPERATORS, SOFT_KEYWORDS
 
@@ -84,7 +84,7 @@ class Target:
             if each not in PARSING and case.number % _SELDOM:
                 continue
             self.checks += 1
-            error = _fault(each, case)
+            error = fault_of(each, case)
             if error is not None:
                 self._found(each, text, error)
         taken = time.process_time() - start
@@ -92,13 +92,13 @@ class Target:
             signature = Signature("answers_in_time", "Slow", "")
             self._tell(Finding(signature, text, f"{taken:.1f} s for {len(text)} characters"))
 
-    def _found(self, broken: Property, text: str, error: Exception) -> None:
+    def _found(self, broken: Property, text: str, error: BaseException) -> None:
         signature = signature_of(broken.name, error)
         if signature in self._known:
             return
 
         def fails(shorter: str) -> bool:
-            again = _fault(broken, Case(shorter, thorough=True))
+            again = fault_of(broken, Case(shorter, thorough=True))
             return again is not None and signature_of(broken.name, again) == signature
 
         reason = "".join(traceback.format_exception(error)[-3:])
@@ -108,14 +108,6 @@ class Target:
         if finding.signature not in self._known:
             self._known.add(finding.signature)
             self._report(finding)
-
-
-def _fault(broken: Property, case: Case) -> Exception | None:
-    try:
-        broken.holds(case)
-    except Exception as error:  # noqa: BLE001 - whatever is raised is what the fuzzer looks for
-        return error
-    return None
 
 
 class Mutator:

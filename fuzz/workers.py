@@ -1,6 +1,7 @@
 """Runs on several processors: each worker takes every n-th round, and the reports are put together."""
 
 import contextlib
+import faulthandler
 import math
 import multiprocessing
 import os
@@ -10,16 +11,24 @@ import sys
 import time
 import traceback
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Final
 
-from fuzz.properties import OF_PROGRAMS, OF_TEXTS, Property
-from fuzz.session import FORMULAS, MUTANTS, PROGRAMS, Failure, Report, run_round
+from fuzz.properties import OF_PROGRAMS, OF_TEXTS, Case, Property
+from fuzz.session import FORMULAS, MUTANTS, PROGRAMS, Failure, Report, fault_of, run_round
+from fuzz.shrinking import shrunk
 from fuzz.temporal import OF_FORMULAS
 
-__all__ = ["Budget", "WorkerDied", "run", "usable_processors"]
+__all__ = ["Budget", "Slate", "WorkerDied", "run", "usable_processors"]
 
 _PATIENCE: Final = 0.2
+_ROOM: Final = 1 << 20
+"""Bytes for the text that a worker is trying, and before it for its length."""
+_LENGTH: Final = 8
+_ATTEMPTS: Final = 60
+"""So many shorter texts are tried to see whether a worker dies of them; each needs a process."""
+_ENOUGH: Final = 120.0
+"""Seconds after which a worker with a single text is taken for a dead one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,13 +67,20 @@ def _share(total: int, parts: int, number: int) -> int:
 
 @dataclass(frozen=True, slots=True)
 class WorkerDied:
-    """A worker that ended without a report, as one does whose interpreter crashes."""
+    """A worker that ended without a report, as one does whose interpreter crashes.
+
+    ``text`` is what it was trying; if ``again``, that ends other processes, too, and is as short as was found.
+    """
 
     worker: int
     exit_code: int | None
     seed: int
     """That of the round it was in."""
     reason: str = ""
+    text: str = ""
+    again: bool = False
+    found_at: float = field(default_factory=time.time, compare=False)
+    """When it died, before the text was shrunk (by `time.time`)."""
 
     def __str__(self) -> str:
         text = f"worker {self.worker} died with exit code {self.exit_code} in the round with seed {self.seed}"
@@ -81,13 +97,14 @@ def usable_processors() -> int:
 def run(
     budget: Budget, *, jobs: int, on_failure: Callable[[Failure], None]
 ) -> tuple[Report, tuple[WorkerDied, ...]]:
-    """Run rounds until the budget is spent, or the user interrupts; ``on_failure`` is told of each new failure at once."""
-    if jobs == 1:
+    """Run rounds until the budget is spent, or the user interrupts; ``on_failure`` is told of each new failure at once.
+
+    ``jobs`` processes share the work; with none, this one does it all.
+    """
+    if jobs == 0:
         report = Report()
         with contextlib.suppress(KeyboardInterrupt):
-            _rounds(
-                report, budget, 0, 1, on_failure=on_failure, should_stop=lambda: False, begin=lambda _: None
-            )
+            _rounds(report, budget, 0, 1, on_failure=on_failure)
         return report, ()
     return _Team(budget, jobs, on_failure).run()
 
@@ -99,8 +116,9 @@ def _rounds(
     step: int,
     *,
     on_failure: Callable[[Failure], None],
-    should_stop: Callable[[], bool],
-    begin: Callable[[int], None],
+    should_stop: Callable[[], bool] = lambda: False,
+    begin: Callable[[int], None] = lambda _seed: None,
+    trying: Callable[[str], None] = lambda _text: None,
 ) -> None:
     number = first
     while (sizes := budget.round(number)) is not None:
@@ -120,6 +138,7 @@ def _rounds(
             of_texts=budget.chosen(OF_TEXTS),
             of_formulas=budget.chosen(OF_FORMULAS),
             first=budget.first,
+            trying=trying,
         )
         for failure in report.failures[known:]:
             on_failure(failure)
@@ -133,15 +152,17 @@ class _Team:
 
     def __init__(self, budget: Budget, jobs: int, on_failure: Callable[[Failure], None]) -> None:
         # New interpreters: what this one has in memory is not to matter.
-        context = multiprocessing.get_context("spawn")
+        context = self._context = multiprocessing.get_context("spawn")
         self._messages: Any = context.Queue()
         self._stop: Any = context.Event()
+        self._slates = [Slate(context.RawArray("B", _ROOM)) for _ in range(jobs)]
         self._processes: list[Any] = [
             context.Process(
-                target=_work, args=(number, jobs, budget, self._messages, self._stop), daemon=True
+                target=_work, args=(number, jobs, budget, self._messages, self._stop, slate), daemon=True
             )
-            for number in range(jobs)
+            for number, slate in enumerate(self._slates)
         ]
+        self._budget = budget
         self._seeds = [budget.seed + number for number in range(jobs)]
         self._on_failure = on_failure
         self._first = budget.first
@@ -195,13 +216,59 @@ class _Team:
                 self._lose(worker, None, message)
 
     def _lose(self, worker: int, exit_code: int | None, reason: str = "") -> None:
-        if worker in self._waiting:
-            self._waiting.discard(worker)
-            self._died.append(WorkerDied(worker, exit_code, self._seeds[worker], reason))
+        if worker not in self._waiting:
+            return
+        self._waiting.discard(worker)
+        died_at = time.time()
+        text = self._slates[worker].read()
+        again = not reason and self._dies(text)
+        if again:
+            text = shrunk(text, self._dies, most=_ATTEMPTS)
+        if self._first:
+            self._stop.set()
+        self._died.append(WorkerDied(worker, exit_code, self._seeds[worker], reason, text, again, died_at))
+
+    def _dies(self, text: str) -> bool:
+        """Whether a process dies of a text, or does not come to its end."""
+        process = self._context.Process(target=_try_alone, args=(text, self._budget), daemon=True)
+        process.start()
+        process.join(_ENOUGH)
+        if process.is_alive():
+            process.kill()
+        process.join()
+        return bool(process.exitcode)
 
 
-def _work(number: int, jobs: int, budget: Budget, messages: Any, stop: Any) -> None:
+class Slate:
+    """Memory that processes share, as an array of bytes, where a worker writes down what it is about to try."""
+
+    def __init__(self, memory: Any) -> None:
+        self._memory = memory
+
+    def write(self, text: str) -> None:
+        """Write a text in place of the one before; of one that is too long, the beginning."""
+        view = memoryview(self._memory).cast("B")
+        data = text[: (len(view) - _LENGTH) // 4].encode("utf-8", "surrogatepass")
+        view[:_LENGTH] = len(data).to_bytes(_LENGTH, "little")
+        view[_LENGTH : _LENGTH + len(data)] = data
+
+    def read(self) -> str:
+        """The text written last."""
+        view = memoryview(self._memory).cast("B")
+        length = int.from_bytes(view[:_LENGTH], "little")
+        return bytes(view[_LENGTH : _LENGTH + length]).decode("utf-8", "surrogatepass")
+
+
+def _try_alone(text: str, budget: Budget) -> None:
+    """Try a text that a worker died of on all properties, in a process of its own. What they raise does not matter."""
+    case = Case(text, thorough=True)
+    for each in budget.chosen((*OF_PROGRAMS, *OF_FORMULAS)):
+        fault_of(each, case)
+
+
+def _work(number: int, jobs: int, budget: Budget, messages: Any, stop: Any, slate: Slate) -> None:
     """What a worker process does."""
+    faulthandler.enable()
     # The process that started it decides what an interruption means.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     report = Report()
@@ -216,6 +283,7 @@ def _work(number: int, jobs: int, budget: Budget, messages: Any, stop: Any) -> N
             on_failure=lambda failure: messages.put((number, failure)),
             should_stop=lambda: stop.is_set() or os.getppid() != parent,
             begin=lambda seed: messages.put((number, seed)),
+            trying=slate.write,
         )
         messages.put((number, report))
     except Exception:  # noqa: BLE001 - the process that started this one tells of it

@@ -174,7 +174,7 @@ def nodes_lie_in_the_text(case: Case) -> None:
                     raise Violation(f"{_where(node)} lies outside the text")
             if start not in starts and node not in loose:
                 raise Violation(f"{_where(node)} does not start at a token")
-            if end not in ends:
+            if end not in ends and node not in loose:
                 raise Violation(f"{_where(node)} does not end at the end of a token, but at {end}")
             if start < outer_start or end > outer_end:
                 raise Violation(
@@ -184,7 +184,7 @@ def nodes_lie_in_the_text(case: Case) -> None:
                 # Decorators stand before what they decorate.
                 start = _start(located.decorator_list[0], start)
         if isinstance(node, ast.JoinedStr):
-            # The text of a field with `=` starts with the blanks after the brace.
+            # The text of a field with `=` starts with the blanks after the brace, and ends with those after the sign.
             loose.update(node.values)
         rows = list(_rows(node))
         for row in rows:

@@ -117,3 +117,16 @@ def test_repairs_that_undo_each_other_end(monkeypatch: pytest.MonkeyPatch) -> No
 
     monkeypatch.setattr(module, "check_text", checked)
     assert repair("a", filename="f", shown=lambda found: found).text == "b"
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("import os\nx = 1\n", "x = 1\n"),
+        # The line before goes on, and may not be the last.
+        ("x = 1; \\\n    import os\n", "x = 1; \\\n    pass\n"),
+        ("import os; x = 1\n", "pass; x = 1\n"),
+    ],
+)
+def test_an_unused_import_is_removed_with_its_line_if_that_is_its_own(text: str, expected: str) -> None:
+    assert repair(text, filename="f", shown=lambda found: found).text == expected

@@ -144,7 +144,7 @@ def test_what_was_made_from_random_numbers_is_made_again_from_them(seed: int):
 
 
 def test_the_command_reports_and_succeeds(capsys: pytest.CaptureFixture[str]):
-    assert command.main(["--programs", "30", "--mutants", "11", "--seed", "5", "--jobs", "1"]) == 0
+    assert command.main(["--programs", "30", "--mutants", "11", "--seed", "5", "--jobs", "0"]) == 0
     output = capsys.readouterr().out
     assert "with seed 5" in output
     assert "30 programs" in output
@@ -154,7 +154,7 @@ def test_the_command_reports_and_succeeds(capsys: pytest.CaptureFixture[str]):
 
 
 def test_too_little_coverage_can_be_a_failure(capsys: pytest.CaptureFixture[str]):
-    assert command.main(["--programs", "3", "--seed", "5", "--jobs", "1", "--require-coverage"]) == 1
+    assert command.main(["--programs", "3", "--seed", "5", "--jobs", "0", "--require-coverage"]) == 1
     assert "the coverage falls short" in capsys.readouterr().out
 
 
@@ -167,11 +167,11 @@ def test_the_command_shows_failures_and_saves_them(
 
     monkeypatch.setattr(workers, "run_round", one_round)
     monkeypatch.setattr(command.corpus, "FOLDER", tmp_path)
-    assert command.main(["--seed", "0", "--programs", "1", "--jobs", "1"]) == 1
+    assert command.main(["--seed", "0", "--programs", "1", "--jobs", "0"]) == 1
     output = capsys.readouterr().out
     monkeypatch.setattr(command, "_property_names", lambda text: frozenset(text.split(",")))
     tolerant = ["--tolerate", ",".join({failure.signature.property for failure in planted_run().failures})]
-    assert command.main(["--seed", "0", "--programs", "1", "--jobs", "1", *tolerant]) == 0
+    assert command.main(["--seed", "0", "--programs", "1", "--jobs", "0", *tolerant]) == 0
     assert "FAILED gap" in output
     assert "(seed 1)" in output
     found = list(corpus.entries(tmp_path))
@@ -193,7 +193,7 @@ def test_workers_share_the_work(capsys: pytest.CaptureFixture[str]):
 
 def test_properties_can_be_chosen(capsys: pytest.CaptureFixture[str]):
     chosen = ["--only", "parsing_gives_a_tree,programs_are_accepted"]
-    assert command.main(["--programs", "3", "--mutants", "2", "--seed", "5", "--jobs", "1", *chosen]) == 0
+    assert command.main(["--programs", "3", "--mutants", "2", "--seed", "5", "--jobs", "0", *chosen]) == 0
     output = capsys.readouterr().out
     assert "parsing_gives_a_tree" in output
     assert "written_trees_read_the_same" not in output

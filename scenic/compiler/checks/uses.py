@@ -135,7 +135,10 @@ def _removal(statement: Any, site: ast.alias, span: Span, context: Context) -> E
         whole = context.source.span(statement)
         line = context.source.line(whole.end_line)
         before = context.source.line(whole.line)[: whole.column]
-        alone = not before.strip() and not line[whole.end_column :].strip()
+        alone = not (before.strip() or line[whole.end_column :].strip())
+        if whole.line > 1 and context.source.line(whole.line - 1).endswith("\\"):
+            # It goes on from the line before.
+            alone = False
         owner = context.imports[site][2]
         if alone and len(owner) > 1 and whole.end_line < len(context.source.lines):
             return Edit(Span(whole.line, 0, whole.end_line + 1, 0), "")

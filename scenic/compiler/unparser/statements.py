@@ -299,7 +299,7 @@ class StatementWriter(PatternWriter):
     def annotated_in_class(self, node: ast.AnnAssign, indent: str, before: ast.stmt | None) -> None:
         """What would be a property on a line of its own, or without parentheses around the target."""
         if node.simple:
-            if before is None or hasattr(before, "body") or isinstance(before, tree.ScenicStatement):
+            if before is None or not _LINES_OF_THEIR_OWN.isdisjoint((*before._fields, type(before).__name__)):
                 raise UnparseError(
                     "an annotation of a name has no text here in a class, where it is a property", node
                 )
@@ -317,6 +317,8 @@ class StatementWriter(PatternWriter):
         raise UnparseError(f"a `{type(node).__name__}` has no text as a statement", node)
 
 
+_LINES_OF_THEIR_OWN: Final = frozenset({"body", "cases", "setup", "PropertyDef", "Guard", "ErrorStatement"})
+"""Fields that hold a block, and other statements, after which no `;` may stand."""
 _END: Final = "\n"
 
 _WORDS: Final = {ast.Pass: "pass", ast.Break: "break", ast.Continue: "continue"}

@@ -1,0 +1,1 @@
+with 	front of Range \    :  pass  with \     (Range or Range   ): \ pass; \    import os

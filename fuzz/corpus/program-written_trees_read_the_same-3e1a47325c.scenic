@@ -1,0 +1,2 @@
+class C:
+    terminate; x: C
