@@ -2,9 +2,13 @@
 
 import ast
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, Final
 
 from scenic.compiler.actions.common import CommonActions, Place, make, place_of
+
+
+_UNNAMED: Final = "`_` stands for any value and is no name: leave out `as _`"
+_NO_REST: Final = "leave out `**_`: other keys than those named are allowed anyway"
 
 
 class PatternActions(CommonActions):
@@ -16,7 +20,13 @@ class PatternActions(CommonActions):
 
     def capturable(self, index: int) -> bool:
         if self._texts[index] == "_":
-            self.fail(self.place_of_token(index), "`_` cannot be the name of a pattern")
+            self.fail(self.place_of_token(index), "`_` cannot be the name of a pattern", help=_UNNAMED)
+            return False
+        return True
+
+    def rest_name(self, index: int) -> bool:
+        if self._texts[index] == "_":
+            self.fail(self.place_of_token(index), "`_` cannot be the name of the rest", help=_NO_REST)
             return False
         return True
 

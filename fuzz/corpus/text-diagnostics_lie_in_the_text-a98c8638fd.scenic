@@ -1,0 +1,2 @@
+match None:
+    case {** _}: pass
