@@ -16,8 +16,9 @@ from random import Random
 from typing import Final
 
 from scenic.compiler.generated import HARD_KEYWORDS, SOFT_KEYWORDS, WORDS
-from scenic.compiler.lexer import DEDENT, ENDMARKER, INDENT, NAME, NEWLINE, NUMBER, STRING, Tokens, lex
+from scenic.compiler.lexer import lex
 from scenic.compiler.parser import parse
+from scenic.compiler.tokens import DEDENT, ENDMARKER, INDENT, NAME, NEWLINE, NUMBER, STRING, Tokens
 
 __all__ = ["MISTAKES", "Mistake", "Program", "base_programs", "plant"]
 

@@ -220,7 +220,7 @@ FAULTS: Final = (
         "columns-in-characters",
         "lexer",
         "columns count characters, not bytes of UTF-8",
-        (Change(_LEXER, "        _count_bytes(tokens)\n", "        pass\n"),),
+        (Change(_LEXER, "        tokens.count_bytes()\n", "        pass\n"),),
     ),
     Fault(
         "uncounted-line",

@@ -33,11 +33,11 @@ from fuzz.traces import Formula, State, atoms_of, conditional, formula_of, holds
 from grammar.generator import read_grammar_text
 from grammar.generator.model import Gather, Item, Optional, Reference, Repeat, Token
 from scenic.compiler import tree
-from scenic.compiler.lexer import NEWLINE
 from scenic.compiler.lowering import lower
 from scenic.compiler.parser import parse
 from scenic.compiler.precedence import Ladder
 from scenic.compiler.resolver import resolve
+from scenic.compiler.tokens import NEWLINE
 from scenic.compiler.unparser import unparse
 
 __all__ = ["FORMULAS", "OF_FORMULAS", "formulas", "make_formula", "predicted", "texts", "written_in_full"]

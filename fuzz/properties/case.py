@@ -10,8 +10,9 @@ from typing import Any, Final, Protocol
 from scenic.compiler.careful import lex_carefully
 from scenic.compiler.check import check_text
 from scenic.compiler.generated import WORDS
-from scenic.compiler.lexer import Tokens, lex
+from scenic.compiler.lexer import lex
 from scenic.compiler.parser import ParseResult, parse
+from scenic.compiler.tokens import Tokens
 from scenic.language.diagnostics import Diagnostic, Severity
 from scenic.language.source import Source
 from scenic.language.spans import Span

@@ -4,8 +4,8 @@ import re
 from typing import Final
 
 from fuzz.properties.case import Case, Property, Violation, describe
-from scenic.compiler.lexer import STRING
 from scenic.compiler.parser import parse
+from scenic.compiler.tokens import STRING
 
 __all__ = ["OF_TEXTS"]
 

@@ -8,7 +8,7 @@ from typing import Any, Final
 from fuzz.properties.case import Case, Property, Violation, place
 from fuzz.properties.lowering import lowered
 from scenic.compiler import tree as scenic
-from scenic.compiler.lexer import NAME, NUMBER
+from scenic.compiler.tokens import NAME, NUMBER
 
 __all__ = ["OF_TEXTS"]
 

@@ -10,10 +10,10 @@ from typing import Any, Final, NamedTuple
 
 from fuzz.properties.case import FILENAME, Case, Property, Violation
 from scenic.compiler import tree as scenic
-from scenic.compiler.lexer import DEDENT, ENDMARKER, INDENT, NEWLINE
 from scenic.compiler.lowering import lower
 from scenic.compiler.resolver import resolve
 from scenic.compiler.scopes import Resolution
+from scenic.compiler.tokens import DEDENT, ENDMARKER, INDENT, NEWLINE
 from scenic.language.diagnostics import Severity
 from scenic.language.spans import Span
 

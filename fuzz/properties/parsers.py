@@ -7,7 +7,7 @@ from fuzz.properties.differences import difference
 from scenic.compiler.actions import Actions
 from scenic.compiler.closing_words import closed_operands, in_parentheses
 from scenic.compiler.generated import build_parser, build_recording_parser
-from scenic.compiler.lexer import DEDENT, ENDMARKER, Tokens
+from scenic.compiler.tokens import DEDENT, ENDMARKER, Tokens
 
 __all__ = ["OF_TEXTS"]
 

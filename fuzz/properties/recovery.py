@@ -20,7 +20,9 @@ from typing import Any, Final
 
 from fuzz.properties.case import Case, Property, Violation, describe, is_syntax_error
 from scenic.compiler.generated import WORDS
-from scenic.compiler.lexer import (
+from scenic.compiler.lexer import lex
+from scenic.compiler.parser import parse
+from scenic.compiler.tokens import (
     DEDENT,
     ENDMARKER,
     ERROR,
@@ -30,9 +32,7 @@ from scenic.compiler.lexer import (
     NEWLINE,
     STRING,
     Tokens,
-    lex,
 )
-from scenic.compiler.parser import parse
 from scenic.language.source import Source
 
 __all__ = ["OF_TEXTS", "Region", "region"]

@@ -5,7 +5,7 @@ import unicodedata
 from typing import Final
 
 from fuzz.properties.case import Case, Property, Violation
-from scenic.compiler.lexer import DEDENT, ENDMARKER, ERROR, FSTRING_MIDDLE, INDENT, NEWLINE, STRING
+from scenic.compiler.tokens import DEDENT, ENDMARKER, ERROR, FSTRING_MIDDLE, INDENT, NEWLINE, STRING
 
 __all__ = ["OF_TEXTS"]
 

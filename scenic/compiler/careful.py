@@ -12,19 +12,9 @@ from typing import Final
 
 from scenic.compiler import lexemes, lexical_errors
 from scenic.compiler.generated import HARD_KEYWORDS, OPERATORS, SOFT_KEYWORDS
-from scenic.compiler.lexer import (
-    DEDENT,
-    ERROR,
-    INDENT,
-    MOST_DIAGNOSTICS,
-    NEWLINE,
-    STRING,
-    Bracket,
-    Lexer,
-    Tokens,
-    measure,
-    prepared,
-)
+from scenic.compiler.lexer import Bracket, Lexer, prepared
+from scenic.compiler.lines import MOST_DIAGNOSTICS, measure
+from scenic.compiler.tokens import DEDENT, ERROR, INDENT, NEWLINE, STRING, Tokens
 
 __all__ = ["lex_carefully"]
 

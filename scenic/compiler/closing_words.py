@@ -15,7 +15,7 @@ from dataclasses import dataclass, field, replace
 from typing import Final, Literal, NamedTuple, TypeAlias
 
 from scenic.compiler.generated import HARD_KEYWORDS, OPERATORS, SOFT_KEYWORDS
-from scenic.compiler.lexer import FSTRING_START, NAME, NEWLINE, NUMBER, STRING, Tokens
+from scenic.compiler.tokens import FSTRING_START, NAME, NEWLINE, NUMBER, STRING, Tokens
 
 __all__ = ["Operand", "closed_operands", "in_parentheses"]
 

@@ -5,7 +5,8 @@ from typing import Final
 
 from scenic.compiler.actions import Problem
 from scenic.compiler.generated import HARD_KEYWORDS, INFIX_KINDS, OPERATORS, SOFT_KEYWORDS
-from scenic.compiler.lexer import (
+from scenic.compiler.mistakes import Situation, Trials, explain, header_without_colon
+from scenic.compiler.tokens import (
     DEDENT,
     ENDMARKER,
     FSTRING_END,
@@ -18,7 +19,6 @@ from scenic.compiler.lexer import (
     STRING,
     Tokens,
 )
-from scenic.compiler.mistakes import Situation, Trials, explain, header_without_colon
 
 _WORDS: Final = {
     kind: word for table in (HARD_KEYWORDS, OPERATORS, SOFT_KEYWORDS) for word, kind in table.items()

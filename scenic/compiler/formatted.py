@@ -10,7 +10,7 @@ from collections.abc import Iterable, Sequence
 from typing import Any, Protocol
 
 from scenic.compiler import literals
-from scenic.compiler.lexer import FSTRING_END, FSTRING_START, Tokens
+from scenic.compiler.tokens import FSTRING_END, FSTRING_START, Tokens
 
 Place = tuple[int, int, int, int]
 

@@ -14,7 +14,8 @@ from dataclasses import dataclass, field
 from typing import Final
 
 from scenic.compiler.generated import WORDS
-from scenic.compiler.lexer import DEDENT, ENDMARKER, INDENT, NEWLINE, Tokens, lex
+from scenic.compiler.lexer import lex
+from scenic.compiler.tokens import DEDENT, ENDMARKER, INDENT, NEWLINE, Tokens
 from scenic.language.diagnostics import Diagnostic, Edit, Fix, Severity
 from scenic.language.selection import is_lasting, is_selector, similar_selector
 from scenic.language.source import Source

@@ -18,7 +18,8 @@ from scenic.compiler.careful import lex_carefully
 from scenic.compiler.closing_words import closed_operands, in_parentheses
 from scenic.compiler.garbage import no_garbage_collection
 from scenic.compiler.generated import WORDS, build_parser
-from scenic.compiler.lexer import Tokens, lex
+from scenic.compiler.lexer import lex
+from scenic.compiler.tokens import Tokens
 from scenic.language.diagnostics import Diagnostic, Edit, Fix, Label
 from scenic.language.source import Source
 from scenic.language.spans import Span

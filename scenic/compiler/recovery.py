@@ -22,7 +22,7 @@ from scenic.compiler.generated import (
     build_parser,
     build_recording_parser,
 )
-from scenic.compiler.lexer import DEDENT, ENDMARKER, ERROR, INDENT, NEWLINE, Tokens
+from scenic.compiler.tokens import DEDENT, ENDMARKER, ERROR, INDENT, NEWLINE, Tokens
 
 _IF, _ELIF, _ELSE, _WITH, _WHILE, _TRY, _EXCEPT, _FINALLY, _CLASS = (
     HARD_KEYWORDS[word]

@@ -8,8 +8,9 @@ from typing import Final
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.generated import WORDS
-from scenic.compiler.lexer import NAME, Tokens, lex
+from scenic.compiler.lexer import lex
 from scenic.compiler.parser import parse
+from scenic.compiler.tokens import NAME, Tokens
 from scenic.ide import documentation
 from scenic.language.operators import OPERATORS
 from scenic.language.source import Source

@@ -7,8 +7,9 @@ from collections.abc import Callable, Iterable, Sequence
 from scenic.compiler.actions import Actions
 from scenic.compiler.closing_words import closed_operands
 from scenic.compiler.generated import WORDS, build_parser
-from scenic.compiler.lexer import NEWLINE, lex
+from scenic.compiler.lexer import lex
 from scenic.compiler.parser import parse
+from scenic.compiler.tokens import NEWLINE
 
 
 def parse_lines(lines: Sequence[str], *, shared_words: bool = True) -> list[ast.stmt | None]:

@@ -16,8 +16,22 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from scenic.compiler import lexer
-from scenic.compiler.lexer import Tokens, lex
+from scenic.compiler.lexer import lex
+from scenic.compiler.lines import MOST_DIAGNOSTICS
+from scenic.compiler.tokens import (
+    DEDENT,
+    ENDMARKER,
+    ERROR,
+    FSTRING_END,
+    FSTRING_MIDDLE,
+    FSTRING_START,
+    INDENT,
+    NAME,
+    NEWLINE,
+    NUMBER,
+    STRING,
+    Tokens,
+)
 
 OPERATORS: Final = sorted({*token.EXACT_TOKEN_TYPES, "!"})
 WORDS: Final = {
@@ -25,17 +39,17 @@ WORDS: Final = {
     **{word: 257 + index for index, word in enumerate(["ego", "facing", "match"])},
 }
 NAMES_OF_KINDS: Final = {
-    lexer.ENDMARKER: "END",
-    lexer.NEWLINE: "NEWLINE",
-    lexer.INDENT: "INDENT",
-    lexer.DEDENT: "DEDENT",
-    lexer.NUMBER: "NUMBER",
-    lexer.STRING: "STRING",
-    lexer.FSTRING_START: "FSTART",
-    lexer.FSTRING_MIDDLE: "FMIDDLE",
-    lexer.FSTRING_END: "FEND",
-    lexer.ERROR: "ERROR",
-    lexer.NAME: "NAME",
+    ENDMARKER: "END",
+    NEWLINE: "NEWLINE",
+    INDENT: "INDENT",
+    DEDENT: "DEDENT",
+    NUMBER: "NUMBER",
+    STRING: "STRING",
+    FSTRING_START: "FSTART",
+    FSTRING_MIDDLE: "FMIDDLE",
+    FSTRING_END: "FEND",
+    ERROR: "ERROR",
+    NAME: "NAME",
 }
 FROM_TOKENIZE: Final = {
     tokenize.ENDMARKER: "END",
@@ -267,7 +281,7 @@ def test_what_python_accepts_is_tokenised_as_by_tokenize(text: str) -> None:
         return
     tokens = lex(text, WORDS)
     assert tokens.diagnostics == []
-    assert lexer.ERROR not in tokens.kinds
+    assert ERROR not in tokens.kinds
     if "\\\n" not in text.replace("\r\n", "\n").replace("\r", "\n") and "\f" not in text:
         # `tokenize` differs from Python's parser about blanks before and after these two.
         assert with_whole_formatted_strings(tokens) == of_tokenize(text.removeprefix("\ufeff"))
@@ -290,7 +304,7 @@ def test_any_text_gives_consistent_tokens(text: str) -> None:
     tokens = lex(text, WORDS)
     everything = list(rows(tokens))
     assert everything[-1][0] == "END"
-    assert tokens.kinds.count(lexer.INDENT) == tokens.kinds.count(lexer.DEDENT)
+    assert tokens.kinds.count(INDENT) == tokens.kinds.count(DEDENT)
     lines = [line.encode("utf-8", "surrogatepass") + b"\n" for line in tokens.text.split("\n")]
     starts = [0]
     for line in lines:
@@ -312,7 +326,7 @@ def test_any_text_gives_consistent_tokens(text: str) -> None:
         elif kind == "FMIDDLE":
             assert string in (covered, covered.replace("{{", "{").replace("}}", "}"))
         previous = end
-    if lexer.ERROR in tokens.kinds:
+    if ERROR in tokens.kinds:
         assert tokens.diagnostics
     for diagnostic in tokens.diagnostics:
         span = diagnostic.span
@@ -342,7 +356,7 @@ def test_kinds_of_words() -> None:
     tokens = lex("if ego: ego.éa = ｅgo\n", WORDS)
     assert tokens.kinds[:3] == [WORDS["if"], WORDS["ego"], WORDS[":"]]
     # A name that only normalises to a keyword is none.
-    assert tokens.kinds[7] == lexer.NAME
+    assert tokens.kinds[7] == NAME
     assert tokens.texts[7] == "ego"
 
 
@@ -433,7 +447,7 @@ def test_statement_word_ends_open_brackets() -> None:
 
 def test_bad_unindent_leaves_the_blocks_whole() -> None:
     kinds = lex("if x:\n    a\n  b\nc\n", WORDS).kinds
-    assert (kinds.count(lexer.INDENT), kinds.count(lexer.DEDENT)) == (1, 1)
+    assert (kinds.count(INDENT), kinds.count(DEDENT)) == (1, 1)
 
 
 def test_line_ends_and_marks() -> None:
@@ -444,8 +458,8 @@ def test_line_ends_and_marks() -> None:
 
 def test_many_errors_are_cut_short() -> None:
     tokens = lex("$ " * 5000, WORDS)
-    assert tokens.kinds.count(lexer.ERROR) == 5000
-    assert len(tokens.diagnostics) == lexer.MOST_DIAGNOSTICS
+    assert tokens.kinds.count(ERROR) == 5000
+    assert len(tokens.diagnostics) == MOST_DIAGNOSTICS
 
 
 HOSTILE: Final = [
@@ -465,7 +479,7 @@ HOSTILE: Final = [
 @pytest.mark.parametrize("text", HOSTILE, ids=range(len(HOSTILE)))
 def test_hostile_texts(text: str) -> None:
     tokens = lex(text, WORDS)
-    assert tokens.kinds[-1] == lexer.ENDMARKER
+    assert tokens.kinds[-1] == ENDMARKER
     assert tokens.diagnostics or "if" in text or text.isspace()
 
 

@@ -9,7 +9,8 @@ from fuzz.grammar import Program, programs
 from fuzz.layout import lay_out
 from fuzz.terminals import Piece, Shape
 from scenic.compiler.generated import WORDS
-from scenic.compiler.lexer import FSTRING_MIDDLE, Tokens, lex
+from scenic.compiler.lexer import lex
+from scenic.compiler.tokens import FSTRING_MIDDLE, Tokens
 
 
 def words(text: str, shape: Shape = Shape.WORD) -> list[Piece]:

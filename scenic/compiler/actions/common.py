@@ -5,7 +5,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any, Final, TypeAlias, TypeVar
 
-from scenic.compiler.lexer import Tokens
+from scenic.compiler.tokens import Tokens
 
 Place: TypeAlias = tuple[int, int, int, int]
 """Start and end: line from 1 and column in UTF-8 bytes, each."""

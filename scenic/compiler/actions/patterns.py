@@ -6,7 +6,6 @@ from typing import Any, Final
 
 from scenic.compiler.actions.common import CommonActions, Place, make, place_of
 
-
 _UNNAMED: Final = "`_` stands for any value and is no name: leave out `as _`"
 _NO_REST: Final = "leave out `**_`: other keys than those named are allowed anyway"
 

@@ -4,11 +4,11 @@ from dataclasses import replace
 from typing import Final
 
 from scenic.compiler.actions import Problem
-from scenic.compiler.lexer import DEDENT, INDENT, NEWLINE
 from scenic.compiler.mistakes.elsewhere import first_word
 from scenic.compiler.mistakes.situation import Situation, insertion
 from scenic.compiler.mistakes.trial import Change
 from scenic.compiler.mistakes.words import misspelt
+from scenic.compiler.tokens import DEDENT, INDENT, NEWLINE
 
 __all__ = [
     "clause_without_beginning",

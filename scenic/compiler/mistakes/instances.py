@@ -4,9 +4,9 @@ from typing import Final
 
 from scenic.compiler.actions import Problem
 from scenic.compiler.generated import SPECIFIER_KINDS
-from scenic.compiler.lexer import DEDENT, NUMBER
 from scenic.compiler.mistakes.situation import Situation, insertion
 from scenic.compiler.mistakes.trial import Change
+from scenic.compiler.tokens import DEDENT, NUMBER
 from scenic.language.specifiers import SPECIFIERS
 
 __all__ = [

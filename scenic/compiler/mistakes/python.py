@@ -4,9 +4,9 @@ from typing import Final
 
 from scenic.compiler.actions import Problem
 from scenic.compiler.generated import HARD_KEYWORDS
-from scenic.compiler.lexer import FSTRING_MIDDLE, FSTRING_START, NUMBER, STRING
 from scenic.compiler.mistakes.situation import Situation, insertion
 from scenic.compiler.mistakes.trial import Change
+from scenic.compiler.tokens import FSTRING_MIDDLE, FSTRING_START, NUMBER, STRING
 
 __all__ = [
     "assignment_in_condition",

@@ -7,8 +7,8 @@ from typing import Final
 from scenic.compiler.actions import Problem
 from scenic.compiler.actions.common import Place
 from scenic.compiler.generated import WORDS
-from scenic.compiler.lexer import DEDENT, ENDMARKER, INDENT, NAME, NEWLINE, NUMBER, STRING, Tokens
 from scenic.compiler.mistakes.trial import LONGEST, Change, Outcome, Trials
+from scenic.compiler.tokens import DEDENT, ENDMARKER, INDENT, NAME, NEWLINE, NUMBER, STRING, Tokens
 
 __all__ = ["Situation", "insertion"]
 

@@ -4,10 +4,10 @@ from typing import Final
 
 from scenic.compiler.actions import Problem
 from scenic.compiler.generated import SPECIFIER_KINDS
-from scenic.compiler.lexer import STRING
 from scenic.compiler.mistakes.situation import Situation, insertion
 from scenic.compiler.mistakes.trial import Change
 from scenic.compiler.mistakes.words import misspelt
+from scenic.compiler.tokens import STRING
 from scenic.language.spelling import nearest
 
 __all__ = [

@@ -10,7 +10,7 @@ from typing import Any, Final, TypeAlias
 
 from scenic.compiler.actions import Actions
 from scenic.compiler.generated import HARD_KEYWORDS, OPERATORS, SOFT_KEYWORDS, build_recording_parser
-from scenic.compiler.lexer import DEDENT, ENDMARKER, ERROR, INDENT, NAME, NEWLINE, NUMBER, STRING, Tokens
+from scenic.compiler.tokens import DEDENT, ENDMARKER, ERROR, INDENT, NAME, NEWLINE, NUMBER, STRING, Tokens
 
 __all__ = ["LONGEST", "Change", "Outcome", "Trials"]
 

@@ -5,9 +5,9 @@ from typing import Final
 
 from scenic.compiler.actions import Problem
 from scenic.compiler.generated import HARD_KEYWORDS, SOFT_KEYWORDS
-from scenic.compiler.lexer import NAME
 from scenic.compiler.mistakes.situation import Situation, insertion
 from scenic.compiler.mistakes.trial import Change
+from scenic.compiler.tokens import NAME
 from scenic.language.spelling import distance
 
 __all__ = [
