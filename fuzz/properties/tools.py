@@ -13,7 +13,7 @@ from scenic.language.diagnostics import Diagnostic
 from scenic.language.selection import Rules
 from scenic.language.source import Source
 from scenic.language.spans import Span
-from scenic.lsp.convert import to_diagnostic
+from scenic.lsp.convert import to_diagnostic, to_edits
 
 __all__ = ["OF_TEXTS"]
 
@@ -60,10 +60,15 @@ def _check_protocol(
     made = to_diagnostic(item, source, _URI, kind)
     if made.code != item.code or not made.message.startswith(item.message):
         raise Violation(f"the protocol says something else: {describe(item)}")
-    expected = [item.span, *(label.span for label in item.labels)]
-    ranges = [made.range, *(each.location.range for each in made.related_information or ())]
+    expected = [span for _, span in spans_of(item)]
+    edits = () if item.fix is None else to_edits(item.fix.edits, source, kind, "\n")
+    ranges = [
+        made.range,
+        *(each.location.range for each in made.related_information or ()),
+        *(each.range for each in edits),
+    ]
     if len(ranges) != len(expected):
-        raise Violation(f"the protocol has other labels: {describe(item)}")
+        raise Violation(f"the protocol has other labels or changes: {describe(item)}")
     for span, given in zip(expected, ranges, strict=True):
         back = (*_column(given.start, source, encoding), *_column(given.end, source, encoding))
         if span is not None and back != _clipped(span, source):

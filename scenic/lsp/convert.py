@@ -4,16 +4,17 @@ The protocol counts lines from 0, and columns in code units of an encoding that 
 we count lines from 1 and columns in characters.
 """
 
+from collections.abc import Iterable
 from typing import Final
 
 from lsprotocol import types
 
 from scenic.ide.hover import Hover
-from scenic.language.diagnostics import Diagnostic, Severity
+from scenic.language.diagnostics import Diagnostic, Edit, Severity
 from scenic.language.source import Source
 from scenic.language.spans import Span
 
-__all__ = ["Encoding", "from_position", "to_diagnostic", "to_hover", "to_range"]
+__all__ = ["Encoding", "from_position", "from_range", "to_diagnostic", "to_edits", "to_hover", "to_range"]
 
 Encoding = types.PositionEncodingKind | str
 """The agreed encoding; anything but UTF-8 and UTF-32 is UTF-16, the protocol's default."""
@@ -23,6 +24,8 @@ _SEVERITIES: Final = {
     Severity.WARNING: types.DiagnosticSeverity.Warning,
     Severity.INFORMATION: types.DiagnosticSeverity.Information,
 }
+_UNNECESSARY: Final = frozenset({"SC205", "SC206", "SC303", "SC390"})
+"""Codes of what can be left out, which editors show faded."""
 
 
 def to_range(span: Span, source: Source, encoding: Encoding) -> types.Range:
@@ -44,6 +47,22 @@ def from_position(position: types.Position, source: Source, encoding: Encoding) 
     return position.line + 1, len(content)
 
 
+def from_range(found: types.Range, source: Source, encoding: Encoding) -> Span:
+    """A range of the protocol as a span; one that ends before it starts is empty."""
+    start = from_position(found.start, source, encoding)
+    return Span(*start, *max(start, from_position(found.end, source, encoding)))
+
+
+def to_edits(
+    edits: Iterable[Edit], source: Source, encoding: Encoding, line_end: str
+) -> list[types.TextEdit]:
+    """The changes of a repair, with the line ends of the document."""
+    return [
+        types.TextEdit(to_range(edit.span, source, encoding), edit.text.replace("\n", line_end))
+        for edit in edits
+    ]
+
+
 def to_diagnostic(diagnostic: Diagnostic, source: Source, uri: str, encoding: Encoding) -> types.Diagnostic:
     """A diagnostic as the protocol has it: the help is a line of the message, labels are related places."""
     span = diagnostic.span or Span(1, 0, 1, 0)
@@ -63,6 +82,7 @@ def to_diagnostic(diagnostic: Diagnostic, source: Source, uri: str, encoding: En
         code=diagnostic.code,
         source="scenic",
         related_information=related or None,
+        tags=[types.DiagnosticTag.Unnecessary] if diagnostic.code in _UNNECESSARY else None,
     )
 
 

@@ -6,7 +6,7 @@ It runs none of the code of the programs that it is shown.
 import asyncio
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from contextlib import redirect_stdout
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -18,8 +18,10 @@ from pygls.lsp.server import LanguageServer
 from scenic.configuration.project import Configurations
 from scenic.ide.diagnostics import diagnostics
 from scenic.ide.hover import hover
-from scenic.language.diagnostics import Diagnostic
+from scenic.ide.repairs import repair_all, repairs
+from scenic.language.diagnostics import Diagnostic, Edit
 from scenic.language.errors import ScenicError
+from scenic.language.selection import Rules
 from scenic.language.source import Source, read_source
 from scenic.lsp import convert
 
@@ -27,6 +29,8 @@ __all__ = ["ScenicServer", "create_server", "serve"]
 
 PAUSE: Final = 0.15
 """Seconds without a change after which a document is checked again, so that typing is not disturbed."""
+FIX_ALL: Final = f"{types.CodeActionKind.SourceFixAll.value}.scenic"
+"""The kind of the action that makes all repairs of a document, which editors can make when they save it."""
 
 
 class ScenicServer(LanguageServer):
@@ -59,9 +63,7 @@ class ScenicServer(LanguageServer):
         """Check a document and publish what is found, by the rules of the project that it belongs to."""
         self.forget(uri)
         source = self.source(uri)
-        # Read each time: it may have changed, and it is small.
-        configurations = Configurations()
-        rules = configurations.of_file(source.filename).rules_for(source.filename)
+        configurations, rules = _settings(source)
         found = diagnostics(source.text, filename=source.filename, rules=rules)
         self.text_document_publish_diagnostics(
             types.PublishDiagnosticsParams(
@@ -91,6 +93,38 @@ class ScenicServer(LanguageServer):
             )
         if problems:
             self._troubled[document] = {filename for filename, found in by_file.items() if found}
+
+    def repairs(self, params: types.CodeActionParams) -> list[types.CodeAction]:
+        """What can be repaired at a place, and if that is asked for, all that can be repaired in the document."""
+        uri, context = params.text_document.uri, params.context
+        source = self.source(uri)
+        _, rules = _settings(source)
+        actions = []
+        if _wanted(types.CodeActionKind.QuickFix, context):
+            found = diagnostics(source.text, filename=source.filename, rules=rules)
+            for item in repairs(found, convert.from_range(params.range, source, self.encoding)):
+                assert item.fix is not None
+                action = self._action(
+                    item.fix.title, types.CodeActionKind.QuickFix, item.fix.edits, uri, source
+                )
+                action.diagnostics = [convert.to_diagnostic(item, source, uri, self.encoding)]
+                action.is_preferred = True
+                actions.append(action)
+        # It is dear, and an editor asks with each move of the cursor what is offered there.
+        automatic = context.trigger_kind == types.CodeActionTriggerKind.Automatic and not context.only
+        if not automatic and _wanted(FIX_ALL, context):
+            edit = repair_all(source.text, filename=source.filename, rules=rules)
+            if edit is not None:
+                actions.append(self._action("Make all repairs of scenic", FIX_ALL, [edit], uri, source))
+        return actions
+
+    def _action(
+        self, title: str, kind: str, edits: Iterable[Edit], uri: str, source: Source
+    ) -> types.CodeAction:
+        document = self.workspace.get_text_document(uri)
+        line_end = "\r\n" if "\r\n" in document.source else "\n"
+        changes = convert.to_edits(edits, source, self.encoding, line_end)
+        return types.CodeAction(title, kind, edit=types.WorkspaceEdit(changes={uri: changes}))
 
     def forget(self, uri: str) -> None:
         """Give up a check that has not begun yet."""
@@ -124,6 +158,12 @@ def create_server() -> ScenicServer:
         found = hover(source.text, line, column)
         return None if found is None else convert.to_hover(found, source, server.encoding)
 
+    @server.feature(
+        types.TEXT_DOCUMENT_CODE_ACTION, types.CodeActionOptions([types.CodeActionKind.QuickFix, FIX_ALL])
+    )
+    async def show_repairs(params: types.CodeActionParams) -> list[types.CodeAction]:
+        return server.repairs(params)
+
     @server.feature(types.SHUTDOWN)
     def shut_down(_params: None) -> None:
         server.is_shut_down = True
@@ -141,6 +181,17 @@ def serve() -> None:
     with os.fdopen(os.dup(sys.stdout.fileno()), "wb") as output, redirect_stdout(sys.stderr):
         # Whatever else is printed must not get between the messages.
         create_server().start_io(stdout=output)
+
+
+def _settings(source: Source) -> tuple[Configurations, Rules]:
+    """The settings of the project that a document belongs to. Read each time: they may have changed, and are small."""
+    configurations = Configurations()
+    return configurations, configurations.of_file(source.filename).rules_for(source.filename)
+
+
+def _wanted(kind: str, context: types.CodeActionContext) -> bool:
+    """Whether the editor asks for actions of this kind: kinds are parts with dots between, the first ones wider."""
+    return not context.only or any((kind + ".").startswith(asked + ".") for asked in context.only)
 
 
 def _version() -> str:

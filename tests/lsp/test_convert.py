@@ -3,10 +3,10 @@ from hypothesis import strategies as st
 from lsprotocol import types
 
 from scenic.ide.hover import Hover
-from scenic.language.diagnostics import Diagnostic, Label, Severity
+from scenic.language.diagnostics import Diagnostic, Edit, Label, Severity
 from scenic.language.source import Source
 from scenic.language.spans import Span
-from scenic.lsp.convert import from_position, to_diagnostic, to_hover, to_range
+from scenic.lsp.convert import from_position, from_range, to_diagnostic, to_edits, to_hover, to_range
 
 ENCODINGS = {
     types.PositionEncodingKind.Utf8: "utf-8",
@@ -55,6 +55,25 @@ def test_diagnostics() -> None:
     nowhere = to_diagnostic(Diagnostic("SC600", "none"), source, "file:///f", types.PositionEncodingKind.Utf8)
     assert nowhere.range == types.Range(types.Position(0, 0), types.Position(0, 0))
     assert nowhere.related_information is None
+
+
+def test_what_can_be_left_out_is_marked() -> None:
+    source = Source("import os\n", "f")
+    codes = ("SC206", "SC300")
+    tags = [to_diagnostic(Diagnostic(code, "m"), source, "file:///f", "utf-8").tags for code in codes]
+    assert tags == [[types.DiagnosticTag.Unnecessary], None]
+
+
+def test_ranges_and_changes() -> None:
+    source = Source("😀x\ny", "f")
+    utf16 = types.PositionEncodingKind.Utf16
+    span = Span(1, 1, 2, 0)
+    found = to_edits([Edit(span, "a\nb")], source, utf16, "\r\n")
+    given_range = types.Range(types.Position(0, 2), types.Position(1, 0))
+    assert found == [types.TextEdit(given_range, "a\r\nb")]
+    assert from_range(given_range, source, utf16) == span
+    backwards = types.Range(types.Position(1, 1), types.Position(0, 0))
+    assert from_range(backwards, source, utf16) == Span(2, 1, 2, 1)
 
 
 def test_hover() -> None:

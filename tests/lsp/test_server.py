@@ -214,3 +214,52 @@ def test_settings_and_ignore_comments_hold_in_the_editor(client: Client, tmp_pat
     client.change(uri, "ego = new Object with wdth 3  # scenic: ignore[SC300]\n", 2)
     assert client.published(uri)["diagnostics"] == []
     assert client.published(settings.as_uri())["diagnostics"] == []
+
+
+def applied(text: str, edits: list[dict[str, Any]]) -> str:
+    """A text after changes by the protocol, with columns in code units of UTF-16."""
+    lines = text.split("\n")
+
+    def offset(position: dict[str, int]) -> int:
+        before = lines[position["line"]].encode("utf-16-le")[: 2 * position["character"]]
+        return len("\n".join([*lines[: position["line"]], before.decode("utf-16-le")]))
+
+    for edit in sorted(edits, key=lambda each: offset(each["range"]["start"]), reverse=True):
+        start, end = (offset(edit["range"][which]) for which in ("start", "end"))
+        text = text[:start] + edit["newText"] + text[end:]
+    return text
+
+
+def test_repairs_are_offered(client: Client, tmp_path: Path) -> None:
+    uri = (tmp_path / "room.scenic").as_uri()
+    text = "import os\r\nego = new Object with name '😀', with wdth 3\r\nif True\r\n    pass\r\n"
+    provider = client.start()["codeActionProvider"]
+    assert provider["codeActionKinds"] == ["quickfix", "source.fixAll.scenic"]
+    client.open(uri, text)
+    client.published(uri)
+
+    def actions(line: int, character: int, **context: object) -> list[dict[str, Any]]:
+        place = {"line": line, "character": character}
+        params = {
+            "textDocument": {"uri": uri},
+            "range": {"start": place, "end": place},
+            "context": {"diagnostics": [], **context},
+        }
+        found: list[dict[str, Any]] = client.request("textDocument/codeAction", params) or []
+        return found
+
+    # Columns count two units for the smiling face.
+    column = text.split("\n")[1].index("wdth") + 1
+    (action,) = actions(1, column, triggerKind=2)
+    assert (action["title"], action["kind"], action["isPreferred"]) == ("Write `width`", "quickfix", True)
+    assert action["diagnostics"][0]["code"] == "SC300"
+    assert applied(text, action["edit"]["changes"][uri]) == text.replace("wdth", "width")
+    (whole,) = actions(1, column, only=["source"])
+    assert whole["kind"] == "source.fixAll.scenic"
+    repaired = applied(text, whole["edit"]["changes"][uri])
+    assert repaired == text.replace("import os\r\n", "").replace("wdth", "width").replace("True", "True:")
+    assert [each["kind"] for each in actions(1, column)] == ["quickfix", "source.fixAll.scenic"]
+    assert actions(1, column, only=["refactor", "quick"]) == []
+    assert actions(1, 0, only=["quickfix"]) == []
+    client.change(uri, "x = 1\n", 2)
+    assert actions(0, 0) == []

@@ -1,0 +1,62 @@
+"""The repairs that an editor offers: those of the diagnostics at a place, and all that can be made at once."""
+
+from collections.abc import Sequence
+
+from scenic.compiler.fixes import repair
+from scenic.language.diagnostics import Diagnostic, Edit
+from scenic.language.selection import Rules
+from scenic.language.spans import Span
+
+__all__ = ["repair_all", "repairs"]
+
+
+def repairs(found: Sequence[Diagnostic], span: Span) -> tuple[Diagnostic, ...]:
+    """Those of the diagnostics that can be repaired and that touch ``span``, themselves or with their repair."""
+    return tuple(
+        item
+        for item in found
+        if item.fix is not None
+        and any(each is not None and _touch(each, span) for each in (item.span, *_of_fix(item)))
+    )
+
+
+def repair_all(text: str, *, filename: str, rules: Rules | None = None) -> Edit | None:
+    r"""All repairs that do no harm, as one edit of the part that they change; ``None`` if there are none.
+
+    ``text`` has ``\n`` at each line end, and no byte order mark.
+    """
+    repaired = repair(text, filename=filename, shown=(rules or Rules()).apply)
+    if not repaired.count:
+        return None
+    before = _common(text, repaired.text)
+    after = _common(text[before:][::-1], repaired.text[before:][::-1])
+    end = len(text) - after
+    return Edit(
+        Span(*_place(text, before), *_place(text, end)), repaired.text[before : len(repaired.text) - after]
+    )
+
+
+def _common(one: str, other: str) -> int:
+    """The length of the common beginning."""
+    differ = (index for index, (left, right) in enumerate(zip(one, other, strict=False)) if left != right)
+    return next(differ, min(len(one), len(other)))
+
+
+def _place(text: str, offset: int) -> tuple[int, int]:
+    return text.count("\n", 0, offset) + 1, offset - (text.rfind("\n", 0, offset) + 1)
+
+
+def _of_fix(item: Diagnostic) -> list[Span]:
+    return [] if item.fix is None else [edit.span for edit in item.fix.edits]
+
+
+def _touch(one: Span, other: Span) -> bool:
+    return _start(one) <= _end(other) and _start(other) <= _end(one)
+
+
+def _start(span: Span) -> tuple[int, int]:
+    return span.line, span.column
+
+
+def _end(span: Span) -> tuple[int, int]:
+    return span.end_line, span.end_column
