@@ -13,6 +13,7 @@ from typing import Any, Final
 from scenic.compiler import tree
 from scenic.compiler.actions import Actions, Problem, make
 from scenic.compiler.actions.common import place_of
+from scenic.compiler.contexts import set_contexts
 from scenic.compiler.expectations import Expectations
 from scenic.compiler.generated import (
     HARD_KEYWORDS,
@@ -91,7 +92,9 @@ class Recovery:
             body += statements
             if self._kinds[position] == ENDMARKER:
                 self._forget_guards()
-                return self.actions.module(body)
+                module = self.actions.module(body)
+                set_contexts(module)
+                return module
             position += 1  # the end of a block that never began
 
     def statements(self, rule: str, position: int) -> tuple[list[Any], int]:

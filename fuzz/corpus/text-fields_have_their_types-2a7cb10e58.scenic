@@ -1,0 +1,7 @@
+pass
+pass
+scenario S:
+    ''
+    setup: pass
+    compose: [x] = new Object,
+ right of S
