@@ -138,6 +138,7 @@ CODES: Final = MappingProxyType(
         "SC307": "suspicious expression",
         "SC308": "specifiers that depend on each other",
         "SC309": "default value that is changed",
+        "SC310": "misspelt guard",
         "SC390": "ignore comment that silences nothing",
         "SC391": "ignore comment that cannot be understood",
         # Found while the program runs.

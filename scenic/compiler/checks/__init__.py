@@ -17,6 +17,7 @@ from scenic.compiler.checks import (
     declarations,
     defaults,
     flow,
+    guards,
     instances,
     names,
     order,
@@ -39,6 +40,7 @@ _NODE_RULES: Final[tuple[tuple[type[ast.AST], NodeRule], ...]] = tuple(
 _PROGRAM_RULES: Final[tuple[ProgramRule, ...]] = (
     defaults.check_defaults,
     flow.check_flow,
+    guards.check_guards,
     instances.check_instances,
     order.check_order,
     uses.check_uses,
