@@ -10,6 +10,7 @@ from scenic.language.diagnostics import Diagnostic, Fix
 
 __all__ = ["OF_TEXTS"]
 
+_NO_CLAUSE: Final = "SC134"
 _MOST: Final = 3
 """So many repairs of one text are tried, one from every part of it."""
 
@@ -46,9 +47,14 @@ def _shown(diagnostic: Diagnostic) -> tuple[str, str, object]:
 def _is_of_edit(diagnostic: Diagnostic, fix: Fix) -> bool:
     """Whether a diagnostic of the repaired text is about what was put in."""
     span = diagnostic.span
-    return span is not None and any(
-        edit.span.line == span.line and 0 <= span.column - edit.span.column < max(len(edit.text), 1)
-        for edit in fix.edits
+    # The line with the mistake could have been the clause that is missing before it.
+    return (
+        diagnostic.code != _NO_CLAUSE
+        and span is not None
+        and any(
+            edit.span.line == span.line and 0 <= span.column - edit.span.column < max(len(edit.text), 1)
+            for edit in fix.edits
+        )
     )
 
 

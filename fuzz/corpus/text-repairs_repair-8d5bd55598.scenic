@@ -1,0 +1,4 @@
+try:c
+iff x:
+ y
+else::
