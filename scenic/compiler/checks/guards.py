@@ -1,11 +1,12 @@
 """Guards under a misspelt name, which are annotations of variables and guard nothing."""
 
 import ast
-from collections.abc import Iterator
-from typing import Final
+from collections.abc import Iterator, Sequence
+from typing import Any, Final
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.context import Context
+from scenic.compiler.traversal import is_documentation
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.spelling import nearest
 
@@ -18,25 +19,46 @@ def check_guards(context: Context) -> Iterator[Diagnostic]:
     """SC310: ``precondtion: condition`` in a behavior or scenario."""
     for cls in (scenic.BehaviorDef, scenic.ScenarioDef):
         for node, _ in context.nodes(cls):
-            body = node.body if isinstance(node, scenic.BehaviorDef) else node.setup
-            for statement in body or ():
-                if not isinstance(statement, ast.AnnAssign) or statement.value is not None:
-                    continue
-                target = statement.target
-                if not statement.simple or not isinstance(target, ast.Name):
-                    continue
-                guard = nearest(target.id, _GUARDS)
-                if guard is not None and not _used(context, target):
-                    yield context.warning(
-                        "SC310",
-                        f"`{target.id}` is annotated here and guards nothing",
-                        target,
-                        f"did you mean `{guard}`?",
-                        fix=context.replacement(f"Write `{guard}`", target, guard),
-                    )
+            body = node.body if isinstance(node, scenic.BehaviorDef) else node.setup or []
+            for index, statement in enumerate(body):
+                yield from _misspelt(context, body, index, statement)
+
+
+def _misspelt(context: Context, body: Sequence[Any], index: int, statement: Any) -> Iterator[Diagnostic]:
+    if not isinstance(statement, ast.AnnAssign) or statement.value is not None:
+        return
+    target = statement.target
+    if not statement.simple or not isinstance(target, ast.Name):
+        return
+    guard = nearest(target.id, _GUARDS)
+    if guard is None or _used(context, target):
+        return
+    # Elsewhere it would be a guard in the wrong place. Of several the first is repaired first.
+    first = all(map(is_documentation, body[:index]))
+    yield context.warning(
+        "SC310",
+        f"`{target.id}` is annotated here and guards nothing",
+        target,
+        f"did you mean `{guard}`?"
+        if first
+        else f"did you mean `{guard}`? Guards stand before all other statements",
+        fix=context.replacement(f"Write `{guard}`", target, guard)
+        if first and _is_alone(context, statement)
+        else None,
+    )
 
 
 def _used(context: Context, target: ast.Name) -> bool:
     """Whether a name is assigned elsewhere or read: then it is meant to be a variable."""
     binding = context.resolution.binding(target)
     return binding is not None and (len(binding.sites) > 1 or binding in context.loads)
+
+
+def _is_alone(context: Context, statement: ast.stmt) -> bool:
+    """Whether a statement has its line for itself."""
+    span = context.source.span(statement)
+    before = context.source.line(span.line)[: span.column]
+    return (
+        not before.strip()
+        and ";" not in context.source.line(span.end_line)[span.end_column :].partition("#")[0]
+    )

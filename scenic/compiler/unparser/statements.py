@@ -5,6 +5,7 @@ from collections.abc import Callable, Sequence
 from typing import Any, ClassVar, Final, TypeAlias
 
 from scenic.compiler import tree
+from scenic.compiler.traversal import is_documentation
 from scenic.compiler.unparser import places, strings
 from scenic.compiler.unparser.errors import UnparseError
 from scenic.compiler.unparser.expressions import WRITERS
@@ -38,10 +39,10 @@ class StatementWriter(PatternWriter):
                 if kind in DEFINITIONS or previous in DEFINITIONS:
                     self.lines += ("", "")
                 elif (previous in _IMPORTS and kind not in _IMPORTS) or (
-                    place == 1 and _is_documentation(node.body[0])
+                    place == 1 and is_documentation(node.body[0])
                 ):
                     self.lines.append("")
-            if place == 0 and _is_documentation(statement):
+            if place == 0 and is_documentation(statement):
                 self.documentation(statement, "")
             else:
                 self.statement(statement, "")
@@ -65,7 +66,7 @@ class StatementWriter(PatternWriter):
 
     def documented_block(self, nodes: Sequence[ast.stmt], indent: str, owner: ast.AST) -> None:
         """The same, where a string at the beginning is documentation."""
-        if nodes and _is_documentation(nodes[0]):
+        if nodes and is_documentation(nodes[0]):
             self.documentation(nodes[0], indent + INDENTATION)
             if len(nodes) == 1:
                 return
@@ -290,7 +291,7 @@ class StatementWriter(PatternWriter):
                 self.lines.append(f"{indent}{statement.name}{attributes}: {value}")
             elif kind is ast.AnnAssign:
                 self.annotated_in_class(statement, indent, node.body[place - 1] if place else None)
-            elif place == 0 and _is_documentation(statement):
+            elif place == 0 and is_documentation(statement):
                 self.documentation(statement, indent)
             else:
                 self.table[kind](self, statement, indent)
@@ -344,13 +345,6 @@ _TYPE_PARAMETERS: Final = {"TypeVar": "", "TypeVarTuple": "*", "ParamSpec": "**"
 
 def _aliases(nodes: Sequence[ast.alias]) -> str:
     return ", ".join([f"{each.name} as {each.asname}" if each.asname else each.name for each in nodes])
-
-
-def _is_documentation(node: ast.stmt) -> bool:
-    if node.__class__ is not ast.Expr:
-        return False
-    value = node.value
-    return value.__class__ is ast.Constant and value.value.__class__ is str and value.kind is None
 
 
 def _is_list_of_items(node: ast.expr) -> bool:

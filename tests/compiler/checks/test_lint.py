@@ -197,3 +197,24 @@ def test_a_probability_is_taken_away_from_between_words(text: str, repaired: str
     [found] = [each for each in check_text(text, filename="f") if each.code == "SC306"]
     assert found.fix is not None
     assert apply_fixes(text, [found.fix]) == (repaired, 1)
+
+
+@pytest.mark.parametrize(
+    ("text", "repaired"),
+    [
+        ("behavior B():\n    'doc'\n    precondtion: self.x  # why\n    wait\n", "precondition"),
+        # Behind another statement, or beside one, it would be no guard.
+        ("behavior B():\n    x = 1\n    precondtion: self.x\n    take x\n", None),
+        ("behavior B():\n    precondtion: self.x; wait\n", None),
+        ("behavior B(): precondtion: self.x\n", None),
+    ],
+)
+def test_a_misspelt_guard_is_repaired_where_one_may_stand(text: str, repaired: str | None) -> None:
+    [found] = [each for each in check_text(text, filename="f") if each.code == "SC310"]
+    if repaired is None:
+        assert found.fix is None
+    else:
+        assert found.fix is not None
+        text, _ = apply_fixes(text, [found.fix])
+        assert text.count(repaired) == 1
+        assert check_text(text, filename="f") == ()

@@ -1,0 +1,3 @@
+behavior F():
+   precondtion:self.s
+   invarant: self.y
