@@ -1,6 +1,6 @@
 """What follows from each option of a rule alone, before any sentence is made: a table for the generator."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Final, NamedTuple
 
@@ -42,6 +42,9 @@ _BANS: Final[Mapping[str, Ban]] = {
     # `match [final]:` begins like a property.
     "subject": Ban(frozenset({"additive", "dynamic", "final"}), frozenset()),
 }
+
+_STARRED: Final = Ban(frozenset(), frozenset({"altitude", "angle", "apparent", "distance", "relative"}))
+"""After a star. In `[* distance from x and distance from y to z]` the second operator takes the `to`, and then `and` cannot stand there."""
 
 _STARS: Final = frozenset({"stored", "place", "targets", "case_pattern", "sequence_pattern"})
 """Rules of rows in which one item may be starred."""
@@ -117,7 +120,7 @@ def _plan(derivations: Derivations, option: Option) -> Plan:
         tuple(roles_of(option, nodes, names)),
         tuple(given),
         demand_of(option, nodes),
-        tuple(_BANS[each.rule] for each in option.counts_as if each.rule in _BANS),
+        tuple(_bans(option)),
         option.rule in SIGNATURES,
         _is_star(option.items[0]) and (option.rule in ("stored_item", "target") or "MatchStar" in nodes),
         option.rule in _STARS,
@@ -128,6 +131,14 @@ def _plan(derivations: Derivations, option: Option) -> Plan:
         option.rule == "new_expression" or "Override" in nodes,
         option.rule in ("new_block", "override_block"),
     )
+
+
+def _bans(option: Option) -> Iterator[Ban]:
+    for each in option.counts_as:
+        if each.rule in _BANS:
+            yield _BANS[each.rule]
+    if option.start in ("*", "**"):
+        yield _STARRED
 
 
 def _with_demands(plan: Plan, rules: Mapping[str, Demand]) -> Plan:

@@ -13,43 +13,39 @@ from scenic.compiler.actions.expressions import ExpressionActions
 class StatementActions(DefinitionActions, ExpressionActions):
     """Behaviors, scenarios, requirements, parameters, records."""
 
-    def no_later_guard(self, body: Iterable[ast.stmt]) -> bool:
-        """Report guards among the statements of a behavior; there they would be annotations."""
+    def _no_guards(self, body: Iterable[Any], message: str, help: str) -> None:
+        """Report statements that read like guards; where they stand, they would be annotations."""
         for statement in body:
             word = _guard_word(statement)
-            if word is not None:
+            if word is None:
+                continue
+            if statement.value is None:
+                self._report(place_of(statement), message.format(word), help=help, code="SC132")
+            else:
                 self._report(
                     place_of(statement),
-                    f"`{word}` has to stand before all other statements",
-                    help="move it to the front",
-                    code="SC132",
+                    f"`=` assigns a value, but `{word}` needs a condition",
+                    help="use `==` to compare two values",
+                    code="SC122",
                 )
+
+    def no_later_guard(self, body: Iterable[ast.stmt]) -> bool:
+        """Report guards among the statements of a behavior; there they would be annotations."""
+        self._no_guards(body, "`{}` has to stand before all other statements", "move it to the front")
         return True
 
     def no_guard(self, body: Iterable[ast.stmt]) -> bool:
         """Report guards in a monitor."""
-        for statement in body:
-            word = _guard_word(statement)
-            if word is not None:
-                self._report(
-                    place_of(statement),
-                    f"a monitor has no `{word}`",
-                    help="only behaviors and scenarios have guards",
-                    code="SC132",
-                )
+        self._no_guards(body, "a monitor has no `{}`", "only behaviors and scenarios have guards")
         return True
 
     def one_block(self, body: list[ast.stmt]) -> tuple[Any, ...]:
         """The parts of a scenario that is all set-up."""
-        for statement in body:
-            word = _guard_word(statement)
-            if word is not None:
-                self._report(
-                    place_of(statement),
-                    f"a scenario without `setup` and `compose` has no `{word}`",
-                    help="put the other statements into `setup:`",
-                    code="SC132",
-                )
+        self._no_guards(
+            body,
+            "a scenario without `setup` and `compose` has no `{}`",
+            "put the other statements into `setup:`",
+        )
         if _docstring(body[0]) is not None:
             return (body[0], [], body[1:], None)
         return (None, [], body, None)
@@ -174,13 +170,13 @@ class StatementActions(DefinitionActions, ExpressionActions):
                     stack += [each for each in value if isinstance(each, ast.AST)]
 
 
-def _guard_word(statement: ast.stmt) -> str | None:
+def _guard_word(statement: Any) -> str | None:
+    """The word of what reads like a guard."""
     if (
         isinstance(statement, ast.AnnAssign)
         and statement.simple
         and isinstance(statement.target, ast.Name)
         and statement.target.id in ("precondition", "invariant")
-        and statement.value is None
     ):
         return statement.target.id
     return None

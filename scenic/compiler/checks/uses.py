@@ -40,6 +40,10 @@ _HIDING: Final = frozenset(
 """How a name of the language is hidden by mistake; an import of that name is meant."""
 
 
+_GUARDS: Final = frozenset({"precondition", "invariant"})
+"""What is assigned to these was meant to be compared, as the parser says."""
+
+
 def check_uses(context: Context) -> Iterator[Diagnostic]:
     """SC205 to SC208."""
     scopes = {context.resolution.module, *context.resolution.scopes.values()}
@@ -70,7 +74,7 @@ def _hidden(binding: Binding, context: Context) -> Iterator[Diagnostic]:
 
 def _unused(binding: Binding, scope: Scope, context: Context) -> Iterator[Diagnostic]:
     """SC205 and SC206, about a binding that is never read."""
-    if binding.name.startswith("_"):
+    if binding.name.startswith("_") or binding.name in _GUARDS:
         return
     if binding.kinds <= {BindingKind.MODULE, BindingKind.IMPORTED}:
         yield from _unused_import(binding, scope, context)

@@ -222,7 +222,7 @@ def _is_string(node: ast.stmt) -> bool:
 
 
 def _annotated_name(node: ast.stmt) -> str:
-    """The name that an annotation stands at, if there is no value."""
+    """The name that an annotation stands at."""
     if isinstance(node, ast.AnnAssign) and node.simple and isinstance(node.target, ast.Name):
         return node.target.id
     return ""

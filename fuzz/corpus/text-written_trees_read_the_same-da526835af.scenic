@@ -1,0 +1,3 @@
+behavior B():
+    precondition: self.x = 3
+    wait

@@ -1,0 +1,3 @@
+behavior B():
+    precondition: self = None
+    finally: pass
