@@ -269,8 +269,10 @@ def _within(node: ast.stmt) -> Iterator[ast.AST]:
 def _start(node: Any) -> tuple[int, int]:
     decorators = getattr(node, "decorator_list", None)
     start = (node.lineno, node.col_offset)
-    # The `@` stands before the decorator, on its line.
-    return min(start, (decorators[0].lineno, 0)) if decorators else start
+    if decorators and (decorators[0].lineno, decorators[0].col_offset) < start:
+        # The `@` stands before the decorator, on its line. (Those that lowering adds stand where the definition does.)
+        return (decorators[0].lineno, 0)
+    return start
 
 
 def _end(node: Any) -> tuple[int, int]:
