@@ -19,6 +19,7 @@ _ODD: Final = (
     "\0", "\ud800", "\udfff", "😀", "𝐱", "é", "\u00a0", "\u2028", "\ufeff", "\u200b", "\x1a", "\f", "\r", "\t", "\\",
     "`", "$", "?", "“", "−", "'", '"', '"""', "f'", "{", "}", "(", ")", "[", "]", "#", "\n", "\\\n", "٣", "0_", "1e",
 )  # fmt: skip
+_LETTERS: Final = "aeiourst"
 _INDENTATIONS: Final = ("", " ", "    ", "\t", "        ", " \t", "\f ")
 _MOST: Final = 3
 """Half of the mutants have one mutation, the others up to so many."""
@@ -94,7 +95,34 @@ def indent(draws: Draws, tokens: list[str], _other: Callable[[], Sequence[str]])
         tokens[lines[draws.number(len(lines))]] = f"\n{white}"
 
 
-MUTATIONS: Final[tuple[Mutation, ...]] = (delete, swap, double, splice, truncate, insert_odd, indent)
+def misspell(draws: Draws, tokens: list[str], _other: Callable[[], Sequence[str]]) -> None:
+    """Leave out, double, exchange or replace a letter of a word, or write it with another size."""
+    words = [index for index, token in enumerate(tokens) if len(token) > 2 and token.isidentifier()]
+    if not words:
+        return
+    index = words[draws.number(len(words))]
+    word, kind = tokens[index], draws.number(5)
+    at = draws.number(len(word) - 1)
+    before, letter, after = word[:at], word[at], word[at + 1 :]
+    tokens[index] = (
+        before + after,
+        before + 2 * letter + after,
+        before + after[:1] + letter + after[1:],
+        before + _LETTERS[draws.number(len(_LETTERS))] + after,
+        word.swapcase() if at else word.capitalize(),
+    )[kind]
+
+
+MUTATIONS: Final[tuple[Mutation, ...]] = (
+    delete,
+    swap,
+    double,
+    splice,
+    truncate,
+    insert_odd,
+    indent,
+    misspell,
+)
 
 
 def make_mutant(draws: Draws, original: str, other: Callable[[], str], *, most: int = _MOST) -> Mutant:

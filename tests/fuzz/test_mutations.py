@@ -46,6 +46,11 @@ def test_it_happens_that(name: str, result: str):
     assert search(lambda mutant: mutant.text == result, "if x:\n    y\n")
 
 
+@pytest.mark.parametrize("word", ["requre", "requiire", "rqeuire", "raquire", "Require", "REQUIRE"])
+def test_it_happens_that_a_word_is_misspelt(word: str):
+    assert search(lambda mutant: mutant.text == f"{word} x\n", "require x\n")
+
+
 def test_it_happens_that_part_of_another_program_gets_in():
     assert search(lambda mutant: "class" in mutant.text and "+" in mutant.text, "a + b\n", "class C")
 
