@@ -2,6 +2,7 @@
 
 import argparse
 import math
+import os
 import secrets
 import sys
 import time
@@ -29,8 +30,6 @@ _SHOWN: Final = 20
 def main(arguments: list[str] | None = None) -> int:
     """Run until the budget is spent; return 1 if anything was found, or too little covered."""
     options = _options().parse_args(arguments)
-    if options.jobs is not None and options.jobs < 0:
-        raise SystemExit("the number of worker processes cannot be negative")
     seed = options.seed if options.seed is not None else secrets.randbelow(1 << 32)
     jobs = usable_processors() if options.jobs is None else options.jobs
     counted = options.programs is not None or options.mutants is not None
@@ -88,7 +87,7 @@ def _options() -> argparse.ArgumentParser:
     parser.add_argument("--seed", type=int, help="the seed of the first round (default: a random one)")
     parser.add_argument(
         "--jobs",
-        type=int,
+        type=_count,
         help="worker processes (default: one for each usable processor); with 0 this process does the work",
     )
     parser.add_argument(
@@ -100,6 +99,13 @@ def _options() -> argparse.ArgumentParser:
     )
     parser.add_argument("--no-save", action="store_true", help="do not write failures to fuzz/corpus")
     return parser
+
+
+def _count(text: str) -> int:
+    number = int(text)
+    if number < 0:
+        raise argparse.ArgumentTypeError("it cannot be negative")
+    return number
 
 
 def _property_names(text: str) -> frozenset[str]:
@@ -184,4 +190,9 @@ def _missing(share: Share) -> None:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    try:
+        sys.exit(main())
+    except BrokenPipeError:
+        # Whoever read the report has read enough; the interpreter must not try to write the rest.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        sys.exit(1)

@@ -11,6 +11,7 @@ MOST_DIAGNOSTICS: Final = 1000
 """So many are reported of one text; a file of random bytes has no use for millions."""
 
 _TAB: Final = 8
+_WHITE: Final = " \t\f"
 
 
 class LineReader:
@@ -153,14 +154,8 @@ class LineReader:
         pos = start
         while pos < len(text):
             character = text[pos]
-            if character == " ":
-                column += 1
-                strict_column += 1
-            elif character == "\t":
-                column = (column // _TAB + 1) * _TAB
-                strict_column += 1
-            elif character == "\f":
-                column = strict_column = 0
+            if character in _WHITE:
+                column, strict_column = _after(character, column, strict_column)
             elif text.startswith("\\\n", pos):
                 first = first or column
                 pos += 1
@@ -200,12 +195,12 @@ def measure(white: str) -> tuple[int, int]:
         return len(white), len(white)
     column = strict_column = 0
     for character in white:
-        if character == " ":
-            column += 1
-            strict_column += 1
-        elif character == "\t":
-            column = (column // _TAB + 1) * _TAB
-            strict_column += 1
-        else:  # a form feed starts the line again
-            column = strict_column = 0
+        column, strict_column = _after(character, column, strict_column)
     return column, strict_column
+
+
+def _after(character: str, column: int, strict_column: int) -> tuple[int, int]:
+    """The two widths after one more blank."""
+    if character == "\f":  # starts the line again
+        return 0, 0
+    return (column + 1 if character == " " else (column // _TAB + 1) * _TAB), strict_column + 1

@@ -228,3 +228,10 @@ def test_the_corpus_holds_any_text(tmp_path: Path):
         not entry.of_grammar and entry.path.name.startswith("text-some_property-")
         for entry in corpus.entries(tmp_path)
     )
+
+
+def test_there_cannot_be_fewer_workers_than_none(capsys: pytest.CaptureFixture[str]):
+    with pytest.raises(SystemExit) as ended:
+        command.main(["--jobs", "-1"])
+    assert ended.value.code == 2
+    assert "it cannot be negative" in capsys.readouterr().err
