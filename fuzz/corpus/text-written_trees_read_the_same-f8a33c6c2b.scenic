@@ -1,3 +1,0 @@
-behavior B():
-    precondition: self = None
-    finally: pass
