@@ -6,7 +6,7 @@ from typing import Final
 
 from scenic.compiler import tree
 
-__all__ = ["FIELDS", "is_documentation", "parts", "walk"]
+__all__ = ["FIELDS", "parts", "walk"]
 
 _PLAIN: Final = frozenset(
     {
@@ -69,11 +69,3 @@ def walk(node: ast.AST) -> Iterator[ast.AST]:
         inner = parts(part)
         inner.reverse()
         stack.extend(inner)
-
-
-def is_documentation(node: ast.stmt) -> bool:
-    """Whether a statement is a plain string, as a docstring is."""
-    if node.__class__ is not ast.Expr:
-        return False
-    value = node.value
-    return value.__class__ is ast.Constant and value.value.__class__ is str and value.kind is None

@@ -11,9 +11,10 @@ Assignments to ``ego`` and ``workspace`` are ordinary ``ast.Assign`` nodes; the 
 """
 
 import ast
-from typing import ClassVar
+from typing import ClassVar, Final
 
 __all__ = [
+    "GUARDS",
     "Abort",
     "BehaviorDef",
     "Do",
@@ -47,7 +48,11 @@ __all__ = [
     "Wait",
     "WaitFor",
     "WaitUntil",
+    "is_documentation",
 ]
+
+GUARDS: Final = frozenset({"precondition", "invariant"})
+"""The words that `Guard` nodes begin with."""
 
 _PLACE = ("lineno", "col_offset", "end_lineno", "end_col_offset")
 
@@ -361,3 +366,11 @@ class ScenarioDef(ScenicStatement):
     setup: list[ast.stmt] | None
     compose: list[ast.stmt] | None
     _fields = ("name", "args", "docstring", "guards", "setup", "compose")
+
+
+def is_documentation(node: ast.stmt) -> bool:
+    """Whether a statement is a plain string, as a docstring is."""
+    if node.__class__ is not ast.Expr:
+        return False
+    value = node.value
+    return value.__class__ is ast.Constant and value.value.__class__ is str and value.kind is None

@@ -176,7 +176,7 @@ def _guard_word(statement: Any) -> str | None:
         isinstance(statement, ast.AnnAssign)
         and statement.simple
         and isinstance(statement.target, ast.Name)
-        and statement.target.id in ("precondition", "invariant")
+        and statement.target.id in tree.GUARDS
     ):
         return statement.target.id
     return None

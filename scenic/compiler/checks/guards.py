@@ -2,17 +2,14 @@
 
 import ast
 from collections.abc import Iterator, Sequence
-from typing import Any, Final
+from typing import Any
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.context import Context
-from scenic.compiler.traversal import is_documentation
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.spelling import nearest
 
 __all__ = ["check_guards"]
-
-_GUARDS: Final = ("invariant", "precondition")
 
 
 def check_guards(context: Context) -> Iterator[Diagnostic]:
@@ -30,11 +27,11 @@ def _misspelt(context: Context, body: Sequence[Any], index: int, statement: Any)
     target = statement.target
     if not statement.simple or not isinstance(target, ast.Name):
         return
-    guard = nearest(target.id, _GUARDS)
+    guard = nearest(target.id, scenic.GUARDS)
     if guard is None or _used(context, target):
         return
     # Elsewhere it would be a guard in the wrong place. Of several the first is repaired first.
-    first = all(map(is_documentation, body[:index]))
+    first = all(map(scenic.is_documentation, body[:index]))
     yield context.warning(
         "SC310",
         f"`{target.id}` is annotated here and guards nothing",

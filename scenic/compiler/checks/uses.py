@@ -40,10 +40,6 @@ _HIDING: Final = frozenset(
 """How a name of the language is hidden by mistake; an import of that name is meant."""
 
 
-_GUARDS: Final = frozenset({"precondition", "invariant"})
-"""What is assigned to these was meant to be compared, as the parser says."""
-
-
 def check_uses(context: Context) -> Iterator[Diagnostic]:
     """SC205 to SC208."""
     scopes = {context.resolution.module, *context.resolution.scopes.values()}
@@ -74,7 +70,8 @@ def _hidden(binding: Binding, context: Context) -> Iterator[Diagnostic]:
 
 def _unused(binding: Binding, scope: Scope, context: Context) -> Iterator[Diagnostic]:
     """SC205 and SC206, about a binding that is never read."""
-    if binding.name.startswith("_") or binding.name in _GUARDS:
+    # What is assigned to the word of a guard was meant to be compared, as the parser says.
+    if binding.name.startswith("_") or binding.name in scenic.GUARDS:
         return
     if binding.kinds <= {BindingKind.MODULE, BindingKind.IMPORTED}:
         yield from _unused_import(binding, scope, context)

@@ -32,8 +32,7 @@ from scenic.compiler.unparser.statements import (
 )
 
 _END: Final = "\n"
-_SECTION_WORDS: Final = frozenset({"setup", "compose", "precondition", "invariant"})
-_GUARD_WORDS: Final = frozenset({"precondition", "invariant"})
+_SECTION_WORDS: Final = tree.GUARDS | {"setup", "compose"}
 
 
 class ProgramWriter(StatementWriter):
@@ -167,7 +166,7 @@ class ProgramWriter(StatementWriter):
 
     def behavior(self, node: tree.BehaviorDef, indent: str) -> None:
         for statement in node.body:
-            if _annotated_name(statement) in _GUARD_WORDS:
+            if _annotated_name(statement) in tree.GUARDS:
                 raise UnparseError("an annotation of such a name has no text in a behavior", statement)
         self.lines.append(f"{indent}behavior {node.name}({self.parameters(node.args)}):")
         if node.guards and len(node.body) > 1 and _is_string(node.body[0]):

@@ -5,7 +5,6 @@ from collections.abc import Callable, Sequence
 from typing import Any, ClassVar, Final, TypeAlias
 
 from scenic.compiler import tree
-from scenic.compiler.traversal import is_documentation
 from scenic.compiler.unparser import places, strings
 from scenic.compiler.unparser.errors import UnparseError
 from scenic.compiler.unparser.expressions import WRITERS
@@ -39,10 +38,10 @@ class StatementWriter(PatternWriter):
                 if kind in DEFINITIONS or previous in DEFINITIONS:
                     self.lines += ("", "")
                 elif (previous in _IMPORTS and kind not in _IMPORTS) or (
-                    place == 1 and is_documentation(node.body[0])
+                    place == 1 and tree.is_documentation(node.body[0])
                 ):
                     self.lines.append("")
-            if place == 0 and is_documentation(statement):
+            if place == 0 and tree.is_documentation(statement):
                 self.documentation(statement, "")
             else:
                 self.statement(statement, "")
@@ -66,7 +65,7 @@ class StatementWriter(PatternWriter):
 
     def documented_block(self, nodes: Sequence[ast.stmt], indent: str, owner: ast.AST) -> None:
         """The same, where a string at the beginning is documentation."""
-        if nodes and is_documentation(nodes[0]):
+        if nodes and tree.is_documentation(nodes[0]):
             self.documentation(nodes[0], indent + INDENTATION)
             if len(nodes) == 1:
                 return
@@ -291,7 +290,7 @@ class StatementWriter(PatternWriter):
                 self.lines.append(f"{indent}{statement.name}{attributes}: {value}")
             elif kind is ast.AnnAssign:
                 self.annotated_in_class(statement, indent, node.body[place - 1] if place else None)
-            elif place == 0 and is_documentation(statement):
+            elif place == 0 and tree.is_documentation(statement):
                 self.documentation(statement, indent)
             else:
                 self.table[kind](self, statement, indent)
@@ -300,7 +299,7 @@ class StatementWriter(PatternWriter):
     def annotated_in_class(self, node: ast.AnnAssign, indent: str, before: ast.stmt | None) -> None:
         """What would be a property on a line of its own, or without parentheses around the target."""
         if node.simple:
-            if before is None or not _LINES_OF_THEIR_OWN.isdisjoint((*before._fields, type(before).__name__)):
+            if before is None or _ends_its_line(before):
                 raise UnparseError(
                     "an annotation of a name has no text here in a class, where it is a property", node
                 )
@@ -318,8 +317,6 @@ class StatementWriter(PatternWriter):
         raise UnparseError(f"a `{type(node).__name__}` has no text as a statement", node)
 
 
-_LINES_OF_THEIR_OWN: Final = frozenset({"body", "cases", "setup", "PropertyDef", "Guard", "ErrorStatement"})
-"""Fields that hold a block, and other statements, after which no `;` may stand."""
 _END: Final = "\n"
 
 _WORDS: Final = {ast.Pass: "pass", ast.Break: "break", ast.Continue: "continue"}
@@ -345,6 +342,12 @@ _TYPE_PARAMETERS: Final = {"TypeVar": "", "TypeVarTuple": "*", "ParamSpec": "**"
 
 def _aliases(nodes: Sequence[ast.alias]) -> str:
     return ", ".join([f"{each.name} as {each.asname}" if each.asname else each.name for each in nodes])
+
+
+def _ends_its_line(node: ast.stmt) -> bool:
+    """Whether no `;` may stand after a statement: it has a block, or a line of its own."""
+    blocks = ("body", "cases", "setup")
+    return any(hasattr(node, field) for field in blocks) or isinstance(node, tree.PropertyDef | tree.Guard)
 
 
 def _is_list_of_items(node: ast.expr) -> bool:
