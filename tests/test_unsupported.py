@@ -20,15 +20,12 @@ from scenic.runtime.program import Program
 from tests.runtime.programs import marked
 
 USES = {
-    "operator at": "x = «3 at (1, 2)»",
-    "operator follow": "x = «follow 3 from (1, 2) for 4»",
     "operator minimum distance": "ego = new Object\nx = «minimum distance to ego»",
     "operator visible": "x = «visible everywhere»",
     "operator not visible": "x = «not visible everywhere»",
     "operator can see": "ego = new Object\nrequire «ego can see (1, 2)»",
     "specifier visible": "ego = new Object\nnew Object «visible»",
     "specifier not visible": "ego = new Object\nnew Object «not visible»",
-    "specifier following": "ego = new Object\nnew Object «following 3 for 4»",
     "temporal operator always": "require «always True»",
     "temporal operator eventually": "require «eventually True»",
     "temporal operator next": "require «next True»",

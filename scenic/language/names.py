@@ -121,12 +121,10 @@ _ALL = (
     _class(
         "VectorField(name, value, minSteps=4, defaultStepSize=5)",
         "An orientation for every point of space, given by a function.",
-        available=False,
     ),
     _class(
         "PolygonalVectorField(name, cells, headingFunction=None, defaultHeading=None)",
         "A vector field that is constant on polygons.",
-        available=False,
     ),
     _class("Workspace(region)", "The region that contains all objects, for `workspace = Workspace(region)`."),
     _class("Mutator", "Base class of what adds noise to mutated objects.", available=False),

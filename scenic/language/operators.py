@@ -105,7 +105,6 @@ _ALL = (
         "orientation",
         ("field at position",),
         "The orientation that a vector field has at a position.",
-        available=False,
     ),
     Operator(
         "relative to",
@@ -219,7 +218,6 @@ _ALL = (
         "oriented point",
         ("follow field from start for distance",),
         "The point reached by following a vector field for a distance, with the orientation of the field there.",
-        available=False,
     ),
     Operator(
         "visible",

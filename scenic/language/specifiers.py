@@ -200,7 +200,6 @@ _ALL = (
         "position",
         ("following field for distance", "following field from start for distance"),
         "Places the object where following a vector field for a distance leads to, aligned with the field there.",
-        available=False,
     ),
     SpecifierDeclaration(
         "facing",

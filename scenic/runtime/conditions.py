@@ -15,6 +15,7 @@ from scenic.graph.node import Node, apply
 from scenic.graph.operation import Call, Operation, always
 from scenic.graph.operations import TABLE
 from scenic.runtime.context import here
+from scenic.runtime.lazy import definite
 from scenic.runtime.opaque import evaluated, later
 from scenic.runtime.values import as_node
 
@@ -27,9 +28,11 @@ def leaf(symbolic: Callable[[], Any] | None, concrete: Callable[..., Any], captu
     """The node of one leaf of a condition."""
     if symbolic is not None:
         try:
-            return truth(symbolic())
+            value = symbolic()
         except Exception:  # noqa: BLE001 - whatever went wrong goes wrong again, with its place, on a sample
             pass
+        else:
+            return truth(definite(value, "the requirement"))
     return later(OPAQUE, concrete, captured)
 
 

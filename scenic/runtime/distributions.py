@@ -14,6 +14,7 @@ from scenic.graph.node import axis, constant
 from scenic.graph.operations import TABLE
 from scenic.language.errors import InvalidScenarioError, ScenicTypeError, ScenicValueError
 from scenic.runtime.context import current, here, uniform_draw
+from scenic.runtime.lazy import defer, is_lazy
 from scenic.runtime.values import (
     Random,
     as_node,
@@ -38,6 +39,8 @@ def draw(operation: str, *operands: Any, payload: Any = None) -> Any:
             span=here(),
             help="draw the value before the `require` statement and use it there",
         )
+    if is_lazy(operands):
+        return defer(draw, operation, *operands, payload=payload)
     nodes = [as_node(operand) for operand in operands]
     uniform = uniform_draw()
     entry = TABLE[operation]
@@ -125,6 +128,8 @@ Options = Discrete
 
 
 def _choose(options: Sequence[Any], weights: Sequence[float], name: str) -> Any:
+    if is_lazy(tuple(options)):
+        return defer(_choose, tuple(options), weights, name)
     possible = [(option, weight) for option, weight in zip(options, weights, strict=True) if weight > 0]
     if not possible:
         raise _nothing(name)

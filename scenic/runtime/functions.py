@@ -6,6 +6,7 @@ from typing import Any
 
 from scenic.language.errors import RandomControlFlowError
 from scenic.runtime.context import here
+from scenic.runtime.lazy import Lazy, defer, is_lazy
 from scenic.runtime.opaque import call_later
 from scenic.runtime.values import Random, is_random, operate
 
@@ -27,6 +28,8 @@ def hypot(*coordinates: Any) -> Any:
 
 def _extreme(name: str, function: Callable[..., Any]) -> Callable[..., Any]:
     def extreme(*args: Any, **options: Any) -> Any:
+        if is_lazy(args) or is_lazy(options):
+            return defer(extreme, *args, **options)
         if options or not any(is_random(item) for item in args):
             return function(*args, **options)
         values = args[0] if len(args) == 1 else args
@@ -45,6 +48,8 @@ min = _extreme("minimum", builtins.min)
 
 def round(number: Any, ndigits: Any = None) -> Any:
     """Python's ``round``, also of random numbers."""
+    if is_lazy((number, ndigits)):
+        return defer(round, number, ndigits)
     if is_random(number) or is_random(ndigits):
         return operate("round", number) if ndigits is None else operate("round", number, ndigits)
     return builtins.round(number, ndigits)
@@ -52,11 +57,15 @@ def round(number: Any, ndigits: Any = None) -> Any:
 
 def len(value: Any) -> Any:
     """Python's ``len``, also of random containers."""
+    if isinstance(value, Lazy):
+        return defer(len, value)
     return operate("len", value) if isinstance(value, Random) else builtins.len(value)
 
 
 def filter(function: Callable[[Any], Any] | None, values: Any) -> Any:
     """The elements for which ``function`` holds, as a list; ``values`` may be random."""
+    if is_lazy(values):
+        return defer(filter, function, values)
     keep = function if function is not None else bool
     if not is_random(values):
         return [item for item in values if keep(item)]
@@ -76,6 +85,8 @@ def range(*bounds: Any) -> Any:
 
 def convert(name: str, value: Any = 0, *rest: Any) -> Any:
     """``int``, ``float`` and ``str`` as calls in programs, also of random values."""
+    if is_lazy((value, *rest)):
+        return defer(convert, name, value, *rest)
     if isinstance(value, Random) or is_random(value):
         return operate(name, value)
     function: Callable[..., Any] = {"int": int, "float": float, "str": str}[name]
@@ -86,6 +97,8 @@ def distributionFunction(function: Callable[..., Any]) -> Callable[..., Any]:
     """Make a Python function take random arguments: it is then called with their sampled values."""
 
     def lifted(*args: Any, **keywords: Any) -> Any:
+        if is_lazy(args) or is_lazy(keywords):
+            return defer(lifted, *args, **keywords)
         if not is_random(args) and not is_random(keywords):
             return function(*args, **keywords)
         return call_later(function, *args, **keywords)

@@ -8,7 +8,7 @@ from typing import Any
 
 from scenic.language import errors
 from scenic.language.errors import InvalidScenarioError
-from scenic.runtime import distributions, functions, shapes
+from scenic.runtime import distributions, fields, functions, shapes
 from scenic.runtime.context import here
 from scenic.runtime.objects import Object, OrientedPoint, Point
 from scenic.runtime.program import Program
@@ -24,6 +24,8 @@ _NAMES: Mapping[str, Any] = MappingProxyType(
         "Object": Object,
         "Vector": Vector,
         "Orientation": Orientation,
+        "VectorField": fields.VectorField,
+        "PolygonalVectorField": fields.PolygonalVectorField,
         "Range": distributions.Range,
         "DiscreteRange": distributions.DiscreteRange,
         "Normal": distributions.Normal,
@@ -74,12 +76,10 @@ _UNSUPPORTED = (
     "PathRegion",
     "PointSetRegion",
     "PolygonalFootprintRegion",
-    "PolygonalVectorField",
     "PolylineRegion",
     "PreconditionViolation",
     "SectorRegion",
     "TimeSeries",
-    "VectorField",
     "VerifaiDiscreteRange",
     "VerifaiOptions",
     "VerifaiParameter",

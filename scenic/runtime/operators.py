@@ -11,6 +11,8 @@ from typing import Any
 from scenic.graph.kinds import Kind
 from scenic.language.errors import ScenicTypeError
 from scenic.runtime.context import here
+from scenic.runtime.fields import field_of, frame_at, is_field, relative_to
+from scenic.runtime.lazy import defer, is_lazy
 from scenic.runtime.objects import SIDES, Object, OrientedPoint, oriented_point
 from scenic.runtime.regions.base import Region
 from scenic.runtime.specifiers import Ego, is_kind
@@ -22,6 +24,7 @@ from scenic.runtime.values import (
     is_orientation,
     is_vector,
     operate,
+    per_option,
     to_heading,
     to_orientation,
     to_scalar,
@@ -50,6 +53,8 @@ def _is_frame(value: Any) -> bool:
 
 def _relative_to(_ego: Ego, value: Any, frame: Any) -> Any:
     """Section 7.1: the first row of the table that fits."""
+    if is_field(value) or is_field(frame):
+        return relative_to(value, frame)
     oriented = [is_kind(operand, OrientedPoint) for operand in (value, frame)]
     if all(oriented):
         raise ScenicTypeError(
@@ -80,8 +85,21 @@ def _is_place(value: Any) -> bool:
 
 
 def _offset_along(_ego: Ego, base: Any, direction: Any, offset: Any) -> Any:
-    frame = to_orientation(direction, "`offset along`")
-    return operate("add", to_vector(base), operate("rotate", frame, to_vector(offset, "`offset along`")))
+    start = to_vector(base, "`offset along`")
+    frame = frame_at(direction, start, "`offset along`")
+    return operate("add", start, operate("rotate", frame, to_vector(offset, "`offset along`")))
+
+
+def _field_at(_ego: Ego, field: Any, position: Any) -> Any:
+    place = to_vector(position, "`at`")
+    return per_option(field, lambda option: field_of(option, "`at`")[place])
+
+
+def _follow(ego: Ego, field: Any, origin: Any, distance: Any) -> Any:
+    start = to_vector(ego() if origin is None else origin, "`follow ... from`")
+    way = field_of(field, "`follow`")
+    end = way.followFrom(start, to_scalar(distance, "`follow ... for`"))
+    return oriented_point(end, way[end])
 
 
 def _relative_position(ego: Ego, target: Any, origin: Any) -> Any:
@@ -157,6 +175,8 @@ def _sides() -> dict[str, Callable[..., Any]]:
 OPERATORS: Mapping[str, Callable[..., Any]] = MappingProxyType(
     {
         "deg": _degrees,
+        "at": _field_at,
+        "follow": _follow,
         "@": _vector,
         "relative to": _relative_to,
         "offset by": lambda ego, base, offset: _relative_to(ego, base, offset),
@@ -173,3 +193,10 @@ OPERATORS: Mapping[str, Callable[..., Any]] = MappingProxyType(
     }
 )
 """Each operator as a function ``(ego, *operands)``; an operand that the text leaves out is ``None``."""
+
+
+def operation(name: str, ego: Ego, *operands: Any) -> Any:
+    """The result of an operator; a lazy value where an operand is one."""
+    if any(is_lazy(operand) for operand in operands):
+        return defer(OPERATORS[name], ego, *operands)
+    return OPERATORS[name](ego, *operands)

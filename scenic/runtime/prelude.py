@@ -27,9 +27,10 @@ from scenic.language.errors import (
 from scenic.runtime import conditions, names
 from scenic.runtime.context import Context, here
 from scenic.runtime.functions import convert
+from scenic.runtime.lazy import definite
 from scenic.runtime.methods import OrientationMethods, VectorMethods
 from scenic.runtime.objects import Object, Point
-from scenic.runtime.operators import OPERATORS
+from scenic.runtime.operators import OPERATORS, operation
 from scenic.runtime.program import (
     Behavior,
     BehaviorClass,
@@ -42,7 +43,7 @@ from scenic.runtime.properties import ATTRIBUTES, PropertyDefinition
 from scenic.runtime.regions.base import Region, Workspace
 from scenic.runtime.resolution import build
 from scenic.runtime.samples import Sample
-from scenic.runtime.specifiers import BUILDERS, Specifier
+from scenic.runtime.specifiers import BUILDERS, Specifier, specify
 from scenic.runtime.spreading import spread
 from scenic.runtime.values import (
     Random,
@@ -175,9 +176,9 @@ class Prelude:
             raise UnsupportedError(f"the specifier `{name}` is not supported yet", span=here())
         if property is not None:
             if property == "heading" and self._context.mode_2d:
-                return BUILDERS["facing"](self._ego, *operands)
-            return BUILDERS[name](self._ego, property, *operands)
-        return BUILDERS[name](self._ego, *operands)
+                return specify("facing", self._ego, *operands)
+            return specify(name, self._ego, property, *operands)
+        return specify(name, self._ego, *operands)
 
     def new(self, cls: Any, *specifiers: Specifier) -> Any:
         """A new instance of a Scenic class."""
@@ -246,7 +247,7 @@ class Prelude:
             return self._context.is_symbolic
         if name not in OPERATORS:
             raise UnsupportedError(f"the operator `{name}` is not supported yet", span=here())
-        return OPERATORS[name](self._ego, *operands)
+        return operation(name, self._ego, *operands)
 
     def convert(self, name: str, *args: Any) -> Any:
         """``int(x)``, ``float(x)``, ``str(x)``."""
@@ -264,6 +265,7 @@ class Prelude:
             raise InvalidScenarioError("parameters cannot be set here", span=here())
         program = self._program
         for name, value in values.items():
+            definite(value, f"parameter {name!r}")
             if name in program.overrides:
                 program.parameters[name] = program.overrides[name]
             elif not (self._module.is_model and name in program.parameters):

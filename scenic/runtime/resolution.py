@@ -7,6 +7,8 @@ from typing import Any
 from scenic.language.errors import InvalidScenarioError, Located, ScenicValueError, SpecifierError
 from scenic.language.spans import Span
 from scenic.runtime.context import here
+from scenic.runtime.lazy import MEMO, reads_of
+from scenic.runtime.lazy import resolve as settle
 from scenic.runtime.objects import TWO_D_DEFAULTS, Object, Point
 from scenic.runtime.properties import Property, normalised
 from scenic.runtime.shapes import BoxShape
@@ -21,6 +23,17 @@ class Resolution:
     order: tuple[Specifier, ...]
     owns: Mapping[Specifier, frozenset[str]]
     modifies: Mapping[Specifier, frozenset[str]]
+    providers: Mapping[str, Specifier]
+    """Whose value of a property the others read: its modifier if it has one, else its owner."""
+
+    def provider(self, name: str, reader: Specifier) -> Specifier:
+        """Who provides a property that ``reader`` reads."""
+        provider = self.providers.get(name)
+        if provider is None:
+            raise SpecifierError(
+                f"{reader} needs property {name!r}, which nothing provides", span=reader.span
+            )
+        return provider
 
 
 def build(cls: type[Point], specifiers: Sequence[Specifier], *, mode_2d: bool = False) -> Any:
@@ -29,24 +42,37 @@ def build(cls: type[Point], specifiers: Sequence[Specifier], *, mode_2d: bool = 
     Raises `SpecifierError` where the specifiers do not fit together or to the class, `ScenicTypeError` and
     `ScenicValueError` where a value does not fit its property.
     """
-    defaults = class_defaults(cls, mode_2d=mode_2d)
-    resolution = resolve(cls, specifiers, defaults)
+    resolution = resolve(cls, specifiers, class_defaults(cls, mode_2d=mode_2d))
     instance = cls._make({})
     values = instance.__dict__
-    for specifier in resolution.order:
+    done: set[Specifier] = set()
+
+    def evaluate(specifier: Specifier) -> None:
+        if specifier in done:
+            return
+        done.add(specifier)
         modifying = resolution.modifies.get(specifier, frozenset())
-        owned = resolution.owns.get(specifier, frozenset())
+        names = resolution.owns.get(specifier, frozenset()) | modifying
         function = specifier.modify if modifying and specifier.modify else specifier.evaluate
         try:
             offered = function(instance)
-            for name in sorted(owned | modifying):
-                values[name] = normalised(name, offered[name])
+            for name in sorted(reads_of([offered[name] for name in names])):
+                # A default that is lazy, which shows only when it is evaluated.
+                evaluate(resolution.provider(name, specifier))
+                if name not in values:
+                    raise _circle([specifier, resolution.provider(name, specifier)])
+            for name in sorted(names):
+                values[name] = normalised(name, settle(offered[name], instance))
                 if issubclass(cls, Object):
                     _check_value(name, values[name], mode_2d=mode_2d)
         except Located as error:
             if not specifier.is_default:
                 error.span = specifier.span or error.span
             raise
+
+    for specifier in resolution.order:
+        evaluate(specifier)
+    values.pop(MEMO, None)
     values["_names"] = tuple(sorted(values, key=list(_order(cls, values)).index))
     if issubclass(cls, Object) and mode_2d:
         position = values["position"]
@@ -101,7 +127,7 @@ def resolve(
     owns = _by_specifier(claims)
     modifies = _by_specifier(modifiers)
     order = _topological(owns, modifies, claims, modifiers)
-    return Resolution(order, owns, modifies)
+    return Resolution(order, owns, modifies, {**claims, **modifiers})
 
 
 def _reject_duplicates(specifiers: Sequence[Specifier]) -> None:
@@ -200,12 +226,7 @@ def _topological(
         if specifier in done:
             return
         if specifier in active:
-            circle = [*active[active.index(specifier) :], specifier]
-            raise SpecifierError(
-                "these specifiers depend on each other: " + " -> ".join(str(item) for item in circle),
-                span=next((item.span for item in circle if item.span is not None), None),
-                help="give one of the properties a value that does not depend on the others",
-            )
+            raise _circle(active[active.index(specifier) :])
         active.append(specifier)
         for name in sorted(specifier.dependencies):
             provider = modifiers.get(name) or claims.get(name)
@@ -223,6 +244,15 @@ def _topological(
     for specifier in (*owns, *modifies):
         visit(specifier)
     return tuple(order)
+
+
+def _circle(specifiers: Sequence[Specifier]) -> SpecifierError:
+    circle = [*specifiers, specifiers[0]]
+    return SpecifierError(
+        "these specifiers depend on each other: " + " -> ".join(str(item) for item in circle),
+        span=next((item.span for item in circle if item.span is not None), None),
+        help="give one of the properties a value that does not depend on the others",
+    )
 
 
 def _check_value(name: str, value: Any, *, mode_2d: bool) -> None:

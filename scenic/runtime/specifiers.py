@@ -6,7 +6,7 @@ a function from the partially built instance to values. Which of the offered val
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Any
 
@@ -14,6 +14,8 @@ from scenic.graph.operations import TABLE
 from scenic.language.errors import ScenicTypeError
 from scenic.language.spans import Span
 from scenic.runtime.context import here
+from scenic.runtime.fields import field_of, frame_at, is_field
+from scenic.runtime.lazy import Lazy, defer, reads_of, resolve
 from scenic.runtime.objects import Object, OrientedPoint, Point
 from scenic.runtime.regions.base import Region, unsupported
 from scenic.runtime.values import (
@@ -171,7 +173,7 @@ def offset_by(ego: Ego, offset: Any) -> Specifier:
 
 def offset_along(ego: Ego, direction: Any, offset: Any) -> Specifier:
     origin, step = ego(), to_vector(offset, "`offset along`")
-    frame = to_orientation(direction, "`offset along`")
+    frame = frame_at(direction, origin.position, "`offset along`")
 
     def evaluate(_: Any) -> Mapping[str, Any]:
         position = operate("add", origin.position, operate("rotate", frame, step))
@@ -197,6 +199,8 @@ def beyond(ego: Ego, target: Any, offset: Any, origin: Any) -> Specifier:
 
 def scalar_or_vector(value: Any, what: str, *, axis: int) -> Any:
     """A displacement: a vector, or a number along one axis."""
+    if isinstance(value, Lazy):
+        return defer(scalar_or_vector, value, what, axis=axis)
     if is_number(value) or (isinstance(value, Random) and value.node.kind.is_number):
         parts: list[Any] = [0, 0, 0]
         parts[axis] = value
@@ -216,7 +220,7 @@ def _directional(name: str, axis: int, sign: int, extent: str) -> Callable[..., 
         def offset(instance: Any) -> Any:
             # u (s/2 + t/2 + d + g): the two half extents, the displacement, or else the contact gap.
             along = operate("divide", operate("add", to_scalar(getattr(instance, extent)), reference), 2)
-            parts: list[Any] = [0.0, 0.0, 0.0] if step is None else list(step)
+            parts: list[Any] = [0.0, 0.0, 0.0] if step is None else list(resolve(step, instance))
             if step is not None:
                 along = operate("add", along, parts[axis])
             elif is_object:
@@ -240,8 +244,24 @@ def _directional(name: str, axis: int, sign: int, extent: str) -> Callable[..., 
     return build
 
 
+def following(ego: Ego, field: Any, origin: Any, distance: Any) -> Specifier:
+    start = to_vector(ego() if origin is None else origin, "`following ... from`")
+    way = field_of(field, "`following`")
+    end = way.followFrom(start, to_scalar(distance, "`following ... for`"))
+    orientation = way[end]
+
+    def evaluate(_: Any) -> Mapping[str, Any]:
+        return {"position": end, "parentOrientation": orientation}
+
+    return _specifier("following", {"position": 1, "parentOrientation": 3}, evaluate)
+
+
 def facing(_ego: Ego, orientation: Any) -> Specifier:
-    if is_number(orientation) or is_orientation(orientation) or is_kind(orientation, OrientedPoint):
+    reads = ["parentOrientation"]
+    target = orientation
+    if is_field(orientation):
+        reads.append("position")
+    elif is_number(orientation) or is_orientation(orientation) or is_kind(orientation, OrientedPoint):
         target = to_orientation(orientation, "`facing`")
     elif isinstance(orientation, tuple | list) and len(orientation) == 2:
         raise ScenicTypeError(
@@ -253,10 +273,11 @@ def facing(_ego: Ego, orientation: Any) -> Specifier:
         target = to_orientation(orientation, "`facing`")
 
     def evaluate(instance: Any) -> Mapping[str, Any]:
-        local = operate("compose", operate("inverse", instance.parentOrientation), target)
+        wanted = target[instance.position] if is_field(target) else target
+        local = operate("compose", operate("inverse", instance.parentOrientation), wanted)
         return {"yaw": local.yaw, "pitch": local.pitch, "roll": local.roll}
 
-    return _specifier("facing", {"yaw": 1, "pitch": 1, "roll": 1}, evaluate, "parentOrientation")
+    return _specifier("facing", {"yaw": 1, "pitch": 1, "roll": 1}, evaluate, *reads)
 
 
 def _facing_point(name: str, *, away: bool, directly: bool) -> Callable[..., Specifier]:
@@ -303,6 +324,7 @@ BUILDERS: Mapping[str, Callable[..., Specifier]] = MappingProxyType(
         "behind": _directional("behind", 1, -1, "length"),
         "above": _directional("above", 2, 1, "height"),
         "below": _directional("below", 2, -1, "height"),
+        "following": following,
         "facing": facing,
         "facing toward": _facing_point("facing toward", away=False, directly=False),
         "facing away from": _facing_point("facing away from", away=True, directly=False),
@@ -314,4 +336,12 @@ BUILDERS: Mapping[str, Callable[..., Specifier]] = MappingProxyType(
 """How each specifier of `scenic.language.specifiers` is built: ``(ego, *operands)``; ``with`` gets its property
 first. ``ego`` is a function, so that a scenario without ego fails only where one is needed."""
 
-__all__ = ["BUILDERS", "Specifier", "is_kind", "region_of", "scalar_or_vector"]
+
+def specify(name: str, ego: Ego, *operands: Any) -> Specifier:
+    """One specifier; what lazy operands read, it depends on."""
+    specifier = BUILDERS[name](ego, *operands)
+    reads = reads_of(operands)
+    return replace(specifier, dependencies=specifier.dependencies | reads) if reads else specifier
+
+
+__all__ = ["BUILDERS", "Specifier", "is_kind", "region_of", "scalar_or_vector", "specify"]

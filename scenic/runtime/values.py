@@ -24,6 +24,7 @@ from scenic.language.errors import (
     UnsupportedError,
 )
 from scenic.runtime.context import here, uniform_draw
+from scenic.runtime.lazy import Lazy, defer
 from scenic.runtime.methods import Arithmetic, Operand, OrientationMethods, VectorMethods
 
 LARGEST_INTEGER = 2**62
@@ -437,7 +438,9 @@ def operate(name: str, *operands: Any, payload: Any = None) -> Any:
 
 
 def apply(operation: Operation, *operands: Any, payload: Any = None) -> Any:
-    """Apply any operation to values: at once when all are definite, as a new node otherwise."""
+    """Apply any operation to values: at once when all are definite, as a new node otherwise; later where one is lazy."""
+    if any(isinstance(operand, Lazy) for operand in operands):
+        return defer(apply, operation, *operands, payload=payload)
     nodes = [as_node(operand) for operand in operands]
     if operation.pure and all(node.is_constant for node in nodes):
         return evaluate(operation, nodes, payload)
@@ -585,6 +588,8 @@ def wrong_type(wanted: str, value: Any, what: str = "") -> ScenicTypeError:
 
 def to_scalar(value: Any, what: str = "") -> Any:
     """A real number, as a float."""
+    if isinstance(value, Lazy):
+        return defer(to_scalar, value, what)
     if isinstance(value, Random):
         if value.node.kind is Kind.SCALAR:
             return value
@@ -602,6 +607,8 @@ def to_scalar(value: Any, what: str = "") -> Any:
 
 def to_vector(value: Any, what: str = "") -> Any:
     """A vector: also a pair (z = 0), a triple, and anything with a position."""
+    if isinstance(value, Lazy):
+        return defer(to_vector, value, what)
     if isinstance(value, Vector):
         return value
     if isinstance(value, Random):
@@ -624,6 +631,8 @@ def to_vector(value: Any, what: str = "") -> Any:
 
 def to_heading(value: Any, what: str = "") -> Any:
     """A heading in radians: a number, the global yaw of an orientation, the heading of an oriented point."""
+    if isinstance(value, Lazy):
+        return defer(to_heading, value, what)
     if isinstance(value, Random):
         if value.node.kind.is_number:
             return to_scalar(value)
@@ -640,6 +649,8 @@ def to_heading(value: Any, what: str = "") -> Any:
 
 def to_orientation(value: Any, what: str = "") -> Any:
     """An orientation: also a heading, a triple of Euler angles, and anything that has an orientation."""
+    if isinstance(value, Lazy):
+        return defer(to_orientation, value, what)
     if isinstance(value, Orientation):
         return value
     if isinstance(value, Random):
@@ -665,6 +676,14 @@ def vector(x: Any, y: Any, z: Any = 0) -> Any:
     if is_number(x) and is_number(y) and is_number(z):
         return Vector.of((float(x), float(y), float(z)))
     return operate("vector", to_scalar(x), to_scalar(y), to_scalar(z))
+
+
+def per_option(value: Any, function: Callable[[Any], Any]) -> Any:
+    """``function`` of a value; of each option where the value is a random choice, and the choice among the results."""
+    if isinstance(value, Random) and value.node.operation is TABLE["select"]:
+        index, *options = value.node.operands
+        return _select(index, [as_node(function(as_value(option))) for option in options])
+    return function(value)
 
 
 def _coerce_boxed(value: Random, kind: Kind, function: Callable[..., Any], what: str) -> Any:

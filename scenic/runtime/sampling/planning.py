@@ -272,6 +272,8 @@ _REJECTING = MappingProxyType(
         "surface face": "surface to stand on",
         "landing face": "place to land on, for `on`",
         "plane projection": "place to land on, for `on`",
+        "field heading": "direction of the field",
+        "follow polygons": "direction of the field",
     }
 )
 """Operations that may have no value in some lane: what is missing there."""
@@ -289,6 +291,8 @@ _FALLIBLE = frozenset(
         "getitem",
         "missing attribute",
         "opaque call",
+        "field value",
+        "follow field",
     }
 )
 _DIVISIONS = frozenset({"divide", "floor divide", "modulo", "divmod"})

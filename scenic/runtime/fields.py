@@ -1,0 +1,385 @@
+"""Vector fields: an orientation for every point (sections 4.1 and 6.2 of the specification).
+
+The function of a field is the program's own code, called on sampled points. Fields made of polygons have a closed form, over
+arrays of points.
+"""
+
+import math
+from collections.abc import Callable, Iterable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from scenic.graph.kinds import Column, Kind
+from scenic.graph.operation import Call, Operation, always
+from scenic.language.errors import RejectionException, ScenicTypeError
+from scenic.runtime.context import here
+from scenic.runtime.lazy import Lazy, defer, reads_of, resolve
+from scenic.runtime.opaque import evaluated, later
+from scenic.runtime.values import (
+    Orientation,
+    Random,
+    Vector,
+    apply,
+    as_value,
+    describe,
+    operate,
+    to_orientation,
+    to_scalar,
+    to_vector,
+)
+
+Points = NDArray[np.float64]
+Headings = NDArray[np.float64]
+
+
+class VectorField:
+    """An orientation for every point, given by a function.
+
+    Args:
+        name: for messages.
+        value: from a vector to a heading, a triple of Euler angles or an orientation.
+        minSteps: the least number of steps by which the field is followed.
+        defaultStepSize: metres; longer ways are followed in steps of at most this length.
+
+    """
+
+    def __init__(
+        self, name: str, value: Callable[[Any], Any], minSteps: int = 4, defaultStepSize: float = 5
+    ) -> None:
+        self.name = name
+        self.value = value
+        self.valueType = Orientation
+        self.minSteps = minSteps
+        self.defaultStepSize = defaultStepSize
+
+    def __getitem__(self, position: Any) -> Any:
+        """The orientation at a point."""
+        place = to_vector(position, f"field {self.name!r}")
+        if isinstance(place, Lazy):
+            return defer(self.__getitem__, place)
+        if isinstance(place, Random):
+            return as_value(later(_VALUE, _oriented, (self.value, place)))
+        return _oriented(self.value, place)
+
+    def at(self, position: Any) -> Any:
+        """The orientation at a point."""
+        return self[position]
+
+    def followFrom(
+        self, position: Any, distance: Any, steps: int | None = None, stepSize: float | None = None
+    ) -> Any:
+        """The point that is reached from ``position`` by following the field for a distance (metres).
+
+        By Euler's method: ``steps`` steps, or as many as keep each below ``stepSize``.
+        """
+        place = to_vector(position, "`follow ... from`")
+        length = to_scalar(distance, "`follow ... for`")
+        if isinstance(place, Lazy) or isinstance(length, Lazy):
+            return defer(self.followFrom, place, length, steps, stepSize)
+        law = (steps, self.minSteps, self.defaultStepSize if stepSize is None else stepSize)
+        if isinstance(place, Random) or isinstance(length, Random):
+            return as_value(later(_FOLLOW, _followed, (self.value, place, length, law)))
+        return _followed(self.value, place, length, law)
+
+    @staticmethod
+    def forUnionOf(regions: Iterable[Any], tolerance: float = 0) -> "PiecewiseVectorField | None":  # noqa: ARG004 - of the established call
+        """The field that takes each point's orientation from the first region that holds it; ``None`` without any."""
+        members = list(regions)
+        if not any(member.orientation is not None for member in members):
+            return None
+        return PiecewiseVectorField("union", members)
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} {self.name!r}>"
+
+
+class PolygonalVectorField(VectorField):
+    """A field that is constant on polygons.
+
+    Args:
+        name: for messages.
+        cells: pairs of a polygon (shapely's) and a heading in radians, or ``None`` for that of ``headingFunction``.
+        headingFunction: the heading at points of cells that have none of their own.
+        defaultHeading: the heading outside of all cells; ``None`` rejects samples that need one there.
+
+    """
+
+    def __init__(
+        self,
+        name: str,
+        cells: Iterable[tuple[Any, float | None]],
+        headingFunction: Callable[[Any], Any] | None = None,
+        defaultHeading: float | None = None,
+        **options: Any,
+    ) -> None:
+        self.cells = tuple(cells)
+        for _, heading in self.cells:
+            if heading is None and headingFunction is None:
+                raise ScenicTypeError(
+                    f"field {name!r} has a cell without a heading",
+                    span=here(),
+                    help="give a `headingFunction`",
+                )
+        self.headingFunction = headingFunction
+        self.defaultHeading = defaultHeading
+        self._index: Any = None
+        super().__init__(name, self._value, **options)
+
+    def _nearest_cells(self, x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.intp]:
+        """The first cell that holds each point; the number of cells where none does."""
+        import shapely
+
+        if self._index is None:
+            self._index = shapely.STRtree([_polygon(cell) for cell, _ in self.cells])
+        found = np.full(len(x), len(self.cells), dtype=np.intp)
+        points, cells = self._index.query(shapely.points(x, y), predicate="intersects")
+        np.minimum.at(found, points, cells)
+        return found
+
+    def headings(self, points: Points) -> tuple[Headings, NDArray[np.bool_]]:
+        """Headings at points ``(n, 3)``, and which points have one; for fields without a function."""
+        table = np.array(
+            [*(heading for _, heading in self.cells), self.defaultHeading or 0.0], dtype=np.float64
+        )
+        cells = self._nearest_cells(points[:, 0], points[:, 1])
+        return table[cells], (cells < len(self.cells)) | (self.defaultHeading is not None)
+
+    @property
+    def _is_table(self) -> bool:
+        return all(heading is not None for _, heading in self.cells)
+
+    def _value(self, point: Any) -> Any:
+        (cell,) = self._nearest_cells(np.array([point.x]), np.array([point.y]))
+        if cell < len(self.cells):
+            heading = self.cells[cell][1]
+            if heading is not None:
+                return heading
+            assert self.headingFunction is not None
+            return self.headingFunction(point)
+        if self.defaultHeading is None:
+            raise RejectionException(f"field {self.name!r} has no direction at {point!r}")
+        return self.defaultHeading
+
+    def __getitem__(self, position: Any) -> Any:
+        place = to_vector(position, f"field {self.name!r}")
+        if isinstance(place, Random) and self._is_table:
+            return Orientation.fromEuler(apply(_HEADING, place, payload=self), 0, 0)
+        return super().__getitem__(place)
+
+    def followFrom(
+        self, position: Any, distance: Any, steps: int | None = None, stepSize: float | None = None
+    ) -> Any:
+        place = to_vector(position, "`follow ... from`")
+        length = to_scalar(distance, "`follow ... for`")
+        if self._is_table and (isinstance(place, Random) or isinstance(length, Random)):
+            law = (steps, self.minSteps, self.defaultStepSize if stepSize is None else stepSize)
+            return apply(_FOLLOW_TABLE, place, length, payload=(self, law))
+        return super().followFrom(place, length, steps, stepSize)
+
+
+class PiecewiseVectorField(VectorField):
+    """A field that takes each point's orientation from the first region with one that holds the point.
+
+    Args:
+        name: for messages.
+        regions: with preferred orientations.
+        defaultHeading: the heading outside of all of them; ``None`` rejects samples that need one there.
+
+    """
+
+    def __init__(
+        self, name: str, regions: Iterable[Any], defaultHeading: float | None = None, **options: Any
+    ) -> None:
+        self.regions = tuple(regions)
+        self.defaultHeading = defaultHeading
+        super().__init__(name, self._value, **options)
+
+    def _value(self, point: Any) -> Any:
+        for region in self.regions:
+            if region.orientation is not None and region.containsPoint(point):
+                return region.orientation[point]
+        if self.defaultHeading is None:
+            raise RejectionException(f"field {self.name!r} has no direction at {point!r}")
+        return self.defaultHeading
+
+
+class PolyhedronVectorField(VectorField):
+    """A field that is constant on volumes.
+
+    Args:
+        name: for messages.
+        cells: pairs of a region and an orientation (or heading), or ``None`` for that of ``headingFunction``.
+        headingFunction: the orientation at points of cells that have none of their own.
+        defaultHeading: the orientation outside of all cells; ``None`` rejects samples that need one there.
+
+    """
+
+    def __init__(
+        self,
+        name: str,
+        cells: Iterable[tuple[Any, Any]],
+        headingFunction: Callable[[Any], Any] | None = None,
+        defaultHeading: Any = None,
+        **options: Any,
+    ) -> None:
+        self.cells = tuple(cells)
+        self.headingFunction = headingFunction
+        self.defaultHeading = defaultHeading
+        super().__init__(name, self._value, **options)
+
+    def _value(self, point: Any) -> Any:
+        for region, orientation in self.cells:
+            if region.containsPoint(point):
+                if orientation is None and self.headingFunction is not None:
+                    return self.headingFunction(point)
+                return orientation
+        if self.defaultHeading is None:
+            raise RejectionException(f"field {self.name!r} has no direction at {point!r}")
+        return self.defaultHeading
+
+
+def _polygon(cell: Any) -> Any:
+    """A shapely polygon: the cell itself, or that of a polygonal region."""
+    polygons = getattr(cell, "polygons", None)
+    return cell if polygons is None else getattr(polygons, "polygon", polygons)
+
+
+def is_field(value: Any) -> bool:
+    """Whether a value is certainly a field."""
+    return isinstance(value, VectorField)
+
+
+def field_of(value: Any, what: str) -> VectorField:
+    """A field; raises `ScenicTypeError` for anything else."""
+    if isinstance(value, VectorField):
+        return value
+    hint = None
+    if isinstance(value, type):
+        hint = f"to create an instance write `new {value.__name__} at ...`"
+    raise ScenicTypeError(f"{what}: expected a vector field, not {describe(value)}", span=here(), help=hint)
+
+
+def frame_at(direction: Any, position: Any, what: str) -> Any:
+    """A direction as an orientation; a field's is that at a point."""
+    return direction[position] if is_field(direction) else to_orientation(direction, what)
+
+
+def relative_to(value: Any, frame: Any) -> Lazy:
+    """``value relative to frame`` with a field: lazy, since a field means its direction where the object will be."""
+
+    def compute(instance: Any) -> Any:
+        outer, inner = (
+            frame_at(resolve(operand, instance), instance.position, "`relative to`")
+            for operand in (frame, value)
+        )
+        return operate("compose", outer, inner)
+
+    return Lazy(frozenset({"position"}) | reads_of((value, frame)), compute)
+
+
+# On samples
+
+Law = tuple[int | None, int, float]
+"""Number of steps if fixed, least number, and longest step."""
+
+
+def _oriented(function: Callable[[Any], Any], point: Any) -> Any:
+    return to_orientation(function(point), "the value of a field")
+
+
+def _steps(distance: float, law: Law) -> int:
+    steps, least, size = law
+    return steps if steps is not None else max(least, math.ceil(distance / size))
+
+
+def _followed(function: Callable[[Any], Any], point: Any, distance: float, law: Law) -> Any:
+    count = _steps(distance, law)
+    step = Vector.of((0.0, distance / count, 0.0))
+    for _ in range(count):
+        point = point.offsetRotated(_oriented(function, point), step)
+    return point
+
+
+def _rows(width: int) -> Callable[..., Column]:
+    """The reading of calls that give vectors or orientations."""
+
+    def batch(call: Call, *columns: Column) -> Column:
+        rows = np.zeros((call.lanes, width))
+        if width == 4:
+            rows[:, 3] = 1.0
+        for lane, value in enumerate(evaluated(call, columns)):
+            if value is not None:
+                rows[lane] = tuple(value) if width == 3 else (value.x, value.y, value.z, value.w)
+        return rows
+
+    return batch
+
+
+_VALUE = Operation(
+    "field value",
+    always(Kind.ORIENTATION),
+    _rows(4),
+    "The value of a field, by its own function.",
+    pure=False,
+)
+_FOLLOW = Operation(
+    "follow field",
+    always(Kind.VECTOR),
+    _rows(3),
+    "The end of a way along a field, by its own function.",
+    pure=False,
+)
+
+
+def _headings(call: Call, points: Column) -> Column:
+    headings, known = call.payload.headings(points)
+    call.reject(~known)
+    return np.asarray(headings)
+
+
+_HEADING = Operation(
+    "field heading",
+    always(Kind.SCALAR),
+    _headings,
+    "The heading of a field of polygons; the candidate is rejected where it has none.",
+)
+
+
+def _follow_table(call: Call, points: Column, distance: Column) -> Column:
+    field, (steps, least, size) = call.payload
+    lanes = max(len(points), len(distance))
+    place = np.array(np.broadcast_to(points, (lanes, 3)))
+    length = np.broadcast_to(distance, lanes)
+    counts = np.full(lanes, steps) if steps is not None else np.maximum(least, np.ceil(length / size))
+    missing = np.zeros(lanes, dtype=np.bool_)
+    for step in range(int(counts.max(initial=0))):
+        moving = np.flatnonzero(step < counts)
+        headings, known = field.headings(place[moving])
+        missing[moving] |= ~known
+        stride = length[moving] / counts[moving]
+        place[moving, 0] -= stride * np.sin(headings)
+        place[moving, 1] += stride * np.cos(headings)
+    call.reject(missing)
+    return place
+
+
+_FOLLOW_TABLE = Operation(
+    "follow polygons",
+    always(Kind.VECTOR),
+    _follow_table,
+    "The end of a way along a field of polygons; the candidate is rejected where the way leaves them.",
+)
+
+
+__all__ = [
+    "PiecewiseVectorField",
+    "PolygonalVectorField",
+    "PolyhedronVectorField",
+    "VectorField",
+    "field_of",
+    "frame_at",
+    "is_field",
+    "relative_to",
+]

@@ -1,0 +1,170 @@
+"""Vector fields, and values that are known only while an object is built."""
+
+import numpy as np
+import pytest
+import shapely
+
+from scenic.language.errors import (
+    InvalidScenarioError,
+    RandomControlFlowError,
+    ScenicTypeError,
+    SpecifierError,
+)
+from tests.runtime.programs import assert_same_rotation, draws, euler, failure, params, rotation, scene, thing
+
+FIELD = "F = VectorField('f', lambda p: p.x + 0.1 * p.y)\nego = new Object at (0.5, 2, 1), facing (0.4, 0.3, -0.2)\n"
+CELLS = """
+from shapely.geometry import box
+cells = [(box(0, 0, 10, 10), 0.5), (box(10, 0, 20, 10), -0.25), (box(5, 0, 15, 10), 2.0)]
+F = PolygonalVectorField('f', cells)
+"""
+
+
+def test_a_field_gives_an_orientation_at_points_and_objects() -> None:
+    found = params(FIELD + "param a = F at (1, 2), b = F at ego, c = F[3 @ 4]")
+    for name, heading in (("a", 1.2), ("b", 0.7), ("c", 3.4)):
+        assert_same_rotation(found[name], euler(heading))
+
+
+def test_a_field_may_give_euler_angles_or_orientations() -> None:
+    text = (
+        "A = VectorField('a', lambda p: (p.x, 0.2, 0.3))\n"
+        "B = VectorField('b', lambda p: Orientation.fromEuler(p.x, 0.2, 0.3))\n"
+        "q = (Range(1, 1.001), 0)\nparam a = A at q, b = B at q, x = q[0]"
+    )
+    found = params(text)
+    for name in "ab":
+        assert_same_rotation(found[name], euler(found["x"], 0.2, 0.3))
+
+
+def test_fields_in_specifiers_are_read_at_the_position_of_the_new_object() -> None:
+    item = thing(FIELD + "new Object at (Range(3, 4), 5), facing F, with parentOrientation (0.3, 0.2, 0.1)")
+    assert_same_rotation(item.orientation, euler(item.position.x + 0.5))
+    item = thing(FIELD + "new Object at (7, 5), facing F relative to (0.1 relative to 0.2)")
+    assert_same_rotation(item.orientation, euler(0.3 + 7.5))
+    item = thing(FIELD + "new Object at (7, 5), facing (0.1, 0.2, 0.3) relative to F")
+    assert_same_rotation(item.orientation, euler(7.5) * euler(0.1, 0.2, 0.3))
+    item = thing(
+        FIELD + "new Object at (7, 5), facing (F relative to 0.1) + 0.2, with tag (F relative to F).yaw / 2"
+    )
+    assert_same_rotation(item.orientation, euler(7.5 + 0.3))
+    assert np.isclose(np.exp(2j * item.tag), np.exp(15j))
+
+
+def test_lazy_values_work_in_every_place_of_a_specifier() -> None:
+    angle = "(F relative to 0).yaw"
+    item = thing(FIELD + f"new Object at (1, 20), with width 1 + {angle}, with foo [{angle}, (3, {angle})]")
+    assert np.isclose(item.width, 4.0)
+    assert np.allclose([item.foo[0], item.foo[1][1]], 3.0)
+    item = thing(
+        FIELD + f"new Object at (1, 20), with height max(0.5, {angle}), with x_ Uniform({angle}, {angle})"
+    )
+    assert np.isclose(item.height, 3.0)
+    assert np.isclose(item.x_, 3.0)
+
+
+def test_defaults_of_properties_may_be_lazy() -> None:
+    text = (
+        FIELD
+        + "class C:\n    parentOrientation: F relative to self.extra\n    extra: 0.25\nnew C at (1, 20)\n"
+    )
+    assert_same_rotation(thing(text).orientation, euler(3.25))
+
+
+def test_a_lazy_value_that_needs_what_it_decides_is_an_error() -> None:
+    error = failure(FIELD + "new Object at (0, (F relative to 0).yaw)")
+    assert isinstance(error, SpecifierError)
+    error = failure(FIELD + "class C:\n    position: (0, (F relative to 0).yaw)\nnew C\n")
+    assert isinstance(error, SpecifierError)
+
+
+def test_lazy_values_are_good_for_nothing_outside_of_objects() -> None:
+    assert isinstance(failure(FIELD + "param x = F relative to 1"), InvalidScenarioError)
+    assert isinstance(failure(FIELD + "require (F relative to 1).yaw > 0"), InvalidScenarioError)
+    assert isinstance(failure(FIELD + "x = F relative to 1\nif x: pass"), RandomControlFlowError)
+
+
+def follow(heading: object, start: tuple[float, float, float], distance: float) -> np.ndarray:
+    """Euler's method, written out."""
+    place = np.array(start, dtype=float)
+    steps = max(4, int(np.ceil(distance / 5)))
+    for _ in range(steps):
+        angle = heading(*place[:2])  # type: ignore[operator]
+        place += distance / steps * np.array([-np.sin(angle), np.cos(angle), 0])
+    return place
+
+
+@pytest.mark.parametrize("distance", [3.0, 27.0])
+def test_following_a_field(distance: float) -> None:
+    text = (
+        FIELD
+        + f"o = new Object following F from (1, 2, 3) for {distance}\np = follow F from (1, 2, 3) for {distance}\n"
+    )
+    for end in (scene(text + "").objects[-1], params(text + "param x = p")["x"]):
+        expected = follow(lambda x, y: x + 0.1 * y, (1, 2, 3), distance)
+        np.testing.assert_allclose(tuple(end.position), expected, atol=1e-9)
+        assert_same_rotation(end.orientation, euler(expected[0] + 0.1 * expected[1]))
+
+
+def test_following_from_random_places_agrees_lane_by_lane() -> None:
+    text = (
+        FIELD
+        + "s = (Range(0, 2), 1, 2)\nd = Range(1, 40)\np = follow F from s for d\nparam x = (s[0], d, p.position)"
+    )
+    for x, distance, end in draws(text, n=20):
+        np.testing.assert_allclose(
+            tuple(end), follow(lambda x, y: x + 0.1 * y, (x, 1, 2), distance), atol=1e-9
+        )
+
+
+def heading_of_cells(x: float, y: float) -> float:
+    cells = [((0, 0, 10, 10), 0.5), ((10, 0, 20, 10), -0.25), ((5, 0, 15, 10), 2.0)]
+    return next(
+        heading for box, heading in cells if shapely.intersects(shapely.box(*box), shapely.Point(x, y))
+    )
+
+
+def test_polygonal_fields_take_the_first_cell() -> None:
+    text = CELLS + "p = (Range(0, 20), Range(0, 10))\nparam x = (p, (F at p).yaw)"
+    for (x, y), yaw in draws(text, n=50):
+        assert np.isclose(yaw, heading_of_cells(x, y))
+    assert np.isclose(params(CELLS + "param x = (F at (10, 1)).yaw")["x"], 0.5)
+
+
+def test_polygonal_fields_reject_where_they_have_no_direction() -> None:
+    values = draws(CELLS + "x = Range(-20, 20)\ny = (F at (x, 1)).yaw\nparam x = (x, y)", n=200)
+    assert all(x >= 0 for x, _ in values)
+    outside = CELLS.replace("cells)", "cells, defaultHeading=1.5)")
+    values = draws(outside + "x = Range(-20, 20)\nparam x = (x, (F at (x, 1)).yaw)", n=200)
+    assert {round(yaw, 6) for x, yaw in values if x < 0} == {1.5}
+    assert isinstance(failure(CELLS + "param x = (F at (-1, 1)).yaw"), InvalidScenarioError)
+
+
+def test_polygonal_fields_are_followed_over_arrays() -> None:
+    text = CELLS + "s = (Range(4, 16), 2)\np = follow F from s for 1.5\nparam x = (s[0], p.position)"
+    for x, end in draws(text, n=50):
+        np.testing.assert_allclose(tuple(end), follow(heading_of_cells, (x, 2, 0), 1.5), atol=1e-9)
+
+
+def test_cells_without_heading_ask_the_function() -> None:
+    text = CELLS.replace("0.5)", "None)").replace("cells)", "cells, headingFunction=lambda p: 3 * p.x)")
+    for x, yaw in draws(text + "x = Range(0, 1)\nparam x = (x, (F at (x, 1)).yaw)", n=10):
+        assert np.isclose(np.exp(1j * yaw), np.exp(3j * x))
+    broken = CELLS.replace("0.5)", "None)")
+    assert isinstance(failure(broken), ScenicTypeError)
+
+
+@pytest.mark.parametrize("use", ["3 at (1, 2)", "follow 3 from (1, 2) for 4", "new Object following 3 for 4"])
+def test_what_is_no_field_is_refused(use: str) -> None:
+    assert isinstance(failure(FIELD + f"x = {use}"), ScenicTypeError)
+
+
+def test_offset_along_a_field() -> None:
+    found = params(FIELD + "param x = (3 @ 4) offset along F by (1, 2, 3)")
+    expected = np.array([3, 4, 0]) + euler(3.4).apply([1, 2, 3])
+    np.testing.assert_allclose(tuple(found["x"]), expected, atol=1e-9)
+    item = thing(FIELD + "new Object offset along F by (1, 2, 3)")
+    np.testing.assert_allclose(
+        tuple(item.position), np.array([0.5, 2, 1]) + euler(0.7).apply([1, 2, 3]), atol=1e-9
+    )
+    assert rotation(item.orientation).approx_equal(euler(0.4, 0.3, -0.2), 1e-9)
