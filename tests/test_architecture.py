@@ -18,8 +18,9 @@ LAYERS = {
     "analysis": {"graph", "runtime", "language", "compiler"},
     "formats": {"runtime", "language"},
     "configuration": {"language"},
-    "ide": {"compiler", "language"},
-    "lsp": {"ide", "language", "configuration"},
+    "project": {"language", "compiler", "configuration"},
+    "ide": {"compiler", "language", "project"},
+    "lsp": {"ide", "language", "configuration", "project"},
 }
 """What each layer may import of the others."""
 
@@ -28,6 +29,7 @@ LIBRARIES = {
     "compiler": set(),
     "configuration": set(),
     "graph": {"numpy", "scipy"},
+    "project": set(),
     "ide": set(),
     "lsp": {"pygls", "lsprotocol"},
 }

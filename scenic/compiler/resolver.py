@@ -19,7 +19,7 @@ from scenic.language.names import RESERVED, TRACKED
 from scenic.language.source import Source
 from scenic.language.spelling import nearest
 
-__all__ = ["resolve"]
+__all__ = ["bind", "resolve"]
 
 _REFLECTION: Final = frozenset({"exec", "globals", "vars"})
 """Builtins with which programs may bind names in ways that the text does not show."""
@@ -47,6 +47,14 @@ def resolve(tree: ast.Module, source: Source) -> Resolution:
             provided=PROVIDED,
         )
     return replace(resolution, diagnostics=diagnostics)
+
+
+def bind(tree: ast.Module) -> Resolution:
+    """Bind every name of a module, of Scenic or of Python, without any check: ``diagnostics`` stays empty."""
+    with no_garbage_collection():
+        collector = _Collector(tree)
+        collector.walk()
+        return collector.finish()
 
 
 def _brings_names(line: str) -> bool:
@@ -139,7 +147,7 @@ class _Collector:
             else:
                 self._bind(event, bound)
         references: dict[ast.AST, Reference] = {}
-        reflective = False
+        reflective = rebinding = False
         meanings: dict[tuple[Scope, str], Binding | None] = {}
         for node, scope in self._uses:
             name = node.id
@@ -152,7 +160,7 @@ class _Collector:
             if binding is None and (name in _REFLECTION or name in _READING):
                 reflective = True
                 if name in _REFLECTION:
-                    self._module.wildcard = True
+                    rebinding = self._module.wildcard = True
         return Resolution(
             self._module,
             self._scopes,
@@ -161,6 +169,7 @@ class _Collector:
             self._nodes,
             self.tolerated,
             reflective,
+            rebinding,
         )
 
     def _bind(self, event: _Event, bound: set[tuple[Scope, str]]) -> None:

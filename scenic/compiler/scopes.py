@@ -154,7 +154,8 @@ class Resolution:
 
     ``nodes`` lists the nodes of the classes that the checks look for, each with the scope in which it stands, in no
     particular order. ``tolerated`` are the names read where a missing name is provided for. ``reflective`` tells
-    whether the program may read and bind names in ways that the text does not show (``globals()``, ``exec``).
+    whether the program may read and bind names in ways that the text does not show (``globals()``, ``exec``), and
+    ``rebinding`` whether it may bind them so.
     """
 
     module: Scope
@@ -164,6 +165,7 @@ class Resolution:
     nodes: Mapping[type[ast.AST], Sequence[tuple[Any, Scope]]]
     tolerated: Collection[ast.AST] = frozenset()
     reflective: bool = False
+    rebinding: bool = False
     diagnostics: tuple[Diagnostic, ...] = ()
 
     def binding(self, name: ast.Name) -> Binding | None:

@@ -1,0 +1,385 @@
+"""The modules of a project, each read and parsed once, and what they give to those that import them.
+
+Nothing is run. What a module defines is found in its text, in Scenic as in Python; only the compiled modules of
+Python's own library are asked for their names, which takes importing them.
+"""
+
+import ast
+import importlib
+import os
+import sys
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import Final
+
+from scenic.compiler import tree as scenic
+from scenic.compiler.loader import SUFFIXES
+from scenic.compiler.scopes import Binding
+from scenic.language.errors import ScenicError
+from scenic.language.source import Source, read_source
+from scenic.project.modules import Module, read_module
+from scenic.project.search import Finder, Found, ModuleKind
+
+__all__ = ["Exported", "Exports", "Project", "Unseen"]
+
+_LARGEST: Final = 4_000_000
+"""Bytes of the largest file that is looked into."""
+
+_DEEPEST: Final = 100
+"""Modules of so long a chain of imports are looked into."""
+
+_PASSED_OVER: Final = frozenset({"__pycache__", "node_modules", "site-packages"})
+
+
+@dataclass(frozen=True, slots=True)
+class Exported:
+    """A name of a module, and the binding that it comes from, possibly in another module.
+
+    Without a ``binding`` it is a name of a compiled module, or (with a ``module``) that module itself.
+    """
+
+    name: str
+    module: Module | None = None
+    binding: Binding | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Unseen:
+    """Why not all names of a module are known: ``module`` is the dotted name of the one that cannot be looked into."""
+
+    module: str
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class Exports:
+    """The names that a module has.
+
+    ``names`` are all of them, ``public`` those that ``import *`` and ``model`` bring. If ``unseen`` is not empty, the
+    module may have others. ``sets_ego`` tells whether importing it may set the ego.
+    """
+
+    names: Mapping[str, Exported] = field(repr=False)
+    public: frozenset[str] = field(repr=False)
+    unseen: tuple[Unseen, ...] = ()
+    sets_ego: bool = False
+
+    @property
+    def complete(self) -> bool:
+        """Whether it has no other names."""
+        return not self.unseen
+
+
+_NOTHING: Final = Exports(MappingProxyType({}), frozenset())
+
+
+@dataclass(slots=True)
+class _Entry:
+    """A file as it was last looked at."""
+
+    stamp: tuple[int, int] | None
+    module: Module | None
+
+
+@dataclass(slots=True)
+class _Gathering:
+    """The state of one walk through modules that import each other."""
+
+    done: dict[str, Exports] = field(default_factory=dict)
+    pending: set[str] = field(default_factory=set)
+    incomplete: bool = False
+
+
+class Project:
+    """The modules of a project, found and parsed when they are first asked for.
+
+    ``roots`` are the folders of the workspace, ``python_path`` the folders that its settings name besides. Files that an
+    editor holds are given by `open`; those on disk are taken to stay as they are until `refresh`. `Module` objects are
+    immutable, and a module is the same object as long as its text is the same. Reading from several threads is safe (at
+    worst a module is parsed twice); `open`, `close` and `refresh` are for one thread at a time.
+    """
+
+    def __init__(
+        self,
+        roots: Sequence[str] = (),
+        python_path: Sequence[str] = (),
+        *,
+        interpreter_path: Sequence[str] | None = None,
+    ) -> None:
+        self.finder = Finder(roots, python_path, interpreter_path)
+        self._entries: dict[str, _Entry] = {}
+        self._opened: dict[str, Module] = {}
+        self._exports: dict[str, Exports] = {}
+
+    # Texts
+
+    def open(self, filename: str, text: str, *, tree: ast.Module | None = None) -> Module:
+        """Take the text of a file from an editor, until `close`; ``tree`` is its tree, if it is parsed already."""
+        filename = os.path.abspath(filename)
+        source = Source(text, filename)
+        known = self._opened.get(filename)
+        if known is None and filename in self._entries:
+            known = self._entries[filename].module
+        if known is None or known.source.text != source.text:
+            known = read_module(source, tree=tree)
+            self._exports = {}
+        self._opened[filename] = known
+        return known
+
+    def close(self, filename: str) -> None:
+        """Take the text of a file from disk again."""
+        if self._opened.pop(os.path.abspath(filename), None) is not None:
+            self._exports = {}
+
+    def refresh(self) -> bool:
+        """Look at the files again, and read those that have changed; tells whether any has."""
+        changed = False
+        for filename, entry in list(self._entries.items()):
+            if _stamp(filename) != entry.stamp:
+                text = None if entry.module is None else entry.module.source.text
+                fresh = self._read(filename)
+                same = text is not None and fresh.module is not None and fresh.module.source.text == text
+                if same:
+                    entry.stamp = fresh.stamp
+                else:
+                    self._entries[filename] = fresh
+                    changed = True
+        self.finder.forget()
+        self._exports = {}
+        return changed
+
+    def module(self, filename: str) -> Module | None:
+        """The module in a file; ``None`` if it cannot be read, or is too large to look into."""
+        filename = os.path.abspath(filename)
+        opened = self._opened.get(filename)
+        if opened is not None:
+            return opened
+        entry = self._entries.get(filename)
+        if entry is None:
+            entry = self._entries[filename] = self._read(filename)
+        return entry.module
+
+    @staticmethod
+    def _read(filename: str) -> _Entry:
+        stamp = _stamp(filename)
+        if stamp is None or stamp[1] > _LARGEST:
+            return _Entry(stamp, None)
+        try:
+            return _Entry(stamp, read_module(read_source(filename)))
+        except ScenicError:
+            return _Entry(stamp, None)
+
+    def files(self) -> Iterator[str]:
+        """The Scenic and Python files of the workspace, and those that are open; no hidden folders."""
+        seen = set(self._opened)
+        yield from sorted(seen)
+        for root in self.finder.roots:
+            for folder, folders, names in os.walk(root):
+                folders[:] = sorted(
+                    each
+                    for each in folders
+                    if not each.startswith(".")
+                    and each not in _PASSED_OVER
+                    and not os.path.exists(os.path.join(folder, each, "pyvenv.cfg"))
+                )
+                for name in sorted(names):
+                    filename = os.path.join(folder, name)
+                    if name.endswith((*SUFFIXES, ".py")) and filename not in seen:
+                        seen.add(filename)
+                        yield filename
+
+    # Modules
+
+    def find(self, name: str, *, importer: str, level: int = 0) -> Found:
+        """The module that an import in a file means; ``level`` counts the dots before the name."""
+        return self.finder.find(name, importer=importer, level=level)
+
+    def found_module(self, found: Found) -> Module | None:
+        """The module that was found, if it can be looked into."""
+        if found.filename is None or found.kind not in (ModuleKind.SCENIC, ModuleKind.PYTHON):
+            return None
+        return self.module(found.filename)
+
+    def exports_of(self, found: Found) -> Exports:
+        """The names of the module that an import found; of one that cannot be looked into, none and `Exports.unseen`."""
+        if found.kind is ModuleKind.NAMESPACE:
+            return _NOTHING
+        if found.kind is ModuleKind.COMPILED:
+            return _compiled(found)
+        if found.is_missing:
+            return _unknown(found.name, "it is not found")
+        module = self.found_module(found)
+        return _unknown(found.name, "its file cannot be read") if module is None else self.exports(module)
+
+    def exports(self, module: Module) -> Exports:
+        """The names of a module, with those that it imports."""
+        known = self._exports.get(module.filename)
+        current = self._is_current(module)
+        if known is not None and current:
+            return known
+        gathering = _Gathering()
+        found = self._gather(module, gathering)
+        if not gathering.incomplete:
+            self._exports.update(gathering.done)
+        elif current:
+            self._exports[module.filename] = found
+        return found
+
+    def _gather(self, module: Module, gathering: "_Gathering") -> Exports:
+        filename = module.filename
+        if self._is_current(module) and filename in self._exports:
+            return self._exports[filename]
+        if filename in gathering.done:
+            return gathering.done[filename]
+        if filename in gathering.pending:
+            gathering.incomplete = True
+            return _NOTHING  # Modules that import each other: this one's names are being gathered.
+        if len(gathering.pending) >= _DEEPEST:
+            gathering.incomplete = True
+            return _unknown(os.path.basename(filename), "it is reached through too many imports")
+        gathering.pending.add(filename)
+        names: dict[str, Exported] = {}
+        unseen: dict[Unseen, None] = {}
+        for node in module.stars:
+            found = self.found_by(node, filename)
+            inner = self.found_module(found)
+            brought = self.exports_of(found) if inner is None else self._gather(inner, gathering)
+            names.update((name, brought.names[name]) for name in brought.public if name in brought.names)
+            unseen.update(dict.fromkeys(brought.unseen))
+        sets_ego = module.is_scenic and (
+            module.sets_ego
+            or any(self._gather(other, gathering).sets_ego for other in self._imported(module))
+        )
+        own = module.resolution.module.bindings
+        names.update((name, Exported(name, module, binding)) for name, binding in own.items())
+        if module.is_dynamic:
+            reason = "parts of it cannot be parsed" if module.broken else "it binds names while it runs"
+            unseen[Unseen(os.path.basename(filename), reason)] = None
+        listed = module.public
+        if listed is not None:
+            public = listed
+        elif "__all__" in own:
+            public = frozenset(names)
+        else:
+            public = frozenset(name for name in names if not name.startswith("_"))
+        gathering.pending.remove(filename)
+        exports = Exports(MappingProxyType(names), public, tuple(unseen), sets_ego)
+        if self._is_current(module):
+            gathering.done[filename] = exports
+        return exports
+
+    def _is_current(self, module: Module) -> bool:
+        entry = self._entries.get(module.filename)
+        current = self._opened.get(module.filename) or (None if entry is None else entry.module)
+        return current is module
+
+    def _imported(self, module: Module) -> Iterator[Module]:
+        """The Scenic modules that a module imports."""
+        for level, name in _imports(module):
+            found = self.find(name, importer=module.filename, level=level)
+            if found.kind is ModuleKind.SCENIC:
+                other = self.found_module(found)
+                if other is not None:
+                    yield other
+
+    @staticmethod
+    def own(module: Module, binding: Binding) -> Exported:
+        """A binding of a module, to be followed."""
+        return Exported(binding.name, module, binding)
+
+    def found_by(self, node: ast.ImportFrom | scenic.Model, importer: str) -> Found:
+        """The module that ``from m import ...`` or ``model m`` means."""
+        if isinstance(node, scenic.Model):
+            return self.find(node.name, importer=importer)
+        return self.find(node.module or "", importer=importer, level=node.level)
+
+    def member(self, found: Found, name: str, *, importer: str, level: int = 0) -> Exported | Found | None:
+        """What ``from m import name`` brings: a name of the module, else a module in it; ``None`` if it has neither."""
+        exported = self.exports_of(found).names.get(name)
+        if exported is not None:
+            return exported
+        inner = self.find(f"{found.name}.{name}" if found.name else name, importer=importer, level=level)
+        return None if inner.is_missing else inner
+
+    def follow(self, exported: Exported) -> Exported | Found:
+        """The definition behind an imported name, through all modules that pass it on.
+
+        What is no plain import, or leads to where nothing is known, is its own definition.
+        """
+        seen: set[Binding] = set()
+        while exported.module is not None and exported.binding is not None:
+            if exported.binding in seen:
+                break
+            seen.add(exported.binding)
+            alias, statement = self._import_of(exported.module, exported.binding)
+            if alias is None or statement is None:
+                break
+            importer = exported.module.filename
+            if isinstance(statement, ast.Import):
+                name = alias.name if alias.asname else alias.name.partition(".")[0]
+                found = self.find(name, importer=importer)
+                return exported if found.is_missing else found
+            found = self.found_by(statement, importer)
+            target = self.member(found, alias.name, importer=importer, level=statement.level)
+            if target is None:
+                break
+            if isinstance(target, Found):
+                return target
+            exported = target
+        return exported
+
+    @staticmethod
+    def _import_of(
+        module: Module, binding: Binding
+    ) -> tuple[ast.alias | None, ast.Import | ast.ImportFrom | None]:
+        """The import that alone binds a name."""
+        if len(binding.sites) != 1 or not isinstance(binding.sites[0], ast.alias):
+            return None, None
+        alias = binding.sites[0]
+        return alias, module.import_of.get(alias)
+
+
+def _imports(module: Module) -> Iterator[tuple[int, str]]:
+    """Each module that a module imports: the dots before its name, and the name."""
+    nodes = module.resolution.nodes
+    for node, _ in nodes.get(ast.Import, ()):
+        for alias in node.names:
+            yield 0, alias.name
+    for node, _ in nodes.get(ast.ImportFrom, ()):
+        yield node.level, node.module or ""
+    for node, _ in nodes.get(scenic.Model, ()):
+        yield 0, node.name
+
+
+def _compiled(found: Found) -> Exports:
+    """The names of a compiled module: known only of those that belong to Python itself."""
+    head = found.name.partition(".")[0]
+    if head in sys.stdlib_module_names and not _is_foreign(found):
+        try:
+            names = dir(importlib.import_module(found.name))
+        except ImportError:
+            names = []
+        if names:
+            public = frozenset(name for name in names if not name.startswith("_"))
+            return Exports(MappingProxyType({name: Exported(name) for name in names}), public)
+    return _unknown(found.name, "it is compiled")
+
+
+def _is_foreign(found: Found) -> bool:
+    """Whether a compiled module lies outside of Python's own library, whatever its name."""
+    library = os.path.dirname(os.path.abspath(os.__file__))
+    inside = found.filename is None or found.filename.startswith(library + os.sep)
+    return not inside or "site-packages" in (found.filename or "")
+
+
+def _unknown(name: str, reason: str) -> Exports:
+    return Exports(MappingProxyType({}), frozenset(), (Unseen(name, reason),))
+
+
+def _stamp(filename: str) -> tuple[int, int] | None:
+    try:
+        status = os.stat(filename)
+    except (OSError, ValueError):
+        return None
+    return status.st_mtime_ns, status.st_size

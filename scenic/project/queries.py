@@ -1,0 +1,290 @@
+"""What stands at a place of a module, and where else the same thing is used."""
+
+import ast
+from bisect import bisect_right
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from scenic.compiler import tree as scenic
+from scenic.compiler.checks.context import DEFINITIONS
+from scenic.compiler.scopes import BindingKind, Scope
+from scenic.language.spans import Span
+from scenic.project.classes import class_of_symbol, meaning
+from scenic.project.index import Exported, Project
+from scenic.project.modules import Module
+from scenic.project.search import Found
+from scenic.project.signatures import Signature, signature_of
+from scenic.project.symbols import Symbol, SymbolKind, symbol_of_binding, symbol_of_exported, symbol_of_module
+
+__all__ = [
+    "Occurrence",
+    "Place",
+    "call_signature",
+    "definition",
+    "exported",
+    "occurrence_at",
+    "occurrences",
+    "references",
+    "symbol_at",
+    "symbol_of",
+]
+
+
+@dataclass(frozen=True, slots=True)
+class Occurrence:
+    """A word of a module that names something.
+
+    ``defines`` tells whether it is (one of) the places that bind the name. ``node`` is the node that it belongs to, and
+    ``index`` which part of a dotted name of a module it is, else ``None``.
+    """
+
+    name: str
+    span: Span
+    defines: bool
+    node: ast.AST = field(repr=False)
+    index: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """A place in a file."""
+
+    filename: str
+    span: Span
+    defines: bool = False
+
+
+def occurrences(module: Module) -> Sequence[Occurrence]:
+    """All words of a module that name something, in order of place."""
+    return module.derived(
+        "occurrences", lambda: tuple(sorted(_occurrences(module), key=lambda each: each.span))
+    )
+
+
+def _occurrences(module: Module) -> Iterator[Occurrence]:
+    resolution = module.resolution
+    for reference in resolution.references.values():
+        node = reference.node
+        yield Occurrence(node.id, module.source.span(node), not isinstance(node.ctx, ast.Load), node)
+    for site, binding in module.binding_of.items():
+        # Of behaviors and properties, `self` is bound without a word.
+        unsaid = binding.kinds == {BindingKind.SELF}
+        if not unsaid and not isinstance(site, ast.Name | ast.alias):
+            yield Occurrence(binding.name, module.word_span(site, binding.name), True, site)
+    for inner in module.inner_nodes:
+        yield from _words(inner, module)
+
+
+def _words(node: Any, module: Module) -> Iterator[Occurrence]:
+    """The names in a node that are no nodes of their own."""
+    match node:
+        case ast.Attribute():
+            yield Occurrence(node.attr, module.attribute_span(node), not isinstance(node.ctx, ast.Load), node)
+        case ast.keyword(arg=str(name)):
+            yield Occurrence(name, module.word_span(node, name), False, node)
+        case scenic.Specifier(property=str(name)):
+            yield Occurrence(name, module.word_span(node, name), False, node)
+        case scenic.PropertyDef():
+            yield Occurrence(node.name, module.word_span(node, node.name), True, node)
+        case ast.Global() | ast.Nonlocal():
+            for name in node.names:
+                yield Occurrence(name, module.word_span(node, name), False, node)
+        case scenic.Model():
+            yield from _dotted(node, node.name, module, start="model")
+        case ast.Import():
+            for alias in node.names:
+                yield from _dotted(alias, alias.name, module)
+                if alias.asname:
+                    yield _asname(alias, module)
+        case ast.ImportFrom():
+            if node.module:
+                yield from _dotted(node, node.module, module, start="from")
+            for alias in node.names:
+                if alias.name != "*":
+                    yield Occurrence(
+                        alias.name, module.word_span(alias, alias.name), alias.asname is None, alias
+                    )
+                if alias.asname:
+                    yield _asname(alias, module)
+
+
+def _asname(alias: ast.alias, module: Module) -> Occurrence:
+    whole = module.source.span(alias)
+    start = max(0, whole.end_column - len(alias.asname or ""))
+    span = Span(whole.end_line, start, whole.end_line, whole.end_column)
+    return Occurrence(alias.asname or "", span, True, alias)
+
+
+def _dotted(node: ast.AST, name: str, module: Module, start: str | None = None) -> Iterator[Occurrence]:
+    """The parts of the name of a module, if they stand on the first line of the node without blanks between."""
+    whole = module.source.span(node)
+    text = module.source.line(whole.line)
+    after = text.find(start, whole.column) + len(start) if start is not None else whole.column
+    column = text.find(name, after)
+    if column < 0:
+        return
+    for index, part in enumerate(name.split(".")):
+        yield Occurrence(part, Span(whole.line, column, whole.line, column + len(part)), False, node, index)
+        column += len(part) + 1
+
+
+def occurrence_at(module: Module, line: int, column: int) -> Occurrence | None:
+    """The word at a place (``line`` from 1, ``column`` in characters from 0), also just after its end."""
+    every = occurrences(module)
+    index = bisect_right(every, (line, column), key=lambda each: (each.span.line, each.span.column)) - 1
+    if index < 0:
+        return None
+    span = every[index].span
+    return every[index] if span.line == line and column <= span.end_column else None
+
+
+def symbol_at(project: Project, filename: str, line: int, column: int) -> Symbol | None:
+    """What the word at a place means."""
+    module = project.module(filename)
+    found = None if module is None else occurrence_at(module, line, column)
+    return None if module is None or found is None else symbol_of(project, module, found)
+
+
+def definition(project: Project, filename: str, line: int, column: int) -> Symbol | None:
+    """The definition of the name at a place, in whatever file; ``None`` without one, or if the language provides it."""
+    symbol = symbol_at(project, filename, line, column)
+    return None if symbol is None or symbol.is_builtin else symbol
+
+
+def symbol_of(project: Project, module: Module, occurrence: Occurrence) -> Symbol | None:
+    """What a word of a module means."""
+    node: Any = occurrence.node
+    match node:
+        case ast.Name():
+            return meaning(project, module, node) or _bound(project, module, node)
+        case ast.Attribute():
+            return meaning(project, module, node)
+        case ast.keyword():
+            return _keyword(project, module, node)
+        case scenic.Specifier():
+            return _property(project, module, node)
+        case scenic.PropertyDef():
+            return _own_property(project, module, node)
+        case scenic.Model():
+            return _module(project, module, node.name, occurrence.index or 0, 0)
+        case ast.ImportFrom():
+            return _module(project, module, node.module or "", occurrence.index or 0, node.level)
+        case ast.alias():
+            return _alias(project, module, node, occurrence)
+        case ast.Global() | ast.Nonlocal():
+            binding = module.resolution.module.bindings.get(occurrence.name)
+            return (
+                None
+                if binding is None
+                else symbol_of_exported(project, Exported(binding.name, module, binding))
+            )
+    return _bound(project, module, node)
+
+
+def _bound(project: Project, module: Module, node: ast.AST) -> Symbol | None:
+    binding = module.binding_of.get(node)
+    return None if binding is None else symbol_of_exported(project, Exported(binding.name, module, binding))
+
+
+def _module(project: Project, module: Module, name: str, index: int, level: int) -> Symbol | None:
+    """The module that the beginning of a dotted name means."""
+    found = project.find(".".join(name.split(".")[: index + 1]), importer=module.filename, level=level)
+    return None if found.is_missing else symbol_of_module(found)
+
+
+def _alias(project: Project, module: Module, alias: ast.alias, occurrence: Occurrence) -> Symbol | None:
+    statement = module.import_of.get(alias)
+    if isinstance(statement, ast.Import):
+        if occurrence.index is not None:
+            return _module(project, module, alias.name, occurrence.index, 0)
+        return _bound(project, module, alias)
+    if statement is None:
+        return None
+    found = project.found_by(statement, module.filename)
+    target = project.member(found, alias.name, importer=module.filename, level=statement.level)
+    if target is None:
+        return _bound(project, module, alias)
+    return symbol_of_module(target) if isinstance(target, Found) else symbol_of_exported(project, target)
+
+
+def _property(project: Project, module: Module, node: scenic.Specifier) -> Symbol | None:
+    """The property after ``with``: that of the class which is made."""
+    owner = module.owner_of_specifier.get(node)
+    if not isinstance(owner, scenic.New):
+        return None
+    cls = meaning(project, module, owner.cls)
+    known = None if cls is None else class_of_symbol(project, cls)
+    member = None if known is None else known.member(node.property or "")
+    if member is None:
+        return None
+    return member.symbol or Symbol(member.name, member.kind, container=member.owner)
+
+
+def _own_property(project: Project, module: Module, node: scenic.PropertyDef) -> Symbol | None:
+    scope = module.resolution.scopes.get(node)
+    owner = None if scope is None else scope.parent
+    binding = None if owner is None else module.binding_of.get(owner.node)
+    known = None if binding is None else class_of_symbol(project, symbol_of_binding(module, binding))
+    member = None if known is None else known.member(node.name)
+    return None if member is None else member.symbol
+
+
+def _keyword(project: Project, module: Module, node: ast.keyword) -> Symbol | None:
+    """The parameter that an argument by name is given to."""
+    call = module.call_of.get(node)
+    callee = None if call is None else meaning(project, module, call.func)
+    if callee is not None and callee.kind is SymbolKind.CLASS:
+        known = class_of_symbol(project, callee)
+        initial = None if known is None else known.member("__init__")
+        callee = None if initial is None else initial.symbol
+    if callee is None or callee.module is None or not isinstance(callee.node, DEFINITIONS):
+        return None
+    scope: Scope | None = callee.module.resolution.scopes.get(callee.node)
+    binding = None if scope is None else scope.bindings.get(node.arg or "")
+    return None if binding is None else symbol_of_binding(callee.module, binding)
+
+
+def call_signature(project: Project, module: Module, call: ast.Call) -> Signature | None:
+    """How what a call calls is called."""
+    callee = meaning(project, module, call.func)
+    return None if callee is None else signature_of(project, callee)
+
+
+def exported(project: Project, filename: str) -> dict[str, Symbol]:
+    """The names that ``import *`` of a file brings, with what they mean."""
+    module = project.module(filename)
+    if module is None:
+        return {}
+    exports = project.exports(module)
+    return {
+        name: symbol_of_exported(project, exports.names[name])
+        for name in sorted(exports.public)
+        if name in exports.names
+    }
+
+
+def references(project: Project, symbol: Symbol, *, files: Sequence[str] | None = None) -> tuple[Place, ...]:
+    """Every place that names a symbol, its definitions among them, in all files of the workspace (or in ``files``)."""
+    if symbol.is_builtin:
+        candidates: list[str] = []
+    else:
+        candidates = [symbol.filename] if symbol.filename is not None else []
+        candidates += [
+            each for each in (project.files() if files is None else files) if each != symbol.filename
+        ]
+    found: dict[tuple[str, Span], Place] = {}
+    for filename in candidates:
+        module = project.module(filename)
+        if module is None or symbol.name not in module.source.text:
+            continue
+        names = {symbol.name} | {
+            alias.asname
+            for alias in module.import_of
+            if alias.asname and symbol.name in alias.name.split(".")
+        }
+        for each in occurrences(module):
+            if each.name in names and symbol_of(project, module, each) == symbol:
+                place = Place(module.filename, each.span, each.defines)
+                found.setdefault((module.filename, each.span), place)
+    return tuple(found.values())

@@ -1,0 +1,279 @@
+"""Where the modules of a program are: the rules of ``import`` and ``model``, applied by looking at file names only.
+
+A Scenic module anywhere on the search path wins over a Python module, as when a program runs. Folders are listed once
+and remembered until `Finder.forget`.
+"""
+
+import os
+import sys
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from importlib.machinery import EXTENSION_SUFFIXES
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Final
+
+from scenic import language
+from scenic.compiler.loader import SUFFIXES
+from scenic.language.spelling import nearest
+
+__all__ = ["Finder", "Found", "ModuleKind"]
+
+_LIBRARY: Final = str(Path(language.__path__[0]).parent.parent)
+"""The folder that holds the package ``scenic`` itself, and with it our own library."""
+
+
+class ModuleKind(StrEnum):
+    """What a module was found to be."""
+
+    SCENIC = "Scenic module"
+    PYTHON = "Python module"
+    COMPILED = "compiled module"
+    NAMESPACE = "folder"
+    MISSING = "missing module"
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """Where a module is.
+
+    ``filename`` is its file; of a folder without ``__init__`` the folder, of a module that is built into Python
+    nothing. Of a missing module, ``searched`` are the folders in which it was looked for (without those of Python's
+    own library and installed packages), ``found`` is the longest beginning of its name that does exist, and ``near``
+    a module with a similar name.
+    """
+
+    name: str
+    kind: ModuleKind
+    filename: str | None = None
+    searched: tuple[str, ...] = ()
+    found: str = ""
+    near: str | None = None
+
+    @property
+    def is_missing(self) -> bool:
+        """Whether there is no such module."""
+        return self.kind is ModuleKind.MISSING
+
+
+class Finder:
+    """Finds modules. ``roots`` are the folders of the workspace, ``python_path`` those that the project's settings name.
+
+    A program finds the modules beside it, and those in the folders above it up to the innermost root; then those of
+    ``python_path``, of Python's own path (``interpreter_path``) and of our own library.
+    """
+
+    def __init__(
+        self,
+        roots: Sequence[str] = (),
+        python_path: Sequence[str] = (),
+        interpreter_path: Sequence[str] | None = None,
+    ) -> None:
+        self.roots = tuple(dict.fromkeys(os.path.abspath(root) for root in roots))
+        self._given = tuple(os.path.abspath(folder) for folder in python_path)
+        installed = sys.path if interpreter_path is None else interpreter_path
+        self._hooks = interpreter_path is None
+        # An empty entry is the current folder, which a hostile one could fill: programs say what is beside them.
+        self._installed = tuple(dict.fromkeys([*(each for each in installed if each), _LIBRARY]))
+        self._entries: dict[str, frozenset[str]] = {}
+        self._found: dict[tuple[str, str, int], Found] = {}
+        self._folders: dict[str, tuple[str, ...]] = {}
+
+    def forget(self) -> None:
+        """Look at the folders again from now on."""
+        self._entries = {}
+        self._found = {}
+
+    def find(self, name: str, *, importer: str, level: int = 0) -> Found:
+        """The module that ``name`` means in the file ``importer``; ``level`` counts the dots before it."""
+        folder = os.path.dirname(os.path.abspath(importer))
+        key = (folder, name, level)
+        found = self._found.get(key)
+        if found is None:
+            found = self._found[key] = self._find(name, folder, level)
+        return found
+
+    def importable(self, folder: str, prefix: str = "") -> frozenset[str]:
+        """The names that may follow ``prefix`` (a dotted name) in an import in a file of ``folder``."""
+        names: set[str] = set()
+        parts = prefix.split(".") if prefix else []
+        for base in (*self._beside(folder), *self._given, *self._installed):
+            names.update(self._modules(os.path.join(base, *parts)))
+        if not parts:
+            names.update(name for name in sys.stdlib_module_names if not name.startswith("_"))
+        return frozenset(names)
+
+    def _find(self, name: str, folder: str, level: int) -> Found:
+        parts = name.split(".") if name else []
+        if not all(part.isidentifier() for part in parts):
+            return Found(name, ModuleKind.MISSING)
+        if level:
+            for _ in range(level - 1):
+                folder = os.path.dirname(folder)
+            own: tuple[str, ...] = (folder,)
+            rest: tuple[str, ...] = ()
+        else:
+            own = (*self._beside(folder), *self._given)
+            rest = self._installed
+        everywhere = (*own, *rest)
+        for base in everywhere:
+            file = self._scenic(base, parts)
+            if file is not None:
+                return Found(name, ModuleKind.SCENIC, file)
+        if not level and name in sys.builtin_module_names:
+            return Found(name, ModuleKind.COMPILED)
+        namespace: str | None = None
+        for base in everywhere:
+            found = self._python(base, parts)
+            if found is not None and found[1] is not ModuleKind.NAMESPACE:
+                return Found(name, found[1], found[0])
+            if found is not None and namespace is None:
+                namespace = found[0]
+        if namespace is not None:
+            return Found(name, ModuleKind.NAMESPACE, namespace)
+        if not level and parts[0] in sys.stdlib_module_names and name in sys.modules:
+            return Found(name, ModuleKind.COMPILED)  # `os.path` is no file.
+        if not level and self._hooks:
+            home = _hooked(parts[0])
+            found = None if home is None else self._python(home, parts)
+            if found is not None:
+                return Found(name, found[1], found[0])
+        return self._missing(name, parts, own, rest, level)
+
+    def _missing(
+        self, name: str, parts: list[str], own: tuple[str, ...], rest: tuple[str, ...], level: int
+    ) -> Found:
+        known = 0
+        homes: list[str] = list(own)
+        while known < len(parts) - 1:
+            inner = [
+                os.path.join(base, *parts[: known + 1])
+                for base in (*own, *rest)
+                if self._is_folder(base, parts[: known + 1])
+            ]
+            if not inner:
+                break
+            known, homes = known + 1, inner
+        beginning = ".".join(parts[:known])
+        candidates = {each for home in homes for each in self._modules(home)}
+        if not known:
+            candidates |= {each for base in rest for each in self._modules(base)}
+            if not level:
+                candidates |= sys.stdlib_module_names
+        wrong = parts[known] if parts else ""
+        near = nearest(wrong, (each for each in candidates if not each.startswith("_")))
+        if near is not None:
+            near = ".".join([*parts[:known], near, *parts[known + 1 :]])
+        return Found(name, ModuleKind.MISSING, None, tuple(homes), beginning, near)
+
+    def _beside(self, folder: str) -> tuple[str, ...]:
+        """A folder, and those above it up to the innermost root that holds it."""
+        known = self._folders.get(folder)
+        if known is None:
+            inside = [root for root in self.roots if folder == root or folder.startswith(_closed(root))]
+            chain = [folder]
+            if inside:
+                root = max(inside, key=len)
+                while chain[-1] != root:
+                    chain.append(os.path.dirname(chain[-1]))
+            known = self._folders[folder] = tuple(chain)
+        return known
+
+    def _list(self, folder: str) -> frozenset[str]:
+        entries = self._entries.get(folder)
+        if entries is None:
+            try:
+                entries = frozenset(os.listdir(folder))
+            except (OSError, ValueError):
+                entries = frozenset()  # A folder that may not be read holds no modules for us.
+            self._entries[folder] = entries
+        return entries
+
+    def _is_folder(self, base: str, parts: list[str]) -> bool:
+        """Whether ``parts`` lead from ``base`` to a folder, of exactly these names also where case does not matter."""
+        for part in parts:
+            if part not in self._list(base):
+                return False
+            base = os.path.join(base, part)
+        return os.path.isdir(base)
+
+    def _scenic(self, base: str, parts: list[str]) -> str | None:
+        if not parts:
+            return self._initial(base, SUFFIXES)
+        if not self._enters(base, parts):
+            return None
+        home = os.path.join(base, *parts[:-1])
+        entries = self._list(home)
+        for suffix in SUFFIXES:
+            if parts[-1] + suffix in entries:
+                return os.path.join(home, parts[-1] + suffix)
+        return self._initial(os.path.join(home, parts[-1]), SUFFIXES) if parts[-1] in entries else None
+
+    def _enters(self, base: str, parts: list[str]) -> bool:
+        """Whether the folders exist that a dotted name goes through."""
+        for part in parts[:-1]:
+            if part not in self._list(base):
+                return False
+            base = os.path.join(base, part)
+        return True
+
+    def _initial(self, folder: str, suffixes: Sequence[str]) -> str | None:
+        entries = self._list(folder)
+        name = next((f"__init__{suffix}" for suffix in suffixes if f"__init__{suffix}" in entries), None)
+        return None if name is None else os.path.join(folder, name)
+
+    def _python(self, base: str, parts: list[str]) -> tuple[str, ModuleKind] | None:
+        if not parts:
+            initial = self._initial(base, (".py",))
+            return (base, ModuleKind.NAMESPACE) if initial is None else (initial, ModuleKind.PYTHON)
+        if not self._enters(base, parts):
+            return None
+        home = os.path.join(base, *parts[:-1])
+        entries = self._list(home)
+        last = parts[-1]
+        if last in entries:
+            initial = self._initial(os.path.join(home, last), (".py",))
+            if initial is not None:
+                return initial, ModuleKind.PYTHON
+        for suffix in EXTENSION_SUFFIXES:
+            if last + suffix in entries:
+                return os.path.join(home, last + suffix), ModuleKind.COMPILED
+        if last + ".py" in entries:
+            return os.path.join(home, last + ".py"), ModuleKind.PYTHON
+        if last in entries and os.path.isdir(os.path.join(home, last)):
+            return os.path.join(home, last), ModuleKind.NAMESPACE
+        return None
+
+    def _modules(self, folder: str) -> Iterator[str]:
+        """The names of the modules directly in a folder."""
+        endings = (*SUFFIXES, ".py", *EXTENSION_SUFFIXES)
+        for entry in self._list(folder):
+            ending = next((each for each in endings if entry.endswith(each)), None)
+            if ending is not None:
+                name = entry.removesuffix(ending)
+            elif "." not in entry and entry != "__pycache__" and os.path.isdir(os.path.join(folder, entry)):
+                name = entry
+            else:
+                continue
+            if name.isidentifier() and name != "__init__":
+                yield name
+
+
+def _hooked(package: str) -> str | None:
+    """The folder of a package that is installed so that Python finds it by a hook and not on its path.
+
+    Looking for a module that lies in no package runs nothing of it.
+    """
+    try:
+        spec = find_spec(package)
+    except (ImportError, ValueError, AttributeError):
+        return None
+    if spec is None or spec.origin is None or not os.path.isabs(spec.origin):
+        return None
+    home = os.path.dirname(spec.origin)
+    return os.path.dirname(home) if spec.submodule_search_locations is not None else home
+
+
+def _closed(folder: str) -> str:
+    return folder if folder.endswith(os.sep) else folder + os.sep

@@ -1,0 +1,225 @@
+"""What a name of a project is: its definition, signature and documentation."""
+
+import ast
+import re
+from dataclasses import dataclass, field
+from enum import StrEnum
+from typing import Any, Final
+
+from scenic.compiler import tree as scenic
+from scenic.compiler.checks.blocks import position
+from scenic.compiler.checks.places import header_span
+from scenic.compiler.scopes import Binding, BindingKind, ScopeKind
+from scenic.language.names import NAMES, TRACKED, NameKind
+from scenic.language.properties import CLASSES
+from scenic.language.spans import Span
+from scenic.project.index import Exported, Project
+from scenic.project.modules import Module
+from scenic.project.search import Found
+
+__all__ = [
+    "Symbol",
+    "SymbolKind",
+    "builtin_symbol",
+    "documentation_of",
+    "symbol_of_binding",
+    "symbol_of_exported",
+    "symbol_of_module",
+    "symbols_of",
+]
+
+
+class SymbolKind(StrEnum):
+    """What a symbol stands for."""
+
+    MODULE = "module"
+    CLASS = "class"
+    FUNCTION = "function"
+    METHOD = "method"
+    BEHAVIOR = "behavior"
+    MONITOR = "monitor"
+    SCENARIO = "scenario"
+    PROPERTY = "property"
+    ATTRIBUTE = "attribute"
+    VARIABLE = "variable"
+    PARAMETER = "parameter"
+    TYPE_PARAMETER = "type parameter"
+
+
+@dataclass(frozen=True, slots=True)
+class Symbol:
+    """One thing that has a name.
+
+    ``filename`` and ``span``, the place of the name where it is defined, are ``None`` for what the language provides;
+    ``extent`` is the whole definition. ``container`` is the name of the class, function or scenario that it is in.
+    Two symbols are equal if they are the same thing. ``node`` is the defining node of the tree.
+    """
+
+    name: str
+    kind: SymbolKind
+    filename: str | None = None
+    span: Span | None = None
+    extent: Span | None = field(default=None, compare=False)
+    container: str | None = field(default=None, compare=False)
+    module: Module | None = field(default=None, compare=False, repr=False)
+    node: ast.AST | None = field(default=None, compare=False, repr=False)
+    binding: Binding | None = field(default=None, compare=False, repr=False)
+
+    @property
+    def is_builtin(self) -> bool:
+        """Whether the language provides it, so that it has no place."""
+        return self.filename is None
+
+    @property
+    def documentation(self) -> str | None:
+        """Its docstring, or what the language says about it."""
+        return documentation_of(self)
+
+
+_ORIGIN: Final = Span(1, 0, 1, 0)
+
+_KINDS: Final = {
+    ast.FunctionDef: SymbolKind.FUNCTION,
+    ast.AsyncFunctionDef: SymbolKind.FUNCTION,
+    ast.ClassDef: SymbolKind.CLASS,
+    scenic.BehaviorDef: SymbolKind.BEHAVIOR,
+    scenic.MonitorDef: SymbolKind.MONITOR,
+    scenic.ScenarioDef: SymbolKind.SCENARIO,
+    scenic.PropertyDef: SymbolKind.PROPERTY,
+}
+
+_PROVIDED_KINDS: Final = {
+    NameKind.CLASS: SymbolKind.CLASS,
+    NameKind.DISTRIBUTION: SymbolKind.CLASS,
+    NameKind.EXCEPTION: SymbolKind.CLASS,
+    NameKind.FUNCTION: SymbolKind.FUNCTION,
+    NameKind.REGION: SymbolKind.CLASS,
+    NameKind.SHAPE: SymbolKind.CLASS,
+    NameKind.VALUE: SymbolKind.VARIABLE,
+}
+
+
+def builtin_symbol(name: str) -> Symbol | None:
+    """The symbol of a name that the language provides."""
+    declared = NAMES.get(name)
+    if declared is not None:
+        value = declared.signature == name and name not in CLASSES and declared.kind is NameKind.REGION
+        return Symbol(name, SymbolKind.VARIABLE if value else _PROVIDED_KINDS[declared.kind])
+    return Symbol(name, SymbolKind.VARIABLE) if name in TRACKED else None
+
+
+def symbol_of_module(found: Found) -> Symbol:
+    """The symbol of a module: its place is the beginning of its file."""
+    return Symbol(
+        found.name.rpartition(".")[2],
+        SymbolKind.MODULE,
+        found.filename,
+        None if found.filename is None else _ORIGIN,
+    )
+
+
+def symbol_of_exported(project: Project, exported: Exported, *, follow: bool = True) -> Symbol:
+    """The symbol of a name that a module has; unless ``follow`` is false, of what is behind imports."""
+    target = project.follow(exported) if follow else exported
+    if isinstance(target, Found):
+        return symbol_of_module(target)
+    if target.module is None or target.binding is None:
+        return Symbol(target.name, SymbolKind.VARIABLE)
+    return symbol_of_binding(target.module, target.binding)
+
+
+def symbol_of_binding(module: Module, binding: Binding) -> Symbol:
+    """The symbol of a binding: its first definition, else the first place where it gets a value."""
+    sites = sorted(binding.sites, key=position)
+    node: Any = next((site for site in sites if type(site) in _KINDS), sites[0])
+    kind = _kind(node, binding)
+    scope = binding.scope
+    return Symbol(
+        binding.name,
+        kind,
+        module.filename,
+        module.word_span(node, binding.name),
+        module.source.span(node) if type(node) in _KINDS else _statement_span(module, node),
+        None if scope.kind is ScopeKind.MODULE else scope.name,
+        module,
+        node,
+        binding,
+    )
+
+
+def _kind(node: ast.AST, binding: Binding) -> SymbolKind:
+    known = _KINDS.get(type(node))
+    if binding.kinds == {BindingKind.SELF}:
+        return SymbolKind.PARAMETER
+    if known is SymbolKind.FUNCTION and binding.scope.kind is ScopeKind.CLASS:
+        return SymbolKind.METHOD
+    if known is not None:
+        return known
+    if binding.kinds == {BindingKind.PARAMETER}:
+        return SymbolKind.PARAMETER
+    if binding.kinds == {BindingKind.TYPE_PARAMETER}:
+        return SymbolKind.TYPE_PARAMETER
+    if binding.kinds == {BindingKind.MODULE}:
+        return SymbolKind.MODULE
+    return SymbolKind.ATTRIBUTE if binding.scope.kind is ScopeKind.CLASS else SymbolKind.VARIABLE
+
+
+def _statement_span(module: Module, node: ast.AST) -> Span:
+    """The assignment that a name is the target of; else the name."""
+    statement = module.assignment_of.get(node)
+    return module.source.span(node) if statement is None else header_span(module.source, statement)
+
+
+def symbols_of(module: Module) -> tuple[Symbol, ...]:
+    """What a module binds at its top level, in order of place."""
+    bindings = module.resolution.module.bindings.values()
+    return tuple(
+        sorted(
+            (symbol_of_binding(module, binding) for binding in bindings),
+            key=lambda item: item.span or _ORIGIN,
+        )
+    )
+
+
+def documentation_of(symbol: Symbol) -> str | None:
+    """The docstring of a symbol, or what the language says about it; ``None`` if there is none."""
+    if symbol.is_builtin:
+        declared = NAMES.get(symbol.name)
+        if declared is None:
+            return TRACKED.get(symbol.name)
+        return declared.documentation
+    node: Any = symbol.node
+    match node:
+        case ast.FunctionDef() | ast.AsyncFunctionDef() | ast.ClassDef():
+            return ast.get_docstring(node)
+        case scenic.BehaviorDef() | scenic.MonitorDef():
+            return _docstring(node.body)
+        case scenic.ScenarioDef():
+            return node.docstring
+    if symbol.module is None or node is None or symbol.span is None:
+        return None
+    return _comment(symbol.module, symbol.span.line)
+
+
+def _docstring(body: list[Any]) -> str | None:
+    if body and isinstance(body[0], ast.Expr) and isinstance(body[0].value, ast.Constant):
+        value = body[0].value.value
+        if isinstance(value, str):
+            return ast.get_docstring(ast.Module(body=[body[0]], type_ignores=[]))
+    return None
+
+
+def _comment(module: Module, line: int) -> str | None:
+    """The comment at the end of a line, else the comments alone on the lines before it."""
+    text = module.source.line(line)
+    found = re.fullmatch(r"[^#'\"]*#:?\s*(.*)", text)
+    if found is not None:
+        return found[1] or None
+    lines: list[str] = []
+    while line > 1:
+        line -= 1
+        above = re.fullmatch(r"\s*#:?\s?(.*)", module.source.line(line))
+        if above is None or above[1].startswith("!"):
+            break
+        lines.insert(0, above[1])
+    return "\n".join(lines).strip() or None
