@@ -157,20 +157,7 @@ def nodes_of(alternative: Alternative) -> frozenset[str]:
 Demand = Callable[[Surroundings], bool]
 """Whether something may stand at a place."""
 
-_SUSPENDING: Final = frozenset(
-    [
-        "Take",
-        "Wait",
-        "WaitFor",
-        "WaitUntil",
-        "Do",
-        "DoChoose",
-        "DoShuffle",
-        "TryInterrupt",
-        "Abort",
-        "Terminate",
-    ]
-)
+_SUSPENDING: Final = frozenset(statement.node for statement in STATEMENTS.values() if statement.suspends)
 """Statements that act on what is running, and so cannot stand in a function."""
 _HELPERS: Final = {"scenario_definition": "ScenarioDef"}
 """Rules whose nodes are made by a method of the actions."""

@@ -3,14 +3,19 @@
 import hashlib
 from pathlib import Path
 
+DECLARATIONS = ("keywords", "operators", "specifiers", "statements")
+"""The modules of ``scenic.language`` that must declare what the grammar has."""
+
 
 def grammar_digest(grammar_path: Path) -> str:
-    """The SHA-256 of the grammar, the generator, and the node classes that the grammar names."""
+    """The SHA-256 of the grammar, the generator, the node classes that the grammar names, and the declarations."""
     folder = Path(__file__).parent
+    package = folder.parent / "scenic"
     sources = [
         grammar_path,
         *sorted((folder / "generator").glob("*.py")),
-        folder.parent / "scenic" / "compiler" / "tree.py",
+        package / "compiler" / "tree.py",
+        *(package / "language" / f"{name}.py" for name in DECLARATIONS),
     ]
     digest = hashlib.sha256()
     for source in sources:

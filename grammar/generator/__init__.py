@@ -1,8 +1,8 @@
 """Generates the parser and its tables from ``grammar/scenic.gram``.
 
 pegen reads the notation; the rest is ours. What is written is plain Python, in
-``scenic/compiler/_generated``: ``tables`` (keywords, operators), ``parser`` (the fast parser) and
-``recording`` (the parser that finds out what is wrong with a text).
+``scenic/compiler/_generated``: ``tables`` (keywords, operators), ``parser`` (the fast parser),
+``recording`` (the parser that finds out what is wrong with a text) and ``syntax`` (the rules as data).
 """
 
 import os
@@ -11,23 +11,28 @@ from pathlib import Path
 
 from grammar.generator.analysis import Analysis
 from grammar.generator.checks import check
+from grammar.generator.declarations import check_declarations
 from grammar.generator.emitter import Emitter
 from grammar.generator.model import Grammar, GrammarError
 from grammar.generator.reader import read_grammar, read_grammar_text
+from grammar.generator.syntax import emit_syntax
 from grammar.generator.tables import emit_tables
 
 __all__ = ["GrammarError", "generate", "modules", "read_grammar", "read_grammar_text"]
 
-MODULES = ("parser", "recording", "tables")
+MODULES = ("parser", "recording", "syntax", "tables")
 
 
 def generate(grammar_path: Path, output_folder: Path) -> None:
     """Generate all modules from the grammar at ``grammar_path`` into ``output_folder``.
 
     Each file is replaced as a whole, so that processes which do this at once do not meet half a file.
-    Raises `GrammarError` if the grammar is wrong, and then leaves the folder as it was.
+    Raises `GrammarError` if the grammar is wrong, or has what `scenic.language` does not declare; then it leaves the
+    folder as it was.
     """
-    texts = modules(read_grammar(grammar_path))
+    grammar = read_grammar(grammar_path)
+    texts = modules(grammar)
+    check_declarations(Analysis(grammar))
     output_folder.mkdir(parents=True, exist_ok=True)
     _replace(output_folder / "__init__.py", "")
     for name in MODULES:
@@ -45,6 +50,7 @@ def modules(grammar: Grammar) -> dict[str, str]:
     return {
         "parser": Emitter(analysis, recording=False).emit(header),
         "recording": Emitter(analysis, recording=True).emit(header),
+        "syntax": emit_syntax(analysis, header),
         "tables": emit_tables(analysis, header),
     }
 

@@ -7,26 +7,31 @@ bracket or a string was left open; it repairs indentation that belongs to no blo
 """
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Final
 
 from scenic.compiler import lexemes, lexical_errors
-from scenic.compiler.generated import HARD_KEYWORDS, OPERATORS, SOFT_KEYWORDS
+from scenic.compiler.generated import HARD_KEYWORDS, OPERATORS, WORDS
 from scenic.compiler.lexer import Bracket, Lexer, prepared
 from scenic.compiler.lines import MOST_DIAGNOSTICS, measure
+from scenic.compiler.precedence import SPECIFIERS, Form, Slot
+from scenic.compiler.precedence import Word as Written
+from scenic.compiler.syntax import (
+    BLOCK_STARTERS,
+    STATEMENT_FORMS,
+    STATEMENT_WORDS,
+    Kind,
+    ListOf,
+    Optional,
+    Reference,
+    StatementForm,
+    Word,
+)
 from scenic.compiler.tokens import DEDENT, ERROR, INDENT, NEWLINE, STRING, Tokens
 
 __all__ = ["lex_carefully"]
 
-_HEADERS: Final = frozenset(
-    [
-        HARD_KEYWORDS[word]
-        for word in ("async", "class", "def", "elif", "else", "except", "finally", "for", "if")
-    ]
-    + [HARD_KEYWORDS[word] for word in ("try", "while", "with")]
-    + [SOFT_KEYWORDS[word] for word in ("behavior", "case", "compose", "interrupt", "match", "monitor")]
-    + [SOFT_KEYWORDS[word] for word in ("scenario", "setup")]
-)
+_HEADERS: Final = frozenset(WORDS[word] for word in BLOCK_STARTERS)
 """The first words of lines that begin a block."""
 
 _COLON: Final = OPERATORS[":"]
@@ -41,16 +46,38 @@ _HEADER_END: Final = re.compile(r"(?:[^\n:#\\]|\\\n)*+:")
 
 _TARGET: Final = r"[A-Za-z_][\w.]*+(?:\[[^\]\n]{0,40}+\])?+"
 
+
+def _soft_start(form: StatementForm) -> str:
+    """How a line begins that is a statement by its first word, although this may be a name: a regular expression."""
+    match form.row[1:]:
+        case (Word(text=":"), *_):
+            return rf"{form.start}[ \t]*+:"
+        case (Kind(name="NAME"), *_) if form.has_block:
+            return rf"{form.start}[ \t]++\w++[ \t]*+[(:]"
+        case (Word(text=second), *_) if form.has_block or second in HARD_KEYWORDS:
+            return rf"{form.start}[ \t]++{second}\b"
+        case () | (Optional(),):
+            return rf"{form.start}[ \t]*+(?=[#\n])"
+    return rf"{form.start}[ \t]++(?:['\"(]|[A-Za-z_\d])"
+
+
+def _any_of(patterns: Iterable[str]) -> str:
+    return "(?:" + "|".join(dict.fromkeys(patterns)) + ")"
+
+
+_WITH_OPERAND: Final = frozenset(
+    form.start
+    for form in STATEMENT_FORMS
+    if form.has_block and form.start not in STATEMENT_WORDS and isinstance(form.row[1], Reference | ListOf)
+) | {"else", "async"}
+"""The words that begin blocks, but stand elsewhere as well or may be names: their lines end with a colon."""
+
 _STATEMENT: Final = re.compile(
     # Words that start nothing but statements,
-    r"(?:assert|break|class|continue|def|del|do|except|finally|from|global|import|nonlocal|pass|raise|require|return"
-    r"|try|while)(?=[ \t:(\n\[])"
+    rf"{_any_of(sorted(STATEMENT_WORDS | {'from'}))}(?=[ \t:(\n\[])"
     # those that start other things as well, if their line ends as it must,
-    r"|(?:async|elif|else|for|if|with|match|case)\b[^\n]*+(?<=:)(?:[ \t]*+(?:\#[^\n]*+)?+)(?=\n)"
-    r"|(?:behavior|monitor|scenario)[ \t]++\w++[ \t]*+[(:]"
-    r"|(?:setup|compose|precondition|invariant)[ \t]*+:|interrupt[ \t]++when\b"
-    r"|(?:model|mutate|override|param|record|simulator|take|terminate|type)[ \t]++(?:['\"(]|[A-Za-z_\d])"
-    r"|wait[ \t]++(?:for|until)\b|(?:abort|mutate|terminate|wait)[ \t]*+(?=[#\n])"
+    rf"|{_any_of(sorted(_WITH_OPERAND))}\b[^\n]*+(?<=:)(?:[ \t]*+(?:\#[^\n]*+)?+)(?=\n)"
+    rf"|{_any_of(_soft_start(form) for form in STATEMENT_FORMS if form.is_soft and form.start not in _WITH_OPERAND)}"
     r"|new[ \t]++[A-Z]|@[A-Za-z_]"
     # and assignments.
     rf"|(?:\*?{_TARGET}[ \t]*+,[ \t]*+){{0,8}}+\*?{_TARGET}[ \t]*+(?:[-+*/%&|^@]|//|\*\*|<<|>>)?=(?!=)"
@@ -62,10 +89,19 @@ _CALL: Final = re.compile(
 )
 """So is one that starts so, in a bracket but not in a string: a call on a line of its own, a property."""
 
+
+def _specifier_start(form: Form) -> str:
+    """The words that a specifier begins with, and the property of `with`: a regular expression."""
+    words: list[str] = []
+    for part in form.parts:
+        if isinstance(part, Slot):
+            break
+        words.append(part.text if isinstance(part, Written) else r"\w++")
+    return r"[ \t]++".join(words)
+
+
 _SPECIFIER: Final = re.compile(
-    r"(?:with[ \t]++\w++|at|on|in|facing|(?:left|right|ahead)[ \t]++of|behind|above|below|beyond"
-    r"|offset[ \t]++(?:by|along)|contained[ \t]++in|following|apparently[ \t]++facing|(?:not[ \t]++)?+visible)"
-    r"[ \t]++(?![=:,.])[^\n]*+(?<![:\n])\n"
+    rf"{_any_of(map(_specifier_start, SPECIFIERS))}[ \t]++(?![=:,.])[^\n]*+(?<![:\n])\n"
 )
 _CONFLICT: Final = re.compile(r"(<{7}|={7}|>{7}|\|{7})(?:[ \t][^\n]*+)?+\n")
 _CONFLICT_END: Final = re.compile(r"^>{7}(?:[ \t][^\n]*+)?+\n", re.MULTILINE)

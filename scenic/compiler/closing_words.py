@@ -14,14 +14,14 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Final, Literal, NamedTuple, TypeAlias
 
-from scenic.compiler.generated import HARD_KEYWORDS, OPERATORS, SOFT_KEYWORDS
+from scenic.compiler.generated import HARD_KEYWORDS, OPERATORS, SOFT_KEYWORDS, WORDS
+from scenic.compiler.phrases import CLOSING_WORDS, TEMPORAL_FORMS, words_before
+from scenic.compiler.precedence import Fixity
 from scenic.compiler.tokens import FSTRING_START, NAME, NEWLINE, NUMBER, STRING, Tokens
 
 __all__ = ["Operand", "closed_operands", "in_parentheses"]
 
 _FROM: Final = HARD_KEYWORDS["from"]
-_TO: Final = HARD_KEYWORDS["to"]
-_OF: Final = HARD_KEYWORDS["of"]
 _FOR: Final = HARD_KEYWORDS["for"]
 _NOT: Final = HARD_KEYWORDS["not"]
 _IF: Final = HARD_KEYWORDS["if"]
@@ -32,16 +32,17 @@ _REQUIRE: Final = HARD_KEYWORDS["require"]
 _VISIBLE: Final = SOFT_KEYWORDS["visible"]
 _FOLLOW: Final = SOFT_KEYWORDS["follow"]
 
-_MEASURES: Final = frozenset(SOFT_KEYWORDS[word] for word in ("distance", "angle", "altitude"))
-_RELATIONS: Final = frozenset(SOFT_KEYWORDS[word] for word in ("position", "heading"))
-_NOT_CLOSING: Final = {
-    _FROM: frozenset({_VISIBLE, SOFT_KEYWORDS["away"], HARD_KEYWORDS["yield"]}),
-    _TO: frozenset({SOFT_KEYWORDS["relative"]}),
-    _OF: frozenset(
-        SOFT_KEYWORDS[word] for word in ("front", "back", "left", "right", "top", "bottom", "ahead")
-    ),
+_OPENING: Final = {
+    (WORDS[first], WORDS[second]): WORDS[closer] for (first, second), closer in CLOSING_WORDS.items()
 }
-"""Words that make one operator with the word after them."""
+"""By the last two words before an operand of a prefix operator: the word that may end the operand."""
+
+_NOT_CLOSING: Final = {
+    kind: frozenset(WORDS[before] for before in words_before(word))
+    for word, kind in WORDS.items()
+    if word in {"from", *CLOSING_WORDS.values()}
+}
+"""By closing word, the words that make one operator with it."""
 
 _OPENERS: Final = frozenset(OPERATORS[text] for text in "([{")
 _CLOSERS: Final = frozenset(OPERATORS[text] for text in ")]}")
@@ -51,8 +52,10 @@ _SEMICOLON: Final = OPERATORS[";"]
 _ENDS: Final = frozenset({OPERATORS["="], OPERATORS[":="]})
 
 _CONNECTIVES: Final = frozenset({HARD_KEYWORDS["and"], HARD_KEYWORDS["or"]})
-_LADDER_ENDS: Final = frozenset({HARD_KEYWORDS["until"], SOFT_KEYWORDS["implies"]})
-_TEMPORAL: Final = frozenset(SOFT_KEYWORDS[word] for word in ("always", "eventually", "next"))
+_LADDER_ENDS: Final = frozenset(
+    WORDS[form.words[0]] for form in TEMPORAL_FORMS if form.fixity is Fixity.INFIX
+)
+_TEMPORAL: Final = frozenset(WORDS[form.words[0]] for form in TEMPORAL_FORMS if form.fixity is Fixity.PREFIX)
 _LADDER: Final = (
     _CONNECTIVES | _LADDER_ENDS | _TEMPORAL | {_REQUIRE, _NOT, _IF, _ELSE, OPERATORS["("], OPERATORS["]"]}
 )
@@ -213,14 +216,9 @@ class _Scan:
         kinds = self._kinds
         kind, after = kinds[index], kinds[index + 1]
         events = frame.regions[-1]
-        if kind in _MEASURES and after in (_FROM, _TO):
-            events.append(self._open(_FROM if after == _TO else _TO, index + 2))
-            return index + 1
-        if kind in _RELATIONS and after == _OF:
-            events.append(self._open(_FROM, index + 2))
-            return index + 1
-        if kind == SOFT_KEYWORDS["distance"] and after == SOFT_KEYWORDS["past"]:
-            events.append(self._open(_OF, index + 2))
+        closer = _OPENING.get((kind, after))
+        if closer is not None:
+            events.append(self._open(closer, index + 2))
             return index + 1
         if kind == _FOLLOW and (after >= NAME or after in _OPERAND_STARTS or after == OPERATORS["-"]):
             frame.regions.append([_Open(_FROM, True, index + 1)])

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any, Final
 
 PACKAGE: Final = "scenic.compiler._generated"
-MODULES: Final = ("parser", "recording", "tables")
+MODULES: Final = ("parser", "recording", "syntax", "tables")
 
 
 def ensure_fresh(root: Path, folder: Path) -> bool:
@@ -88,6 +88,13 @@ FORMS: Final[tuple[tuple[Any, ...], ...]] = _tables.FORMS
 SPECIFIER_FORMS: Final[tuple[tuple[Any, ...], ...]] = _tables.SPECIFIER_FORMS
 
 build_parser: Final[Callable[..., Any]] = _parser.build
+
+
+def syntax_rules() -> Mapping[str, tuple[Any, ...]]:
+    """The rules of the grammar as data, for `scenic.compiler.syntax`."""
+    module: Any = importlib.import_module(f"{PACKAGE}.syntax")
+    rules: Mapping[str, tuple[Any, ...]] = module.RULES
+    return rules
 
 
 def build_recording_parser(*arguments: Any) -> Any:

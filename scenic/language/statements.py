@@ -33,7 +33,8 @@ class Statement:
     """One statement.
 
     ``node`` is the name of its class in `scenic.compiler.tree`. ``available`` tells whether this version builds it
-    outside behaviors; the bodies of behaviors are carried as data, so nothing in them is refused.
+    outside behaviors; the bodies of behaviors are carried as data, so nothing in them is refused. ``suspends`` tells
+    whether it acts on the running behavior, scenario or monitor itself, so that no function called by it can have it.
     """
 
     node: str
@@ -42,6 +43,7 @@ class Statement:
     places: frozenset[Place]
     documentation: str
     available: bool = True
+    suspends: bool = False
 
 
 _ALL = (
@@ -121,6 +123,7 @@ _ALL = (
         _DYNAMIC,
         "Ends the current scenario, or the whole simulation, now.",
         available=False,
+        suspends=True,
     ),
     Statement(
         "Take",
@@ -129,6 +132,7 @@ _ALL = (
         frozenset({Place.BEHAVIOR}),
         "Takes actions in this step of the simulation and waits for the next.",
         available=False,
+        suspends=True,
     ),
     Statement(
         "Wait",
@@ -137,6 +141,7 @@ _ALL = (
         _DYNAMIC,
         "Takes no action in this step of the simulation.",
         available=False,
+        suspends=True,
     ),
     Statement(
         "WaitFor",
@@ -145,6 +150,7 @@ _ALL = (
         _DYNAMIC,
         "Takes no action for so many seconds or steps.",
         available=False,
+        suspends=True,
     ),
     Statement(
         "WaitUntil",
@@ -153,6 +159,7 @@ _ALL = (
         _DYNAMIC,
         "Takes no action until the condition holds.",
         available=False,
+        suspends=True,
     ),
     Statement(
         "Do",
@@ -162,6 +169,7 @@ _ALL = (
         "Runs a behavior or scenario until it ends, a time is over or a condition holds; in a compose block, several "
         "scenarios in parallel.",
         available=False,
+        suspends=True,
     ),
     Statement(
         "DoChoose",
@@ -170,6 +178,7 @@ _ALL = (
         _DYNAMIC,
         "Runs one of several behaviors or scenarios, drawn at random among those whose guards allow it.",
         available=False,
+        suspends=True,
     ),
     Statement(
         "DoShuffle",
@@ -178,6 +187,7 @@ _ALL = (
         _DYNAMIC,
         "Runs several behaviors or scenarios one after the other in random order.",
         available=False,
+        suspends=True,
     ),
     Statement(
         "TryInterrupt",
@@ -186,6 +196,7 @@ _ALL = (
         _DYNAMIC,
         "Runs a block that handlers interrupt while their conditions hold; later handlers win.",
         available=False,
+        suspends=True,
     ),
     Statement(
         "Abort",
@@ -194,6 +205,7 @@ _ALL = (
         _DYNAMIC,
         "Ends the innermost enclosing try-interrupt statement.",
         available=False,
+        suspends=True,
     ),
     Statement(
         "Override",
@@ -224,6 +236,14 @@ _ALL = (
         ("scenario name(parameters): ...", "scenario name: setup: ... compose: ..."),
         _TOP_AND_SETUP,
         "Defines a scenario that can be chosen, or composed with others.",
+    ),
+    Statement(
+        "Guard",
+        "guard",
+        ("precondition: condition", "invariant: condition"),
+        frozenset({Place.BEHAVIOR, Place.SETUP}),
+        "A condition of a behavior or scenario, before its other statements: a precondition must hold when it starts, "
+        "an invariant whenever it goes on.",
     ),
     Statement(
         "PropertyDef",

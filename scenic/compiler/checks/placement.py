@@ -16,20 +16,6 @@ __all__ = ["NOTED", "check_placement"]
 NOTED: Final = (ast.Await, ast.Yield, ast.YieldFrom)
 """The expressions that cannot stand everywhere."""
 
-_SUSPENDING: Final = (
-    scenic.Take,
-    scenic.Wait,
-    scenic.WaitFor,
-    scenic.WaitUntil,
-    scenic.Do,
-    scenic.DoChoose,
-    scenic.DoShuffle,
-    scenic.TryInterrupt,
-    scenic.Abort,
-    scenic.Terminate,
-)
-"""Statements that act on the running behavior, scenario or monitor itself, never on a function called by it."""
-
 
 def check_placement(context: Context) -> Iterator[tuple[ast.AST, Diagnostic]]:
     """SC201: every node that stands where it must not, and what is to be said about it."""
@@ -56,7 +42,7 @@ def _problems(node: ast.AST, where: Where) -> Iterator[tuple[str, str]]:
             allowed = " or ".join(sorted(str(place) for place in statement.places))
             yield f"`{statement.title}` cannot be used {where.place}", f"it can stand {allowed}"
             return
-        if where.function is not None and where.place in DYNAMIC and isinstance(node, _SUSPENDING):
+        if where.function is not None and where.place in DYNAMIC and statement.suspends:
             yield (
                 f"`{statement.title}` cannot be used in a function {where.place}",
                 "it acts on what is running: move it out of the function",

@@ -4,6 +4,8 @@ from typing import Final
 
 from scenic.compiler.actions import Problem
 from scenic.compiler.mistakes.situation import Situation, insertion
+from scenic.compiler.phrases import PREFIX_STARTS, TEMPORAL_FORMS
+from scenic.compiler.precedence import Fixity
 
 __all__ = [
     "after_degrees",
@@ -14,16 +16,6 @@ __all__ = [
     "temporal_elsewhere",
     "temporal_operand",
 ]
-
-_PREFIX_OPERATORS: Final = frozenset(
-    [(word, mark) for word in ("distance", "angle", "altitude") for mark in ("to", "from")]
-    + [("distance", "past"), ("relative", "heading"), ("relative", "position"), ("apparent", "heading")]
-    + [("minimum", "distance"), ("initial", "scenario")]
-    + [(word, "of") for word in ("front", "back", "left", "right", "top", "bottom")]
-    + [(word, side) for word in ("front", "back") for side in ("left", "right")]
-    + [(word, face) for word in ("top", "bottom") for face in ("front", "back")]
-)
-"""The first words of prefix operators, of which the first is a name where no such operator can stand."""
 
 _TIGHT_OPERATORS: Final = frozenset(["+", "-", "*", "/", "//", "%", "@", "**", "~", "<<", ">>", "at"])
 
@@ -67,13 +59,13 @@ _LOOSER: Final = frozenset(
 )
 """Where the operand of a prefix operator ends at the latest."""
 
-_TEMPORAL: Final = ("always", "eventually", "next")
+_TEMPORAL: Final = tuple(form.words[0] for form in TEMPORAL_FORMS if form.fixity is Fixity.PREFIX)
 
 
 def loose_prefix_operator(at: Situation) -> Problem | None:
     """``5 + distance to a``: a prefix operator is looser than the operator before it."""
     first = at.token - 1
-    follows = (at.before, at.found) in _PREFIX_OPERATORS
+    follows = (at.before, at.found) in PREFIX_STARTS
     if not follows and at.before in ("follow", "visible") and at.starts_operand(at.token):
         follows = at.word(first - 1) in _TIGHT_OPERATORS
     if not follows:

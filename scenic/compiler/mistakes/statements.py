@@ -7,6 +7,7 @@ from scenic.compiler.generated import SPECIFIER_KINDS
 from scenic.compiler.mistakes.situation import Situation, insertion
 from scenic.compiler.mistakes.trial import Change
 from scenic.compiler.mistakes.words import misspelt
+from scenic.compiler.syntax import SOFT_STATEMENT_WORDS, STATEMENT_WORDS
 from scenic.compiler.tokens import STRING
 from scenic.language.spelling import nearest
 
@@ -402,36 +403,13 @@ def stray_specifier(at: Situation) -> Problem | None:
     )
 
 
-_STATEMENTS: Final = frozenset(
-    [
-        "require",
-        "do",
-        "pass",
-        "break",
-        "continue",
-        "return",
-        "import",
-        "raise",
-        "assert",
-        "del",
-        "global",
-        "nonlocal",
-        "class",
-        "def",
-        "try",
-        "while",
-        "with",
-    ]
-)
-
-
 def statement_in_expression(at: Situation) -> Problem | None:
     """``x = require y``, ``f(return 3)``, ``x = take y``."""
-    if at.before in _SOFT_STATEMENTS and at.token > at.first + 1 and at.starts_operand(at.token):
+    if at.before in SOFT_STATEMENT_WORDS and at.token > at.first + 1 and at.starts_operand(at.token):
         word, place = at.before, at.place(at.token - 1)
         if at.word(at.token - 2) not in ("=", "(", ",", "[", ":", "return"):
             return None
-    elif at.found in _STATEMENTS and at.expects("an expression", "an argument") and at.token != at.first:
+    elif at.found in STATEMENT_WORDS and at.expects("an expression", "an argument") and at.token != at.first:
         word, place = at.found, at.here()
     else:
         return None
@@ -441,8 +419,3 @@ def statement_in_expression(at: Situation) -> Problem | None:
         f"`{word}` begins a statement, which cannot be part of an expression",
         f"write the `{word}` statement on a line of its own",
     )
-
-
-_SOFT_STATEMENTS: Final = frozenset(
-    ["take", "record", "terminate", "mutate", "override", "param", "simulator"]
-)

@@ -7,6 +7,7 @@ from scenic.compiler.actions import Problem
 from scenic.compiler.generated import HARD_KEYWORDS, SOFT_KEYWORDS
 from scenic.compiler.mistakes.situation import Situation, insertion
 from scenic.compiler.mistakes.trial import Change
+from scenic.compiler.phrases import BEFORE_CONNECTORS, CONNECTORS
 from scenic.compiler.tokens import NAME
 from scenic.language.spelling import distance
 
@@ -27,20 +28,12 @@ _KEYWORDS: Final = {
     word: kind for table in (HARD_KEYWORDS, SOFT_KEYWORDS) for word, kind in table.items() if len(word) > 1
 }
 
-_CONNECTORS: Final = (
-    "of", "by", "to", "from", "for", "in", "see", "heading", "position", "along", "toward", "away", "facing",
-    "when", "import", "as", "past", "after", "until", "distance",
-)  # fmt: skip
-"""The words in the middle of forms, of which one may be forgotten."""
+_CONNECTORS: Final = (*CONNECTORS, "when", "import", "as", "after", "until")
+"""The words in the middle of forms, of which one may be forgotten: those of statements last."""
 
-_PHRASES: Final = frozenset(
-    {
-        "left", "right", "ahead", "front", "back", "top", "bottom", "relative", "apparent", "distance", "angle",
-        "altitude", "offset", "contained", "apparently", "away", "directly", "can", "visible", "follow",
-        "following", "beyond", "along", "terminate", "simulation", "interrupt", "wait", "do", "heading", "position",
-        "for", "from", "mutate", "minimum", "import", "with", "except", "facing",
-    }
-)  # fmt: skip
+_PHRASES: Final = BEFORE_CONNECTORS | {
+    "terminate", "simulation", "interrupt", "wait", "do", "for", "from", "mutate", "import", "with", "except",
+}  # fmt: skip
 """The words whose forms have a connector further on."""
 
 _CORNERS: Final = ("top", "bottom", "front", "back", "left", "right")

@@ -19,6 +19,7 @@ from typing import Any, Final, TypeAlias
 
 from scenic.compiler.generated import SOFT_KEYWORDS
 from scenic.compiler.precedence import FORMS, LADDERS, SPECIFIERS, Form, Ladder, Slot, Word, forms_of
+from scenic.compiler.syntax import STATEMENT_FORMS, ListOf, Optional, Reference, first_words
 
 After: TypeAlias = str | ast.AST
 
@@ -296,13 +297,32 @@ _TEMPORAL_WORDS: Final = frozenset(
     for form in FORMS
     if form.ladder is Ladder.TEMPORAL and isinstance(form.parts[0], Word) and form.node == "Temporal"
 )
-_WHOLE_STATEMENTS: Final = frozenset({"abort", "mutate", "terminate", "wait"})
+_SOFT_FORMS: Final = [form for form in STATEMENT_FORMS if form.is_soft and not form.has_block]
+_WHOLE_STATEMENTS: Final = frozenset(
+    form.start for form in _SOFT_FORMS if all(isinstance(item, Optional) for item in form.row[1:])
+)
+
+
+def _second_of(start: str) -> frozenset[str]:
+    """The soft keywords that may follow the word ``start`` of statements, before an operand."""
+    return frozenset(
+        word
+        for form in STATEMENT_FORMS
+        if form.start == start and len(form.row) > 2
+        for word in first_words(form.row[1:2]) & SOFT_KEYWORDS.keys()
+        if not isinstance(form.row[1], Reference | ListOf)
+    )
+
+
 _BEFORE_OPERANDS: Final[Mapping[int, frozenset[str]]] = MappingProxyType(
     {
-        STATEMENT: frozenset({"model", "mutate", "override", "record", "simulator", "take"}),
-        REQUIRE: frozenset({"monitor"}),
-        RECORD: frozenset({"initial", "final"}),
-        DO: frozenset({"choose", "shuffle"}),
+        STATEMENT: frozenset(
+            form.start for form in _SOFT_FORMS if form.row[1:] and isinstance(form.row[1], Reference | ListOf)
+        )
+        - {"param"},
+        REQUIRE: _second_of("require"),
+        RECORD: _second_of("record"),
+        DO: _second_of("do"),
         CONDITION: _TEMPORAL_WORDS,
     }
 )

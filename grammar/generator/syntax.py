@@ -1,0 +1,97 @@
+"""Emits the grammar itself as data: what editors, highlighters, diagrams and messages derive from it.
+
+Actions, lookaheads and cuts are left out, groups stand where they are used, and of each action only the class of the
+node that it makes is kept. `scenic.compiler.syntax` says what the rows mean.
+"""
+
+import ast
+from collections.abc import Iterator
+from typing import TypeAlias
+
+from grammar.generator.actions import node_classes
+from grammar.generator.analysis import Analysis
+from grammar.generator.model import (
+    Alternative,
+    Gather,
+    Grammar,
+    Item,
+    Optional,
+    Reference,
+    Repeat,
+    Token,
+    TokenChoice,
+)
+
+__all__ = ["emit_syntax", "nodes_made"]
+
+Row: TypeAlias = tuple[object, ...]
+
+
+def emit_syntax(analysis: Analysis, header: str) -> str:
+    """The text of the module ``syntax``."""
+    grammar = analysis.grammar
+    lines = [
+        header.rstrip(),
+        "",
+        "from types import MappingProxyType",
+        "",
+        "RULES = MappingProxyType(",
+        "    {",
+    ]
+    for rule in grammar.rules.values():
+        if not rule.lifted:
+            alternatives = tuple(
+                (tuple(_row(grammar, each)), _node(each)) for each in rule.alternatives if each.items
+            )
+            lines.append(f"        {rule.name!r}: ({rule.label!r}, {alternatives!r}),")
+    lines += [
+        "    }",
+        ")",
+        '"""The label of each rule and its alternatives, with the nodes that they make."""',
+        "",
+    ]
+    lines += [f"START = {grammar.start!r}", ""]
+    return "\n".join(lines)
+
+
+def nodes_made(alternative: Alternative) -> Iterator[str]:
+    """The classes of nodes that the action of an alternative names, the outermost first."""
+    if alternative.action is not None:
+        known = node_classes()
+        for node in ast.walk(ast.parse(alternative.action.strip(), mode="eval")):
+            if isinstance(node, ast.Name) and node.id in known:
+                yield node.id
+
+
+def _node(alternative: Alternative) -> str | None:
+    return next(nodes_made(alternative), None)
+
+
+def _row(grammar: Grammar, alternative: Alternative) -> Iterator[Row]:
+    for named in alternative.items:
+        yield from _item(grammar, named.item)
+
+
+def _item(grammar: Grammar, item: Item) -> Iterator[Row]:
+    match item:
+        case Token():
+            yield ("word", item.text) if item.literal else ("kind", item.text)
+        case TokenChoice():
+            yield ("choice", tuple(tuple(_item(grammar, token)) for token in item.tokens))
+        case Reference():
+            rule = grammar.rules[item.rule]
+            if not rule.lifted:
+                yield ("rule", item.rule)
+            elif len(rule.alternatives) == 1:
+                yield from _row(grammar, rule.alternatives[0])
+            else:
+                yield ("choice", tuple(tuple(_row(grammar, each)) for each in rule.alternatives))
+        case Optional():
+            yield ("optional", tuple(_item(grammar, item.item)))
+        case Repeat():
+            row = tuple(_item(grammar, item.item))
+            yield ("many", row) if item.at_least_one else ("optional", (("many", row),))
+        case Gather():
+            yield ("list", tuple(_item(grammar, item.item)), tuple(_item(grammar, item.separator)))
+        case _:
+            pass

@@ -1,0 +1,279 @@
+"""The rules of the grammar as data, and what follows from them: which words begin statements, blocks and operands.
+
+Lookaheads and actions are left out, so a row says what a text consists of, not which of several readings wins.
+"""
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from itertools import pairwise
+from types import MappingProxyType
+from typing import Any, Final, TypeAlias
+
+from scenic.compiler.generated import HARD_KEYWORDS, SOFT_KEYWORDS, syntax_rules
+
+__all__ = [
+    "BLOCK_STARTERS",
+    "OPERAND_WORDS",
+    "RULES",
+    "SOFT_STATEMENT_WORDS",
+    "STATEMENT_FORMS",
+    "STATEMENT_WORDS",
+    "Alternative",
+    "Choice",
+    "Item",
+    "Kind",
+    "ListOf",
+    "Many",
+    "Optional",
+    "Reference",
+    "Row",
+    "Rule",
+    "StatementForm",
+    "Word",
+    "first_words",
+    "reached_from",
+    "words_in",
+]
+
+
+@dataclass(frozen=True, slots=True)
+class Word:
+    """A keyword or operator as it is written."""
+
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Kind:
+    """A token of varying text, such as ``NAME``, or of layout, such as ``NEWLINE``."""
+
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class Reference:
+    """What another rule matches."""
+
+    rule: str
+
+
+@dataclass(frozen=True, slots=True)
+class Optional:
+    """A row that may be left out."""
+
+    row: "Row"
+
+
+@dataclass(frozen=True, slots=True)
+class Many:
+    """A row that stands at least once."""
+
+    row: "Row"
+
+
+@dataclass(frozen=True, slots=True)
+class ListOf:
+    """A row that stands at least once, with a separator in between."""
+
+    row: "Row"
+    separator: "Row"
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """One of several rows."""
+
+    rows: tuple["Row", ...]
+
+
+Item: TypeAlias = Word | Kind | Reference | Optional | Many | ListOf | Choice
+Row: TypeAlias = tuple[Item, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Alternative:
+    """One way to write what a rule matches; ``node`` is the class of the node that it makes, if it makes one."""
+
+    row: Row
+    node: str | None
+
+
+@dataclass(frozen=True, slots=True)
+class Rule:
+    """A rule; ``label`` is what messages call what it matches."""
+
+    name: str
+    label: str | None
+    alternatives: tuple[Alternative, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class StatementForm:
+    """One way to write a statement, or a clause of one, that starts with a word.
+
+    ``row`` begins with that word, ``start``. ``node`` is the class of the node that it makes, ``None`` where an action
+    decides. ``has_block`` tells whether a block follows its header.
+    """
+
+    rule: str
+    node: str | None
+    row: Row
+    start: str
+    has_block: bool
+
+    @property
+    def is_soft(self) -> bool:
+        """Whether it starts with a word that is a name elsewhere."""
+        return self.start in SOFT_KEYWORDS
+
+
+def _item(raw: tuple[Any, ...]) -> Item:
+    match raw:
+        case ("word", text):
+            return Word(text)
+        case ("kind", name):
+            return Kind(name)
+        case ("rule", name):
+            return Reference(name)
+        case ("optional", row):
+            return Optional(_row(row))
+        case ("many", row):
+            return Many(_row(row))
+        case ("list", row, separator):
+            return ListOf(_row(row), _row(separator))
+        case ("choice", rows):
+            return Choice(tuple(_row(row) for row in rows))
+    raise ValueError(f"the generated rules hold {raw!r}, which is no item")
+
+
+def _row(raw: Iterable[tuple[Any, ...]]) -> Row:
+    return tuple(_item(each) for each in raw)
+
+
+RULES: Final[Mapping[str, Rule]] = MappingProxyType(
+    {
+        name: Rule(name, label, tuple(Alternative(_row(row), node) for row, node in alternatives))
+        for name, (label, alternatives) in syntax_rules().items()
+    }
+)
+"""All rules, in the order of the grammar."""
+
+
+def _within(row: Row) -> Iterator[Item]:
+    """The items of a row and all items within them, in order."""
+    for item in row:
+        yield item
+        match item:
+            case Optional() | Many():
+                yield from _within(item.row)
+            case ListOf():
+                yield from _within(item.row)
+                yield from _within(item.separator)
+            case Choice():
+                for each in item.rows:
+                    yield from _within(each)
+            case _:
+                pass
+
+
+def reached_from(*rules: str) -> frozenset[str]:
+    """The rules that these need, themselves included; those that do not exist are left out."""
+    found: set[str] = set()
+    stack = [rule for rule in rules if rule in RULES]
+    while stack:
+        rule = stack.pop()
+        if rule not in found:
+            found.add(rule)
+            for alternative in RULES[rule].alternatives:
+                stack += [item.rule for item in _within(alternative.row) if isinstance(item, Reference)]
+    return frozenset(found)
+
+
+def words_in(rules: Iterable[str]) -> frozenset[str]:
+    """The keywords in the rows of rules."""
+    return frozenset(
+        item.text
+        for rule in rules
+        for alternative in RULES[rule].alternatives
+        for item in _within(alternative.row)
+        if isinstance(item, Word) and item.text.isidentifier()
+    )
+
+
+def first_words(row: Row) -> frozenset[str]:
+    """The keywords and operators that a row can begin with, as such and not as names."""
+    found: set[str] = set()
+    seen: set[str] = set()
+    stack = [row]
+    while stack:
+        for item in stack.pop():
+            match item:
+                case Word():
+                    found.add(item.text)
+                case Reference() if item.rule not in seen:
+                    seen.add(item.rule)
+                    stack += [each.row for each in RULES[item.rule].alternatives]
+                case Optional() | Many() | ListOf():
+                    stack.append(item.row)
+                case Choice():
+                    stack += item.rows
+                case _:
+                    pass
+            if not isinstance(item, Optional):
+                break
+    return frozenset(found)
+
+
+_OPERANDS: Final = ("expression", "specifier", "temporal_expression", "case_pattern", "targets", "parameters")
+"""The rules of what stands within statements."""
+
+_OF_OPERANDS: Final = reached_from(*_OPERANDS)
+
+OPERAND_WORDS: Final = words_in(_OF_OPERANDS)
+"""The keywords that expressions, specifiers, conditions, patterns and parameters hold."""
+
+_OF_STATEMENTS: Final = reached_from("statement") - _OF_OPERANDS
+
+_BLOCKS: Final = frozenset(
+    rule.name for rule in RULES.values() for each in rule.alternatives if Kind("INDENT") in each.row
+)
+
+
+def _alone(rule: str) -> Iterator[str]:
+    """The rule, and those that can be all that it matches."""
+    yield rule
+    for each in RULES[rule].alternatives if rule in RULES else ():
+        match each.row:
+            case (Reference(rule=inner), *_) if inner not in _OF_OPERANDS:
+                yield from _alone(inner)
+
+
+def _statement_forms() -> Iterator[StatementForm]:
+    whole = frozenset(_alone("statement"))
+    for rule in (name for name in RULES if name in _OF_STATEMENTS):
+        for alternative in RULES[rule].alternatives:
+            row = alternative.row
+            starts = [item.text for item in row if isinstance(item, Word) and item.text.isidentifier()]
+            has_block = any(isinstance(item, Reference) and item.rule in _BLOCKS for item in row) or any(
+                pair == (Word(":"), Kind("NEWLINE")) for pair in pairwise(row)
+            )
+            if starts and (has_block or (row[0] == Word(starts[0]) and (alternative.node or rule in whole))):
+                rest = row[row.index(Word(starts[0])) :]
+                yield StatementForm(rule, alternative.node, rest, starts[0], has_block)
+
+
+STATEMENT_FORMS: Final = tuple(_statement_forms())
+"""All statements and clauses that start with a word, Python's and Scenic's, in the order of the grammar."""
+
+BLOCK_STARTERS: Final = frozenset(form.start for form in STATEMENT_FORMS if form.has_block)
+"""The first words of lines that begin a block."""
+
+STATEMENT_WORDS: Final = frozenset(
+    form.start for form in STATEMENT_FORMS if form.start in HARD_KEYWORDS and form.start not in OPERAND_WORDS
+)
+"""The words that begin statements and nothing else."""
+
+SOFT_STATEMENT_WORDS: Final = frozenset(
+    form.start for form in STATEMENT_FORMS if form.is_soft and not form.has_block
+)
+"""The words that begin statements without blocks, and are names elsewhere."""
