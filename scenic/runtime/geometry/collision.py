@@ -3,25 +3,28 @@
 A lane that is lost is not looked at again; that saves work and changes no answer.
 """
 
-from dataclasses import dataclass
-from typing import Any, Final, NamedTuple
+from collections.abc import Sequence
+from typing import Final, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from scenic.graph import quaternions
 from scenic.runtime.geometry.bodies import Body
-from scenic.runtime.geometry.broadphase import boxes_overlap, overlapping_pairs
+from scenic.runtime.geometry.broadphase import CellMap, boxes_overlap, near_pairs
+from scenic.runtime.geometry.crowd import Crowd
 from scenic.runtime.geometry.mesh import Mesh
-from scenic.runtime.geometry.narrowphase import meshes_intersect, quick_tests, solids_touch
-from scenic.runtime.geometry.poses import Booleans, Floats, Indices, Poses
+from scenic.runtime.geometry.narrowphase import quick_tests, solids_touch
+from scenic.runtime.geometry.poses import Booleans, Indices, Poses
 from scenic.runtime.geometry.proofs import ProofTable
 from scenic.runtime.geometry.ragged import rows
 
-__all__ = ["Body", "Collisions", "Poses", "collide"]
+__all__ = ["Body", "Collider", "Collisions", "Poses", "collide"]
 
 _CHUNK: Final = 1 << 18
-"""Combinations of body and lane looked at together: bounds the memory by some 100 MB."""
+"""Combinations of body and lane looked at together, a few bytes each."""
+
+_BOXES: Final = 1 << 14
+"""Combinations of body and lane whose world boxes are computed together."""
 
 _MOST_ENTRIES: Final = 1 << 18
 """Overlapping world boxes collected before they are looked at closely."""
@@ -29,17 +32,16 @@ _MOST_ENTRIES: Final = 1 << 18
 _STEP: Final = 1 << 12
 """Entries looked at closely together: few enough for the processor's cache and for losing lanes early."""
 
-_LIKELY: Final = (0.2, 0.6)
-"""Parts of the smaller world box inside the other one above which a collision is likely; only an order."""
+_LIKELY: Final = (0.25, 0.5)
+"""Distances of centres over the sum of the radii below which a collision is likely; only an order."""
 
 
-@dataclass(frozen=True, slots=True)
-class Collisions:
-    """What `collide` found.
+class Collisions(NamedTuple):
+    """What was found.
 
     Attributes:
         free: lanes in which no pair collides, ``(n,)``.
-        pairs: which pairs collide in which lane, ``(n, p)``; ``None`` unless asked for.
+        pairs: which of the pairs collide in which lane, ``(n, p)``; ``None`` unless asked for.
 
     """
 
@@ -48,153 +50,200 @@ class Collisions:
 
 
 def collide(
-    bodies: tuple[Body, ...] | list[Body], pairs: npt.ArrayLike, lanes: int, *, exhaustive: bool = False
+    bodies: Sequence[Body], pairs: npt.ArrayLike | None, lanes: int, *, exhaustive: bool = False
 ) -> Collisions:
-    """Whether bodies collide, lane by lane.
+    """Whether bodies collide, lane by lane: `Collider.test` for a single batch."""
+    return Collider(bodies, pairs).test(bodies, lanes, exhaustive=exhaustive)
+
+
+class Collider:
+    """Tests one cast of bodies batch after batch; what is fixed is looked at once.
 
     Args:
-        bodies: the bodies.
-        pairs: the pairs of bodies to look at, ``(p, 2)`` indices.
-        lanes: the number of lanes.
-        exhaustive: whether to find all colliding pairs of all lanes instead of one of each lane.
+        bodies: the bodies of any batch; only which are fixed, and those themselves, matter.
+        pairs: the pairs of bodies to look at, ``(p, 2)`` indices in any order, without duplicates; all pairs if
+            ``None``.
 
     """
-    wanted = np.asarray(pairs, dtype=np.intp).reshape(-1, 2)
-    free = np.ones(lanes, dtype=np.bool_)
-    found = np.zeros((lanes, len(wanted)), dtype=np.bool_) if exhaustive else None
-    fixed = np.array([body.is_fixed for body in bodies], dtype=np.bool_)
-    decided = fixed[wanted[:, 0]] & fixed[wanted[:, 1]]
-    for pair in np.flatnonzero(decided):
-        if _fixed_pair_collides(bodies[wanted[pair, 0]], bodies[wanted[pair, 1]]):
+
+    def __init__(self, bodies: Sequence[Body], pairs: npt.ArrayLike | None = None) -> None:
+        count = len(bodies)
+        fixed = np.array([body.is_fixed for body in bodies], dtype=np.bool_)
+        self._moving = np.flatnonzero(~fixed)
+        self._fixed = np.flatnonzero(fixed)
+        # Moving bodies first, as `near_pairs` wants them.
+        self._order = np.concatenate([self._moving, self._fixed])
+        self.pairs: Final = _all_pairs(count) if pairs is None else _as_pairs(pairs)
+        place = np.empty(count, dtype=np.intp)
+        place[self._order] = np.arange(count)
+        self._wanted: Booleans | None = None
+        if pairs is not None:
+            self._wanted = np.zeros((count, count), dtype=np.bool_)
+            one, two = place[self.pairs].T
+            self._wanted[one, two] = self._wanted[two, one] = True
+        self._still = (
+            Crowd.of([bodies[index] for index in self._fixed.tolist()]) if len(self._fixed) else None
+        )
+        self.fixed_collisions: Final = self._fixed_pairs()
+        """The fixed bodies that collide with each other, ``(c, 2)``, the smaller number first."""
+
+    def test(self, bodies: Sequence[Body] | Crowd, lanes: int, *, exhaustive: bool = False) -> Collisions:
+        """Whether the bodies collide, lane by lane.
+
+        Args:
+            bodies: the same cast as ever, in this batch; or, stacked, those of them that are not fixed.
+            lanes: the number of lanes.
+            exhaustive: whether to find all colliding pairs of all lanes instead of one of each lane.
+
+        """
+        free = np.ones(lanes, dtype=np.bool_)
+        found: list[_Entries] | None = [] if exhaustive else None
+        if len(self.fixed_collisions):
             free[:] = False
-            if found is None:
-                return Collisions(free, None)
-            found[:, pair] = True
-    numbers = _pair_numbers(wanted, ~decided, len(bodies))
-    moving = np.flatnonzero((numbers >= 0).any(axis=0) | (numbers >= 0).any(axis=1))
-    if len(moving):
-        world = _World([bodies[index] for index in moving], numbers[np.ix_(moving, moving)])
-        step = max(1, _CHUNK // len(moving))
-        for start in range(0, lanes, step):
-            part = slice(start, min(start + step, lanes))
-            view = None if found is None else found[part]
-            _Lanes(world, part, lanes, free[part], view).search()
-    return Collisions(free, found)
+        if len(self._moving) and (exhaustive or free.any()):
+            crowd = bodies
+            if not isinstance(crowd, Crowd):
+                crowd = Crowd.of([crowd[index] for index in self._moving.tolist()])
+            if self._still is not None:
+                crowd = crowd.followed_by(self._still)
+            _Search(crowd, len(self._moving), self._wanted, free, found).run()
+        return Collisions(free, None if found is None else self._matrix(found, lanes))
+
+    def _fixed_pairs(self) -> Indices:
+        if self._still is None:
+            return np.empty((0, 2), dtype=np.intp)
+        wanted = None
+        if self._wanted is not None:
+            wanted = self._wanted[len(self._moving) :, len(self._moving) :]
+        found: list[_Entries] = []
+        _Search(self._still, len(self._fixed), wanted, np.ones(1, dtype=np.bool_), found).run()
+        pairs = [np.stack([self._fixed[part.first], self._fixed[part.second]], axis=1) for part in found]
+        return np.sort(np.concatenate([np.empty((0, 2), dtype=np.intp), *pairs]), axis=1)
+
+    def _matrix(self, found: list["_Entries"], lanes: int) -> Booleans:
+        """Which pairs collide in which lane."""
+        count = len(self._order)
+        low, high = np.sort(self.pairs, axis=1).T
+        keys = low * count + high
+        order = np.argsort(keys)
+        result = np.zeros((lanes, len(keys)), dtype=np.bool_)
+
+        def column(one: Indices, two: Indices) -> Indices:
+            key = np.minimum(one, two) * count + np.maximum(one, two)
+            return order[np.searchsorted(keys, key, sorter=order)]
+
+        for part in found:
+            result[part.lane, column(self._order[part.first], self._order[part.second])] = True
+        result[:, column(*self.fixed_collisions.T)] = True
+        return result
 
 
-def _fixed_pair_collides(a: Body, b: Body) -> bool:
-    if a.allow[0] or b.allow[0]:
-        return False
-    mesh_a, mesh_b = (body.meshes[0 if body.choice is None else int(body.choice[0])] for body in (a, b))
-    lower_a, upper_a = a.poses.bounds()
-    lower_b, upper_b = b.poses.bounds()
-    if (lower_a > upper_b).any() or (lower_b > upper_a).any():
-        return False
-    return bool(meshes_intersect(mesh_a, a.poses, mesh_b, b.poses)[0])
+def _as_pairs(pairs: npt.ArrayLike) -> Indices:
+    return np.asarray(pairs, dtype=np.intp).reshape(-1, 2)
 
 
-def _pair_numbers(wanted: Indices, chosen: Booleans, count: int) -> Indices:
-    """The number of each chosen pair at (smaller body, larger body), -1 elsewhere: ``(count, count)``."""
-    numbers = np.full((count, count), -1, dtype=np.intp)
-    which = np.flatnonzero(chosen)
-    low, high = wanted[which].min(axis=1), wanted[which].max(axis=1)
-    numbers[low, high] = which
-    return numbers
+def _all_pairs(count: int) -> Indices:
+    return np.stack(np.triu_indices(count, 1), axis=1)
 
 
 class _Entries(NamedTuple):
-    """Pairs that may collide: bodies, lane (within the chunk) and number of the pair, each ``(e,)``."""
+    """Pairs that may collide: bodies and lane, each ``(e,)``."""
 
     first: Indices
     second: Indices
     lane: Indices
-    pair: Indices
 
-    def where(self, chosen: Booleans | Indices) -> "_Entries":
-        return _Entries(self.first[chosen], self.second[chosen], self.lane[chosen], self.pair[chosen])
-
-
-class _World:
-    """The bodies that take part, and the numbers of the pairs that matter."""
-
-    def __init__(self, bodies: list[Body], numbers: Indices) -> None:
-        self.bodies = bodies
-        self.numbers = numbers
-        meshes = list(dict.fromkeys(mesh for body in bodies for mesh in body.meshes))
-        known = {mesh: number for number, mesh in enumerate(meshes)}
-        self.meshes = meshes
-        self.mesh_numbers = [np.array([known[mesh] for mesh in body.meshes]) for body in bodies]
-        self.constant_size = np.array([body.poses.constant_size for body in bodies])
-        self.are_boxes = np.array([mesh.is_box for mesh in meshes])
-        self.proofs = None if self.are_boxes.all() else ProofTable(meshes)
+    def where(self, chosen: Booleans | Indices | slice) -> "_Entries":
+        return _Entries(self.first[chosen], self.second[chosen], self.lane[chosen])
 
 
-class _Lanes:
-    """The bodies in a chunk of lanes, as columns over (body, lane), and what is found out about the lanes."""
+class _Search:
+    """One look at a crowd.
+
+    Args:
+        crowd: the bodies.
+        moving: how many of them are not fixed; they come first.
+        wanted: which pairs matter, ``(m, m)``; all if ``None``.
+        free: lanes still without a collision, ``(n,)``; kept up to date.
+        found: where to put collisions if all are wanted; otherwise ``None``, and a lane is left at the first.
+
+    """
 
     def __init__(
-        self, world: _World, part: slice, lanes: int, free: Booleans, found: Booleans | None
+        self,
+        crowd: Crowd,
+        moving: int,
+        wanted: Booleans | None,
+        free: Booleans,
+        found: list[_Entries] | None,
     ) -> None:
-        self._world = world
+        self._crowd = crowd
+        self._moving = moving
+        self._wanted = wanted
         self._free = free
         self._found = found
-        self._width = part.stop - part.start
-        count = len(world.bodies)
-        shape = (count, self._width)
-        self._position, self._size = np.empty((3, *shape)), np.empty((3, *shape))
-        self._orientation = np.empty((4, *shape))
-        self._allow = np.empty(shape, dtype=np.bool_)
-        self._mesh = np.empty(shape, dtype=np.intp)
-        for index, body in enumerate(world.bodies):
-            poses = body.poses
-            self._position[:, index] = _rows(poses.position, part, lanes).T
-            self._size[:, index] = _rows(poses.size, part, lanes).T
-            self._orientation[:, index] = _rows(poses.orientation, part, lanes).T
-            self._allow[index] = _rows(body.allow, part, lanes)
-            chosen = 0 if body.choice is None else _rows(body.choice, part, lanes)
-            self._mesh[index] = world.mesh_numbers[index][chosen]
-        matrix = quaternions.to_matrix(np.moveaxis(self._orientation, 0, -1))
-        self._matrix = np.moveaxis(matrix, (-2, -1), (0, 1))
+        self._radius = crowd.radius()
+        self._are_boxes = np.array([mesh.is_box for mesh in crowd.meshes])
+        self._proofs = None if self._are_boxes.all() else ProofTable(crowd.meshes)
 
-    def search(self) -> None:
+    def run(self) -> None:
         """Record collisions; if they are not all wanted, one for each lane that has any."""
+        if len(self._crowd) < 2:
+            return
+        cells = CellMap.around(self._crowd.position.values)
+        step = max(1, _CHUNK // len(self._crowd))
+        for start in range(0, len(self._free), step):
+            self._chunk(start, min(start + step, len(self._free)), cells)
+
+    def _chunk(self, start: int, stop: int, cells: CellMap) -> None:
+        padded = -(-(stop - start) // 8) * 8
+        shape = (3, len(self._crowd), padded)
+        lower, upper = np.full(shape, 255, dtype=np.uint8), np.zeros(shape, dtype=np.uint8)
+        for part in rows(stop - start, len(self._crowd), _BOXES):
+            low, high = self._crowd.boxes(slice(start + part.start, start + part.stop))
+            cells.put(low, lower[:, :, part])
+            cells.put(high, upper[:, :, part])
         collected: list[_Entries] = []
         total = 0
-        lower, upper = self._bounds()
-        for first, second, lane in overlapping_pairs(lower, upper):
-            entries = _Entries(first, second, lane, self._world.numbers[first, second])
-            allowed = self._allow[first, lane] | self._allow[second, lane]
-            collected.append(entries.where(~allowed & (entries.pair >= 0)))
-            total += len(lane)
+        for first, second, lane in near_pairs(lower, upper, self._moving):
+            entries = _Entries(first, second, lane + start)
+            if self._wanted is not None:
+                entries = entries.where(self._wanted[first, second])
+            collected.append(entries)
+            total += len(entries.lane)
             if total >= _MOST_ENTRIES:
-                self._settle(collected, lower, upper)
+                self._settle(collected)
                 collected, total = [], 0
-        if collected:
-            self._settle(collected, lower, upper)
+        if total:
+            self._settle(collected)
 
-    def _bounds(self) -> tuple[Floats, Floats]:
-        half = 0.5 * self._size
-        reach = np.empty_like(half)
-        for i in range(3):
-            row = np.abs(self._matrix[i])
-            reach[i] = row[0] * half[0] + row[1] * half[1] + row[2] * half[2]
-        return self._position - reach, self._position + reach
-
-    def _settle(self, collected: list[_Entries], lower: Floats, upper: Floats) -> None:
+    def _settle(self, collected: list[_Entries]) -> None:
         """Decide about entries: those that look like collisions first, since they spare others of the lane."""
-        entries = _Entries(*(np.concatenate(columns) for columns in zip(*collected, strict=True)))
-        entries = self._alive(entries)
-        likelihood = np.searchsorted(_LIKELY, self._penetration(entries, lower, upper))
+        entries = self._alive(_joined(collected))
+        allow = self._crowd.allow
+        if allow.values.any():
+            allowed = allow.at(entries.first, entries.lane) | allow.at(entries.second, entries.lane)
+            entries = entries.where(~allowed)
         open_entries = []
-        for group in (entries.where(likelihood == level) for level in range(len(_LIKELY), -1, -1)):
+        for group in self._by_likelihood(entries):
             for part in rows(len(group.lane), 1, _STEP):
-                piece = self._alive(_Entries(*(column[part] for column in group)))
+                piece = self._alive(group.where(part))
                 if len(piece.lane):
                     open_entries.append(self._quick(piece))
         if open_entries:
-            left = _Entries(*(np.concatenate(columns) for columns in zip(*open_entries, strict=True)))
-            for group, mesh_a, mesh_b, constant_size in self._sorted(self._alive(left)):
-                self._decide(group, mesh_a, mesh_b, constant_size)
+            left = self._alive(_joined(open_entries))
+            for chosen, mesh_a, mesh_b, constant_size in self._sorted(left):
+                self._decide(chosen, mesh_a, mesh_b, constant_size)
+
+    def _by_likelihood(self, entries: _Entries) -> list[_Entries]:
+        if len(entries.lane) <= _STEP or self._found is not None:
+            return [entries]
+        position, radius = self._crowd.position, self._radius
+        offset = position.at(entries.first, entries.lane) - position.at(entries.second, entries.lane)
+        reach = radius.at(entries.first, entries.lane) + radius.at(entries.second, entries.lane)
+        x, y, z = offset.T
+        level = np.searchsorted(_LIKELY, np.sqrt(x * x + y * y + z * z) / reach)
+        return [entries.where(level == number) for number in range(len(_LIKELY) + 1)]
 
     def _alive(self, entries: _Entries) -> _Entries:
         return entries if self._found is not None else entries.where(self._free[entries.lane])
@@ -202,46 +251,35 @@ class _Lanes:
     def _record(self, entries: _Entries) -> None:
         self._free[entries.lane] = False
         if self._found is not None:
-            self._found[entries.lane, entries.pair] = True
-
-    def _penetration(self, entries: _Entries, lower: Floats, upper: Floats) -> Floats:
-        """The part of the smaller extents over which the world boxes overlap, the product over the axes."""
-        first = entries.first * self._width + entries.lane
-        second = entries.second * self._width + entries.lane
-        result = np.ones(len(first))
-        for axis in range(3):
-            low, high = lower[axis].ravel(), upper[axis].ravel()
-            low_a, high_a, low_b, high_b = low[first], high[first], low[second], high[second]
-            overlap = np.minimum(high_a, high_b) - np.maximum(low_a, low_b)
-            result *= overlap / np.minimum(high_a - low_a, high_b - low_b)
-        return result
+            self._found.append(entries)
 
     def _quick(self, entries: _Entries) -> _Entries:
         """Record what oriented boxes and proofs say of at least one entry; returns what they leave open."""
         poses_a, poses_b = self._poses(entries.first, entries.lane), self._poses(entries.second, entries.lane)
         near = boxes_overlap(poses_a, poses_b)
         mesh_a, mesh_b = self._meshes(entries)
-        boxes = near & self._world.are_boxes[mesh_a] & self._world.are_boxes[mesh_b]
+        boxes = near & self._are_boxes[mesh_a] & self._are_boxes[mesh_b]
         self._record(entries.where(boxes))
         near &= ~boxes
         if self._found is None:
             near &= self._free[entries.lane]
         which = np.flatnonzero(near)
         entries = entries.where(which)
-        if not len(which) or self._world.proofs is None:
+        if not len(which) or self._proofs is None:
             return entries
         together, remains = quick_tests(
-            self._world.proofs, mesh_a[which], poses_a.take(which), mesh_b[which], poses_b.take(which)
+            self._proofs, mesh_a[which], poses_a.take(which), mesh_b[which], poses_b.take(which)
         )
         self._record(entries.where(together))
         return entries.where(remains)
 
     def _meshes(self, entries: _Entries) -> tuple[Indices, Indices]:
-        return self._mesh[entries.first, entries.lane], self._mesh[entries.second, entries.lane]
+        mesh = self._crowd.mesh
+        return mesh.at(entries.first, entries.lane), mesh.at(entries.second, entries.lane)
 
     def _sorted(self, entries: _Entries) -> list[tuple[_Entries, Mesh, Mesh, bool]]:
         """The entries by meshes and by whether both sizes are constant; the quick ones first."""
-        meshes, constant = self._world.meshes, self._world.constant_size
+        meshes, constant = self._crowd.meshes, self._crowd.constant_size
         mesh_a, mesh_b = self._meshes(entries)
         rigid = constant[entries.first] & constant[entries.second]
         groups = []
@@ -270,14 +308,12 @@ class _Lanes:
             entries = self._alive(entries.where(~now))
 
     def _poses(self, body: Indices, lane: Indices, constant_size: bool = False) -> Poses:
-        flat = body * self._width + lane
-        columns = (self._position, self._orientation, self._size, self._matrix)
-        position, orientation, size, matrix = (
-            np.take(column.reshape(*column.shape[:-2], -1), flat, axis=-1) for column in columns
-        )
-        poses = Poses(position.T, orientation.T, size.T, constant_size)
-        return poses.with_matrix(np.moveaxis(matrix, -1, 0))
+        return self._crowd.poses(body, lane, constant_size=constant_size)
 
 
-def _rows(column: npt.NDArray[Any], part: slice, lanes: int) -> npt.NDArray[Any]:
-    return column if len(column) == 1 != lanes else column[part]
+def _joined(parts: list[_Entries]) -> _Entries:
+    return (
+        parts[0]
+        if len(parts) == 1
+        else _Entries(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))
+    )

@@ -31,7 +31,7 @@ _Test = Callable[[Indices, Floats], Booleans]
 
 def contains_points(body: Body, points: Floats) -> Booleans:
     """Whether the solid of a body holds a point ``(n | 1, 3)``, lane by lane."""
-    lanes = max(body.lanes, len(points))
+    lanes = max(len(body), len(points))
     result = np.zeros(lanes, dtype=np.bool_)
     for mesh, chosen in body.by_mesh(lanes):
         local = body.poses.take(chosen).to_unit(points if len(points) == 1 else points[chosen])

@@ -75,6 +75,9 @@ class Poses:
         )
         if "matrix" in self.__dict__:
             taken.__dict__["matrix"] = _take(self.matrix, entries)
+        if "_bounds" in self.__dict__:
+            lower, upper = self._bounds
+            taken.__dict__["_bounds"] = _take(lower, entries), _take(upper, entries)
         return taken
 
     def with_matrix(self, matrix: Floats) -> "Poses":
@@ -115,6 +118,15 @@ class Poses:
 
     def bounds(self) -> tuple[Floats, Floats]:
         """The lower and upper corners ``(n | 1, 3)`` of the world boxes around the oriented boxes."""
+        return self._bounds
+
+    @property
+    def knows_bounds(self) -> bool:
+        """Whether `bounds` have been computed."""
+        return "_bounds" in self.__dict__
+
+    @cached_property
+    def _bounds(self) -> tuple[Floats, Floats]:
         half = 0.5 * self.size
         turned = np.abs(self.matrix)
         reach = np.stack(

@@ -64,7 +64,7 @@ def landing_points(body: Body, faces: Indices, points: Floats, directions: Float
 
     A point within `TOLERANCE` of its face stays where it is.
     """
-    lanes = max(len(faces), len(points), len(directions), body.lanes)
+    lanes = max(len(faces), len(points), len(directions), len(body))
     faces = np.broadcast_to(faces, (lanes,))
     normals = face_normals(body, faces)
     travel = np.zeros(lanes)

@@ -243,7 +243,7 @@ def face_points(body: Body, faces: Indices, first: Floats, second: Floats) -> Fl
         second: likewise.
 
     """
-    lanes = max(len(faces), len(first), len(second), body.lanes)
+    lanes = max(len(faces), len(first), len(second), len(body))
     faces = np.broadcast_to(faces, (lanes,))
     # The square root makes a strip parallel to the edge opposite the first corner as likely as it is long.
     root, along = (np.broadcast_to(part, (lanes,))[:, None] for part in (np.sqrt(first), second))
@@ -257,7 +257,7 @@ def face_points(body: Body, faces: Indices, first: Floats, second: Floats) -> Fl
 
 def face_normals(body: Body, faces: Indices) -> Floats:
     """The unit normals of faces in the world, ``(n, 3)``."""
-    lanes = max(len(faces), body.lanes)
+    lanes = max(len(faces), len(body))
     faces = np.broadcast_to(faces, (lanes,))
     result = np.empty((lanes, 3))
     for mesh, chosen in body.by_mesh(lanes):

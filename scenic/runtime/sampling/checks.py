@@ -11,7 +11,7 @@ from scenic.graph.batch import Batch
 from scenic.graph.node import Node
 from scenic.graph.operation import FAULT, OK, REJECTED
 from scenic.language.spans import Span
-from scenic.runtime.geometry.collision import Body, collide
+from scenic.runtime.geometry.collision import Body, Collider, collide
 from scenic.runtime.regions.base import body_of
 
 Mask = NDArray[np.bool_]
@@ -147,7 +147,11 @@ class ObjectNodes:
         """The object's body in every lane."""
         columns = [batch.column(node) for node in self.all[:4]]
         body = body_of(*columns, constant_size=self.size.is_constant)
-        return replace(body, allow=batch.column(self.allow_collisions))
+        return replace(
+            body,
+            allow=batch.column(self.allow_collisions),
+            is_fixed=all(node.is_constant for node in self.all),
+        )
 
     @property
     def all(self) -> tuple[Node, ...]:
@@ -168,13 +172,16 @@ class CollisionCheck:
     probability: float = 1.0
     cost: float = 100.0
     filename: str | None = None
+    _collider: Collider | None = None
 
     def nodes(self) -> Sequence[Node]:
         return [node for item in self.objects for node in item.all]
 
     def test(self, batch: Batch) -> Verdict:
         bodies = [item.body(batch) for item in self.objects]
-        return Verdict(collide(bodies, self.pairs, lanes=len(batch)).free)
+        if self._collider is None:
+            self._collider = Collider(bodies, self.pairs)
+        return Verdict(self._collider.test(bodies, len(batch)).free)
 
     def parts(self, batch: Batch) -> Sequence[Part]:
         bodies = [item.body(batch) for item in self.objects]

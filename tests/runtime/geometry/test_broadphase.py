@@ -62,20 +62,38 @@ def test_fixed_poses_broadcast():
     np.testing.assert_array_equal(broadphase.boxes_overlap(a, b), broadphase.boxes_overlap(a, repeated))
 
 
-@pytest.mark.parametrize("bodies", [2, 20, 63, 65, 150])
-def test_overlapping_pairs_are_all_pairs(bodies):
+def cells_of(lower, upper):
+    """The cells of corners ``(bodies, lanes, 3)``, padded to whole words of lanes."""
+    shape = (3, lower.shape[0], -(-lower.shape[1] // 8) * 8)
+    low, high = np.full(shape, 255, dtype=np.uint8), np.zeros(shape, dtype=np.uint8)
+    cells = broadphase.CellMap.around(lower.reshape(-1, 3))
+    cells.put(lower, low[:, :, : lower.shape[1]])
+    cells.put(upper, high[:, :, : lower.shape[1]])
+    return low, high
+
+
+@pytest.mark.parametrize(
+    ("bodies", "moving", "lanes"),
+    [(2, 2, 5), (2, 1, 8), (20, 20, 5), (65, 30, 3), (150, 150, 300), (420, 410, 2), (420, 5, 2)],
+)
+def test_near_pairs_hold_all_overlapping_boxes(bodies, moving, lanes):
     rng = np.random.default_rng(bodies)
-    lower = rng.uniform(-3, 3, (3, bodies, 5))
+    spread = 3 * bodies ** (1 / 3)
+    lower = rng.uniform(-spread, spread, (bodies, lanes, 3))
     upper = lower + rng.uniform(0, 1.5, lower.shape)
-    upper[:, 0] += 10  # one body is as large as the world
-    found = [np.stack(group, axis=1) for group in broadphase.overlapping_pairs(lower, upper)]
-    triples = {tuple(row) for row in np.concatenate(found).tolist()}
-    assert len(triples) == sum(map(len, found))
-    expected = {
-        (i, j, lane)
-        for lane in range(5)
-        for i in range(bodies)
-        for j in range(i + 1, bodies)
-        if (lower[:, i, lane] <= upper[:, j, lane]).all() and (lower[:, j, lane] <= upper[:, i, lane]).all()
-    }
-    assert triples == expected
+    upper[0] += 10 * spread  # one body is as large as the world
+    lower[-1, 0], upper[-1, 0] = np.inf, np.inf
+    lower[-1, 1], upper[-1, 1] = np.nan, np.nan
+    found = [np.stack(group, axis=1) for group in broadphase.near_pairs(*cells_of(lower, upper), moving)]
+    rows = np.concatenate(found)
+    assert len(np.unique(rows, axis=0)) == len(rows)
+    assert (rows[:, 0] < rows[:, 1]).all()
+    assert (rows[:, 0] < moving).all()
+    assert (rows[:, 2] < lanes).all()
+    near = np.zeros((bodies, bodies, lanes), dtype=bool)
+    near[tuple(rows.T)] = True
+    overlap = ((lower[:, None] <= upper[None]) & (lower[None] <= upper[:, None])).all(axis=-1)
+    overlap &= np.triu(np.ones((bodies, bodies), dtype=bool), 1)[..., None]
+    overlap[moving:] = False
+    assert near[overlap].all()
+    assert near.sum() < 4 * overlap.sum() + 50 * lanes

@@ -5,7 +5,8 @@ import pytest
 
 from scenic.runtime.geometry import primitives
 from scenic.runtime.geometry.bodies import Body
-from scenic.runtime.geometry.collision import collide
+from scenic.runtime.geometry.collision import Collider, collide
+from scenic.runtime.geometry.crowd import Crowd
 from scenic.runtime.geometry.narrowphase import meshes_intersect
 from scenic.runtime.geometry.poses import Poses
 
@@ -30,10 +31,12 @@ def crowd(bodies: int, seed: int, lanes: int = LANES) -> list[Body]:
                 lanes, seed + number, spread=spread, sizes=(0.2, 0.8), constant_size=kind == 1
             )
         mesh = MESHES[rng.integers(len(MESHES))]
+        if rng.random() < 0.3:
+            poses.bounds()  # bodies whose world boxes are known are looked at by them
         if kind == 3:
             result.append(Body((mesh, table()), rng.integers(0, 2, lanes), poses, rng.random(lanes) < 0.2))
         else:
-            result.append(Body((mesh,), None, poses))
+            result.append(Body((mesh,), None, poses, is_fixed=kind == 0))
     return result
 
 
@@ -85,18 +88,76 @@ def test_some_pairs_in_any_order():
 
 
 def test_many_bodies_are_swept():
-    check(crowd(66, 3, lanes=2), list(itertools.combinations(range(66), 2)), 2)
+    lanes = 2
+    bodies = [body for body in crowd(600, 3, lanes) if not body.is_fixed]
+    pairs = np.array(list(itertools.combinations(range(len(bodies)), 2)))
+    every = collide(bodies, None, lanes, exhaustive=True)
+    spread = np.stack([np.broadcast_to(body.poses.position, (lanes, 3)) for body in bodies])
+    far = np.linalg.norm(spread[pairs[:, 0]] - spread[pairs[:, 1]], axis=-1).min(axis=1) > 1.4
+    assert not every.pairs[:, far].any()
+    np.testing.assert_array_equal(every.pairs[:, ~far], one_by_one(bodies, pairs[~far].tolist(), lanes))
+    np.testing.assert_array_equal(collide(bodies, None, lanes).free, every.free)
 
 
-def test_fixed_pairs_decide_all_lanes():
+@pytest.mark.parametrize("is_fixed", [True, False])
+def test_still_pairs_decide_all_lanes(is_fixed):
     box = primitives.box()
-    bodies = [Body((box,), None, yawed(p)) for p in ((0, 0, 0), (0.5, 0.5, 0.5), (5, 0, 0))]
+    bodies = [
+        Body((box,), None, yawed(p), is_fixed=is_fixed) for p in ((0, 0, 0), (0.5, 0.5, 0.5), (5, 0, 0))
+    ]
     assert not collide(bodies, [(0, 1), (0, 2)], 10).free.any()
     assert collide(bodies, [(0, 2), (1, 2)], 10).free.all()
     every = collide(bodies, [(0, 1), (0, 2)], 10, exhaustive=True)
     np.testing.assert_array_equal(every.pairs, [[True, False]] * 10)
     tolerant = Body((box,), None, yawed((0, 0, 0)), np.array([True]))
     assert collide([tolerant, *bodies[1:]], [(0, 1)], 10).free.all()
+
+
+def test_a_cast_is_tested_batch_after_batch():
+    lanes = 40
+    bodies = crowd(9, 7, lanes)
+    pairs = [(i, j) for i, j in itertools.combinations(range(9), 2) if i % 4 or j % 4]
+    cast = Collider(bodies, pairs)
+    for chosen in (np.arange(lanes), np.arange(0, lanes, 3), np.array([7])):
+        some = [body.take(chosen) for body in bodies]
+        expected = one_by_one(some, pairs, len(chosen))
+        np.testing.assert_array_equal(cast.test(some, len(chosen), exhaustive=True).pairs, expected)
+        np.testing.assert_array_equal(cast.test(some, len(chosen)).free, ~expected.any(axis=1))
+
+
+def test_stacked_bodies_are_those_one_by_one():
+    lanes, count = 50, 6
+    poses = random_poses(lanes * count, 9, spread=1.2)
+    sizes = random_poses(count, 10).size
+    numbers = np.arange(lanes * count) % 3
+    still = Body((table(),), None, yawed((0, 0, 0)), is_fixed=True)
+    alone = [
+        Body(
+            tuple(MESHES[:3]), numbers[part], Poses(poses.position[part], poses.orientation[part], size[None])
+        )
+        for part, size in zip(np.arange(lanes * count).reshape(count, lanes), sizes, strict=True)
+    ]
+    stack = Crowd.stacked(
+        count, tuple(MESHES[:3]), poses.position, poses.orientation, sizes, numbers, np.array([False])
+    )
+    cast = Collider([*alone, still])
+    expected = one_by_one([*alone, still], cast.pairs.tolist(), lanes)
+    assert 0 < expected.mean() < 1
+    np.testing.assert_array_equal(cast.test(stack, lanes, exhaustive=True).pairs, expected)
+    np.testing.assert_array_equal(cast.test([*alone, still], lanes, exhaustive=True).pairs, expected)
+
+
+def test_fixed_bodies_are_compared_once():
+    box, places = primitives.box(), [(0, 0, 0), (0.5, 0.5, 0.5), (5, 0, 0), (5.2, 0, 0.9), (5, 5, 5)]
+    bodies = [Body((box,), None, yawed(place), is_fixed=True) for place in places]
+    bodies.insert(1, Body((box,), None, random_poses(30, 8, spread=3)))
+    cast = Collider(bodies)
+    assert sorted(cast.fixed_collisions.tolist()) == [[0, 2], [3, 4]]
+    assert not cast.test(bodies, 30).free.any()
+    found = cast.test(bodies, 30, exhaustive=True).pairs
+    np.testing.assert_array_equal(found, one_by_one(bodies, cast.pairs.tolist(), 30))
+    assert Collider(bodies, [(0, 1), (3, 0)]).fixed_collisions.tolist() == []
+    assert Collider(bodies, [(2, 0), (3, 0)]).fixed_collisions.tolist() == [[0, 2]]
 
 
 def test_no_pairs():
@@ -112,14 +173,6 @@ def test_batches_do_not_matter(batch):
     whole = collide(bodies, pairs, lanes, exhaustive=True)
     for start in range(0, lanes, batch):
         part = slice(start, min(start + batch, lanes))
-        some = [
-            Body(
-                body.meshes,
-                body.choice if body.choice is None else body.choice[part],
-                body.poses.take(np.arange(part.start, part.stop)),
-                body.allow if len(body.allow) == 1 else body.allow[part],
-            )
-            for body in bodies
-        ]
+        some = [body.take(np.arange(part.start, part.stop)) for body in bodies]
         found = collide(some, pairs, part.stop - part.start, exhaustive=True)
         np.testing.assert_array_equal(found.pairs, whole.pairs[part])

@@ -63,7 +63,26 @@ def test_bodies_walk_over_their_meshes():
     body = Body(meshes, choice, Poses.fixed((0, 0, 0)))
     found = {mesh: lanes.tolist() for mesh, lanes in body.by_mesh(3)}
     assert found == {meshes[0]: [1], meshes[1]: [0, 2]}
-    assert (body.lanes, body.is_fixed) == (3, False)
+    assert (len(body), body.is_fixed) == (3, False)
     single = Body(meshes, np.array([1]), Poses.fixed((0, 0, 0)))
-    assert single.is_fixed
+    assert (len(single), single.is_fixed) == (1, False)
     assert [(mesh, lanes.tolist()) for mesh, lanes in single.by_mesh(2)] == [(table(), [0, 1])]
+
+
+def test_taken_bodies_keep_what_was_computed_and_what_is_fixed():
+    body = Body(
+        (SHAPES["box"](), table()), np.array([1, 0, 1]), random_poses(3, 6), np.array([True, False, False])
+    )
+    lower, upper = body.poses.bounds()
+    some = body.take(np.array([2, 0]))
+    assert some.choice.tolist() == [1, 1]
+    assert some.allow.tolist() == [False, True]
+    assert some.poses.knows_bounds
+    np.testing.assert_array_equal(some.poses.bounds(), (lower[[2, 0]], upper[[2, 0]]))
+    np.testing.assert_array_equal(some.poses.matrix, body.poses.matrix[[2, 0]])
+    alone = body.take(np.array([1]))
+    assert (len(alone), alone.is_fixed) == (1, False)
+    fixed = Body((table(),), None, Poses.fixed((0, 0, 0)), is_fixed=True)
+    assert fixed.take(np.array([5, 7])).is_fixed
+    with pytest.raises(ValueError, match="a fixed body with 3 rows"):
+        Body((table(),), None, random_poses(3, 7), is_fixed=True)
