@@ -24,6 +24,7 @@ from scenic.language.errors import (
 from scenic.language.source import Source, read_source
 from scenic.language.spans import Span
 from scenic.runtime.context import Context, current
+from scenic.runtime.mutation import apply_noise
 from scenic.runtime.objects import Object, Point
 from scenic.runtime.prelude import Loader
 from scenic.runtime.program import Module, Program, ScenarioClass, ScenarioInstance
@@ -199,6 +200,7 @@ def _scenario(
             seed_globals(PROGRAM_SEED)
             module, state = modules.run(compiled.code, filename, {SOURCE_NAME: Source(text, filename)})
             _run_chosen(module, state, chosen)
+            apply_noise(program)
         _settle_parameters(program, strict=strict_params)
         scenario = Scenario(
             program,

@@ -32,7 +32,6 @@ USES = {
     "temporal operator until": "require «True until True»",
     "statement require monitor": "x = 3\n«require monitor x»",
     "statement record": "«record 3»",
-    "statement mutate": "ego = new Object\n«mutate ego»",
     "statement terminate when": "«terminate when True»",
     "statement terminate after": "«terminate after 3 seconds»",
     "statement monitor": "«monitor M():»\n    wait",
@@ -151,7 +150,6 @@ WHEN_RUN = [
     "new Object «in Uniform(disc, everywhere)»",
     "new Object «on Uniform(disc, everywhere)»",
     "new Object at (0, 0, 9), «on BoxRegion((9, 9, 1))»",
-    "new Object «with mutationScale 1»",
     "new Object «with requireVisible True»",
 ]
 """Refused while the program runs; each is the end of a program."""

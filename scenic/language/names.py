@@ -127,7 +127,7 @@ _ALL = (
         "A vector field that is constant on polygons.",
     ),
     _class("Workspace(region)", "The region that contains all objects, for `workspace = Workspace(region)`."),
-    _class("Mutator", "Base class of what adds noise to mutated objects.", available=False),
+    _class("Mutator", "Base class of what adds noise to mutated objects."),
     _class("Behavior", "Base class of all behaviors.", available=False),
     _class("Monitor", "Base class of all monitors.", available=False),
     _class("Distribution", "Base class of distributions written in Python.", available=False),

@@ -98,7 +98,6 @@ _ALL = (
         ("mutate", "mutate object, ... by scale"),
         _TOP_AND_SETUP,
         "Adds noise to the position and orientation of objects, of all objects so far if none is named.",
-        available=False,
     ),
     Statement(
         "TerminateWhen",

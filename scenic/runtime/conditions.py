@@ -17,6 +17,7 @@ from scenic.graph.operations import TABLE
 from scenic.runtime.context import here
 from scenic.runtime.lazy import definite
 from scenic.runtime.opaque import evaluated, later
+from scenic.runtime.samples import Globals
 from scenic.runtime.values import as_node
 
 
@@ -24,16 +25,41 @@ class NotSymbolicError(Exception):
     """Raised while an expression is built that has to be evaluated on samples instead."""
 
 
-def leaf(symbolic: Callable[[], Any] | None, concrete: Callable[..., Any], captured: Sequence[Any]) -> Node:
-    """The node of one leaf of a condition."""
-    if symbolic is not None:
-        try:
-            value = symbolic()
-        except Exception:  # noqa: BLE001 - whatever went wrong goes wrong again, with its place, on a sample
-            pass
-        else:
-            return truth(definite(value, "the requirement"))
-    return later(OPAQUE, concrete, captured)
+class Condition:
+    """A condition of a requirement: a node while a scenario is compiled, its truth during a simulation.
+
+    ``build`` makes the node. It is made where the condition stands, and once more when the program has mutated something:
+    a condition means the objects as they come out in the end.
+    """
+
+    __slots__ = ("build", "node", "truth")
+
+    def __init__(self, build: Callable[[], Node] | None, truth: bool | None) -> None:
+        self.build = build
+        self.node = None if build is None else build()
+        self.truth = truth
+
+
+def leaf(
+    symbolic: Callable[..., Any] | None, concrete: Callable[..., Any], captured: Sequence[Any]
+) -> Callable[[], Node]:
+    """What builds the node of one leaf of a condition."""
+    names: Globals | None = None
+
+    def build() -> Node:
+        nonlocal names
+        if symbolic is not None:
+            try:
+                value = symbolic(*captured)
+            except Exception:  # noqa: BLE001 - whatever went wrong goes wrong again, with its place, on a sample
+                pass
+            else:
+                return truth(definite(value, "the requirement"))
+        # The names that functions in reach have at the `require` statement count.
+        names = Globals() if names is None else names
+        return later(OPAQUE, concrete, captured, names=names)
+
+    return build
 
 
 def truth(value: Any) -> Node:

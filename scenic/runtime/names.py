@@ -10,6 +10,7 @@ from scenic.language import errors
 from scenic.language.errors import InvalidScenarioError
 from scenic.runtime import distributions, fields, functions, shapes
 from scenic.runtime.context import here
+from scenic.runtime.mutators import Mutator
 from scenic.runtime.objects import Object, OrientedPoint, Point
 from scenic.runtime.program import Program
 from scenic.runtime.regions.base import Workspace, everywhere, nowhere, unsupported
@@ -24,6 +25,7 @@ _NAMES: Mapping[str, Any] = MappingProxyType(
         "Object": Object,
         "Vector": Vector,
         "Orientation": Orientation,
+        "Mutator": Mutator,
         "VectorField": fields.VectorField,
         "PolygonalVectorField": fields.PolygonalVectorField,
         "Range": distributions.Range,
@@ -72,7 +74,6 @@ _UNSUPPORTED = (
     "MeshSurfaceRegion",
     "MeshVolumeRegion",
     "Monitor",
-    "Mutator",
     "PathRegion",
     "PointSetRegion",
     "PolygonalFootprintRegion",

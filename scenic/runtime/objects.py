@@ -13,6 +13,7 @@ from typing import Any, ClassVar, Self
 from scenic.graph.kinds import Kind
 from scenic.language.errors import InvalidScenarioError
 from scenic.runtime.context import here
+from scenic.runtime.mutators import OrientationMutator, PositionMutator
 from scenic.runtime.properties import Property, PropertyDefinition, combine
 from scenic.runtime.regions.base import unsupported
 from scenic.runtime.regions.bodies import OccupiedSpace, SideSurface
@@ -62,7 +63,9 @@ class Point:
             "regionContainedIn": builtin(lambda _: None),
             "mutationScale": builtin(lambda _: 0),
             "positionStdDev": builtin(lambda _: vector(1, 1, 0)),
-            "mutator": builtin(lambda _: None, "positionStdDev", attributes=("additive",)),
+            "mutator": builtin(
+                lambda self: PositionMutator(self.positionStdDev), "positionStdDev", attributes=("additive",)
+            ),
         }
     )
 
@@ -152,7 +155,11 @@ class OrientedPoint(Point):
             "viewAngles": builtin(lambda self: (self.viewAngle, math.pi), "viewAngle"),
             "headingStdDev": builtin(lambda _: math.radians(5)),
             "orientationStdDev": builtin(lambda self: vector(self.headingStdDev, 0, 0), "headingStdDev"),
-            "mutator": builtin(lambda _: None, "orientationStdDev", attributes=("additive",)),
+            "mutator": builtin(
+                lambda self: OrientationMutator(self.orientationStdDev),
+                "orientationStdDev",
+                attributes=("additive",),
+            ),
         }
     )
 

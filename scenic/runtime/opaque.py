@@ -6,6 +6,7 @@ concrete values too; analysis sees nothing of it.
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -35,17 +36,27 @@ class OpaqueCode:
     context: Context | None
 
 
-def later(operation: Operation, function: Callable[..., Any], args: Sequence[Any], **keywords: Any) -> Node:
-    """The node of a call that is made on each sample; ``operation`` is one made with `evaluated`."""
-    names = Globals()
-    operands = tuple(dependencies([function, *args, *keywords.values()], names))
-    code = OpaqueCode(function, tuple(args), keywords, operands, names, current.get())
+def later(
+    operation: Operation,
+    function: Callable[..., Any],
+    args: Sequence[Any],
+    keywords: Mapping[str, Any] = MappingProxyType({}),
+    *,
+    names: Globals | None = None,
+) -> Node:
+    """The node of a call that is made on each sample; ``operation`` is one made with `evaluated`.
+
+    ``names`` are global names as functions in reach shall see them; as they are now by default.
+    """
+    seen = Globals() if names is None else names
+    operands = tuple(dependencies([function, *args, *keywords.values()], seen))
+    code = OpaqueCode(function, tuple(args), keywords, operands, seen, current.get())
     return apply(operation, operands, code, here())
 
 
 def call_later(function: Callable[..., Any], *args: Any, **keywords: Any) -> Any:
     """The random value of a call that is made on each sample."""
-    return as_value(later(CALL, function, args, **keywords))
+    return as_value(later(CALL, function, args, keywords))
 
 
 def evaluated(call: Call, columns: Sequence[Column]) -> list[Any]:

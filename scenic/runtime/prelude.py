@@ -16,7 +16,7 @@ from types import CodeType, MappingProxyType, ModuleType
 from typing import Any, Protocol
 
 from scenic.graph.kinds import Kind
-from scenic.graph.node import Node, apply
+from scenic.graph.node import apply
 from scenic.graph.operations import TABLE
 from scenic.language.errors import (
     InvalidScenarioError,
@@ -24,7 +24,8 @@ from scenic.language.errors import (
     ScenicTypeError,
     UnsupportedError,
 )
-from scenic.runtime import conditions, names
+from scenic.runtime import conditions, mutation, names
+from scenic.runtime.conditions import Condition
 from scenic.runtime.context import Context, here
 from scenic.runtime.functions import convert
 from scenic.runtime.lazy import definite
@@ -75,16 +76,6 @@ class Modules(Protocol):
 
     def code(self, path: Path) -> CodeType:
         """The compiled code of a file; raises `ScenicSyntaxError`."""
-
-
-class Condition:
-    """A condition of a requirement: a node while a scenario is compiled, its truth during a simulation."""
-
-    __slots__ = ("node", "truth")
-
-    def __init__(self, node: Node | None, truth: bool | None) -> None:
-        self.node = node
-        self.truth = truth
 
 
 class Prelude:
@@ -210,9 +201,6 @@ class Prelude:
     def _check_supported(self, instance: Point) -> None:
         """Refuse the properties whose meaning is not built yet."""
         values = instance.__dict__
-        scale = values["mutationScale"]
-        if is_random(scale) or scale != 0:
-            raise UnsupportedError("mutation is not supported yet", span=here())
         if not self._context.mode_2d and values.get("requireVisible", False) is not False:
             raise UnsupportedError("visibility requirements are not supported yet", span=here())
 
@@ -277,6 +265,13 @@ class Prelude:
             raise InvalidScenarioError("a model cannot itself use `model`", span=here())
         self._modules.use_model(name, scope, self._module)
 
+    def mutate(self, targets: Sequence[Any] | None = None, scale: Any = 1) -> None:
+        """``mutate a, b by scale``; without targets all objects so far."""
+        if self._context.evaluating:
+            raise InvalidScenarioError("a requirement cannot mutate objects", span=here())
+        chosen = self._program.objects if targets is None else targets
+        mutation.request(chosen, scale)
+
     def simulator(self, make: Callable[[], Any]) -> None:
         """``simulator expr``: kept, and evaluated when a simulator is asked for."""
         self._program.simulator = make
@@ -297,16 +292,17 @@ class Prelude:
                 raise RejectionException(name or "requirement")
             return
         assert condition.node is not None
+        assert condition.build is not None
         span = here()
         label = name or (f"requirement on line {span.line}" if span else "requirement")
         self._program.requirements.append(
-            Requirement(condition.node, chance, label, span, self._module.filename)
+            Requirement(condition.node, chance, label, span, self._module.filename, condition.build)
         )
 
     # Conditions
 
     def condition(
-        self, symbolic: Callable[[], Any] | None, concrete: Callable[..., Any], captured: Sequence[Any]
+        self, symbolic: Callable[..., Any] | None, concrete: Callable[..., Any], captured: Sequence[Any]
     ) -> Condition:
         """A leaf of a condition; see `scenic.runtime.conditions`."""
         if self._context.is_symbolic:
@@ -328,9 +324,9 @@ class Prelude:
     def _connect(
         self, operation: str, decide: Callable[[Sequence[Any]], bool], parts: Sequence[Condition]
     ) -> Condition:
-        nodes = [part.node for part in parts if part.node is not None]
-        if len(nodes) == len(parts):
-            return Condition(conditions.connect(operation, nodes), None)
+        builds = [part.build for part in parts if part.build is not None]
+        if len(builds) == len(parts):
+            return Condition(lambda: conditions.connect(operation, [build() for build in builds]), None)
         return Condition(None, decide([part.truth for part in parts]))
 
     # Inside the symbolic reading of a condition

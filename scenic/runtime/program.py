@@ -2,7 +2,7 @@
 
 import inspect
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from scenic.graph.node import Node
@@ -16,7 +16,8 @@ from scenic.runtime.samples import Globals
 class Requirement:
     """One ``require`` statement.
 
-    ``probability`` is that with which it is enforced in a scene; ``label`` names it in reports.
+    ``probability`` is that with which it is enforced in a scene; ``label`` names it in reports. ``build`` makes the
+    condition again, from objects that have been mutated since.
     """
 
     condition: Node
@@ -24,6 +25,11 @@ class Requirement:
     label: str
     span: Span | None = None
     filename: str | None = None
+    build: Callable[[], Node] | None = field(default=None, compare=False)
+
+    def rebuilt(self) -> "Requirement":
+        """The requirement about the objects as they are now."""
+        return self if self.build is None else replace(self, condition=self.build())
 
 
 @dataclass(slots=True)

@@ -150,3 +150,24 @@ def _colour(value: Any) -> Any:
             help="for example `with color (0.8, 0.2, 0.2)`",
         )
     return parts
+
+
+def update(instance: Any, changes: Mapping[str, Any]) -> None:
+    """Give properties new values, and those that always follow from others the values that follow now."""
+    values = instance.__dict__
+    for name, value in changes.items():
+        values[name] = normalised(name, value)
+    derived = {
+        name: entry for name, entry in instance.scenic_properties.items() if entry.dynamic and entry.final
+    }
+    settled: set[str] = set()
+
+    def settle(name: str) -> None:
+        if name not in settled:
+            settled.add(name)
+            for needed in derived[name].dependencies & derived.keys():
+                settle(needed)
+            values[name] = normalised(name, derived[name].default(instance))
+
+    for name in derived.keys() - changes.keys():
+        settle(name)

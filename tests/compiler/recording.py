@@ -115,7 +115,7 @@ class Recorder:
     def condition(self, symbolic: Any, concrete: Any, captured: Sequence[Any]) -> Any:
         self._note("condition")
         value = concrete(*captured)
-        self.readings.append((value if symbolic is None else symbolic(), value))
+        self.readings.append((value if symbolic is None else symbolic(*captured), value))
         return value
 
     def conjunction(self, *parts: Any) -> Any:

@@ -44,7 +44,6 @@ def test_calls_stand_where_the_program_says() -> None:
         ("param", "param a = x, b = distance from x to (2,\n   3)"),
         ("ego", "ego"),
         ("condition", "ego.width > 0"),
-        ("ego", "ego"),
         ("condition", "x == 'é'"),
         ("require", "require[0.5] ego.width > 0 and not x == 'é' as name"),
     ]

@@ -2,7 +2,9 @@
 
 A condition is split at ``and``, ``or`` and ``not`` into leaves. Each leaf is given to the prelude twice: as an
 expression that builds a node of the value graph, and as a function of the names in it that computes with concrete
-values. Which leaves can become nodes is decided here, by their form alone: a leaf with a call of one of the program's
+values. Both read
+names through their parameters, so that a condition can be built again when the program has ended: what it mutates is then
+known. Which leaves can become nodes is decided here, by their form alone: a leaf with a call of one of the program's
 own functions, a comprehension, ``is``, a lambda and so on is *opaque*, and given as a function only. Tracing such code
 with random values could be silently wrong; calling it with sampled ones never is.
 """
@@ -76,15 +78,18 @@ class Conditions:
                 return self._leaf(node)
 
     def _leaf(self, node: ast.expr) -> ast.expr:
-        try:
-            symbolic = _Symbolic(self._resolution, self._ordinary, self._split)
-            traced: ast.expr = lambda_([], symbolic.expression(node), node)
-        except _OpaqueError:
-            traced = start_of(ast.Constant(None), node)
         free = list(self._free_names(node))
         if not any(part.id == "ego" for part in free):
             free.extend(_unwritten_ego(node))
-        concrete = lambda_([(part.id, part) for part in free], self._captured(node), node)
+        parameters = [(part.id, part) for part in free]
+        try:
+            # What is nested in a leaf finds the names as parameters of the leaf.
+            nested = Conditions(self._resolution, self._captured, self._captured)
+            symbolic = _Symbolic(self._resolution, nested._split)
+            traced: ast.expr = lambda_(parameters, symbolic.expression(node), node)
+        except _OpaqueError:
+            traced = start_of(ast.Constant(None), node)
+        concrete = lambda_(parameters, self._captured(node), node)
         values = tuple_([self._ordinary(part) for part in free], node)
         return prelude_call("condition", [traced, concrete, values], node)
 
@@ -162,9 +167,8 @@ class _OpaqueError(Exception):
 class _Symbolic:
     """Lowers an expression to one that builds a node; raises `_OpaqueError` where the form forbids it."""
 
-    def __init__(self, resolution: Resolution, ordinary: _Lowering, condition: _Lowering) -> None:
+    def __init__(self, resolution: Resolution, condition: _Lowering) -> None:
         self._resolution = resolution
-        self._ordinary = ordinary
         self._condition = condition
         self._kept = 0
 
@@ -173,7 +177,7 @@ class _Symbolic:
             case ast.Constant():
                 return node
             case ast.Name():
-                return self._ordinary(node)
+                return node
             case ast.Attribute(value=value, attr=attribute):
                 return prelude_call("read", [self.expression(value), constant(attribute, node)], node)
             case ast.UnaryOp(op=ast.USub() | ast.UAdd(), operand=operand):
@@ -201,6 +205,8 @@ class _Symbolic:
                     start_of(ast.Constant(None), node) if operand is None else self.expression(operand)
                     for operand in operands
                 ]
+                for position in implicit_ego(node):
+                    args[position] = start_of(ast.Name("ego", ast.Load()), node)
                 return prelude_call("operation", [constant(operator, node), *args], node)
             case _:
                 raise _OpaqueError

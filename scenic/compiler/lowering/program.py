@@ -217,6 +217,13 @@ class _Program:
         value = lambda_([], self.expression(node.value), node.value)
         return statement(prelude_call("simulator", [value], node), node)
 
+    def mutate(self, node: scenic.Mutate) -> ast.stmt:
+        targets: ast.expr = constant(None, node)
+        if node.targets:
+            targets = tuple_([self.expression(target) for target in node.targets], node)
+        args = [targets] if node.scale is None else [targets, self.expression(node.scale)]
+        return statement(prelude_call("mutate", args, node), node)
+
     def require(self, node: scenic.Require) -> ast.stmt:
         if self._conditions is None:
             self._conditions = Conditions(
@@ -404,6 +411,7 @@ def _rules() -> Mapping[type[ast.AST], Callable[[_Program, Any], Any]]:
         scenic.Param: _Program.param,
         scenic.Model: _Program.model,
         scenic.Simulator: _Program.simulator,
+        scenic.Mutate: _Program.mutate,
         scenic.Require: _Program.require,
         scenic.BehaviorDef: _Program.behavior,
         scenic.ScenarioDef: _Program.scenario,

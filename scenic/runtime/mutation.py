@@ -1,0 +1,107 @@
+"""Mutation: noise on objects, drawn with the scene (section 10.5 of the specification).
+
+The noise of the built-in mutators is a draw of the graph like any other. A mutator of the program's own is Python code, called
+on sampled objects.
+"""
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from scenic.graph.kinds import Kind
+from scenic.language.errors import ScenicTypeError
+from scenic.runtime.context import here
+from scenic.runtime.mutators import BUILT_IN
+from scenic.runtime.objects import Point
+from scenic.runtime.opaque import call_later
+from scenic.runtime.program import Program
+from scenic.runtime.properties import update
+from scenic.runtime.values import (
+    Orientation,
+    Vector,
+    describe,
+    is_number,
+    is_random,
+    operate,
+    to_orientation,
+    to_scalar,
+    to_vector,
+)
+
+
+def request(targets: Iterable[Any], scale: Any) -> None:
+    """Set the scale of the noise of instances: what ``mutate`` does."""
+    if not is_number(scale):
+        raise ScenicTypeError(
+            f"`mutate ... by` needs a fixed number, not {describe(scale)}",
+            span=here(),
+            help="for a random scale write `with mutationScale ...` in the definition of the object",
+        )
+    for target in targets:
+        if not isinstance(target, Point):
+            raise ScenicTypeError(f"`mutate` needs points or objects, not {describe(target)}", span=here())
+        target.__dict__["mutationScale"] = float(scale)
+
+
+def apply_noise(program: Program) -> None:
+    """Mutate all instances that ask for it, when the program has ended; requirements are then about what comes out."""
+    mutated = False
+    for instance in program.instances:
+        scale = instance.__dict__["mutationScale"]
+        if is_random(scale) or scale != 0:
+            mutated |= _mutate(instance, scale)
+    if mutated:
+        program.requirements[:] = [requirement.rebuilt() for requirement in program.requirements]
+
+
+def _mutate(instance: Point, scale: Any) -> bool:
+    given = instance.__dict__["mutator"]
+    mutators = given if isinstance(given, tuple | list) else (given,)
+    active = [mutator for mutator in mutators if mutator is not None]
+    if all(type(mutator) in BUILT_IN for mutator in active):
+        for mutator in active:
+            update(instance, mutator.noisy(instance, scale))
+    else:
+        update(instance, _by_python(instance, active))
+    return bool(active)
+
+
+def _by_python(instance: Point, mutators: list[Any]) -> Mapping[str, Any]:
+    """The properties after mutators of the program: one call on each sample."""
+    names = [
+        name for name, entry in instance.scenic_properties.items() if not (entry.dynamic and entry.final)
+    ]
+    before = type(instance)._make(dict(instance.__dict__))
+    result = call_later(_applied, before, tuple(mutators), tuple(names))
+    changes: dict[str, Any] = {}
+    for index, name in enumerate(names):
+        old = instance.__dict__[name]
+        value = operate("getitem", result, index)
+        if isinstance(old, Vector) or _kind(old) is Kind.VECTOR:
+            value = to_vector(value)
+        elif isinstance(old, Orientation) or _kind(old) is Kind.ORIENTATION:
+            value = to_orientation(value)
+        elif is_number(old) and not isinstance(old, bool):
+            value = to_scalar(value)
+        elif name in _KEPT:
+            continue
+        changes[name] = value
+    return changes
+
+
+_KEPT = frozenset({"shape", "behavior", "sensors", "mutator", "regionContainedIn", "lastActions"})
+"""Properties that mutation leaves alone: the graph needs to know them."""
+
+
+def _kind(value: Any) -> Kind | None:
+    return value.node.kind if hasattr(value, "node") else None
+
+
+def _applied(instance: Any, mutators: tuple[Any, ...], names: tuple[str, ...]) -> tuple[Any, ...]:
+    for mutator in mutators:
+        instance, go_on = mutator.appliedTo(instance)
+        if not go_on:
+            break
+    return tuple(getattr(instance, name) for name in names)
+
+
+__all__ = ["apply_noise", "request"]

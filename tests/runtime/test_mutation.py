@@ -1,0 +1,137 @@
+"""Noise on mutated objects (section 10.5 of the specification)."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from scenic.language.errors import InvalidScenarioError, ScenicTypeError
+from tests.runtime.programs import FALSE_ALARM, assert_same_rotation, draws, euler, failure, scenario, thing
+
+N = 3000
+
+
+def normal(values: object, deviation: float, mean: float = 0) -> bool:
+    return bool(stats.kstest(values, stats.norm(mean, deviation).cdf).pvalue > FALSE_ALARM)
+
+
+@pytest.mark.parametrize("how", ["\nmutate", "\nmutate ego", "\nmutate ego by 1", ", with mutationScale 1"])
+def test_position_and_yaw_get_normal_noise(how: str) -> None:
+    scenes = scenario(f"ego = new Object at (1, 2, 3), facing 0.5{how}\n").sample(N, seed=3)
+    places = np.array([tuple(item.egoObject.position) for item in scenes])
+    assert normal(places[:, 0], 1, 1)
+    assert normal(places[:, 1], 1, 2)
+    assert (places[:, 2] == 3).all()
+    assert normal([item.egoObject.heading for item in scenes], math.radians(5), 0.5)
+
+
+def test_the_scale_and_the_deviations_count() -> None:
+    text = "ego = new Object with positionStdDev (0.1, 0, 0.2), with orientationStdDev (0.01, 0.02, 0.03)\nmutate ego by 3\n"
+    scenes = scenario(text).sample(N, seed=4)
+    egos = [item.egoObject for item in scenes]
+    assert normal([ego.position.x for ego in egos], 0.3)
+    assert {ego.position.y for ego in egos} == {0.0}
+    assert normal([ego.position.z for ego in egos], 0.6)
+    for name, deviation in (("yaw", 0.03), ("pitch", 0.06), ("roll", 0.09)):
+        assert normal([getattr(ego, name) for ego in egos], deviation)
+
+
+def test_final_properties_follow_and_others_stay() -> None:
+    item = thing("ego = new Object at (1, 2), with tag 7, with speed 2\nmutate ego\n")
+    assert item.position.x != 1
+    assert item.heading == item.orientation.yaw == pytest.approx(item.yaw)
+    assert item.tag == 7
+    assert tuple(item.velocity) == pytest.approx((0, 2, 0))
+
+
+def test_requirements_see_the_noise_wherever_they_stand_and_captured_values_do_not() -> None:
+    text = (
+        "ego = new Object at (0, 0)\nold = ego.position.x\nrequire ego.position.x > 0.5\n"
+        "require all(distance from o to (0, 0) < 2 for o in [ego])\nrequire old == 0\nmutate ego\nparam x = old\n"
+    )
+    for item in scenario(text).sample(50, seed=2):
+        assert item.egoObject.position.x > 0.5
+        assert math.hypot(*tuple(item.egoObject.position)[:2]) < 2
+        assert item.params["x"] == 0
+
+
+def test_requirements_keep_the_values_and_the_ego_of_their_moment() -> None:
+    text = (
+        "a = new Object at (Range(0, 1), 0)\nb = new Object at (9, 9)\nego = a\nlimit = 0.5\n"
+        "require (distance to (0, 0)) + 0 * a.position.y > limit if limit < 1 else False\n"
+        "ego = b\nlimit = 100\nmutate b\n"
+    )
+    for item in scenario(text).sample(20, seed=2):
+        assert item.objects[1].position.x > 0.5
+
+
+def test_points_are_mutated_too() -> None:
+    values = draws(
+        "p = new OrientedPoint at (4, 5)\nmutate p\nparam x = (p.position.x, p.heading)\nparam p = p", n=3
+    )
+    assert values == [(4, 0)] * 3
+    found = draws("p = new OrientedPoint at (4, 5)\nmutate p\nparam p = p", "p", n=N)
+    assert normal([p.position.x for p in found], 1, 4)
+    assert normal([p.heading for p in found], math.radians(5))
+
+
+def test_a_random_scale() -> None:
+    values = [
+        item.egoObject
+        for item in scenario("ego = new Object with mutationScale Uniform(0, 2)\n").sample(N, seed=5)
+    ]
+    still = [ego for ego in values if ego.mutationScale == 0]
+    assert {ego.position.x for ego in still} == {0.0}
+    assert normal([ego.position.x for ego in values if ego.mutationScale == 2], 2)
+
+
+CUSTOM = """
+import random
+class Shift(Mutator):
+    def __init__(self, length, go_on=True):
+        self.length, self.go_on = length, go_on
+    def appliedTo(self, thing):
+        thing.position = thing.position + (self.length * thing.mutationScale, 0, 10)
+        thing.tag = thing.tag + 1
+        return thing, self.go_on
+class C:
+    tag: 0
+    mutator[additive]: Shift(2{go_on})
+class D(C):
+    mutator[additive]: None
+"""
+
+
+@pytest.mark.parametrize("cls", ["C", "D"])
+def test_mutators_of_the_program_come_first(cls: str) -> None:
+    text = CUSTOM.format(go_on="") + f"ego = new {cls} at (Range(1, 2), 0), facing 0.5\nmutate ego by 3\n"
+    egos = [item.egoObject for item in scenario(text).sample(300, seed=1)]
+    assert {ego.tag for ego in egos} == {1}
+    assert {ego.position.z for ego in egos} == {10.0}
+    spread = np.array([ego.position.x for ego in egos]) - 6
+    assert (
+        stats.kstest(
+            spread, lambda x: np.mean(stats.norm(np.linspace(1, 2, 200), 3).cdf(np.asarray(x)[..., None]), -1)
+        ).pvalue
+        > FALSE_ALARM
+    )
+    assert normal([ego.heading - 0.5 for ego in egos], 3 * math.radians(5))
+    for ego in egos[:5]:
+        assert_same_rotation(ego.orientation, euler(ego.yaw))
+
+
+def test_a_mutator_may_stop_the_others() -> None:
+    text = (
+        CUSTOM.format(go_on=", False")
+        + "ego = new C at (1, 0)\nmutate ego by 3\nrequire ego.position.x > 6.5\n"
+    )
+    assert {item.egoObject.position.x for item in scenario(text).sample(5, seed=1)} == {7.0}
+
+
+def test_mistakes_with_mutation() -> None:
+    assert isinstance(failure("ego = new Object\nmutate ego by Range(1, 2)"), ScenicTypeError)
+    assert isinstance(failure("ego = new Object\nx = 3\nmutate x"), ScenicTypeError)
+    assert isinstance(
+        failure("ego = new Object\ndef f():\n    mutate ego\nrequire f() is None"), InvalidScenarioError
+    )
