@@ -80,6 +80,7 @@ WORDS: Final[Mapping[str, int]] = _tables.WORDS
 HARD_KEYWORDS: Final[Mapping[str, int]] = _tables.HARD_KEYWORDS
 SOFT_KEYWORDS: Final[Mapping[str, int]] = _tables.SOFT_KEYWORDS
 OPERATORS: Final[Mapping[str, int]] = _tables.OPERATORS
+KIND_NAMES: Final[Mapping[int, str]] = _tables.KIND_NAMES
 STATEMENT_STARTERS: Final[frozenset[str]] = _tables.STATEMENT_STARTERS
 INFIX_KINDS: Final[frozenset[int]] = _tables.INFIX_KINDS
 SPECIFIER_KINDS: Final[frozenset[int]] = _tables.SPECIFIER_KINDS

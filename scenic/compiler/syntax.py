@@ -33,6 +33,7 @@ __all__ = [
     "first_words",
     "reached_from",
     "words_in",
+    "words_of",
 ]
 
 
@@ -192,12 +193,16 @@ def reached_from(*rules: str) -> frozenset[str]:
 def words_in(rules: Iterable[str]) -> frozenset[str]:
     """The keywords in the rows of rules."""
     return frozenset(
-        item.text
+        word
         for rule in rules
         for alternative in RULES[rule].alternatives
-        for item in _within(alternative.row)
-        if isinstance(item, Word) and item.text.isidentifier()
+        for word in words_of(alternative.row)
     )
+
+
+def words_of(row: Row) -> Iterator[str]:
+    """The keywords in a row itself, in order."""
+    return (item.text for item in _within(row) if isinstance(item, Word) and item.text.isidentifier())
 
 
 def first_words(row: Row) -> frozenset[str]:

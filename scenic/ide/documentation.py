@@ -1,13 +1,14 @@
 """The declarations of the language as Markdown."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, Final
 
 from scenic.language.keywords import HARD_KEYWORDS, PYTHON_KEYWORDS, SOFT_KEYWORDS, TEMPORAL_OPERATORS
 from scenic.language.names import NAMES
-from scenic.language.operators import Operand, Operator
+from scenic.language.operators import OPERATORS, Operand, Operator
 from scenic.language.properties import CLASSES, BuiltinProperty, attributes_of, properties_of
-from scenic.language.specifiers import SpecifierDeclaration
-from scenic.language.statements import Statement
+from scenic.language.specifiers import SPECIFIERS, SpecifierDeclaration
+from scenic.language.statements import STATEMENTS, Statement
 
 __all__ = [
     "of_keyword",
@@ -18,6 +19,8 @@ __all__ = [
     "of_statement",
     "of_temporal",
 ]
+
+_MOST_FORMS: Final = 6
 
 _REFUSED = "*This version does not build it yet.*"
 
@@ -88,7 +91,15 @@ def of_keyword(word: str) -> str | None:
     for table in (HARD_KEYWORDS, SOFT_KEYWORDS, PYTHON_KEYWORDS):
         if word in table:
             return _page((word,), table[word], ())
-    return None
+    forms = [form for form in _all_forms() if word in form.split()]
+    return _page(forms[:_MOST_FORMS], f"`{word}` is a part of what is written so.", ()) if forms else None
+
+
+def _all_forms() -> Iterator[str]:
+    tables: tuple[Mapping[str, Any], ...] = (SPECIFIERS, OPERATORS, TEMPORAL_OPERATORS, STATEMENTS)
+    for table in tables:
+        for declared in table.values():
+            yield from declared.forms
 
 
 def _property(declared: BuiltinProperty) -> str:

@@ -1,0 +1,157 @@
+"""What may stand at a place of a text, as the grammar says: the parser is run up to there and asked what it wanted.
+
+The text after the place does not count. Of the text before it, only the statement around the place has to be right;
+where this has a mistake, the line alone.
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any, Final
+
+from scenic.compiler.actions import Actions
+from scenic.compiler.generated import KIND_NAMES, WORDS, build_recording_parser
+from scenic.compiler.lexer import lex
+from scenic.compiler.parser import DEEPEST, recursion_limit
+from scenic.compiler.syntax import BLOCK_STARTERS, RULES, Reference, first_words
+from scenic.compiler.tokens import DEDENT, ERROR, INDENT, NEWLINE, Tokens
+
+__all__ = ["Wanted", "wanted_at"]
+
+_MARK: Final = "$"
+"""Read as a token that fits nowhere: what the parser wants instead of it is what may stand there."""
+_MOST_LINES: Final = 400
+"""So many lines before a place are looked at."""
+_CLAUSES: Final = (*sorted(BLOCK_STARTERS - first_words((Reference("statement"),))), ")", "]", "}")
+"""What lines begin with that go on with the statement before them."""
+_ALONE: Final = ("statement", "class_item", "specifier_line")
+"""What a line may be that is read by itself."""
+
+_NAMES: Final = {kind: word for word, kind in WORDS.items()}
+
+_LABELLED: Final = {
+    label: tuple(Reference(rule.name) for rule in RULES.values() if rule.label == label)
+    for label in {rule.label for rule in RULES.values() if rule.label is not None}
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """What may stand at a place.
+
+    ``words`` are keywords and operators; ``labels`` what messages call other things, such as ``"an expression"``;
+    ``kinds`` are those of tokens of varying text, such as ``"NAME"``. ``before`` are the tokens of the logical line
+    before the place.
+    """
+
+    words: frozenset[str]
+    labels: frozenset[str]
+    kinds: frozenset[str]
+    before: tuple[str, ...]
+
+    def begins(self, label: str) -> frozenset[str]:
+        """The words with which what a label stands for may begin, none if it cannot stand here."""
+        if label not in self.labels:
+            return frozenset()
+        return frozenset().union(*(first_words((rule,)) for rule in _LABELLED.get(label, ())))
+
+
+def wanted_at(text: str, line: int, column: int) -> Wanted | None:
+    """What may stand at ``line`` (from 1) and ``column`` (in characters from 0), where a new token begins.
+
+    ``None`` in strings and comments, and where what stands before on the line cannot be right.
+    """
+    lines = text.split("\n")
+    here = lines[line - 1][:column]
+    around = _around(lines[max(0, line - 1 - _MOST_LINES) : line - 1], here)
+    for before, rules in (("\n".join(around), ("statement",)), (here.lstrip(), _ALONE)):
+        tokens = lex(before + _MARK, WORDS)
+        mark = next((index for index, kind in enumerate(tokens.kinds) if kind == ERROR), -1)
+        if mark < 0 or tokens.texts[mark] != _MARK:
+            return None
+        expected = {each for rule in rules for each in _expected(tokens, mark, rule)}
+        if expected:
+            return _wanted(tokens, mark, expected)
+    return None
+
+
+def _around(lines: list[str], here: str) -> list[str]:
+    """The lines before a place that matter: the headers of the blocks around it, and before each line the statement
+    before, which it may go on.
+    """
+    level = _indentation(here)
+    kept = [here]
+    is_whole = not _goes_on(here)
+    is_near = True
+    for text in reversed(lines):
+        stripped = text.lstrip()
+        if not stripped or stripped[0] == "#":
+            continue
+        column = _indentation(text)
+        if column > level:
+            if is_near:
+                kept.append(text)
+        elif column < level or is_near:
+            kept.append(text)
+            is_whole = not _goes_on(text)
+            # The statement before the line itself is kept, and further out only what a clause belongs to.
+            is_near = not is_whole
+            level = column
+            if not level and is_whole:
+                break
+    return kept[::-1]
+
+
+def _indentation(text: str) -> int:
+    return len(text) - len(text.lstrip())
+
+
+def _goes_on(text: str) -> bool:
+    """Whether a line goes on with the statement before it."""
+    return text.lstrip().startswith(_CLAUSES)
+
+
+def _wanted(tokens: Tokens, mark: int, expected: Iterable[int | str]) -> Wanted:
+    start = mark
+    while start > 0 and tokens.kinds[start - 1] not in (NEWLINE, INDENT, DEDENT):
+        start -= 1
+    kinds = [each for each in expected if isinstance(each, int)]
+    return Wanted(
+        frozenset(_NAMES[kind] for kind in kinds if kind in _NAMES),
+        frozenset(each for each in expected if isinstance(each, str)),
+        frozenset(KIND_NAMES[kind] for kind in kinds if kind in KIND_NAMES),
+        tuple(tokens.texts[start:mark]),
+    )
+
+
+def _expected(tokens: Tokens, mark: int, rule: str) -> set[int | str]:
+    """What the parser wanted at the token ``mark``, reading from the first one on; nothing if it did not get there."""
+    probe = _Probe()
+    probe.run = build_recording_parser(*tokens.lists(), Actions(tokens), probe)
+    try:
+        with recursion_limit(DEEPEST):
+            probe(rule, 0)
+    except RecursionError:
+        return set()
+    return probe.expected if probe.farthest == mark else set()
+
+
+class _Probe:
+    """Reads block after block, and keeps what was wanted at the farthest token."""
+
+    def __init__(self) -> None:
+        self.run: Any = None
+        self.farthest = -1
+        self.expected: set[int | str] = set()
+
+    def __call__(self, rule: str, position: int) -> tuple[list[Any], int]:
+        body: list[Any] = []
+        while True:
+            node, end, farthest, expected = self.run(rule, position)
+            if farthest > self.farthest:
+                self.farthest, self.expected = farthest, set()
+            if farthest == self.farthest:
+                self.expected |= expected
+            if node is None:
+                return body, position
+            body.append(node)
+            position = end

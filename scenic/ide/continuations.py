@@ -1,0 +1,238 @@
+"""The words that the grammar allows at a place, each with the form that it begins: what completion offers of the language.
+
+Which words may stand at a place, the parser says (`scenic.compiler.probing`); what they mean, the declarations. So what is
+added to the grammar and declared is offered without further ado.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from types import MappingProxyType
+from typing import Final
+
+from scenic.compiler.precedence import ATOM, FORMS, Form, Ladder, Slot, Word
+from scenic.compiler.precedence import SPECIFIERS as SPECIFIER_FORMS
+from scenic.compiler.probing import Wanted, wanted_at
+from scenic.compiler.syntax import STATEMENT_FORMS, words_of
+from scenic.ide import documentation
+from scenic.language.keywords import TEMPORAL_OPERATORS
+from scenic.language.operators import OPERATORS
+from scenic.language.specifiers import SPECIFIERS
+from scenic.language.statements import STATEMENTS
+
+__all__ = ["Continuation", "Continuations", "PhraseKind", "continuations"]
+
+
+class PhraseKind(StrEnum):
+    """What a word begins."""
+
+    SPECIFIER = "specifier"
+    OPERATOR = "operator"
+    TEMPORAL = "temporal operator"
+    STATEMENT = "statement"
+    KEYWORD = "keyword"
+
+
+@dataclass(frozen=True, slots=True)
+class _Phrase:
+    """A declared form: ``start`` are its first words, ``rest`` what follows them; of infix forms without the left operand."""
+
+    kind: PhraseKind
+    name: str
+    start: tuple[str, ...]
+    rest: str
+    form: str
+    operands: tuple[str, ...]
+    is_infix: bool = False
+    level: int = ATOM
+
+
+@dataclass(frozen=True, slots=True)
+class Continuation:
+    """Something that may be written at a place.
+
+    ``text`` is the rest of the form from here on, operands by their names (``"toward target"``), ``words`` is the part of
+    it that is written as it stands, ``operands`` are the places to fill in. ``form`` is the whole form as it is declared.
+    ``name`` is that of the declaration: of `SPECIFIERS`, `OPERATORS`, `TEMPORAL_OPERATORS` or `STATEMENTS` by ``kind``, or
+    the keyword itself.
+    """
+
+    kind: PhraseKind
+    name: str
+    text: str
+    words: str
+    operands: tuple[str, ...]
+    form: str
+
+    @property
+    def markdown(self) -> str | None:
+        """What a reader should know of it."""
+        match self.kind:
+            case PhraseKind.SPECIFIER:
+                return documentation.of_specifier(SPECIFIERS[self.name])
+            case PhraseKind.OPERATOR:
+                return documentation.of_operator(OPERATORS[self.name])
+            case PhraseKind.TEMPORAL:
+                return documentation.of_temporal(self.name)
+            case PhraseKind.STATEMENT:
+                return documentation.of_statement(STATEMENTS[self.name])
+            case PhraseKind.KEYWORD:
+                return documentation.of_keyword(self.name)
+
+
+@dataclass(frozen=True, slots=True)
+class Continuations:
+    """What may stand at a place: ``items`` of the language, and by ``labels`` and ``kinds`` other things.
+
+    Labels are those of the grammar's rules: ``"an expression"``, ``"a condition"``, ``"an argument"``, ``"a pattern"``,
+    ``"a name"`` (after ``new``, of a class), ``"the name of a module"``; kinds those of tokens: ``"NAME"`` where a new name or
+    an attribute stands. ``before`` are the tokens of the line before the place.
+    """
+
+    items: tuple[Continuation, ...]
+    labels: frozenset[str]
+    kinds: frozenset[str]
+    before: tuple[str, ...]
+
+
+_OPERANDS: Final = ("an expression", "a condition", "an argument", "a subscript", "an item")
+_NOWHERE: Final = Continuations((), frozenset(), frozenset(), ())
+
+
+def continuations(text: str, line: int, column: int) -> Continuations:
+    """What may stand at ``line`` (from 1) and ``column`` (in characters from 0); a word begun there is not looked at.
+
+    Nothing in strings and comments, and after a mistake in the same statement. Runs nothing of the program.
+    """
+    here = text.split("\n")[line - 1][:column]
+    while column > 0 and (here[column - 1].isalnum() or here[column - 1] == "_"):
+        column -= 1
+    wanted = wanted_at(text, line, column)
+    if wanted is None:
+        return _NOWHERE
+    found = dict.fromkeys(_find(wanted))
+    return Continuations(tuple(found), wanted.labels, wanted.kinds, wanted.before)
+
+
+def _find(wanted: Wanted) -> Iterator[Continuation]:
+    begun: set[str] = set()
+    after = _LOOSEST_AFTER.get(wanted.before[-1]) if wanted.before else None
+    for phrase in _PHRASES:
+        if after is not None and after > phrase.level and not phrase.is_infix:
+            continue
+        for count, word in enumerate(phrase.start):
+            if count == 0:
+                fits = word in _beginning(wanted, phrase)
+            else:
+                fits = word in wanted.words and wanted.before[-count:] == phrase.start[:count]
+            if fits:
+                begun.add(word)
+                yield _continuation(phrase, count)
+    others = set(wanted.words).union(*(wanted.begins(label) for label in wanted.labels)) - begun
+    for word in sorted(others):
+        if word.isidentifier() and word != "_":
+            yield Continuation(PhraseKind.KEYWORD, word, word, word, (), word)
+
+
+def _beginning(wanted: Wanted, phrase: _Phrase) -> frozenset[str]:
+    """The words with which a phrase of this kind may begin here."""
+    match phrase.kind:
+        case PhraseKind.SPECIFIER:
+            return wanted.begins("a specifier")
+        case PhraseKind.STATEMENT:
+            first = wanted.words if not wanted.before or wanted.before[-1] in (":", ";") else frozenset()
+            return first.union(*(wanted.begins(label) for label in wanted.labels if label not in _OPERANDS))
+    if phrase.is_infix:
+        return wanted.words
+    return frozenset().union(*(wanted.begins(label) for label in _OPERANDS), _directly(wanted, phrase))
+
+
+def _directly(wanted: Wanted, phrase: _Phrase) -> frozenset[str]:
+    """In a condition the words of the temporal ladder are wanted by themselves."""
+    return wanted.words if phrase.kind is PhraseKind.TEMPORAL else frozenset()
+
+
+def _continuation(phrase: _Phrase, count: int) -> Continuation:
+    words = " ".join(phrase.start[count:])
+    text = f"{words}{'' if phrase.rest[:1] in (':', '[') else ' '}{phrase.rest}".strip()
+    return Continuation(phrase.kind, phrase.name, text, words, phrase.operands, phrase.form)
+
+
+def _phrases() -> Iterator[_Phrase]:
+    for kind, table, node in (
+        (PhraseKind.SPECIFIER, SPECIFIERS, "Specifier"),
+        (PhraseKind.OPERATOR, OPERATORS, "Operation"),
+        (PhraseKind.TEMPORAL, TEMPORAL_OPERATORS, "Temporal"),
+    ):
+        for name, declared in table.items():
+            for form in declared.forms:
+                yield _phrase(
+                    kind,
+                    name,
+                    form,
+                    [each for each in _WRITTEN if (each.node, each.operator) == (node, name)],
+                )
+    for name, statement in STATEMENTS.items():
+        for form in statement.forms:
+            yield from _statement(name, form)
+
+
+def _phrase(kind: PhraseKind, name: str, text: str, forms: Sequence[Form]) -> _Phrase:
+    """A declared form, in which the words are those that it shares with a form of the grammar."""
+    words = text.split()
+    agreeing = next(form for form in forms if _agrees(words, form))
+    parts = agreeing.parts
+    is_word = [isinstance(part, Word) for part in parts]
+    first = 0 if is_word[0] else 1
+    count = next((index for index in range(first, len(words)) if not is_word[index]), len(words))
+    operands = tuple(words[index] for index in range(count, len(words)) if not is_word[index])
+    return _Phrase(
+        kind,
+        name,
+        tuple(words[first:count]),
+        " ".join(words[count:]),
+        text,
+        operands,
+        is_infix=first > 0,
+        level=agreeing.level if kind is PhraseKind.OPERATOR else ATOM,
+    )
+
+
+def _agrees(words: Sequence[str], form: Form) -> bool:
+    return len(words) == len(form.parts) and all(
+        not isinstance(part, Word) or part.text == word for word, part in zip(words, form.parts, strict=True)
+    )
+
+
+def _statement(name: str, text: str) -> Iterator[_Phrase]:
+    words = text.replace(":", " :", 1).replace("[", " [", 1).split()
+    rows = [
+        form.row
+        for form in STATEMENT_FORMS
+        if form.node == name or (form.node is None and form.start == words[0])
+    ]
+    known = frozenset(word for row in rows for word in words_of(row))
+    count = next((index for index, word in enumerate(words) if word not in known), len(words))
+    if count:
+        rest = text.partition(" ".join(words[:count]))[2].strip()
+        yield _Phrase(PhraseKind.STATEMENT, name, tuple(words[:count]), rest, text, ())
+
+
+_WRITTEN: Final = (*SPECIFIER_FORMS, *FORMS)
+
+
+def _loosest_after() -> Mapping[str, int]:
+    found: dict[str, int] = {}
+    for form in _WRITTEN:
+        last = form.parts[-1]
+        if form.ladder is not Ladder.TEMPORAL and isinstance(last, Slot):
+            word = form.words[-1]
+            found[word] = min(found.get(word, ATOM), last.level)
+    return MappingProxyType(found)
+
+
+_LOOSEST_AFTER: Final = _loosest_after()
+"""By the word before it, how loose an operand may be there that is an operator itself."""
+
+_PHRASES: Final = tuple(_phrases())
+"""All declared forms, in the order of the declarations."""
