@@ -15,7 +15,8 @@ import numpy.typing as npt
 from scenic.formats.camera import Camera, corners, framing, ground_height
 from scenic.formats.instances import Array, Instance, Picture
 from scenic.formats.poses import rotation_matrix
-from scenic.formats.rays import Floats, RayScene
+from scenic.runtime.geometry.embree import RayScene
+from scenic.runtime.geometry.embree import Singles as Floats
 
 SIZE: Final = (960, 720)
 

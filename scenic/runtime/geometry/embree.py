@@ -1,12 +1,12 @@
-"""Ray casting: the one place that knows Embree (in single precision, which is enough for pictures)."""
+"""Ray casting: the one place that knows Embree, which works in single precision."""
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
-Floats = npt.NDArray[np.float32]
+Singles: TypeAlias = npt.NDArray[np.float32]
 
 
 @dataclass(frozen=True, slots=True)
@@ -16,9 +16,9 @@ class Hits:
     """
 
     triangle: npt.NDArray[np.int32]
-    distance: Floats
-    second: Floats
-    third: Floats
+    distance: Singles
+    second: Singles
+    third: Singles
 
 
 class RayScene:
@@ -33,7 +33,7 @@ class RayScene:
         if not self._empty:
             self._mesh: Any = TriangleMesh(self._scene, np.ascontiguousarray(triangles, dtype=np.float32))
 
-    def first_hits(self, origins: Floats, directions: Floats) -> Hits:
+    def first_hits(self, origins: Singles, directions: Singles) -> Hits:
         """What each ray meets first."""
         count = len(origins)
         if self._empty or not count:
@@ -49,7 +49,7 @@ class RayScene:
         distance = np.where(triangle >= 0, found["tfar"], np.float32(np.inf))
         return Hits(triangle, distance, found["u"], found["v"])
 
-    def blocked(self, origins: Floats, directions: Floats, reach: float = 1e30) -> npt.NDArray[np.bool_]:
+    def blocked(self, origins: Singles, directions: Singles, reach: float = 1e30) -> npt.NDArray[np.bool_]:
         """Whether each ray meets anything within ``reach`` lengths of its direction."""
         count = len(origins)
         if self._empty or not count:

@@ -1,0 +1,171 @@
+"""Whether observers see bodies (section 11.3): the answer of casting every ray, found with as few as possible.
+
+What is cheap decides first: a camera inside, the middle of the body, its range and directions, occluders that
+hide its whole box. Then rays are cast: a few spread over the body, more, all. A ray that seems to get through is
+checked in double precision against every face it may meet, so that no body is seen through a gap of rounding.
+"""
+
+from collections.abc import Sequence
+from typing import Final
+
+import numpy as np
+
+from scenic.runtime.geometry import inside
+from scenic.runtime.geometry.bodies import Body
+from scenic.runtime.geometry.mesh import Mesh
+from scenic.runtime.geometry.poses import Booleans, Floats, Indices
+from scenic.runtime.geometry.visibility.grid import Rows, rows_towards
+from scenic.runtime.geometry.visibility.hits import Placed, place
+from scenic.runtime.geometry.visibility.obstacles import Obstacles, Occluder
+from scenic.runtime.geometry.visibility.points import hidden_points
+from scenic.runtime.geometry.visibility.proofs import boxes_hidden
+from scenic.runtime.geometry.visibility.views import (
+    DISTANCE_SLACK,
+    Extents,
+    Views,
+    box_corners,
+    extents,
+)
+
+_LANES: Final = 1024
+"""Lanes looked at together."""
+
+_RAYS: Final = 1 << 17
+"""Rays cast together."""
+
+_STAGES: Final = (8, 40)
+"""Rows and columns of the rays cast before all of them are."""
+
+
+def sees_bodies(views: Views, target: Body, occluders: Sequence[Occluder], lanes: int) -> Booleans:
+    """Whether each observer sees the target, ``(lanes,)``.
+
+    Args:
+        views: the observers.
+        target: what they look at.
+        occluders: what may hide it; neither the observers themselves nor the target may be among them.
+        lanes: the number of lanes.
+
+    """
+    result = np.zeros(lanes, dtype=np.bool_)
+    spread = views.spread(lanes)
+    for start in range(0, lanes, _LANES):
+        part = np.arange(start, min(start + _LANES, lanes))
+        result[part] = _sees(spread.take(part), target, occluders, part)
+    return result
+
+
+def _sees(views: Views, target: Body, occluders: Sequence[Occluder], lanes: Indices) -> Booleans:
+    """The same for some lanes; the views have a row for each of them."""
+    poses = target.poses.take(lanes)
+    position = np.broadcast_to(poses.position, (len(lanes), 3))
+    placed = place(target, views, lanes)
+    seen = inside_body(placed)
+    central = np.flatnonzero(~seen & views.contain(position) & _holds_centre(placed))
+    if len(central):
+        hidden = hidden_points(views.take(central), position[central], occluders, lanes[central])
+        seen[central] = ~hidden
+    apart = box_distance(placed.origin, poses.size)
+    left = np.flatnonzero(~seen & (apart <= views.distance * (1 + DISTANCE_SLACK)))
+    if not len(left):
+        return seen
+    directions = extents(box_corners(views.take(left), poses.take(left)))
+    meets = np.flatnonzero(directions.meet(views.window[left]))
+    left = left[meets]
+    if len(left):
+        directions = Extents(
+            directions.azimuth[meets], directions.around[meets], directions.altitude[meets]
+        )
+        search = RaySearch(views.take(left), target, occluders, lanes[left], directions)
+        seen[left] = search.found()
+    return seen
+
+
+def inside_body(placed: Placed) -> Booleans:
+    """Whether the camera is inside the body, ``(n,)``."""
+    result = np.zeros(len(placed.mesh), dtype=np.bool_)
+    near = (np.abs(placed.origin) <= 0.5).all(axis=1)
+    for number, mesh in enumerate(placed.meshes):
+        chosen = np.flatnonzero(near & (placed.mesh == number))
+        if len(chosen):
+            result[chosen] = mesh.is_box or inside.contains_points(mesh, placed.origin[chosen])
+    return result
+
+
+def box_distance(origin: Floats, size: Floats) -> Floats:
+    """How far points ``(n, 3)`` in the unit frame are from the box of a size, in metres, ``(n,)``."""
+    gap = (origin - np.clip(origin, -0.5, 0.5)) * size
+    return np.sqrt(gap[:, 0] * gap[:, 0] + gap[:, 1] * gap[:, 1] + gap[:, 2] * gap[:, 2])
+
+
+def _holds_centre(placed: Placed) -> Booleans:
+    known = np.array([mesh.derived(_contains_own_centre) for mesh in placed.meshes], dtype=np.bool_)
+    return known[placed.mesh]
+
+
+def _contains_own_centre(mesh: Mesh) -> bool:
+    return mesh.is_box or bool(inside.contains_points(mesh, np.zeros((1, 3)))[0])
+
+
+class RaySearch:
+    """The search for a ray that meets the target and nothing before it, in some lanes."""
+
+    def __init__(
+        self,
+        views: Views,
+        target: Body,
+        occluders: Sequence[Occluder],
+        lanes: Indices,
+        directions: Extents,
+    ) -> None:
+        self._views = views
+        self._count = len(lanes)
+        self._placed = place(target, views, lanes)
+        poses = target.poses.take(lanes)
+        position = np.broadcast_to(poses.position, (self._count, 3))
+        size = np.broadcast_to(poses.size, (self._count, 3))
+        radius = 0.5 * np.sqrt(size[:, 0] ** 2 + size[:, 1] ** 2 + size[:, 2] ** 2)
+        self._obstacles = Obstacles(occluders, views, lanes, position, radius)
+        self._corners = box_corners(views, poses)
+        way = position - views.camera
+        distance = np.sqrt(way[:, 0] ** 2 + way[:, 1] ** 2 + way[:, 2] ** 2)
+        self._rows = rows_towards(views, directions, distance)
+
+    def found(self) -> Booleans:
+        """Whether there is such a ray among those of the view's grid, ``(n,)``."""
+        seen = np.zeros(self._count, dtype=np.bool_)
+        left = ~boxes_hidden(self._corners, self._obstacles)
+        for across in _STAGES:
+            totals = self._rows.totals(self._count)
+            few = left & (totals <= 4 * across * across)
+            self._cast(self._rows, few, seen)
+            left &= ~few
+            self._cast(self._rows.thinned(across, self._count), left, seen)
+            left &= ~seen
+            if not left.any():
+                return seen
+        self._cast(self._rows, left, seen)
+        return seen
+
+    def _cast(self, rows: Rows, wanted: Booleans, seen: Booleans) -> None:
+        """Cast the rays of the wanted lanes and mark those where one gets through."""
+        rows = rows.where(np.flatnonzero(wanted[rows.lane]))
+        for lane, directions in rows.rays(_RAYS):
+            useful = np.flatnonzero(~seen[lane])
+            lane, directions = lane[useful], directions[useful]
+            through = self._through(lane, directions)
+            # One ray for each lane is enough; only where it fails the exact test, the next is looked at.
+            while len(through):
+                first = through[np.unique(lane[through], return_index=True)[1]]
+                passed = self._through(lane[first], directions[first], exact=True)
+                seen[lane[first[passed]]] = True
+                through = through[~seen[lane[through]] & ~np.isin(through, first)]
+
+    def _through(self, lane: Indices, directions: Floats, *, exact: bool = False) -> Indices:
+        """The numbers of the rays that meet the target within range and no occluder before it."""
+        distance = self._placed.first(lane, directions, exact=exact)
+        meets = np.flatnonzero(distance <= self._views.distance[lane] * (1 + DISTANCE_SLACK))
+        if not len(meets):
+            return meets
+        blocked = self._obstacles.block(lane[meets], directions[meets], distance[meets], exact=exact)
+        return meets[~blocked]
