@@ -101,7 +101,10 @@ def _tight(part: Booleans, corner: tuple[int, int, int]) -> tuple[Booleans, tupl
 
 
 def _best_cut(part: Booleans) -> tuple[int, int]:
-    """The axis and place of the cut that leaves the least volume in the tight boxes of the two sides."""
+    """The axis and place of the cut that leaves the least volume in the tight boxes of the two sides.
+
+    Where no cut leaves less than the whole, as in a ring, it is the middle of the longest axis.
+    """
     longest = int(np.argmax(part.shape))
     best = (part.size, longest, part.shape[longest] // 2)
     for axis in range(3):
@@ -110,7 +113,8 @@ def _best_cut(part: Booleans) -> tuple[int, int]:
         after = _volumes_up_to(moved[::-1])[::-1][1:]
         if len(before):
             at = int(np.argmin(before + after))
-            best = min(best, (int(before[at] + after[at]), axis, at + 1))
+            if before[at] + after[at] < best[0]:
+                best = (int(before[at] + after[at]), axis, at + 1)
     return best[1], best[2]
 
 

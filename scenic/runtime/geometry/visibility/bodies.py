@@ -6,6 +6,7 @@ checked in double precision against every face it may meet, so that no body is s
 """
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -57,6 +58,42 @@ def sees_bodies(views: Views, target: Body, occluders: Sequence[Occluder], lanes
 
 def _sees(views: Views, target: Body, occluders: Sequence[Occluder], lanes: Indices) -> Booleans:
     """The same for some lanes; the views have a row for each of them."""
+    bounds = bounded(views, target, occluders, lanes)
+    seen = bounds.seen
+    if len(bounds.left):
+        seen[bounds.left] = RaySearch(views, target, occluders, lanes, bounds).found()
+    return seen
+
+
+@dataclass(frozen=True)
+class Bounds:
+    """What is known before rays are cast.
+
+    Attributes:
+        seen: the lanes whose observer is in the target or sees its middle, ``(n,)``.
+        left: numbers of the lanes that are open: not seen yet, but within range and angles, ``(m,)``.
+        directions: those of the targets' boxes in the open lanes.
+
+    """
+
+    seen: Booleans
+    left: Indices
+    directions: Extents
+
+    def surroundings(
+        self, views: Views, target: Body, occluders: Sequence[Occluder], lanes: Indices
+    ) -> tuple[Placed, Obstacles, Floats]:
+        """For the open lanes, whose views are given: the target, what may hide it, and its box's corners."""
+        chosen = lanes[self.left]
+        poses = target.poses.take(chosen)
+        position, size = (np.broadcast_to(part, (len(chosen), 3)) for part in (poses.position, poses.size))
+        radius = 0.5 * np.sqrt(size[:, 0] ** 2 + size[:, 1] ** 2 + size[:, 2] ** 2)
+        obstacles = Obstacles(occluders, views, chosen, position, radius)
+        return place(target, views, chosen), obstacles, box_corners(views, poses)
+
+
+def bounded(views: Views, target: Body, occluders: Sequence[Occluder], lanes: Indices) -> Bounds:
+    """What bounds and the middle of the target decide; the views have a row for each of the lanes."""
     poses = target.poses.take(lanes)
     position = np.broadcast_to(poses.position, (len(lanes), 3))
     placed = place(target, views, lanes)
@@ -67,18 +104,10 @@ def _sees(views: Views, target: Body, occluders: Sequence[Occluder], lanes: Indi
         seen[central] = ~hidden
     apart = box_distance(placed.origin, poses.size)
     left = np.flatnonzero(~seen & (apart <= views.distance * (1 + DISTANCE_SLACK)))
-    if not len(left):
-        return seen
     directions = extents(box_corners(views.take(left), poses.take(left)))
     meets = np.flatnonzero(directions.meet(views.window[left]))
-    left = left[meets]
-    if len(left):
-        directions = Extents(
-            directions.azimuth[meets], directions.around[meets], directions.altitude[meets]
-        )
-        search = RaySearch(views.take(left), target, occluders, lanes[left], directions)
-        seen[left] = search.found()
-    return seen
+    directions = Extents(directions.azimuth[meets], directions.around[meets], directions.altitude[meets])
+    return Bounds(seen, left[meets], directions)
 
 
 def inside_body(placed: Placed) -> Booleans:
@@ -111,25 +140,17 @@ class RaySearch:
     """The search for a ray that meets the target and nothing before it, in some lanes."""
 
     def __init__(
-        self,
-        views: Views,
-        target: Body,
-        occluders: Sequence[Occluder],
-        lanes: Indices,
-        directions: Extents,
+        self, views: Views, target: Body, occluders: Sequence[Occluder], lanes: Indices, bounds: Bounds
     ) -> None:
-        self._views = views
-        self._count = len(lanes)
-        self._placed = place(target, views, lanes)
-        poses = target.poses.take(lanes)
-        position = np.broadcast_to(poses.position, (self._count, 3))
-        size = np.broadcast_to(poses.size, (self._count, 3))
-        radius = 0.5 * np.sqrt(size[:, 0] ** 2 + size[:, 1] ** 2 + size[:, 2] ** 2)
-        self._obstacles = Obstacles(occluders, views, lanes, position, radius)
-        self._corners = box_corners(views, poses)
-        way = position - views.camera
+        self._views = views.take(bounds.left)
+        self._count = len(bounds.left)
+        self._placed, self._obstacles, self._corners = bounds.surroundings(
+            self._views, target, occluders, lanes
+        )
+        position = np.broadcast_to(target.poses.take(lanes[bounds.left]).position, (self._count, 3))
+        way = position - self._views.camera
         distance = np.sqrt(way[:, 0] ** 2 + way[:, 1] ** 2 + way[:, 2] ** 2)
-        self._rows = rows_towards(views, directions, distance)
+        self._rows = rows_towards(self._views, bounds.directions, distance)
 
     def found(self) -> Booleans:
         """Whether there is such a ray among those of the view's grid, ``(n,)``."""

@@ -14,7 +14,7 @@ from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.embree import RayScene
 from scenic.runtime.geometry.facegrid import face_grid
 from scenic.runtime.geometry.mesh import Mesh
-from scenic.runtime.geometry.poses import Floats, Indices
+from scenic.runtime.geometry.poses import Booleans, Floats, Indices
 from scenic.runtime.geometry.visibility.views import Views
 
 _FEW_FACES: Final = 64
@@ -160,7 +160,9 @@ def exact_first(mesh: Mesh, origins: Floats, directions: Floats, near: Floats) -
     return result
 
 
-def face_crossings(mesh: Mesh, origins: Floats, directions: Floats, faces: Indices) -> tuple[Floats, Floats]:
+def face_crossings(
+    mesh: Mesh, origins: Floats, directions: Floats, faces: Indices
+) -> tuple[Booleans, Floats]:
     """Whether lines ``(r, 3)`` cross faces ``(r,)``, closed at the edges, and at what parameter.
 
     Moeller and Trumbore, "Fast, minimum storage ray/triangle intersection", J. Graphics Tools 2(1), 1997.

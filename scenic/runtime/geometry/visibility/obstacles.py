@@ -119,6 +119,3 @@ def _meet_hull(offset: Floats, reach: Floats, way: Floats, radius: Floats) -> Bo
 
 def _norm(rows: Floats) -> Floats:
     return np.sqrt(rows[:, 0] * rows[:, 0] + rows[:, 1] * rows[:, 1] + rows[:, 2] * rows[:, 2])
-
-
-

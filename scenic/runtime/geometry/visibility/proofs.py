@@ -72,11 +72,11 @@ def shadowed(placed: Placed, lanes: Indices, directions: Floats, limits: Floats)
 
 def _inside(mesh: Mesh, origins: Floats) -> Booleans:
     """Whether points in the unit frame are in the solid, ``(n,)``; its rays need not meet the surface then."""
-    result = (np.abs(origins) <= 0.5 + _MARGIN).all(axis=1)
+    result = np.asarray((np.abs(origins) <= 0.5 + _MARGIN).all(axis=1))
     if not mesh.is_box:
         near = np.flatnonzero(result)
         result[near] = contains_points(mesh, origins[near])
-    return np.asarray(result, dtype=np.bool_)
+    return result
 
 
 def _meets_box(origins: Floats, directions: Floats, low: Floats, high: Floats, limits: Floats) -> Booleans:

@@ -76,10 +76,11 @@ class Views:
     def spread(self, lanes: int) -> "Views":
         """The same views with a row for each lane in every column."""
         return Views(
-            *(
-                np.broadcast_to(column, (lanes, *column.shape[1:]))
-                for column in (self.camera, self.orientation, self.angles, self.distance, self.density)
-            ),
+            np.broadcast_to(self.camera, (lanes, 3)),
+            np.broadcast_to(self.orientation, (lanes, 4)),
+            np.broadcast_to(self.angles, (lanes, 2)),
+            np.broadcast_to(self.distance, (lanes,)),
+            np.broadcast_to(self.density, (lanes,)),
             np.broadcast_to(self.count, (lanes, 2)),
             np.broadcast_to(self.scaling, (lanes,)),
         )
@@ -130,12 +131,11 @@ class Views:
         azimuth = np.abs(np.arctan2(-x, y))
         altitude = np.abs(np.arctan2(z, across))
         upright = across <= ANGLE_SLACK * np.abs(z)
+        within = (azimuth <= half[:, 0]) | upright
         result: Booleans = (
-            (distance <= self.distance * (1 + DISTANCE_SLACK))
-            & ((azimuth <= half[:, 0]) | upright)
-            & (altitude <= half[:, 1])
-        )
-        return result | (distance == 0)
+            (distance <= self.distance * (1 + DISTANCE_SLACK)) & within & (altitude <= half[:, 1])
+        ) | (distance == 0)
+        return result
 
 
 @dataclass(frozen=True, slots=True)
@@ -215,7 +215,7 @@ def extents(corners: Floats) -> Extents:
 
 
 def _triple(nx: Floats, ny: Floats, nz: Floats, u: Floats, sx: Floats, sy: Floats, sz: Floats) -> Floats:
-    """n · (u × s): positive where s is ahead of u on the way round n."""
+    """The product n · (u × s): positive where s is ahead of u on the way round n."""
     result: Floats = (
         nx * (u[..., 1] * sz - u[..., 2] * sy)
         + ny * (u[..., 2] * sx - u[..., 0] * sz)

@@ -83,9 +83,7 @@ def sees_point(views: Views, point: Array, occluders: list[Body], lane: int) -> 
         return False
     if abs(math.atan2(z, math.hypot(x, y))) > v / 2 + SLACK:
         return False
-    return all(
-        first_hits(camera, offset[None], triangles(body, lane))[0] > 1 + SLACK for body in occluders
-    )
+    return all(first_hits(camera, offset[None], triangles(body, lane))[0] > 1 + SLACK for body in occluders)
 
 
 def grid(views: Views, lane: int, distance: float) -> Array:
@@ -103,9 +101,7 @@ def grid(views: Views, lane: int, distance: float) -> Array:
         across = max(1, round(columns * math.cos(altitude))) if scaled else int(columns)
         azimuth = -h / 2 + (np.arange(across) + 0.5) * h / across
         rays.append(
-            np.stack(
-                [-np.sin(azimuth), np.cos(azimuth), np.full(across, math.tan(altitude))], axis=-1
-            )
+            np.stack([-np.sin(azimuth), np.cos(azimuth), np.full(across, math.tan(altitude))], axis=-1)
         )
     found = np.concatenate(rays)
     return found / np.linalg.norm(found, axis=1, keepdims=True)

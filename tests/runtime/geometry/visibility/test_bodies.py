@@ -87,7 +87,7 @@ def active(occluders: list[Occluder], lane: int) -> list[Body]:
     return [item.body for item in occluders if item.active[lane if len(item.active) > 1 else 0]]
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(2))
 def test_bodies_are_seen_as_when_every_ray_is_cast(seed: int) -> None:
     count = 100
     observers, target, occluders = scenes(seed, count)
@@ -105,8 +105,7 @@ def test_points_are_seen_as_by_the_letter() -> None:
     points = target.poses.position
     seen = sees_points(observers, points, occluders, count)
     expected = [
-        reference.sees_point(observers, points[lane], active(occluders, lane), lane)
-        for lane in range(count)
+        reference.sees_point(observers, points[lane], active(occluders, lane), lane) for lane in range(count)
     ]
     assert seen.tolist() == expected
     assert 200 < seen.sum() < 1800
@@ -221,7 +220,5 @@ def test_few_rays_may_miss_what_more_rays_find() -> None:
 def test_ray_numbers_grow_with_the_distance_where_asked() -> None:
     target = Body((BOX,), None, Poses.fixed((20.5, 20, 0), size=(1, 1, 1)))
     for scaling in (False, True):
-        observer = Views.fixed(
-            (0, 0, 0), angles=(np.pi / 2, 0.3), density=0.4, scaling=scaling, distance=100
-        )
+        observer = Views.fixed((0, 0, 0), angles=(np.pi / 2, 0.3), density=0.4, scaling=scaling, distance=100)
         assert sees(observer, target) == scaling

@@ -1,0 +1,82 @@
+"""The places in view: exact test, draws and mesh say the same."""
+
+import math
+
+import numpy as np
+import pytest
+
+from scenic.runtime.geometry.inside import contains_points
+from scenic.runtime.geometry.visibility.regions import draw_places, view_mesh
+from scenic.runtime.geometry.visibility.views import Views, extents
+
+ANGLES = [
+    (2 * math.pi, math.pi),
+    (1.0, math.pi),
+    (5.5, math.pi),
+    (2 * math.pi, 1.2),
+    (1.0, 0.7),
+    (4.5, 2.5),
+    (0.001, 0.001),
+]
+
+
+@pytest.mark.parametrize(("horizontal", "vertical"), ANGLES)
+def test_the_mesh_is_a_solid_with_the_volume_of_the_region(horizontal: float, vertical: float) -> None:
+    mesh = view_mesh(horizontal, vertical)
+    h, v = max(horizontal, 0.017), max(vertical, 0.017)
+    assert mesh.is_volume
+    assert mesh.volume == pytest.approx(h * 2 * math.sin(v / 2) / 3, rel=3e-3)
+
+
+@pytest.mark.parametrize(("horizontal", "vertical"), ANGLES[:-1])
+def test_the_mesh_holds_what_the_exact_test_holds(horizontal: float, vertical: float) -> None:
+    rng = np.random.default_rng(3)
+    points = rng.uniform(-1.05, 1.05, (4000, 3))
+    view = Views.fixed((0, 0, 0), angles=(horizontal, vertical), distance=1)
+    exact, meshed = view.contain(points), contains_points(view_mesh(horizontal, vertical), points)
+    inner = Views.fixed((0, 0, 0), angles=(horizontal - 0.01, vertical - 0.01), distance=0.997)
+    outer = Views.fixed((0, 0, 0), angles=(horizontal + 0.01, vertical + 0.01), distance=1.003)
+    assert not (inner.contain(points) & ~meshed & exact & (horizontal < 6)).any()
+    assert not (meshed & ~outer.contain(points)).any()
+    assert (exact != meshed).mean() < 0.01
+
+
+@pytest.mark.parametrize(("horizontal", "vertical"), ANGLES[:-1])
+def test_draws_are_uniform_over_the_region(horizontal: float, vertical: float) -> None:
+    rng = np.random.default_rng(4)
+    turn = np.array([0.1, -0.5, 0.3, 0.8])
+    turn /= np.linalg.norm(turn)
+    view = Views.fixed((3, -2, 1), turn, angles=(horizontal, vertical), distance=4)
+    drawn = draw_places(view, rng.random((20000, 3)))
+    assert view.contain(drawn).all()
+    # As many draws as there is volume in a smaller region within it.
+    part = Views.fixed((3, -2, 1), turn, angles=(0.6 * horizontal, 0.5 * vertical), distance=3)
+    share = 0.6 * math.sin(0.25 * vertical) / math.sin(0.5 * vertical) * (3 / 4) ** 3
+    assert part.contain(drawn).mean() == pytest.approx(share, abs=4.5 * math.sqrt(share / 20000))
+
+
+def test_the_directions_of_boxes_are_those_of_their_points() -> None:
+    rng = np.random.default_rng(5)
+    axes = np.linalg.qr(rng.normal(size=(300, 3, 3)))[0] * rng.uniform(0.1, 2, (300, 3, 1))
+    middle = rng.normal(size=(300, 3)) * rng.choice([0.5, 3.0], (300, 1))
+    signs = np.array([[i, j, k] for i in (-1, 1) for j in (-1, 1) for k in (-1, 1)])
+    corners = middle[:, None] + signs @ axes
+    found = extents(corners)
+    places = rng.uniform(-1, 1, (300, 4000, 3))
+    largest = np.argmax(np.abs(places), axis=-1)
+    np.put_along_axis(
+        places, largest[..., None], np.sign(np.take_along_axis(places, largest[..., None], -1)), -1
+    )
+    x, y, z = np.moveaxis(middle[:, None] + places @ axes, -1, 0)
+    altitude = np.arctan2(z, np.hypot(x, y))
+    assert (altitude >= found.altitude[:, :1]).all()
+    assert (altitude <= found.altitude[:, 1:]).all()
+    # And tight, up to how finely the surface is sampled.
+    assert np.median(altitude.min(axis=1) - found.altitude[:, 0]) < 0.02
+    assert np.median(found.altitude[:, 1] - altitude.max(axis=1)) < 0.02
+    azimuth = np.arctan2(-x, y)
+    inside = np.zeros(azimuth.shape, bool)
+    for turn in (-2 * np.pi, 0, 2 * np.pi):
+        inside |= (azimuth + turn >= found.azimuth[:, :1]) & (azimuth + turn <= found.azimuth[:, 1:])
+    assert (inside | found.around[:, None]).all()
+    assert 20 < found.around.sum() < 280
