@@ -92,9 +92,13 @@ class _Comment:
     problem: Diagnostic | None = None
     used: bool = False
 
+    @property
+    def says_something(self) -> bool:
+        """Whether it can silence anything."""
+        return self.problem is None or bool(self.codes)
+
     def silences(self, diagnostic: Diagnostic) -> bool:
-        if self.problem is not None and not self.codes:
-            return False
+        """Whether it silences a diagnostic at its place, which is noted; it must say something."""
         if not self.codes and self.brackets is None:
             if diagnostic.severity is Severity.ERROR or diagnostic.code in _OWN:
                 return False
@@ -111,6 +115,8 @@ class _Silencer:
     """Finds the comment that silences a diagnostic, and notes its use."""
 
     def __init__(self, comments: Sequence[_Comment], statements: Sequence[tuple[int, int]]) -> None:
+        # A line may have very many comments that say nothing, and as many diagnostics about them.
+        comments = [comment for comment in comments if comment.says_something]
         self._of_file = [comment for comment in comments if comment.whole_file]
         self._of_line: dict[int, list[_Comment]] = {}
         for comment in comments:

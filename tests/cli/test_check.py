@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.cli.commands import run_here
 from tests.processes import interruptible
 
 ROOT = Path(__file__).parents[2]
@@ -20,8 +21,12 @@ COMMAND = [sys.executable, "-m", "scenic.cli.main"]
 ENVIRONMENT = {**os.environ, "PYTHONPATH": str(ROOT), "NO_COLOR": ""}
 
 
-def run(*arguments: str | Path, code: str | None = None) -> "subprocess.CompletedProcess[str]":
-    """Run the command; with ``code``, run this Python code instead, which may prepare what fails."""
+def run(*arguments: str | Path) -> "subprocess.CompletedProcess[str]":
+    return run_here(arguments, folder=ROOT, variables={"NO_COLOR": ""})
+
+
+def run_process(*arguments: str | Path, code: str | None = None) -> "subprocess.CompletedProcess[str]":
+    """Run the command as a process; with ``code``, run this Python code instead, which may prepare what fails."""
     command = [sys.executable, "-c", code] if code else COMMAND
     return subprocess.run(
         [*command, *map(str, arguments)],
@@ -49,13 +54,15 @@ def bad(tmp_path: Path) -> Path:
 
 
 def test_clean_program(good: Path) -> None:
-    result = run("check", good)
-    assert (result.returncode, result.stdout, result.stderr) == (0, "", "")
+    for result in (run("check", good), run_process("check", good)):
+        assert (result.returncode, result.stdout, result.stderr) == (0, "", "")
 
 
 def test_errors_are_shown_with_their_place(bad: Path) -> None:
     result = run("check", bad)
-    assert result.returncode == 1
+    process = run_process("check", bad)
+    assert (result.returncode, result.stdout, result.stderr) == (1, process.stdout, process.stderr)
+    assert process.returncode == 1
     assert f"--> {bad}:2:21" in result.stdout
     assert "2 | ego = new Object at (1, 2" in result.stdout
     assert re.search(r"^  \| {21}\^$", result.stdout, re.MULTILINE)
@@ -147,7 +154,7 @@ def test_check_needs_no_heavy_library(good: Path) -> None:
         "scenic.main(['check', sys.argv[1]], standalone_mode=False)\n"
         "print(sorted({name.partition('.')[0] for name in sys.modules}))"
     )
-    result = run(good, code=code)
+    result = run_process(good, code=code)
     assert result.returncode == 0, result.stderr
     loaded = set(result.stdout.translate({ord(each): None for each in "[]',"}).split())
     assert "click" in loaded
@@ -208,7 +215,7 @@ def test_internal_errors_ask_for_a_report(good: Path) -> None:
         "sys.argv[1:1] = ['check']\n"
         "scenic.cli.main.main()"
     )
-    result = run(good, code=code)
+    result = run_process(good, code=code)
     assert result.returncode == 70
     assert "error[SC999]: internal error: ZeroDivisionError: oops" in result.stdout
     assert f"--> {good}\n" in result.stdout

@@ -12,6 +12,7 @@ import pytest
 
 from scenic.cli.discovery import discover
 from scenic.configuration.project import PLAIN, Configurations
+from tests.cli.commands import run_here
 from tests.processes import interruptible
 
 ROOT = Path(__file__).parents[2]
@@ -26,12 +27,20 @@ def _in_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
 
 
-def run(*arguments: str, text: str | bytes | None = None) -> "subprocess.CompletedProcess[str]":
+def run(*arguments: str, text: str | bytes = b"") -> "subprocess.CompletedProcess[str]":
     data = text.encode() if isinstance(text, str) else text
-    done = subprocess.run(
-        [*COMMAND, *arguments], env=ENVIRONMENT, input=data, capture_output=True, timeout=60, check=False
+    return run_here(["check", *arguments], variables={"NO_COLOR": "1"}, text=data)
+
+
+def run_process(*arguments: str, text: str | None = None) -> "subprocess.CompletedProcess[bytes]":
+    return subprocess.run(
+        [*COMMAND, *arguments],
+        env=ENVIRONMENT,
+        input=None if text is None else text.encode(),
+        capture_output=True,
+        timeout=60,
+        check=False,
     )
-    return subprocess.CompletedProcess(done.args, done.returncode, done.stdout.decode(), done.stderr.decode())
 
 
 def found(*arguments: str) -> list[str]:
@@ -231,6 +240,8 @@ def test_fix_of_standard_input() -> None:
     assert "error[SC202]" in result.stderr
     result = run("--fix", "-", text="x = 1  # scenic: ignore\n")
     assert (result.returncode, result.stdout, result.stderr) == (0, "x = 1\n", "")
+    process = run_process("--fix", "-", text="x = 1  # scenic: ignore\n")
+    assert (process.returncode, process.stdout, process.stderr) == (0, b"x = 1\n", b"")
     result = run("--diff", "-", text="x = 1  # scenic: ignore")
     assert result.stdout.endswith(
         "-x = 1  # scenic: ignore\n\\ No newline at end of file\n+x = 1\n\\ No newline at end of file\n"
@@ -253,8 +264,8 @@ def test_the_patch_can_be_applied() -> None:
 def test_the_same_in_several_processes() -> None:
     for number in range(60):
         put(f"f{number:02}.scenic", (WARNED if number % 7 == 0 else CLEAN) + "x = 1\n" * 300)
-    alone = run("--jobs", "1", "--format", "json")
-    several = run("--jobs", "3", "--format", "json")
+    alone = run_process("--jobs", "1", "--format", "json")
+    several = run_process("--jobs", "3", "--format", "json")
     assert alone.stdout == several.stdout
     assert json.loads(alone.stdout)["summary"]["warnings"] == 9
     assert json.loads(alone.stdout)["summary"]["files"] == 60

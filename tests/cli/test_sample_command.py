@@ -1,4 +1,4 @@
-"""``scenic sample`` as a user runs it: a process of its own, from the program to the files."""
+"""``scenic sample`` as a user runs it, from the program to the files."""
 
 import json
 import os
@@ -12,6 +12,8 @@ from pathlib import Path
 
 import pytest
 import trimesh
+
+from tests.cli.commands import run_here
 
 pytestmark = pytest.mark.slow
 ROOT = Path(__file__).parents[2]
@@ -47,15 +49,20 @@ def environment() -> dict[str, str]:
     return {**os.environ, "PYTHONPATH": str(ROOT), "NO_COLOR": "1", "COLUMNS": "100"}
 
 
-def run(folder: Path, *arguments: object) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        command(*arguments), cwd=folder, env=environment(), capture_output=True, text=True, check=False
-    )
+def run(folder: Path, *arguments: object) -> "subprocess.CompletedProcess[str]":
+    return run_here(["sample", *arguments], folder=folder, variables={"NO_COLOR": "1", "COLUMNS": "100"})
 
 
 def test_every_output_at_once(folder: Path) -> None:
     outputs = ("-o", "balls.jsonl", "--view", "balls.html", "--png", "pictures")
-    result = run(folder, "balls.scenic", "-n", 3, "--seed", 4, "-p", "far=2", *outputs)
+    result = subprocess.run(
+        command("balls.scenic", "-n", 3, "--seed", 4, "-p", "far=2", *outputs),
+        cwd=folder,
+        env=environment(),
+        capture_output=True,
+        text=True,
+        check=False,
+    )
     assert (result.returncode, result.stdout, result.stderr) == (0, "", "")
     rows = [json.loads(line) for line in (folder / "balls.jsonl").read_text().splitlines()]
     assert [row["k"] for row in rows] == [0, 1, 2]

@@ -1,6 +1,5 @@
 """Texts in which two or three operators meet, in every way in which one can stand in another."""
 
-from collections import Counter
 from collections.abc import Iterator, Sequence
 
 from tests.compiler.spec_table import ROWS, Row, Slot
@@ -20,35 +19,21 @@ MIXED = tuple(
 )  # fmt: skip
 """Ordinary operators, some of each level, to stand beside temporal ones."""
 
-LIKE = {
-    "angle": "distance",
-    "altitude": "distance",
-    "minimum": "distance",
-    "position": "heading",
-    "apparent": "relative",
-    "back": "front",
-    "left": "front",
-    "right": "front",
-    "top": "front",
-    "bottom": "front",
-}
-"""Words of prefix operators, with the first ones among those that are alike in all but words."""
+CONTESTED = frozenset({"distance to _", "distance from _ to _", "visible _", "not visible _"})
+"""Operators whose words may belong to an operator around them."""
 
 
-def one_of_each(rows: Sequence[Row]) -> list[Row]:
-    """The rows without those that differ from an earlier one only in words of `LIKE` or words that no other row has."""
-    count = Counter(word for row in rows for word in row.words)
+def one_of_each_shape(rows: Sequence[Row]) -> list[Row]:
+    """One row of each level and arrangement of operands, and those of `CONTESTED`."""
     found: dict[object, Row] = {}
     for row in rows:
-        parts: list[object] = []
-        for part in row.parts:
-            if isinstance(part, str):
-                like = "?" if count[part] == 1 else LIKE.get(part, part) if row.level == 11 else part
-                if parts[-1:] != [like]:
-                    parts.append(like)
-            else:
-                parts.append(part)
-        found.setdefault((row.level, row.chain, tuple(parts)), row)
+        places = tuple(isinstance(part, Slot) for part in row.parts)
+        shape = tuple(
+            place
+            for place, after in zip(places, [*places[1:], None], strict=True)
+            if place or after is not place
+        )
+        found.setdefault(row.text if row.text in CONTESTED else (row.level, row.chain, shape), row)
     return list(found.values())
 
 

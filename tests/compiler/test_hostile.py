@@ -1,10 +1,7 @@
 """Texts that nobody writes give a diagnostic where they are wrong, in linear time; from the parser and as files."""
 
 import gc
-import os
 import random
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -13,36 +10,24 @@ from scenic.compiler.check import check_text
 from scenic.compiler.parser import parse
 from scenic.language.errors import ScenicError
 from scenic.language.source import read_source
+from tests.cli.commands import run_here
 from tests.compiler.hostile import LINES
 from tests.work import calls_while
 
-ROOT = Path(__file__).resolve().parents[2]
-MEGABYTE = 1_000_000
-
 LONG = (
-    "digits",
-    "a name",
-    "spaces",
-    "a comment",
-    "backslashes",
-    "a string",
-    "an f-string",
-    "braces of an f-string",
-    "backticks",
+    *("digits", "a name", "spaces", "a comment", "backslashes", "a string", "an f-string"),
+    *("braces of an f-string", "backticks"),
 )
-"""Lines of ten megabytes of these are read in a second or so."""
+"""Lines of a megabyte of these are read in a moment."""
 
 COSTLY = (
-    "quotes",
-    "opening brackets",
-    "braces",
-    "names",
-    "dots",
-    "operators",
-    "crossing brackets",
-    "broken fields of an f-string",
+    *("quotes", "opening brackets", "braces", "names", "dots", "operators", "crossing brackets"),
+    *("broken fields of an f-string", "comments of Scenic", "tildes"),
 )
-"""Each token of these takes its time, so that a tenth of that has to do."""
+"""Each token of these takes its time."""
+
+DEEP = frozenset({"opening brackets", "braces", "crossing brackets"})
+"""Each token of these takes memory as well, since it nests."""
 
 RIGHT = (
     ("tabs", "if a:\n\tx = 1\n\tif b:\n\t\tx = 2\n"),
@@ -84,22 +69,17 @@ def test_odd_texts_that_are_wrong(name: str, text: str, line: int, column: int) 
 
 
 @pytest.mark.parametrize("name", LINES)
-def test_long_lines_take_linear_time(name: str) -> None:
-    counts = []
-    for size in (1500, 3000):
-        text = LINES[name](size)
-        counts.append(calls_while(parse, text))
-    small, large = counts
+def test_checking_long_lines_takes_linear_time(name: str) -> None:
+    small, large = (calls_while(check, LINES[name](size)) for size in (1000, 2000))
     # What is reported is bounded; before the bound is reached, a report costs some calls.
-    assert large < 2.5 * small + 2000
-    gc.collect()
+    assert large < 2.5 * small + 3000
+    gc.collect(1)
 
 
-@pytest.mark.parametrize("name", LINES)
-def test_long_lines_are_checked(name: str) -> None:
-    for found in check_text(LINES[name](3000), filename="long.scenic"):
+def check(text: str) -> None:
+    """Check a text, and see that everything that is said has a place."""
+    for found in check_text(text, filename="long.scenic"):
         assert found.span is not None
-    gc.collect()
 
 
 @pytest.mark.parametrize("seed", range(40))
@@ -131,20 +111,6 @@ def test_random_bytes_taken_for_characters(seed: int) -> None:
     assert parse(text.decode("utf-8", "surrogateescape")).diagnostics
 
 
-def check_file(path: Path, *, seconds: float) -> subprocess.CompletedProcess[str]:
-    """Run ``scenic check`` in a process of its own."""
-    return subprocess.run(
-        [sys.executable, "-c", "from scenic.cli.main import main; main()", "check", "--no-config", str(path)],
-        env={**os.environ, "PYTHONPATH": str(ROOT)},
-        capture_output=True,
-        text=True,
-        encoding="utf-8",
-        errors="replace",
-        timeout=seconds,
-        check=False,
-    )
-
-
 FILES = {
     "NUL bytes": b"x = 1\0\n",
     "a BOM": b"\xef\xbb\xbfx x\n",
@@ -158,26 +124,23 @@ FILES = {
 }
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", FILES)
 def test_hostile_files_are_checked(name: str, tmp_path: Path) -> None:
     path = tmp_path / "hostile.scenic"
     path.write_bytes(FILES[name])
-    done = check_file(path, seconds=60)
+    done = run_here(["check", "--no-config", path])
     assert done.returncode in (1, 2)
     assert "SC" in done.stdout + done.stderr
     assert "Traceback" not in done.stderr
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("name", "size"), [(name, 10 * MEGABYTE) for name in LONG] + [(name, MEGABYTE) for name in COSTLY]
-)
-def test_very_long_lines_are_checked(name: str, size: int, tmp_path: Path) -> None:
-    path = tmp_path / "long.scenic"
-    path.write_text(LINES[name](size), encoding="utf-8")
-    done = check_file(path, seconds=300)
-    assert done.returncode in (0, 1)
-    assert (done.returncode == 1) == ("SC" in done.stdout)
-    assert "Traceback" not in done.stderr
-    assert len(done.stdout) < 10 * MEGABYTE
+@pytest.mark.parametrize("name", LONG)
+def test_very_long_lines_are_checked(name: str) -> None:
+    check(LINES[name](1_000_000))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", COSTLY)
+def test_long_lines_of_many_tokens_are_checked(name: str) -> None:
+    check(LINES[name](100_000 if name not in DEEP else 20_000))

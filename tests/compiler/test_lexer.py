@@ -1,15 +1,7 @@
 """The lexer against the standard library's `tokenize`, and by itself where that one cannot follow."""
 
 import ast
-import importlib.util
-import io
-import keyword
-import sys
-import token
-import tokenize
 import unicodedata
-from collections.abc import Iterator
-from pathlib import Path
 from typing import Final
 
 import pytest
@@ -18,66 +10,8 @@ from hypothesis import strategies as st
 
 from scenic.compiler.lexer import lex
 from scenic.compiler.lines import MOST_DIAGNOSTICS
-from scenic.compiler.tokens import (
-    DEDENT,
-    ENDMARKER,
-    ERROR,
-    FSTRING_END,
-    FSTRING_MIDDLE,
-    FSTRING_START,
-    INDENT,
-    NAME,
-    NEWLINE,
-    NUMBER,
-    STRING,
-    Tokens,
-)
-
-OPERATORS: Final = sorted({*token.EXACT_TOKEN_TYPES, "!"})
-WORDS: Final = {
-    **{word: 16 + index for index, word in enumerate([*keyword.kwlist, *OPERATORS])},
-    **{word: 257 + index for index, word in enumerate(["ego", "facing", "match"])},
-}
-NAMES_OF_KINDS: Final = {
-    ENDMARKER: "END",
-    NEWLINE: "NEWLINE",
-    INDENT: "INDENT",
-    DEDENT: "DEDENT",
-    NUMBER: "NUMBER",
-    STRING: "STRING",
-    FSTRING_START: "FSTART",
-    FSTRING_MIDDLE: "FMIDDLE",
-    FSTRING_END: "FEND",
-    ERROR: "ERROR",
-    NAME: "NAME",
-}
-FROM_TOKENIZE: Final = {
-    tokenize.ENDMARKER: "END",
-    tokenize.NEWLINE: "NEWLINE",
-    tokenize.INDENT: "INDENT",
-    tokenize.DEDENT: "DEDENT",
-    tokenize.NUMBER: "NUMBER",
-    tokenize.STRING: "STRING",
-    tokenize.NAME: "NAME",
-    tokenize.OP: "OP",
-    tokenize.ERRORTOKEN: "ERROR",
-}
-
-type_of_row = tuple[str, str, tuple[int, int], tuple[int, int]]
-
-
-def rows(tokens: Tokens) -> Iterator[type_of_row]:
-    for kind, text, line, column, end_line, end_column in zip(
-        tokens.kinds,
-        tokens.texts,
-        tokens.lines,
-        tokens.columns,
-        tokens.end_lines,
-        tokens.end_columns,
-        strict=True,
-    ):
-        name = NAMES_OF_KINDS.get(kind) or ("NAME" if text.isidentifier() else "OP")
-        yield name, text, (line, column), (end_line, end_column)
+from scenic.compiler.tokens import DEDENT, ENDMARKER, ERROR, INDENT, NAME
+from tests.compiler.python_tokens import WORDS, of_tokenize, rows, with_whole_formatted_strings
 
 
 def brief(text: str) -> list[str]:
@@ -94,117 +28,6 @@ def complaints(text: str) -> list[tuple[str, int, int]]:
         for diagnostic in lex(text, WORDS).diagnostics
         if diagnostic.span is not None
     ]
-
-
-def with_whole_formatted_strings(tokens: Tokens) -> list[type_of_row]:
-    """As before Python 3.12: one token for a whole f-string; its text is left out of the comparison."""
-    result: list[type_of_row] = []
-    starts: list[tuple[int, int]] = []
-    for row in rows(tokens):
-        if row[0] == "FSTART":
-            starts.append(row[2])
-        elif row[0] == "FEND":
-            start = starts.pop()
-            if not starts:
-                result.append(("STRING", "f", start, row[3]))
-        elif not starts:
-            result.append(row)
-    return result
-
-
-def of_tokenize(text: str) -> list[type_of_row]:
-    text = text.replace("\r\n", "\n").replace("\r", "\n")
-    if text and not text.endswith("\n"):
-        text += "\n"
-    lines = text.split("\n")
-
-    def in_bytes(line: int, column: int) -> tuple[int, int]:
-        content = lines[line - 1] if line <= len(lines) else ""
-        return line, len(content[:column].encode()) + max(0, column - len(content))
-
-    result: list[type_of_row] = []
-    depth = 0
-    start = (0, 0)
-    for each in tokenize.generate_tokens(io.StringIO(text).readline):
-        name = tokenize.tok_name[each.type]
-        if name in ("NL", "COMMENT"):
-            continue
-        if name == "FSTRING_START":
-            start = start if depth else in_bytes(*each.start)
-            depth += 1
-        elif name == "FSTRING_END":
-            depth -= 1
-            if not depth:
-                result.append(("STRING", "f", start, in_bytes(*each.end)))
-        elif not depth:
-            kind, string = FROM_TOKENIZE[each.type], each.string
-            if kind in ("NEWLINE", "DEDENT", "END"):
-                string = ""
-            elif kind == "STRING" and "f" in string[:2].lower().split('"')[0].split("'")[0]:
-                string = "f"
-            elif kind == "NAME":
-                string = unicodedata.normalize("NFKC", string)
-            result.append((kind, string, in_bytes(*each.start), in_bytes(*each.end)))
-    return result
-
-
-def source_of(module: str) -> str:
-    spec = importlib.util.find_spec(module)
-    assert spec is not None
-    assert spec.origin is not None
-    return Path(spec.origin).read_text(encoding="utf-8")
-
-
-@pytest.mark.parametrize(
-    "module",
-    [
-        "typing",
-        "argparse",
-        "decimal",
-        "statistics",
-        "inspect",
-        "turtle",
-        "dataclasses",
-        "html.entities",
-        "this",
-        "calendar",
-        "tokenize",
-        "difflib",
-        "stringprep",
-        "unittest.mock",
-        "json.decoder",
-        "email.message",
-        "csv",
-    ],
-)
-def test_library_modules_as_tokenize_reads_them(module: str) -> None:
-    text = source_of(module)
-    tokens = lex(text, WORDS)
-    assert tokens.diagnostics == []
-    assert with_whole_formatted_strings(tokens) == of_tokenize(text)
-
-
-@pytest.mark.slow
-def test_library_as_tokenize_reads_it() -> None:
-    compared = 0
-    for path in sorted(Path(ast.__file__).parent.rglob("*.py"))[::4]:
-        if "site-packages" in path.parts:
-            continue
-        try:
-            text = path.read_text(encoding="utf-8")
-            compile(text, str(path), "exec", ast.PyCF_ONLY_AST)
-            expected = of_tokenize(text)
-        except (SyntaxError, UnicodeDecodeError, tokenize.TokenError, Warning):
-            continue
-        tokens = lex(text, WORDS)
-        assert tokens.diagnostics == [], path
-        if any(row[0] == "ERROR" for row in expected):
-            continue  # `tokenize` knows fewer names than Python
-        if sys.version_info < (3, 12) or text.isascii():
-            # Some later versions of `tokenize` are wrong about the ends of strings over several lines.
-            assert with_whole_formatted_strings(tokens) == expected, path
-        compared += 1
-    assert compared > 200
 
 
 FRAGMENTS: Final = [

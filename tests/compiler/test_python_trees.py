@@ -1,81 +1,11 @@
-"""Python's syntax has the trees of Python: compared with CPython's on all modules at hand, positions included.
-
-Modules with a construct that Scenic reads otherwise may differ. Each such construct is a rule of `python_trees`, with
-a test of its own here; what the rules excused is printed.
-"""
+"""What Scenic reads otherwise than Python, and how trees are compared; `test_library` compares those of modules."""
 
 import ast
-import gc
-import sysconfig
-import warnings
-from collections import Counter
-from collections.abc import Sequence
-from pathlib import Path
 
-import numpy
 import pytest
-import scipy
-import trimesh
 
 from scenic.compiler.parser import parse
-from tests.compiler.python_trees import RULES, difference, modules, reasons, words_of
-
-SHARDS = 16
-FAST_SHARDS = 4
-"""The fast tests take one module of `STRIDE`, in so many parts; the slow ones take the rest."""
-STRIDE = 11
-
-FOLDERS = [
-    Path(sysconfig.get_path("stdlib")),
-    *(Path(str(package.__file__)).parent for package in (numpy, scipy, trimesh)),
-]
-MODULES = [path for folder in FOLDERS for path in modules(folder)]
-
-
-def check_modules(paths: Sequence[Path]) -> None:
-    """Every module has the tree of CPython, or a reason not to; few have one."""
-    counts: Counter[str] = Counter()
-    excused = 0
-    for number, path in enumerate(paths):
-        try:
-            text = path.read_text(encoding="utf-8")
-            with warnings.catch_warnings():
-                warnings.simplefilter("ignore")
-                expected = ast.parse(text)
-        except (SyntaxError, UnicodeDecodeError, ValueError):
-            counts["not Python, or not UTF-8"] += 1
-            continue
-        result = parse(text)
-        found = str(result.diagnostics[0]) if result.diagnostics else difference(result.tree, expected)
-        if found is None:
-            counts["equal"] += 1
-        else:
-            why = list(reasons(text, expected))
-            assert why, f"{path}: {found}"
-            excused += 1
-            counts.update(why)
-            print(f"{path}: {', '.join(why)}")
-        if number % 50 == 0:
-            gc.collect()
-    print(", ".join(f"{reason}: {count}" for reason, count in counts.most_common()))
-    assert counts["equal"] > 0.7 * len(paths)
-    assert excused < 0.2 * len(paths)
-
-
-SAMPLE = MODULES[::STRIDE]
-REST = [path for index, path in enumerate(MODULES) if index % STRIDE]
-
-
-@pytest.mark.parametrize("shard", range(FAST_SHARDS))
-def test_a_sample_of_the_modules(shard: int) -> None:
-    check_modules(SAMPLE[shard::FAST_SHARDS])
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("shard", range(SHARDS))
-def test_all_other_modules(shard: int) -> None:
-    check_modules(REST[shard::SHARDS])
-
+from tests.compiler.python_trees import RULES, difference, reasons, words_of
 
 # What Scenic reads otherwise: the text, the rule that excuses it, and the tree it has in Scenic, if any.
 
