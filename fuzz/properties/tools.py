@@ -1,19 +1,24 @@
 """All tools say the same, at the same places."""
 
 import json
+import os
+from functools import cache
 from typing import Any, Final
 
 from lsprotocol import types
 
 from fuzz.properties.case import FILENAME, Case, Property, Violation, describe, spans_of
-from scenic.cli.checking import Task, check_file
+from scenic.cli.checking import Checker, Task
 from scenic.cli.render import FORMATS, Report, render
+from scenic.compiler.check import check_text
 from scenic.ide.diagnostics import diagnostics
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.selection import Rules
 from scenic.language.source import Source
 from scenic.language.spans import Span
 from scenic.lsp.convert import to_diagnostic, to_edits
+from scenic.project.index import Project
+from scenic.project.surroundings import surroundings_in
 
 __all__ = ["OF_TEXTS"]
 
@@ -26,12 +31,24 @@ _ENCODINGS: Final = {
 _UNIT: Final = {"utf-8": 1, "utf-16-le": 2, "utf-32-le": 4}
 
 
+@cache
+def _project() -> Project:
+    """The project that all texts belong to: the current folder."""
+    return Project([os.getcwd()])
+
+
+@cache
+def _command() -> Checker:
+    return Checker()
+
+
 def check_and_server_agree(case: Case) -> None:
     """The command ``check``, the check itself and the editor's diagnostics say the same."""
-    expected = case.checked
+    project = _project()
+    expected = check_text(case.text, filename=FILENAME, surroundings_of=surroundings_in(project))
     shown = {
-        "the editor": diagnostics(case.text, filename=FILENAME),
-        "the command": check_file(Task(FILENAME, Rules(), text=case.text)).diagnostics,
+        "the editor": diagnostics(case.text, filename=FILENAME, project=project),
+        "the command": _command()(Task(FILENAME, Rules(), text=case.text)).diagnostics,
     }
     for who, found in shown.items():
         if found != expected:

@@ -9,7 +9,7 @@ from typing import Final
 
 import click
 
-from scenic.cli.checking import Fixing, Outcome, Task, check_file, fault
+from scenic.cli.checking import Checker, Fixing, Outcome, Task, fault
 from scenic.cli.discovery import STANDARD_INPUT, discover
 from scenic.cli.output import FINDINGS, exit_code, has_colours, show_diagnostics, summary
 from scenic.cli.render import FORMATS, Report, Sources, render
@@ -79,6 +79,9 @@ def _selectors(_context: click.Context, _option: click.Parameter, given: tuple[s
     type=click.IntRange(min=1),
     help="Use up to N processes.  [default: usable CPUs]",
 )
+@click.option(
+    "-v", "--verbose", is_flag=True, help="Say also which imports bring names that cannot be known."
+)
 @click.option("--exit-zero", is_flag=True, help="Exit with 0 although there are findings.")
 def check(
     paths: tuple[str, ...],
@@ -92,6 +95,7 @@ def check(
     no_config: bool,
     stdin_filename: str | None,
     jobs: int | None,
+    verbose: bool,
     exit_zero: bool,
 ) -> int:
     """Report what is wrong with programs.
@@ -127,8 +131,19 @@ def check(
                 continue
             text = data.decode()  # with its byte order mark, for --fix
             sources.add(Source(text, name))
-        rules = configurations.of_file(name).rules_for(name, select, ignore)
-        tasks.append(Task(name, rules, deep=deep, fixing=fixing, text=text))
+        configuration = configurations.of_file(name)
+        tasks.append(
+            Task(
+                name,
+                configuration.rules_for(name, select, ignore),
+                configuration.folder or None,
+                configuration.python_path,
+                verbose,
+                deep=deep,
+                fixing=fixing,
+                text=text,
+            )
+        )
     problems = [*configurations.problems, *problems]
     if not found.files and not problems:
         click.echo("warning: there are no Scenic files under the given paths", err=True)
@@ -200,11 +215,12 @@ def _outcomes(tasks: Sequence[Task], jobs: int | None) -> list[Outcome]:
 
 def _results(tasks: Sequence[Task], jobs: int | None) -> Iterator[tuple[int, Outcome]]:
     if jobs == 1 or len(tasks) < 2 or not _pays(tasks):
-        yield from ((index, check_file(task)) for index, task in enumerate(tasks))
+        checker = Checker()
+        yield from ((index, checker(task)) for index, task in enumerate(tasks))
         return
     from scenic.cli.workers import run, usable_cpus  # takes a while to import
 
-    yield from run(check_file, tasks, jobs=jobs or usable_cpus(), lost=_lost)
+    yield from run(Checker(), tasks, jobs=jobs or usable_cpus(), lost=_lost)
 
 
 def _pays(tasks: Sequence[Task]) -> bool:

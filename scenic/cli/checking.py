@@ -1,5 +1,6 @@
 """The check of one file with all that belongs to it: what ``scenic check`` does for each of its files."""
 
+import os
 import re
 import traceback
 from dataclasses import dataclass, replace
@@ -9,12 +10,15 @@ from typing import Final
 
 from scenic.compiler.check import check_text, in_order
 from scenic.compiler.ignores import apply_ignores
+from scenic.compiler.surroundings import SurroundingsOf
 from scenic.language.diagnostics import Diagnostic, Severity
 from scenic.language.errors import Located
 from scenic.language.selection import Rules
 from scenic.language.source import Source, read_source
+from scenic.project.index import Project
+from scenic.project.surroundings import surroundings_in
 
-__all__ = ["Fixing", "Outcome", "Task", "check_file", "fault"]
+__all__ = ["Checker", "Fixing", "Outcome", "Task", "fault"]
 
 _LINE: Final = re.compile(r"[^\n]*\n|[^\n]+")
 _FRAMES: Final = 6
@@ -33,11 +37,15 @@ class Fixing(Enum):
 class Task:
     """A file to check.
 
-    ``text`` is its content if that is not in the file: standard input.
+    ``text`` is its content if that is not in the file: standard input. ``root`` and ``python_path`` are those of its
+    project; ``verbose`` adds what cannot be known.
     """
 
     filename: str
     rules: Rules
+    root: str | None = None
+    python_path: tuple[str, ...] = ()
+    verbose: bool = False
     deep: bool = False
     fixing: Fixing = Fixing.NONE
     text: str | None = None
@@ -58,12 +66,30 @@ class Outcome:
     trace: str = ""
 
 
-def check_file(task: Task) -> Outcome:
-    """Check a file. Whatever goes wrong is a diagnostic."""
+class Checker:
+    """Checks files, each in its project, whose modules are looked into once for all of its files."""
+
+    def __init__(self) -> None:
+        self._projects: dict[tuple[object, ...], Project] = {}
+
+    def __call__(self, task: Task) -> Outcome:
+        """Check a file. Whatever goes wrong is a diagnostic."""
+        return _outcome(task, self._surroundings(task))
+
+    def _surroundings(self, task: Task) -> SurroundingsOf:
+        key = (task.root, task.python_path)
+        project = self._projects.get(key)
+        if project is None:
+            roots = [os.getcwd() if task.root is None else task.root]
+            project = self._projects[key] = Project(roots, task.python_path)
+        return surroundings_in(project, verbose=task.verbose)
+
+
+def _outcome(task: Task, surroundings_of: SurroundingsOf) -> Outcome:
     try:
         if task.fixing is Fixing.NONE:
-            return Outcome(_check(task))
-        return _repair(task)
+            return Outcome(_check(task, surroundings_of))
+        return _repair(task, surroundings_of)
     except Located as error:
         return Outcome((replace(error.diagnostic(), filename=error.filename or task.filename),))
     except Exception as error:  # noqa: BLE001 - the other files are to be checked all the same
@@ -81,9 +107,9 @@ def fault(filename: str, what: str) -> Diagnostic:
     )
 
 
-def _check(task: Task) -> tuple[Diagnostic, ...]:
+def _check(task: Task, surroundings_of: SurroundingsOf) -> tuple[Diagnostic, ...]:
     source = Source(task.text, task.filename) if task.text is not None else read_source(task.filename)
-    found = check_text(source.text, filename=task.filename)
+    found = check_text(source.text, filename=task.filename, surroundings_of=surroundings_of)
     if task.deep and not any(item.severity is Severity.ERROR for item in found):
         found = in_order((*found, *_deep(task, source)), filename=task.filename)
     return task.rules.apply(found)
@@ -96,7 +122,7 @@ def _deep(task: Task, source: Source) -> tuple[Diagnostic, ...]:
     return apply_ignores(source.text, found, filename=task.filename, complain=False)
 
 
-def _repair(task: Task) -> Outcome:
+def _repair(task: Task, surroundings_of: SurroundingsOf) -> Outcome:
     from scenic.compiler.fixes import repair
 
     if task.text is None:
@@ -104,7 +130,7 @@ def _repair(task: Task) -> Outcome:
         before = Path(task.filename).read_bytes().decode("utf-8")
     else:
         before = task.text
-    repaired = repair(before, filename=task.filename, shown=task.rules.apply)
+    repaired = repair(before, filename=task.filename, shown=task.rules.apply, surroundings_of=surroundings_of)
     changed = repaired.text != before
     if task.fixing is Fixing.SHOW:
         diff = _diff(before, repaired.text, task.filename) if changed else ""
@@ -116,7 +142,8 @@ def _repair(task: Task) -> Outcome:
 
         write(Path(task.filename), repaired.text.encode("utf-8"))
     return Outcome(
-        _check(replace(task, fixing=Fixing.NONE)) if task.deep else repaired.diagnostics, repaired.count
+        _check(replace(task, fixing=Fixing.NONE), surroundings_of) if task.deep else repaired.diagnostics,
+        repaired.count,
     )
 
 

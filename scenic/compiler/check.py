@@ -8,17 +8,22 @@ from dataclasses import replace
 
 from scenic.compiler.compile import compile_text
 from scenic.compiler.ignores import apply_ignores
+from scenic.compiler.surroundings import SurroundingsOf
 from scenic.language.diagnostics import Diagnostic
 
 __all__ = ["check_text", "in_order"]
 
 
-def check_text(text: str, *, filename: str) -> tuple[Diagnostic, ...]:
+def check_text(
+    text: str, *, filename: str, surroundings_of: SurroundingsOf | None = None
+) -> tuple[Diagnostic, ...]:
     """What the lexer, the parser, the resolver and the compiler have to say, in order of place.
 
-    Without what comments of the program silence, and with what is wrong with these comments.
+    Without what comments of the program silence, and with what is wrong with these comments. ``surroundings_of`` finds
+    out about the modules that the program imports (`scenic.project.surroundings`); without it, nothing is known of them.
     """
-    found = in_order(compile_text(text, filename=filename, thorough=True).diagnostics, filename=filename)
+    compiled = compile_text(text, filename=filename, thorough=True, surroundings_of=surroundings_of)
+    found = in_order(compiled.diagnostics, filename=filename)
     return in_order(apply_ignores(text, found, filename=filename), filename=filename)
 
 

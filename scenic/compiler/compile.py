@@ -8,7 +8,8 @@ from types import CodeType
 from scenic.compiler.checks import lint
 from scenic.compiler.lowering import lower
 from scenic.compiler.parser import DEEPEST, parse, recursion_limit
-from scenic.compiler.resolver import resolve
+from scenic.compiler.resolver import resolve_within
+from scenic.compiler.surroundings import SurroundingsOf
 from scenic.language.diagnostics import Diagnostic, Severity
 from scenic.language.source import Source
 from scenic.language.spans import Span
@@ -32,18 +33,21 @@ class Compiled:
     diagnostics: tuple[Diagnostic, ...]
 
 
-def lower_text(text: str, *, filename: str, thorough: bool = False) -> Lowered:
+def lower_text(
+    text: str, *, filename: str, thorough: bool = False, surroundings_of: SurroundingsOf | None = None
+) -> Lowered:
     """Parses, checks and lowers a program. Whatever is wrong with it is in the diagnostics.
 
-    If ``thorough``, so is what is legal but hardly meant, and what will fail once it is reached.
+    If ``thorough``, so is what is legal but hardly meant, and what will fail once it is reached. ``surroundings_of``
+    finds out about the modules that the program imports.
     """
     source = Source(text, filename)
     parsed = parse(source.text, filename=filename)
     found = list(parsed.diagnostics)
     try:
         with recursion_limit(DEEPEST):
-            resolution = resolve(parsed.tree, source)
-            hints = lint(parsed.tree, source, resolution) if thorough else ()
+            resolution, surroundings = resolve_within(parsed.tree, source, surroundings_of)
+            hints = lint(parsed.tree, source, resolution, surroundings) if thorough else ()
             found = list(dict.fromkeys([*found, *resolution.diagnostics, *hints]))
             module = None if _has_errors(found) else lower(parsed.tree, resolution)
     except RecursionError:
@@ -51,12 +55,14 @@ def lower_text(text: str, *, filename: str, thorough: bool = False) -> Lowered:
     return Lowered(module, tuple(found))
 
 
-def compile_text(text: str, *, filename: str, thorough: bool = False) -> Compiled:
-    """Compiles a program; ``filename`` is what tracebacks will name, ``thorough`` as in `lower_text`.
+def compile_text(
+    text: str, *, filename: str, thorough: bool = False, surroundings_of: SurroundingsOf | None = None
+) -> Compiled:
+    """Compiles a program; ``filename`` is what tracebacks will name, the rest as in `lower_text`.
 
     Python's own complaints about the program become diagnostics at their place.
     """
-    lowered = lower_text(text, filename=filename, thorough=thorough)
+    lowered = lower_text(text, filename=filename, thorough=thorough, surroundings_of=surroundings_of)
     if lowered.module is None:
         return Compiled(None, lowered.diagnostics)
     source = Source(text, filename)

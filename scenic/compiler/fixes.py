@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from scenic.compiler.check import check_text
+from scenic.compiler.surroundings import SurroundingsOf
 from scenic.language.diagnostics import Diagnostic, Edit, Fix, Severity
 
 __all__ = ["Repaired", "apply_fixes", "repair"]
@@ -29,20 +30,29 @@ class Repaired:
 
 
 def repair(
-    text: str, *, filename: str, shown: Callable[[Sequence[Diagnostic]], Sequence[Diagnostic]]
+    text: str,
+    *,
+    filename: str,
+    shown: Callable[[Sequence[Diagnostic]], Sequence[Diagnostic]],
+    surroundings_of: SurroundingsOf | None = None,
 ) -> Repaired:
     """Make the repairs of the diagnostics that ``shown`` leaves, again and again until none is left.
 
-    A repair that would leave the program with more errors than before is not made.
+    A repair that would leave the program with more errors than before is not made. ``surroundings_of`` as in
+    `check_text`.
     """
+
+    def check(text: str) -> tuple[Diagnostic, ...]:
+        return check_text(text, filename=filename, surroundings_of=surroundings_of)
+
     count = 0
-    found = check_text(text, filename=filename)
+    found = check(text)
     seen = {text}
     for _ in range(_MOST_ROUNDS):
         fixes = list(dict.fromkeys(item.fix for item in shown(found) if item.fix is not None))
         if not fixes:
             break
-        better = _attempt(text, fixes, found, filename) or _one_by_one(text, fixes, found, filename)
+        better = _attempt(text, fixes, found, check) or _one_by_one(text, fixes, found, check)
         if better is None or better[0] in seen:
             break
         text, made, found = better
@@ -54,22 +64,25 @@ def repair(
 _Attempt = tuple[str, int, tuple[Diagnostic, ...]]
 
 
-def _attempt(text: str, fixes: Sequence[Fix], before: Sequence[Diagnostic], filename: str) -> _Attempt | None:
+_Check = Callable[[str], tuple[Diagnostic, ...]]
+
+
+def _attempt(text: str, fixes: Sequence[Fix], before: Sequence[Diagnostic], check: _Check) -> _Attempt | None:
     """The text with all repairs that do not overlap, unless it has more errors than before."""
     repaired, made = apply_fixes(text, fixes)
     if repaired == text:
         return None
-    found = check_text(repaired, filename=filename)
+    found = check(repaired)
     return None if _errors(found) > _errors(before) else (repaired, made, found)
 
 
 def _one_by_one(
-    text: str, fixes: Sequence[Fix], before: Sequence[Diagnostic], filename: str
+    text: str, fixes: Sequence[Fix], before: Sequence[Diagnostic], check: _Check
 ) -> _Attempt | None:
     """The text with the first repair that does no harm by itself."""
     if len(fixes) == 1:
         return None
-    return next(filter(None, (_attempt(text, [fix], before, filename) for fix in fixes)), None)
+    return next(filter(None, (_attempt(text, [fix], before, check) for fix in fixes)), None)
 
 
 def _errors(diagnostics: Iterable[Diagnostic]) -> int:

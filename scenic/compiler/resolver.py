@@ -14,12 +14,13 @@ from scenic.compiler import tree as scenic
 from scenic.compiler.checks import NOTED, check
 from scenic.compiler.garbage import no_garbage_collection
 from scenic.compiler.scopes import PROVIDED, Binding, BindingKind, Reference, Resolution, Scope, ScopeKind
+from scenic.compiler.surroundings import Surroundings, SurroundingsOf
 from scenic.compiler.traversal import FIELDS, parts, walk
 from scenic.language.names import RESERVED, TRACKED
 from scenic.language.source import Source
 from scenic.language.spelling import nearest
 
-__all__ = ["bind", "resolve"]
+__all__ = ["bind", "resolve", "resolve_within"]
 
 _REFLECTION: Final = frozenset({"exec", "globals", "vars"})
 """Builtins with which programs may bind names in ways that the text does not show."""
@@ -33,20 +34,32 @@ def resolve(tree: ast.Module, source: Source) -> Resolution:
 
     Never raises on any tree that the parser makes; what is wrong is in ``diagnostics``, ordered by place.
     """
+    return resolve_within(tree, source, None)[0]
+
+
+def resolve_within(
+    tree: ast.Module, source: Source, surroundings_of: SurroundingsOf | None
+) -> tuple[Resolution, Surroundings | None]:
+    """The same, with what ``surroundings_of`` finds out about the imports, which is also returned."""
     with no_garbage_collection():
         collector = _Collector(tree)
         collector.walk()
-        if any(_brings_names(source.line(node.lineno)) for node in collector.broken()):
-            collector.admit_unseen_names()
         resolution = collector.finish()
+        surroundings = None
+        if surroundings_of is not None:
+            surroundings = surroundings_of(tree, source, resolution)
+            resolution.module.wildcard = resolution.rebinding or not surroundings.complete
+        if any(_brings_names(source.line(node.lineno)) for node in collector.broken()):
+            resolution.module.wildcard = True
         diagnostics = check(
             tree,
             source,
             resolution,
             reserved=collector.reserved,
             provided=PROVIDED,
+            surroundings=surroundings,
         )
-    return replace(resolution, diagnostics=diagnostics)
+    return replace(resolution, diagnostics=diagnostics), surroundings
 
 
 def bind(tree: ast.Module) -> Resolution:
@@ -134,10 +147,6 @@ class _Collector:
     def broken(self) -> list[Any]:
         """The statements that could not be parsed."""
         return [node for node, _ in self._nodes.get(scenic.ErrorStatement, ())]
-
-    def admit_unseen_names(self) -> None:
-        """Reckon with names that the text does not show."""
-        self._module.wildcard = True
 
     def finish(self) -> Resolution:
         bound = {(event.scope, event.name) for event in self._events}

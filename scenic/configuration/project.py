@@ -23,17 +23,21 @@ __all__ = ["FILE", "PLAIN", "Configuration", "Configurations", "read_configurati
 
 FILE: Final = "pyproject.toml"
 _TABLE: Final = ("tool", "scenic")
-_KEYS: Final = ("exclude", "ignore", "per-file-ignores", "select", "severity")
+_KEYS: Final = ("exclude", "ignore", "per-file-ignores", "python-path", "select", "severity")
 
 
 @dataclass(frozen=True, slots=True)
 class Configuration:
-    """The settings for files below ``folder``, an absolute path that patterns are relative to."""
+    """The settings for files below ``folder``, an absolute path that patterns are relative to.
+
+    ``python_path`` are the absolute paths of folders in which modules are found besides.
+    """
 
     folder: str = ""
     rules: Rules = field(default_factory=Rules)
     exclude: tuple[str, ...] = ()
     per_file_ignores: tuple[tuple[str, tuple[str, ...]], ...] = ()
+    python_path: tuple[str, ...] = ()
     problems: tuple[Diagnostic, ...] = ()
 
     def excludes(self, path: str) -> bool:
@@ -208,7 +212,11 @@ class _Reader:
         rules = Rules(select, self._selectors(table, "ignore"), severity=tuple(self._severities(table)))
         exclude = tuple(text for text in self._strings(table, "exclude") if self._is_pattern(text, "exclude"))
         ignores = tuple(self._per_file(table))
-        return Configuration(self._folder, rules, exclude, ignores, tuple(self._problems))
+        given = self._strings(table, "python-path") if "python-path" in table else ()
+        python_path = tuple(
+            os.path.normpath(os.path.join(self._folder, os.path.expanduser(path))) for path in given
+        )
+        return Configuration(self._folder, rules, exclude, ignores, python_path, tuple(self._problems))
 
     def _report(self, message: str, advice: str, *keys: str, value: str | None = None) -> None:
         self._problems.append(_problem(self._source, message, advice, (*_TABLE, *keys), value))

@@ -25,10 +25,14 @@ class Severity(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Label:
-    """A second place that takes part in a problem, and what it has to do with it."""
+    """A second place that takes part in a problem, and what it has to do with it.
+
+    It is in the file of the problem, unless ``filename`` names another.
+    """
 
     span: Span
     text: str
+    filename: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,6 +130,8 @@ CODES: Final = MappingProxyType(
         "SC209": "the ego does not exist yet",
         "SC210": "duplicate definition",
         "SC211": "wrong arguments",
+        "SC212": "name that a module lacks",
+        "SC213": "names that cannot be known",
         "SC220": "a literal was required",
         # Meaning, found without running the program.
         "SC300": "misspelt property",

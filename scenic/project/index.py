@@ -11,7 +11,7 @@ import sys
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import Final
+from typing import Any, Final
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.loader import SUFFIXES
@@ -111,6 +111,8 @@ class Project:
         self._entries: dict[str, _Entry] = {}
         self._opened: dict[str, Module] = {}
         self._exports: dict[str, Exports] = {}
+        self.derived: dict[object, Any] = {}
+        """What others compute from the modules; emptied when any of them changes."""
 
     # Texts
 
@@ -123,14 +125,14 @@ class Project:
             known = self._entries[filename].module
         if known is None or known.source.text != source.text:
             known = read_module(source, tree=tree)
-            self._exports = {}
+            self._forget()
         self._opened[filename] = known
         return known
 
     def close(self, filename: str) -> None:
         """Take the text of a file from disk again."""
         if self._opened.pop(os.path.abspath(filename), None) is not None:
-            self._exports = {}
+            self._forget()
 
     def refresh(self) -> bool:
         """Look at the files again, and read those that have changed; tells whether any has."""
@@ -146,8 +148,13 @@ class Project:
                     self._entries[filename] = fresh
                     changed = True
         self.finder.forget()
-        self._exports = {}
+        self._forget()
         return changed
+
+    def _forget(self) -> None:
+        """Forget what was computed from modules of which one has changed."""
+        self._exports = {}
+        self.derived = {}
 
     def module(self, filename: str) -> Module | None:
         """The module in a file; ``None`` if it cannot be read, or is too large to look into."""

@@ -40,8 +40,8 @@ class Found:
 
     ``filename`` is its file; of a folder without ``__init__`` the folder, of a module that is built into Python
     nothing. Of a missing module, ``searched`` are the folders in which it was looked for (without those of Python's
-    own library and installed packages), ``found`` is the longest beginning of its name that does exist, and ``near``
-    a module with a similar name.
+    own library and installed packages), ``found`` is the longest beginning of its name that does exist (``within`` tells
+    whether in the project itself), and ``near`` a module with a similar name.
     """
 
     name: str
@@ -49,6 +49,7 @@ class Found:
     filename: str | None = None
     searched: tuple[str, ...] = ()
     found: str = ""
+    within: bool = False
     near: str | None = None
 
     @property
@@ -165,7 +166,8 @@ class Finder:
         near = nearest(wrong, (each for each in candidates if not each.startswith("_")))
         if near is not None:
             near = ".".join([*parts[:known], near, *parts[known + 1 :]])
-        return Found(name, ModuleKind.MISSING, None, tuple(homes), beginning, near)
+        within = bool(known) and any(home.startswith(_closed(base)) for home in homes for base in own)
+        return Found(name, ModuleKind.MISSING, None, tuple(homes), beginning, within, near)
 
     def _beside(self, folder: str) -> tuple[str, ...]:
         """A folder, and those above it up to the innermost root that holds it."""

@@ -274,12 +274,13 @@ def test_the_same_in_several_processes() -> None:
 DYING = """
 import os, sys, signal, time
 import scenic.cli.main, scenic.cli.check as command, scenic.cli.checking as checking
-original = checking.check_file
-def check_file(task):
-    if 'f01' in task.filename:
-        {what}
-    return original(task)
-command.check_file = check_file
+original = checking.Checker()
+class Checker:
+    def __call__(self, task):
+        if 'f01' in task.filename:
+            {what}
+        return original(task)
+command.Checker = Checker
 if __name__ == '__main__':
     scenic.cli.main.main()
 """

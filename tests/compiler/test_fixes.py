@@ -87,7 +87,7 @@ def test_only_what_is_shown_is_repaired() -> None:
 
 
 def test_a_repair_that_breaks_the_program_is_not_made(monkeypatch: pytest.MonkeyPatch) -> None:
-    def checked(text: str, *, filename: str) -> tuple[Diagnostic, ...]:
+    def checked(text: str, *, filename: str, surroundings_of: None) -> tuple[Diagnostic, ...]:
         # Every `a` asks for a bracket in front of it, and every bracket is an error; every `b` asks for a `c`.
         errors = [Diagnostic("SC103", "m") for _ in range(text.count("("))]
         return (
@@ -111,7 +111,7 @@ def test_a_repair_that_breaks_the_program_is_not_made(monkeypatch: pytest.Monkey
 
 
 def test_repairs_that_undo_each_other_end(monkeypatch: pytest.MonkeyPatch) -> None:
-    def checked(text: str, *, filename: str) -> tuple[Diagnostic, ...]:
+    def checked(text: str, *, filename: str, surroundings_of: None) -> tuple[Diagnostic, ...]:
         new = "b" if text == "a" else "a"
         return (Diagnostic("SC300", "m", severity=Severity.WARNING, fix=fix((1, 0, 1, 1, new))),)
 

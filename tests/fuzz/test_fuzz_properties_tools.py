@@ -12,6 +12,7 @@ from fuzz.mutations import Mutant
 from fuzz.properties import Case, Violation, recovery, repairs, surgery, tools
 from fuzz.properties.case import describe
 from fuzz.properties.signatures import SIGNATURES
+from scenic.cli.checking import Checker
 from scenic.compiler.check import check_text
 from scenic.compiler.parser import ParseResult, parse
 from scenic.language.diagnostics import Diagnostic, Edit, Fix
@@ -152,12 +153,12 @@ WRONG = "x = '😀' + y\nrequire z\n  \nx x\n"
 
 
 def test_tools_that_say_something_else_are_noticed(monkeypatch: pytest.MonkeyPatch):
-    def less(text: str, *, filename: str) -> tuple[Diagnostic, ...]:
+    def less(text: str, *, filename: str, project: object) -> tuple[Diagnostic, ...]:
         return check_text(text, filename=filename)[1:]
 
     tools.check_and_server_agree(Case(WRONG, thorough=True))
     monkeypatch.setattr(tools, "diagnostics", less)
-    with pytest.raises(Violation, match="the editor says: less"):
+    with pytest.raises(Violation, match="the editor says"):
         tools.check_and_server_agree(Case(WRONG, thorough=True))
 
 
@@ -165,8 +166,8 @@ def test_a_command_that_fails_is_noticed(monkeypatch: pytest.MonkeyPatch):
     def broken(task: Any) -> Any:
         return right(replace(task, text=task.text + "\n)"))
 
-    right = tools.check_file
-    monkeypatch.setattr(tools, "check_file", broken)
+    right = Checker()
+    monkeypatch.setattr(tools, "_command", lambda: broken)
     with pytest.raises(Violation, match="the command says: SC103"):
         tools.check_and_server_agree(Case(WRONG, thorough=True))
 

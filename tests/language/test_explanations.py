@@ -7,9 +7,11 @@ import pytest
 
 from scenic.compiler.check import check_text
 from scenic.compiler.fixes import apply_fixes
-from scenic.language.diagnostics import CODES, Diagnostic
+from scenic.language.diagnostics import CODES, Diagnostic, Severity
 from scenic.language.explanations import Explanation, explanation
 from scenic.pipeline import deep_check, diagnose, scenarioFromString
+from scenic.project.index import Project
+from scenic.project.surroundings import surroundings_in
 
 PAGES = sorted(
     file.name.removesuffix(".md")
@@ -39,10 +41,16 @@ def test_unknown_codes_have_none() -> None:
         explanation("SC000")
 
 
+def checked(text: str, *, verbose: bool = False) -> tuple[Diagnostic, ...]:
+    """What the static check says of a program that stands alone in its folder."""
+    known = surroundings_in(Project(["/nowhere"]), verbose=verbose)
+    return check_text(text, filename="/nowhere/page.scenic", surroundings_of=known)
+
+
 def observed(page: Explanation, text: str, folder: Path) -> list[Diagnostic]:
     """What the tool that finds this code says of a program."""
     if page.code < "SC400" or page.code == "SC900":
-        return list(check_text(text, filename="page.scenic"))
+        return list(checked(text, verbose=page.severity is Severity.INFORMATION))
     assert check_text(text, filename="page.scenic") == () or text == page.repair, (
         "it is found without running it"
     )
@@ -77,7 +85,7 @@ def test_the_repair_is_free_of_it(code: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize("code", [code for code in RUN if code < "SC400"])
 def test_a_fix_of_the_example_mends_it(code: str) -> None:
     page = explanation(code)
-    for found in check_text(page.example, filename="page.scenic"):
+    for found in checked(page.example):
         if found.fix is not None:
             mended, _ = apply_fixes(page.example, [found.fix])
-            assert found.code not in {each.code for each in check_text(mended, filename="page.scenic")}
+            assert found.code not in {each.code for each in checked(mended)}

@@ -3,8 +3,8 @@
 One object: ``version`` (1), ``diagnostics`` and ``summary``.
 
 ``diagnostics`` is a list of objects with ``code``, ``severity`` ("error", "warning" or "information"), ``message``,
-``help`` (or null), ``filename`` (or null), ``span`` (or null), ``labels``, a list of objects with ``span`` and
-``text``, and ``fix`` (or null), an object with ``title`` and ``edits``, a list of objects with ``span`` and the
+``help`` (or null), ``filename`` (or null), ``span`` (or null), ``labels``, a list of objects with ``span``, ``text`` and
+(in another file) ``filename``, and ``fix`` (or null), an object with ``title`` and ``edits``, a list of objects with ``span`` and the
 ``text`` that takes its place. A span has ``line``, ``column``, ``end_line`` and ``end_column``; lines and columns count
 from 1, columns in characters (code points), and the end is exclusive.
 
@@ -54,7 +54,11 @@ def _plain(diagnostic: Diagnostic) -> dict[str, Any]:
         "help": diagnostic.help,
         "filename": diagnostic.filename,
         "span": None if diagnostic.span is None else _span(diagnostic.span),
-        "labels": [{"span": _span(label.span), "text": label.text} for label in diagnostic.labels],
+        "labels": [
+            {"span": _span(label.span), "text": label.text}
+            | ({} if label.filename is None else {"filename": label.filename})
+            for label in diagnostic.labels
+        ],
         "fix": None if diagnostic.fix is None else _fix(diagnostic.fix),
     }
 

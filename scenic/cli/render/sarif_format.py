@@ -90,7 +90,7 @@ def _result(diagnostic: Diagnostic, codes: Sequence[str]) -> dict[str, Any]:
         result["relatedLocations"] = [
             {
                 "id": number,
-                "physicalLocation": _place(diagnostic.filename, label.span),
+                "physicalLocation": _place(label.filename or diagnostic.filename, label.span),
                 "message": {"text": _encodable(label.text)},
             }
             for number, label in enumerate(diagnostic.labels, 1)

@@ -1,5 +1,6 @@
 """Diagnostics for people: the message, the source lines with carets below them, and what to do."""
 
+import os
 import unicodedata
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -80,11 +81,24 @@ def _block(diagnostic: Diagnostic, source: Source | None, paint: _Paint) -> Iter
     if source is not None and marks:
         yield f"{margin} {paint('|', _BLUE)}"
         yield from _snippet(marks, source, width, paint)
+    for label in diagnostic.labels:
+        if label.filename not in (None, diagnostic.filename):
+            there = f"{_visible(_near(label.filename))}:{label.span.line}:{label.span.column + 1}"
+            yield f"{margin} {paint(':::', _BLUE)} {there}: {_visible(label.text)}"
     advice = list(_advice(diagnostic))
     if advice and marks:
         yield f"{margin} {paint('|', _BLUE)}"
     for text in advice:
         yield f"{margin} {paint('=', _BLUE)} {paint('help', _BOLD)}: {_visible(text)}"
+
+
+def _near(filename: str | None) -> str:
+    """The path from the current folder, if it lies there."""
+    try:
+        relative = os.path.relpath(filename or "")
+    except ValueError:  # on another drive
+        return filename or ""
+    return filename or "" if relative.startswith(os.pardir) else relative
 
 
 def _advice(diagnostic: Diagnostic) -> Iterator[str]:
@@ -107,7 +121,11 @@ def _advice(diagnostic: Diagnostic) -> Iterator[str]:
 def _marks(diagnostic: Diagnostic, span: Span, source: Source, colour: str) -> Iterator[_Mark]:
     """The stretches to underline: of a span over several lines, its part of the first one."""
     places = [(span, "^", "", colour)]
-    places += [(label.span, "-", _visible(label.text), _BLUE) for label in diagnostic.labels]
+    places += [
+        (label.span, "-", _visible(label.text), _BLUE)
+        for label in diagnostic.labels
+        if label.filename in (None, diagnostic.filename)
+    ]
     for place, sign, text, paint in places:
         if place.line <= len(source.lines):
             content = source.line(place.line)

@@ -29,6 +29,7 @@ from scenic.compiler.checks import (
 from scenic.compiler.checks.context import Context, NodeRule, ProgramRule
 from scenic.compiler.garbage import no_garbage_collection
 from scenic.compiler.scopes import Resolution
+from scenic.compiler.surroundings import Surroundings
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.source import Source
 
@@ -73,13 +74,14 @@ def check(
     *,
     reserved: Iterable[tuple[str, ast.AST]],
     provided: Collection[str],
+    surroundings: Surroundings | None = None,
 ) -> tuple[Diagnostic, ...]:
     """What no program may contain, ordered by place.
 
     ``reserved`` are the places where the program binds a name that it must not bind, ``provided`` the names in scope
-    that nothing binds.
+    that nothing binds, ``surroundings`` what is known about its imports.
     """
-    context = Context(tree, source, resolution)
+    context = Context(tree, source, resolution, surroundings)
 
     def findings() -> Iterator[Diagnostic]:
         yield from names.check_reserved(context, reserved)
@@ -92,16 +94,22 @@ def check(
     return tuple(sorted(findings(), key=_order))
 
 
-def lint(tree: ast.Module, source: Source, resolution: Resolution) -> tuple[Diagnostic, ...]:
+def lint(
+    tree: ast.Module, source: Source, resolution: Resolution, surroundings: Surroundings | None = None
+) -> tuple[Diagnostic, ...]:
     """What a program may contain but hardly means, and what is bound to fail when it is reached; ordered by place."""
-    context = Context(tree, source, resolution)
+    context = Context(tree, source, resolution, surroundings)
 
     def findings() -> Iterator[Diagnostic]:
         for cls, rule in _NODE_RULES:
             for node, scope in resolution.nodes.get(cls, ()):
                 yield from rule(node, scope, context)
+        wrong = () if surroundings is None else tuple(surroundings.findings())
+        yield from wrong
+        places = {item.span for item in wrong}
         for program_rule in _PROGRAM_RULES:
-            yield from program_rule(context)
+            # A name that cannot be imported is not unused as well.
+            yield from (item for item in program_rule(context) if item.span not in places)
 
     with no_garbage_collection():
         return tuple(sorted(dict.fromkeys(findings()), key=_order))

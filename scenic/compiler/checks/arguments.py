@@ -2,13 +2,15 @@
 
 import ast
 from collections.abc import Iterator
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.context import Context, NodeRule
 from scenic.compiler.checks.places import word_span
+from scenic.compiler.checks.provided import PROVIDED_PARAMETERS
 from scenic.compiler.scopes import Scope, ScopeKind
 from scenic.language.diagnostics import Diagnostic, Label
+from scenic.language.names import NAMES
 from scenic.language.spelling import nearest
 
 __all__ = ["RULES", "kind_of", "required_parameters"]
@@ -40,8 +42,10 @@ def _parameters(definition: Any) -> ast.arguments | None:
 def required_parameters(definition: Any) -> list[str]:
     """The parameters that every call must give, in order."""
     args = _parameters(definition)
-    if args is None:
-        return []
+    return [] if args is None else _required(args)
+
+
+def _required(args: ast.arguments) -> list[str]:
     positional = [*args.posonlyargs, *args.args]
     required = [arg.arg for arg in positional[: len(positional) - len(args.defaults)]]
     named = zip(args.kwonlyargs, args.kw_defaults, strict=False)
@@ -49,24 +53,60 @@ def required_parameters(definition: Any) -> list[str]:
 
 
 def _call(node: ast.Call, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+    foreign = context.foreign(node.func)
+    if foreign is not None:
+        if foreign.definition is not None:
+            args = foreign.parameters or _parameters(foreign.definition)
+            if args is not None:
+                labels = context.defined(foreign.name, foreign.definition, foreign)
+                title = f"the {kind_of(foreign.definition)} `{foreign.name}`"
+                yield from _arguments(node, _Callee(foreign.name, title, args, labels), context)
+        return
+    callee = _known(node, context)
+    if callee is not None:
+        yield from _arguments(node, callee, context)
+
+
+class _Callee(NamedTuple):
+    """What is called: ``skip`` parameters are given by the call itself."""
+
+    name: str
+    title: str
+    args: ast.arguments
+    labels: tuple[Label, ...]
+    skip: int = 0
+
+    @property
+    def required(self) -> list[str]:
+        return _required(self.args)[self.skip :]
+
+    @property
+    def signature(self) -> str:
+        return f"`{self.name}({', '.join(self.required)})`"
+
+
+def _known(node: ast.Call, context: Context) -> _Callee | None:
+    """What a call certainly calls, if that is defined in the program or by the language."""
+    provided = context.provided(node.func)
+    if provided is not None:
+        args = PROVIDED_PARAMETERS.get(provided)
+        if args is None:
+            return None
+        return _Callee(provided, f"the {NAMES[provided].kind} `{provided}`", args, ())
     definition: Any = context.definition(node.func)
     skip = 0
     if definition is None:
         definition = _own_method(node.func, context)
         skip = 1
-    if definition is None:
-        return
-    args = _parameters(definition)
-    if args is not None:
-        yield from _arguments(node, definition, args, skip, context)
+    args = None if definition is None else _parameters(definition)
+    if args is None:
+        return None
+    title = f"the {'method' if skip else kind_of(definition)} `{definition.name}`"
+    return _Callee(definition.name, title, args, context.defined(definition.name, definition, None), skip)
 
 
-def _arguments(
-    node: ast.Call, definition: Any, args: ast.arguments, skip: int, context: Context
-) -> Iterator[Diagnostic]:
-    name = definition.name
-    title = f"the {'method' if skip else kind_of(definition)} `{name}`"
-    labels = (Label(word_span(context.source, definition, name), "defined here"),)
+def _arguments(node: ast.Call, callee: _Callee, context: Context) -> Iterator[Diagnostic]:
+    _, title, args, labels, skip = callee
     positional = [*args.posonlyargs, *args.args][skip:]
     by_name = {arg.arg for arg in (*args.args[max(0, skip - len(args.posonlyargs)) :], *args.kwonlyargs)}
     spread = any(isinstance(argument, ast.Starred) for argument in node.args)
@@ -111,13 +151,13 @@ def _arguments(
     if wrong or spread or spread_names:
         return
     given_names = filled | {keyword.arg for keyword in node.keywords if keyword.arg in by_name}
-    missing = [name for name in required_parameters(definition)[skip:] if name not in given_names]
+    missing = [name for name in callee.required if name not in given_names]
     if missing:
         yield context.error(
             "SC211",
             f"{title} needs {_listed(missing)}",
             node,
-            f"give {'it' if len(missing) == 1 else 'them'}: {_signature(definition, skip)}",
+            f"give {'it' if len(missing) == 1 else 'them'}: {callee.signature}",
             labels=labels,
         )
 
@@ -163,8 +203,11 @@ def _do(node: Any, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
     """``do f``, ``do f()``: only behaviors, monitors and scenarios can be run."""
     for target in node.targets:
         called = isinstance(target, ast.Call)
-        definition: Any = context.definition(target.func if isinstance(target, ast.Call) else target)
-        if isinstance(definition, ast.FunctionDef) and (not called or not _returns(definition, context)):
+        function = target.func if isinstance(target, ast.Call) else target
+        foreign = context.foreign(function)
+        definition: Any = context.definition(function) if foreign is None else foreign.definition
+        plain = isinstance(definition, ast.FunctionDef)
+        if plain and (not called or (foreign is None and not _returns(definition, context))):
             name = definition.name
             yield context.error(
                 "SC211",
@@ -172,14 +215,15 @@ def _do(node: Any, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
                 + (" that returns nothing" if called else ""),
                 target,
                 f"call it without `do`, or define it with `behavior {name}(...):`",
-                labels=(Label(word_span(context.source, definition, name), "defined here"),),
+                labels=context.defined(name, definition, foreign),
             )
         elif not called:
             yield from _uncalled(target, context)
 
 
 def _uncalled(value: ast.expr | None, context: Context) -> Iterator[Diagnostic]:
-    definition: Any = context.definition(value)
+    foreign = context.foreign(value)
+    definition: Any = context.definition(value) if foreign is None else foreign.definition
     if value is None or not isinstance(definition, scenic.BehaviorDef | scenic.ScenarioDef):
         return
     missing = required_parameters(definition)
@@ -189,8 +233,8 @@ def _uncalled(value: ast.expr | None, context: Context) -> Iterator[Diagnostic]:
             "SC211",
             f"the {kind_of(definition)} `{name}` needs {_listed(missing)}",
             value,
-            f"call it: {_signature(definition, 0)}",
-            labels=(Label(word_span(context.source, definition, name), "defined here"),),
+            f"call it: `{name}({', '.join(missing)})`",
+            labels=context.defined(name, definition, foreign),
         )
 
 
@@ -208,10 +252,6 @@ def _listed(names: list[str]) -> str:
     if not quoted:
         return "none by name"
     return quoted[0] if len(quoted) == 1 else f"{', '.join(quoted[:-1])} and {quoted[-1]}"
-
-
-def _signature(definition: Any, skip: int) -> str:
-    return f"`{definition.name}({', '.join(required_parameters(definition)[skip:])})`"
 
 
 RULES: Final[dict[type[ast.AST], NodeRule]] = {

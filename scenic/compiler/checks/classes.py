@@ -2,25 +2,17 @@
 
 import ast
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from types import MappingProxyType
 
 from scenic.compiler import tree as scenic
+from scenic.compiler.surroundings import Foreign, Property
 from scenic.compiler.traversal import walk
 from scenic.language.properties import CLASSES, properties_of
 
-__all__ = ["Classes", "Property"]
+__all__ = ["BUILT_IN", "Classes", "own_property"]
 
 
-@dataclass(frozen=True, slots=True)
-class Property:
-    """A property of a class: the properties that its default reads, and whether it is final."""
-
-    needs: tuple[str, ...] = ()
-    final: bool = False
-
-
-_BUILT_IN: Mapping[str, Mapping[str, Property]] = MappingProxyType(
+BUILT_IN: Mapping[str, Mapping[str, Property]] = MappingProxyType(
     {
         cls: MappingProxyType(
             {name: Property(entry.needs, entry.final) for name, entry in properties_of(cls).items()}
@@ -34,23 +26,28 @@ class Classes:
     """The properties of built-in classes and of those that the module defines.
 
     ``definition`` gives the one definition that an expression can mean, ``provided`` the name of what the language
-    provides.
+    provides, ``foreign`` what another module defines.
     """
 
     def __init__(
         self,
         definition: Callable[[ast.expr], ast.AST | None],
         provided: Callable[[ast.expr], str | None],
+        foreign: Callable[[ast.expr], Foreign | None],
     ) -> None:
         self._definition = definition
         self._provided = provided
+        self._foreign = foreign
         self._known: dict[ast.AST, Mapping[str, Property] | None] = {}
 
     def properties(self, name: ast.expr) -> Mapping[str, Property] | None:
         """All properties of the class that an expression names; ``None`` if they cannot be known."""
         provided = self._provided(name)
         if provided is not None:
-            return _BUILT_IN.get(provided)
+            return BUILT_IN.get(provided)
+        foreign = self._foreign(name)
+        if foreign is not None:
+            return foreign.properties
         definition = self._definition(name)
         return None if definition is None else self.of(definition)
 
@@ -60,27 +57,30 @@ class Classes:
 
     def is_built_in(self, properties: Mapping[str, Property]) -> bool:
         """Whether these are the properties of a class of the language, whose defaults need no checking."""
-        return any(properties is built_in for built_in in _BUILT_IN.values())
+        return any(properties is built_in for built_in in BUILT_IN.values())
 
     def _defined(self, node: ast.ClassDef) -> Mapping[str, Property] | None:
         if node not in self._known:
             self._known[node] = None  # A class among its own bases: nothing is known.
             found: dict[str, Property] = {}
             for properties in reversed(
-                [self.properties(base) for base in node.bases] or [_BUILT_IN["Object"]]
+                [self.properties(base) for base in node.bases] or [BUILT_IN["Object"]]
             ):
                 if properties is None or node.keywords:
                     break
                 found.update(properties)
             else:
                 found.update(
-                    (item.name, _own(item)) for item in node.body if isinstance(item, scenic.PropertyDef)
+                    (item.name, own_property(item))
+                    for item in node.body
+                    if isinstance(item, scenic.PropertyDef)
                 )
                 self._known[node] = MappingProxyType(found)
         return self._known[node]
 
 
-def _own(item: scenic.PropertyDef) -> Property:
+def own_property(item: scenic.PropertyDef) -> Property:
+    """A property as a class defines it."""
     needs = [
         part.attr
         for part in walk(item.value)

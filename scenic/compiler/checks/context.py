@@ -1,15 +1,16 @@
 """What every rule is given: the program, what its names mean, and the making of diagnostics."""
 
 import ast
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from functools import cached_property
 from typing import Any, Final
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.blocks import Block, blocks, position
 from scenic.compiler.checks.classes import Classes
-from scenic.compiler.checks.places import header_span
-from scenic.compiler.scopes import Binding, Resolution, Scope, ScopeKind
+from scenic.compiler.checks.places import header_span, word_span
+from scenic.compiler.scopes import Binding, BindingKind, Resolution, Scope, ScopeKind
+from scenic.compiler.surroundings import Foreign, Surroundings
 from scenic.language.diagnostics import Diagnostic, Edit, Fix, Label, Severity
 from scenic.language.source import Source
 from scenic.language.spans import Span
@@ -39,10 +40,17 @@ Definition = (
 class Context:
     """A program under examination. What several rules need is computed once, when it is first asked for."""
 
-    def __init__(self, tree: ast.Module, source: Source, resolution: Resolution) -> None:
+    def __init__(
+        self,
+        tree: ast.Module,
+        source: Source,
+        resolution: Resolution,
+        surroundings: Surroundings | None = None,
+    ) -> None:
         self.tree = tree
         self.source = source
         self.resolution = resolution
+        self.surroundings = surroundings
 
     # What the program is
 
@@ -54,7 +62,7 @@ class Context:
     @cached_property
     def classes(self) -> Classes:
         """The properties of the classes that the program uses."""
-        return Classes(self.definition, self.provided)
+        return Classes(self.definition, self.provided, self.foreign)
 
     @cached_property
     def broken(self) -> bool:
@@ -93,14 +101,54 @@ class Context:
         [site] = binding.sites
         if not isinstance(site, DEFINITIONS) or getattr(site, "decorator_list", None):
             return None
-        return site if position(site) >= self._last_wildcard else None
+        return site if self._stands(name.id, site) else None
+
+    def _stands(self, name: str, site: ast.AST) -> bool:
+        """Whether no names that the text does not show may replace what is bound to a name there."""
+        if position(site) >= self._last_wildcard:
+            return True
+        return not self.resolution.wildcard and name not in self.brought
+
+    @cached_property
+    def brought(self) -> Collection[str]:
+        """The names that star imports and the model are known to bring."""
+        return () if self.surroundings is None else self.surroundings.names
+
+    def foreign(self, name: ast.expr | None) -> Foreign | None:
+        """What an expression means, if that is something that another module certainly defines."""
+        if self.surroundings is None or self.resolution.reflective:
+            return None
+        if isinstance(name, ast.Attribute):
+            return self.surroundings.attribute(name)
+        reference = self.resolution.references.get(name) if isinstance(name, ast.Name) else None
+        if reference is None:
+            return None
+        binding = reference.binding
+        if binding is None:
+            known = reference.node.id in self.brought and not self.resolution.wildcard
+            return self.surroundings.brought(reference.node.id) if known else None
+        if len(binding.sites) != 1 or binding.kinds != {BindingKind.IMPORTED}:
+            return None
+        [site] = binding.sites
+        if not isinstance(site, ast.alias) or not self._stands(binding.name, site):
+            return None
+        return self.surroundings.imported(site)
 
     def provided(self, name: ast.expr | None) -> str | None:
         """The name that an expression is, if it means what the language provides under that name."""
         if not isinstance(name, ast.Name) or self.resolution.wildcard:
             return None
         reference = self.resolution.references.get(name)
-        return name.id if reference is not None and reference.binding is None else None
+        own = reference is not None and reference.binding is None and name.id not in self.brought
+        return name.id if own else None
+
+    def defined(self, name: str, definition: Definition, foreign: Foreign | None) -> tuple[Label, ...]:
+        """The place of a definition, here or in another file."""
+        if foreign is None:
+            return (Label(word_span(self.source, definition, name), "defined here"),)
+        if foreign.filename is None or foreign.span is None:
+            return ()
+        return (Label(foreign.span, "defined here", foreign.filename),)
 
     def constant(self, name: ast.Name) -> ast.expr | None:
         """The literal that is certainly the value of a name: a number, text or collection assigned just once."""
@@ -109,7 +157,7 @@ class Context:
             return None
         value = self.assigned.get(binding.sites[0])
         literal = isinstance(value, ast.Constant | ast.List | ast.Tuple | ast.Dict | ast.Set | ast.JoinedStr)
-        return value if literal and position(value) >= self._last_wildcard else None
+        return value if literal and value is not None and self._stands(name.id, value) else None
 
     @cached_property
     def assigned(self) -> Mapping[ast.AST, ast.expr]:

@@ -58,7 +58,9 @@ def check_names(context: Context, provided: Collection[str]) -> Iterator[Diagnos
             continue
         node = reference.node
         name = node.id
-        if name in provided or node in resolution.tolerated or isinstance(node.ctx, ast.Store):
+        if name in provided or name in context.brought:
+            continue
+        if node in resolution.tolerated or isinstance(node.ctx, ast.Store):
             continue
         if skipped is None:
             skipped = _skipped_words(context)
@@ -70,7 +72,7 @@ def check_names(context: Context, provided: Collection[str]) -> Iterator[Diagnos
             skipped.add(name)
         if node in classes:
             if name not in suggestions and len(suggestions) < MOST_SUGGESTIONS:
-                suggestions[name] = nearest(name, _classes_in_reach(reference))
+                suggestions[name] = nearest(name, _classes_in_reach(reference, context))
             yield _unknown_class(context, reference, suggestions.get(name))
             continue
         if _names_property(context, reference):
@@ -81,7 +83,7 @@ def check_names(context: Context, provided: Collection[str]) -> Iterator[Diagnos
             continue
         if name not in suggestions and len(suggestions) < MOST_SUGGESTIONS:
             candidates = reference.scope.names_in_reach() | {word for word in provided if word[0] != "_"}
-            suggestions[name] = nearest(name, candidates)
+            suggestions[name] = nearest(name, candidates.union(context.brought))
         suggestion = suggestions.get(name)
         yield context.error(
             "SC202",
@@ -162,11 +164,12 @@ def _no_class(context: Context, name: ast.Name) -> Iterator[Diagnostic]:
         what = f"`{provided}` is a {NAMES[provided].kind} of the language, not a class of objects"
         yield context.error("SC203", what, name, f"leave out `new`: write `{NAMES[provided].signature}`")
         return
-    definition: Any = context.definition(name)
+    foreign = context.foreign(name)
+    definition: Any = context.definition(name) if foreign is None else foreign.definition
     labels: tuple[Label, ...] = ()
     if definition is not None and not isinstance(definition, ast.ClassDef):
         what = kind_of(definition)
-        labels = (Label(word_span(context.source, definition, name.id), "defined here"),)
+        labels = context.defined(name.id, definition, foreign)
         help_ = f"leave out `new`: write `{name.id}(...)`"
         yield context.error("SC203", f"`{name.id}` is a {what}, not a class", name, help_, labels=labels)
         return
@@ -177,13 +180,18 @@ def _no_class(context: Context, name: ast.Name) -> Iterator[Diagnostic]:
         yield context.error("SC203", f"`{name.id}` is a plain value, not a class", name, help_, labels=labels)
 
 
-def _classes_in_reach(reference: Reference) -> set[str]:
-    return set(CLASSES) | {
-        binding.name
-        for scope in reference.scope.ancestors()
-        for binding in scope.bindings.values()
-        if any(isinstance(site, ast.ClassDef) for site in binding.sites)
-    }
+def _classes_in_reach(reference: Reference, context: Context) -> set[str]:
+    brought = {name for name in context.brought if name[:1].isupper()}
+    return (
+        brought
+        | set(CLASSES)
+        | {
+            binding.name
+            for scope in reference.scope.ancestors()
+            for binding in scope.bindings.values()
+            if any(isinstance(site, ast.ClassDef) for site in binding.sites)
+        }
+    )
 
 
 def _unknown_class(context: Context, reference: Reference, suggestion: str | None) -> Diagnostic:

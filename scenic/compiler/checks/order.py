@@ -49,7 +49,7 @@ def _names(context: Context, starts: list[tuple[int, int]]) -> Iterator[Diagnost
     first: dict[str, int] = {}
     reported: set[str] = set()
     for binding in module.bindings.values():
-        if binding.name not in PROVIDED:
+        if binding.name not in PROVIDED and binding.name not in context.brought:
             first[binding.name] = min(_statement(starts, site) for site in binding.sites)
     for reference in resolution.references.values():
         node = reference.node
@@ -86,7 +86,10 @@ def _names(context: Context, starts: list[tuple[int, int]]) -> Iterator[Diagnost
 
 def _ego(context: Context, starts: list[tuple[int, int]]) -> Iterator[Diagnostic]:
     """SC209: a use of the ego, said or implied, before the first assignment to it."""
-    if context.resolution.reflective or context.nodes(scenic.Model):
+    if context.resolution.reflective:
+        return
+    brings = (lambda _: True) if context.surroundings is None else context.surroundings.sets_ego
+    if any(brings(node) for node, _ in context.nodes(scenic.Model)):
         return
     module = context.resolution.module
     assignments = [
@@ -96,7 +99,7 @@ def _ego(context: Context, starts: list[tuple[int, int]]) -> Iterator[Diagnostic
     ]
     end = len(context.tree.body)
     for statement, _ in (*context.nodes(ast.Import), *context.nodes(ast.ImportFrom)):
-        if not _is_python(statement):
+        if not _is_python(statement) and brings(statement):
             # A Scenic module brings its ego along.
             end = min(end, _statement(starts, statement) - 1)
     uses = list(_uses(context))

@@ -5,10 +5,10 @@ from collections.abc import Iterator, Mapping
 from typing import Any, Final
 
 from scenic.compiler import tree as scenic
-from scenic.compiler.checks.classes import Property
 from scenic.compiler.checks.context import Context, NodeRule
 from scenic.compiler.checks.places import word_span
 from scenic.compiler.scopes import Scope
+from scenic.compiler.surroundings import Property
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.spans import Span
 from scenic.language.specifiers import SPECIFIERS, Specified

@@ -1,0 +1,74 @@
+"""What the checks of one program are told about the modules that it imports.
+
+The compiler looks into no other file. Who knows the project (`scenic.project`) hands a `Surroundings` to the checks; a
+program that is compiled to be run has none, and whatever an import brings is unknown then.
+"""
+
+import ast
+from collections.abc import Callable, Collection, Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+from scenic.compiler import tree as scenic
+from scenic.compiler.scopes import Resolution
+from scenic.language.diagnostics import Diagnostic
+from scenic.language.source import Source
+from scenic.language.spans import Span
+
+__all__ = ["Foreign", "Property", "Surroundings", "SurroundingsOf"]
+
+
+@dataclass(frozen=True, slots=True)
+class Property:
+    """A property of a class: the properties that its default reads, and whether it is final."""
+
+    needs: tuple[str, ...] = ()
+    final: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Foreign:
+    """What another module defines under a name.
+
+    ``definition`` is the one definition that it can only mean, without decorators; ``None`` if there may be others.
+    ``parameters`` are those of a class that is called like a function. ``properties`` are those of a class of objects,
+    ``None`` if they cannot be known. ``filename`` and ``span`` tell where the name is defined.
+    """
+
+    name: str
+    definition: Any = field(default=None, repr=False)
+    parameters: ast.arguments | None = field(default=None, repr=False)
+    properties: Mapping[str, Property] | None = field(default=None, repr=False)
+    filename: str | None = None
+    span: Span | None = None
+
+
+class Surroundings(Protocol):
+    """What is known about the imports of a program."""
+
+    @property
+    def complete(self) -> bool:
+        """Whether ``names`` are all names that star imports and the model bring."""
+
+    @property
+    def names(self) -> Collection[str]:
+        """The names that star imports and the model bring."""
+
+    def brought(self, name: str) -> Foreign | None:
+        """What one of ``names`` means; ``None`` if that is not known."""
+
+    def imported(self, alias: ast.alias) -> Foreign | None:
+        """What ``from m import name`` brings; ``None`` if that is not known."""
+
+    def attribute(self, node: ast.Attribute) -> Foreign | None:
+        """What ``m.name`` means, where ``m`` is an imported module; ``None`` if that is not known."""
+
+    def sets_ego(self, statement: ast.Import | ast.ImportFrom | scenic.Model) -> bool:
+        """Whether an import may bring an ego along."""
+
+    def findings(self) -> Iterator[Diagnostic]:
+        """What is wrong with the imports themselves."""
+
+
+SurroundingsOf = Callable[[ast.Module, Source, Resolution], Surroundings]
+"""Finds out about the imports of a program, whose names are bound already."""

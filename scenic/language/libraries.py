@@ -1,0 +1,59 @@
+"""The world models and libraries that existing programs name, whether or not this installation has them."""
+
+from typing import Final
+
+__all__ = ["FAMILIES", "LIBRARIES"]
+
+FAMILIES: Final = frozenset(
+    {"scenic.contracts", "scenic.core", "scenic.formats", "scenic.gym", "scenic.syntax"}
+)
+"""Packages of other implementations; what is in them is their own affair."""
+
+LIBRARIES: Final = frozenset(
+    {
+        "scenic.domains",
+        "scenic.domains.driving",
+        "scenic.domains.driving.actions",
+        "scenic.domains.driving.behaviors",
+        "scenic.domains.driving.controllers",
+        "scenic.domains.driving.model",
+        "scenic.domains.driving.roads",
+        "scenic.domains.driving.simulators",
+        "scenic.domains.driving.workspace",
+        "scenic.simulators",
+        "scenic.simulators.carla",
+        "scenic.simulators.carla.actions",
+        "scenic.simulators.carla.behaviors",
+        "scenic.simulators.carla.blueprints",
+        "scenic.simulators.carla.controller",
+        "scenic.simulators.carla.model",
+        "scenic.simulators.carla.simulator",
+        "scenic.simulators.gta",
+        "scenic.simulators.gta.model",
+        "scenic.simulators.lgsvl",
+        "scenic.simulators.lgsvl.actions",
+        "scenic.simulators.lgsvl.behaviors",
+        "scenic.simulators.lgsvl.model",
+        "scenic.simulators.lgsvl.simulator",
+        "scenic.simulators.metadrive",
+        "scenic.simulators.metadrive.model",
+        "scenic.simulators.metadrive.simulator",
+        "scenic.simulators.newtonian",
+        "scenic.simulators.newtonian.driving_model",
+        "scenic.simulators.newtonian.model",
+        "scenic.simulators.newtonian.simulator",
+        "scenic.simulators.utils",
+        "scenic.simulators.utils.colors",
+        "scenic.simulators.webots",
+        "scenic.simulators.webots.actions",
+        "scenic.simulators.webots.guideways.model",
+        "scenic.simulators.webots.mars.model",
+        "scenic.simulators.webots.model",
+        "scenic.simulators.webots.road.model",
+        "scenic.simulators.webots.road.world",
+        "scenic.simulators.webots.simulator",
+        "scenic.simulators.xplane",
+        "scenic.simulators.xplane.model",
+    }
+)
+"""The modules that worlds are commonly taken from."""

@@ -1,0 +1,339 @@
+"""The imports of one program: what they mean in its project, and what is wrong with them."""
+
+import ast
+import os
+from collections.abc import Iterator
+from functools import cached_property
+from typing import Any, Final
+
+from scenic.compiler import tree as scenic
+from scenic.compiler.checks.blocks import position
+from scenic.compiler.checks.places import header_span, word_span
+from scenic.compiler.scopes import Resolution
+from scenic.compiler.traversal import walk
+from scenic.language.diagnostics import Diagnostic, Edit, Fix, Severity
+from scenic.language.libraries import FAMILIES, LIBRARIES
+from scenic.language.source import Source
+from scenic.language.spans import Span
+from scenic.language.spelling import nearest
+from scenic.project.index import Exported, Exports, Project
+from scenic.project.search import Found, ModuleKind
+
+__all__ = ["Imports"]
+
+_MOST_SUGGESTIONS: Final = 100
+"""Names for which a similar one is looked for: a file full of unknown names must not take long."""
+
+_MOST_FOLDERS: Final = 4
+"""So many of the folders that were searched are named."""
+
+
+class Imports:
+    """The imports of a program, in its project. If ``verbose``, those of which nothing is known are reported."""
+
+    def __init__(
+        self, project: Project, tree: ast.Module, source: Source, resolution: Resolution, verbose: bool
+    ) -> None:
+        self._project = project
+        self._tree = tree
+        self._source = source
+        self._resolution = resolution
+        self._verbose = verbose
+        self._suggested = 0
+
+    # What they mean
+
+    @cached_property
+    def stars(self) -> tuple[ast.ImportFrom | scenic.Model, ...]:
+        """The star imports and models, in order."""
+        found = [node for node in self._froms if any(alias.name == "*" for alias in node.names)]
+        return tuple(sorted([*found, *self._models], key=position))
+
+    @cached_property
+    def _froms(self) -> tuple[ast.ImportFrom, ...]:
+        return tuple(
+            node for node, _ in self._resolution.nodes.get(ast.ImportFrom, ()) if node.module != "__future__"
+        )
+
+    @cached_property
+    def _models(self) -> tuple[scenic.Model, ...]:
+        return tuple(node for node, _ in self._resolution.nodes.get(scenic.Model, ()))
+
+    @cached_property
+    def _plain(self) -> tuple[ast.Import, ...]:
+        return tuple(node for node, _ in self._resolution.nodes.get(ast.Import, ()))
+
+    @cached_property
+    def _statements(self) -> dict[ast.alias, ast.ImportFrom]:
+        return {alias: node for node in self._froms for alias in node.names}
+
+    def found(self, node: ast.ImportFrom | scenic.Model) -> Found:
+        """The module that a statement names."""
+        return self._project.found_by(node, self._source.filename)
+
+    def modules(self, statement: ast.Import | ast.ImportFrom | scenic.Model) -> tuple[Found, ...]:
+        """The modules that a statement runs."""
+        importer = self._source.filename
+        if isinstance(statement, ast.Import):
+            return tuple(self._project.find(alias.name, importer=importer) for alias in statement.names)
+        found = self.found(statement)
+        if isinstance(statement, scenic.Model) or found.kind is not ModuleKind.NAMESPACE:
+            return (found,)
+        inner = (self.member(alias) for alias in statement.names if alias.name != "*")
+        return (found, *(each for each in inner if isinstance(each, Found)))
+
+    def member(self, alias: ast.alias) -> Exported | Found | None:
+        """What ``from m import name`` brings."""
+        statement = self._statements.get(alias)
+        if statement is None:
+            return None
+        return self._project.member(
+            self.found(statement), alias.name, importer=self._source.filename, level=statement.level
+        )
+
+    def attribute(self, node: ast.Attribute) -> Exported | Found | None:
+        """What ``m.name`` means, where ``m`` is a module that the program imports."""
+        home = self._module(node.value)
+        if home is None:
+            return None
+        return self._project.member(home, node.attr, importer=self._source.filename)
+
+    def _module(self, node: ast.expr) -> Found | None:
+        """The module that an expression means; ``None`` if it is none, or may be something else."""
+        if isinstance(node, ast.Attribute):
+            found = self.attribute(node)
+            return found if isinstance(found, Found) else None
+        if not isinstance(node, ast.Name) or self._resolution.reflective:
+            return None
+        binding = self._resolution.binding(node)
+        if (
+            binding is None
+            or not binding.sites
+            or not all(isinstance(each, ast.alias) for each in binding.sites)
+        ):
+            return None
+        targets = [self._imported_module(site) for site in binding.sites]
+        first = targets[0]
+        if first is None or any(each is None or each.filename != first.filename for each in targets):
+            return None
+        return first
+
+    def _imported_module(self, alias: Any) -> Found | None:
+        statement = self._statements.get(alias)
+        if statement is not None:
+            member = self.member(alias)
+            return member if isinstance(member, Found) else None
+        name = alias.name if alias.asname else alias.name.partition(".")[0]
+        return self._project.find(name, importer=self._source.filename)
+
+    # What is wrong with them
+
+    def findings(self) -> Iterator[Diagnostic]:
+        """SC212 (a module lacks a name), SC213 (nothing is known of a module) and SC406 (there is no such module)."""
+        for model in self._models:
+            yield from self._module_findings(self.found(model), model, model.name, 0)
+        for plain in self._plain:
+            for alias in plain.names:
+                found = self._project.find(alias.name, importer=self._source.filename)
+                yield from self._module_findings(found, alias, alias.name, 0)
+        for statement in self._froms:
+            found = self.found(statement)
+            before = list(self._module_findings(found, statement, statement.module or "", statement.level))
+            yield from before
+            if not found.is_missing:
+                yield from self._name_findings(found, statement)
+        yield from self._attribute_findings()
+
+    def _module_findings(self, found: Found, node: Any, name: str, level: int) -> Iterator[Diagnostic]:
+        star = isinstance(node, scenic.Model) or node in self.stars
+        if not found.is_missing:
+            exports = self._project.exports_of(found) if star and self._verbose else None
+            for unseen in () if exports is None else exports.unseen:
+                inner = unseen.module not in (name, name.rpartition(".")[2] + ".scenic")
+                why = f"of `{unseen.module}`, {unseen.reason}" if inner else unseen.reason
+                yield self._unknown(node, name, why)
+            return
+        severity, near = _judgement(found, node, level)
+        place = self._place(node, name)
+        if severity is None or self._is_guarded(node):
+            if self._verbose:
+                yield self._unknown(node, name, "it is not installed here")
+            return
+        fix = None
+        if near is not None:
+            help_ = f"did you mean `{near}`?"
+            fix = self._renaming(node, place, name, near)
+        else:
+            help_ = self._searched(found, node, level)
+        what = "world model" if isinstance(node, scenic.Model) else "module"
+        yield Diagnostic(
+            "SC406",
+            f"there is no {what} `{'.' * level}{name}`",
+            place,
+            severity,
+            self._source.filename,
+            help_,
+            fix=fix,
+        )
+
+    def _searched(self, found: Found, node: Any, level: int) -> str:
+        own = os.path.dirname(os.path.abspath(self._source.filename))
+        folders = [
+            "beside the program" if each == own else f"in `{_shown(each, own)}`" for each in found.searched
+        ]
+        if len(folders) > _MOST_FOLDERS:
+            folders = [*folders[:_MOST_FOLDERS], f"in {len(folders) - _MOST_FOLDERS} other folders"]
+        if not level and not found.found:
+            folders.append("on Python's path")
+        places = folders[0] if len(folders) == 1 else f"{', '.join(folders[:-1])} or {folders[-1]}"
+        kind = ".scenic" if isinstance(node, scenic.Model) else ".scenic or .py"
+        return f"there is no {kind} file of that name {places}" if folders else "correct the name"
+
+    def _unknown(self, node: Any, name: str, why: str) -> Diagnostic:
+        return Diagnostic(
+            "SC213",
+            f"not all names that `{name}` brings are known: {why}",
+            self._place(node, name),
+            Severity.INFORMATION,
+            self._source.filename,
+            "names that nothing else defines are taken to come from there",
+        )
+
+    def _name_findings(self, found: Found, statement: ast.ImportFrom) -> Iterator[Diagnostic]:
+        exports: Exports | None = None
+        for alias in statement.names:
+            if alias.name == "*" or self.member(alias) is not None:
+                continue
+            exports = self._project.exports_of(found) if exports is None else exports
+            module = f"{'.' * statement.level}{statement.module or ''}"
+            if not exports.complete:
+                if self._verbose:
+                    yield self._unknown(statement, module, f"it may have `{alias.name}`")
+                continue
+            if self._is_guarded(statement):
+                continue
+            place = self._alias_place(alias)
+            yield self._without(module, alias.name, exports, place, alias)
+
+    def _attribute_findings(self) -> Iterator[Diagnostic]:
+        imported = {
+            binding.name
+            for binding in self._resolution.module.bindings.values()
+            if all(isinstance(site, ast.alias) for site in binding.sites)
+        }
+        if not imported:
+            return
+        for node, _ in self._resolution.nodes.get(ast.Attribute, ()):
+            base = node.value
+            while isinstance(base, ast.Attribute):
+                base = base.value
+            if (
+                not isinstance(base, ast.Name)
+                or base.id not in imported
+                or not isinstance(node.ctx, ast.Load)
+            ):
+                continue
+            home = self._module(node.value)
+            if home is None or home.is_missing or home.kind is ModuleKind.NAMESPACE:
+                continue
+            if node.attr.startswith("__") or self.attribute(node) is not None:
+                continue
+            exports = self._project.exports_of(home)
+            if not exports.complete or self._is_guarded(node) or self._is_stored(node):
+                continue
+            whole = self._source.span(node)
+            start = max(0, whole.end_column - len(node.attr))
+            place = Span(whole.end_line, start, whole.end_line, whole.end_column)
+            yield self._without(home.name, node.attr, exports, place)
+
+    def _is_stored(self, node: ast.Attribute) -> bool:
+        """Whether the program gives a module such an attribute somewhere."""
+        return any(
+            other.attr == node.attr and not isinstance(other.ctx, ast.Load)
+            for other, _ in self._resolution.nodes.get(ast.Attribute, ())
+        )
+
+    def _without(
+        self, module: str, name: str, exports: Exports, place: Span, alias: ast.alias | None = None
+    ) -> Diagnostic:
+        near = None
+        if self._suggested < _MOST_SUGGESTIONS:
+            self._suggested += 1
+            near = nearest(name, exports.names)
+        return Diagnostic(
+            "SC212",
+            f"the module `{module}` has no `{name}`",
+            place,
+            Severity.ERROR,
+            self._source.filename,
+            f"did you mean `{near}`?" if near else "correct the name, or define it there",
+            fix=None if near is None else self._renaming(alias, place, name, near),
+        )
+
+    def _renaming(self, node: ast.AST | None, place: Span, name: str, near: str) -> Fix | None:
+        """The repair of a name, also where the program uses what the import binds to it."""
+        edits = [Edit(place, near)]
+        if place.end_column - place.column != len(name):
+            return None
+        if isinstance(node, ast.alias) and node.asname is None:
+            if "." in name:
+                return None
+            edits += [
+                Edit(self._source.span(reference.node), near)
+                for reference in self._resolution.references.values()
+                if reference.binding is not None and node in reference.binding.sites
+            ]
+        return Fix(f"Write `{near}`", tuple(edits))
+
+    def _is_guarded(self, node: ast.AST) -> bool:
+        """Whether a node stands in a ``try``, so that its failure may be provided for."""
+        return any(
+            isinstance(owner, ast.Try | ast.TryStar | scenic.TryInterrupt)
+            and position(owner) <= position(node) <= (owner.end_lineno or 0, owner.end_col_offset or 0)
+            for owner in walk(self._tree)
+        )
+
+    def _place(self, node: Any, name: str) -> Span:
+        """The name of the module in its statement."""
+        whole = header_span(self._source, node)
+        line = self._source.line(whole.line)
+        start = whole.column
+        if isinstance(node, scenic.Model | ast.ImportFrom):
+            start = line.find(" ", whole.column) + 1 or whole.column
+        column = line.find(name, start) if name else -1
+        return whole if column < 0 else Span(whole.line, column, whole.line, column + len(name))
+
+    def _alias_place(self, alias: ast.alias) -> Span:
+        return word_span(self._source, alias, alias.name)
+
+
+def _judgement(found: Found, node: Any, level: int) -> tuple[Severity | None, str | None]:
+    """How bad it is that a module is not found, and what may have been meant.
+
+    A library may be installed where the program runs and not here; whatever belongs to the program must be here.
+    """
+    name = found.name
+    if level:
+        return Severity.ERROR, found.near
+    if name == "scenic" or name.startswith("scenic."):
+        if name in LIBRARIES or ".".join(name.split(".")[:2]) in FAMILIES:
+            return None, None
+        near = nearest(name, LIBRARIES, limit=2)
+        return (Severity.WARNING, None) if near is None else (Severity.ERROR, near)
+    if found.near is not None:
+        return Severity.ERROR, found.near
+    if found.found:
+        # The beginning of the name was found. An installed package may make modules as it likes.
+        return (Severity.ERROR if found.within else None), None
+    if isinstance(node, scenic.Model) and "." not in name:
+        return Severity.ERROR, None
+    return Severity.WARNING, None
+
+
+def _shown(folder: str, own: str) -> str:
+    """A folder as seen from the program, if it is near."""
+    try:
+        relative = os.path.relpath(folder, own)
+    except ValueError:  # on another drive
+        return folder
+    return folder if relative.startswith(os.path.join(os.pardir, os.pardir)) else relative

@@ -1,0 +1,147 @@
+"""What a project tells the checks of a program about the modules that it imports."""
+
+import ast
+from collections.abc import Collection, Iterator, Mapping
+from functools import cached_property
+from types import MappingProxyType
+from typing import Any
+
+from scenic.compiler import tree as scenic
+from scenic.compiler.checks.classes import BUILT_IN, own_property
+from scenic.compiler.checks.context import DEFINITIONS
+from scenic.compiler.scopes import Resolution
+from scenic.compiler.surroundings import Foreign, Property, Surroundings, SurroundingsOf
+from scenic.language.diagnostics import Diagnostic
+from scenic.language.source import Source
+from scenic.project.classes import Class, class_of_symbol
+from scenic.project.imports import Imports
+from scenic.project.index import Exported, Exports, Project
+from scenic.project.search import Found, ModuleKind
+from scenic.project.symbols import Symbol, symbol_of_exported
+
+__all__ = ["surroundings_in"]
+
+
+def surroundings_in(project: Project, *, verbose: bool = False) -> SurroundingsOf:
+    """Finds out about the imports of programs of a project; if ``verbose``, also says which ones nothing is known of."""
+
+    def surroundings_of(tree: ast.Module, source: Source, resolution: Resolution) -> Surroundings:
+        return _Surroundings(project, tree, source, resolution, verbose)
+
+    return surroundings_of
+
+
+class _Surroundings:
+    """What is known about the imports of one program. Looks into a module when it is first asked about it."""
+
+    def __init__(
+        self, project: Project, tree: ast.Module, source: Source, resolution: Resolution, verbose: bool
+    ) -> None:
+        self._project = project
+        self._imports = Imports(project, tree, source, resolution, verbose)
+
+    @cached_property
+    def _stars(self) -> tuple[Exports, ...]:
+        """What each star import and model brings, in order."""
+        return tuple(self._project.exports_of(self._imports.found(node)) for node in self._imports.stars)
+
+    @cached_property
+    def complete(self) -> bool:
+        return all(exports.complete for exports in self._stars)
+
+    @cached_property
+    def _names(self) -> Mapping[str, Exported]:
+        return {
+            name: exports.names[name]
+            for exports in self._stars
+            for name in exports.public
+            if name in exports.names
+        }
+
+    @property
+    def names(self) -> Collection[str]:
+        return self._names.keys()
+
+    def brought(self, name: str) -> Foreign | None:
+        exported = self._names.get(name)
+        return None if exported is None else _foreign(self._project, exported)
+
+    def imported(self, alias: ast.alias) -> Foreign | None:
+        found = self._imports.member(alias)
+        return _foreign(self._project, found) if isinstance(found, Exported) else None
+
+    def attribute(self, node: ast.Attribute) -> Foreign | None:
+        found = self._imports.attribute(node)
+        return _foreign(self._project, found) if isinstance(found, Exported) else None
+
+    def sets_ego(self, statement: ast.Import | ast.ImportFrom | scenic.Model) -> bool:
+        return any(self._may_set_ego(found) for found in self._imports.modules(statement))
+
+    def _may_set_ego(self, found: Found) -> bool:
+        if found.kind is ModuleKind.SCENIC:
+            exports = self._project.exports_of(found)
+            return exports.sets_ego or not exports.complete
+        return found.is_missing
+
+    def findings(self) -> Iterator[Diagnostic]:
+        return self._imports.findings()
+
+
+def _foreign(project: Project, exported: Exported) -> Foreign | None:
+    if exported.module is None or exported.binding is None:
+        return None
+    key = (exported.module.filename, exported.binding)
+    if key not in project.derived:
+        project.derived[key] = _explored(project, exported)
+    found: Foreign | None = project.derived[key]
+    return found
+
+
+def _explored(project: Project, exported: Exported) -> Foreign | None:
+    symbol = symbol_of_exported(project, exported)
+    binding, node = symbol.binding, symbol.node
+    if binding is None or symbol.module is None or len(binding.sites) != 1:
+        return None
+    if not isinstance(node, DEFINITIONS) or getattr(node, "decorator_list", None):
+        return None
+    parameters, properties = None, None
+    if isinstance(node, ast.ClassDef):
+        known = class_of_symbol(project, symbol)
+        if known is not None and known.complete:
+            properties = _properties(known) if known.is_scenic else None
+            parameters = None if known.is_scenic else _parameters(known)
+    return Foreign(symbol.name, node, parameters, properties, symbol.filename, symbol.span)
+
+
+def _properties(known: Class) -> Mapping[str, Property]:
+    found: dict[str, Property] = {}
+    for member in known.properties:
+        if member.symbol is None:
+            found[member.name] = BUILT_IN[member.owner][member.name]
+        elif isinstance(member.symbol.node, scenic.PropertyDef):
+            found[member.name] = own_property(member.symbol.node)
+    return MappingProxyType(found)
+
+
+def _parameters(known: Class) -> ast.arguments | None:
+    """The parameters of a class that is called, without the first one of its ``__init__``."""
+    if known.member("__new__") is not None:
+        return None
+    initial = known.member("__init__")
+    symbol: Symbol | None = None if initial is None else initial.symbol
+    node: Any = None if symbol is None else symbol.node
+    if initial is None or not isinstance(node, ast.FunctionDef) or node.decorator_list:
+        return None
+    own = node.args
+    if own.posonlyargs or not own.args:
+        return None
+    rest = own.args[1:]
+    return ast.arguments(
+        posonlyargs=[],
+        args=rest,
+        vararg=own.vararg,
+        kwonlyargs=own.kwonlyargs,
+        kw_defaults=own.kw_defaults,
+        kwarg=own.kwarg,
+        defaults=own.defaults[-len(rest) :] if rest and own.defaults else [],
+    )

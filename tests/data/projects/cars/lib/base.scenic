@@ -1,0 +1,4 @@
+class Vehicle:
+    wheels: 4
+
+helper = 3

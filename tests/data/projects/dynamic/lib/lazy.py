@@ -1,0 +1,5 @@
+def __getattr__(name):
+    return 1
+
+
+known = 2

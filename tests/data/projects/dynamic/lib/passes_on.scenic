@@ -1,0 +1,2 @@
+from lib.reflective import *
+own = 1

@@ -1,0 +1,2 @@
+class Beside:
+    width: 3

@@ -1,0 +1,96 @@
+"""What the static check says of programs that import others: folders with marked programs.
+
+Marks are those of `tests.compiler.checks.test_lint`. A folder is a project of its own.
+"""
+
+from pathlib import Path
+
+import pytest
+
+from scenic.compiler.check import check_text
+from scenic.language.diagnostics import Diagnostic, Severity
+from scenic.project.index import Project
+from scenic.project.surroundings import surroundings_in
+from tests.compiler.checks.test_lint import applied, marks, place
+from tests.project.layouts import project, write
+
+FOLDER = Path(__file__).parents[1] / "data" / "projects"
+CASES = sorted(FOLDER.glob("*/*.scenic"))
+
+
+def findings(path: Path, text: str, *, verbose: bool = False) -> list[Diagnostic]:
+    """What the check says, without features that are not built yet."""
+    known = surroundings_in(Project([str(path.parent)]), verbose=verbose)
+    found = check_text(text, filename=str(path), surroundings_of=known)
+    return [item for item in found if item.code != "SC900"]
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: f"{case.parent.name}/{case.stem}")
+def test_marked_programs(case: Path) -> None:
+    text = case.read_text(encoding="utf-8")
+    found = findings(case, text)
+    expected = marks(text)
+    assert [place(item) for item in found] == [mark[:4] for mark in expected]
+    for item, mark in zip(found, expected, strict=True):
+        assert item.message.startswith(mark[4]), item.message
+        assert item.help
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: f"{case.parent.name}/{case.stem}")
+def test_repairs_repair(case: Path) -> None:
+    text = case.read_text(encoding="utf-8")
+    before = findings(case, text)
+    for item in before:
+        if item.fix is not None:
+            assert len(findings(case, applied(text, item.fix))) < len(before), item
+
+
+def test_what_cannot_be_known_is_told_on_demand() -> None:
+    case = FOLDER / "dynamic" / "main.scenic"
+    found = [item for item in findings(case, case.read_text(), verbose=True) if item.code == "SC213"]
+    assert [(item.span.line, item.severity) for item in found if item.span] == [
+        (2, Severity.INFORMATION),
+        (3, Severity.INFORMATION),
+        (4, Severity.INFORMATION),
+    ]
+    assert "`reflective.py`" in found[0].message
+
+
+def test_a_missing_module_is_an_error_only_if_the_project_should_have_it() -> None:
+    case = FOLDER / "missing" / "main.scenic"
+    severities = {
+        item.message: item.severity for item in findings(case, case.read_text()) if item.code == "SC406"
+    }
+    warnings = [message for message, severity in severities.items() if severity is Severity.WARNING]
+    assert warnings == ["there is no module `some_library_that_nobody_has`"]
+
+
+def test_labels_lead_to_other_files() -> None:
+    case = FOLDER / "cars" / "main.scenic"
+    [found] = [item for item in findings(case, case.read_text()) if "needs `target`" in item.message]
+    [label] = found.labels
+    assert label.filename == str(FOLDER / "cars" / "lib" / "model.scenic")
+    assert label.span.line == 15
+
+
+def test_an_ego_that_a_module_brings_is_there(tmp_path: Path) -> None:
+    text = "from first import *\nnew Object left of ego\n"
+    write(tmp_path, {"second.scenic": "ego = new Object\n", "first.scenic": "import second\n"})
+    assert findings(tmp_path / "main.scenic", text) == []
+
+
+def test_changes_of_a_module_are_seen(tmp_path: Path) -> None:
+    found = project(tmp_path, {"m.scenic": "def f(a): return a\n"})
+    known = surroundings_in(found)
+    text = "from m import *\nego = new Object facing f(1, 2)\n"
+
+    def codes() -> list[str]:
+        return [
+            item.code for item in check_text(text, filename=str(tmp_path / "a.scenic"), surroundings_of=known)
+        ]
+
+    assert codes() == ["SC211"]
+    found.open(str(tmp_path / "m.scenic"), "def f(a, b): return a\n")
+    assert codes() == []
+    found.open(str(tmp_path / "m.scenic"), "def g(a, b): return a\n")
+    assert codes() == ["SC202"]
