@@ -33,9 +33,11 @@ types: $(STAMP)
 fuzz: $(STAMP)
 	$(BIN)/python -m fuzz $(if $(MINUTES),--minutes $(MINUTES)) $(FUZZ)
 
-# Regenerates the parser after a change of grammar/scenic.gram (imports notice a stale one too).
+# After a change of grammar/scenic.gram or scenic/language: makes the parser again (imports notice a stale one too), and
+# what editors and docs/syntax.md take from the grammar.
 generate: $(STAMP)
 	$(BIN)/python -m grammar.generator
+	$(BIN)/python -m editors.generate
 
 clean:
 	rm -rf $(VENV) build dist out scenic/compiler/_generated .mypy_cache .ruff_cache .pytest_cache .hypothesis

@@ -30,7 +30,7 @@ LIBRARIES = {
     "configuration": set(),
     "graph": {"numpy", "scipy"},
     "project": set(),
-    "ide": set(),
+    "ide": {"pygments"},
     "lsp": {"pygls", "lsprotocol"},
 }
 """Libraries of each layer beside the standard library; layers left out may use any dependency."""

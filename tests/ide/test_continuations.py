@@ -58,12 +58,7 @@ def test_temporal_operators(form: str) -> None:
 
 @pytest.mark.parametrize(
     ("node", "form"),
-    [
-        (node, form)
-        for node, each in STATEMENTS.items()
-        for form in each.forms
-        if node not in ("PropertyDef",)
-    ],
+    [(node, form) for node, each in STATEMENTS.items() for form in each.forms if node != "PropertyDef"],
 )
 def test_statements(node: str, form: str) -> None:
     around = "behavior B():\n    " if node == "Guard" else ""

@@ -1,0 +1,259 @@
+"""What a highlighter without a parser should know: the words of the language and the places where they are keywords.
+
+Read from the grammar and the declarations; Pygments, TextMate grammars, Vim and the playground show the same. Soft
+keywords are names in most places, so most of them count only within a phrase of several words, or before an operand.
+"""
+
+import re
+from collections.abc import Collection, Iterable, Iterator
+from dataclasses import dataclass
+from enum import StrEnum
+from itertools import groupby
+from typing import Final
+
+from scenic.compiler.generated import HARD_KEYWORDS, SOFT_KEYWORDS
+from scenic.compiler.phrases import SCENIC_FORMS
+from scenic.compiler.precedence import FORMS, Form, Slot, Word
+from scenic.compiler.syntax import RULES, STATEMENT_FORMS, Kind, ListOf, Optional, Reference, Row, words_of
+from scenic.compiler.syntax import Word as Written
+from scenic.language.names import NAMES, TRACKED, NameKind
+from scenic.language.properties import CLASSES, properties_of
+
+__all__ = ["PATTERNS", "VOCABULARY", "Category", "Pattern", "Vocabulary", "any_of"]
+
+
+class Category(StrEnum):
+    """What a piece of text is shown as."""
+
+    STATEMENT = "statement"
+    DEFINITION = "definition"
+    OPERATOR = "operator"
+    CONSTANT = "constant"
+    VARIABLE = "variable"
+    CLASS = "class"
+    FUNCTION = "function"
+    PROPERTY = "property"
+    DEFINED = "defined"
+
+
+@dataclass(frozen=True, slots=True)
+class Vocabulary:
+    """The words, by where they are keywords.
+
+    ``phrases`` are rows of words that are keywords together; ``before_operands`` single words of operators and
+    specifiers, keywords if an operand follows; ``after_operands`` those that end one. The words of statements count at
+    the beginning of a line: ``statements`` before an operand, ``whole_statements`` alone, ``blocks`` before a colon,
+    ``headers`` on a line that ends with a colon. ``definitions`` are followed by a name that they define.
+    """
+
+    statement_words: frozenset[str]
+    operator_words: frozenset[str]
+    constants: frozenset[str]
+    variables: frozenset[str]
+    definitions: frozenset[str]
+    phrases: tuple[tuple[str, ...], ...]
+    before_operands: frozenset[str]
+    after_operands: frozenset[str]
+    infix: frozenset[str]
+    statement_starts: frozenset[str]
+    statements: frozenset[str]
+    whole_statements: frozenset[str]
+    blocks: frozenset[str]
+    headers: frozenset[str]
+    classes: frozenset[str]
+    functions: frozenset[str]
+    properties: frozenset[str]
+
+
+@dataclass(frozen=True, slots=True)
+class _Run:
+    """Words in a row in a form, and whether operands stand before and after them."""
+
+    words: tuple[str, ...]
+    before: bool
+    after: bool
+
+
+def _runs(form: Form) -> Iterator[_Run]:
+    for is_word, group in groupby(enumerate(form.parts), lambda each: isinstance(each[1], Word)):
+        if is_word:
+            found = list(group)
+            words = tuple(part.text for _, part in found if isinstance(part, Word))
+            yield _Run(words, found[0][0] > 0, found[-1][0] + 1 < len(form.parts))
+
+
+def _vocabulary() -> Vocabulary:
+    runs = [run for form in SCENIC_FORMS for run in _runs(form)]
+    phrases = {run.words for run in runs if len(run.words) > 1}
+    statements, whole, blocks, headers, definitions = set(), set(), set(), set(), set()
+    for form in STATEMENT_FORMS:
+        words = _leading(form.row)
+        if form.has_block and _begins_with_name(form.row[1:]):
+            definitions.add(form.start)
+            continue
+        match form.row[1:]:
+            case _ if not form.is_soft:
+                pass
+            case (Written(":"), *_):
+                blocks.add(form.start)
+            case () | (Optional(),):
+                whole.add(form.start)
+            case _ if form.has_block and len(words) == 1:
+                headers.add(form.start)
+            case (Reference() | ListOf() | Kind(), *_):
+                statements.add(form.start)
+        if len(words) > 1:
+            phrases.add(words)
+    infix = {
+        form.parts[1].text
+        for form in FORMS
+        if isinstance(form.parts[0], Slot) and isinstance(form.parts[1], Word)
+    }
+    constants = frozenset(word for word in HARD_KEYWORDS if word[0].isupper())
+    of_expressions = frozenset(
+        part.text
+        for form in FORMS
+        for part in form.parts
+        if isinstance(part, Word) and part.text in HARD_KEYWORDS
+    )
+    operators = of_expressions | {word for run in runs for word in run.words if word in HARD_KEYWORDS}
+    starts = frozenset(form.start for form in STATEMENT_FORMS)
+    return Vocabulary(
+        statement_words=frozenset(HARD_KEYWORDS) - constants - (operators - starts) - definitions,
+        operator_words=operators - starts,
+        constants=constants,
+        variables=frozenset(TRACKED) | _named(NameKind.VALUE) | {"self"},
+        definitions=frozenset(definitions),
+        phrases=tuple(sorted(phrases, key=lambda words: (-len(words), words))),
+        before_operands=_single(runs, after=True),
+        after_operands=_single(runs, before=True, after=False) | _units(),
+        infix=frozenset(word for word in infix if word.isidentifier()),
+        statement_starts=starts,
+        statements=frozenset(statements),
+        whole_statements=frozenset(whole),
+        blocks=frozenset(blocks),
+        headers=frozenset(headers),
+        classes=_named(
+            NameKind.CLASS, NameKind.SHAPE, NameKind.REGION, NameKind.DISTRIBUTION, NameKind.EXCEPTION
+        ),
+        functions=_named(NameKind.FUNCTION),
+        properties=frozenset(name for cls in CLASSES for name in properties_of(cls)),
+    )
+
+
+def _begins_with_name(row: Row) -> bool:
+    match row:
+        case (Kind("NAME"), *_):
+            return True
+        case (Reference(rule), *_):
+            alternatives = RULES[rule].alternatives
+            return len(alternatives) == 1 and _begins_with_name(alternatives[0].row)
+    return False
+
+
+def _leading(row: Row) -> tuple[str, ...]:
+    """The words that a statement begins with."""
+    words: list[str] = []
+    for item in row:
+        if not isinstance(item, Written) or not item.text.isidentifier():
+            break
+        words.append(item.text)
+    return tuple(words)
+
+
+def _single(runs: Iterable[_Run], *, before: bool | None = None, after: bool) -> frozenset[str]:
+    """The soft keywords that stand alone, with an operand after them or not, and before them if that matters."""
+    return frozenset(
+        run.words[0]
+        for run in runs
+        if len(run.words) == 1
+        and run.words[0] in SOFT_KEYWORDS
+        and run.after == after
+        and (before is None or run.before == before)
+    )
+
+
+def _units() -> frozenset[str]:
+    """The words that durations end with."""
+    return frozenset(word for each in RULES["duration"].alternatives for word in words_of(each.row))
+
+
+def _named(*kinds: NameKind) -> frozenset[str]:
+    return frozenset(name.name for name in NAMES.values() if name.kind in kinds)
+
+
+VOCABULARY: Final = _vocabulary()
+"""The words of the language, as the grammar and the declarations have them."""
+
+
+@dataclass(frozen=True, slots=True)
+class Pattern:
+    """A regular expression, the same in Python, Oniguruma and JavaScript, and what its groups are shown as.
+
+    It looks at one line. ``is_line_start`` tells that it matches at the beginning of a line alone.
+    """
+
+    regex: str
+    categories: tuple[Category, ...]
+    is_line_start: bool = False
+
+
+def any_of(words: Collection[str]) -> str:
+    """A regular expression for one of several words, the longer ones first."""
+    return (
+        "(?:" + "|".join(re.escape(word) for word in sorted(words, key=lambda word: (-len(word), word))) + ")"
+    )
+
+
+def _patterns() -> Iterator[Pattern]:
+    known = VOCABULARY
+    # A name is followed by a blank and a name only before an operator that is a word.
+    operand = rf"(?=[ \t]+(?!{any_of(known.infix)}\b)[\w\"'(\[{{])"
+    start = r"^[ \t]*"
+    name = r"([A-Za-z_]\w*)"
+    yield Pattern(rf"\b({any_of(known.definitions)})[ \t]+{name}", (Category.DEFINITION, Category.DEFINED))
+    yield Pattern(rf"{start}({any_of(known.blocks)})(?=[ \t]*:)", (Category.STATEMENT,), is_line_start=True)
+    yield Pattern(
+        rf"{start}({any_of(known.headers)})\b(?=[ \t].*:[ \t]*(?:#.*)?$)",
+        (Category.STATEMENT,),
+        is_line_start=True,
+    )
+    yield Pattern(
+        rf"{start}({any_of(known.whole_statements)})(?=[ \t]*(?:$|[#;]))",
+        (Category.STATEMENT,),
+        is_line_start=True,
+    )
+    phrases = [words for words in known.phrases if words[0] in known.statement_starts]
+    yield Pattern(rf"{start}({_rows(phrases)})\b(?![ \t]*[=(.])", (Category.STATEMENT,), is_line_start=True)
+    yield Pattern(
+        rf"{start}({any_of(known.statements)})\b{operand}", (Category.STATEMENT,), is_line_start=True
+    )
+    phrases = [words for words in known.phrases if words[0] not in known.statement_starts]
+    yield Pattern(rf"\b({_rows(phrases)})\b", (Category.OPERATOR,))
+    yield Pattern(rf"\b({any_of(known.before_operands)})\b{operand}", (Category.OPERATOR,))
+    yield Pattern(
+        rf"(?<=[\w)\]][ \t])({any_of(known.after_operands)})\b(?![ \t]*[=(.])", (Category.OPERATOR,)
+    )
+    yield Pattern(rf"\b(with)[ \t]+{name}(?=[ \t])", (Category.OPERATOR, Category.PROPERTY))
+    yield Pattern(
+        rf"^[ \t]+{name}(?=[ \t]*(?:\[[a-z, ]+\])?[ \t]*:[ \t]*[^\s#:=])",
+        (Category.PROPERTY,),
+        is_line_start=True,
+    )
+    for category, words in (
+        (Category.CONSTANT, known.constants),
+        (Category.OPERATOR, known.operator_words),
+        (Category.STATEMENT, known.statement_words | known.definitions & HARD_KEYWORDS.keys()),
+        (Category.VARIABLE, known.variables),
+        (Category.CLASS, known.classes),
+    ):
+        yield Pattern(rf"\b({any_of(words)})\b", (category,))
+    yield Pattern(rf"\b({any_of(known.functions)})(?=\()", (Category.FUNCTION,))
+
+
+def _rows(rows: Iterable[tuple[str, ...]]) -> str:
+    return "(?:" + "|".join(r"[ \t]+".join(map(re.escape, words)) for words in rows) + ")"
+
+
+PATTERNS: Final = tuple(_patterns())
+"""In the order in which they are tried; each category belongs to a group."""

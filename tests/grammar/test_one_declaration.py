@@ -1,0 +1,219 @@
+"""A new operator, specifier and statement, written into a copy of the grammar and declared once, is there in every tool."""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+
+ADDED: Mapping[str, tuple[tuple[str, str], ...]] = {
+    "grammar/scenic.gram": (
+        (
+            """    | "front" 'of' a=prefix {""",
+            """    | "gap" "between" a=expression 'to' b=prefix {
+        Operation(operator="gap between", operands=[a, b]) }
+""",
+        ),
+        (
+            """    | "behind" a=expression""",
+            """    | "beside" a=expression b=by_clause? {
+        Specifier(specifier="beside", property=None, operands=[a, b]) }
+""",
+        ),
+        ("""    | "abort" { Abort() }""", """    | "announce" a=expression { Announce(value=a) }\n"""),
+    ),
+    "scenic/compiler/tree.py": (
+        (
+            "class Abort(ScenicStatement):",
+            '''class Announce(ScenicStatement):
+    """``announce value``."""
+
+    value: ast.expr
+    _fields = ("value",)
+
+
+''',
+        ),
+    ),
+    "scenic/language/operators.py": (
+        (
+            '    Operator(\n        "altitude",',
+            """    Operator(
+        "gap between",
+        (Operand("first", "object"), Operand("second", "object")),
+        "scalar",
+        ("gap between first to second",),
+        "How much room is left between two objects.",
+        available=False,
+    ),
+""",
+        ),
+    ),
+    "scenic/language/specifiers.py": (
+        (
+            '    _beside("behind",',
+            """    SpecifierDeclaration(
+        "beside",
+        (Operand("reference", "object"), Operand("distance", "scalar", "no gap")),
+        (Specified("position", 1),),
+        (),
+        "position",
+        ("beside reference", "beside reference by distance"),
+        "Places the object at any side of the reference.",
+        available=False,
+    ),
+""",
+        ),
+    ),
+    "scenic/language/statements.py": (
+        (
+            '    Statement(\n        "Abort",',
+            """    Statement(
+        "Announce",
+        "announce",
+        ("announce value",),
+        frozenset({Place.TOP}),
+        "Says something when the scene is made.",
+        available=False,
+    ),
+""",
+        ),
+    ),
+}
+"""By file: the lines before which something is written."""
+
+SCRIPT = r"""
+import ast, json
+from pathlib import Path
+from hypothesis import HealthCheck, given, settings
+from scenic.compiler.check import check_text
+from scenic.compiler.parser import parse
+from scenic.ide.continuations import continuations
+from scenic.ide.hover import hover
+from scenic.ide.pygments_lexer import ScenicLexer
+from editors.generate import texts
+
+from fuzz.derivations import AlternativeId
+from fuzz.grammar import Limits, programs
+from grammar.generator import read_grammar
+
+TEXT = "x = gap between a to b\nego = new Object beside x by 3\nannounce x\n"
+
+def nodes(text):
+    parsed = parse(text)
+    assert not parsed.diagnostics, parsed.diagnostics
+    return [type(node).__name__ + ":" + str(getattr(node, "operator", getattr(node, "specifier", "")))
+            for node in ast.walk(parsed.tree)]
+
+def offered(text):
+    return [item.form for item in continuations(text, 1, len(text)).items]
+
+def shown(line, column):
+    found = hover(TEXT, line, column)
+    return "" if found is None else found.markdown
+
+grammar = read_grammar(Path("grammar/scenic.gram"))
+words = {}
+for rule, word in (("prefix_operation", "gap"), ("specifier", "beside"), ("soft_statement", "announce")):
+    alternatives = grammar.rules[rule].alternatives
+    [number] = [n for n, each in enumerate(alternatives, 1) if getattr(each.items[0].item, "text", "") == word]
+    found = set()
+    @settings(max_examples=20, deadline=None, database=None, derandomize=True, suppress_health_check=list(HealthCheck))
+    @given(programs(rule, limits=Limits(depth=2, expansions=8), aims=[AlternativeId(rule, number)]))
+    def collect(program):
+        found.update(piece.text for piece in program.pieces)
+    collect()
+    words[rule] = sorted(found & {"gap", "beside", "announce"})
+
+files = texts()
+print(json.dumps({
+    "nodes": nodes(TEXT),
+    "codes": sorted({item.code for item in check_text(TEXT, filename="x")}),
+    "fuzzed": words,
+    "offered": [offered("x = "), offered("new Object "), offered(""), offered("new Object beside x ")],
+    "hover": [shown(1, 5), shown(2, 18), shown(3, 2)],
+    "colours": [[str(kind), text] for kind, text in ScenicLexer().get_tokens(TEXT)],
+    "textmate": json.loads(files["editors/vscode/syntaxes/scenic.tmLanguage.json"]),
+    "vim": files["editors/neovim/syntax/scenic.vim"],
+    "docs": files["docs/syntax.md"],
+    "diagrams": {name: text for name, text in files.items() if name.endswith(("announce.svg", "specifiers.svg"))},
+}))
+"""
+
+
+@pytest.fixture(scope="module")
+def found(tmp_path_factory: pytest.TempPathFactory) -> Any:
+    root = tmp_path_factory.mktemp("project")
+    for name in ("scenic", "grammar", "fuzz", "editors"):
+        ignored = shutil.ignore_patterns("corpus", "node_modules", "__pycache__", ".*.tmp")
+        shutil.copytree(ROOT / name, root / name, ignore=ignored)
+    for path, changes in ADDED.items():
+        text = (root / path).read_text(encoding="utf-8")
+        for before, added in changes:
+            assert text.count(before) == 1, before
+            text = text.replace(before, added + before)
+        (root / path).write_text(text, encoding="utf-8")
+    done = subprocess.run(
+        [sys.executable, "-c", SCRIPT],
+        cwd=root,
+        env={**os.environ, "PYTHONPATH": str(root)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr[-3000:]
+    return json.loads(done.stdout)
+
+
+def test_the_parser_has_them(found: Any) -> None:
+    assert {"Operation:gap between", "Specifier:beside", "Announce:"} <= set(found["nodes"])
+
+
+def test_checks_know_them(found: Any) -> None:
+    assert "SC900" in found["codes"]
+    assert "SC999" not in found["codes"]
+
+
+def test_the_fuzzer_makes_them(found: Any) -> None:
+    for rule, word in (("prefix_operation", "gap"), ("specifier", "beside"), ("soft_statement", "announce")):
+        assert word in found["fuzzed"][rule]
+
+
+def test_completion_offers_them(found: Any) -> None:
+    operators, specifiers, statements, rest = found["offered"]
+    assert "gap between first to second" in operators
+    assert {"beside reference", "beside reference by distance"} <= set(specifiers)
+    assert "announce value" in statements
+    assert "by" in rest
+
+
+def test_hovering_explains_them(found: Any) -> None:
+    operator, specifier, statement = found["hover"]
+    assert "room is left" in operator
+    assert "any side of the reference" in specifier
+    assert "when the scene is made" in statement
+
+
+def test_highlighters_know_them(found: Any) -> None:
+    colours = {text: kind for kind, text in found["colours"]}
+    assert colours["gap between"] == colours["beside"] == "Token.Operator.Word"
+    assert colours["announce"] == "Token.Keyword"
+    patterns = " ".join(each.get("match", "") for each in found["textmate"]["patterns"])
+    for word in ("gap[ \\t]+between", "beside", "announce"):
+        assert word in patterns
+    for word in (r"gap\s\+between", "beside", "announce"):
+        assert word in found["vim"]
+
+
+def test_the_documentation_has_them(found: Any) -> None:
+    for text in ("`gap` `between` *first* `to` *second*", "`beside` *reference*", "- `announce value`"):
+        assert text in found["docs"]
+    assert ">announce<" in found["diagrams"]["docs/syntax/announce.svg"]
+    assert ">beside<" in found["diagrams"]["docs/syntax/specifiers.svg"]
