@@ -191,7 +191,7 @@ def _scenario(
         place = locator.place(frame)
         return None if place is None else place.span
 
-    context = Context(locate=span_of, mode_2d=mode_2d)
+    context = Context(locate=span_of, name=locator.name, mode_2d=mode_2d)
     program = Program(overrides=dict(params))
     modules = Loader(_Modules(Path(filename).parent), context, program, model=model)
     token = current.set(context)

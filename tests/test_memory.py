@@ -15,12 +15,12 @@ MEASURE = """
 import sys
 import numpy as np
 import scenic
-from scenic.runtime.sampling.engine import Engine
+from scenic.runtime.sampling.engine import Engine, Task
 
 scenario = scenic.load(sys.argv[1])
-engine = Engine(scenario.outline.plan(scenario.domain), 1, lanes=512)
-# One batch of 512 candidates through every check, none left out.
-report = engine.report(0, 512)
+engine = Engine(scenario.outline.plan(scenario.domain))
+# Batches of 512 candidates through every check, none left out.
+report = engine.report(Task(1, 0), 512)
 assert report.candidates == 512
 scenes = scenario.sample(2, seed=1, lanes=512)
 with open("/proc/self/status") as status:

@@ -99,6 +99,8 @@ def _words(support: Support, verdict: Verdict) -> tuple[str, str]:
 def _options(choice: Node, nodes: Sequence[Node]) -> list[str]:
     """The values that a choice among fixed numbers picks from."""
     for node in nodes:
+        if node.operation is TABLE["look-up"] and node.operands[0] is choice and node.kind.is_number:
+            return [f"{value:.12g}" for value in node.payload.column.tolist()]
         if node.operation is TABLE["select"] and node.operands[0] is choice:
             options = node.operands[1:]
             if all(option.is_constant and isinstance(option.value, int | float) for option in options):

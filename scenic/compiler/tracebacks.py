@@ -40,10 +40,12 @@ _Positions = tuple[int | None, int | None, int | None, int | None]
 
 
 class Locator:
-    """Finds places, and remembers the positions of code that it has seen: for whoever asks often."""
+    """Finds places, and remembers those that it has found: for whoever asks often."""
 
     def __init__(self) -> None:
         self._positions: dict[int, tuple[CodeType, list[_Positions]]] = {}
+        self._places: dict[tuple[int, int], Place | None] = {}
+        self._names: dict[tuple[int, int], tuple[str, int]] = {}
 
     def place(self, where: TracebackType | FrameType) -> Place | None:
         """As `locate`."""
@@ -51,12 +53,35 @@ class Locator:
         if found is None:
             return None
         frame, instruction = found
-        code = frame.f_code
+        key = (id(frame.f_code), instruction)
+        if key not in self._places:
+            self._places[key] = _place(frame, self._position(frame.f_code, instruction))
+        return self._places[key]
+
+    def name(self, where: FrameType) -> tuple[str, int] | None:
+        """What tells a place from others, and stays the same when lines are added elsewhere.
+
+        The text of the line, and the column in it.
+        """
+        found = _innermost(where)
+        if found is None:
+            return None
+        frame, instruction = found
+        key = (id(frame.f_code), instruction)
+        name = self._names.get(key)
+        if name is None:
+            place = self.place(frame)
+            line = "" if place is None else _line(frame, place.span.line)
+            column = 0 if place is None else place.span.column - (len(line) - len(line.lstrip()))
+            name = self._names[key] = (line.strip(), column)
+        return name
+
+    def _position(self, code: CodeType, instruction: int) -> _Positions | None:
         # The code object is kept with its positions, so that its identity stays its own.
         kept = self._positions.get(id(code))
         if kept is None:
             kept = self._positions[id(code)] = (code, list(code.co_positions()))
-        return _place(frame, kept[1][instruction // 2] if 0 <= instruction // 2 < len(kept[1]) else None)
+        return kept[1][instruction // 2] if 0 <= instruction // 2 < len(kept[1]) else None
 
 
 def locate(where: TracebackType | FrameType) -> Place | None:

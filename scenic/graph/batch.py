@@ -1,53 +1,77 @@
-"""Evaluation of a graph over many points of the cube at a time."""
+"""Evaluation of nodes over many lanes at a time.
 
+A lane is one point of the cube. What nodes hold in a lane depends on that lane alone: not on the others, and not on which
+nodes are evaluated together (`scenic.graph.schedule`).
+"""
+
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from scenic.graph.domain import Domain
+from scenic.graph.draws import BOX, Source
 from scenic.graph.kinds import Codec, Column, Kind, boxed
-from scenic.graph.node import Graph, Node
+from scenic.graph.node import Node
 from scenic.graph.operation import FAULT, OK, Call, Status
+from scenic.graph.schedule import Draw, Fixed, Gather, Gathered, Place, Run, Schedule, Scheduler, Slot, Step
+
+
+class _Group:
+    """The columns of a group's members: ``column`` of shape (members, lanes or 1, ...), ``status`` likewise."""
+
+    __slots__ = ("column", "generation", "status")
+
+    def __init__(self, column: Column, status: Status | None, generation: int) -> None:
+        self.column = column
+        self.status = status
+        self.generation = generation
 
 
 class Batch:
-    """The lanes of one run: points of the cube, and the columns computed for them so far.
+    """The lanes of one run, and the columns computed for them so far.
 
     ``keep`` drops lanes; columns are narrowed only when they are used again, so that a test that leaves few lanes
     does not pay for every node. Values in lanes whose status is not `OK` are meaningless.
 
     Args:
-        graph: the graph that numbers the axes.
-        cube: shape ``(n, graph.dimension)``, points of the open unit cube.
+        scheduler: the graph, and in which groups its nodes are evaluated.
+        source: the random numbers of the lanes.
         codec: the Python side of values.
+        domain: the part of the cube to draw from; the whole of it by default.
         rejections: exceptions by which the program's own functions reject a sample.
 
     """
 
     def __init__(
         self,
-        graph: Graph,
-        cube: NDArray[np.float64],
+        scheduler: Scheduler,
+        source: Source,
         codec: Codec,
         *,
+        domain: Domain | None = None,
         rejections: tuple[type[Exception], ...] = (),
     ) -> None:
-        if cube.ndim != 2 or cube.shape[1] != graph.dimension:
-            raise ValueError(f"cube has shape {cube.shape}, the graph {graph.dimension} axes")
-        self._graph = graph
+        self._scheduler = scheduler
+        self._source = source
         self._codec = codec
+        self._domain = None if domain is None or domain.is_whole else domain
         self._rejections = rejections
-        self.cube = cube
-        self.rows: NDArray[np.intp] = np.arange(len(cube))
+        self.rows: NDArray[np.intp] = np.arange(len(source))
         """Which of the first lanes each present lane is, ascending."""
         self.errors: dict[Node, Exception] = {}
-        """What went wrong at a node; exact only in a batch of one lane."""
+        """What went wrong at a node; exact only in a batch of one lane whose nodes are evaluated singly."""
         self._generation = 0
         self._kept: list[NDArray[np.intp]] = []
-        self._columns: dict[Node, tuple[int, Column, Status | None]] = {}
+        self._schedule: Schedule = scheduler.start
+        self._groups: dict[Slot, _Group] = {}
+        self._boxes: NDArray[np.intp] | None = None
 
     def __len__(self) -> int:
         return len(self.rows)
+
+    # Lanes
 
     def keep(self, lanes: NDArray[Any]) -> None:
         """Go on with these lanes only: a mask ``(n,)`` or ascending indices."""
@@ -55,46 +79,92 @@ class Batch:
         if len(chosen) == len(self.rows):
             return
         self.rows = self.rows[chosen]
+        self._source = self._source.take(chosen)
+        if self._boxes is not None:
+            self._boxes = self._boxes[chosen]
         self._kept.append(chosen)
         self._generation += 1
 
+    def settle(self, nodes: Sequence[Node]) -> None:
+        """Evaluate ``nodes`` and drop all other columns: the batch is finished but for being read."""
+        self.need(nodes)
+        wanted = {self._schedule.places[node].slot for node in nodes if not node.is_constant}
+        self._groups = {slot: self._group(slot) for slot in sorted(wanted)}
+        self._kept = []
+        self._generation = 0
+        for group in self._groups.values():
+            group.generation = 0
+
+    # Columns
+
+    def need(self, nodes: Iterable[Node]) -> None:
+        """Evaluate ``nodes`` together; what is there already is not evaluated again."""
+        schedule = self._scheduler.after(self._schedule, tuple(nodes))
+        self._schedule = schedule
+        if schedule.steps:
+            with np.errstate(all="ignore"):
+                for step in schedule.steps:
+                    self._groups[step.slot] = (
+                        self._draw(step) if isinstance(step, Draw) else self._evaluate(step)
+                    )
+
     def column(self, node: Node) -> Column:
         """Values of ``node``, leading dimension ``len(self)`` or 1."""
-        return self._get(node)[0]
+        if node.is_constant:
+            column: Column = node.payload.column
+            return column
+        place = self._place(node)
+        return self._group(place.slot).column[place.member]
 
     def status(self, node: Node) -> Status | None:
         """Status of each lane at ``node``; ``None`` when all are `OK`."""
-        return self._get(node)[1]
+        if node.is_constant:
+            return None
+        place = self._place(node)
+        status = self._group(place.slot).status
+        if status is None:
+            return None
+        mine = status[place.member]
+        return mine if mine.any() else None
 
     def full(self, node: Node) -> Column:
         """As `column`, always of leading dimension ``len(self)``."""
-        column = self._get(node)[0]
+        column = self.column(node)
         if len(column) == len(self.rows):
             return column
         return np.broadcast_to(column, (len(self.rows), *column.shape[1:]))
+
+    def stack(self, nodes: Sequence[Node]) -> Column:
+        """Values of nodes of one kind, of shape (nodes or 1, lanes or 1, ...); 1 where all are the same."""
+        self.need(nodes)
+        gather = self._scheduler.gather(self._schedule, tuple(nodes))
+        return self._operand(gather)[0]
 
     def value(self, node: Node, lane: int = 0) -> Any:
         """The Python value of ``node`` in one lane."""
         column = self.column(node)
         return self._codec.decode(node.kind, column[lane if len(column) > 1 else 0])
 
-    def _get(self, node: Node) -> tuple[Column, Status | None]:
-        if node.is_constant:
-            return node.payload.column, None
-        if node not in self._columns:
-            self._evaluate(node)
-        generation, column, status = self._columns[node]
-        if generation == self._generation:
-            return column, status
-        lanes = self._since(generation)
-        if len(column) > 1:
-            column = column[lanes]
-        if status is not None:
-            status = status[lanes]
-            if not status.any():
-                status = None
-        self._columns[node] = self._generation, column, status
-        return column, status
+    def _place(self, node: Node) -> Place:
+        place = self._schedule.places.get(node)
+        if place is None:
+            self.need((node,))
+            place = self._schedule.places[node]
+        return place
+
+    def _group(self, slot: Slot) -> _Group:
+        group = self._groups[slot]
+        if group.generation == self._generation:
+            return group
+        lanes = self._since(group.generation)
+        if group.column.shape[1] > 1:
+            group.column = _lanes(group.column, lanes)
+        if group.status is not None:
+            group.status = group.status[:, lanes]
+            if not group.status.any():
+                group.status = None
+        group.generation = self._generation
+        return group
 
     def _since(self, generation: int) -> NDArray[np.intp]:
         """Lanes of an older generation that are still here."""
@@ -103,77 +173,108 @@ class Batch:
             lanes = chosen[lanes]
         return lanes
 
-    def _evaluate(self, root: Node) -> None:
-        stack = [root]
-        while stack:
-            node = stack[-1]
-            if node in self._columns:
-                stack.pop()
-                continue
-            if node.is_axis:
-                values = np.ascontiguousarray(self.cube[self.rows, self._graph.axes[node]])
-                self._columns[node] = self._generation, values, None
-                stack.pop()
-                continue
-            missing = [
-                operand
-                for operand in node.operands
-                if not operand.is_constant and operand not in self._columns
-            ]
-            if missing:
-                stack.extend(reversed(missing))
-                continue
-            self._apply(node)
-            stack.pop()
+    # Steps
 
-    def _apply(self, node: Node) -> None:
-        operation = node.operation
-        parts = [self._get(operand) for operand in node.operands]
-        columns = [part[0] for part in parts]
-        statuses = [part[1] for part in parts]
-        call = Call(
-            len(self.rows),
-            node.payload,
-            statuses,
-            lambda: self._seeds(node),
-            kinds=[operand.kind for operand in node.operands],
-            kind=node.kind,
-            codec=self._codec,
-        )
-        by_lane = (
-            operation.python is not None
-            and operation.strict
-            and (node.kind.is_boxed or any(operand.kind.is_boxed for operand in node.operands))
-        )
-        with np.errstate(all="ignore"):
-            if by_lane:
-                column = self._by_lane(node, columns, call)
-            else:
-                column = operation.batch(call, *columns)
+    def _draw(self, step: Draw) -> _Group:
+        if step.axes is None:
+            return _Group(self._source.words(step.addresses), None, self._generation)
+        numbers = self._source.uniforms(step.addresses)
+        if self._domain is not None:
+            if self._boxes is None:
+                draws = self._source.uniforms(np.array([BOX], dtype=np.uint64))[0]
+                self._boxes = self._domain.choose(draws)
+            numbers = self._domain.place(numbers, step.axes, self._boxes)
+        return _Group(numbers, None, self._generation)
+
+    def _evaluate(self, step: Step) -> _Group:
+        columns: list[Column] = []
+        statuses: list[Status | None] = []
+        for gather in step.operands:
+            column, status = self._operand(gather)
+            columns.append(column)
+            statuses.append(status)
+        lanes = len(self.rows)
+        if not step.stacked:
+            columns = [column[0] for column in columns]
+            statuses = [None if status is None else status[0] for status in statuses]
+        shape = (len(step.nodes), lanes) if step.stacked else (lanes,)
+        call = Call(shape, step.payload, statuses, kinds=step.kinds, kind=step.kind, codec=self._codec)
+        if step.is_python:
+            column = self._by_lane(step, columns, call)
+        else:
+            column = step.operation.batch(call, *columns)
         status = call.status
-        if operation.strict:
+        if status is not None and not step.may_mark:
+            raise AssertionError(
+                f"{step.operation.name} failed or rejected a lane, which it does not declare"
+            )
+        if step.operation.strict:
             for operand_status in statuses:
                 if operand_status is not None:
                     status = operand_status if status is None else np.maximum(status, operand_status)
-        if status is not None and len(self.rows) == 1 and status[0] == FAULT:
-            error = self._error(node, call)
-            if error is not None:
-                self.errors[node] = error
-        self._columns[node] = self._generation, column, status
+        if not step.stacked:
+            column = column[np.newaxis]
+            status = None if status is None else status[np.newaxis]
+        elif len(column) < len(step.nodes):
+            column = np.broadcast_to(column, (len(step.nodes), *column.shape[1:]))
+        if status is not None:
+            if status.shape != (len(step.nodes), lanes):
+                status = np.broadcast_to(status, (len(step.nodes), lanes))
+            if lanes == 1 and len(step.nodes) == 1 and status[0, 0] == FAULT:
+                error = self._error(step, call)
+                if error is not None:
+                    self.errors[step.nodes[0]] = error
+        return _Group(column, status, self._generation)
 
-    def _error(self, node: Node, call: Call) -> Exception | None:
+    def _operand(self, gather: Gather) -> tuple[Column, Status | None]:
+        """The columns of an operand over the members, and their statuses."""
+        if isinstance(gather, Fixed):
+            return gather.column, None
+        if isinstance(gather, Run):
+            group = self._group(gather.slot)
+            status = group.status
+            return group.column[gather.members], None if status is None else status[gather.members]
+        return self._gathered(gather)
+
+    def _gathered(self, gather: Gathered) -> tuple[Column, Status | None]:
+        columns: list[Column] = []
+        statuses: list[Status | None] = []
+        for part in gather.parts:
+            if isinstance(part, Place):
+                group = self._group(part.slot)
+                columns.append(group.column[part.member])
+                statuses.append(None if group.status is None else group.status[part.member])
+            else:
+                columns.append(part)
+                statuses.append(None)
+        lanes = max(len(column) for column in columns)
+        first = columns[0]
+        result = np.empty((*first.shape[1:], len(columns), lanes), dtype=first.dtype)
+        result = np.moveaxis(result, (-2, -1), (0, 1))
+        for member, column in enumerate(columns):
+            result[member] = column
+        if all(status is None for status in statuses):
+            return result, None
+        combined = np.zeros((len(columns), len(self.rows)), dtype=np.int8)
+        for member, status in enumerate(statuses):
+            if status is not None:
+                combined[member] = status
+        return result, combined
+
+    def _error(self, step: Step, call: Call) -> Exception | None:
         """What went wrong in a batch of one lane: the first operand's fault, as Python evaluates from the left."""
-        if node.operation.strict:
-            for operand, status in zip(node.operands, call.operands, strict=True):
-                if status is not None and status[0] == FAULT:
+        operands = step.nodes[0].operands
+        if step.operation.strict:
+            for operand, status in zip(operands, call.operands, strict=True):
+                if status is not None and status.flat[0] == FAULT:
                     return self.errors.get(operand)
         elif call.culprit is not None:
-            return self.errors.get(node.operands[call.culprit])
+            return self.errors.get(operands[call.culprit])
         return call.error
 
-    def _by_lane(self, node: Node, columns: list[Column], call: Call) -> Column:
+    def _by_lane(self, step: Step, columns: list[Column], call: Call) -> Column:
         """Python's own function, lane by lane, where values are Python objects."""
-        function = node.operation.python
+        function = step.operation.python
         assert function is not None
         bad = _combined(call.operands)
         lanes = 1 if bad is None and all(len(column) == 1 for column in columns) else call.lanes
@@ -182,7 +283,7 @@ class Batch:
         failed = np.zeros(lanes, dtype=np.bool_)
         rejected = np.zeros(lanes, dtype=np.bool_)
         error: Exception | None = None
-        blank = _blank(node.kind)
+        blank = _blank(step.kind)
         for lane in range(lanes):
             if bad is not None and bad[lane] != OK:
                 rows.append(blank)
@@ -192,7 +293,7 @@ class Batch:
                 for kind, column in zip(call.kinds, columns, strict=True)
             ]
             try:
-                rows.append(encode(node.kind, function(*values)))
+                rows.append(encode(step.kind, function(*values)))
             except self._rejections:
                 rows.append(blank)
                 rejected[lane] = True
@@ -203,28 +304,19 @@ class Batch:
         if error is not None:
             call.fault(failed, error)
         call.reject(rejected)
-        if node.kind.is_boxed:
+        if step.kind.is_boxed:
             return boxed(rows)
-        return np.asarray(rows, dtype=node.kind.dtype).reshape(lanes, *node.kind.trailing)
-
-    def _seeds(self, node: Node) -> NDArray[np.uint64]:
-        """A seed for each lane that depends on its point of the cube and on the node, nothing else."""
-        state = np.full(len(self.rows), self._graph.index[node], dtype=np.uint64)
-        for name in range(self.cube.shape[1]):
-            state = mix(state ^ np.ascontiguousarray(self.cube[self.rows, name]).view(np.uint64))
-        return mix(state)
+        return np.asarray(rows, dtype=step.kind.dtype).reshape(lanes, *step.kind.trailing)
 
 
-def mix(words: NDArray[np.uint64]) -> NDArray[np.uint64]:
-    """Scramble 64-bit words (the finaliser of SplitMix64: Steele, Lea and Flood, OOPSLA 2014)."""
-    with np.errstate(over="ignore"):
-        words = words + np.uint64(0x9E3779B97F4A7C15)
-        words = (words ^ (words >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
-        words = (words ^ (words >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
-        return words ^ (words >> np.uint64(31))
+def _lanes(column: Column, lanes: NDArray[np.intp]) -> Column:
+    """Some lanes of a group's columns; vectors stay stored component by component."""
+    if column.ndim == 2:
+        return column.take(lanes, axis=1)
+    return np.moveaxis(np.moveaxis(column, -1, 0).take(lanes, axis=2), 0, -1)
 
 
-def _combined(statuses: Any) -> Status | None:
+def _combined(statuses: Iterable[Status | None]) -> Status | None:
     result: Status | None = None
     for status in statuses:
         if status is not None:
@@ -236,4 +328,4 @@ def _blank(kind: Kind) -> Any:
     return None if kind.is_boxed else np.zeros(kind.trailing, dtype=kind.dtype)
 
 
-__all__ = ["Batch", "mix"]
+__all__ = ["Batch"]

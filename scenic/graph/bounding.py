@@ -2,16 +2,14 @@
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 
 from scenic.graph.bounds import Bounds, outward
 from scenic.graph.kinds import Kind
-
-if TYPE_CHECKING:
-    from scenic.graph.node import Node
-    from scenic.graph.operation import BoundsReading, Operation
+from scenic.graph.node import Node
+from scenic.graph.operation import BoundsReading, Operation
 
 LARGEST: Final = 2.0**62
 """Integer columns hold values of smaller size than this, so that one more addition cannot overflow."""
@@ -32,7 +30,7 @@ def of_kind(kind: Kind) -> Bounds | None:
     return Bounds(np.full(shape, -np.inf), np.full(shape, np.inf))
 
 
-def of_constant(node: "Node") -> Bounds | None:
+def of_constant(node: Node) -> Bounds | None:
     """Bounds of a constant, for one box."""
     column = node.payload.column
     if node.kind.is_boxed:
@@ -48,14 +46,12 @@ def of_constant(node: "Node") -> Bounds | None:
     return Bounds(values, values)
 
 
-def forward(node: "Node", operands: Sequence[Bounds | None]) -> Bounds | None:
+def forward(node: Node, operands: Sequence[Bounds | None]) -> Bounds | None:
     """Bounds of a node that is neither constant nor axis, from its operands' bounds."""
     return integral(node.kind, read(node.operation, node.kind, node.payload, operands))
 
 
-def read(
-    operation: "Operation", kind: Kind, payload: Any, operands: Sequence[Bounds | None]
-) -> Bounds | None:
+def read(operation: Operation, kind: Kind, payload: Any, operands: Sequence[Bounds | None]) -> Bounds | None:
     """The operation's bounds reading where it says something, else the bounds of the kind."""
     default = of_kind(kind)
     if operation.bounds is None or (operation.strict and any(operand is None for operand in operands)):
@@ -72,7 +68,7 @@ def integral(kind: Kind, bounds: Bounds | None) -> Bounds | None:
     return Bounds(np.ceil(bounds.lower), np.floor(bounds.upper))
 
 
-def overall(node: "Node") -> Bounds | None:
+def overall(node: Node) -> Bounds | None:
     """Bounds of a node over the whole cube, for one box; ``None`` where nothing is known.
 
     Visits a bounded number of nodes below, and none below integers, whose limits are kept on the node.
@@ -103,7 +99,7 @@ def overall(node: "Node") -> Bounds | None:
     return known[node]
 
 
-def _leaf(node: "Node") -> Bounds | None:
+def _leaf(node: Node) -> Bounds | None:
     if node.is_constant:
         return of_constant(node)
     if node.is_axis:
@@ -128,9 +124,7 @@ def limits_of(bounds: Bounds | None) -> tuple[int, int] | None:
     return math.ceil(low), math.floor(high)
 
 
-def whole_limits(
-    reading: "BoundsReading", operands: Sequence["Node"], payload: Any
-) -> tuple[int, int] | None:
+def whole_limits(reading: BoundsReading, operands: Sequence[Node], payload: Any) -> tuple[int, int] | None:
     """Limits of an integer result over the whole cube, by a bounds reading."""
     bounds = [overall(operand) for operand in operands]
     if any(bound is None for bound in bounds):

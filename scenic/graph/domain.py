@@ -52,11 +52,6 @@ class Domain:
         return self.boxes == 1 and bool((self.lower == 0).all() and (self.upper == 1).all())
 
     @property
-    def width(self) -> int:
-        """How many uniform numbers `place` needs for one point: one more than axes where it must choose a box."""
-        return self.dimension + (self.boxes > 1)
-
-    @property
     def volume(self) -> float:
         """Share of the cube that is left."""
         return float(np.exp(self._logarithms()).sum())
@@ -65,24 +60,24 @@ class Domain:
         """Logarithm of each box's volume; of many axes the volume itself may be too small for a float."""
         return np.asarray(np.log(self.upper - self.lower).sum(axis=1))
 
-    def place(self, rows: Floats) -> Floats:
-        """Map uniform points of the open unit cube, shape ``(n, width)``, to uniform points of the union.
-
-        Each row of the result, shape ``(n, dimension)``, depends on the same row of ``rows`` alone.
-        """
-        if rows.ndim != 2 or rows.shape[1] != self.width:
-            raise ValueError(f"rows have shape {rows.shape}, the domain needs {self.width} numbers each")
-        if self.is_whole:
-            return rows
-        lower, upper = self.lower[0], self.upper[0]
+    def choose(self, draws: Floats) -> NDArray[np.intp]:
+        """Boxes chosen by uniform numbers ``(n,)`` of the open unit interval, each by its volume; shape ``(n,)``."""
         if self.boxes == 1:
-            return _between(rows, lower, upper)
-        chosen = np.minimum(np.searchsorted(self._shares(), rows[:, 0], side="right"), self.boxes - 1)
-        rows = rows[:, 1:]
-        points = _between(rows, lower, upper)
-        # Boxes differ in few axes; only those are looked up row by row.
-        for axis in np.flatnonzero((self.lower != lower).any(axis=0) | (self.upper != upper).any(axis=0)):
-            points[:, axis] = _between(rows[:, axis], self.lower[chosen, axis], self.upper[chosen, axis])
+            return np.zeros(len(draws), dtype=np.intp)
+        return np.minimum(np.searchsorted(self._shares(), draws, side="right"), self.boxes - 1)
+
+    def place(self, numbers: Floats, axes: NDArray[np.intp], chosen: NDArray[np.intp]) -> Floats:
+        """Map uniform numbers of some axes, ``(axes, n)``, into the boxes ``chosen`` for the lanes, ``(n,)``.
+
+        With all axes these are uniform points of the union. Each number depends on its axis and its lane alone.
+        """
+        lower, upper = self.lower[:, axes], self.upper[:, axes]
+        if self.boxes == 1:
+            return _between(numbers, lower[0, :, np.newaxis], upper[0, :, np.newaxis])
+        points = _between(numbers, lower[0, :, np.newaxis], upper[0, :, np.newaxis])
+        # Boxes differ in few axes; only those are looked up lane by lane.
+        for row in np.flatnonzero((lower != lower[0]).any(axis=0) | (upper != upper[0]).any(axis=0)):
+            points[row] = _between(numbers[row], lower[chosen, row], upper[chosen, row])
         return points
 
     def _shares(self) -> Floats:

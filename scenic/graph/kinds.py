@@ -10,7 +10,8 @@ Column = NDArray[Any]
 """Values of one node over the lanes of a batch: shape ``(n,)``, ``(n, 3)`` or ``(n, 4)`` by kind.
 
 A value that is the same in every lane may have a leading dimension of 1 instead of ``n``; operations are written
-elementwise, so that broadcasting does the rest.
+elementwise, so that broadcasting does the rest. An operation that *stacks* also takes the columns of several alike nodes at
+once, with one more leading dimension for the nodes.
 """
 
 
@@ -23,6 +24,7 @@ class Kind(Enum):
     BOOLEAN = "boolean"  # bool, (n,)
     VECTOR = "vector"  # float64, (n, 3): x, y, z in metres
     ORIENTATION = "orientation"  # float64, (n, 4): unit quaternion x, y, z, w
+    KEY = "key"  # uint64, (n,): a random word that keys further draws
     REGION = "region"
     SHAPE = "shape"
     OBJECT = "object"
@@ -59,6 +61,7 @@ _DTYPES = {
     Kind.BOOLEAN: np.dtype(np.bool_),
     Kind.VECTOR: np.dtype(np.float64),
     Kind.ORIENTATION: np.dtype(np.float64),
+    Kind.KEY: np.dtype(np.uint64),
 }
 
 

@@ -1,23 +1,27 @@
 """Nodes of the value graph, and a graph as the nodes reachable from its roots."""
 
-from collections.abc import Hashable, Iterable, Sequence
+from collections.abc import Hashable, Iterable
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Final
+from weakref import WeakValueDictionary
 
 import numpy as np
 
-from scenic.graph.bounding import limits_of, overall, read
+from scenic.graph.draws import Words, address
 from scenic.graph.kinds import Column, Kind, boxed
 from scenic.graph.operation import Call, Operation, always
 
+Consumers = WeakValueDictionary[Hashable, "Node"]
 
-@dataclass(frozen=True, slots=True, eq=False)
+
+@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
 class Node:
     """One value of a scenario: an operation applied to operands. Two nodes are equal only if they are one.
 
     ``payload`` is data of the operation that is no operand (an attribute's name, a table of weights). ``span`` is
     the place in the program, carried for reports and never looked into here. ``limits`` bound the value of an integer
-    exactly; integer arithmetic uses them to prove that its results fit 64 bits.
+    exactly; integer arithmetic uses them to prove that its results fit 64 bits. ``consumers`` are the nodes made of this
+    one so far: a value that is computed twice is one node (`scenic.graph.construction`).
     """
 
     operation: Operation
@@ -26,6 +30,7 @@ class Node:
     payload: Any = None
     span: Hashable | None = None
     limits: tuple[int, int] | None = None
+    consumers: Consumers = field(default_factory=WeakValueDictionary, repr=False)
 
     @property
     def is_constant(self) -> bool:
@@ -36,6 +41,11 @@ class Node:
     def is_axis(self) -> bool:
         """Whether this is an axis of the unit cube."""
         return self.operation is AXIS
+
+    @property
+    def is_drawn(self) -> bool:
+        """Whether the value comes straight from the source of random numbers: an axis, or a key."""
+        return self.operation is AXIS or self.operation is KEY
 
     @property
     def value(self) -> Any:
@@ -56,6 +66,8 @@ class Constant:
 
     value: Any
     column: Column = field(repr=False)
+    key: Hashable = field(repr=False)
+    """Equal for constants that are the same value, bit by bit."""
 
 
 def _constant_batch(call: Call) -> Column:
@@ -63,35 +75,40 @@ def _constant_batch(call: Call) -> Column:
     return column
 
 
-def _axis_batch(_call: Call) -> Column:
-    raise AssertionError("axes are columns of the cube, never evaluated")
+def _drawn_batch(_call: Call) -> Column:
+    raise AssertionError("draws come from a source, they are never evaluated")
 
 
-CONSTANT = Operation("constant", always(Kind.OTHER), _constant_batch, "A fixed value.")
-AXIS = Operation("axis", always(Kind.SCALAR), _axis_batch, "One axis of the unit cube.", pure=False)
+CONSTANT: Final = Operation("constant", always(Kind.OTHER), _constant_batch, "A fixed value.")
+AXIS: Final = Operation("axis", always(Kind.SCALAR), _drawn_batch, "One axis of the unit cube.", pure=False)
+KEY: Final = Operation(
+    "key",
+    always(Kind.KEY),
+    _drawn_batch,
+    "A random word: keys the further draws of a node that retries, or of Python code.",
+    pure=False,
+)
 
 
 def constant(value: Any, kind: Kind, row: Any, span: Hashable | None = None) -> Node:
     """A constant node; ``row`` is the encoded value (see `Codec`)."""
     column = boxed([row]) if kind.is_boxed else np.asarray([row], dtype=kind.dtype)
     limits = (int(row), int(row)) if kind is Kind.INTEGER else None
-    return Node(CONSTANT, (), kind, Constant(value, column), span, limits)
+    key = (kind, id(value)) if kind.is_boxed else (kind, column.tobytes())
+    return Node(CONSTANT, (), kind, Constant(value, column, key), span, limits)
 
 
-def axis(span: Hashable | None = None) -> Node:
-    """A new axis of the unit cube: uniform on the open interval (0, 1), independent of all others."""
-    return Node(AXIS, (), Kind.SCALAR, None, span)
+def axis(span: Hashable | None = None, place: int | None = None) -> Node:
+    """A new axis of the unit cube: uniform on the open interval (0, 1), independent of all others.
+
+    ``place`` is its address; without one a graph gives the axis an address by its number in the graph.
+    """
+    return Node(AXIS, (), Kind.SCALAR, place, span)
 
 
-def apply(
-    operation: Operation, operands: Sequence[Node], payload: Any = None, span: Hashable | None = None
-) -> Node:
-    """The node of ``operation`` over ``operands``, of the kind that the operation's rule gives."""
-    kind = operation.kind(operands, payload)
-    limits = None
-    if kind is Kind.INTEGER:
-        limits = limits_of(read(operation, kind, payload, [overall(operand) for operand in operands]))
-    return Node(operation, tuple(operands), kind, payload, span, limits)
+def key(span: Hashable | None = None, place: int | None = None) -> Node:
+    """A new key at an address: a random word of its own in every lane."""
+    return Node(KEY, (), Kind.KEY, place, span)
 
 
 class Graph:
@@ -110,7 +127,7 @@ class Graph:
         """Position of each node in the order."""
         self.nodes: tuple[Node, ...] = tuple(order)
         self.axes: dict[Node, int] = {}
-        """Column of the cube that each axis owns."""
+        """Number of each axis: which column of a `Domain` it owns."""
         for node in self.nodes:
             if node.is_axis:
                 self.axes[node] = len(self.axes)
@@ -120,9 +137,17 @@ class Graph:
         """Number of axes."""
         return len(self.axes)
 
+    def address(self, node: Node) -> int:
+        """The address of an axis or key."""
+        return address("unnamed", self.index[node]) if node.payload is None else int(node.payload)
+
+    def addresses(self, nodes: Iterable[Node]) -> Words:
+        """The addresses of axes or keys."""
+        return np.array([self.address(node) for node in nodes], dtype=np.uint64)
+
     def order(self, root: Node) -> list[Node]:
-        """The nodes that ``root`` needs, in evaluation order, ``root`` last; constants and axes left out."""
-        return [node for node in _postorder(root, ()) if not node.is_axis and not node.is_constant]
+        """The nodes that ``root`` needs, in evaluation order, ``root`` last; constants and draws left out."""
+        return [node for node in _postorder(root, ()) if not node.is_drawn and not node.is_constant]
 
 
 def _postorder(root: Node, done: Any) -> list[Node]:

@@ -2,16 +2,13 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final, Protocol
+from typing import Any, Final, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from scenic.graph.bounds import Bounds
 from scenic.graph.kinds import Codec, Column, Kind
-
-if TYPE_CHECKING:
-    from scenic.graph.node import Node
 
 OK: Final = 0
 FAULT: Final = 1
@@ -21,48 +18,69 @@ REJECTED: Final = 2
 Status = NDArray[np.int8]
 
 
-class Call:
-    """One evaluation of one node over the lanes of a batch, as its NumPy reading sees it.
+class Operand(Protocol):
+    """What rules over operands may know of one before anything is evaluated (`scenic.graph.node.Node`)."""
 
+    @property
+    def kind(self) -> Kind:
+        """Its kind."""
+
+    @property
+    def payload(self) -> Any:
+        """Its operation's data."""
+
+    @property
+    def limits(self) -> tuple[int, int] | None:
+        """Exact bounds of an integer."""
+
+    @property
+    def is_constant(self) -> bool:
+        """Whether it is fixed."""
+
+    @property
+    def value(self) -> Any:
+        """The value, where it is fixed."""
+
+
+class Call:
+    """One evaluation of an operation over the lanes of a batch, as its NumPy reading sees it.
+
+    ``shape`` is that of a number's column: ``(n,)``, or ``(m, n)`` where the columns of ``m`` alike nodes are stacked.
     ``operands`` holds the statuses of the operands (``None`` where every lane is fine); only operations that are
     not strict look at them, through `inherit`. ``kinds`` are the kinds of the operands, ``kind`` that of the result;
     ``codec`` is there for operations that mix kinds.
     """
 
-    __slots__ = (
-        "codec",
-        "culprit",
-        "error",
-        "kind",
-        "kinds",
-        "lanes",
-        "operands",
-        "payload",
-        "seeds",
-        "status",
-    )
+    __slots__ = ("codec", "culprit", "error", "kind", "kinds", "operands", "payload", "shape", "status")
 
     def __init__(
         self,
-        lanes: int,
+        shape: tuple[int, ...],
         payload: Any,
         operands: Sequence[Status | None],
-        seeds: Callable[[], NDArray[np.uint64]],
         *,
         kinds: Sequence[Kind] = (),
         kind: Kind = Kind.SCALAR,
         codec: Codec | None = None,
     ) -> None:
-        self.lanes = lanes
+        self.shape = shape
         self.payload = payload
         self.operands = operands
-        self.seeds = seeds
         self.kinds = kinds
         self.kind = kind
         self.codec = codec
         self.status: Status | None = None
         self.error: Exception | None = None
         self.culprit: int | None = None
+
+    @property
+    def lanes(self) -> int:
+        """The number of lanes."""
+        return self.shape[-1]
+
+    def everywhere(self, *, value: bool) -> Column:
+        """A truth value that is the same in every lane."""
+        return np.full((1,) * len(self.shape), value, dtype=np.bool_)
 
     def reject(self, mask: Column) -> None:
         """Reject the lanes where ``mask`` (shape ``(n,)`` or ``(1,)``) holds."""
@@ -84,14 +102,14 @@ class Call:
         if self.culprit is None and (fate == FAULT).any():
             self.culprit = position
         if self.status is None:
-            self.status = np.zeros(self.lanes, dtype=np.int8)
+            self.status = np.zeros(self.shape, dtype=np.int8)
         np.maximum(self.status, fate, out=self.status)
 
     def _mark(self, mask: Column, mark: int) -> bool:
         if not mask.any():
             return False
         if self.status is None:
-            self.status = np.zeros(self.lanes, dtype=np.int8)
+            self.status = np.zeros(self.shape, dtype=np.int8)
         np.maximum(self.status, np.where(mask, np.int8(mark), np.int8(OK)), out=self.status)
         return True
 
@@ -150,10 +168,17 @@ ends infinite in boxes where the operand may not be evaluated at all.
 SolverReading = Callable[..., Any]
 """``(terms, payload, *operand terms) -> term``."""
 
-KindRule = Callable[[Sequence["Node"], Any], Kind]
+KindRule = Callable[[Sequence[Any], Any], Kind]
+"""``(operands, payload) -> kind`` of the result; the operands are each an `Operand`."""
+
+Declared = bool | Callable[[Sequence[Any], Any], bool]
+"""Whether something may happen in some lane: a fact of the operation, or of its operands and payload."""
+
+Rewriting = Callable[[Sequence[Any], Any], Any]
+"""``(operands, payload) -> node``: a simpler node of the same value, ``None`` where there is none."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Operation:
     """An entry of the table.
 
@@ -161,7 +186,11 @@ class Operation:
     evaluates constants and lanes that hold Python objects, so that results equal Python's. ``bounds``, ``inverse`` and
     ``solver`` may be missing: analysis then knows nothing of the result, never something wrong. An operation that is
     not ``strict`` decides itself which operands' faults and rejections reach its result (a choice ignores the options
-    that were not drawn). ``pure`` operations with constant operands are evaluated at once.
+    that were not drawn). ``pure`` operations with constant operands are evaluated at once; equal ones are one node.
+
+    ``faults`` and ``rejects`` declare that a lane may fail with an exception, or have no value and be rejected; doing either
+    undeclared is an internal error. An operation that ``stacks`` evaluates the columns of several alike nodes in one
+    call: it is elementwise over all leading dimensions. ``rewrite`` simplifies a node before it is made.
     """
 
     name: str
@@ -174,6 +203,28 @@ class Operation:
     solver: SolverReading | None = None
     strict: bool = True
     pure: bool = True
+    faults: Declared = False
+    rejects: Declared = False
+    stacks: bool = False
+    rewrite: Rewriting | None = None
+
+    def may_fault(self, operands: Sequence[Operand], payload: Any, kind: Kind) -> bool:
+        """Whether a lane may fail at a node of this operation, given fine operands."""
+        if self.is_python(operands, kind):
+            return True
+        return self.faults(operands, payload) if callable(self.faults) else self.faults
+
+    def may_reject(self, operands: Sequence[Operand], payload: Any, kind: Kind) -> bool:
+        """Whether a lane may have no value at a node of this operation, given fine operands."""
+        if self.is_python(operands, kind):
+            return True
+        return self.rejects(operands, payload) if callable(self.rejects) else self.rejects
+
+    def is_python(self, operands: Sequence[Operand], kind: Kind) -> bool:
+        """Whether a node is evaluated lane by lane by the ``python`` function, which may raise anything."""
+        if self.python is None or not self.strict:
+            return False
+        return kind.is_boxed or any(operand.kind.is_boxed for operand in operands)
 
 
 def by_lane(_call: Call, *_columns: Column) -> Column:

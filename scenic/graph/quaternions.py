@@ -25,7 +25,7 @@ def multiply(p: npt.ArrayLike, q: npt.ArrayLike) -> Array:
     a, b = _rows(p), _rows(q)
     px, py, pz, pw = a[..., 0], a[..., 1], a[..., 2], a[..., 3]
     qx, qy, qz, qw = b[..., 0], b[..., 1], b[..., 2], b[..., 3]
-    result = np.empty((*np.broadcast_shapes(a.shape[:-1], b.shape[:-1]), 4))
+    result = _empty(np.broadcast_shapes(a.shape[:-1], b.shape[:-1]), 4)
     result[..., 0] = pw * qx + px * qw + py * qz - pz * qy
     result[..., 1] = pw * qy + py * qw + pz * qx - px * qz
     result[..., 2] = pw * qz + pz * qw + px * qy - py * qx
@@ -51,7 +51,7 @@ def rotate(q: npt.ArrayLike, v: npt.ArrayLike) -> Array:
     tx = 2 * (y * vz - z * vy)
     ty = 2 * (z * vx - x * vz)
     tz = 2 * (x * vy - y * vx)
-    result = np.empty((*np.broadcast_shapes(a.shape[:-1], b.shape[:-1]), 3))
+    result = _empty(np.broadcast_shapes(a.shape[:-1], b.shape[:-1]), 3)
     result[..., 0] = vx + w * tx + (y * tz - z * ty)
     result[..., 1] = vy + w * ty + (z * tx - x * tz)
     result[..., 2] = vz + w * tz + (x * ty - y * tx)
@@ -64,11 +64,21 @@ def from_euler(yaw: npt.ArrayLike, pitch: npt.ArrayLike, roll: npt.ArrayLike) ->
     cy, sy = np.cos(half_yaw), np.sin(half_yaw)
     cp, sp = np.cos(half_pitch), np.sin(half_pitch)
     cr, sr = np.cos(half_roll), np.sin(half_roll)
-    result = np.empty((*np.broadcast_shapes(cy.shape, cp.shape, cr.shape), 4))
+    result = _empty(np.broadcast_shapes(cy.shape, cp.shape, cr.shape), 4)
     result[..., 0] = cy * sp * cr - sy * cp * sr
     result[..., 1] = cy * cp * sr + sy * sp * cr
     result[..., 2] = sy * cp * cr + cy * sp * sr
     result[..., 3] = cy * cp * cr - sy * sp * sr
+    return result
+
+
+def from_yaw(yaw: npt.ArrayLike) -> Array:
+    """The quaternions ``(..., 4)`` of rotations about Z by angles ``(...)`` in radians."""
+    half = _rows(yaw) * 0.5
+    result = _empty(half.shape, 4)
+    result[..., 0] = result[..., 1] = 0.0
+    result[..., 2] = np.sin(half)
+    result[..., 3] = np.cos(half)
     return result
 
 
@@ -155,6 +165,11 @@ def normalize_angle(a: npt.ArrayLike) -> Array:
     moved = np.where(moved > np.pi, moved - TAU, np.where(moved < -np.pi, moved + TAU, moved))
     result: Array = np.where(np.abs(angle) <= np.pi, angle, np.clip(moved, -np.pi, np.pi))
     return result
+
+
+def _empty(shape: tuple[int, ...], components: int) -> Array:
+    """Rows of components stored component by component, which suits the elementwise work on them."""
+    return np.moveaxis(np.empty((components, *shape)), 0, -1)
 
 
 def _rows(values: npt.ArrayLike) -> Array:

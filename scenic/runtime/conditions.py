@@ -10,8 +10,9 @@ from typing import Any
 
 import numpy as np
 
+from scenic.graph.construction import apply
 from scenic.graph.kinds import Column, Kind
-from scenic.graph.node import Node, apply
+from scenic.graph.node import Node
 from scenic.graph.operation import Call, Operation, always
 from scenic.graph.operations import TABLE
 from scenic.runtime.context import here
@@ -87,4 +88,6 @@ OPAQUE = Operation(
     _truths,
     "A condition that is Python code, called with the sampled values of the names it reads.",
     pure=False,
+    faults=True,
+    rejects=True,
 )

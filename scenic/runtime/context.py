@@ -5,18 +5,23 @@ function (``Range(0, 1)``) find it in a context variable, so that several scenar
 """
 
 import sys
-from collections.abc import Callable
+from collections import Counter
+from collections.abc import Callable, Hashable
 from contextvars import ContextVar
 from types import FrameType
 from typing import Any
 
 import numpy as np
 
+from scenic.graph.draws import address
 from scenic.language.spans import Span
 
 Locator = Callable[[FrameType], Span | None]
 """Where in the Scenic source a Python frame is (`scenic.compiler.tracebacks`); passed in, since the runtime knows
 nothing of source text."""
+
+Namer = Callable[[FrameType], Hashable]
+"""What names the place of a frame whatever is added before it: the text of its line, not the number."""
 
 
 class Context:
@@ -24,6 +29,7 @@ class Context:
 
     Args:
         locate: finds the place of a frame of generated code.
+        name: names that place, for the addresses of draws.
         generator: ``None`` while a scenario is compiled (distributions become nodes of the graph); during a
             simulation the source of the draws (distributions draw at once and give plain values).
         mode_2d: whether the 2D compatibility mode is on (section 5.5 of the specification).
@@ -34,10 +40,13 @@ class Context:
         self,
         *,
         locate: Locator = lambda _frame: None,
+        name: Namer = lambda _frame: None,
         generator: np.random.Generator | None = None,
         mode_2d: bool = False,
     ) -> None:
         self._locate = locate
+        self._name = name
+        self._occurrences: Counter[Hashable] = Counter()
         self.generator = generator
         self.mode_2d = mode_2d
         self.evaluating = False
@@ -52,6 +61,12 @@ class Context:
         """Place in the program of whoever called the runtime."""
         return self._locate(sys._getframe(1))
 
+    def next_address(self) -> int:
+        """The address of a new draw: the place in the program that makes it, and how many it has made before."""
+        place = self._name(sys._getframe(1))
+        self._occurrences[place] += 1
+        return address(place, self._occurrences[place])
+
 
 current: ContextVar[Context | None] = ContextVar("scenic context", default=None)
 
@@ -60,6 +75,12 @@ def here() -> Span | None:
     """Place in the program of whoever called the runtime, if a program is running."""
     context = current.get()
     return None if context is None else context.place()
+
+
+def next_address() -> int | None:
+    """The address of a new draw of the running program; ``None`` if none is running."""
+    context = current.get()
+    return None if context is None else context.next_address()
 
 
 def uniform_draw() -> float | None:

@@ -8,12 +8,12 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
+from scenic.graph.construction import apply as apply_node
 from scenic.graph.kinds import Kind
-from scenic.graph.node import apply as apply_node
 from scenic.graph.node import axis, constant
 from scenic.graph.operations import TABLE
 from scenic.language.errors import InvalidScenarioError, ScenicTypeError, ScenicValueError
-from scenic.runtime.context import current, here, uniform_draw
+from scenic.runtime.context import current, here, next_address, uniform_draw
 from scenic.runtime.lazy import defer, is_lazy
 from scenic.runtime.values import (
     Random,
@@ -48,7 +48,7 @@ def draw(operation: str, *operands: Any, payload: Any = None) -> Any:
         first = constant(uniform, Kind.SCALAR, uniform)
         return evaluate(entry, [first, *nodes], payload)
     span = here()
-    node = apply_node(entry, [axis(span), *nodes], payload, span)
+    node = apply_node(entry, [axis(span, next_address()), *nodes], payload, span)
     return as_value(node, lambda: draw(operation, *operands, payload=payload))
 
 

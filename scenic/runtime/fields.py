@@ -323,6 +323,8 @@ _VALUE = Operation(
     _rows(4),
     "The value of a field, by its own function.",
     pure=False,
+    faults=True,
+    rejects=True,
 )
 _FOLLOW = Operation(
     "follow field",
@@ -330,6 +332,8 @@ _FOLLOW = Operation(
     _rows(3),
     "The end of a way along a field, by its own function.",
     pure=False,
+    faults=True,
+    rejects=True,
 )
 
 
@@ -344,6 +348,7 @@ _HEADING = Operation(
     always(Kind.SCALAR),
     _headings,
     "The heading of a field of polygons; the candidate is rejected where it has none.",
+    rejects=True,
 )
 
 
@@ -370,6 +375,7 @@ _FOLLOW_TABLE = Operation(
     always(Kind.VECTOR),
     _follow_table,
     "The end of a way along a field of polygons; the candidate is rejected where the way leaves them.",
+    rejects=True,
 )
 
 

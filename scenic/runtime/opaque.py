@@ -11,11 +11,12 @@ from typing import Any
 
 import numpy as np
 
+from scenic.graph.construction import apply
 from scenic.graph.kinds import Column, Kind, boxed
-from scenic.graph.node import Node, apply
+from scenic.graph.node import Node, key
 from scenic.graph.operation import OK, Call, Operation, always
 from scenic.language.errors import RejectionException
-from scenic.runtime.context import Context, current, here
+from scenic.runtime.context import Context, current, here, next_address
 from scenic.runtime.randomness import preserved, seed_globals
 from scenic.runtime.samples import Globals, Sample, dependencies
 from scenic.runtime.values import CODEC, as_value
@@ -49,7 +50,8 @@ def later(
     ``names`` are global names as functions in reach shall see them; as they are now by default.
     """
     seen = Globals() if names is None else names
-    operands = tuple(dependencies([function, *args, *keywords.values()], seen))
+    own = key(here(), next_address())
+    operands = (own, *dependencies([function, *args, *keywords.values()], seen))
     code = OpaqueCode(function, tuple(args), keywords, operands, seen, current.get())
     return apply(operation, operands, code, here())
 
@@ -63,7 +65,7 @@ def evaluated(call: Call, columns: Sequence[Column]) -> list[Any]:
     """The results of the calls, ``None`` in lanes where there is none.
 
     A call that raises `RejectionException` rejects its lane, any other exception is that lane's fault. Python's and
-    NumPy's global generators are seeded for each call by its lane and node, and are afterwards as they were before.
+    NumPy's global generators are seeded for each call by its key, the first column, and are afterwards as they were before.
     """
     code: OpaqueCode = call.payload
     results: list[Any] = [None] * call.lanes
@@ -72,7 +74,7 @@ def evaluated(call: Call, columns: Sequence[Column]) -> list[Any]:
         if status is not None:
             absent |= status != OK
     error: Exception | None = None
-    seeds = call.seeds().tolist()
+    seeds = columns[0].tolist()
     context = code.context
     was_evaluating = context is not None and context.evaluating
     token = current.set(context)
@@ -116,6 +118,8 @@ CALL = Operation(
     "opaque call",
     always(Kind.OTHER),
     lambda call, *columns: boxed(evaluated(call, columns)),
-    "A call of Python code with sampled arguments.",
+    "A call of Python code with sampled arguments; the first operand is its key.",
     pure=False,
+    faults=True,
+    rejects=True,
 )

@@ -15,8 +15,8 @@ from pathlib import Path
 from types import CodeType, MappingProxyType, ModuleType
 from typing import Any, Protocol
 
+from scenic.graph.construction import apply
 from scenic.graph.kinds import Kind
-from scenic.graph.node import apply
 from scenic.graph.operations import TABLE
 from scenic.language.errors import (
     InvalidScenarioError,

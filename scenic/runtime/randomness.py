@@ -1,6 +1,6 @@
 """The global generators of Python and NumPy, which programs may use: seeded for them, and put back afterwards.
 
-Nothing of ours draws from them (`scenic.runtime.sampling.streams`).
+Nothing of ours draws from them (`scenic.graph.draws`).
 """
 
 import random

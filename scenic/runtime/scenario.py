@@ -10,13 +10,17 @@ from scenic.language.errors import Located, RejectionException, SamplingError
 from scenic.runtime.objects import Object
 from scenic.runtime.program import Program
 from scenic.runtime.regions.base import Workspace, everywhere
-from scenic.runtime.sampling.engine import DEFAULT_LANES, CandidateError, Engine
+from scenic.runtime.sampling.engine import CandidateError, Engine, Task
+from scenic.runtime.sampling.foresight import SEED_BITS, Foreseen
 from scenic.runtime.sampling.planning import Outline, outline
 from scenic.runtime.sampling.report import Exhausted
 from scenic.runtime.scene import Scene
 
 PROOF_CANDIDATES = 200
 """Candidates looked at to illustrate why no scene exists, where that is proven."""
+
+OPAQUE_ATTEMPTS = 1000
+"""Candidates tried for one scene of a program whose only random numbers could be those of its own functions."""
 
 DEFAULT_ATTEMPTS = 100_000
 """Candidates tried for one scene before giving up, unless the caller says otherwise."""
@@ -44,7 +48,8 @@ class Scenario:
         self.outline: Outline = outline(program, ego, self.workspace, mode_2d=mode_2d)
         self._program = program
         self._names = names
-        self._plan = self.outline.plan()
+        self._engine = Engine(self.outline.plan())
+        self._foreseen = Foreseen()
         self._impossible: tuple[str, ...] = ()
 
     @property
@@ -66,14 +71,15 @@ class Scenario:
     @property
     def domain(self) -> Domain:
         """The part of the unit cube that is sampled."""
-        return self._plan.domain
+        return self._engine.plan.domain
 
     def restrict(self, domain: Domain, *, impossible: Sequence[str] = ()) -> None:
         """Sample from a part of the cube only. It must hold every point that meets the requirements.
 
         ``impossible`` names requirements that are proven to fail everywhere; then nothing is sampled at all.
         """
-        self._plan = self.outline.plan(domain)
+        self._engine = Engine(self.outline.plan(domain))
+        self._foreseen = Foreseen()
         self._impossible = tuple(impossible)
 
     def stream(
@@ -84,7 +90,7 @@ class Scenario:
         first: int = 0,
         max_attempts: int | None = None,
         time_limit: float | None = None,
-        lanes: int = DEFAULT_LANES,
+        lanes: int | None = None,
     ) -> Iterator[Scene | Exhausted]:
         """Scenes ``first`` to ``first + n`` of a seed, in order, as they are found.
 
@@ -100,18 +106,31 @@ class Scenario:
             SamplingError: if a requirement or property fails on a candidate.
 
         """
-        engine = Engine(self._plan, seed, lanes)
+        tasks = [Task(seed, k) for k in range(first, first + n)]
+        deadline = None if time_limit is None else time.monotonic() + time_limit
+        yield from self._find(tasks, max_attempts=max_attempts, deadline=deadline, lanes=lanes)
+
+    def _find(
+        self,
+        tasks: Sequence[Task],
+        *,
+        max_attempts: int | None = None,
+        deadline: float | None = None,
+        lanes: int | None = None,
+    ) -> Iterator[Scene | Exhausted]:
+        engine = self._engine
         if self._impossible:
-            report = engine.report(first, PROOF_CANDIDATES)
-            for k in range(first, first + n):
-                yield Exhausted(seed, k, 0, "impossible", report)
+            report = engine.report(tasks[0], PROOF_CANDIDATES)
+            for task in tasks:
+                yield Exhausted(task.seed, task.k, 0, "impossible", report)
             return
         limit = DEFAULT_ATTEMPTS if max_attempts is None else max_attempts
-        if self._plan.graph.dimension == 0:
-            limit = 1  # Every attempt would be the same.
-        deadline = None if time_limit is None else time.monotonic() + time_limit
+        nodes = engine.plan.graph.nodes
+        if not any(node.is_axis for node in nodes):
+            # Every attempt is the same, unless the program's own functions draw random numbers.
+            limit = min(limit, OPAQUE_ATTEMPTS if any(node.is_drawn for node in nodes) else 1)
         try:
-            for result in engine.scenes(first, n, max_attempts=limit, deadline=deadline):
+            for result in engine.scenes(tasks, max_attempts=limit, deadline=deadline, lanes=lanes):
                 if isinstance(result, Exhausted):
                     yield result
                 else:
@@ -126,7 +145,7 @@ class Scenario:
         seed: int | None = None,
         max_attempts: int | None = None,
         time_limit: float | None = None,
-        lanes: int = DEFAULT_LANES,
+        lanes: int | None = None,
     ) -> list[Scene]:
         """``n`` scenes of a seed (drawn from Python's ``random`` if not given).
 
@@ -135,7 +154,7 @@ class Scenario:
             SamplingError: if a requirement or property fails on a candidate.
 
         """
-        chosen = random.getrandbits(63) if seed is None else seed
+        chosen = random.getrandbits(SEED_BITS) if seed is None else seed
         scenes = []
         for result in self.stream(
             n, seed=chosen, max_attempts=max_attempts, time_limit=time_limit, lanes=lanes
@@ -157,10 +176,29 @@ class Scenario:
             RejectionException: if none of ``maxIterations`` candidates meets the requirements.
 
         """
-        (scene,) = self.sample(
-            1, seed=seed, max_attempts=maxIterations, lanes=min(DEFAULT_LANES, maxIterations)
-        )
+        if seed is None:
+            seed = random.getrandbits(SEED_BITS)
+            return self._foreseen_scene(seed, maxIterations)
+        (scene,) = self.sample(1, seed=seed, max_attempts=maxIterations)
         return scene, scene.attempts
+
+    def _foreseen_scene(self, seed: int, limit: int) -> tuple[Scene, int]:
+        """Scene 0 of a seed just drawn from Python's ``random``.
+
+        A script that calls `generate` in a loop draws its seeds one after the other. They are foreseen and their scenes
+        sampled together, which costs as little as a batch; a foreseen scene is used only if its seed is really drawn.
+        """
+        result = self._foreseen.take(seed, limit)
+        if result is None:
+            tasks = [Task(seed, 0), *(Task(next_seed, 0) for next_seed in self._foreseen.seeds())]
+            begun = time.perf_counter()
+            results = self._find(tasks, max_attempts=limit)
+            result = next(results)
+            others = list(_until_error(results))
+            self._foreseen.keep(others, limit, time.perf_counter() - begun)
+        if isinstance(result, Exhausted):
+            raise RejectionException(exhaustion_message(result))
+        return result, result.attempts
 
     def generateBatch(
         self, n: int, maxIterations: int = DEFAULT_ATTEMPTS, verbosity: int = 0, feedback: Any = None
@@ -183,6 +221,14 @@ class Scenario:
             help="this came up in a sampled candidate; guard against the value, or reject it by an earlier "
             "`require`",
         )
+
+
+def _until_error(results: Iterator[Scene | Exhausted]) -> Iterator[Scene | Exhausted]:
+    """Scenes that nobody has asked for yet: an error of one is shown when it is asked for."""
+    try:
+        yield from results
+    except Exception:  # noqa: BLE001 - it comes up again, with its place, if the scene is wanted
+        return
 
 
 def exhaustion_message(exhausted: Exhausted) -> str:

@@ -4,13 +4,11 @@ from collections.abc import Mapping
 from typing import Any
 
 from scenic.graph.node import Node
-from scenic.language.errors import InternalError
 from scenic.runtime.objects import Object
 from scenic.runtime.program import Program
 from scenic.runtime.regions.base import Workspace
 from scenic.runtime.samples import Sample
 from scenic.runtime.sampling.engine import Accepted
-from scenic.runtime.values import CODEC
 
 
 class Scene:
@@ -31,8 +29,8 @@ class Scene:
         workspace: Workspace,
         names: Mapping[int, str],
     ) -> None:
-        self.seed = accepted.seed
-        self.k = accepted.k
+        self.seed = accepted.task.seed
+        self.k = accepted.task.k
         self.attempts = accepted.attempts
         self.workspace = workspace
         self._accepted = accepted
@@ -44,10 +42,7 @@ class Scene:
         self._params: dict[str, Any] | None = None
 
     def _lookup(self, node: Node) -> Any:
-        column = self._accepted.columns.get(node)
-        if column is None:
-            raise InternalError(f"no column for {node!r}")
-        return CODEC.decode(node.kind, column[self._accepted.lane if len(column) > 1 else 0])
+        return self._accepted.batch.value(node, self._accepted.lane)
 
     @property
     def objects(self) -> tuple[Any, ...]:

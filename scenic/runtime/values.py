@@ -7,23 +7,26 @@ the language's operators, vector methods and specifier formulas are each written
 
 import math
 import warnings
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any, Self, TypeGuard
 
 import numpy as np
 
-from scenic.graph import node as graph
+from scenic.graph import construction
+from scenic.graph.batch import Batch
+from scenic.graph.draws import Counter
 from scenic.graph.kinds import Kind
-from scenic.graph.node import Node
+from scenic.graph.node import Graph, Node, axis, constant
 from scenic.graph.operation import Call, Operation, always, by_lane
 from scenic.graph.operations import TABLE
+from scenic.graph.schedule import Scheduler
 from scenic.language.errors import (
     InvalidScenarioError,
     RandomControlFlowError,
     ScenicTypeError,
     UnsupportedError,
 )
-from scenic.runtime.context import here, uniform_draw
+from scenic.runtime.context import here, next_address, uniform_draw
 from scenic.runtime.lazy import Lazy, defer
 from scenic.runtime.methods import Arithmetic, Operand, OrientationMethods, VectorMethods
 
@@ -397,9 +400,9 @@ def as_node(value: Any) -> Node:
         return value.node
     if isinstance(value, tuple | list) and is_random(value):
         parts = [as_node(item) for item in value]
-        return graph.apply(_LIST if isinstance(value, list) else _TUPLE, parts, span=here())
+        return construction.apply(_LIST if isinstance(value, list) else _TUPLE, parts, span=here())
     kind = kind_of(value)
-    return graph.constant(value, kind, CODEC.encode(kind, value))
+    return constant(value, kind, CODEC.encode(kind, value))
 
 
 def kind_of(value: Any) -> Kind:
@@ -444,7 +447,7 @@ def apply(operation: Operation, *operands: Any, payload: Any = None) -> Any:
     nodes = [as_node(operand) for operand in operands]
     if operation.pure and all(node.is_constant for node in nodes):
         return evaluate(operation, nodes, payload)
-    return as_value(graph.apply(operation, nodes, payload, here()))
+    return as_value(construction.apply(operation, nodes, payload, here()))
 
 
 def evaluate(operation: Operation, nodes: Sequence[Node], payload: Any) -> Any:
@@ -453,7 +456,9 @@ def evaluate(operation: Operation, nodes: Sequence[Node], payload: Any) -> Any:
     plain = all(node.kind.is_number for node in nodes) or kind.is_boxed
     if operation.python is not None and (plain or any(node.kind.is_boxed for node in nodes)):
         return operation.python(*(node.value for node in nodes))
-    call = Call(1, payload, [None] * len(nodes), lambda: np.zeros(1, dtype=np.uint64))
+    call = Call(
+        (1,), payload, [None] * len(nodes), kinds=[node.kind for node in nodes], kind=kind, codec=CODEC
+    )
     with np.errstate(all="ignore"):
         column = operation.batch(call, *(node.payload.column for node in nodes))
     if call.error is not None:
@@ -465,10 +470,15 @@ def evaluate(operation: Operation, nodes: Sequence[Node], payload: Any) -> Any:
     return CODEC.decode(kind, column[0])
 
 
+def fixed_batch(nodes: Iterable[Node]) -> Batch:
+    """A batch of one lane that holds fixed nodes."""
+    return Batch(Scheduler(Graph(nodes)), Counter(np.zeros(1, dtype=np.uint64)), CODEC)
+
+
 def uniform() -> Any:
     """One axis of the cube as a value: uniform on (0, 1)."""
     drawn = uniform_draw()
-    return Random(graph.axis(here())) if drawn is None else drawn
+    return Random(axis(here(), next_address())) if drawn is None else drawn
 
 
 # Attributes and calls
@@ -515,7 +525,7 @@ def _traced(function: Any, args: Sequence[Any], kwargs: dict[str, Any]) -> Node:
     try:
         return as_node(function(*args, **kwargs))
     except Exception as error:  # noqa: BLE001 - whatever the call raises
-        return graph.apply(_MISSING, (), error, here())
+        return construction.apply(_MISSING, (), error, here())
 
 
 def _call_later(function: Node, args: Sequence[Any], kwargs: dict[str, Any]) -> Node:
@@ -526,7 +536,7 @@ def _call_later(function: Node, args: Sequence[Any], kwargs: dict[str, Any]) -> 
         return target(*values[:positional], **dict(zip(names, values[positional:], strict=True)))
 
     operation = Operation("call", always(Kind.OTHER), by_lane, "A call of a random value.", python=invoke)
-    return graph.apply(operation, operands, span=here())
+    return construction.apply(operation, operands, span=here())
 
 
 def _attribute_of_option(option: Node, name: str) -> Node:
@@ -536,11 +546,11 @@ def _attribute_of_option(option: Node, name: str) -> Node:
     try:
         return as_node(getattr(value, name))
     except AttributeError as error:
-        return graph.apply(_MISSING, (), error, here())
+        return construction.apply(_MISSING, (), error, here())
 
 
 def _select(index: Node, options: Sequence[Node]) -> Any:
-    return as_value(graph.apply(TABLE["select"], [index, *options], span=here()))
+    return as_value(construction.apply(TABLE["select"], [index, *options], span=here()))
 
 
 def _missing(call: Call) -> Any:
@@ -554,6 +564,7 @@ _MISSING = Operation(
     _missing,
     "An attribute that an option of a choice does not have; an error only where that option is drawn.",
     pure=False,
+    faults=True,
 )
 _GETATTR = Operation(
     "attribute", always(Kind.OTHER), by_lane, "An attribute of a random value.", python=getattr

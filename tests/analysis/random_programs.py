@@ -1,11 +1,10 @@
 """Small random programs: draws, arithmetic over them, and conditions."""
 
 import numpy as np
-from graph.programs import CODEC, make, one_of, uniform
+from graph.programs import CODEC, batch_at, make, one_of, uniform
 
 from scenic.analysis.facts import Condition
 from scenic.graph import node as graph
-from scenic.graph.batch import Batch
 from scenic.graph.kinds import Kind
 from scenic.graph.node import Graph
 from scenic.graph.operation import OK
@@ -87,7 +86,7 @@ def conditions(seed: int, **options) -> list[Condition]:
 
 def accepted(nodes: Graph, points: np.ndarray, items: list[Condition]) -> np.ndarray:
     """Which points of the cube meet every condition."""
-    batch = Batch(nodes, points, CODEC)
+    batch = batch_at(nodes, points, CODEC)
     result = np.ones(len(points), dtype=bool)
     for item in items:
         assert item.node.kind is Kind.BOOLEAN

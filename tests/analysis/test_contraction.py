@@ -2,19 +2,25 @@
 
 import numpy as np
 import pytest
-from graph.programs import CODEC, make, one_of, source, uniform
+from graph.programs import CODEC, batch_at, make, one_of, source, uniform
 from scipy import stats
 
 from analysis.random_programs import accepted, conditions
 from scenic.analysis.contraction import contract, prune
 from scenic.analysis.facts import Condition
+from scenic.graph import construction
 from scenic.graph import node as graph
-from scenic.graph.batch import Batch
 from scenic.graph.kinds import Kind
 from scenic.graph.node import Graph
 from scenic.graph.operation import Operation, always
 
 POINTS = 2000
+
+
+def placed(domain, rows):
+    """Uniform points of a domain from uniform rows; the first number chooses the box."""
+    axes = np.arange(domain.dimension)
+    return domain.place(rows[:, 1:].T, axes, domain.choose(rows[:, 0])).T
 
 
 def check(*nodes):
@@ -162,7 +168,7 @@ def test_empty_integer_ranges_among_undrawn_options_narrow_nothing():
 def test_unknown_operations_are_passed_over():
     unknown = Operation("unknown", always(Kind.BOOLEAN), lambda call, a: a > 0.5, "A test.")
     x = uniform(0, 1)
-    domain = check(make("and", graph.apply(unknown, [x]), make("less", x, 0.75)))
+    domain = check(make("and", construction.apply(unknown, [x]), make("less", x, 0.75)))
     assert interval(domain) == pytest.approx((0, 0.75))
 
 
@@ -214,7 +220,7 @@ def test_pruned_and_unpruned_samples_follow_one_law():
         rng = np.random.default_rng(99)
         plain = rng.random((3000, network.dimension))
         plain = plain[accepted(network, plain, items)]
-        pruned = domain.place(rng.random((3000, domain.width)))
+        pruned = placed(domain, rng.random((3000, 1 + network.dimension)))
         pruned = pruned[accepted(network, pruned, items)]
         if len(plain) < 100:
             continue
@@ -238,8 +244,8 @@ def test_values_follow_one_law_too():
     domain = prune(network, [Condition(node, "")])
     rng = np.random.default_rng(5)
     samples = []
-    for points in (rng.random((20_000, 3)), domain.place(rng.random((20_000, domain.width)))):
-        batch = Batch(network, points, CODEC)
+    for points in (rng.random((20_000, 3)), placed(domain, rng.random((20_000, 4)))):
+        batch = batch_at(network, points, CODEC)
         batch.keep(batch.full(node))
         samples.append([batch.full(item).astype(float) for item in draws])
     for plain, pruned in zip(*samples, strict=True):

@@ -11,6 +11,7 @@ from analysis.random_programs import accepted, conditions
 from scenic.analysis.facts import Condition
 from scenic.analysis.smt import judge
 from scenic.analysis.terms import Answer, Questions, SolverTerms
+from scenic.graph import construction
 from scenic.graph import node as graph
 from scenic.graph.kinds import Kind
 from scenic.graph.node import Graph
@@ -124,7 +125,7 @@ def test_the_same_formula_written_twice_is_one():
 def test_different_unknown_values_are_not_taken_for_one():
     unknown = Operation("unknown", always(Kind.SCALAR), lambda call, a: a, "A test.", pure=False)
     x = uniform(0, 1)
-    first, second = graph.apply(unknown, [x]), graph.apply(unknown, [x])
+    first, second = construction.apply(unknown, [x]), construction.apply(unknown, [x])
     assert verdict(make("less", first, 0.0), make("greater", second, 0.0)) == ([], [])
 
 

@@ -5,13 +5,17 @@ from typing import Any
 
 import numpy as np
 
+from scenic.graph import construction
 from scenic.graph import node as graph
 from scenic.graph.batch import Batch
 from scenic.graph.bounds import Bounds
+from scenic.graph.draws import Counter, Points
 from scenic.graph.kinds import Kind
 from scenic.graph.node import Graph, Node
 from scenic.graph.operation import OK, Operation, always
 from scenic.graph.operations import TABLE
+from scenic.graph.operations.distributions import Table
+from scenic.graph.schedule import Scheduler
 
 
 class Triple(tuple):
@@ -54,7 +58,7 @@ def constant(value: Any) -> Node:
 def make(name: str, *operands: Any, payload: Any = None, span: Any = None) -> Node:
     """A node of the table; operands that are no nodes become constants."""
     nodes = [operand if isinstance(operand, Node) else constant(operand) for operand in operands]
-    return graph.apply(TABLE[name], nodes, payload, span)
+    return construction.apply(TABLE[name], nodes, payload, span)
 
 
 def uniform(low: Any, high: Any, span: Any = None) -> Node:
@@ -81,7 +85,7 @@ def source(kind: Kind, values: Any) -> Node:
     if kind is Kind.INTEGER:
         limits = int(column.min()), int(column.max())
     operation = replace(_SOURCE, kind=always(kind))
-    return replace(graph.apply(operation, (), (column,)), limits=limits)
+    return replace(construction.apply(operation, (), (column,)), limits=limits)
 
 
 _FAULTY = Operation(
@@ -90,13 +94,15 @@ _FAULTY = Operation(
     lambda call: _with_status(call),
     "Given values, some of which fail or are rejected.",
     pure=False,
+    faults=True,
+    rejects=True,
 )
 
 
 def faulty(kind: Kind, values: Any, statuses: Any, error: Exception) -> Node:
     """As `source`, with the status of each lane."""
     operation = replace(_FAULTY, kind=always(kind))
-    return graph.apply(operation, (), (np.asarray(values, kind.dtype), np.asarray(statuses), error))
+    return construction.apply(operation, (), (np.asarray(values, kind.dtype), np.asarray(statuses), error))
 
 
 def _with_status(call):
@@ -106,8 +112,19 @@ def _with_status(call):
     return column
 
 
+def batch_at(
+    node_graph: Graph, points: Any, codec: Any = CODEC, *, grouped: bool = True, **options: Any
+) -> Batch:
+    """A batch whose lanes are given points of the cube, ``(n, dimension)``."""
+    points = np.asarray(points, dtype=float)
+    assert points.shape[1] == node_graph.dimension
+    values = {node_graph.address(axis): points[:, place] for axis, place in node_graph.axes.items()}
+    keys = Counter(np.arange(len(points), dtype=np.uint64))
+    return Batch(Scheduler(node_graph, grouped=grouped), Points(values, keys), codec, **options)
+
+
 def evaluate(node: Node, lanes: int) -> Batch:
-    return Batch(Graph([node]), np.empty((lanes, 0)), CODEC)
+    return batch_at(Graph([node]), np.empty((lanes, 0)))
 
 
 def random_points(node_graph: Graph, lanes: int, seed: int = 0) -> np.ndarray:
@@ -116,7 +133,7 @@ def random_points(node_graph: Graph, lanes: int, seed: int = 0) -> np.ndarray:
 
 def sampled(roots: list[Node], lanes: int, seed: int = 0) -> Batch:
     node_graph = Graph(roots)
-    return Batch(node_graph, random_points(node_graph, lanes, seed), CODEC)
+    return batch_at(node_graph, random_points(node_graph, lanes, seed))
 
 
 def is_fine(batch: Batch, node: Node) -> np.ndarray:
@@ -144,6 +161,12 @@ class Case:
 
 _BINARY = [(S, S), (I, S), (S, I), (I, I), (B, I), (B, S), (B, B)]
 _UNARY = [(S,), (I,), (B,)]
+_TABLES = (
+    Table(Kind.SCALAR, np.array([2.5, -1.0, 2.5])),
+    Table(Kind.INTEGER, np.array([4, -7, 0])),
+    Table(Kind.BOOLEAN, np.array([True, False, False])),
+    Table(Kind.VECTOR, np.array([[1.0, 2.0, 3.0], [0.0, -1.0, 5.0], [1.0, 2.0, -0.5]])),
+)
 _CUMULATIVE = (0.25, 0.25, 0.5, 1.0, 1.0)
 
 CASES = [
@@ -184,6 +207,7 @@ CASES = [
     *(Case(name, (V,)) for name in ("norm", "azimuth", "altitude", "normalized")),
     *(Case(name, (V, V)) for name in ("dot", "cross", "distance")),
     Case("from euler", (S, S, S)),
+    Case("from yaw", (S,)),
     Case("compose", (Q, Q)),
     Case("inverse", (Q,)),
     Case("rotate", (Q, V)),
@@ -195,6 +219,7 @@ CASES = [
     Case("weighted integer", (U,), (-2, _CUMULATIVE)),
     Case("choice", (U,), _CUMULATIVE),
     *(Case("select", (("index", 3), *kinds)) for kinds in [(S, S, S), (V, V, V), (B, B, B), (I, I, I)]),
+    *(Case("look-up", (("index", 3),), table) for table in _TABLES),
 ]
 
 

@@ -1,12 +1,11 @@
 """Evaluation of graphs: order, lanes that are dropped, and the fate of lanes that fail or are rejected."""
 
 import numpy as np
-import pytest
 
 from graph.programs import (
     CODEC,
-    PlainCodec,
     Triple,
+    batch_at,
     evaluate,
     faulty,
     is_fine,
@@ -16,8 +15,9 @@ from graph.programs import (
     source,
     uniform,
 )
+from scenic.graph import construction
 from scenic.graph import node as graph
-from scenic.graph.batch import Batch
+from scenic.graph.draws import address
 from scenic.graph.kinds import Kind
 from scenic.graph.node import Graph
 from scenic.graph.operation import Operation, always
@@ -180,44 +180,24 @@ def test_python_functions_may_reject():
         return value
 
     operation = Operation("picky", always(Kind.OTHER), lambda call, a: a, "A test.", python=picky)
-    node = graph.apply(operation, [source(Kind.SCALAR, [0.5, 1.5, 2.5])])
-    batch = Batch(Graph([node]), np.empty((3, 0)), CODEC, rejections=(Rejected,))
+    node = construction.apply(operation, [source(Kind.SCALAR, [0.5, 1.5, 2.5])])
+    batch = batch_at(Graph([node]), np.empty((3, 0)), CODEC, rejections=(Rejected,))
     assert batch.status(node).tolist() == [REJECTED, FAULT, OK]
     assert batch.value(node, 2) == 2.5
 
 
 def test_a_value_of_the_wrong_kind_is_a_fault():
     operation = Operation("word", always(Kind.SCALAR), lambda call, a: a, "A test.", python=lambda a: a)
-    node = graph.apply(operation, [source(Kind.OTHER, np.array(["word", 1.5], dtype=object))])
+    node = construction.apply(operation, [source(Kind.OTHER, np.array(["word", 1.5], dtype=object))])
     batch = evaluate(node, 2)
     assert batch.status(node).tolist() == [FAULT, OK]
     assert batch.value(node, 1) == 1.5
 
 
-def test_seeds_depend_on_the_point_and_the_node_alone():
-    seen = {}
-    operation = Operation(
-        "seeds", always(Kind.INTEGER), lambda call, a: call.seeds().astype(np.int64), "A test."
-    )
+def test_keys_depend_on_the_lane_and_the_address_alone():
+    first, second = graph.key(place=address("a")), graph.key(place=address("b"))
     x = uniform(0, 1)
-    nodes = [graph.apply(operation, [x]), graph.apply(operation, [x])]
-    seen = sampled(nodes, 50)
-    first, second = (seen.column(node) for node in nodes)
-    assert len({*first.tolist(), *second.tolist()}) == 100
-    later = sampled(nodes, 50)
-    later.keep(np.arange(50) % 7 == 0)
-    assert later.column(nodes[1]).tolist() == second[::7].tolist()
-
-
-def test_a_cube_of_the_wrong_width_is_refused():
-    node = uniform(0, 1)
-    with pytest.raises(ValueError, match="axes"):
-        Batch(Graph([node]), np.empty((3, 2)), PlainCodec())
-
-
-def test_long_chains_need_no_recursion():
-    node = uniform(0.0, 1.0)
-    for _ in range(20_000):
-        node = make("add", node, 1.0)
-    batch = sampled([node], 2)
-    assert (batch.column(node) > 20_000).all()
+    several, alone = Graph([first, x, second]), Graph([second])
+    words = batch_at(several, np.full((5, 1), 0.5)).column(second)
+    assert batch_at(alone, np.empty((5, 0))).column(second).tolist() == words.tolist()
+    assert len({*words.tolist(), *batch_at(several, np.full((5, 1), 0.5)).column(first).tolist()}) == 10

@@ -9,9 +9,8 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from graph.programs import CODEC, faulty, make, one_of, sampled, source, uniform
+from graph.programs import CODEC, batch_at, faulty, make, one_of, sampled, source, uniform
 from scenic.graph import node as graph
-from scenic.graph.batch import Batch
 from scenic.graph.kinds import Kind
 from scenic.graph.node import Graph
 from scenic.graph.operations.normal import conditioned_cumulative, conditioned_quantile
@@ -28,7 +27,7 @@ def values_of(node, seed=0):
 
 def at_ends(node):
     """The values at the outermost points of the node's only axis."""
-    batch = Batch(Graph([node]), ENDS[:, None], CODEC)
+    batch = batch_at(Graph([node]), ENDS[:, None], CODEC)
     return batch.full(node), batch.status(node)
 
 
@@ -49,7 +48,7 @@ def test_range_keeps_within_its_ends():
 
 def test_range_of_endless_ends_fails():
     node = make("range", graph.axis(), 0.0, source(Kind.SCALAR, [1.0, math.inf, math.nan]))
-    batch = Batch(Graph([node]), np.full((3, 1), 0.5), CODEC)
+    batch = batch_at(Graph([node]), np.full((3, 1), 0.5), CODEC)
     assert batch.status(node).tolist() == [0, 1, 1]
 
 
@@ -109,7 +108,7 @@ def test_truncated_normal_without_deviation():
         source(Kind.SCALAR, [0.0]),
         payload=(0.0, 2.0),
     )
-    batch = Batch(Graph([node]), np.full((2, 1), 0.3), CODEC)
+    batch = batch_at(Graph([node]), np.full((2, 1), 0.3), CODEC)
     assert batch.status(node).tolist() == [0, 1]
     assert batch.column(node)[0] == 1.0
 
@@ -144,13 +143,13 @@ def test_empty_discrete_range_rejects():
     node = make(
         "discrete range", graph.axis(), source(Kind.SCALAR, [0.2, 0.2]), source(Kind.SCALAR, [0.8, 1.8])
     )
-    batch = Batch(Graph([node]), np.full((2, 1), 0.5), CODEC)
+    batch = batch_at(Graph([node]), np.full((2, 1), 0.5), CODEC)
     assert batch.status(node).tolist() == [2, 0]
 
 
 def test_discrete_range_of_huge_ends_fails():
     node = make("discrete range", graph.axis(), 0.0, source(Kind.SCALAR, [1e300, math.nan]))
-    batch = Batch(Graph([node]), np.full((2, 1), 0.5), CODEC)
+    batch = batch_at(Graph([node]), np.full((2, 1), 0.5), CODEC)
     assert batch.status(node).tolist() == [1, 1]
 
 
@@ -174,7 +173,7 @@ def test_weights():
 
 def test_an_option_of_weight_zero_is_not_drawn_at_a_limit():
     node = make("choice", graph.axis(), payload=(0.0, 0.5, 0.5, 1.0))
-    batch = Batch(Graph([node]), np.array([[1e-300], [0.5]]), CODEC)
+    batch = batch_at(Graph([node]), np.array([[1e-300], [0.5]]), CODEC)
     assert batch.column(node).tolist() == [1, 3]
 
 
@@ -197,5 +196,5 @@ def test_undrawn_options_cannot_reject():
 def test_the_fate_of_the_index_counts():
     index = faulty(Kind.INTEGER, [0, 1, 0], [0, 1, 2], ValueError())
     node = make("select", index, 1.0, 2.0)
-    batch = Batch(Graph([node]), np.empty((3, 0)), CODEC)
+    batch = batch_at(Graph([node]), np.empty((3, 0)), CODEC)
     assert batch.status(node).tolist() == [0, 1, 2]

@@ -10,8 +10,8 @@ from scenic.analysis.smt import Encoding
 from scenic.analysis.terms import Answer, Questions
 from scenic.graph import bounding
 from scenic.graph.bounds import Bounds
+from scenic.graph.construction import apply
 from scenic.graph.kinds import Kind
-from scenic.graph.node import apply
 from scenic.graph.operation import Operation, always
 from scenic.graph.operations import TABLE
 

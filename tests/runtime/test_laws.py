@@ -191,9 +191,9 @@ def test_what_is_not_drawn_does_not_matter() -> None:
 
 
 def test_a_missing_attribute_is_an_error_only_where_it_is_drawn() -> None:
-    text = "a = new Object with foo 1\nb = new Object at (9, 9)\nc = Uniform(a, b)\nrequire c is a\n"
-    scenario(text + "require c.foo == 1").sample(40, seed=0)
-    found = failure(text + "param x = c.foo", n=20)
+    text = "a = new Object with foo 1\nb = new Object at (9, 9)\nc = Uniform(a, b)\n"
+    scenario(text + "require c is a\nrequire c.foo == 1").sample(40, seed=0)
+    found = failure(text + "\nparam x = c.foo", n=20)
     assert isinstance(found, SamplingError)
     assert "AttributeError: Object has no property or attribute 'foo'" in str(found)
     assert place(found)[1] == "5:11-5:16"

@@ -2,7 +2,7 @@
 
 import operator
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from scenic.graph.operations.numbers import (
     fail_as_python,
     lane_by_lane,
 )
+from scenic.graph.operations.possibilities import may_divide_by_zero
 
 
 def _kind(reading: BoundsReading, *vectors: tuple[bool, ...]) -> KindRule:
@@ -36,7 +37,7 @@ def _kind(reading: BoundsReading, *vectors: tuple[bool, ...]) -> KindRule:
 
 def _spread(column: Column, like: Column) -> Column:
     """A number's column made to broadcast against a vector's."""
-    return column[:, np.newaxis] if column.ndim < like.ndim else column
+    return column[..., np.newaxis] if column.ndim < like.ndim else column
 
 
 def _elementwise(function: Callable[..., Column]) -> Callable[..., Column]:
@@ -54,7 +55,7 @@ def _divide(call: Call, a: Column, b: Column) -> Column:
     zero = b == 0
     if zero.any():
         # The divisor is a number even where a vector is divided; Python's error is the same for its components.
-        fail_as_python(call, zero, operator.truediv, a if a.ndim == 1 else a[:, 0], b)
+        fail_as_python(call, zero, operator.truediv, a if a.ndim == b.ndim else a[..., 0], b)
         b = np.where(zero, np.ones_like(b), b)
     if not (a.dtype == b.dtype == np.int64) or are_exact(a, b):
         return np.asarray(_spread(a, b) / _spread(b, a))
@@ -132,6 +133,54 @@ def _absolute_inverse(_payload: Any, result: Bounds, a: Bounds) -> list[Bounds]:
     return [Bounds(lower, upper)]
 
 
+# Simpler nodes of the same value.
+
+
+def _is_number(operand: Node, number: float) -> bool:
+    """Whether an operand is this number, of a kind that makes no float of a whole number."""
+    return operand.is_constant and operand.kind.is_number and operand.value == number
+
+
+def _keeps(operand: Node, other: Node) -> bool:
+    """Whether arithmetic with ``other``, a number that changes no value, leaves ``operand`` as it is."""
+    return operand.kind in (Kind.SCALAR, Kind.VECTOR) or (operand.kind is other.kind is Kind.INTEGER)
+
+
+def _is_zero_vector(operand: Node) -> bool:
+    return operand.is_constant and operand.kind is Kind.VECTOR and not operand.payload.column.any()
+
+
+def _without_zero(operands: Sequence[Node], _payload: Any) -> Node | None:
+    for operand, other in (operands, operands[::-1]):
+        if operand.kind is Kind.VECTOR and _is_zero_vector(other):
+            return operand
+        if operand.kind.is_number and _is_number(other, 0) and _keeps(operand, other):
+            return operand
+    return None
+
+
+def _minus_zero(operands: Sequence[Node], _payload: Any) -> Node | None:
+    operand, other = operands
+    if operand.kind is Kind.VECTOR and _is_zero_vector(other):
+        return operand
+    if operand.kind.is_number and _is_number(other, 0) and _keeps(operand, other):
+        return operand
+    return None
+
+
+def _times_one(operands: Sequence[Node], _payload: Any) -> Node | None:
+    for operand, other in (operands, operands[::-1]):
+        if _is_number(other, 1) and _keeps(operand, other):
+            return operand
+    return None
+
+
+def _over_one(operands: Sequence[Node], _payload: Any) -> Node | None:
+    operand, other = operands
+    simple = _is_number(other, 1) and operand.kind in (Kind.SCALAR, Kind.VECTOR)
+    return operand if simple else None
+
+
 OPERATIONS = (
     Operation(
         "add",
@@ -142,6 +191,8 @@ OPERATIONS = (
         bounds=_add_bounds,
         inverse=_add_inverse,
         solver=componentwise(lambda _terms, a, b: a + b),
+        stacks=True,
+        rewrite=_without_zero,
     ),
     Operation(
         "subtract",
@@ -152,6 +203,8 @@ OPERATIONS = (
         bounds=_subtract_bounds,
         inverse=_subtract_inverse,
         solver=componentwise(lambda _terms, a, b: a - b),
+        stacks=True,
+        rewrite=_minus_zero,
     ),
     Operation(
         "multiply",
@@ -162,6 +215,8 @@ OPERATIONS = (
         bounds=_multiply_bounds,
         inverse=_multiply_inverse,
         solver=componentwise(lambda _terms, a, b: a * b),
+        stacks=True,
+        rewrite=_times_one,
     ),
     Operation(
         "divide",
@@ -172,6 +227,9 @@ OPERATIONS = (
         bounds=_divide_bounds,
         inverse=_divide_inverse,
         solver=componentwise(lambda _terms, a, b: a / b),
+        faults=may_divide_by_zero,
+        stacks=True,
+        rewrite=_over_one,
     ),
     Operation(
         "negative",
@@ -182,6 +240,7 @@ OPERATIONS = (
         bounds=_negative_bounds,
         inverse=_negative_inverse,
         solver=componentwise(lambda _terms, a: -a),
+        stacks=True,
     ),
     Operation(
         "positive",
@@ -192,6 +251,7 @@ OPERATIONS = (
         bounds=_positive_bounds,
         inverse=_positive_inverse,
         solver=componentwise(lambda _terms, a: a),
+        stacks=True,
     ),
     Operation(
         "absolute",
@@ -202,5 +262,9 @@ OPERATIONS = (
         bounds=_absolute_bounds,
         inverse=_absolute_inverse,
         solver=componentwise(lambda terms, a: terms.either(a >= terms.real(0), a, -a)),
+        stacks=True,
     ),
 )
+
+ADD: Final = OPERATIONS[0]
+NEGATIVE: Final = OPERATIONS[4]

@@ -33,10 +33,10 @@ def _truth_of(function: Callable[[Any, Any], Any]) -> Callable[[Any, Any], bool]
 
 def _order(function: Callable[[Any, Any], Any], symbol: str) -> Callable[[Call, Column, Column], Column]:
     def batch(call: Call, a: Column, b: Column) -> Column:
-        if a.ndim > 1 or b.ndim > 1:
+        if any(kind.trailing for kind in call.kinds):
             what = f"'{symbol}' is not defined for vectors and orientations"
             call.fault(np.ones(1, dtype=np.bool_), TypeError(what))
-            return np.zeros(1, dtype=np.bool_)
+            return call.everywhere(value=False)
         return _numbers(call, function, a, b)
 
     return batch
@@ -50,19 +50,20 @@ def _numbers(call: Call, function: Callable[[Any, Any], Any], a: Column, b: Colu
 
 
 def _same(call: Call, a: Column, b: Column) -> Column:
-    if a.ndim == b.ndim == 1:
+    one, other = (kind.trailing for kind in call.kinds)
+    if not one and not other:
         return _numbers(call, operator.eq, a, b)
-    if a.shape[1:] != b.shape[1:]:
-        return np.zeros(1, dtype=np.bool_)
+    if one != other:
+        return call.everywhere(value=False)
     same = _all_components(a == b)
     # The two quaternions q and -q are one orientation.
-    return same | _all_components(a == -b) if a.shape[1] == 4 else same
+    return same | _all_components(a == -b) if one == (4,) else same
 
 
 def _all_components(parts: Column) -> Column:
-    result = parts[:, 0]
-    for index in range(1, parts.shape[1]):
-        result = result & parts[:, index]
+    result = parts[..., 0]
+    for index in range(1, parts.shape[-1]):
+        result = result & parts[..., index]
     return result
 
 
@@ -253,6 +254,11 @@ def _extreme_solver(better: Callable[[Any, Any], Any]) -> SolverReading:
     return solver
 
 
+def _orders_vectors(operands: Sequence[Node], _payload: Any) -> bool:
+    """Whether an operand is no number, so that Python knows no order."""
+    return any(operand.kind.trailing for operand in operands)
+
+
 OPERATIONS = (
     Operation(
         "less",
@@ -263,6 +269,8 @@ OPERATIONS = (
         bounds=_order_bounds(strict=True, swapped=False),
         inverse=_order_inverse(strict=True, swapped=False),
         solver=_order_solver(operator.lt),
+        faults=_orders_vectors,
+        stacks=True,
     ),
     Operation(
         "less or equal",
@@ -273,6 +281,8 @@ OPERATIONS = (
         bounds=_order_bounds(strict=False, swapped=False),
         inverse=_order_inverse(strict=False, swapped=False),
         solver=_order_solver(operator.le),
+        faults=_orders_vectors,
+        stacks=True,
     ),
     Operation(
         "greater",
@@ -283,6 +293,8 @@ OPERATIONS = (
         bounds=_order_bounds(strict=True, swapped=True),
         inverse=_order_inverse(strict=True, swapped=True),
         solver=_order_solver(operator.gt),
+        faults=_orders_vectors,
+        stacks=True,
     ),
     Operation(
         "greater or equal",
@@ -293,6 +305,8 @@ OPERATIONS = (
         bounds=_order_bounds(strict=False, swapped=True),
         inverse=_order_inverse(strict=False, swapped=True),
         solver=_order_solver(operator.ge),
+        faults=_orders_vectors,
+        stacks=True,
     ),
     Operation(
         "equal",
@@ -303,6 +317,7 @@ OPERATIONS = (
         bounds=_equal_bounds,
         inverse=_equal_inverse,
         solver=_equal_solver,
+        stacks=True,
     ),
     Operation(
         "not equal",
@@ -313,6 +328,7 @@ OPERATIONS = (
         bounds=_differs_bounds,
         inverse=_differs_inverse,
         solver=_differs_solver,
+        stacks=True,
     ),
     Operation(
         "minimum",
@@ -323,6 +339,7 @@ OPERATIONS = (
         bounds=_minimum_bounds,
         inverse=_minimum_inverse,
         solver=_extreme_solver(operator.lt),
+        stacks=True,
     ),
     Operation(
         "maximum",
@@ -333,5 +350,6 @@ OPERATIONS = (
         bounds=_maximum_bounds,
         inverse=_maximum_inverse,
         solver=_extreme_solver(operator.gt),
+        stacks=True,
     ),
 )

@@ -42,9 +42,9 @@ def _getitem(call: Call, container: Column, item: Column) -> Column:
     return container[lanes if len(container) > 1 else np.zeros_like(lanes), place]
 
 
-def _truth(_call: Call, value: Column) -> Column:
+def _truth(call: Call, value: Column) -> Column:
     # A vector is true whatever its components: it has three items. So is an orientation, like any other object.
-    return value != 0 if value.ndim == 1 else np.ones(1, dtype=np.bool_)
+    return call.everywhere(value=True) if call.kinds[0].trailing else value != 0
 
 
 def _float_bounds(_payload: Any, number: Bounds) -> Bounds | None:
@@ -99,6 +99,12 @@ def _truth_solver(terms: Terms, _payload: Any, value: Any) -> Any:
     return terms.number(value) != terms.real(0)
 
 
+def _may_miss(operands: Sequence[Node], _payload: Any) -> bool:
+    """Whether an index may lie outside a vector."""
+    limits = operands[1].limits
+    return limits is None or limits[0] < -3 or limits[1] > 2
+
+
 OPERATIONS = (
     Operation(
         "float",
@@ -109,6 +115,7 @@ OPERATIONS = (
         bounds=_float_bounds,
         inverse=_float_inverse,
         solver=_float_solver,
+        stacks=True,
     ),
     Operation("str", always(Kind.OTHER), by_lane, "Python's `str`.", python=str),
     Operation("len", _len_kind, _len, "Python's `len`.", python=len, bounds=_len_bounds, solver=_len_solver),
@@ -120,6 +127,7 @@ OPERATIONS = (
         python=operator.getitem,
         bounds=_getitem_bounds,
         solver=_getitem_solver,
+        faults=_may_miss,
     ),
     Operation(
         "truth",
@@ -130,5 +138,6 @@ OPERATIONS = (
         bounds=_truth_bounds,
         inverse=_truth_inverse,
         solver=_truth_solver,
+        stacks=True,
     ),
 )

@@ -4,18 +4,23 @@ Every one is monotone in its axis, so that an interval of values is an interval 
 pruning possible.
 """
 
+from collections.abc import Sequence
 from typing import Any, Final
 
 import numpy as np
 
 from scenic.graph import intervals
+from scenic.graph.bounding import overall
 from scenic.graph.bounds import Bounds, Floats, outward
+from scenic.graph.construction import apply
 from scenic.graph.kinds import Column, Kind
+from scenic.graph.node import Node
 from scenic.graph.operation import Call, Operation, Terms, always
 from scenic.graph.operations.choosing import can_give, choose, hull_of_possible, joined_kind
 from scenic.graph.operations.encoding import chain, disjunction
 from scenic.graph.operations.narrowing import Mask, before_rounding, where
 from scenic.graph.operations.normal import conditioned_cumulative, conditioned_quantile
+from scenic.graph.operations.possibilities import is_finite
 
 FIRST: Final = 5e-324
 LAST: Final = 1 - 2.0**-53
@@ -91,17 +96,142 @@ def _position(axis: Column, cumulative: Any) -> Column:
     return np.minimum(found, last).astype(np.int64)
 
 
+class Table:
+    """The values of a choice among constants of one kind: the payload of a look-up.
+
+    Args:
+        kind: their kind, none of Python objects.
+        column: their rows, one after the other.
+
+    """
+
+    __slots__ = ("_key", "column", "kind")
+
+    def __init__(self, kind: Kind, column: Column) -> None:
+        self.kind = kind
+        self.column = column
+        self._key = (kind, column.tobytes())
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Table) and self._key == other._key
+
+    def __hash__(self) -> int:
+        return hash(self._key)
+
+    def __repr__(self) -> str:
+        return f"<table of {len(self.column)} of kind {self.kind.value}>"
+
+
+def _lookup(call: Call, index: Column) -> Column:
+    table: Table = call.payload
+    found: Column = table.column[index]
+    return found
+
+
+def _within(payload: Table, index: Bounds) -> tuple[Floats, Mask]:
+    """The table's values, and which of them each box admits, ``(m, values)``."""
+    places = np.arange(len(payload.column))
+    mask = (index.lower[:, np.newaxis] <= places) & (places <= index.upper[:, np.newaxis])
+    return payload.column.astype(np.float64), mask
+
+
+def _lookup_bounds(payload: Table, index: Bounds) -> Bounds:
+    values, mask = _within(payload, index)
+    wide = mask if values.ndim == 1 else mask[..., np.newaxis]
+    lower = np.where(wide, values, np.inf).min(axis=1)
+    upper = np.where(wide, values, -np.inf).max(axis=1)
+    # No value of the table in some box: bounds of nothing are for the caller to find elsewhere.
+    nothing = lower > upper
+    return Bounds(np.where(nothing, -np.inf, lower), np.where(nothing, np.inf, upper))
+
+
+def _lookup_inverse(payload: Table, result: Bounds, index: Bounds) -> list[Bounds]:
+    values, mask = _within(payload, index)
+    fits = (result.lower[:, np.newaxis] <= values) & (values <= result.upper[:, np.newaxis])
+    mask = mask & (fits if values.ndim == 1 else fits.all(axis=2))
+    places = np.arange(values.shape[0], dtype=np.float64)
+    return [Bounds(np.where(mask, places, np.inf).min(axis=1), np.where(mask, places, -np.inf).max(axis=1))]
+
+
+def _lookup_solver(terms: Terms, payload: Table, index: Any) -> Any:
+    if payload.kind is Kind.BOOLEAN:
+        options: list[Any] = [terms.real(float(value)) == terms.real(1) for value in payload.column]
+    elif payload.column.ndim == 1:
+        options = [terms.real(float(value)) for value in payload.column]
+    else:
+        options = [tuple(terms.real(float(part)) for part in value) for value in payload.column]
+    return chain(terms, index, options)
+
+
+LOOKUP: Final = Operation(
+    "look-up",
+    lambda _operands, payload: payload.kind,
+    _lookup,
+    "The value of a table of constants that an index draws; payload the table.",
+    bounds=_lookup_bounds,
+    inverse=_lookup_inverse,
+    solver=_lookup_solver,
+    stacks=True,
+)
+
+
+def _constants(operands: Sequence[Node], _payload: Any) -> Node | None:
+    """A choice among constants is a table, however many there are."""
+    index, *options = operands
+    kinds = {option.kind for option in options}
+    if len(kinds) > 1 or not all(option.is_constant and not option.kind.is_boxed for option in options):
+        return None
+    table = Table(kinds.pop(), np.concatenate([option.payload.column for option in options]))
+    return apply(LOOKUP, [index], table)
+
+
+def _may_be_endless(operands: Sequence[Node], _payload: Any) -> bool:
+    """Whether an end of a range may be infinite."""
+    return not (is_finite(operands[1]) and is_finite(operands[2]))
+
+
+def _may_be_narrow(operands: Sequence[Node], _payload: Any) -> bool:
+    """Whether a deviation may be zero."""
+    bounds = overall(operands[2])
+    return bounds is None or bool(bounds.lower[0] <= 0 <= bounds.upper[0])
+
+
+def _may_be_large(operands: Sequence[Node], _payload: Any) -> bool:
+    """Whether an end of a range of integers may be too large for 64 bits."""
+    return any(
+        operand.kind is Kind.SCALAR and not _is_below(overall(operand), 2.0**61) for operand in operands[1:]
+    )
+
+
+def _is_below(bounds: Bounds | None, limit: float) -> bool:
+    return bounds is not None and bool(-limit < bounds.lower[0] <= bounds.upper[0] < limit)
+
+
+def _may_be_empty(operands: Sequence[Node], _payload: Any) -> bool:
+    """Whether a range of integers may hold none."""
+    low, high = (overall(operand) for operand in operands[1:])
+    return low is None or high is None or bool(np.ceil(low.upper[0]) > np.floor(high.lower[0]))
+
+
 def _select_kind(operands: Any, payload: Any) -> Kind:
     return joined_kind(operands[1:], payload)
 
 
 def _select(call: Call, index: Column, *options: Column) -> Column:
+    if all(status is None for status in call.operands) and _are_alike(call, options):
+        # Options that are the same in every lane: a table.
+        table: Column = np.concatenate(options)
+        return table[index]
     call.inherit(0, np.ones(1, dtype=np.bool_))
     status = call.operands[0]
     index = np.broadcast_to(index, (call.lanes,))
     if status is not None:
         index = np.where(status == 0, index, -1)
     return choose(call, [index == place for place in range(len(options))], options, first=1)
+
+
+def _are_alike(call: Call, options: Sequence[Column]) -> bool:
+    return all(kind is call.kind for kind in call.kinds[1:]) and all(len(option) == 1 for option in options)
 
 
 def _python_select(index: int, *options: Any) -> Any:
@@ -401,6 +531,8 @@ OPERATIONS = (
         bounds=_range_bounds,
         inverse=_range_inverse,
         solver=_range_solver,
+        faults=_may_be_endless,
+        stacks=True,
     ),
     Operation(
         "normal",
@@ -410,6 +542,7 @@ OPERATIONS = (
         bounds=_normal_bounds,
         inverse=_normal_inverse,
         solver=_normal_solver,
+        stacks=True,
     ),
     Operation(
         "truncated normal",
@@ -419,6 +552,8 @@ OPERATIONS = (
         bounds=_truncated_bounds,
         inverse=_truncated_inverse,
         solver=_truncated_solver,
+        faults=_may_be_narrow,
+        stacks=True,
     ),
     Operation(
         "discrete range",
@@ -428,6 +563,9 @@ OPERATIONS = (
         bounds=_discrete_bounds,
         inverse=_discrete_inverse,
         solver=_discrete_solver,
+        faults=_may_be_large,
+        rejects=_may_be_empty,
+        stacks=True,
     ),
     Operation(
         "weighted integer",
@@ -437,6 +575,7 @@ OPERATIONS = (
         bounds=_weighted_bounds,
         inverse=_weighted_inverse,
         solver=_weighted_solver,
+        stacks=True,
     ),
     Operation(
         "choice",
@@ -446,6 +585,7 @@ OPERATIONS = (
         bounds=_choice_bounds,
         inverse=_choice_inverse,
         solver=_choice_solver,
+        stacks=True,
     ),
     Operation(
         "select",
@@ -457,5 +597,7 @@ OPERATIONS = (
         inverse=_select_inverse,
         solver=_select_solver,
         strict=False,
+        rewrite=_constants,
     ),
+    LOOKUP,
 )

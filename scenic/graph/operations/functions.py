@@ -1,17 +1,20 @@
 """Functions of real numbers that programs call by name."""
 
 import math
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Callable, Sequence
+from typing import Any, Final
 
 import numpy as np
 
 from scenic.graph import intervals
+from scenic.graph.bounding import overall
 from scenic.graph.bounds import Bounds
 from scenic.graph.kinds import Column, Kind
+from scenic.graph.node import Node
 from scenic.graph.operation import Call, Operation, Terms, always
 from scenic.graph.operations.encoding import root_of_squares, within
 from scenic.graph.operations.narrowing import sides, where
+from scenic.graph.operations.possibilities import may_be_infinite
 from scenic.graph.quaternions import normalize_angle
 
 
@@ -23,15 +26,16 @@ def _periodic(function: Callable[[float], float]) -> Callable[[Call, Column], Co
         if infinite.any():
             call.fault(infinite, ValueError("math domain error"))
             angle = np.where(infinite, 0.0, angle)
-        return np.array([function(value) for value in angle.tolist()], dtype=np.float64)
+        values = [function(value) for value in angle.ravel().tolist()]
+        return np.array(values, dtype=np.float64).reshape(angle.shape)
 
     return batch
 
 
 def _hypot(_call: Call, *sides: Column) -> Column:
     columns = np.broadcast_arrays(*(side.astype(np.float64) for side in sides))
-    lanes = zip(*(column.tolist() for column in columns), strict=True)
-    return np.array([math.hypot(*values) for values in lanes], dtype=np.float64)
+    lanes = zip(*(column.ravel().tolist() for column in columns), strict=True)
+    return np.array([math.hypot(*values) for values in lanes], dtype=np.float64).reshape(columns[0].shape)
 
 
 def _normalize_angle(_call: Call, angle: Column) -> Column:
@@ -118,6 +122,21 @@ def _normalize_solver(terms: Terms, _payload: Any, angle: Any) -> Any:
     return result
 
 
+_NORMAL: Final = frozenset({"azimuth", "euler", "normalize angle", "altitude"})
+"""Operations whose results are normal angles already."""
+
+
+def _already_normal(operands: Sequence[Node], _payload: Any) -> Node | None:
+    (angle,) = operands
+    if angle.kind is not Kind.SCALAR:
+        return None
+    if angle.operation.name in _NORMAL:
+        return angle
+    bounds = overall(angle)
+    inside = bounds is not None and bounds.lower[0] >= -math.pi and bounds.upper[0] <= math.pi
+    return angle if inside else None
+
+
 OPERATIONS = (
     Operation(
         "sin",
@@ -127,6 +146,8 @@ OPERATIONS = (
         python=math.sin,
         bounds=sin_bounds,
         solver=_wave_solver,
+        faults=may_be_infinite,
+        stacks=True,
     ),
     Operation(
         "cos",
@@ -136,6 +157,8 @@ OPERATIONS = (
         python=math.cos,
         bounds=cos_bounds,
         solver=_wave_solver,
+        faults=may_be_infinite,
+        stacks=True,
     ),
     Operation(
         "hypot",
@@ -146,6 +169,7 @@ OPERATIONS = (
         bounds=_hypot_bounds,
         inverse=_hypot_inverse,
         solver=_hypot_solver,
+        stacks=True,
     ),
     Operation(
         "normalize angle",
@@ -156,5 +180,9 @@ OPERATIONS = (
         bounds=_normalize_bounds,
         inverse=_normalize_inverse,
         solver=_normalize_solver,
+        stacks=True,
+        rewrite=_already_normal,
     ),
 )
+
+NORMALIZE_ANGLE: Final = OPERATIONS[-1]

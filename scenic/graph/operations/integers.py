@@ -15,6 +15,7 @@ from scenic.graph.operation import Call, Operation, Terms, always, by_lane
 from scenic.graph.operations.encoding import componentwise
 from scenic.graph.operations.narrowing import before_rounding
 from scenic.graph.operations.numbers import arithmetic_kind, as_integers, fail_as_python, lane_by_lane
+from scenic.graph.operations.possibilities import may_divide_by_zero
 
 
 def _floor_divide(call: Call, a: Column, b: Column) -> Column:
@@ -205,6 +206,8 @@ OPERATIONS = (
         bounds=_floor_divide_bounds,
         inverse=_floor_divide_inverse,
         solver=componentwise(_floor_divide_solver),
+        faults=may_divide_by_zero,
+        stacks=True,
     ),
     Operation(
         "modulo",
@@ -214,6 +217,8 @@ OPERATIONS = (
         python=operator.mod,
         bounds=_modulo_bounds,
         solver=componentwise(_modulo_solver),
+        faults=may_divide_by_zero,
+        stacks=True,
     ),
     Operation(
         "divmod",
@@ -231,6 +236,8 @@ OPERATIONS = (
         bounds=_power_bounds,
         inverse=_power_inverse,
         solver=componentwise(_power_solver),
+        faults=True,
+        stacks=True,
     ),
     Operation(
         "round",
@@ -241,6 +248,8 @@ OPERATIONS = (
         bounds=_round_bounds,
         inverse=_round_inverse,
         solver=componentwise(_round_solver),
+        faults=lambda operands, _payload: len(operands) > 1,
+        stacks=True,
     ),
     Operation(
         "int",
@@ -251,5 +260,6 @@ OPERATIONS = (
         bounds=_int_bounds,
         inverse=_int_inverse,
         solver=componentwise(_int_solver),
+        stacks=True,
     ),
 )

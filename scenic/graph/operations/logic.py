@@ -40,7 +40,7 @@ def _decide(call: Call, columns: tuple[Column, ...], *, decisive: bool) -> Colum
         for column in columns[1:]:
             result = result | column if decisive else result & column
         return result
-    open_lanes = np.ones(call.lanes, dtype=np.bool_)
+    open_lanes = np.ones(call.shape, dtype=np.bool_)
     for position, column in enumerate(columns):
         call.inherit(position, open_lanes)
         status = call.operands[position]
@@ -160,6 +160,7 @@ OPERATIONS = (
         inverse=_and_inverse,
         solver=_and_solver,
         strict=False,
+        stacks=True,
     ),
     Operation(
         "or",
@@ -171,6 +172,7 @@ OPERATIONS = (
         inverse=_or_inverse,
         solver=_or_solver,
         strict=False,
+        stacks=True,
     ),
     Operation(
         "not",
@@ -181,6 +183,7 @@ OPERATIONS = (
         bounds=_not_bounds,
         inverse=_not_inverse,
         solver=_not_solver,
+        stacks=True,
     ),
     Operation(
         "if",

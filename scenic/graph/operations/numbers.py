@@ -42,10 +42,10 @@ def fail_as_python(call: Call, mask: Column, function: Callable[..., Any], *colu
     """Let the lanes of ``mask`` fail with the exception that Python's ``function`` raises there."""
     if not mask.any():
         return
-    mask = np.broadcast_to(mask, np.broadcast_shapes(mask.shape, *(column.shape for column in columns)))
-    lane = int(np.flatnonzero(mask)[0])
+    bad, *arrays = np.broadcast_arrays(mask, *columns)
+    lane = int(np.flatnonzero(bad)[0])
     try:
-        function(*(column[lane if len(column) > 1 else 0].item() for column in columns))
+        function(*(array.flat[lane].item() for array in arrays))
     except ArithmeticError as error:
         call.fault(mask, error)
     else:
@@ -61,14 +61,15 @@ def lane_by_lane(call: Call, function: Callable[..., Any], dtype: type[Any], *co
     result = np.zeros(arrays[0].shape, dtype=dtype)
     failed = np.zeros(arrays[0].shape, dtype=np.bool_)
     error: Exception | None = None
-    for lane, values in enumerate(zip(*(array.tolist() for array in arrays), strict=True)):
+    values_of_lanes = zip(*(array.ravel().tolist() for array in arrays), strict=True)
+    for lane, values in enumerate(values_of_lanes):
         try:
             value = function(*values)
             if isinstance(value, complex):
                 raise TypeError("the result of a negative number to a broken power is not a real number")
-            result[lane] = value
+            result.flat[lane] = value
         except (ArithmeticError, ValueError, TypeError) as problem:
-            failed[lane] = True
+            failed.flat[lane] = True
             error = problem if error is None else error
     if error is not None:
         call.fault(failed, error)

@@ -2,20 +2,32 @@
 
 import math
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 
 from scenic.graph import intervals, quaternions
 from scenic.graph.bounds import Bounds
+from scenic.graph.construction import apply
 from scenic.graph.kinds import Column, Kind
+from scenic.graph.node import Node, constant
 from scenic.graph.operation import Call, Operation, Terms, always
+from scenic.graph.operations.arithmetic import ADD, NEGATIVE
 from scenic.graph.operations.encoding import within
-from scenic.graph.operations.functions import cos_bounds, length_bounds, sin_bounds
+from scenic.graph.operations.functions import (
+    NORMALIZE_ANGLE,
+    cos_bounds,
+    length_bounds,
+    sin_bounds,
+)
 
 
 def _from_euler(_call: Call, yaw: Column, pitch: Column, roll: Column) -> Column:
     return quaternions.from_euler(*(angle.astype(np.float64) for angle in (yaw, pitch, roll)))
+
+
+def _from_yaw(_call: Call, yaw: Column) -> Column:
+    return quaternions.from_yaw(yaw)
 
 
 def _compose(_call: Call, outer: Column, inner: Column) -> Column:
@@ -65,6 +77,12 @@ def _from_euler_bounds(_payload: Any, *angles: Bounds) -> Bounds:
             intervals.subtract(_product(cy, cp, cr), _product(sy, sp, sr)),
         ]
     )
+
+
+def _from_yaw_bounds(_payload: Any, yaw: Bounds) -> Bounds:
+    half = Bounds(yaw.lower / 2, yaw.upper / 2)
+    nothing = Bounds(np.zeros_like(half.lower), np.zeros_like(half.upper))
+    return intervals.stacked([nothing, nothing, sin_bounds(None, half), cos_bounds(None, half)])
 
 
 def _compose_bounds(_payload: Any, outer: Bounds, inner: Bounds) -> Bounds:
@@ -169,13 +187,82 @@ def _euler_solver(terms: Terms, payload: Any, _orientation: Any) -> Any:
     return within(terms, -limit, limit)
 
 
+# Simpler nodes of the same value. Most things stand upright: a rotation about the vertical axis is one angle.
+
+FROM_YAW: Final = Operation(
+    "from yaw",
+    always(Kind.ORIENTATION),
+    _from_yaw,
+    "The orientation of a rotation about the vertical axis (radians).",
+    bounds=_from_yaw_bounds,
+    stacks=True,
+)
+
+
+def _is_nothing(angle: Node) -> bool:
+    return angle.is_constant and angle.value == 0
+
+
+def _is_identity(orientation: Node) -> bool:
+    return orientation.is_constant and orientation.payload.column.tolist() == [[0, 0, 0, 1]]
+
+
+def _is_upright(orientation: Node) -> bool:
+    return orientation.operation is FROM_YAW
+
+
+def _only_yaw(operands: Sequence[Node], _payload: Any) -> Node | None:
+    yaw, pitch, roll = operands
+    if yaw.is_constant or yaw.kind is not Kind.SCALAR or not (_is_nothing(pitch) and _is_nothing(roll)):
+        return None
+    return apply(FROM_YAW, [yaw])
+
+
+def _with_identity(operands: Sequence[Node], _payload: Any) -> Node | None:
+    outer, inner = operands
+    if _is_identity(outer):
+        return inner
+    if _is_identity(inner):
+        return outer
+    if _is_upright(outer) and _is_upright(inner):
+        return apply(FROM_YAW, [apply(ADD, [outer.operands[0], inner.operands[0]])])
+    return None
+
+
+def _twice_inverse(operands: Sequence[Node], _payload: Any) -> Node | None:
+    (orientation,) = operands
+    if orientation.operation.name == "inverse":
+        return orientation.operands[0]
+    if _is_upright(orientation):
+        return apply(FROM_YAW, [apply(NEGATIVE, [orientation.operands[0]])])
+    return None
+
+
+def _not_turned(operands: Sequence[Node], _payload: Any) -> Node | None:
+    orientation, vector = operands
+    still = vector.is_constant and not vector.payload.column.any()
+    return vector if still or _is_identity(orientation) else None
+
+
+def _angle_of_yaw(operands: Sequence[Node], payload: Any) -> Node | None:
+    (orientation,) = operands
+    if not _is_upright(orientation):
+        return None
+    if payload == 0:
+        return apply(NORMALIZE_ANGLE, [orientation.operands[0]])
+    return constant(0.0, Kind.SCALAR, 0.0)
+
+
 OPERATIONS = (
+    FROM_YAW,
     Operation(
         "from euler",
         always(Kind.ORIENTATION),
         _from_euler,
         "The orientation of intrinsic rotations about Z, the new X and the new Y (radians).",
         bounds=_from_euler_bounds,
+        stacks=True,
+        rewrite=_only_yaw,
     ),
     Operation(
         "compose",
@@ -183,6 +270,8 @@ OPERATIONS = (
         _compose,
         "The second orientation read in the frame of the first.",
         bounds=_compose_bounds,
+        stacks=True,
+        rewrite=_with_identity,
     ),
     Operation(
         "inverse",
@@ -191,6 +280,8 @@ OPERATIONS = (
         "The opposite rotation.",
         bounds=_inverse_bounds,
         inverse=_inverse_inverse,
+        stacks=True,
+        rewrite=_twice_inverse,
     ),
     Operation(
         "rotate",
@@ -200,6 +291,8 @@ OPERATIONS = (
         bounds=_rotate_bounds,
         inverse=_rotate_inverse,
         solver=_rotate_solver,
+        stacks=True,
+        rewrite=_not_turned,
     ),
     Operation(
         "euler",
@@ -208,5 +301,7 @@ OPERATIONS = (
         "One Euler angle of an orientation in radians; payload 0 yaw, 1 pitch, 2 roll.",
         bounds=_euler_bounds,
         solver=_euler_solver,
+        stacks=True,
+        rewrite=_angle_of_yaw,
     ),
 )

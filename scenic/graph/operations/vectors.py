@@ -1,6 +1,7 @@
 """Vectors: making them, their parts, lengths and directions."""
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -8,6 +9,7 @@ import numpy as np
 from scenic.graph import intervals
 from scenic.graph.bounds import Bounds
 from scenic.graph.kinds import Column, Kind
+from scenic.graph.node import Node
 from scenic.graph.operation import Call, Operation, Terms, always
 from scenic.graph.operations.encoding import root_of_squares, within
 from scenic.graph.operations.functions import length_bounds
@@ -16,20 +18,23 @@ from scenic.graph.quaternions import normalize_angle
 
 
 def _vector(_call: Call, x: Column, y: Column, z: Column) -> Column:
-    result = np.empty((max(len(x), len(y), len(z)), 3))
-    result[:, 0] = x
-    result[:, 1] = y
-    result[:, 2] = z
-    return result
+    return _stacked(x, y, z)
+
+
+def _stacked(x: Column, y: Column, z: Column) -> Column:
+    """Vectors of three columns of numbers; stored component by component, which suits what reads them."""
+    result = np.empty((3, *np.broadcast_shapes(x.shape, y.shape, z.shape)))
+    result[0], result[1], result[2] = x, y, z
+    return np.moveaxis(result, 0, -1)
 
 
 def _component(call: Call, vector: Column) -> Column:
-    return np.ascontiguousarray(vector[:, call.payload])
+    return np.ascontiguousarray(vector[..., call.payload])
 
 
 def _parts(vector: Column) -> tuple[Column, Column, Column]:
     # Contiguous, so that functions give the same bits whatever the memory layout.
-    x, y, z = (np.ascontiguousarray(vector[:, index]) for index in range(3))
+    x, y, z = (np.ascontiguousarray(vector[..., index]) for index in range(3))
     return x, y, z
 
 
@@ -48,11 +53,7 @@ def _dot(_call: Call, a: Column, b: Column) -> Column:
 
 def _cross(_call: Call, a: Column, b: Column) -> Column:
     (ax, ay, az), (bx, by, bz) = _parts(a), _parts(b)
-    result = np.empty((max(len(a), len(b)), 3))
-    result[:, 0] = ay * bz - az * by
-    result[:, 1] = az * bx - ax * bz
-    result[:, 2] = ax * by - ay * bx
-    return result
+    return _stacked(ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx)
 
 
 def _distance(_call: Call, a: Column, b: Column) -> Column:
@@ -72,7 +73,7 @@ def _altitude(_call: Call, vector: Column) -> Column:
 def _normalized(_call: Call, vector: Column) -> Column:
     length = _norm(_call, vector)
     # The zero vector has no direction and stays as it is.
-    return np.asarray(vector / np.where(length == 0, 1.0, length)[:, np.newaxis])
+    return np.asarray(vector / np.where(length == 0, 1.0, length)[..., np.newaxis])
 
 
 def _vector_bounds(_payload: Any, *parts: Bounds) -> Bounds:
@@ -232,6 +233,15 @@ def _normalized_solver(terms: Terms, _payload: Any, _vector: Any) -> Any:
     return tuple(within(terms, -1.0, 1.0) for _ in range(3))
 
 
+def _part_of_vector(operands: Sequence[Node], payload: Any) -> Node | None:
+    """A component of a vector that was made of numbers is that number."""
+    (vector,) = operands
+    if vector.operation.name != "vector":
+        return None
+    part = vector.operands[payload]
+    return part if part.kind is Kind.SCALAR else None
+
+
 OPERATIONS = (
     Operation(
         "vector",
@@ -241,6 +251,7 @@ OPERATIONS = (
         bounds=_vector_bounds,
         inverse=_vector_inverse,
         solver=_vector_solver,
+        stacks=True,
     ),
     Operation(
         "component",
@@ -250,6 +261,8 @@ OPERATIONS = (
         bounds=_component_bounds,
         inverse=_component_inverse,
         solver=_component_solver,
+        stacks=True,
+        rewrite=_part_of_vector,
     ),
     Operation(
         "norm",
@@ -259,6 +272,7 @@ OPERATIONS = (
         bounds=_norm_bounds,
         inverse=_norm_inverse,
         solver=_norm_solver,
+        stacks=True,
     ),
     Operation(
         "dot",
@@ -268,6 +282,7 @@ OPERATIONS = (
         bounds=_dot_bounds,
         inverse=_dot_inverse,
         solver=_dot_solver,
+        stacks=True,
     ),
     Operation(
         "cross",
@@ -276,6 +291,7 @@ OPERATIONS = (
         "Vector product of two vectors.",
         bounds=_cross_bounds,
         solver=_cross_solver,
+        stacks=True,
     ),
     Operation(
         "distance",
@@ -285,6 +301,7 @@ OPERATIONS = (
         bounds=_distance_bounds,
         inverse=_distance_inverse,
         solver=_distance_solver,
+        stacks=True,
     ),
     Operation(
         "azimuth",
@@ -293,6 +310,7 @@ OPERATIONS = (
         "Direction of a vector in the horizontal plane: radians from North, anticlockwise, within [-pi, pi].",
         bounds=_azimuth_bounds,
         solver=_azimuth_solver,
+        stacks=True,
     ),
     Operation(
         "altitude",
@@ -301,6 +319,7 @@ OPERATIONS = (
         "Radians by which a vector rises above the horizon.",
         bounds=_altitude_bounds,
         solver=_altitude_solver,
+        stacks=True,
     ),
     Operation(
         "normalized",
@@ -309,5 +328,6 @@ OPERATIONS = (
         "The unit vector of the same direction; zero stays.",
         bounds=_normalized_bounds,
         solver=_normalized_solver,
+        stacks=True,
     ),
 )

@@ -1,6 +1,6 @@
 """Regions that belong to an object: the space it fills, and the sides of its surface."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import Any
 
@@ -139,11 +139,21 @@ def _face_orientation(_call: Call, face: Column, *columns: Column) -> Column:
     return surface.face_orientations(body_of(*columns), face)
 
 
+def _may_have_no_face(operands: Sequence[Any], payload: Any) -> bool:
+    """Whether a side may have no face: a fixed object can be asked."""
+    columns = [operand.payload.column for operand in operands[1:] if operand.is_constant]
+    if len(columns) < len(operands) - 1:
+        return True
+    faces = surface.draw_faces(body_of(*columns), payload.side, payload.threshold, np.full(1, 0.5), 1)
+    return bool((faces < 0).any())
+
+
 _FACE = Operation(
     "surface face",
     always(Kind.INTEGER),
     _face,
     "A face of a side, by area; the candidate is rejected where the side has none.",
+    rejects=_may_have_no_face,
 )
 _FACE_POINT = Operation("face point", always(Kind.VECTOR), _face_point, "A uniform point of a face.")
 _FACE_ORIENTATION = Operation(
@@ -181,6 +191,7 @@ _LANDING_FACE = Operation(
     always(Kind.INTEGER),
     _landing_face,
     "The face of a side where a point lands; the candidate is rejected where it misses.",
+    rejects=True,
 )
 _LANDING_POINT = Operation(
     "landing point", always(Kind.VECTOR), _landing_point, "Where a point lands on a face."

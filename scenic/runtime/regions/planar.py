@@ -63,6 +63,7 @@ _LAND = Operation(
     always(Kind.VECTOR),
     _land,
     "A point of a plane; the candidate is rejected where it lies beside the region.",
+    rejects=True,
 )
 
 

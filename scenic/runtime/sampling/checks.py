@@ -36,24 +36,24 @@ class Verdict:
 class Check(Protocol):
     """One requirement as the engine sees it.
 
-    ``position`` is its place in program order. A ``fallible`` check may raise an error in a lane; checks that come
-    later in the program then have to wait for it, so that which error a program shows does not depend on the order in
-    which checks happen to be made.
+    ``position`` is its place in program order: of several errors in one candidate the first in the program is shown.
+    ``cost`` orders checks before anything is measured; a ``separate`` one is too dear to be made beside others.
     """
 
     label: str
     span: Span | None
     position: int
-    fallible: bool
     probability: float
     cost: float
+    separate: bool
     filename: str | None
 
-    def test(self, batch: Batch) -> Verdict:
-        """Evaluate the check in every lane of the batch."""
-
+    @property
     def nodes(self) -> Sequence[Node]:
         """The nodes whose values it needs."""
+
+    def test(self, batch: Batch) -> Verdict:
+        """Judge every lane of the batch."""
 
     def parts(self, batch: Batch) -> Sequence["Part"]:
         """The requirements that it consists of, each with its own verdict, for reports."""
@@ -82,11 +82,12 @@ class NodeCheck:
     label: str
     span: Span | None
     position: int
-    fallible: bool
     probability: float = 1.0
     cost: float = 1.0
+    separate: bool = False
     filename: str | None = None
 
+    @property
     def nodes(self) -> Sequence[Node]:
         return [self.node]
 
@@ -110,12 +111,13 @@ class DrawingCheck:
     node: Node
     label: str
     span: Span | None
-    fallible: bool
     position: int = DRAWING
     probability: float = 1.0
     cost: float = 2.0
+    separate: bool = False
     filename: str | None = None
 
+    @property
     def nodes(self) -> Sequence[Node]:
         return [self.node]
 
@@ -168,12 +170,13 @@ class CollisionCheck:
     label: str = "collision of objects"
     span: Span | None = None
     position: int = BUILT_IN
-    fallible: bool = False
     probability: float = 1.0
     cost: float = 100.0
+    separate: bool = True
     filename: str | None = None
     _collider: Collider | None = None
 
+    @property
     def nodes(self) -> Sequence[Node]:
         return [node for item in self.objects for node in item.all]
 

@@ -1,37 +1,39 @@
 """The sampling engine: lanes of candidates through the checks, the first that passes becomes the scene.
 
-A lane is an attempt of a scene. Lanes of many scenes run side by side; how many attempts of one scene run ahead follows
-the measured acceptance. What comes out does not depend on any of that: scene ``k`` is its first attempt, in order, that
-passes every check, and each attempt's point of the cube is fixed in advance (`scenic.runtime.sampling.streams`).
+A lane is an attempt at a scene. Lanes of many scenes run side by side; how many attempts at one scene run ahead follows
+the measured cost and acceptance (`scenic.runtime.sampling.pace`), and so does the order of the checks. What comes out does
+not depend on any of that: a scene is its first attempt, in order, that passes every check, and the draws of each attempt
+are fixed in advance by their addresses (`scenic.graph.draws`).
 """
 
-import math
 import time
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import islice
 
 import numpy as np
 from numpy.typing import NDArray
 
 from scenic.graph.batch import Batch
 from scenic.graph.domain import Domain
-from scenic.graph.kinds import Codec, Column
+from scenic.graph.draws import Counter, Source, Words, address, attempt_keys, scene_keys, seed_word
+from scenic.graph.kinds import Codec
 from scenic.graph.node import Graph, Node
+from scenic.graph.schedule import Scheduler
 from scenic.language.errors import RejectionException
-from scenic.runtime.sampling.checks import Check
+from scenic.runtime.sampling.checks import Check, Verdict
+from scenic.runtime.sampling.pace import Pace
 from scenic.runtime.sampling.report import Exhausted, RejectionReport, RejectionRow
-from scenic.runtime.sampling.streams import SOFT, Streams
+from scenic.runtime.sampling.stages import Stages
 
 DEFAULT_LANES = 4096
 REPORT_CANDIDATES = 1000
-FIRST_LANES = 256
-"""Candidates of the first round, before their cost is known."""
 
-CHEAP_ROUND = 0.02
-"""Seconds up to which the length of a round does not matter."""
+BATCH_BYTES = 1 << 27
+"""Lanes are bounded so that the columns of a batch take at most about this much memory."""
 
-ROUND_SECONDS = 2.0
-"""Rounds are cut to about this time, so that limits and interrupts are noticed soon."""
+BODY_BYTES = 400
+"""Memory that the placement of one object takes in one lane."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,21 +45,38 @@ class Plan:
     checks: Sequence[Check]
     outputs: Sequence[Node]
     codec: Codec
+    bodies: int = 0
+    """The number of objects, which bounds memory."""
+
+    @property
+    def lane_bytes(self) -> int:
+        """About how much memory one lane takes."""
+        numbers = sum(
+            int(np.prod(node.kind.trailing, dtype=int)) for node in self.graph.nodes if not node.is_constant
+        )
+        return 8 * numbers + BODY_BYTES * self.bodies
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """Which scene to find: scene ``k`` of a seed."""
+
+    seed: int
+    k: int
 
 
 @dataclass(frozen=True, slots=True)
 class Accepted:
-    """A scene's values: one lane of the columns of the plan's outputs."""
+    """A scene's values: one lane of a finished batch."""
 
-    seed: int
-    k: int
+    task: Task
     attempts: int
-    columns: Mapping[Node, Column]
+    batch: Batch
     lane: int
 
 
 class CandidateError(Exception):
-    """An error in an attempt that no earlier requirement rejects.
+    """An error in an attempt that no requirement rejects.
 
     ``check`` is where it came up and ``__cause__`` the error that the program's own values raised.
     """
@@ -70,256 +89,220 @@ class CandidateError(Exception):
 
 
 @dataclass(slots=True)
-class _Measured:
-    """Running cost (seconds a lane) and pass rate of a check, to order the checks by."""
-
-    lanes: float = 0.0
-    seconds: float = 0.0
-    passed: float = 0.0
-
-    def add(self, lanes: int, seconds: float, passed: int) -> None:
-        # Old measurements fade, since costs change with what other checks have already computed.
-        self.lanes = 0.8 * self.lanes + lanes
-        self.seconds = 0.8 * self.seconds + seconds
-        self.passed = 0.8 * self.passed + passed
-
-
-@dataclass(slots=True)
 class _Pending:
     """A scene under way: how many of its attempts have been made, and which soft requirements hold for it."""
 
-    k: int
+    number: int
+    task: Task
+    key: np.uint64
     attempts: int = 0
     inactive: NDArray[np.bool_] | None = None
 
 
-@dataclass(slots=True)
 class Engine:
-    """Samples scenes of a plan.
+    """Samples scenes of a plan. It is kept as long as its plan: it knows what rounds and checks cost.
 
     Args:
         plan: what to sample.
-        seed: seed of the scenes.
-        lanes: candidates in one batch; changes speed and memory, never the scenes.
 
     """
 
-    plan: Plan
-    seed: int
-    lanes: int = DEFAULT_LANES
-    candidates: int = 0
-    accepted: int = 0
-    _seconds: float = 0.0  # a candidate, in the last round
-    _streams: Streams = field(init=False)
-    _measured: list[_Measured] = field(init=False)
-    _soft: list[int] = field(init=False)
-
-    def __post_init__(self) -> None:
-        self._streams = Streams(self.seed)
-        self._measured = [_Measured() for _ in self.plan.checks]
-        self._soft = [index for index, check in enumerate(self.plan.checks) if check.probability < 1]
+    def __init__(self, plan: Plan) -> None:
+        self.plan = plan
+        self.candidates = 0
+        """Candidates tried so far."""
+        self.passed = 0
+        """Candidates that met every requirement."""
+        self._pace = Pace(max(64, min(DEFAULT_LANES, BATCH_BYTES // max(1, plan.lane_bytes))))
+        self._scheduler = Scheduler(plan.graph)
+        self._single = Scheduler(plan.graph, grouped=False)
+        self._stages = Stages(plan.checks, self._scheduler)
+        self._soft = [index for index, check in enumerate(plan.checks) if check.probability < 1]
+        self._chances = np.array([plan.checks[index].probability for index in self._soft])
+        self._soft_addresses = np.array(
+            [address("soft requirement", place) for place in range(len(self._soft))], dtype=np.uint64
+        )
 
     def scenes(
-        self, first: int, count: int, *, max_attempts: int, deadline: float | None = None
+        self,
+        tasks: Iterable[Task],
+        *,
+        max_attempts: int,
+        lanes: int | None = None,
+        deadline: float | None = None,
     ) -> Iterator[Accepted | Exhausted]:
-        """Scenes ``first`` to ``first + count``, in order.
+        """The scenes of ``tasks``, in order.
 
-        ``deadline`` is a time of `time.monotonic` after which the scenes not yet found are given up. Raises
-        `CandidateError`.
+        Args:
+            tasks: which scenes.
+            max_attempts: candidates tried for one scene before it is given up.
+            lanes: candidates in one batch at most; changes speed and memory, never the scenes.
+            deadline: a time of `time.monotonic` after which the scenes not yet found are given up.
+
+        Raises:
+            CandidateError: a candidate failed that nothing rejects.
+
         """
-        waiting = iter(range(first, first + count))
+        waiting = enumerate(tasks)
         pending: list[_Pending] = []
         done: dict[int, Accepted | Exhausted | CandidateError] = {}
-        upcoming = first
-        left = count
-        while left:
-            width = min(left, self._scenes_at_once())
-            while len(pending) < width:
-                k = next(waiting, None)
-                if k is None:
-                    break
-                pending.append(self._start(k))
+        upcoming = 0
+        most = self._pace.most if lanes is None else lanes
+        while True:
+            if len(pending) < most:
+                pending += self._start(list(islice(waiting, most - len(pending))))
+            if not pending:
+                return
             if deadline is not None and time.monotonic() > deadline:
-                for scene in [*pending, *(_Pending(k) for k in waiting)]:
-                    done[scene.k] = self._give_up(scene, "time")
+                for scene in pending:
+                    done[scene.number] = self._give_up(scene, "time")
                 pending = []
             else:
-                found = self._round(pending[:width], max_attempts)
-                for scene in pending[:width]:
-                    if scene.k in found:
-                        done[scene.k] = found[scene.k]
-                    elif scene.attempts >= max_attempts:
-                        done[scene.k] = self._give_up(scene, "attempts")
-                pending = [scene for scene in pending if scene.k not in done]
+                self._round(pending, done, max_attempts, most)
+                pending = [scene for scene in pending if scene.number not in done]
             while upcoming in done:
                 result = done.pop(upcoming)
                 if isinstance(result, CandidateError):
                     raise result
                 yield result
                 upcoming += 1
-                left -= 1
 
     # One round
 
-    def _acceptance(self) -> float:
-        """Estimated probability that a candidate is accepted; falls while none is."""
-        return (self.accepted + 0.5) / (self.candidates + 1)
-
-    def _scenes_at_once(self) -> int:
-        ahead = max(1, math.ceil(0.2 / self._acceptance()))
-        return max(1, self._width() // ahead)
-
-    def _attempts_each(self, scenes: int) -> int:
-        # What runs past the first success is wasted, and a round has a cost of its own: cheap candidates run far
-        # enough ahead to be likely to find each scene at once, dear ones only as far as the round's cost is worth.
-        expected = 1 / self._acceptance()
-        affordable = 0.0 if self._seconds == 0 else CHEAP_ROUND / (self._seconds * scenes)
-        ahead = min(3 * expected, max(0.5 * expected, affordable))
-        return max(1, min(self._width() // scenes, math.ceil(ahead)))
-
-    def _width(self) -> int:
-        """Lanes of a round: fewer than allowed only where candidates are slow to evaluate."""
-        if self._seconds == 0:
-            return min(self.lanes, FIRST_LANES)
-        return max(1, min(self.lanes, int(ROUND_SECONDS / self._seconds)))
-
-    def _round(self, pending: Sequence[_Pending], max_attempts: int) -> dict[int, Accepted | CandidateError]:
+    def _round(
+        self,
+        pending: Sequence[_Pending],
+        done: dict[int, Accepted | Exhausted | CandidateError],
+        max_attempts: int,
+        most: int,
+    ) -> None:
         begun = time.perf_counter()
-        each = self._attempts_each(len(pending))
-        counts = [min(each, max_attempts - scene.attempts) for scene in pending]
-        owner = np.repeat(np.arange(len(pending)), counts)
-        scenes = np.array([scene.k for scene in pending], dtype=np.int64)[owner]
-        starts = np.array([scene.attempts for scene in pending], dtype=np.int64)
-        firsts = np.concatenate([[0], np.cumsum(counts)[:-1]]).astype(np.int64)
+        chosen = self._pace.choose(min(len(pending), most), most)
+        active = pending[: chosen.scenes]
+        counts = [min(chosen.ahead, max_attempts - scene.attempts) for scene in active]
+        owner = np.repeat(np.arange(len(active)), counts)
+        firsts = np.cumsum([0, *counts[:-1]])
+        starts = np.array([scene.attempts for scene in active], dtype=np.int64)
         attempts = starts[owner] + np.arange(len(owner)) - firsts[owner]
-        batch = self._batch(scenes, attempts)
-        inactive = self._inactive(pending, owner)
-        failures = self._survivors(batch, inactive)
-        for scene, made in zip(pending, counts, strict=True):
+        keys = np.array([scene.key for scene in active], dtype=np.uint64)
+        batch = self._batch(Counter(attempt_keys(keys[owner], attempts)))
+        inactive = None
+        if self._soft:
+            inactive = np.array([scene.inactive for scene in active], dtype=np.bool_)[owner]
+        failures = self._judge(batch, inactive)
+        for scene, made in zip(active, counts, strict=True):
             scene.attempts += made
-        self.candidates += len(owner)
-        self._seconds = (time.perf_counter() - begun) / len(owner)
         rows = batch.rows
-        _, positions = np.unique(owner[rows], return_index=True)
-        failed = failures[rows[positions]]
-        self.accepted += int((failed < 0).sum())
-        found: dict[int, Accepted | CandidateError] = {}
-        for row in rows[positions[failed >= 0]].tolist():
-            check = self.plan.checks[int(failures[row])]
-            found[int(scenes[row])] = self._error(check, int(scenes[row]), int(attempts[row]))
-        good = positions[failed < 0]
+        _, first = np.unique(owner[rows], return_index=True)
+        failed = failures[rows]
+        self.candidates += len(owner)
+        passed = int((failed < 0).sum())
+        self.passed += passed
+        for place in first[failed[first] >= 0].tolist():
+            row = int(rows[place])
+            scene, check = active[int(owner[row])], self.plan.checks[int(failures[row])]
+            done[scene.number] = self._error(check, scene, int(attempts[row]))
+        good = first[failed[first] < 0]
         if len(good):
             batch.keep(good)
-            columns = {node: batch.column(node) for node in self.plan.outputs}
+            batch.settle(self.plan.outputs)
             for lane, row in enumerate(rows[good].tolist()):
-                k = int(scenes[row])
-                found[k] = Accepted(self.seed, k, int(attempts[row]) + 1, columns, lane)
-        return found
+                scene = active[int(owner[row])]
+                done[scene.number] = Accepted(scene.task, int(attempts[row]) + 1, batch, lane)
+        for scene in active:
+            if scene.number not in done and scene.attempts >= max_attempts:
+                done[scene.number] = self._give_up(scene, "attempts")
+        self._pace.add(len(owner), passed, time.perf_counter() - begun)
 
-    def _batch(self, scenes: NDArray[np.int64], attempts: NDArray[np.int64]) -> Batch:
-        rows = self._streams.matrix(scenes, attempts, self.plan.domain.width)
+    def _batch(self, source: Source, *, grouped: bool = True) -> Batch:
         return Batch(
-            self.plan.graph, self.plan.domain.place(rows), self.plan.codec, rejections=(RejectionException,)
+            self._scheduler if grouped else self._single,
+            source,
+            self.plan.codec,
+            domain=self.plan.domain,
+            rejections=(RejectionException,),
         )
 
-    def _survivors(self, batch: Batch, inactive: NDArray[np.bool_] | None) -> NDArray[np.intp]:
-        """Run the checks, leaving in the batch the lanes that pass; returns for each first lane the check at which it
-        fails with an error (-1 for none).
+    def _judge(self, batch: Batch, inactive: NDArray[np.bool_] | None) -> NDArray[np.intp]:
+        """Run the checks, leaving in the batch the lanes that none rejects.
+
+        Returns for each first lane the check, first in the program, at which it fails with an error (-1 for none).
         """
         checks = self.plan.checks
         failures = np.full(len(batch), -1, dtype=np.intp)
         failed_at = np.full(len(batch), np.iinfo(np.int64).max, dtype=np.int64)
-        for index in self._order():
+        for stage in self._stages.order(len(batch)):
             if len(batch) == 0:
                 break
-            check = checks[index]
             begun = time.perf_counter()
-            verdict = check.test(batch)
-            passes = verdict.holds
+            batch.need(stage.nodes)
+            shared = (time.perf_counter() - begun) / len(stage.checks)
             rows = batch.rows
-            if inactive is not None and check.probability < 1:
-                passes = passes | inactive[rows, self._soft.index(index)]
-            if verdict.failed is not None:
-                bad = verdict.failed
+            alive = np.ones(len(rows), dtype=np.bool_)
+            for index in stage.checks:
+                check = checks[index]
+                begun = time.perf_counter()
+                verdict = check.test(batch)
                 if inactive is not None and check.probability < 1:
-                    bad = bad & ~inactive[rows, self._soft.index(index)]
-                first = bad & (check.position < failed_at[rows])
-                failures[rows[first]] = index
-                failed_at[rows[first]] = check.position
-                passes = passes | bad
-            # A lane that failed at an earlier place of the program is past rejecting.
-            passes = passes | (failed_at[rows] < check.position)
-            lanes = len(batch)
-            batch.keep(passes)
-            self._measured[index].add(lanes, time.perf_counter() - begun, len(batch))
+                    verdict = _unless(verdict, inactive[rows, self._soft.index(index)])
+                passes = verdict.holds
+                if verdict.failed is not None:
+                    passes = passes | verdict.failed
+                    earlier = verdict.failed & (check.position < failed_at[rows])
+                    failures[rows[earlier]] = index
+                    failed_at[rows[earlier]] = check.position
+                seconds = shared + time.perf_counter() - begun
+                self._stages.measure(index, len(rows), seconds, int(np.count_nonzero(passes)))
+                alive &= passes
+            if not alive.all():
+                batch.keep(alive)
         return failures
 
-    def _order(self) -> list[int]:
-        """The checks by cost for what they reject, fallible ones before all that follow them in the program."""
-        checks = self.plan.checks
+    # Scenes, errors, reports
 
-        def price(index: int) -> float:
-            measured = self._measured[index]
-            if measured.lanes < 64:
-                return checks[index].cost * 1e-7 / 0.5
-            rejected = 1 - measured.passed / measured.lanes
-            return measured.seconds / measured.lanes / max(rejected, 1e-4)
+    def _start(self, tasks: Sequence[tuple[int, Task]]) -> list[_Pending]:
+        words = {seed: seed_word(seed) for seed in {task.seed for _, task in tasks}}
+        seeds = np.array([words[task.seed] for _, task in tasks], dtype=np.uint64)
+        keys = scene_keys(seeds, np.array([task.k for _, task in tasks], dtype=np.int64))
+        scenes = [_Pending(number, task, key) for (number, task), key in zip(tasks, keys, strict=True)]
+        if self._soft and scenes:
+            inactive = Counter(keys).uniforms(self._soft_addresses) >= self._chances[:, np.newaxis]
+            for lane, scene in enumerate(scenes):
+                scene.inactive = inactive[:, lane]
+        return scenes
 
-        waiting = sorted(range(len(checks)), key=lambda index: (price(index), index))
-        barriers = sorted(
-            (index for index in waiting if checks[index].fallible), key=lambda i: checks[i].position
-        )
-        if not barriers:
-            return waiting
-        order: list[int] = []
-        for barrier in barriers:
-            for index in waiting:
-                before = checks[index].position <= checks[barrier].position
-                if before and index not in order and index != barrier:
-                    order.append(index)
-            if barrier not in order:
-                order.append(barrier)
-        return order + [index for index in waiting if index not in order]
+    def source(self, task: Task, attempt: int) -> Counter:
+        """The random numbers of one attempt at a scene."""
+        return Counter.of(task.seed, task.k, attempt)
 
-    # Soft requirements, errors, reports
-
-    def _start(self, k: int) -> _Pending:
-        if not self._soft:
-            return _Pending(k)
-        draws = self._streams.rows(k, SOFT, 0, 1, len(self._soft))[0]
-        chances = np.array([self.plan.checks[index].probability for index in self._soft])
-        return _Pending(k, inactive=draws >= chances)
-
-    def _inactive(self, pending: Sequence[_Pending], owner: NDArray[np.intp]) -> NDArray[np.bool_] | None:
-        if not self._soft:
-            return None
-        return np.array([scene.inactive for scene in pending], dtype=np.bool_)[owner]
-
-    def _error(self, check: Check, k: int, attempt: int) -> CandidateError:
+    def _error(self, check: Check, scene: _Pending, attempt: int) -> CandidateError:
         """The error of a lane, found by evaluating it alone."""
-        batch = self._batch(np.array([k]), np.array([attempt]))
+        batch = self._batch(self.source(scene.task, attempt), grouped=False)
         check.test(batch)
-        error = CandidateError(check, k, attempt)
-        error.__cause__ = next((batch.errors[node] for node in check.nodes() if node in batch.errors), None)
+        error = CandidateError(check, scene.task.k, attempt)
+        error.__cause__ = next((batch.errors[node] for node in check.nodes if node in batch.errors), None)
         return error
 
     def _give_up(self, scene: _Pending, reason: str) -> Exhausted:
-        return Exhausted(self.seed, scene.k, scene.attempts, reason, self.report(scene.k, scene.attempts))
+        report = self.report(scene.task, scene.attempts)
+        return Exhausted(scene.task.seed, scene.task.k, scene.attempts, reason, report)
 
-    def report(self, k: int, attempts: int) -> RejectionReport:
-        """Each check's share in the rejections among the first attempts of a scene.
+    def report(self, task: Task, attempts: int) -> RejectionReport:
+        """Each check's share in the rejections among the first attempts at a scene.
 
         Every check is evaluated on every candidate, so the figures are facts of the program and not of the order in
         which the engine happens to make the checks.
         """
         count = max(1, min(attempts, REPORT_CANDIDATES))
+        key: Words = scene_keys(np.array([seed_word(task.seed)]), np.array([task.k], dtype=np.int64))
+        size = self._pace.most
         batches = [
             [
                 part
                 for check in self.plan.checks
-                for part in check.parts(self._batch(np.full(len(numbers), k), numbers))
+                for part in check.parts(self._batch(Counter(attempt_keys(key, numbers))))
             ]
-            for numbers in np.split(np.arange(count), range(self.lanes, count, self.lanes))
+            for numbers in np.split(np.arange(count, dtype=np.int64), range(size, count, size))
         ]
         rejected = np.array(
             [~np.concatenate([part.holds for part in parts]) for parts in zip(*batches, strict=True)]
@@ -330,3 +313,9 @@ class Engine:
             for part, mine, only in zip(batches[0], rejected, alone, strict=True)
         ]
         return RejectionReport(count, tuple(row for row in rows if row.rejected > 0))
+
+
+def _unless(verdict: Verdict, inactive: NDArray[np.bool_]) -> Verdict:
+    """The verdict of a soft requirement, which says nothing in lanes where it is not active."""
+    failed = None if verdict.failed is None else verdict.failed & ~inactive
+    return Verdict(verdict.holds | inactive, failed)

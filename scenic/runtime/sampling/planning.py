@@ -6,12 +6,11 @@ from types import MappingProxyType
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from scenic.graph.batch import Batch
 from scenic.graph.bounding import overall
 from scenic.graph.domain import Domain
 from scenic.graph.node import Graph, Node
-from scenic.graph.operations import TABLE
 from scenic.language.errors import InvalidScenarioError, UnsupportedError
 from scenic.language.spans import Span
 from scenic.runtime.conditions import connect, truth
@@ -29,7 +28,7 @@ from scenic.runtime.sampling.checks import (
     ObjectNodes,
 )
 from scenic.runtime.sampling.engine import Plan
-from scenic.runtime.values import CODEC, Random, as_node, is_random, operate
+from scenic.runtime.values import CODEC, Random, as_node, fixed_batch, is_random, operate
 from scenic.runtime.visibility import sees_in_plane
 
 
@@ -42,11 +41,13 @@ class Outline:
     outputs: tuple[Node, ...]
     requirements: tuple[Requirement, ...]
     """The hard requirements of the program that are nodes, for analysis."""
+    bodies: int
+    """The number of objects."""
 
     def plan(self, domain: Domain | None = None) -> Plan:
         """The plan on a part of the cube (the whole of it by default)."""
         part = Domain.whole(self.graph.dimension) if domain is None else domain
-        return Plan(self.graph, part, self.checks, self.outputs, CODEC)
+        return Plan(self.graph, part, self.checks, self.outputs, CODEC, self.bodies)
 
 
 def outline(program: Program, ego: Object | None, workspace: Workspace, *, mode_2d: bool) -> Outline:
@@ -62,10 +63,10 @@ def outline(program: Program, ego: Object | None, workspace: Workspace, *, mode_
         checks += _visibility(program, ego)
     checks += _collisions(program)
     checks += _requirements(program)
-    nodes = [node for check in checks for node in check.nodes()]
+    nodes = [node for check in checks for node in check.nodes]
     graph = Graph([*outputs, *nodes])
     hard = tuple(item for item in program.requirements if item.probability == 1)
-    return Outline(graph, tuple(checks), tuple(outputs), hard)
+    return Outline(graph, tuple(checks), tuple(outputs), hard, len(program.objects))
 
 
 def _drawing(outputs: Sequence[Node]) -> list[Check]:
@@ -82,25 +83,36 @@ def _drawing(outputs: Sequence[Node]) -> list[Check]:
             continue
         seen.add(node)
         if not node.operation.strict:
-            if any(_may_fail(operand) for operand in node.operands):
+            if any(_may_mark(below) for operand in node.operands for below in Graph([operand]).nodes):
                 sources[node] = None
             continue
-        if node.operation.name in _REJECTING or _raises(node):
+        if _may_mark(node):
             sources[node] = None
         stack.extend(reversed(node.operands))
-    return [
-        DrawingCheck(node, _REJECTING.get(node.operation.name, "value"), _span(node), is_fallible(node))
-        for node in sources
-        if not _always_lands(node)
-    ]
+    return [DrawingCheck(node, _MISSING.get(node.operation.name, "value"), _span(node)) for node in sources]
 
 
-def _always_lands(node: Node) -> bool:
-    """Whether a node that draws a face of a fixed object is sure to find one."""
-    if node.operation.name != "surface face" or not all(item.is_constant for item in node.operands[1:]):
+def _may_mark(node: Node) -> bool:
+    """Whether a lane may fail at a node, or have no value there."""
+    if node.is_constant or node.is_drawn:
         return False
-    batch = Batch(Graph([node]), np.full((1, 1), 0.5), CODEC)
-    return batch.status(node) is None
+    operation = node.operation
+    return operation.may_fault(node.operands, node.payload, node.kind) or operation.may_reject(
+        node.operands, node.payload, node.kind
+    )
+
+
+_MISSING = MappingProxyType(
+    {
+        "discrete range": "whole number in the range",
+        "surface face": "surface to stand on",
+        "landing face": "place to land on, for `on`",
+        "plane projection": "place to land on, for `on`",
+        "field heading": "direction of the field",
+        "follow polygons": "direction of the field",
+    }
+)
+"""What is missing where an operation has no value."""
 
 
 def _span(node: Node) -> Span | None:
@@ -123,7 +135,7 @@ def _sizes(program: Program) -> list[Check]:
                 if bounds is not None and bounds.lower[0] == 1:
                     continue
                 span, _ = _place(program, item)
-                checks.append(NodeCheck(node, f"positive {name}", span, BUILT_IN, is_fallible(node)))
+                checks.append(NodeCheck(node, f"positive {name}", span, BUILT_IN))
     return checks
 
 
@@ -160,7 +172,7 @@ def _required(
     """The check of a built-in requirement: none where it always holds; an error, ``never``, where it never does."""
     span, filename = place
     if not node.is_constant:
-        return [NodeCheck(node, label, span, BUILT_IN, False, cost=20, filename=filename)]
+        return [NodeCheck(node, label, span, BUILT_IN, cost=20, separate=True, filename=filename)]
     if not node.value:
         raise InvalidScenarioError(never, span=span, filename=filename, help=help)
     return []
@@ -195,22 +207,23 @@ def _visibility(program: Program, ego: Object | None) -> list[Check]:
 
 
 def _collisions(program: Program) -> list[Check]:
+    """One check of all pairs that may collide; pairs of fixed objects are settled here."""
     objects = program.objects
     nodes = [_object_nodes(program, item) for item in objects]
-    fixed = [all(node.is_constant for node in item.all[:4]) for item in nodes]
-    pairs = []
-    for second in range(len(objects)):
-        for first in range(second):
-            allowed = (nodes[first].allow_collisions, nodes[second].allow_collisions)
-            if any(node.is_constant and node.value for node in allowed):
-                continue
-            if fixed[first] and fixed[second] and all(node.is_constant for node in allowed):
-                _check_fixed_pair(program, objects, nodes, first, second)
-            else:
-                pairs.append((first, second))
-    if not pairs:
+    never = np.array([_is_true(item.allow_collisions) for item in nodes], dtype=np.bool_)
+    fixed = np.array([all(node.is_constant for node in item.all) for item in nodes], dtype=np.bool_)
+    first, second = np.triu_indices(len(objects), 1)
+    wanted = ~(never[first] | never[second])
+    settled = fixed[first] & fixed[second]
+    _check_fixed(program, nodes, np.stack([first, second], axis=1)[wanted & settled])
+    pairs = np.stack([first, second], axis=1)[wanted & ~settled]
+    if not len(pairs):
         return []
-    return [CollisionCheck(nodes, np.array(pairs, dtype=np.intp))]
+    return [CollisionCheck(nodes, pairs)]
+
+
+def _is_true(node: Node) -> bool:
+    return node.is_constant and bool(node.value)
 
 
 def _object_nodes(program: Program, item: Object) -> ObjectNodes:
@@ -221,22 +234,32 @@ def _object_nodes(program: Program, item: Object) -> ObjectNodes:
     return ObjectNodes(position, orientation, size, shape, allowed, label, span)
 
 
-def _check_fixed_pair(
-    program: Program, objects: Sequence[Object], nodes: Sequence[ObjectNodes], first: int, second: int
-) -> None:
-    roots = [node for item in (nodes[first], nodes[second]) for node in item.all]
-    batch = Batch(Graph(roots), np.empty((1, 0)), CODEC)
-    bodies = [nodes[first].body(batch), nodes[second].body(batch)]
-    if not collide(bodies, np.array([[0, 1]]), lanes=1).free[0]:
-        span, filename = _place(program, objects[second])
-        other, _ = _place(program, objects[first])
-        where = f" on line {other.line}" if other is not None else ""
-        raise InvalidScenarioError(
-            f"this {_name(objects[second])} always collides with the {_name(objects[first])}{where}",
-            span=span,
-            filename=filename,
-            help="move one of the two, or write `with allowCollisions True`",
-        )
+def _check_fixed(program: Program, nodes: Sequence[ObjectNodes], pairs: NDArray[np.intp]) -> None:
+    """Refuse a program in which two fixed objects collide."""
+    if not len(pairs):
+        return
+    members = np.unique(pairs)
+    chosen = [nodes[member] for member in members.tolist()]
+    batch = fixed_batch(node for item in chosen for node in item.all)
+    bodies = [item.body(batch) for item in chosen]
+    numbered = np.searchsorted(members, pairs)
+    if collide(bodies, numbered, lanes=1).free[0]:
+        return
+    found = collide(bodies, numbered, lanes=1, exhaustive=True).pairs
+    assert found is not None
+    bad = pairs[found[0]]
+    # The first in the program: of the earliest second object, the earliest first one.
+    first, second = bad[np.lexsort((bad[:, 0], bad[:, 1]))[0]].tolist()
+    one, other = program.objects[first], program.objects[second]
+    span, filename = _place(program, other)
+    place, _ = _place(program, one)
+    where = f" on line {place.line}" if place is not None else ""
+    raise InvalidScenarioError(
+        f"this {_name(other)} always collides with the {_name(one)}{where}",
+        span=span,
+        filename=filename,
+        help="move one of the two, or write `with allowCollisions True`",
+    )
 
 
 def _requirements(program: Program) -> list[Check]:
@@ -251,7 +274,6 @@ def _requirements(program: Program) -> list[Check]:
                 item.label,
                 item.span,
                 position,
-                is_fallible(node),
                 item.probability,
                 cost=2,
                 filename=item.filename,
@@ -262,61 +284,3 @@ def _requirements(program: Program) -> list[Check]:
 
 def _name(item: Any) -> str:
     return type(item).__name__
-
-
-# Which nodes can fail
-
-_REJECTING = MappingProxyType(
-    {
-        "discrete range": "whole number in the range",
-        "surface face": "surface to stand on",
-        "landing face": "place to land on, for `on`",
-        "plane projection": "place to land on, for `on`",
-        "field heading": "direction of the field",
-        "follow polygons": "direction of the field",
-    }
-)
-"""Operations that may have no value in some lane: what is missing there."""
-
-_FALLIBLE = frozenset(
-    {
-        "divide",
-        "floor divide",
-        "modulo",
-        "divmod",
-        "power",
-        "int",
-        "float",
-        "len",
-        "getitem",
-        "missing attribute",
-        "opaque call",
-        "field value",
-        "follow field",
-    }
-)
-_DIVISIONS = frozenset({"divide", "floor divide", "modulo", "divmod"})
-
-
-def is_fallible(root: Node) -> bool:
-    """Whether evaluating a node may raise an error in some lane."""
-    return any(_raises(node) for node in Graph([root]).nodes)
-
-
-def _may_fail(root: Node) -> bool:
-    """Whether a node may raise an error in some lane, or have no value there."""
-    return any(node.operation.name in _REJECTING or _raises(node) for node in Graph([root]).nodes)
-
-
-def _raises(node: Node) -> bool:
-    operation = node.operation
-    if node.is_constant or node.is_axis or operation is TABLE["select"]:
-        return False
-    if operation.name in _DIVISIONS and operation is TABLE.get(operation.name):
-        divisor = node.operands[1]
-        if divisor.is_constant and divisor.kind.is_number and divisor.value != 0:
-            return False
-    by_lane = operation.python is not None and (
-        node.kind.is_boxed or any(operand.kind.is_boxed for operand in node.operands)
-    )
-    return operation.name in _FALLIBLE or operation.name == "opaque condition" or by_lane

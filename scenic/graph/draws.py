@@ -1,0 +1,182 @@
+"""Where the random numbers of a scenario come from: every draw has an address.
+
+An axis of the unit cube is named by its *address*, a 64-bit word made of the place in the program that draws and of how
+often that place has drawn before (`address`). A `Source` says which number each address has in each lane. The usual one
+hashes: the number is a function of a lane's key and of the address alone, and the key is one of (seed, scene, attempt).
+So no draw depends on which others there are, in which order they are asked for, in which batch, or by which worker.
+"""
+
+import hashlib
+from collections.abc import Mapping
+from typing import Any, Final, Protocol, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+Words = NDArray[np.uint64]
+Floats = NDArray[np.float64]
+
+_GOLDEN: Final = np.uint64(0x9E3779B97F4A7C15)
+_FIRST: Final = np.uint64(0xBF58476D1CE4E5B9)
+_SECOND: Final = np.uint64(0x94D049BB133111EB)
+_SHIFTS: Final = (np.uint64(30), np.uint64(27), np.uint64(31))
+_UNUSED_BITS: Final = np.uint64(12)
+
+
+def mix(words: Words) -> Words:
+    """Scramble 64-bit words (the finaliser of SplitMix64: Steele, Lea and Flood, OOPSLA 2014)."""
+    with np.errstate(over="ignore"):
+        result = words + _GOLDEN
+        result ^= result >> _SHIFTS[0]
+        result *= _FIRST
+        result ^= result >> _SHIFTS[1]
+        result *= _SECOND
+        result ^= result >> _SHIFTS[2]
+    return result
+
+
+def address(*parts: object) -> int:
+    """The 64-bit address of a draw from what names it: a place in the program, an occurrence, an agent."""
+    digest = hashlib.blake2b(repr(parts).encode("utf-8", "backslashreplace"), digest_size=8).digest()
+    return int.from_bytes(digest, "little")
+
+
+BOX: Final = address("box of the domain")
+"""Which box of a domain of several is drawn from."""
+
+
+def seed_word(seed: int) -> np.uint64:
+    """The 64-bit word that stands for a seed, which may be any integer."""
+    return np.uint64(address("seed", int(seed)))
+
+
+def scene_keys(seeds: Words, scenes: NDArray[np.int64]) -> Words:
+    """The keys ``(n,)`` of scenes: scene ``scenes[i]`` of the seed with the word ``seeds[i]``."""
+    return mix(mix(seeds) + scenes.astype(np.uint64))
+
+
+def attempt_keys(scene_keys: Words, attempts: NDArray[np.int64]) -> Words:
+    """The keys ``(n,)`` of attempts at scenes."""
+    return mix(scene_keys ^ mix(attempts.astype(np.uint64)))
+
+
+def words_of(keys: Words, addresses: Words) -> Words:
+    """The random word of each address in each lane, ``(addresses, lanes)``."""
+    with np.errstate(over="ignore"):
+        return mix(keys + addresses[:, np.newaxis])
+
+
+def open_unit(words: Words) -> Floats:
+    """Words as numbers of the open interval (0, 1).
+
+    52 bits and a half: never 0 or 1, which have no image under an unbounded law (53 bits and a half round to 1).
+    """
+    bits: Floats = (words >> _UNUSED_BITS).astype(np.float64)
+    bits += 0.5
+    bits *= 2.0**-52
+    return bits
+
+
+class Source(Protocol):
+    """The random numbers of a number of lanes, by address."""
+
+    def __len__(self) -> int:
+        """The number of lanes."""
+
+    def take(self, lanes: NDArray[np.intp]) -> "Source":
+        """The source of some of the lanes."""
+
+    def uniforms(self, addresses: Words) -> Floats:
+        """Numbers of the open unit interval, ``(addresses, lanes)``."""
+
+    def words(self, addresses: Words) -> Words:
+        """Words that key further draws (of nodes that retry, of opaque calls), ``(addresses, lanes)``."""
+
+
+class Counter:
+    """The source that hashes: lane ``i`` has the key ``keys[i]``."""
+
+    __slots__ = ("keys",)
+
+    def __init__(self, keys: Words) -> None:
+        self.keys = keys
+
+    @classmethod
+    def of(cls, seed: int, scene: int, attempt: int) -> Self:
+        """The source of one attempt at a scene, as one lane."""
+        keys = scene_keys(np.array([seed_word(seed)]), np.array([scene], dtype=np.int64))
+        return cls(attempt_keys(keys, np.array([attempt], dtype=np.int64)))
+
+    def __len__(self) -> int:
+        return len(self.keys)
+
+    def take(self, lanes: NDArray[np.intp]) -> "Counter":
+        return Counter(self.keys[lanes])
+
+    def uniforms(self, addresses: Words) -> Floats:
+        return open_unit(words_of(self.keys, addresses))
+
+    def words(self, addresses: Words) -> Words:
+        return words_of(self.keys, addresses)
+
+
+class Points:
+    """The source of given points of the cube: the numbers of some addresses, the rest from another source.
+
+    Args:
+        values: numbers ``(n,)`` of the open unit interval by address.
+        rest: where the numbers of all other addresses, and all words, come from.
+
+    """
+
+    def __init__(self, values: Mapping[int, Floats], rest: Source) -> None:
+        self._values = values
+        self._rest = rest
+
+    def __len__(self) -> int:
+        return len(self._rest)
+
+    def take(self, lanes: NDArray[np.intp]) -> "Points":
+        return Points({name: column[lanes] for name, column in self._values.items()}, self._rest.take(lanes))
+
+    def uniforms(self, addresses: Words) -> Floats:
+        result = self._rest.uniforms(addresses)
+        for row, name in enumerate(addresses.tolist()):
+            if name in self._values:
+                result[row] = self._values[name]
+        return result
+
+    def words(self, addresses: Words) -> Words:
+        return self._rest.words(addresses)
+
+
+class Recorded:
+    """A source that remembers what it was asked for, to keep a scene as data.
+
+    Args:
+        source: where the numbers come from.
+
+    """
+
+    def __init__(self, source: Source) -> None:
+        self._source = source
+        self.numbers: dict[int, Any] = {}
+        """The numbers drawn, by address: columns ``(n,)``."""
+        self.keys: dict[int, Any] = {}
+        """The words drawn, by address."""
+
+    def __len__(self) -> int:
+        return len(self._source)
+
+    def take(self, lanes: NDArray[np.intp]) -> "Recorded":
+        return Recorded(self._source.take(lanes))
+
+    def uniforms(self, addresses: Words) -> Floats:
+        result = self._source.uniforms(addresses)
+        self.numbers.update(zip(addresses.tolist(), result, strict=True))
+        return result
+
+    def words(self, addresses: Words) -> Words:
+        result = self._source.words(addresses)
+        self.keys.update(zip(addresses.tolist(), result, strict=True))
+        return result

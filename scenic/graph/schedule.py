@@ -1,0 +1,290 @@
+"""In which order, and in which groups, nodes are evaluated.
+
+Interpreting a node costs microseconds whatever the number of lanes; a scene of a hundred objects has thousands of nodes,
+most of them alike. So nodes of one *signature* (operation, payload, kinds) that do not need each other are evaluated in one
+call over members x lanes. Operations that stack are elementwise, so that the results are bitwise those of single calls.
+
+A `Scheduler` is kept as long as its graph: what has to be evaluated to get some nodes, when others are there already, is
+worked out once.
+"""
+
+from collections.abc import Hashable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any, Final
+
+import numpy as np
+
+from scenic.graph.draws import Words
+from scenic.graph.kinds import Column, Kind
+from scenic.graph.node import Graph, Node
+from scenic.graph.operation import Operation
+
+Slot = int
+"""Where a batch keeps the columns of a group."""
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Where the column of a node is: which group, which member."""
+
+    slot: Slot
+    member: int
+
+
+@dataclass(frozen=True, slots=True)
+class Fixed:
+    """An operand that is the same in all lanes: a column with leading dimensions (members or 1, 1)."""
+
+    column: Column
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """An operand whose columns are members of one group at equal distances."""
+
+    slot: Slot
+    members: slice
+
+
+@dataclass(frozen=True, slots=True)
+class Gathered:
+    """An operand whose columns stand in several places, or that is fixed for some members only."""
+
+    parts: tuple[Place | Column, ...]
+
+
+Gather = Fixed | Run | Gathered
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """One call: an operation over the members of a group, each with its operands."""
+
+    slot: Slot
+    operation: Operation
+    payload: Any
+    kind: Kind
+    kinds: tuple[Kind, ...]
+    operands: tuple[Gather, ...]
+    nodes: tuple[Node, ...]
+    stacked: bool
+    """Whether the operation takes the dimension of the members; if not there is one member."""
+    is_python: bool
+    """Whether Python's own function evaluates it lane by lane."""
+    may_mark: bool
+    """Whether the operation declares that lanes may fail or be rejected."""
+
+
+@dataclass(frozen=True, slots=True)
+class Draw:
+    """Axes (or keys) drawn together."""
+
+    slot: Slot
+    addresses: Words
+    axes: np.ndarray[Any, np.dtype[np.intp]] | None
+    """Numbers of the axes in the domain; ``None`` for keys."""
+
+
+@dataclass(frozen=True, slots=True)
+class Schedule:
+    """What to do to get some nodes; afterwards they and all that they need are at ``places``."""
+
+    steps: tuple[Draw | Step, ...]
+    places: Mapping[Node, Place]
+
+
+_START: Final = Schedule((), {})
+
+
+class Scheduler:
+    """Schedules of one graph.
+
+    Args:
+        graph: the graph, which numbers axes and addresses.
+        grouped: whether to evaluate alike nodes together; changes speed, never a value.
+
+    """
+
+    def __init__(self, graph: Graph, *, grouped: bool = True) -> None:
+        self.graph = graph
+        self._grouped = grouped
+        self._known: dict[tuple[int, tuple[Node, ...]], Schedule] = {}
+        self._kept: list[Schedule] = []
+        self._gathers: dict[tuple[int, tuple[Node, ...]], Gather] = {}
+        self._slots = 0
+
+    @property
+    def start(self) -> Schedule:
+        """The schedule of nothing."""
+        return _START
+
+    def after(self, before: Schedule, roots: tuple[Node, ...]) -> Schedule:
+        """What gets ``roots`` once ``before`` has been done."""
+        key = (id(before), roots)
+        schedule = self._known.get(key)
+        if schedule is None:
+            schedule = self._known[key] = self._make(before, roots)
+            self._kept.append(schedule)  # alive, so that its identity stays its own
+        return schedule
+
+    def gather(self, schedule: Schedule, nodes: tuple[Node, ...]) -> Gather:
+        """Where the columns of ``nodes`` are, once ``schedule`` has been done."""
+        key = (id(schedule), nodes)
+        gather = self._gathers.get(key)
+        if gather is None:
+            gather = self._gathers[key] = _gather(nodes, schedule.places)
+        return gather
+
+    def _make(self, before: Schedule, roots: Sequence[Node]) -> Schedule:
+        missing = _missing(roots, before.places)
+        if not missing:
+            return Schedule((), before.places)
+        places = dict(before.places)
+        steps: list[Draw | Step] = []
+        levels: dict[Node, int] = {}
+        groups: dict[tuple[int, Hashable], list[Node]] = {}
+        for node in missing:
+            level = 1 + max((levels.get(operand, 0) for operand in node.operands), default=-1)
+            levels[node] = level
+            groups.setdefault((level, self._signature(node)), []).append(node)
+        for (_, signature), members in sorted(groups.items(), key=lambda item: item[0][0]):
+            if signature in ("axis", "key"):
+                steps.append(self._draw(members, places, axes=signature == "axis"))
+            else:
+                steps.append(self._step(members, places))
+        return Schedule(tuple(steps), places)
+
+    def _signature(self, node: Node) -> Hashable:
+        """Equal for nodes that can be evaluated together."""
+        if node.is_axis:
+            return "axis"
+        if node.is_drawn:
+            return "key"
+        if not (self._grouped and node.operation.stacks) or _is_python(node):
+            return id(node)
+        try:
+            hash(node.payload)
+        except TypeError:
+            return id(node)
+        kinds = tuple(operand.kind for operand in node.operands)
+        return (id(node.operation), type(node.payload), node.payload, node.kind, kinds)
+
+    def _slot(self, members: Sequence[Node], places: dict[Node, Place]) -> Slot:
+        slot = self._slots
+        self._slots += 1
+        for member, node in enumerate(members):
+            places[node] = Place(slot, member)
+        return slot
+
+    def _draw(self, members: Sequence[Node], places: dict[Node, Place], *, axes: bool) -> Draw:
+        numbers = np.array([self.graph.axes[node] for node in members], dtype=np.intp) if axes else None
+        return Draw(self._slot(members, places), self.graph.addresses(members), numbers)
+
+    def _step(self, members: list[Node], places: dict[Node, Place]) -> Step:
+        first = members[0]
+        if len(members) > 1:
+            members = sorted(members, key=lambda node: _order(node, places))
+        operands = tuple(
+            _gather([node.operands[position] for node in members], places)
+            for position in range(len(first.operands))
+        )
+        operation = first.operation
+        may_mark = any(
+            operation.may_fault(node.operands, node.payload, node.kind)
+            or operation.may_reject(node.operands, node.payload, node.kind)
+            for node in members
+        )
+        return Step(
+            self._slot(members, places),
+            operation,
+            first.payload,
+            first.kind,
+            tuple(operand.kind for operand in first.operands),
+            operands,
+            tuple(members),
+            operation.stacks and not _is_python(first),
+            _is_python(first),
+            may_mark or not operation.strict,
+        )
+
+
+def _is_python(node: Node) -> bool:
+    return node.operation.is_python(node.operands, node.kind)
+
+
+def _missing(roots: Iterable[Node], there: Mapping[Node, Place]) -> list[Node]:
+    """The nodes below ``roots`` that are neither there nor constant, operands first."""
+    result: dict[Node, None] = {}
+    for root in roots:
+        if root.is_constant or root in there or root in result:
+            continue
+        stack: list[tuple[Node, int]] = [(root, 0)]
+        while stack:
+            node, position = stack.pop()
+            if position < len(node.operands):
+                stack.append((node, position + 1))
+                operand = node.operands[position]
+                if not operand.is_constant and operand not in there and operand not in result:
+                    stack.append((operand, 0))
+            elif node not in result:
+                result[node] = None
+    return list(result)
+
+
+def _order(node: Node, places: Mapping[Node, Place]) -> tuple[tuple[int, int], ...]:
+    """Members are sorted by where their operands are, so that most operands are runs."""
+    return tuple(
+        (places[operand].slot, places[operand].member) for operand in node.operands if operand in places
+    )
+
+
+def _gather(operands: Sequence[Node], places: Mapping[Node, Place]) -> Gather:
+    """How to get the columns of one operand of all members of a group."""
+    if all(operand.is_constant for operand in operands):
+        columns = [operand.payload.column for operand in operands]
+        if all(column is columns[0] for column in columns[1:]) or _equal_constants(operands):
+            return Fixed(columns[0][np.newaxis])
+        return Fixed(np.stack(columns))
+    if not any(operand.is_constant for operand in operands):
+        found = [places[operand] for operand in operands]
+        run = _run(found)
+        if run is not None:
+            return run
+        return Gathered(tuple(found))
+    return Gathered(
+        tuple(operand.payload.column if operand.is_constant else places[operand] for operand in operands)
+    )
+
+
+def _equal_constants(operands: Sequence[Node]) -> bool:
+    first = operands[0].payload.key
+    return all(operand.payload.key == first for operand in operands[1:])
+
+
+def _run(places: Sequence[Place]) -> Run | None:
+    slot = places[0].slot
+    if any(place.slot != slot for place in places):
+        return None
+    members = [place.member for place in places]
+    if len(members) == 1:
+        return Run(slot, slice(members[0], members[0] + 1))
+    step = members[1] - members[0]
+    if step <= 0 or any(b - a != step for a, b in pairwise(members)):
+        if all(member == members[0] for member in members):
+            return Run(slot, slice(members[0], members[0] + 1))
+        return None
+    return Run(slot, slice(members[0], members[-1] + 1, step))
+
+
+__all__ = [
+    "Draw",
+    "Fixed",
+    "Gather",
+    "Gathered",
+    "Place",
+    "Run",
+    "Schedule",
+    "Scheduler",
+    "Step",
+]

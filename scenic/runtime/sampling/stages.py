@@ -1,0 +1,118 @@
+"""In which order, and how many at a time, the checks of a plan are made.
+
+Cheap and rejecting checks come first. A *stage* is a run of checks whose nodes are evaluated together: stacking saves the
+cost of interpreting nodes, at the price of evaluating them in lanes that the first check of the stage might have rejected.
+So checks share a stage while their columns are small. None of this changes which candidates pass.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+from scenic.graph.node import Node
+from scenic.graph.schedule import Scheduler
+from scenic.runtime.sampling.checks import Check
+
+_STACKED: Final = 16_000
+"""Elements of the columns of a stage, about: what stays in the processor's nearest cache."""
+
+_KNOWN_LANES: Final = 64
+"""Lanes after which a check's own figures are believed."""
+
+_FADING: Final = 0.8
+
+
+@dataclass(frozen=True, slots=True)
+class Stage:
+    """Checks made together, by their numbers, and the nodes that they need."""
+
+    checks: tuple[int, ...]
+    nodes: tuple[Node, ...]
+
+
+@dataclass(slots=True)
+class _Measured:
+    """Cost and pass rate of a check."""
+
+    lanes: float = 0.0
+    seconds: float = 0.0
+    passed: float = 0.0
+
+
+class Stages:
+    """The order of checks for any number of lanes, kept and now and then made anew from what was measured.
+
+    Args:
+        checks: the checks, in program order.
+        scheduler: knows which nodes a check needs.
+
+    """
+
+    def __init__(self, checks: Sequence[Check], scheduler: Scheduler) -> None:
+        self._checks = checks
+        self._needs = [tuple(dict.fromkeys(check.nodes)) for check in checks]
+        self._below = [frozenset(scheduler.after(scheduler.start, nodes).places) for nodes in self._needs]
+        self._measured = [_Measured() for _ in checks]
+        self._plans: dict[int, tuple[Stage, ...]] = {}
+        self._rounds = 0
+
+    def measure(self, index: int, lanes: int, seconds: float, passed: int) -> None:
+        """Take into account that a check has judged ``lanes`` lanes."""
+        measured = self._measured[index]
+        measured.lanes = _FADING * measured.lanes + lanes
+        measured.seconds = _FADING * measured.seconds + seconds
+        measured.passed = _FADING * measured.passed + passed
+
+    def order(self, lanes: int) -> tuple[Stage, ...]:
+        """The stages for a batch of so many lanes."""
+        self._rounds += 1
+        if self._rounds & (self._rounds - 1) == 0:
+            self._plans.clear()  # after 1, 2, 4, 8, ... rounds
+        size = max(1, lanes).bit_length()
+        plan = self._plans.get(size)
+        if plan is None:
+            plan = self._plans[size] = self._plan(1 << size)
+        return plan
+
+    def _price(self, index: int) -> float:
+        """Seconds for each lane that the check rejects."""
+        measured = self._measured[index]
+        if measured.lanes < _KNOWN_LANES:
+            return self._checks[index].cost * 1e-7 / 0.5
+        rejected = 1 - measured.passed / measured.lanes
+        return measured.seconds / measured.lanes / max(rejected, 1e-4)
+
+    def _alive(self, index: int) -> float:
+        """The share of lanes that the check leaves."""
+        measured = self._measured[index]
+        return 1.0 if measured.lanes < _KNOWN_LANES else measured.passed / measured.lanes
+
+    def _plan(self, lanes: int) -> tuple[Stage, ...]:
+        order = sorted(range(len(self._checks)), key=lambda index: (self._price(index), index))
+        stages: list[Stage] = []
+        there: set[Node] = set()
+        members: list[int] = []
+        elements = 0.0
+        alive = float(lanes)
+        entering = alive
+        for index in order:
+            fresh = len(self._below[index] - there)
+            together = members and not self._checks[index].separate
+            if not together or (fresh and elements + fresh * entering > _STACKED):
+                if members:
+                    stages.append(self._stage(members))
+                members, elements, entering = [], 0.0, alive
+            members.append(index)
+            there |= self._below[index]
+            elements += fresh * entering
+            alive *= self._alive(index)
+            if self._checks[index].separate:
+                stages.append(self._stage(members))
+                members, elements, entering = [], 0.0, alive
+        if members:
+            stages.append(self._stage(members))
+        return tuple(stages)
+
+    def _stage(self, members: Sequence[int]) -> Stage:
+        nodes = dict.fromkeys(node for index in members for node in self._needs[index])
+        return Stage(tuple(members), tuple(nodes))
