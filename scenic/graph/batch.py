@@ -114,7 +114,8 @@ class Batch:
             column: Column = node.payload.column
             return column
         place = self._place(node)
-        return self._group(place.slot).column[place.member]
+        found: Column = self._group(place.slot).column[place.member]
+        return found
 
     def status(self, node: Node) -> Status | None:
         """Status of each lane at ``node``; ``None`` when all are `OK`."""
