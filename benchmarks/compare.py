@@ -154,7 +154,7 @@ def main() -> None:
     if options.child:
         child(options.child, options.seed, options.our_scenes, prune)
         return
-    names = ("scenic-lang", "numpy", "scipy", "python-fcl")
+    names = ("scenic-lang", "numpy", "scipy")
     print(f"Python {platform.python_version()}, {', '.join(map(release, names))}; {machine()}")
     print(
         f"seed {options.seed}, {options.repeats} turns, medians; ours: {options.our_scenes} scenes a turn, ",

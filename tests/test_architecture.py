@@ -36,7 +36,6 @@ LIBRARIES = {
 """Libraries of each layer beside the standard library; layers left out may use any dependency."""
 
 ONLY_IN = {
-    "fcl": {"runtime"},
     "embreex": {"runtime", "formats"},
     "z3": {"analysis"},
     "pygls": {"lsp"},
@@ -46,7 +45,7 @@ ONLY_IN = {
 }
 """Libraries that only some layers may know."""
 
-HEAVY = {"scipy", "trimesh", "z3", "embreex", "shapely", "fcl", "manifold3d", "PIL", "networkx"}
+HEAVY = {"scipy", "trimesh", "z3", "embreex", "shapely", "manifold3d", "PIL", "networkx"}
 """Libraries that may not be imported when a module is."""
 
 

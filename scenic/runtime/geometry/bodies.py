@@ -24,8 +24,8 @@ class Body:
         choice: which of them it has in each lane, ``(n,)`` or ``(1,)``; ``None`` if there is only one.
         poses: where it is. Rotation matrices and world boxes are computed once and go along with `take`.
         allow: whether it may collide, ``(n,)`` or ``(1,)``.
-        is_fixed: whether all of this is known to be the same in every batch. Like ``Poses.constant_size`` it is a
-            fact about the program, never read off the number of rows: a batch may come down to a single lane.
+        is_fixed: whether all of this is known to be the same in every batch: a fact about the program, never read
+            off the number of rows, since a batch may come down to a single lane.
 
     """
 

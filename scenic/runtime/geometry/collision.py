@@ -12,10 +12,8 @@ import numpy.typing as npt
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.broadphase import CellMap, boxes_overlap, near_pairs
 from scenic.runtime.geometry.crowd import Crowd
-from scenic.runtime.geometry.mesh import Mesh
-from scenic.runtime.geometry.narrowphase import quick_tests, solids_touch
+from scenic.runtime.geometry.narrowphase import Solids
 from scenic.runtime.geometry.poses import Booleans, Indices, Poses
-from scenic.runtime.geometry.proofs import ProofTable
 from scenic.runtime.geometry.ragged import rows
 
 __all__ = ["Body", "Collider", "Collisions", "Poses", "collide"]
@@ -84,6 +82,7 @@ class Collider:
         self._still = (
             Crowd.of([bodies[index] for index in self._fixed.tolist()]) if len(self._fixed) else None
         )
+        self._solids: Solids | None = None
         self.fixed_collisions: Final = self._fixed_pairs()
         """The fixed bodies that collide with each other, ``(c, 2)``, the smaller number first."""
 
@@ -106,8 +105,15 @@ class Collider:
                 crowd = Crowd.of([crowd[index] for index in self._moving.tolist()])
             if self._still is not None:
                 crowd = crowd.followed_by(self._still)
-            _Search(crowd, len(self._moving), self._wanted, free, found).run()
+            solids = self._solids_of(crowd)
+            _Search(crowd, solids, len(self._moving), self._wanted, free, found).run()
         return Collisions(free, None if found is None else self._matrix(found, lanes))
+
+    def _solids_of(self, crowd: Crowd) -> Solids:
+        """What is known of the meshes, kept as long as they are the same."""
+        if self._solids is None or self._solids.meshes != crowd.meshes:
+            self._solids = Solids(crowd.meshes)
+        return self._solids
 
     def _fixed_pairs(self) -> Indices:
         if self._still is None:
@@ -116,7 +122,8 @@ class Collider:
         if self._wanted is not None:
             wanted = self._wanted[len(self._moving) :, len(self._moving) :]
         found: list[_Entries] = []
-        _Search(self._still, len(self._fixed), wanted, np.ones(1, dtype=np.bool_), found).run()
+        solids = self._solids_of(self._still)
+        _Search(self._still, solids, len(self._fixed), wanted, np.ones(1, dtype=np.bool_), found).run()
         pairs = [np.stack([self._fixed[part.first], self._fixed[part.second]], axis=1) for part in found]
         return np.sort(np.concatenate([np.empty((0, 2), dtype=np.intp), *pairs]), axis=1)
 
@@ -162,6 +169,7 @@ class _Search:
 
     Args:
         crowd: the bodies.
+        solids: their meshes.
         moving: how many of them are not fixed; they come first.
         wanted: which pairs matter, ``(m, m)``; all if ``None``.
         free: lanes still without a collision, ``(n,)``; kept up to date.
@@ -172,6 +180,7 @@ class _Search:
     def __init__(
         self,
         crowd: Crowd,
+        solids: Solids,
         moving: int,
         wanted: Booleans | None,
         free: Booleans,
@@ -183,8 +192,7 @@ class _Search:
         self._free = free
         self._found = found
         self._radius = crowd.radius()
-        self._are_boxes = np.array([mesh.is_box for mesh in crowd.meshes])
-        self._proofs = None if self._are_boxes.all() else ProofTable(crowd.meshes)
+        self._solids = solids
 
     def run(self) -> None:
         """Record collisions; if they are not all wanted, one for each lane that has any."""
@@ -231,9 +239,7 @@ class _Search:
                 if len(piece.lane):
                     open_entries.append(self._quick(piece))
         if open_entries:
-            left = self._alive(_joined(open_entries))
-            for chosen, mesh_a, mesh_b, constant_size in self._sorted(left):
-                self._decide(chosen, mesh_a, mesh_b, constant_size)
+            self._decide(self._alive(_joined(open_entries)))
 
     def _by_likelihood(self, entries: _Entries) -> list[_Entries]:
         if len(entries.lane) <= _STEP or self._found is not None:
@@ -255,20 +261,21 @@ class _Search:
 
     def _quick(self, entries: _Entries) -> _Entries:
         """Record what oriented boxes and proofs say of at least one entry; returns what they leave open."""
-        poses_a, poses_b = self._poses(entries.first, entries.lane), self._poses(entries.second, entries.lane)
+        poses_a, poses_b = (self._crowd.poses(body, entries.lane) for body in (entries.first, entries.second))
         near = boxes_overlap(poses_a, poses_b)
         mesh_a, mesh_b = self._meshes(entries)
-        boxes = near & self._are_boxes[mesh_a] & self._are_boxes[mesh_b]
+        are_boxes = self._solids.are_boxes
+        boxes = near & are_boxes[mesh_a] & are_boxes[mesh_b]
         self._record(entries.where(boxes))
         near &= ~boxes
         if self._found is None:
             near &= self._free[entries.lane]
         which = np.flatnonzero(near)
         entries = entries.where(which)
-        if not len(which) or self._proofs is None:
+        if not len(which):
             return entries
-        together, remains = quick_tests(
-            self._proofs, mesh_a[which], poses_a.take(which), mesh_b[which], poses_b.take(which)
+        together, remains = self._solids.prove(
+            mesh_a[which], poses_a.take(which), mesh_b[which], poses_b.take(which)
         )
         self._record(entries.where(together))
         return entries.where(remains)
@@ -277,38 +284,26 @@ class _Search:
         mesh = self._crowd.mesh
         return mesh.at(entries.first, entries.lane), mesh.at(entries.second, entries.lane)
 
-    def _sorted(self, entries: _Entries) -> list[tuple[_Entries, Mesh, Mesh, bool]]:
-        """The entries by meshes and by whether both sizes are constant; the quick ones first."""
-        meshes, constant = self._crowd.meshes, self._crowd.constant_size
-        mesh_a, mesh_b = self._meshes(entries)
-        rigid = constant[entries.first] & constant[entries.second]
-        groups = []
-        for key in np.unique(np.stack([mesh_a, mesh_b, rigid], axis=1), axis=0).tolist():
-            chosen = (mesh_a == key[0]) & (mesh_b == key[1]) & (rigid == key[2])
-            groups.append((entries.where(chosen), meshes[key[0]], meshes[key[1]], bool(key[2])))
-        # Meshes of random size have to be indexed anew for each entry.
-        return sorted(groups, key=lambda group: (not group[3], len(group[1].faces) + len(group[2].faces)))
-
-    def _decide(self, entries: _Entries, mesh_a: Mesh, mesh_b: Mesh, constant_size: bool) -> None:
-        """The exact test, for one entry of each lane at a time, since the first collision settles the lane."""
-        entries = self._alive(entries)
+    def _decide(self, entries: _Entries) -> None:
+        """The exact test: at first one entry of each lane, then more, since the first collision settles the lane."""
+        most = 1
         while len(entries.lane):
             now = np.ones(len(entries.lane), dtype=np.bool_)
             if self._found is None:
-                now[:] = False
-                now[np.unique(entries.lane, return_index=True)[1]] = True
+                order = np.argsort(entries.lane, kind="stable")
+                lanes = entries.lane[order]
+                now[order] = np.arange(len(order)) - np.searchsorted(lanes, lanes) < most
             current = entries.where(now)
-            together = solids_touch(
+            mesh_a, mesh_b = self._meshes(current)
+            together = self._solids.touch(
                 mesh_a,
-                self._poses(current.first, current.lane, constant_size),
+                self._crowd.poses(current.first, current.lane),
                 mesh_b,
-                self._poses(current.second, current.lane, constant_size),
+                self._crowd.poses(current.second, current.lane),
             )
             self._record(current.where(together))
             entries = self._alive(entries.where(~now))
-
-    def _poses(self, body: Indices, lane: Indices, constant_size: bool = False) -> Poses:
-        return self._crowd.poses(body, lane, constant_size=constant_size)
+            most *= 2
 
 
 def _joined(parts: list[_Entries]) -> _Entries:

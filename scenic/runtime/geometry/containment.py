@@ -14,7 +14,7 @@ from scenic.runtime.geometry import inside
 from scenic.runtime.geometry.affine import AffineMaps, Columns, relative_map
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.mesh import Mesh
-from scenic.runtime.geometry.narrowphase import some_part_inside, surfaces_touch
+from scenic.runtime.geometry.narrowphase import Solids
 from scenic.runtime.geometry.polygons import TOLERANCE, Polygons
 from scenic.runtime.geometry.poses import Booleans, Floats, Indices, Poses
 from scenic.runtime.geometry.ragged import rows
@@ -206,12 +206,7 @@ def mesh_in_mesh(inner: Mesh, inner_poses: Poses, outer: Mesh, outer_poses: Pose
     if outer.is_convex and len(outer.hull.planes) <= _MOST_PLANES:
         return _chunked(test, every, inner.hull.vertices)
     # A body that touches the container from inside is held; so a body smaller by the tolerance is tested.
-    smaller = Poses(
-        inner_poses.position,
-        inner_poses.orientation,
-        inner_poses.size - 2 * TOLERANCE,
-        inner_poses.constant_size,
-    )
+    smaller = Poses(inner_poses.position, inner_poses.orientation, inner_poses.size - 2 * TOLERANCE)
 
     def vertices_inside(chosen: Indices, points: Floats) -> Booleans:
         images, _ = _local(smaller, outer_poses, chosen, points)
@@ -225,8 +220,12 @@ def mesh_in_mesh(inner: Mesh, inner_poses: Poses, outer: Mesh, outer_poses: Pose
     left = np.flatnonzero(result)
     if len(left):
         a, b = smaller.take(left), outer_poses.take(left)
+        body, holder = np.zeros(len(left), dtype=np.intp), np.ones(len(left), dtype=np.intp)
+        solids = Solids([inner, outer])
         # Surfaces apart and the body's surface inside: only a cavity of the container could still be in it.
-        result[left] = ~surfaces_touch(inner, a, outer, b) & ~some_part_inside(outer, b, inner, a)
+        result[left] = ~solids.surfaces_touch(body, a, holder, b) & ~solids.some_part_inside(
+            holder, b, body, a
+        )
     return result
 
 

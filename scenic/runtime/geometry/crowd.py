@@ -89,7 +89,6 @@ class Crowd:
         size: metres.
         mesh: indices into ``meshes``.
         allow: whether a body may collide.
-        constant_size: which bodies are known to have the same size in every batch, ``(m,)``.
         lower: lower corners of the world boxes of the bodies in ``bounded``, in their order.
         upper: the upper corners.
         bounded: for each body its number among those whose world boxes are known, or -1, ``(m,)``.
@@ -102,13 +101,12 @@ class Crowd:
     size: Rows
     mesh: Rows
     allow: Rows
-    constant_size: Booleans
     lower: Rows
     upper: Rows
     bounded: Indices
 
     def __len__(self) -> int:
-        return len(self.constant_size)
+        return len(self.bounded)
 
     @classmethod
     def of(cls, bodies: Sequence[Body]) -> "Crowd":
@@ -130,7 +128,6 @@ class Crowd:
             Rows.of([item.size for item in poses]),
             Rows.of(chosen),
             Rows.of([body.allow for body in bodies]),
-            np.array([item.constant_size for item in poses]),
             Rows.of(lower),
             Rows.of(upper),
             np.where(known, np.cumsum(known) - 1, -1),
@@ -146,8 +143,6 @@ class Crowd:
         size: Floats,
         mesh: Indices,
         allow: Booleans,
-        *,
-        constant_size: bool = False,
     ) -> "Crowd":
         """Bodies whose columns are stacked already; each as `Rows.stacked` takes it.
 
@@ -159,7 +154,6 @@ class Crowd:
             size: metres, ``(..., 3)``.
             mesh: indices into ``meshes``.
             allow: whether a body may collide.
-            constant_size: whether the sizes are known to be the same in every batch.
 
         """
         return cls(
@@ -169,7 +163,6 @@ class Crowd:
             Rows.stacked(size, bodies),
             Rows.stacked(mesh, bodies),
             Rows.stacked(allow, bodies),
-            np.full(bodies, constant_size),
             Rows.of(()),
             Rows.of(()),
             np.full(bodies, -1),
@@ -188,20 +181,14 @@ class Crowd:
             self.size.followed_by(others.size),
             self.mesh.followed_by(others.mesh.mapped(renumber.__getitem__)),
             self.allow.followed_by(others.allow),
-            np.concatenate([self.constant_size, others.constant_size]),
             self.lower.followed_by(others.lower),
             self.upper.followed_by(others.upper),
             np.concatenate([self.bounded, np.where(others.bounded >= 0, others.bounded + known, -1)]),
         )
 
-    def poses(self, body: Indices, lane: Indices, *, constant_size: bool = False) -> Poses:
+    def poses(self, body: Indices, lane: Indices) -> Poses:
         """The poses of ``(e,)`` combinations of body and lane."""
-        return Poses(
-            self.position.at(body, lane),
-            self.orientation.at(body, lane),
-            self.size.at(body, lane),
-            constant_size,
-        )
+        return Poses(self.position.at(body, lane), self.orientation.at(body, lane), self.size.at(body, lane))
 
     def radius(self) -> Rows:
         """The radii of spheres around the bodies."""

@@ -7,6 +7,7 @@ slips between two faces or meets both: the surface of a closed mesh is watertigh
 only points within rounding of the surface itself may go either way.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
 
@@ -87,21 +88,52 @@ def contains_points(mesh: Mesh, points: Floats) -> Booleans:
     candidates = np.flatnonzero(near[:, 0] & near[:, 1] & near[:, 2])
     if not len(candidates):
         return result
-    grid = mesh.derived(column_grid)
     points = points[candidates]
+    for part, owner, face in _faces_over(mesh, points):
+        point = points[part][owner]
+        above = _heights(mesh.derived(column_grid).corners[face], point) > point[:, 2]
+        crossings = np.bincount(owner[above], minlength=part.stop - part.start)
+        result[candidates[part]] = crossings % 2 == 1
+    return result
+
+
+def contains_lattice(mesh: Mesh, x: Floats, y: Floats, z: Floats) -> Booleans:
+    """What `contains_points` says of all combinations of coordinates, ``(len(x), len(y), len(z))``; much faster.
+
+    Args:
+        mesh: closed.
+        x: coordinates, ``(k,)``.
+        y: coordinates, ``(l,)``.
+        z: ascending coordinates, ``(m,)``.
+
+    """
+    lowest = np.full(len(x) * len(y), -np.inf)
+    points = np.stack([np.repeat(x, len(y)), np.tile(y, len(x)), lowest], axis=1)
+    levels = len(z) + 1
+    crossings = np.zeros((len(points), levels), dtype=np.intp)
+    for part, owner, face in _faces_over(mesh, points):
+        height = _heights(mesh.derived(column_grid).corners[face], points[part][owner])
+        crossed = np.flatnonzero(height > -np.inf)
+        # The number of lattice points below the crossing: those see it above them.
+        level = np.searchsorted(z, height[crossed])
+        flat = np.bincount(owner[crossed] * levels + level, minlength=(part.stop - part.start) * levels)
+        crossings[part] += flat.reshape(-1, levels)
+    above = np.cumsum(crossings[:, :0:-1], axis=1)[:, ::-1]
+    result: Booleans = (above % 2 == 1).reshape(len(x), len(y), len(z))
+    return result
+
+
+def _faces_over(mesh: Mesh, points: Floats) -> Iterator[tuple[slice, Indices, Indices]]:
+    """Pieces of the points, with pairs (point in the piece, face) that hold all faces above each point."""
+    grid = mesh.derived(column_grid)
     cells = _cell(points[:, :2], grid.lower, grid.scale, grid.cells)
     cell = cells[:, 0] * grid.cells + cells[:, 1]
     counts = grid.starts[cell + 1] - grid.starts[cell]
     for part in pieces(counts, _CHUNK):
         owner, offset = expand(counts[part])
         face = grid.faces[grid.starts[cell[part]][owner] + offset]
-        point = points[part][owner]
-        over = _may_cross_above(grid.boxes[face], point)
-        owner, face, point = owner[over], face[over], point[over]
-        above = _crosses_above(grid.corners[face], point)
-        crossings = np.bincount(owner[above], minlength=part.stop - part.start)
-        result[candidates[part]] = crossings % 2 == 1
-    return result
+        over = _may_cross_above(grid.boxes[face], points[part][owner])
+        yield part, owner[over], face[over]
 
 
 def _cell(xy: Floats, lower: Floats, scale: Floats, cells: int) -> Indices:
@@ -117,13 +149,13 @@ def _may_cross_above(boxes: Floats, points: Floats) -> Booleans:
     return result
 
 
-def _crosses_above(corners: Floats, points: Floats) -> Booleans:
-    """Whether the upward vertical from each point ``(m, 3)`` crosses the face with ``corners`` ``(m, 3, 3)``.
+def _heights(corners: Floats, points: Floats) -> Floats:
+    """Where the vertical through each point ``(m, 3)`` crosses the face with ``corners`` ``(m, 3, 3)``, ``(m,)``.
 
-    The horizontal line y = py meets the projected edges in none or two points; the vertical crosses the face
-    if px lies between them.
+    Minus infinity where it does not: the horizontal line y = py meets the projected edges in none or two points;
+    the vertical crosses the face if px lies between them.
     """
-    px, py, pz = points[:, 0], points[:, 1], points[:, 2]
+    px, py = points[:, 0], points[:, 1]
     x = [corners[:, i, 0] for i in range(3)]
     y = [corners[:, i, 1] for i in range(3)]
     z = [corners[:, i, 2] for i in range(3)]
@@ -145,5 +177,4 @@ def _crosses_above(corners: Floats, points: Floats) -> Booleans:
             left_x, left_z = np.where(left, edge_x, left_x), np.where(left, edge_z, left_z)
         part = (px - left_x) / (right_x - left_x)
         height = left_z + part * (right_z - left_z)
-    result: Booleans = inside & (height > pz)
-    return result
+    return np.where(inside, height, -np.inf)

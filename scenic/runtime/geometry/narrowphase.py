@@ -1,158 +1,160 @@
 """Whether two posed solids share a point, decided on their meshes.
 
-Steps from cheap to dear, each on what the ones before leave open: oriented boxes apart; points known to lie
-inside one solid found in solid cells of the other; boxes that cover one solid found in empty cells of the
-other; surfaces that touch, by FCL; one solid wholly inside the other. What a step says of an entry depends on
-that entry alone.
+Steps from cheap to dear, each on what the ones before leave open: oriented boxes apart; points of one solid found
+in solid cells of the other; boxes that cover one solid found in empty cells of the other; surfaces that touch; one
+solid wholly inside the other. What a step says of an entry depends on that entry alone, and a proof from cells
+never says anything else than the exact test.
 """
 
+from collections.abc import Sequence
+from functools import cached_property
 from typing import Final
 
 import numpy as np
 
-from scenic.graph import quaternions
-from scenic.runtime.geometry.affine import relative_map
+from scenic.runtime.geometry.affine import AffineMaps, relative_map
 from scenic.runtime.geometry.broadphase import boxes_overlap
-from scenic.runtime.geometry.facegrid import face_grid
-from scenic.runtime.geometry.fcl import SizedSurfaces, Surface
+from scenic.runtime.geometry.contact import Surfaces
 from scenic.runtime.geometry.inside import contains_points
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.poses import Booleans, Floats, Indices, Poses
 from scenic.runtime.geometry.proofs import ProofTable
-from scenic.runtime.geometry.ragged import rows
+from scenic.runtime.geometry.ragged import expand, rows
 
-_FEW_POINTS: Final = 3
-"""Interior points, the deepest ones, that prove most collisions."""
+_STAGES: Final = (slice(3), slice(3, 16), None, slice(16, 64), slice(64, None))
+"""Probing points looked at one group after the other; ``None`` is the proof that solids are apart."""
 
-_CHUNK: Final = 1 << 12
-"""Entries looked at together, so that the temporary columns stay in the processor's cache."""
+_CHUNK: Final = 1 << 17
+"""Combinations of entry and probing point looked at together."""
 
-_MANY_FACES: Final = 20_000
-"""Faces above which a mesh is indexed only around the other body."""
+_WORTH_PROVING: Final = 256
+"""Exact tests after which the cells of the meshes are made: making them costs about as much."""
 
-_CULLING_MARGIN: Final = 1e-6
-"""How far outside the unit cube of the larger mesh faces of the smaller one are still kept."""
+
+class Solids:
+    """Several closed unit meshes, made ready for comparing them; entries name them by their numbers."""
+
+    def __init__(self, meshes: Sequence[Mesh]) -> None:
+        self.meshes: Final = tuple(meshes)
+        self.are_boxes: Final = np.array([mesh.is_box for mesh in meshes])
+        self._tested = 0
+
+    @cached_property
+    def _surfaces(self) -> Surfaces:
+        return Surfaces(self.meshes)
+
+    @cached_property
+    def _proofs(self) -> ProofTable:
+        return ProofTable(self.meshes)
+
+    @cached_property
+    def _parts(self) -> tuple[Indices, Indices, Floats]:
+        """A vertex of each connected surface, mesh by mesh: where those of each begin, how many, all of them."""
+        vertices = [mesh.component_vertices for mesh in self.meshes]
+        counts = np.array([len(part) for part in vertices], dtype=np.intp)
+        return np.cumsum(counts) - counts, counts, np.concatenate(vertices)
+
+    def intersect(self, first: Indices, first_poses: Poses, second: Indices, second_poses: Poses) -> Booleans:
+        """Whether solids share a point, ``(n,)``; touching counts, up to rounding.
+
+        Args:
+            first: mesh numbers, ``(n,)``.
+            first_poses: ``n`` or 1 of them.
+            second: mesh numbers, ``(n,)``.
+            second_poses: ``n`` or 1 of them.
+
+        """
+        result = np.broadcast_to(boxes_overlap(first_poses, second_poses), first.shape).copy()
+        open_ = np.flatnonzero(result & ~(self.are_boxes[first] & self.are_boxes[second]))
+        if len(open_):
+            first, second = first[open_], second[open_]
+            a, b = first_poses.take(open_), second_poses.take(open_)
+            together, left = self.prove(first, a, second, b)
+            which = np.flatnonzero(left)
+            if len(which):
+                together[which] = self.touch(first[which], a.take(which), second[which], b.take(which))
+            result[open_] = together
+        return result
+
+    def prove(
+        self, first: Indices, first_poses: Poses, second: Indices, second_poses: Poses
+    ) -> tuple[Booleans, Booleans]:
+        """Which entries are proved to share a point ``(n,)``, and which remain open ``(n,)``; at least one entry.
+
+        The cells that it takes are made once enough entries have come up: until then all remain open.
+        """
+        count = len(first)
+        if self._tested + count < _WORTH_PROVING:
+            return np.zeros(count, dtype=np.bool_), np.ones(count, dtype=np.bool_)
+        forth, back = relative_map(first_poses, second_poses), relative_map(second_poses, first_poses)
+        together = np.zeros(count, dtype=np.bool_)
+        left = np.arange(count)
+        for stage in _STAGES:
+            for moving, still, maps in ((first, second, forth), (second, first, back)):
+                if len(left):
+                    done = self._stage(stage, moving[left], still[left], maps.take(left))
+                    together[left[done]] = stage is not None
+                    left = left[~done]
+        remains = np.zeros(count, dtype=np.bool_)
+        remains[left] = True
+        return together, remains
+
+    def _stage(self, points: slice | None, moving: Indices, still: Indices, maps: AffineMaps) -> Booleans:
+        """Which entries a stage decides."""
+        if points is None:
+            return self._proofs.distance(moving, still, maps)
+        result = np.empty(len(moving), dtype=np.bool_)
+        every = np.arange(len(moving))
+        for part in rows(len(moving), points.stop or 256, _CHUNK):
+            result[part] = self._proofs.contact(moving[part], still[part], maps.take(every[part]), points)
+        return result
+
+    def touch(self, first: Indices, first_poses: Poses, second: Indices, second_poses: Poses) -> Booleans:
+        """The same as `intersect` by the exact test alone, for at least one entry."""
+        self._tested += len(first)
+        forth, back = relative_map(first_poses, second_poses), relative_map(second_poses, first_poses)
+        touching = self._surfaces.touch(first, second, forth, back)
+        apart = np.flatnonzero(~touching)
+        for moving, still, maps in ((first, second, forth), (second, first, back)):
+            if len(apart):
+                inside = self._some_part_inside(moving[apart], still[apart], maps.take(apart))
+                touching[apart[inside]] = True
+                apart = apart[~inside]
+        return touching
+
+    def surfaces_touch(
+        self, first: Indices, first_poses: Poses, second: Indices, second_poses: Poses
+    ) -> Booleans:
+        """Whether the surfaces share a point, ``(n,)``."""
+        forth, back = relative_map(first_poses, second_poses), relative_map(second_poses, first_poses)
+        return self._surfaces.touch(first, second, forth, back)
+
+    def some_part_inside(
+        self, inner: Indices, inner_poses: Poses, outer: Indices, outer_poses: Poses
+    ) -> Booleans:
+        """Whether a connected surface of ``inner`` lies in ``outer``, ``(n,)``, given that the surfaces do not touch."""
+        return self._some_part_inside(inner, outer, relative_map(inner_poses, outer_poses))
+
+    def _some_part_inside(self, inner: Indices, outer: Indices, maps: AffineMaps) -> Booleans:
+        starts, counts, vertices = self._parts
+        entry, offset = expand(counts[inner])
+        x, y, z = vertices[starts[inner][entry] + offset].T
+        images = maps.take(entry).columns((x, y, z))
+        near = np.ones(len(entry), dtype=np.bool_)
+        for column in images:
+            near &= np.abs(column) <= 0.5
+        which = np.flatnonzero(near)
+        points = np.stack([column[which] for column in images], axis=1)
+        result = np.zeros(len(inner), dtype=np.bool_)
+        numbers = outer[entry[which]]
+        for number in np.unique(numbers).tolist():
+            members = np.flatnonzero(numbers == number)
+            inside = contains_points(self.meshes[number], points[members])
+            result[entry[which[members[inside]]]] = True
+        return result
 
 
 def meshes_intersect(mesh_a: Mesh, poses_a: Poses, mesh_b: Mesh, poses_b: Poses) -> Booleans:
-    """Whether the solids share a point, ``(n,)``; touching counts, up to rounding.
-
-    Both are closed unit meshes. Which frame the comparison works in depends on whether both poses are of
-    constant size, and on the numbers of faces.
-    """
-    result = boxes_overlap(poses_a, poses_b)
-    if mesh_a.is_box and mesh_b.is_box:
-        return result
-    table = ProofTable([mesh_a, mesh_b])
-    near = np.flatnonzero(result)
-    for part in rows(len(near), 1, _CHUNK):
-        entries = near[part]
-        zeros = np.zeros(len(entries), dtype=np.intp)
-        together, left = quick_tests(table, zeros, poses_a.take(entries), zeros + 1, poses_b.take(entries))
-        if left.any():
-            entries = entries[left]
-            together[left] = solids_touch(mesh_a, poses_a.take(entries), mesh_b, poses_b.take(entries))
-        result[near[part]] = together
-    return result
-
-
-def quick_tests(
-    table: ProofTable, meshes_a: Indices, poses_a: Poses, meshes_b: Indices, poses_b: Poses
-) -> tuple[Booleans, Booleans]:
-    """Which of at least one entries are proved to collide ``(n,)``, and which remain open ``(n,)``."""
-    forth, back = relative_map(poses_a, poses_b), relative_map(poses_b, poses_a)
-    together = np.zeros(len(meshes_a), dtype=np.bool_)
-    left = np.arange(len(meshes_a))
-    ways = ((meshes_a, meshes_b, forth), (meshes_b, meshes_a, back))
-    for points in (slice(_FEW_POINTS), slice(_FEW_POINTS, None), None):
-        for moving, still, maps in ways:
-            if not len(left):
-                break
-            chosen = maps.take(left)
-            if points is None:
-                left = left[~table.distance(moving[left], still[left], chosen)]
-            else:
-                proved = table.contact(moving[left], still[left], chosen, points)
-                together[left[proved]] = True
-                left = left[~proved]
-    remains = np.zeros(len(meshes_a), dtype=np.bool_)
-    remains[left] = True
-    return together, remains
-
-
-def solids_touch(mesh_a: Mesh, poses_a: Poses, mesh_b: Mesh, poses_b: Poses) -> Booleans:
-    """Whether the solids share a point, ``(n,)``, without any of the quick tests."""
-    touching = surfaces_touch(mesh_a, poses_a, mesh_b, poses_b)
-    apart = np.flatnonzero(~touching)
-    if len(apart):
-        a, b = poses_a.take(apart), poses_b.take(apart)
-        touching[apart] = some_part_inside(mesh_a, a, mesh_b, b) | some_part_inside(mesh_b, b, mesh_a, a)
-    return touching
-
-
-def surfaces_touch(mesh_a: Mesh, poses_a: Poses, mesh_b: Mesh, poses_b: Poses) -> Booleans:
-    """Whether the surfaces share a point, ``(n,)``, by FCL."""
-    most = max(len(mesh_a.faces), len(mesh_b.faces))
-    if poses_a.constant_size and poses_b.constant_size and most <= _MANY_FACES:
-        return _rigid_surfaces_touch(mesh_a, poses_a, mesh_b, poses_b)
-    if len(mesh_a.faces) >= len(mesh_b.faces):
-        return _mapped_surfaces_touch(mesh_a, poses_a, mesh_b, poses_b)
-    return _mapped_surfaces_touch(mesh_b, poses_b, mesh_a, poses_a)
-
-
-def _rigid_surfaces_touch(mesh_a: Mesh, poses_a: Poses, mesh_b: Mesh, poses_b: Poses) -> Booleans:
-    """With indices that serve all entries, in the frame of the first body."""
-    still, moving = mesh_a.derived(SizedSurfaces), mesh_b.derived(SizedSurfaces)
-    back = quaternions.conjugate(poses_a.orientation)
-    count = max(len(poses_a), len(poses_b))
-    position = quaternions.rotate(back, poses_b.position - poses_a.position)
-    position = np.ascontiguousarray(np.broadcast_to(position, (count, 3)))
-    orientation = np.broadcast_to(quaternions.multiply(back, poses_b.orientation), (count, 4))
-    size_a = np.broadcast_to(poses_a.size, (count, 3))
-    size_b = np.broadcast_to(poses_b.size, (count, 3))
-    result = np.empty(count, dtype=np.bool_)
-    for entry in range(count):
-        other = moving.at(size_b[entry])
-        other.place(position[entry], orientation[entry])
-        result[entry] = still.at(size_a[entry]).touches(other)
-    return result
-
-
-def _mapped_surfaces_touch(large: Mesh, large_poses: Poses, small: Mesh, small_poses: Poses) -> Booleans:
-    """In the unit frame of the larger mesh, whose index serves all sizes: affine maps keep intersections."""
-    affine = relative_map(small_poses, large_poses)
-    limit = 0.5 + _CULLING_MARGIN
-    result = np.zeros(len(affine.offset[0]), dtype=np.bool_)
-    for entry in range(len(result)):
-        vertices = affine.of_entry(entry, small.vertices)
-        outside = np.concatenate([vertices > limit, vertices < -limit], axis=1)[small.faces]
-        near = ~np.logical_and.reduce(outside, axis=1).any(axis=1)
-        if near.any():
-            faces = small.faces[near]
-            still = _surface_around(large, vertices[faces])
-            result[entry] = still is not None and still.touches(Surface.of_faces(vertices, faces))
-    return result
-
-
-def _surface_around(mesh: Mesh, triangles: Floats) -> Surface | None:
-    """An index of at least the faces of the unit mesh near some triangles; ``None`` if there are none.
-
-    Indexing a large mesh takes seconds, so only the faces in question are indexed, unless they are many.
-    """
-    if len(mesh.faces) > _MANY_FACES:
-        faces = mesh.derived(face_grid).sharing_cells(triangles)
-        if not len(faces):
-            return None
-        if len(faces) <= _MANY_FACES:
-            corners = mesh.triangles[faces].reshape(-1, 3)
-            return Surface(corners, np.arange(len(corners)).reshape(-1, 3))
-    return mesh.derived(SizedSurfaces).at(np.ones(3))
-
-
-def some_part_inside(inner: Mesh, inner_poses: Poses, outer: Mesh, outer_poses: Poses) -> Booleans:
-    """Whether a connected surface of ``inner`` lies in ``outer``, given that the surfaces do not touch."""
-    x, y, z = (inner.component_vertices[:, i, None] for i in range(3))
-    points = relative_map(inner_poses, outer_poses).columns((x, y, z))
-    inside = contains_points(outer, np.stack([part.ravel() for part in points], axis=1))
-    result: Booleans = np.logical_or.reduce(inside.reshape(points[0].shape), axis=0)
-    return result
+    """Whether the solids of two closed unit meshes share a point, ``(n,)``; touching counts, up to rounding."""
+    numbers = np.zeros(max(len(poses_a), len(poses_b)), dtype=np.intp)
+    return Solids([mesh_a, mesh_b]).intersect(numbers, poses_a, numbers + 1, poses_b)

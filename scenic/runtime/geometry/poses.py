@@ -22,15 +22,12 @@ class Poses:
         position: centre of the bounding box in the world, metres, ``(n, 3)`` or ``(1, 3)``.
         orientation: unit quaternions (x, y, z, w), ``(n, 4)`` or ``(1, 4)``.
         size: width, length and height, metres, ``(n, 3)`` or ``(1, 3)``.
-        constant_size: whether the size is known to be the same in every batch, not just in this one. It
-            decides which frame exact tests work in, so it must not depend on the batch.
 
     """
 
     position: Floats
     orientation: Floats
     size: Floats
-    constant_size: bool = False
 
     def __post_init__(self) -> None:
         shapes = {len(self.position), len(self.orientation), len(self.size)} - {1}
@@ -52,7 +49,6 @@ class Poses:
             np.asarray(position, dtype=np.float64).reshape(1, 3),
             np.asarray(orientation, dtype=np.float64).reshape(1, 4),
             np.asarray(size, dtype=np.float64).reshape(1, 3),
-            constant_size=True,
         )
 
     def __len__(self) -> int:
@@ -71,7 +67,6 @@ class Poses:
             _take(self.position, entries),
             _take(self.orientation, entries),
             _take(self.size, entries),
-            self.constant_size,
         )
         if "matrix" in self.__dict__:
             taken.__dict__["matrix"] = _take(self.matrix, entries)

@@ -12,7 +12,7 @@ from scenic.runtime.geometry.affine import AffineMaps, Columns
 from scenic.runtime.geometry.cells import PADDING
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.poses import Booleans, Floats, Indices
-from scenic.runtime.geometry.voxels import COVER_BOXES, INTERIOR_POINTS, RESOLUTION, voxels
+from scenic.runtime.geometry.voxels import COVER_BOXES, RESOLUTION, voxels
 
 _STEP: Final = RESOLUTION + 1
 
@@ -25,22 +25,22 @@ class ProofTable:
         self._solid = np.concatenate([item.solid.ravel() for item in known])
         self._filled = np.concatenate([item.filled.ravel() for item in known])
         # Indexed by coordinate, member and mesh; meshes with fewer members repeat their first.
-        self._interior = np.stack([_padded(item.interior, INTERIOR_POINTS).T for item in known], axis=-1)
+        self._probes = np.stack([item.probes.T for item in known], axis=-1)
         cover = [_padded(item.cover, COVER_BOXES) for item in known]
         self._middle = np.stack([boxes.mean(axis=1).T for boxes in cover], axis=-1)
         self._half = np.stack([(boxes[:, 1] - boxes[:, 0]).T / 2 for boxes in cover], axis=-1)
 
     def contact(self, moving: Indices, still: Indices, maps: AffineMaps, points: slice) -> Booleans:
-        """Whether one of the interior ``points`` of a moving mesh lies in a solid cell of a still one, ``(n,)``.
+        """Whether one of the probing ``points`` of a moving mesh lies in a solid cell of a still one, ``(n,)``.
 
         Args:
             moving: mesh numbers, ``(n,)``.
             still: mesh numbers, ``(n,)``.
             maps: from the unit frames of the moving meshes into those of the still ones.
-            points: which of the interior points; the deepest come first.
+            points: which of the probes; the deepest come first, those on the surface last.
 
         """
-        x, y, z = maps.columns(_gathered(self._interior[:, points], moving))
+        x, y, z = maps.columns(_gathered(self._probes[:, points], moving))
         near = (np.abs(x) <= 0.5) & (np.abs(y) <= 0.5) & (np.abs(z) <= 0.5)
         where = np.flatnonzero(near)
         result = np.zeros(len(moving), dtype=np.bool_)

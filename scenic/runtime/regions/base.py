@@ -151,14 +151,9 @@ def body_operands(thing: Any) -> tuple[Any, Any, Any, Any]:
     return thing.position, thing.orientation, size, thing.shape
 
 
-def body_of(
-    position: Column, orientation: Column, size: Column, shape: Column, *, constant_size: bool = False
-) -> Body:
-    """The body of an object over lanes, from the columns of `body_operands`.
-
-    ``constant_size`` says that the size is the same in every lane of every batch (see `Poses`).
-    """
-    poses = Poses(position, orientation, size, constant_size)
+def body_of(position: Column, orientation: Column, size: Column, shape: Column) -> Body:
+    """The body of an object over lanes, from the columns of `body_operands`."""
+    poses = Poses(position, orientation, size)
     if len(shape) == 1:
         return Body((shape[0].mesh,), None, poses)
     meshes: dict[int, int] = {}

@@ -148,7 +148,7 @@ class ObjectNodes:
     def body(self, batch: Batch) -> Body:
         """The object's body in every lane."""
         columns = [batch.column(node) for node in self.all[:4]]
-        body = body_of(*columns, constant_size=self.size.is_constant)
+        body = body_of(*columns)
         return replace(
             body,
             allow=batch.column(self.allow_collisions),

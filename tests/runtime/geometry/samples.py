@@ -66,12 +66,12 @@ SHAPES = {
 }
 
 
-def random_poses(count: int, seed: int, *, spread=1.0, sizes=(0.3, 1.5), constant_size=False) -> Poses:
+def random_poses(count: int, seed: int, *, spread=1.0, sizes=(0.3, 1.5), same_size=False) -> Poses:
     rng = np.random.default_rng(seed)
     orientation = rng.normal(size=(count, 4))
     orientation /= np.linalg.norm(orientation, axis=1, keepdims=True)
-    size = rng.uniform(*sizes, size=(1 if constant_size else count, 3))
-    return Poses(rng.uniform(-spread, spread, (count, 3)), orientation, size, constant_size)
+    size = rng.uniform(*sizes, size=(1 if same_size else count, 3))
+    return Poses(rng.uniform(-spread, spread, (count, 3)), orientation, size)
 
 
 def yawed(position, yaw=0.0, size=(1, 1, 1)) -> Poses:

@@ -57,7 +57,7 @@ def test_batches_do_not_matter(batch):
 
 
 def test_fixed_poses_broadcast():
-    a, b = random_poses(50, 5), random_poses(1, 6, constant_size=True)
+    a, b = random_poses(50, 5), random_poses(1, 6, same_size=True)
     repeated = Poses(*(np.repeat(part, 50, axis=0) for part in (b.position, b.orientation, b.size)))
     np.testing.assert_array_equal(broadphase.boxes_overlap(a, b), broadphase.boxes_overlap(a, repeated))
 

@@ -27,9 +27,7 @@ def crowd(bodies: int, seed: int, lanes: int = LANES) -> list[Body]:
             poses = random_poses(1, seed + number, spread=spread, sizes=(0.2, 0.8))
             poses = Poses.fixed(poses.position[0], poses.orientation[0], poses.size[0])
         else:
-            poses = random_poses(
-                lanes, seed + number, spread=spread, sizes=(0.2, 0.8), constant_size=kind == 1
-            )
+            poses = random_poses(lanes, seed + number, spread=spread, sizes=(0.2, 0.8), same_size=kind == 1)
         mesh = MESHES[rng.integers(len(MESHES))]
         if rng.random() < 0.3:
             poses.bounds()  # bodies whose world boxes are known are looked at by them
@@ -43,7 +41,7 @@ def crowd(bodies: int, seed: int, lanes: int = LANES) -> list[Body]:
 def lane_poses(body: Body, lane: int) -> Poses:
     parts = (body.poses.position, body.poses.orientation, body.poses.size)
     rows = [part[lane : lane + 1] if len(part) > 1 else part for part in parts]
-    return Poses(*rows, body.poses.constant_size)
+    return Poses(*rows)
 
 
 def one_by_one(bodies, pairs, lanes):

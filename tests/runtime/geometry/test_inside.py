@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from scenic.runtime.geometry import primitives
-from scenic.runtime.geometry.inside import contains_points
+from scenic.runtime.geometry.inside import contains_lattice, contains_points
 from scenic.runtime.geometry.mesh import Mesh
 
 from .samples import FILES, SHAPES, bumpy, hollow, in_batches, real_meshes, table, unit_mesh
@@ -83,3 +83,17 @@ def test_batches_do_not_matter(batch):
         in_batches(lambda i: contains_points(bumpy(3), points[i]), 600, batch), whole
     )
     np.testing.assert_array_equal(contains_points(bumpy(3), points[::3]), whole[::3])
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_lattices_are_points(name):
+    mesh = SHAPES[name]()
+    rng = np.random.default_rng(8)
+    x, y = rng.uniform(-0.6, 0.6, 20), np.concatenate([np.linspace(-0.5, 0.5, 7), rng.uniform(-0.6, 0.6, 20)])
+    z = np.sort(np.concatenate([rng.uniform(-0.6, 0.6, 8), [-0.5, 0.0, 0.5]]))
+    points = np.stack(np.meshgrid(x, y, z, indexing="ij"), axis=-1).reshape(-1, 3)
+    found = contains_lattice(mesh, x, y, z)
+    # On the very border of the mesh's box the two may differ, as all points of its surface may go either way.
+    off_border = (np.abs(points) != 0.5).all(axis=1)
+    np.testing.assert_array_equal(found.ravel()[off_border], contains_points(mesh, points)[off_border])
+    assert 0 < found.mean() < 1

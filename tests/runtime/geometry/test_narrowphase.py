@@ -1,15 +1,14 @@
 import itertools
 
+import fcl
 import numpy as np
 import pytest
 
 from scenic.graph import quaternions
-from scenic.runtime.geometry import narrowphase, primitives
+from scenic.runtime.geometry import primitives
 from scenic.runtime.geometry.affine import relative_map
-from scenic.runtime.geometry.fcl import SizedSurfaces, Surface
-from scenic.runtime.geometry.narrowphase import meshes_intersect
+from scenic.runtime.geometry.narrowphase import Solids, meshes_intersect
 from scenic.runtime.geometry.poses import Poses
-from scenic.runtime.geometry.proofs import ProofTable
 
 from .samples import (
     FILES,
@@ -23,6 +22,7 @@ from .samples import (
     real_meshes,
     table,
     unit_mesh,
+    world_vertices,
     yawed,
 )
 
@@ -41,41 +41,62 @@ def check(mesh_a, poses_a, mesh_b, poses_b, count):
     return found
 
 
-@pytest.mark.parametrize("constant_size", [False, True])
+@pytest.mark.parametrize("same_size", [False, True])
 @pytest.mark.parametrize(("first", "second"), PAIRS)
-def test_against_booleans(first, second, constant_size):
+def test_against_booleans(first, second, same_size):
     seed = PAIRS.index((first, second))
-    a = random_poses(24, seed, spread=0.6, constant_size=constant_size)
-    b = random_poses(24, seed + 100, spread=0.6, constant_size=constant_size)
+    a = random_poses(24, seed, spread=0.6, same_size=same_size)
+    b = random_poses(24, seed + 100, spread=0.6, same_size=same_size)
     check(SHAPES[first](), a, SHAPES[second](), b, 24)
 
 
 @real_meshes
-@pytest.mark.parametrize("constant_size", [False, True])
-def test_real_meshes_against_booleans(constant_size):
+@pytest.mark.parametrize("same_size", [False, True])
+def test_real_meshes_against_booleans(same_size):
     seen = []
     for number, (first, second) in enumerate(list(itertools.combinations(FILES, 2))[::4]):
-        a = random_poses(4, number, spread=0.5, constant_size=constant_size)
-        b = random_poses(4, number + 100, spread=0.5, constant_size=constant_size)
+        a = random_poses(4, number, spread=0.5, same_size=same_size)
+        b = random_poses(4, number + 100, spread=0.5, same_size=same_size)
         seen.extend(check(unit_mesh(first), a, unit_mesh(second), b, 4))
     assert 0.1 < np.mean(seen) < 0.9
 
 
+def fcl_touches(vertices_a, faces_a, vertices_b, faces_b) -> bool:
+    """Whether surfaces touch, by the Flexible Collision Library."""
+    objects = []
+    for vertices, faces in ((vertices_a, faces_a), (vertices_b, faces_b)):
+        model = fcl.BVHModel()
+        model.beginModel(len(faces), len(vertices))
+        model.addSubModel(vertices, faces)
+        model.endModel()
+        objects.append(fcl.CollisionObject(model, fcl.Transform()))
+    return bool(fcl.collide(*objects, fcl.CollisionRequest(), fcl.CollisionResult()))
+
+
+def check_surfaces(mesh_a, poses_a, mesh_b, poses_b, count):
+    zeros = np.zeros(count, dtype=np.intp)
+    found = Solids([mesh_a, mesh_b]).surfaces_touch(zeros, poses_a, zeros + 1, poses_b)
+    for entry in range(count):
+        corners = [world_vertices(mesh_a, poses_a, entry), world_vertices(mesh_b, poses_b, entry)]
+        assert found[entry] == fcl_touches(corners[0], mesh_a.faces, corners[1], mesh_b.faces), entry
+    return found
+
+
+@pytest.mark.parametrize(("first", "second"), PAIRS)
+def test_surfaces_against_fcl(first, second):
+    seed = PAIRS.index((first, second))
+    a, b = random_poses(30, seed + 300, spread=0.5), random_poses(30, seed + 400, spread=0.5)
+    found = check_surfaces(SHAPES[first](), a, SHAPES[second](), b, 30)
+    assert 0 < found.mean() < 1 or (first, second) == ("box", "box")
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize("constant_size", [False, True])
-def test_large_meshes_are_indexed_in_part(constant_size):
+def test_surfaces_of_large_meshes():
     large = bumpy(6)
-    assert len(large.faces) > narrowphase._MANY_FACES
-    a = random_poses(30, 15, spread=0.5, sizes=(0.8, 1.5), constant_size=constant_size)
-    b = random_poses(30, 16, spread=0.5, sizes=(0.1, 0.6), constant_size=constant_size)
+    a = random_poses(30, 15, spread=0.5, sizes=(0.8, 1.5))
+    b = random_poses(30, 16, spread=0.5, sizes=(0.1, 0.6))
     check(large, a, table(), b, 30)
-    found = narrowphase.surfaces_touch(large, a, table(), b)
-    whole = SizedSurfaces(large).at(np.ones(3))
-    maps = relative_map(b, a)
-    for entry in range(30):
-        other = Surface(maps.of_entry(entry, table().vertices), table().faces)
-        assert found[entry] == whole.touches(other)
-    assert 0 < found.mean() < 1
+    assert 0 < check_surfaces(large, a, table(), b, 30).mean() < 1
 
 
 def test_a_stool_under_a_table():
@@ -95,13 +116,11 @@ def test_a_stool_under_a_table():
 def test_nested_bodies_collide_but_not_in_a_cavity():
     outer, inner = yawed((1, 2, 3), 0.4, (2, 2, 2)), yawed((1, 2, 3), 1.0, (0.2, 0.2, 0.2))
     spheroid = primitives.spheroid()
-    for constant in (True, False):
-        a, b = (Poses(pose.position, pose.orientation, pose.size, constant) for pose in (outer, inner))
-        for solid in (primitives.box(), primitives.cylinder(), spheroid):
-            assert meshes_intersect(solid, a, spheroid, b)[0]
-            assert meshes_intersect(spheroid, b, solid, a)[0]
-        assert not meshes_intersect(hollow(), a, spheroid, b)[0]
-        assert not meshes_intersect(spheroid, b, hollow(), a)[0]
+    for solid in (primitives.box(), primitives.cylinder(), spheroid):
+        assert meshes_intersect(solid, outer, spheroid, inner)[0]
+        assert meshes_intersect(spheroid, inner, solid, outer)[0]
+    assert not meshes_intersect(hollow(), outer, spheroid, inner)[0]
+    assert not meshes_intersect(spheroid, inner, hollow(), outer)[0]
 
 
 def test_a_body_around_one_part_of_another():
@@ -109,30 +128,55 @@ def test_a_body_around_one_part_of_another():
     a = yawed((0, 0, 0), size=(1, 1, 1))
     for size in (0.6, 0.9):
         filler = yawed((0, 0, 0), size=(size, size, size))
-        assert narrowphase.solids_touch(hollow(), a, primitives.cylinder(), filler)[0]
-        assert narrowphase.solids_touch(primitives.cylinder(), filler, hollow(), a)[0]
+        assert meshes_intersect(hollow(), a, primitives.cylinder(), filler)[0]
+        assert meshes_intersect(primitives.cylinder(), filler, hollow(), a)[0]
 
 
 def test_steps_agree_with_the_exact_test():
-    """What the quick tests prove is what FCL and parity say."""
-    proved = 0
+    """What cells prove is what faces and parity say."""
+    proved, count = 0, 300
+    zeros = np.zeros(count, dtype=np.intp)
     for first, second in PAIRS:
-        a, b = random_poses(60, 7, spread=0.8), random_poses(60, 8, spread=0.8)
-        meshes = [SHAPES[first](), SHAPES[second]()]
-        zeros = np.zeros(60, dtype=np.intp)
-        together, left = narrowphase.quick_tests(ProofTable(meshes), zeros, a, zeros + 1, b)
-        exact = narrowphase.solids_touch(meshes[0], a, meshes[1], b)
+        a, b = random_poses(count, 7, spread=0.8), random_poses(count, 8, spread=0.8)
+        solids = Solids([SHAPES[first](), SHAPES[second]()])
+        together, left = solids.prove(zeros, a, zeros + 1, b)
+        exact = solids.touch(zeros, a, zeros + 1, b)
         np.testing.assert_array_equal(together[~left], exact[~left])
         proved += int((~left).sum())
-    assert proved > 0.6 * 60 * len(PAIRS)
+    assert proved > 0.7 * count * len(PAIRS)
 
 
-@pytest.mark.parametrize("constant_size", [False, True])
+def test_cells_are_made_once_they_pay():
+    solids = Solids([table(), primitives.cone()])
+    a, b = random_poses(200, 17, spread=0.6), random_poses(200, 18, spread=0.6)
+    zeros = np.zeros(200, dtype=np.intp)
+    assert solids.prove(zeros, a, zeros + 1, b)[1].all()
+    exact = solids.intersect(zeros, a, zeros + 1, b)
+    assert not solids.prove(zeros, a, zeros + 1, b)[1].all()
+    np.testing.assert_array_equal(solids.intersect(zeros, a, zeros + 1, b), exact)
+
+
+def test_mixed_meshes_at_once():
+    names = list(SHAPES)
+    solids = Solids([SHAPES[name]() for name in names])
+    rng = np.random.default_rng(19)
+    first, second = rng.integers(0, len(names), (2, 400))
+    a, b = random_poses(400, 20, spread=0.7), random_poses(400, 21, spread=0.7)
+    found = solids.intersect(first, a, second, b)
+    for entry in range(400):
+        one = np.array([entry])
+        alone = meshes_intersect(
+            SHAPES[names[first[entry]]](), a.take(one), SHAPES[names[second[entry]]](), b.take(one)
+        )
+        assert found[entry] == alone[0]
+
+
+@pytest.mark.parametrize("same_size", [False, True])
 @pytest.mark.parametrize("batch", [1, 7, 512])
-def test_batches_do_not_matter(batch, constant_size):
+def test_batches_do_not_matter(batch, same_size):
     count = 520
-    a = random_poses(count, 9, spread=0.6, constant_size=constant_size)
-    b = random_poses(count, 10, spread=0.6, constant_size=constant_size)
+    a = random_poses(count, 9, spread=0.6, same_size=same_size)
+    b = random_poses(count, 10, spread=0.6, same_size=same_size)
     mesh_a, mesh_b = table(), primitives.cone()
     whole = meshes_intersect(mesh_a, a, mesh_b, b)
     parts = in_batches(lambda i: meshes_intersect(mesh_a, a.take(i), mesh_b, b.take(i)), count, batch)

@@ -30,10 +30,10 @@ def test_bounds_hold_the_oriented_boxes_tightly():
 
 
 def test_take_keeps_what_is_the_same_everywhere():
-    poses = random_poses(6, 2, constant_size=True)
+    poses = random_poses(6, 2, same_size=True)
     assert poses.matrix.shape == (6, 3, 3)
     some = poses.take(np.array([4, 1]))
-    assert (len(some), len(some.size), some.constant_size) == (2, 1, True)
+    assert (len(some), len(some.size)) == (2, 1)
     np.testing.assert_array_equal(some.position, poses.position[[4, 1]])
     np.testing.assert_array_equal(some.matrix, poses.matrix[[4, 1]])
     assert len(poses.take(np.zeros(0, dtype=int))) == 0

@@ -4,7 +4,8 @@ import pytest
 from scenic.runtime.geometry import primitives
 from scenic.runtime.geometry.cells import touched_cells
 from scenic.runtime.geometry.inside import contains_points
-from scenic.runtime.geometry.voxels import RESOLUTION, voxels
+from scenic.runtime.geometry.projection import distance_to_triangles
+from scenic.runtime.geometry.voxels import PROBES, RESOLUTION, voxels
 
 from .samples import FILES, SHAPES, real_meshes, unit_mesh
 
@@ -29,8 +30,13 @@ def check(mesh):
     lower, upper = known.cover[:, 0], known.cover[:, 1]
     covered = ((points[:, None] >= lower) & (points[:, None] <= upper)).all(axis=2).any(axis=1)
     assert covered[inside].all()
-    assert contains_points(mesh, known.interior).all() or mesh.is_box
-    assert len(known.interior) > 1
+    assert known.probes.shape == (PROBES, 3)
+    held = contains_points(mesh, known.probes)
+    assert held[:2].all() or mesh.is_box
+    corners = np.repeat(mesh.triangles[None], PROBES, axis=0)[~held].reshape(-1, 3, 3)
+    beside = np.repeat(known.probes[~held], len(mesh.faces), axis=0)
+    distance = distance_to_triangles(beside, *np.moveaxis(corners, 1, 0)).reshape(-1, len(mesh.faces))
+    assert (distance.min(axis=1) < 1e-12).all()
 
 
 @pytest.mark.parametrize("name", SHAPES)
@@ -70,4 +76,4 @@ def test_solids_thinner_than_cells_have_interior_points():
     thin = primitives.spheroid()
     check(thin)
     sheet = SHAPES["table"]()
-    assert contains_points(sheet, sheet.derived(voxels).interior).all()
+    assert contains_points(sheet, sheet.derived(voxels).probes[:16]).all()

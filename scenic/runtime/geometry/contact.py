@@ -1,0 +1,110 @@
+"""Whether the surfaces of posed meshes share a point, for many pairs of different meshes at once.
+
+Exact up to rounding: trees of boxes name the pairs of faces that may meet, and those are compared by separating
+axes. Each mesh stays in its unit frame; what is known of it there serves all sizes and poses.
+"""
+
+from collections.abc import Iterator, Sequence
+from typing import Final
+
+import numpy as np
+
+from scenic.runtime.geometry.affine import AffineMaps, Columns
+from scenic.runtime.geometry.facetree import Forest
+from scenic.runtime.geometry.mesh import Mesh
+from scenic.runtime.geometry.poses import Booleans, Indices
+from scenic.runtime.geometry.triangles import Corners, separated_by_edges
+
+_FIRST: Final = 4
+"""Pairs of faces of an entry compared first; each further turn takes four times as many, until one pair touches."""
+
+_CHUNK: Final = 1 << 12
+"""Pairs of faces compared together, so that the temporary columns stay in the processor's cache."""
+
+_SLACK: Final = 1e-14
+"""Gap, in parts of the faces' size and distance from the origin, up to which they touch: rounding."""
+
+
+class Surfaces:
+    """The surfaces of several unit meshes; entries name meshes by their numbers."""
+
+    def __init__(self, meshes: Sequence[Mesh]) -> None:
+        self._forest = Forest(meshes)
+
+    def touch(self, first: Indices, second: Indices, forth: AffineMaps, back: AffineMaps) -> Booleans:
+        """Which surfaces share a point, ``(n,)``.
+
+        Args:
+            first: mesh numbers, ``(n,)``.
+            second: mesh numbers, ``(n,)``.
+            forth: the maps from the unit frame of the first mesh to that of the second.
+            back: the maps the other way.
+
+        """
+        result = np.zeros(len(first), dtype=np.bool_)
+        for entry, one, two in self._forest.near_faces(first, second, forth, back, result):
+            for part in _turns(entry):
+                some = part[~result[entry[part]]]
+                touching = self._touching(entry[some], one[some], two[some], forth, back)
+                result[entry[some[touching]]] = True
+        return result
+
+    def _touching(
+        self, entry: Indices, one: Indices, two: Indices, forth: AffineMaps, back: AffineMaps
+    ) -> Indices:
+        """Which of the pairs of faces share a point."""
+        first, second = _corners(self._forest.corners, one), _corners(self._forest.corners, two)
+        left = self._cut_plane(first, two, second, forth, entry)
+        entry, first, second = entry[left], _taken(first, left), _taken(second, left)
+        more = self._cut_plane(second, one[left], first, back, entry)
+        left, entry, first, second = left[more], entry[more], _taken(first, more), _taken(second, more)
+        images = [forth.take(entry).columns(corner) for corner in first]
+        return left[~separated_by_edges(images, second)]
+
+    def _cut_plane(
+        self, corners: Corners, other: Indices, on_plane: Corners, maps: AffineMaps, entry: Indices
+    ) -> Indices:
+        """The pairs in which the corners, taken through the maps, are not all on one side of the other face's plane."""
+        x, y, z = (column[other] for column in self._forest.normals)
+        taken = maps.take(entry)
+        # The plane is taken back through the map: n (M p + o - q) = (M^T n) p + n (o - q).
+        normal = [x * taken.matrix[0][i] + y * taken.matrix[1][i] + z * taken.matrix[2][i] for i in range(3)]
+        origin = on_plane[0]
+        offset = [taken.offset[i] - origin[i] for i in range(3)]
+        height = x * offset[0] + y * offset[1] + z * offset[2]
+        sizes = [np.abs(column) for column in (x, y, z)]
+        slack = sizes[0] * np.abs(offset[0]) + sizes[1] * np.abs(offset[1]) + sizes[2] * np.abs(offset[2])
+        slack += np.abs(normal[0]) + np.abs(normal[1]) + np.abs(normal[2])
+        slack *= _SLACK
+        a, b, c = (normal[0] * px + normal[1] * py + normal[2] * pz + height for px, py, pz in corners)
+        highest = np.maximum(np.maximum(a, b), c)
+        lowest = np.minimum(np.minimum(a, b), c)
+        return np.flatnonzero((lowest <= slack) & (highest >= -slack))
+
+
+def _turns(entry: Indices) -> Iterator[Indices]:
+    """Indices of pairs: the first few of each entry, then more and more of the rest."""
+    if len(entry) <= _CHUNK // 4:
+        yield np.arange(len(entry))
+        return
+    order = np.argsort(entry, kind="stable")
+    grouped = entry[order]
+    starts = np.flatnonzero(np.diff(grouped, prepend=-1))
+    rank = np.arange(len(order)) - np.repeat(starts, np.diff(starts, append=len(order)))
+    done, most = 0, _FIRST
+    while done < len(order):
+        chosen = order[(rank >= done) & (rank < done + most)]
+        if not len(chosen):
+            return
+        for start in range(0, len(chosen), _CHUNK):
+            yield chosen[start : start + _CHUNK]
+        done += most
+        most *= 4
+
+
+def _corners(columns: Sequence[Columns], faces: Indices) -> Corners:
+    return [(x[faces], y[faces], z[faces]) for x, y, z in columns]
+
+
+def _taken(corners: Corners, chosen: Indices) -> Corners:
+    return [(x[chosen], y[chosen], z[chosen]) for x, y, z in corners]

@@ -1,0 +1,198 @@
+"""The faces of unit meshes in trees of boxes, and the pairs of faces of two posed meshes that may meet.
+
+Trees are made once for each mesh, in its unit frame, and serve every size and pose: boxes of one mesh are taken
+into the frame of the other by the affine map between the two, both ways. Many pairs of meshes are walked through
+together, level by level, so that the cost of a step is shared by all of them.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from scenic.runtime.geometry.affine import AffineMaps, Columns
+from scenic.runtime.geometry.mesh import Mesh
+from scenic.runtime.geometry.poses import Booleans, Floats, Indices
+from scenic.runtime.geometry.ragged import expand
+
+_PADDING: Final = 1e-9
+"""By how much boxes are widened, in the unit frame: far more than the rounding of coordinates."""
+
+_FRONT: Final = 1 << 14
+"""Pairs of boxes compared together, so that the temporary columns stay in the processor's cache."""
+
+_SMALL: Final = 1 << 11
+"""Pairs up to which both trees are descended two levels at once: then steps cost more than comparisons."""
+
+
+@dataclass(frozen=True, slots=True)
+class FaceTree:
+    """A complete binary tree over the faces of a mesh, in heap order.
+
+    Attributes:
+        middle: the centres of the boxes, ``(nodes, 3)``.
+        half: half their extents, a little widened, ``(nodes, 3)``.
+        starts: where the faces of each leaf begin in ``faces``, ``(leaves + 1,)``.
+        faces: face numbers, leaf by leaf; one or two to a leaf.
+
+    """
+
+    middle: Floats
+    half: Floats
+    starts: Indices
+    faces: Indices
+
+
+def face_tree(mesh: Mesh) -> FaceTree:
+    """The tree of a unit mesh. Get it as ``mesh.derived(face_tree)``."""
+    corners = mesh.triangles
+    # Written out, since reductions over short axes are slow.
+    lowest = np.minimum(np.minimum(corners[:, 0], corners[:, 1]), corners[:, 2])
+    highest = np.maximum(np.maximum(corners[:, 0], corners[:, 1]), corners[:, 2])
+    centre = lowest + highest
+    count = len(corners)
+    depth = count.bit_length() - 1
+    faces = np.arange(count)
+    for level in range(depth):
+        starts = _starts(count, level)
+        sorted_centre = centre[faces]
+        spread = np.maximum.reduceat(sorted_centre, starts[:-1]) - np.minimum.reduceat(
+            sorted_centre, starts[:-1]
+        )
+        node = np.repeat(np.arange(len(spread)), np.diff(starts))
+        along = sorted_centre[np.arange(count), np.argmax(spread, axis=1)[node]]
+        # Coordinates lie within the unit cube, so that one number sorts by node first.
+        faces = faces[np.argsort(4.0 * node + along)]
+    starts = _starts(count, depth)
+    lower = [np.minimum.reduceat(lowest[faces], starts[:-1])]
+    upper = [np.maximum.reduceat(highest[faces], starts[:-1])]
+    for _ in range(depth):
+        lower.append(np.minimum(lower[-1][::2], lower[-1][1::2]))
+        upper.append(np.maximum(upper[-1][::2], upper[-1][1::2]))
+    low, high = np.concatenate(lower[::-1]), np.concatenate(upper[::-1])
+    return FaceTree((low + high) / 2, (high - low) / 2 + _PADDING, starts, faces)
+
+
+def _starts(count: int, level: int) -> Indices:
+    """Where the parts begin in which ``count`` faces are cut evenly, and the end."""
+    return (np.arange((1 << level) + 1) * count) >> level
+
+
+class Forest:
+    """The trees of several meshes side by side; entries name meshes by their numbers."""
+
+    def __init__(self, meshes: Sequence[Mesh]) -> None:
+        trees = [mesh.derived(face_tree) for mesh in meshes]
+        nodes = np.array([len(tree.middle) for tree in trees])
+        sizes = np.array([len(tree.faces) for tree in trees])
+        self._roots = np.cumsum(nodes) - nodes
+        first_face = np.cumsum(sizes) - sizes
+        self._middle = _columns([tree.middle for tree in trees])
+        self._half = _columns([tree.half for tree in trees])
+        child, start, end = [], [], []
+        for tree, root, face in zip(trees, self._roots.tolist(), first_face.tolist(), strict=True):
+            leaves = len(tree.starts) - 1
+            inner = np.arange(leaves - 1)
+            child += [root + 2 * inner + 1, np.full(leaves, -1)]
+            start += [np.zeros(leaves - 1, dtype=np.intp), face + tree.starts[:-1]]
+            end += [np.zeros(leaves - 1, dtype=np.intp), face + tree.starts[1:]]
+        self._child = np.concatenate(child)
+        """The first child of each node, the second comes next; -1 for leaves."""
+        self._start, self._count = np.concatenate(start), np.concatenate(end) - np.concatenate(start)
+        ordered = [(mesh, tree.faces) for mesh, tree in zip(meshes, trees, strict=True)]
+        self.corners: Final = [
+            _columns([mesh.triangles[faces, number] for mesh, faces in ordered]) for number in range(3)
+        ]
+        """The three corners of all faces as columns ``(f,)``, in the unit frames of their meshes."""
+        self.normals: Final = _columns([mesh.area_vectors[faces] for mesh, faces in ordered])
+        """Area vectors of all faces, likewise."""
+
+    def near_faces(
+        self, first: Indices, second: Indices, forth: AffineMaps, back: AffineMaps, settled: Booleans
+    ) -> Iterator[tuple[Indices, Indices, Indices]]:
+        """All pairs of faces whose boxes meet in both frames, in groups (entry, first face, second face).
+
+        Args:
+            first: mesh numbers, ``(n,)``.
+            second: mesh numbers, ``(n,)``.
+            forth: the maps from the unit frame of the first mesh to that of the second.
+            back: the maps the other way.
+            settled: entries of which no more is wanted, ``(n,)``; may change while the groups are read.
+
+        """
+        there, here = _Maps(forth), _Maps(back)
+        fronts = [(np.arange(len(first)), self._roots[first], self._roots[second])]
+        while fronts:
+            entry, one, two = fronts.pop()
+            left = np.flatnonzero(~settled[entry])
+            if len(left) > _FRONT:
+                # The later half waits: going down first finds what settles entries early.
+                half = len(left) // 2
+                fronts.append((entry[left[half:]], one[left[half:]], two[left[half:]]))
+                left = left[:half]
+            entry, one, two = entry[left], one[left], two[left]
+            near = self._meet(there, entry, one, two)
+            entry, one, two = entry[near], one[near], two[near]
+            near = self._meet(here, entry, two, one)
+            entry, one, two = entry[near], one[near], two[near]
+            ends = (self._child[one] < 0) & (self._child[two] < 0)
+            if ends.any():
+                yield self._faces(entry[ends], one[ends], two[ends])
+                go_on = ~ends
+                entry, one, two = entry[go_on], one[go_on], two[go_on]
+            if len(entry):
+                below = self._below(entry, one, two)
+                fronts.append(self._below(*below) if len(below[0]) <= _SMALL else below)
+
+    def _meet(self, maps: "_Maps", entry: Indices, moving: Indices, still: Indices) -> Indices:
+        """Which boxes around images of moving boxes meet still boxes."""
+        middle = [column[moving] for column in self._middle]
+        half = [column[moving] for column in self._half]
+        near: Booleans | None = None
+        for axis in range(3):
+            matrix, size = maps.matrix[axis], maps.size[axis]
+            centre = maps.offset[axis][entry] - self._middle[axis][still]
+            reach = self._half[axis][still]
+            for other in range(3):
+                centre += matrix[other][entry] * middle[other]
+                reach += size[other][entry] * half[other]
+            beside = np.abs(centre, out=centre) <= reach
+            near = beside if near is None else near & beside
+        assert near is not None
+        return np.flatnonzero(near)
+
+    def _below(self, entry: Indices, one: Indices, two: Indices) -> tuple[Indices, Indices, Indices]:
+        """The pairs of the children; a leaf stays beside the children of the other."""
+        child_one, child_two = self._child[one], self._child[two]
+        wide_one, wide_two = (child_one >= 0) + 1, (child_two >= 0) + 1
+        owner, offset = expand(wide_one * wide_two)
+        width = wide_two[owner]
+        next_one = np.where(child_one < 0, one, child_one)[owner] + offset // width
+        next_two = np.where(child_two < 0, two, child_two)[owner] + offset % width
+        return entry[owner], next_one, next_two
+
+    def _faces(self, entry: Indices, one: Indices, two: Indices) -> tuple[Indices, Indices, Indices]:
+        """The pairs of the faces of leaves."""
+        width = self._count[two]
+        owner, offset = expand(self._count[one] * width)
+        width = width[owner]
+        return (
+            entry[owner],
+            self._start[one][owner] + offset // width,
+            self._start[two][owner] + offset % width,
+        )
+
+
+class _Maps:
+    """Affine maps, and the magnitudes of their coefficients, indexed by row, column and entry."""
+
+    def __init__(self, maps: AffineMaps) -> None:
+        self.matrix = maps.matrix
+        self.size = [[np.abs(column) for column in row] for row in maps.matrix]
+        self.offset = maps.offset
+
+
+def _columns(parts: Sequence[Floats]) -> Columns:
+    x, y, z = np.ascontiguousarray(np.concatenate(parts).T)
+    return x, y, z
