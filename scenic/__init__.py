@@ -26,8 +26,10 @@ if TYPE_CHECKING:
         SpecifierError,
     )
     from scenic.pipeline import load, scenarioFromFile, scenarioFromString
+    from scenic.runtime.established import setDebuggingOptions
     from scenic.runtime.scenario import Scenario
     from scenic.runtime.scene import Scene
+    from scenic.runtime.specifiers import specifier
 
 _HOMES = MappingProxyType(
     {
@@ -45,6 +47,8 @@ _HOMES = MappingProxyType(
         "scenarioFromString": "scenic.pipeline",
         "Scenario": "scenic.runtime.scenario",
         "Scene": "scenic.runtime.scene",
+        "setDebuggingOptions": "scenic.runtime.established",
+        "specifier": "scenic.runtime.specifiers",
     }
 )
 
@@ -63,10 +67,16 @@ __all__ = [
     "parse",
     "scenarioFromFile",
     "scenarioFromString",
+    "setDebuggingOptions",
+    "specifier",
 ]
 
 
 def __getattr__(name: str) -> Any:
+    if name == "__version__":
+        from importlib.metadata import version
+
+        return version("scenic-lang")
     if name not in _HOMES:
         raise AttributeError(f"module 'scenic' has no attribute {name!r}")
     return getattr(import_module(_HOMES[name]), name)

@@ -24,6 +24,7 @@ from scenic.language.errors import (
 from scenic.language.source import Source, read_source
 from scenic.language.spans import Span
 from scenic.runtime.context import Context, current
+from scenic.runtime.importing import beside
 from scenic.runtime.mutation import apply_noise
 from scenic.runtime.objects import Object, Point
 from scenic.runtime.prelude import Loader
@@ -184,7 +185,9 @@ def _scenario(
     compiled = compile_text(text, filename=filename)
     if compiled.code is None:
         errors = [item for item in compiled.diagnostics if item.severity == "error"]
-        raise ScenicSyntaxError(errors, filename=filename)
+        failure = ScenicSyntaxError(errors, filename=filename)
+        failure.program = text
+        raise failure
     locator = Locator()
 
     def span_of(frame: FrameType) -> Span | None:
@@ -196,7 +199,7 @@ def _scenario(
     modules = Loader(_Modules(Path(filename).parent), context, program, model=model)
     token = current.set(context)
     try:
-        with preserved():
+        with preserved(), beside(Path(filename).parent):
             seed_globals(PROGRAM_SEED)
             module, state = modules.run(compiled.code, filename, {SOURCE_NAME: Source(text, filename)})
             _run_chosen(module, state, chosen)
@@ -223,6 +226,8 @@ def _scenario(
             place = locate(error.__traceback__) if error.__traceback__ is not None else None
             error.span = error.span or (place.span if place else None)
             error.filename = error.filename or (place.filename if place else filename)
+        if error.filename == filename:
+            error.program = text
         raise
     finally:
         current.reset(token)

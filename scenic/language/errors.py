@@ -3,6 +3,7 @@
 Each carries a code, a place and a help line, so that the command line can show it as a diagnostic.
 """
 
+import linecache
 from collections.abc import Sequence
 
 from scenic.language.diagnostics import Diagnostic, Severity
@@ -13,6 +14,8 @@ class Located(Exception):
     """A problem with a code and a place; never raised itself."""
 
     code = "SC400"
+    program: str | None = None
+    """The text that the place is in, where it is not in a file."""
 
     def __init__(
         self,
@@ -35,6 +38,36 @@ class Located(Exception):
     def line(self) -> int | None:
         """The line of the problem, from 1."""
         return None if self.span is None else self.span.line
+
+    @property
+    def lineno(self) -> int | None:
+        """The same under the name that Python's own syntax errors use."""
+        return self.line
+
+    @property
+    def offset(self) -> int | None:
+        """The column of the problem, from 1."""
+        return None if self.span is None else self.span.column + 1
+
+    @property
+    def end_lineno(self) -> int | None:
+        """The line where the problem ends."""
+        return None if self.span is None else self.span.end_line
+
+    @property
+    def end_offset(self) -> int | None:
+        """The column where the problem ends, from 1."""
+        return None if self.span is None else self.span.end_column + 1
+
+    @property
+    def text(self) -> str | None:
+        """The line of the program with the problem, if the program can still be read."""
+        if self.line is None or self.filename is None:
+            return None
+        if self.program is not None:
+            lines = self.program.splitlines(keepends=True)
+            return lines[self.line - 1] if self.line <= len(lines) else None
+        return linecache.getline(self.filename, self.line) or None
 
     def diagnostic(self) -> Diagnostic:
         """The same problem as plain data."""
@@ -78,6 +111,10 @@ class InvalidScenarioError(ScenicError):
     """The program describes no scenario."""
 
     code = "SC401"
+
+
+class MissingFileError(ScenicError, FileNotFoundError):
+    """The file of a program does not exist."""
 
 
 class SpecifierError(ScenicError):

@@ -130,7 +130,7 @@ _ALL = (
     _class("Mutator", "Base class of what adds noise to mutated objects."),
     _class("Behavior", "Base class of all behaviors.", available=False),
     _class("Monitor", "Base class of all monitors.", available=False),
-    _class("Distribution", "Base class of distributions written in Python.", available=False),
+    _class("Distribution", "Base class of distributions written in Python."),
     _class("File(pattern, **options)", "A recorder that writes one file per series.", available=False),
     _class("Files(pattern, **options)", "A recorder that writes one file per value.", available=False),
     Name(
@@ -163,11 +163,14 @@ _ALL = (
     _function(
         "verbosePrint(*values, level=1, indent=True)",
         "Prints if the verbosity is at least the level.",
-        available=False,
     ),
     _function(
         "distributionFunction(function)",
         "Makes a Python function accept random arguments: it is then called with sampled ones.",
+    ),
+    _function(
+        "distributionMethod(method)",
+        "Makes a method written in Python accept random arguments: it is then called with sampled ones.",
     ),
     _function("simulation()", "The running simulation.", available=False),
     # Distributions

@@ -232,9 +232,17 @@ _ORIENTED_POINT = BuiltinClass(
         Attribute("toHeading", "scalar", "The global yaw.", is_method=True),
         Attribute("toOrientation", "orientation", "The global orientation.", is_method=True),
         Attribute(
-            "relativize", "vector", "The global position of a point given in this frame.", is_method=True
+            "relativize",
+            "oriented point",
+            "The oriented point at an offset given in this frame.",
+            is_method=True,
         ),
-        Attribute("relativePosition", "vector", "A global position in this frame.", is_method=True),
+        Attribute(
+            "relativePosition",
+            "vector",
+            "The global position of an offset given in this frame.",
+            is_method=True,
+        ),
         Attribute(
             "distancePast", "scalar", "How far this is ahead of a point, along its heading.", is_method=True
         ),

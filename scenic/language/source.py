@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 
-from scenic.language.errors import ScenicError
+from scenic.language.errors import MissingFileError, ScenicError
 from scenic.language.spans import Span
 
 __all__ = ["Source", "read_source"]
@@ -94,7 +94,9 @@ def read_source(path: str | os.PathLike[str]) -> Source:
     try:
         data = Path(filename).read_bytes()
     except FileNotFoundError:
-        raise _unreadable(filename, "there is no such file", "check the path") from None
+        raise MissingFileError(
+            "there is no such file", code="SC600", filename=filename, help="check the path"
+        ) from None
     except IsADirectoryError:
         raise _unreadable(filename, "this is a directory, not a file", "name the files in it") from None
     except PermissionError:

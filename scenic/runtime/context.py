@@ -68,6 +68,9 @@ class Context:
         return address(place, self._occurrences[place])
 
 
+verbosity: ContextVar[int] = ContextVar("scenic verbosity", default=0)
+"""How much programs and simulations tell: 0 nothing, 1 main steps, 2 details, 3 every action."""
+
 current: ContextVar[Context | None] = ContextVar("scenic context", default=None)
 
 

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from typing import Any
 
 from scenic.language.errors import RandomControlFlowError
-from scenic.runtime.context import here
+from scenic.runtime.context import here, verbosity
 from scenic.runtime.lazy import Lazy, defer, is_lazy
 from scenic.runtime.opaque import call_later
 from scenic.runtime.values import Random, is_random, operate
@@ -106,3 +106,19 @@ def distributionFunction(function: Callable[..., Any]) -> Callable[..., Any]:
     lifted.__name__ = getattr(function, "__name__", "lifted")
     lifted.__doc__ = function.__doc__
     return lifted
+
+
+def verbosePrint(
+    *values: Any,
+    level: int = 1,
+    indent: bool = True,
+    sep: str = " ",
+    end: str = "\n",
+    file: Any = None,
+    flush: bool = False,
+) -> None:
+    """Python's ``print`` where the verbosity is at least ``level``; indented, so that it stands out from results."""
+    if verbosity.get() >= level:
+        text = sep.join(map(builtins.str, values))
+        lead = "  " if indent else ""
+        print(lead + text.replace("\n", "\n" + lead), end=end, file=file, flush=flush)

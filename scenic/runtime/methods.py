@@ -208,6 +208,15 @@ class VectorMethods(Operand):
         """The vector itself; points and objects have the same method."""
         return self
 
+    @property
+    def coordinates(self) -> tuple[Any, Any, Any]:
+        """The three coordinates, as a tuple."""
+        return (self.x, self.y, self.z)
+
+    def applyRotation(self, rotation: Any) -> Any:
+        """The vector turned by an orientation."""
+        return self.rotatedBy(rotation)
+
     def __add__(self, other: Any) -> Any:
         return self._with_vector("add", self, other)
 
@@ -283,6 +292,10 @@ class OrientationMethods(Operand):
     def localAnglesFor(self, other: Any) -> Any:
         """Euler angles of ``other`` in this frame."""
         return self._operate("compose", self.inverse, self._to_orientation(other)).eulerAngles
+
+    def globalToLocalAngles(self, yaw: Any, pitch: Any, roll: Any) -> Any:
+        """Euler angles in this frame of the orientation that has these ones globally."""
+        return self.localAnglesFor((yaw, pitch, roll))
 
     def toOrientation(self) -> Any:
         """The orientation itself."""

@@ -8,7 +8,7 @@ from typing import Any
 
 from scenic.language import errors
 from scenic.language.errors import InvalidScenarioError
-from scenic.runtime import distributions, fields, functions, shapes
+from scenic.runtime import distributions, fields, functions, laws, shapes
 from scenic.runtime.context import here
 from scenic.runtime.mutators import Mutator
 from scenic.runtime.objects import Object, OrientedPoint, Point
@@ -45,7 +45,10 @@ _NAMES: Mapping[str, Any] = MappingProxyType(
         "len": functions.len,
         "filter": functions.filter,
         "range": functions.range,
+        "Distribution": laws.Distribution,
         "distributionFunction": functions.distributionFunction,
+        "distributionMethod": laws.distributionMethod,
+        "verbosePrint": functions.verbosePrint,
         "BoxShape": shapes.BoxShape,
         "CylinderShape": shapes.CylinderShape,
         "ConeShape": shapes.ConeShape,
@@ -65,7 +68,6 @@ _NAMES: Mapping[str, Any] = MappingProxyType(
 
 _UNSUPPORTED = (
     "Behavior",
-    "Distribution",
     "File",
     "Files",
     "GridRegion",
@@ -86,7 +88,6 @@ _UNSUPPORTED = (
     "VerifaiParameter",
     "VerifaiRange",
     "simulation",
-    "verbosePrint",
 )
 
 
@@ -107,6 +108,11 @@ class Unsupported:
 
     def __instancecheck__(self, _instance: Any) -> Any:
         raise unsupported(f"`{self._name}`")
+
+
+_PROVIDED: Mapping[str, Any] = MappingProxyType(
+    {**_NAMES, **{name: Unsupported(name) for name in _UNSUPPORTED}}
+)
 
 
 class GlobalParameters:
@@ -151,6 +157,11 @@ class GlobalParameters:
         )
 
 
+def language_names() -> Mapping[str, Any]:
+    """The language's own names, apart from those that depend on the module they are used in."""
+    return _PROVIDED
+
+
 def provided(name: str) -> Any:
     """What a name means where the program does not bind it itself; ``None`` for unknown names."""
     return _NAMES.get(name, getattr(builtins, name, None))
@@ -166,8 +177,7 @@ def builtin_names(program: Program, filename: str, import_module: Callable[..., 
 
     return {
         **vars(builtins),
-        **_NAMES,
-        **{name: Unsupported(name) for name in _UNSUPPORTED},
+        **language_names(),
         "globalParameters": GlobalParameters(program),
         "localPath": local_path,
         "__import__": import_module,

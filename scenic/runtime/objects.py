@@ -171,14 +171,13 @@ class OrientedPoint(Point):
         """The global orientation."""
         return self.orientation
 
-    def relativize(self, offset: Any) -> Any:
+    def relativePosition(self, offset: Any) -> Any:
         """The global position of ``offset``, given in this frame."""
         return operate("add", self.position, operate("rotate", self.orientation, to_vector(offset)))
 
-    def relativePosition(self, point: Any) -> Any:
-        """A global point in this frame."""
-        inverse = operate("inverse", self.orientation)
-        return operate("rotate", inverse, operate("subtract", to_vector(point), self.position))
+    def relativize(self, offset: Any) -> "OrientedPoint":
+        """The oriented point at ``offset``, given in this frame, with this orientation."""
+        return oriented_point(self.relativePosition(offset), self.orientation)
 
     def distancePast(self, point: Any) -> Any:
         """How far this point is past ``point``, measured along its heading (metres)."""
@@ -192,7 +191,7 @@ class OrientedPoint(Point):
             operate("multiply", y / 2, to_scalar(self.length)),
             operate("multiply", z / 2, to_scalar(self.height)),
         )
-        return oriented_point(self.relativize(offset), self.orientation)
+        return self.relativize(offset)
 
 
 class Object(OrientedPoint):

@@ -68,7 +68,7 @@ def _relative_to(_ego: Ego, value: Any, frame: Any) -> Any:
             return operate("add", point.heading, to_scalar(other))
         if is_orientation(other):
             return operate("compose", to_orientation(frame), to_orientation(value))
-        return oriented_point(point.relativize(to_vector(other, "`relative to`")), point.orientation)
+        return point.relativize(to_vector(other, "`relative to`"))
     if _is_frame(value) and _is_frame(frame):
         return operate("compose", to_orientation(frame), to_orientation(value))
     if _is_place(value) and _is_place(frame):

@@ -28,6 +28,7 @@ from scenic.runtime import conditions, mutation, names
 from scenic.runtime.conditions import Condition
 from scenic.runtime.context import Context, here
 from scenic.runtime.functions import convert
+from scenic.runtime.importing import beside, forget_stranger
 from scenic.runtime.lazy import definite
 from scenic.runtime.methods import OrientationMethods, VectorMethods
 from scenic.runtime.objects import Object, Point
@@ -44,7 +45,7 @@ from scenic.runtime.properties import ATTRIBUTES, PropertyDefinition
 from scenic.runtime.regions.base import Region, Workspace
 from scenic.runtime.resolution import build
 from scenic.runtime.samples import Sample
-from scenic.runtime.specifiers import BUILDERS, Specifier, specify
+from scenic.runtime.specifiers import BUILDERS, Specifier, UserSpecifier, specify
 from scenic.runtime.spreading import spread
 from scenic.runtime.values import (
     Random,
@@ -168,6 +169,10 @@ class Prelude:
         if property is not None:
             if property == "heading" and self._context.mode_2d:
                 return specify("facing", self._ego, *operands)
+            own = self._module.scope.get(property)
+            if isinstance(own, UserSpecifier):
+                (value,) = operands
+                return own(*value) if type(value) is tuple else own(value)
             return specify(name, self._ego, property, *operands)
         return specify(name, self._ego, *operands)
 
@@ -412,6 +417,7 @@ class Loader:
         self._context = context
         self._program = program
         self._model = model
+        self._folder = "."
         self._loaded: dict[Path, ModuleType] = {}
         self._states: dict[Path, Module] = {}
 
@@ -420,6 +426,7 @@ class Loader:
     ) -> tuple[ModuleType, Module]:
         """Run the code of a file as a module, with these globals to begin with."""
         state = Module(filename)
+        self._folder = str(Path(filename).parent)
         module = ModuleType(Path(filename).stem)
         vars(module).update(scope or {})
         self._execute(code, module, state)
@@ -427,7 +434,7 @@ class Loader:
 
     def _execute(self, code: CodeType, module: ModuleType, state: Module) -> None:
         prelude = Prelude(self._context, self._program, state, self)
-        scope = module.__dict__
+        scope = state.scope = module.__dict__
         scope["__scenic__"] = prelude
         scope["__file__"] = state.filename
         scope["__builtins__"] = names.builtin_names(
@@ -445,9 +452,12 @@ class Loader:
         level: int = 0,
     ) -> Any:
         """``__import__`` of generated modules: Scenic modules first, then Python's."""
-        path = self._modules.find(name) if level == 0 else None
+        if level:
+            base = importer.package.rsplit(".", level - 1)[0] if level > 1 else importer.package
+            name = f"{base}.{name}".strip(".") if base else name
+        path = self._modules.find(name) if name else None
         if path is None:
-            return builtins.__import__(name, globals, locals, fromlist or (), level)
+            return self._import_python(importer, name, globals, locals, fromlist or (), level)
         module = self._load(path, name, importer)
         if fromlist or "." not in name:
             return module
@@ -461,11 +471,42 @@ class Loader:
         setattr(holder, name.rpartition(".")[2], module)
         return package
 
+    def _import_python(
+        self,
+        importer: Module,
+        name: str,
+        globals: Mapping[str, Any] | None,
+        locals: Mapping[str, Any] | None,
+        fromlist: Sequence[str],
+        level: int,
+    ) -> Any:
+        """A module of Python, or a folder some of whose modules are Scenic's."""
+        folder = Path(self._folder)
+        parts = {item: path for item in fromlist if (path := self._modules.find(f"{name}.{item}".strip(".")))}
+        others = [item for item in fromlist if item not in parts]
+        if not parts or others:
+            forget_stranger(name, folder)
+            with beside(folder):
+                found = builtins.__import__(
+                    name, globals, locals, others, 0 if importer.package or not level else level
+                )
+            if not parts:
+                return found
+        holder = ModuleType(name)
+        if others:
+            vars(holder).update(vars(found))
+        for item, path in parts.items():
+            setattr(holder, item, self._load(path, f"{name}.{item}".strip("."), importer))
+        return holder
+
     def _load(self, path: Path, name: str, importer: Module, *, is_model: bool = False) -> ModuleType:
         if path not in self._loaded:
             module = ModuleType(name)
             self._loaded[path] = module
-            state = self._states[path] = Module(str(path), is_model=is_model or importer.is_model)
+            package = name if path.stem == "__init__" else name.rpartition(".")[0]
+            state = self._states[path] = Module(
+                str(path), is_model=is_model or importer.is_model, package=package
+            )
             self._execute(self._modules.code(path), module, state)
         state = self._states[path]
         if importer.ego is None:

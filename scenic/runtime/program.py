@@ -61,6 +61,10 @@ class Module:
     ego: Object | None = None
     workspace: Workspace | None = None
     is_model: bool = False
+    package: str = ""
+    """The package that relative imports start from."""
+    scope: dict[str, Any] = field(default_factory=dict)
+    """The module's global names."""
 
 
 @dataclass(frozen=True, slots=True)

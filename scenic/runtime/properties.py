@@ -3,6 +3,8 @@
 Section 5.2 of the specification.
 """
 
+import math
+import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -14,6 +16,7 @@ from scenic.runtime.regions.base import Region
 from scenic.runtime.shapes import Shape
 from scenic.runtime.values import (
     Random,
+    Vector,
     is_number,
     operate,
     to_orientation,
@@ -127,6 +130,8 @@ def normalised(name: str, value: Any) -> Any:
         return operate("normalize angle", to_scalar(value, f"property {name!r}"))
     if name == "parentOrientation":
         return to_orientation(value, "property 'parentOrientation'")
+    if name == "viewAngles":
+        return _view_angles(value)
     if name == "color":
         return _colour(value)
     if name == "shape" and not isinstance(value, Shape | Random):
@@ -134,6 +139,32 @@ def normalised(name: str, value: Any) -> Any:
     if name == "regionContainedIn" and not isinstance(value, Region | Random | None):
         raise wrong_type("a region", value, "property 'regionContainedIn'")
     return value
+
+
+def _view_angles(value: Any) -> Any:
+    """A pair of angles, at most all around; random ones are limited when they are used."""
+    if isinstance(value, Random):
+        return value
+    if not (isinstance(value, tuple | list | Vector) and len(value) in (2, 3)):
+        raise wrong_type("a pair of angles", value, "property 'viewAngles'")
+    limited = []
+    for angle, limit in zip(list(value)[:2], (2 * math.pi, math.pi), strict=True):
+        size = to_scalar(angle, "property 'viewAngles'")
+        if is_number(size):
+            if not size > 0:
+                raise ScenicValueError(
+                    f"view angles are greater than 0, not {size:g}",
+                    span=here(),
+                    help="give them in radians, or with `deg`",
+                )
+            if size > limit:
+                warnings.warn(
+                    f"view angle {size:g} is truncated to {limit:g}: the angles are at most 360 and 180 degrees",
+                    stacklevel=2,
+                )
+                size = limit
+        limited.append(size)
+    return tuple(limited)
 
 
 def _colour(value: Any) -> Any:

@@ -1,11 +1,13 @@
 """Which specifier decides which property, and the building of an instance (section 6.1 of the specification)."""
 
+import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from scenic.language.errors import InvalidScenarioError, Located, ScenicValueError, SpecifierError
 from scenic.language.spans import Span
+from scenic.language.spelling import nearest
 from scenic.runtime.context import here
 from scenic.runtime.lazy import MEMO, reads_of
 from scenic.runtime.lazy import resolve as settle
@@ -14,6 +16,9 @@ from scenic.runtime.properties import Property, normalised
 from scenic.runtime.shapes import BoxShape
 from scenic.runtime.specifiers import Specifier
 from scenic.runtime.values import is_number
+
+MISSPELT = 3
+"""Names of at most so many letters are near to others by chance."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -155,6 +160,12 @@ def _check_property(
             )
     elif hasattr(cls, name):
         raise _clash(cls, name, specifier.span)
+    elif (meant := nearest(name, properties, limit=2)) is not None and len(name) > MISSPELT:
+        line = "" if specifier.span is None else f"line {specifier.span.line}: "
+        warnings.warn(
+            f"{line}{cls.__name__} has no property {name!r}, which is now created: did you mean {meant!r}?",
+            stacklevel=2,
+        )
 
 
 def _clash(cls: type[Point], name: str, span: Span | None) -> SpecifierError:

@@ -5,7 +5,7 @@ a function from the partially built instance to values. Which of the offered val
 `scenic.runtime.resolution`.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Any
@@ -166,7 +166,7 @@ def offset_by(ego: Ego, offset: Any) -> Specifier:
     origin, step = ego(), to_vector(offset, "`offset by`")
 
     def evaluate(_: Any) -> Mapping[str, Any]:
-        return {"position": origin.relativize(step), "parentOrientation": origin.orientation}
+        return {"position": origin.relativePosition(step), "parentOrientation": origin.orientation}
 
     return _specifier("offset by", {"position": 1, "parentOrientation": 3}, evaluate)
 
@@ -337,11 +337,89 @@ BUILDERS: Mapping[str, Callable[..., Specifier]] = MappingProxyType(
 first. ``ego`` is a function, so that a scenario without ego fails only where one is needed."""
 
 
+class UserSpecifier:
+    """A specifier that a program defines, used as ``with name (argument, ...)``; made by `specifier`."""
+
+    def __init__(
+        self,
+        function: Callable[..., Mapping[str, Any]],
+        priorities: Mapping[str, int],
+        reads: Sequence[str],
+        modifies: Sequence[str],
+    ) -> None:
+        self.function = function
+        self.priorities = priorities
+        self.reads = tuple(reads)
+        self.modifies = tuple(modifies)
+        self.__doc__ = function.__doc__
+        self.__name__ = function.__name__
+
+    def __call__(self, *arguments: Any) -> Specifier:
+        """The specifier with these arguments."""
+
+        def evaluate(instance: Any) -> Mapping[str, Any]:
+            offered = self.function(instance, *(resolve(argument, instance) for argument in arguments))
+            missing = sorted(self.priorities.keys() - offered.keys())
+            if missing:
+                raise ScenicTypeError(
+                    f"specifier {self.__name__!r} gives no value for {', '.join(map(repr, missing))}",
+                    span=here(),
+                    help="its function returns a dictionary with a value for each property that it declares",
+                )
+            return offered
+
+        reads = {*self.reads, *reads_of(arguments)}
+        modifiable = frozenset(self.modifies)
+        return _specifier(
+            self.__name__,
+            self.priorities,
+            evaluate,
+            *reads,
+            modifiable=modifiable,
+            modify=evaluate if modifiable else None,
+        )
+
+
+def specifier(
+    *, reads: Sequence[str] = (), modifies: Sequence[str] = (), **priorities: int
+) -> Callable[[Callable[..., Mapping[str, Any]]], UserSpecifier]:
+    """Define a specifier by a function.
+
+    The function gets the object being built, and the arguments of the specifier; it returns the values of the properties.
+    It is used like a property that has a value: ``new Object with beside (tree, 3)``; a tuple holds several arguments.
+
+    Args:
+        reads: the properties of the new object that the function needs.
+        modifies: those of its properties whose value, given by another specifier, it may replace after having read it.
+        priorities: the properties that it specifies, each with its strength (1 is the strongest).
+
+    >>> @specifier(position=1, parentOrientation=3, reads=("width",))
+    ... def beside(self, other, gap=0):
+    ...     offset = (other.width / 2 + gap + self.width / 2, 0)
+    ...     return {"position": other.relativePosition(offset), "parentOrientation": other.orientation}
+
+    """
+    if not priorities:
+        raise ScenicTypeError(
+            "a specifier specifies at least one property", help="for example `specifier(position=1)`"
+        )
+    return lambda function: UserSpecifier(function, priorities, reads, modifies)
+
+
 def specify(name: str, ego: Ego, *operands: Any) -> Specifier:
     """One specifier; what lazy operands read, it depends on."""
-    specifier = BUILDERS[name](ego, *operands)
+    found = BUILDERS[name](ego, *operands)
     reads = reads_of(operands)
-    return replace(specifier, dependencies=specifier.dependencies | reads) if reads else specifier
+    return replace(found, dependencies=found.dependencies | reads) if reads else found
 
 
-__all__ = ["BUILDERS", "Specifier", "is_kind", "region_of", "scalar_or_vector", "specify"]
+__all__ = [
+    "BUILDERS",
+    "Specifier",
+    "UserSpecifier",
+    "is_kind",
+    "region_of",
+    "scalar_or_vector",
+    "specifier",
+    "specify",
+]

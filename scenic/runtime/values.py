@@ -225,13 +225,13 @@ class Vector(VectorMethods, Hooks):
 
 
 class Orientation(OrientationMethods, Hooks):
-    """A definite orientation: a unit quaternion. Made by `fromEuler` or `fromQuaternion`."""
+    """A definite orientation: a unit quaternion. Made by `fromEuler` or `fromQuaternion`, or from SciPy's ``Rotation``."""
 
     __slots__ = ("_row",)
     _row: tuple[float, float, float, float]
 
-    def __init__(self) -> None:
-        self._row = (0.0, 0.0, 0.0, 1.0)
+    def __init__(self, rotation: Any = None) -> None:
+        self._row = (0.0, 0.0, 0.0, 1.0) if rotation is None else tuple(rotation.as_quat().tolist())
 
     @classmethod
     def of(cls, row: Any) -> Self:
@@ -273,6 +273,22 @@ class Orientation(OrientationMethods, Hooks):
     def w(self) -> float:
         """Real part of the quaternion."""
         return self._row[3]
+
+    @property
+    def q(self) -> tuple[float, float, float, float]:
+        """The quaternion (x, y, z, w)."""
+        return self._row
+
+    @property
+    def r(self) -> Any:
+        """The rotation as SciPy's ``Rotation``."""
+        from scipy.spatial.transform import Rotation
+
+        return Rotation.from_quat(self._row)
+
+    def getRotation(self) -> Any:
+        """The rotation as SciPy's ``Rotation``."""
+        return self.r
 
     def approxEq(self, other: "Orientation", tol: float = 1e-10) -> bool:
         """Whether the two differ by a rotation of at most about ``tol`` (up to the sign of the quaternion)."""

@@ -1,0 +1,263 @@
+"""Functions of the established Python API that have no counterpart of their own here, in terms of ours.
+
+Signatures are those that existing scripts use; `scenic.established` maps the names of the modules to them.
+"""
+
+import functools
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from types import MappingProxyType
+from typing import Any
+
+from scenic.language.errors import ScenicTypeError
+from scenic.runtime.context import verbosity as verbosity_now
+from scenic.runtime.lazy import Lazy, is_lazy
+from scenic.runtime.lazy import resolve as valueInContext  # noqa: N812 - the established name
+from scenic.runtime.objects import Point
+from scenic.runtime.values import (
+    Orientation,
+    Random,
+    Vector,
+    is_number,
+    is_random,
+    operate,
+    to_heading,
+    to_orientation,
+    to_scalar,
+    to_vector,
+)
+
+
+class Heading(float):
+    """The type of headings, for `toType` and `isA`."""
+
+
+_COERCIONS: Mapping[type, Callable[[Any], Any]] = MappingProxyType(
+    {float: to_scalar, Heading: to_heading, Vector: to_vector, Orientation: to_orientation}
+)
+
+
+def needsSampling(thing: Any) -> bool:
+    """Whether a value is random, or holds something random."""
+    if isinstance(thing, Point):
+        return any(is_random(value) for value in thing.__dict__.values())
+    return is_random(thing) or is_random(getattr(thing, "parameters", None))
+
+
+def needsLazyEvaluation(thing: Any) -> bool:
+    """Whether a value depends on the object being specified."""
+    return is_lazy(thing)
+
+
+def DelayedArgument(requiredProps: Iterable[str], value: Callable[[Any], Any], **_options: Any) -> Lazy:
+    """A value that is computed from properties of the object being specified."""
+    return Lazy(frozenset(requiredProps), value)
+
+
+def toDistribution(value: Any) -> Any:
+    """A value as one that may be random: itself."""
+    return value
+
+
+def underlyingType(thing: Any) -> type:
+    """The type of what a value is, or of what is drawn from it; ``object`` where that is not known."""
+    if not isinstance(thing, Random):
+        return type(thing)
+    return {
+        "scalar": float,
+        "integer": int,
+        "boolean": bool,
+        "vector": Vector,
+        "orientation": Orientation,
+    }.get(thing.node.kind.value, object)
+
+
+def isA(thing: Any, ty: type) -> bool:
+    """Whether a value is certainly of a type: also a random value, if it is known."""
+    return issubclass(underlyingType(thing), ty)
+
+
+def canCoerce(thing: Any, ty: type, exact: bool = False) -> bool:
+    """Whether a value can be read as a type."""
+    if exact or ty not in _COERCIONS:
+        return isA(thing, ty)
+    try:
+        _COERCIONS[ty](thing)
+    except (ScenicTypeError, ValueError):
+        return False
+    return True
+
+
+def coerce(thing: Any, ty: type, error: str = "wrong type") -> Any:
+    """A value as a type; raises ``TypeError`` with this message where it cannot be read so."""
+    return toType(thing, ty, error)
+
+
+def toType(thing: Any, ty: type, typeError: str = "wrong type") -> Any:
+    """A value as a type; raises ``TypeError`` with this message where it cannot be read so."""
+    return toTypes(thing, (ty,), typeError)
+
+
+def toTypes(thing: Any, types: Sequence[type], typeError: str = "wrong type") -> Any:
+    """A value as the first of several types that it can be read as."""
+    for ty in types:
+        if canCoerce(thing, ty):
+            return _COERCIONS[ty](thing) if ty in _COERCIONS else thing
+    raise ScenicTypeError(typeError)
+
+
+def toScalar(thing: Any, typeError: str = "non-scalar in scalar context") -> Any:
+    """A value as a number."""
+    return toType(thing, float, typeError)
+
+
+def toHeading(thing: Any, typeError: str = "non-heading in heading context") -> Any:
+    """A value as a heading, in radians."""
+    return toType(thing, Heading, typeError)
+
+
+def toOrientation(thing: Any, typeError: str = "non-orientation in orientation context") -> Any:
+    """A value as an orientation."""
+    return toType(thing, Orientation, typeError)
+
+
+def toVector(thing: Any, typeError: str = "non-vector in vector context") -> Any:
+    """A value as a vector."""
+    return toType(thing, Vector, typeError)
+
+
+def normalizeAngle(angle: float) -> float:
+    """An angle in [-pi, pi] that differs by whole turns (radians)."""
+    if not is_number(angle):
+        return operate("normalize angle", angle)  # type: ignore[no-any-return]
+    while angle > math.pi:
+        angle -= 2 * math.pi
+    while angle < -math.pi:
+        angle += 2 * math.pi
+    return angle
+
+
+def headingOfSegment(pointA: Any, pointB: Any) -> Any:
+    """The heading from one point of the plane to another (radians)."""
+    start, end = to_vector(pointA), to_vector(pointB)
+    return operate("azimuth", operate("subtract", end, start))
+
+
+def averageVectors(a: Any, b: Any, weight: float = 0.5) -> Any:
+    """The point that divides the way from ``a`` to ``b`` by ``weight``, as a pair."""
+    return tuple((1 - weight) * p + weight * q for p, q in zip(tuple(a)[:2], tuple(b)[:2], strict=True))
+
+
+def viewAngleToPoint(point: Any, base: Any, heading: float) -> Any:
+    """The angle of a point seen from ``base``, relative to ``heading`` (radians)."""
+    return normalizeAngle(headingOfSegment(base, point) - heading)
+
+
+def apparentHeadingAtPoint(point: Any, heading: float, base: Any) -> Any:
+    """A heading at a point relative to the line of sight from ``base`` (radians)."""
+    return normalizeAngle(heading - headingOfSegment(base, point))
+
+
+def rotateVector(vector: Any, angle: float) -> Any:
+    """A vector of the plane turned anticlockwise, as a pair."""
+    turned = to_vector(vector).rotatedBy(angle)
+    return (turned.x, turned.y)
+
+
+def polygonUnion(
+    polys: Iterable[Any], buf: float = 0, tolerance: float = 0, holeTolerance: float = 0.002
+) -> Any:
+    """The union of shapely polygons, each grown by ``buf``; holes smaller than ``holeTolerance`` m2 are filled."""
+    import shapely
+
+    members = [poly.buffer(buf) if buf else poly for poly in polys]
+    merged = shapely.union_all(members)
+    if tolerance:
+        merged = merged.simplify(tolerance)
+    parts = [
+        shapely.Polygon(
+            part.exterior, [ring for ring in part.interiors if shapely.Polygon(ring).area >= holeTolerance]
+        )
+        for part in getattr(merged, "geoms", [merged])
+        if part.geom_type == "Polygon"
+    ]
+    return parts[0] if len(parts) == 1 else shapely.MultiPolygon(parts)
+
+
+def argsToString(args: Sequence[Any], kwargs: Mapping[str, Any] = MappingProxyType({})) -> str:
+    """The arguments of a call as text."""
+    return ", ".join([*map(repr, args), *(f"{name}={value!r}" for name, value in kwargs.items())])
+
+
+cached_property = functools.cached_property
+
+
+def cached_method(method: Callable[..., Any]) -> Callable[..., Any]:
+    """A method without arguments that is computed once for each instance."""
+    name = f"_cached_{method.__name__}"
+
+    @functools.wraps(method)
+    def lookup(self: Any) -> Any:
+        if name not in self.__dict__:
+            self.__dict__[name] = method(self)
+        return self.__dict__[name]
+
+    return lookup
+
+
+def cached(function: Callable[[], Any]) -> Callable[[], Any]:
+    """A function without arguments that is computed once."""
+    return functools.cache(function)
+
+
+def alwaysGlobalOrientation(thing: Any) -> bool:
+    """Whether an orientation is certainly that of the world."""
+    return isinstance(thing, Orientation) and thing == Orientation()
+
+
+globalOrientation = Orientation()  # noqa: N816 - the established name
+
+
+def setDebuggingOptions(
+    *,
+    verbosity: int = 0,
+    fullBacktrace: bool = False,  # noqa: ARG001 - of the established call
+    debugExceptions: bool = False,  # noqa: ARG001 - of the established call
+    debugRejections: bool = False,  # noqa: ARG001 - of the established call
+) -> None:
+    """Set how much is told (`verbosity`, from 0 to 3); the other options belong to the commands here."""
+    verbosity_now.set(verbosity)
+
+
+__all__ = [
+    "DelayedArgument",
+    "Heading",
+    "alwaysGlobalOrientation",
+    "apparentHeadingAtPoint",
+    "argsToString",
+    "averageVectors",
+    "cached",
+    "cached_method",
+    "cached_property",
+    "canCoerce",
+    "coerce",
+    "globalOrientation",
+    "headingOfSegment",
+    "isA",
+    "needsLazyEvaluation",
+    "needsSampling",
+    "normalizeAngle",
+    "polygonUnion",
+    "rotateVector",
+    "setDebuggingOptions",
+    "toDistribution",
+    "toHeading",
+    "toOrientation",
+    "toScalar",
+    "toType",
+    "toTypes",
+    "toVector",
+    "underlyingType",
+    "valueInContext",
+    "viewAngleToPoint",
+]

@@ -1,0 +1,133 @@
+"""Distributions written in Python, and functions and methods that take random arguments (section 8.1 and 8.3)."""
+
+import functools
+from collections.abc import Callable
+from typing import Any, Self
+
+import numpy as np
+
+from scenic.graph.bounding import overall
+from scenic.graph.kinds import Column, Kind, boxed
+from scenic.graph.operation import Call, Operation, always
+from scenic.language.errors import InvalidScenarioError, ScenicTypeError
+from scenic.runtime.context import current, here
+from scenic.runtime.lazy import is_lazy
+from scenic.runtime.opaque import call_later, evaluated, later
+from scenic.runtime.values import Random, as_node, is_number, is_random
+
+
+class Distribution(Random):
+    """Base of distributions written in Python.
+
+    A subclass passes the values that it depends on to the base's initialiser, and implements `sampleGiven`. It may draw from
+    Python's ``random`` and from ``numpy.random``: both are seeded for each sample.
+
+    Args:
+        dependencies: values, random or not, that the draw depends on.
+        valueType: the type of what is drawn, if it is always the same; ``float`` makes the value known to be a number.
+
+    """
+
+    def __init__(self, *dependencies: Any, valueType: type | None = None) -> None:
+        context = current.get()
+        if context is not None and context.evaluating:
+            raise InvalidScenarioError("a requirement cannot create a distribution", span=here())
+        if is_lazy(dependencies):
+            raise ScenicTypeError(
+                f"{type(self).__name__} cannot depend on the object being specified", span=here()
+            )
+        self._dependencies = dependencies
+        self._valueType = valueType
+        node = later(_SCALAR if valueType is float else _LAW, _drawn, (_Holder(self), dependencies))
+        super().__init__(node, self.clone)
+
+    def sampleGiven(self, value: Any) -> Any:
+        """One draw; ``value[d]`` is the sampled value of the dependency ``d``."""
+        raise NotImplementedError(f"{type(self).__name__} does not say how it is drawn (`sampleGiven`)")
+
+    def clone(self) -> Self:
+        """An independent draw of the same law, for ``resample``."""
+        copy = object.__new__(type(self))
+        copy.__dict__.update(self.__dict__)
+        Distribution.__init__(copy, *self._dependencies, valueType=self._valueType)
+        return copy
+
+    def bucket(self, buckets: Any = None) -> Any:
+        """An approximation by buckets; not every distribution has one."""
+        raise NotImplementedError(f"{type(self).__name__} cannot be divided into buckets")
+
+    def supportInterval(self) -> tuple[float | None, float | None]:
+        """The least and the greatest value, where known."""
+        return (None, None)
+
+
+class _Holder:
+    """Carries a distribution into the call that draws it, where it must not be replaced by its own sample."""
+
+    def __init__(self, distribution: Distribution) -> None:
+        self.distribution = distribution
+
+
+class Values:
+    """The sampled values of dependencies, by the dependencies themselves."""
+
+    def __init__(self, before: tuple[Any, ...], after: tuple[Any, ...]) -> None:
+        self._values = {id(old): new for old, new in zip(before, after, strict=True)}
+
+    def __getitem__(self, dependency: Any) -> Any:
+        return self._values.get(id(dependency), dependency)
+
+
+def _drawn(holder: _Holder, sampled: tuple[Any, ...]) -> Any:
+    law = holder.distribution
+    return law.sampleGiven(Values(law._dependencies, sampled))
+
+
+def _numbers(call: Call, *columns: Column) -> Column:
+    return np.array([np.nan if value is None else float(value) for value in evaluated(call, columns)])
+
+
+_LAW = Operation(
+    "drawn by Python",
+    always(Kind.OTHER),
+    lambda call, *columns: boxed(evaluated(call, columns)),
+    "A draw of a distribution of the program's own.",
+    pure=False,
+)
+_SCALAR = Operation(
+    "number drawn by Python",
+    always(Kind.SCALAR),
+    _numbers,
+    "A draw of a distribution of numbers of the program's own.",
+    pure=False,
+)
+
+
+def distributionMethod(method: Callable[..., Any]) -> Callable[..., Any]:
+    """Make a method take random arguments: it is then called with their sampled values."""
+
+    @functools.wraps(method)
+    def lifted(self: Any, *args: Any, **keywords: Any) -> Any:
+        if is_random(args) or is_random(keywords):
+            return call_later(method, self, *args, **keywords)
+        return method(self, *args, **keywords)
+
+    return lifted
+
+
+def supportInterval(value: Any) -> tuple[float | None, float | None]:
+    """The least and the greatest value that a number, random or not, can have; ``None`` where that is not known."""
+    if isinstance(value, Distribution):
+        return value.supportInterval()
+    if is_number(value):
+        return (value, value)
+    if not isinstance(value, Random) or not as_node(value).kind.is_number:
+        return (None, None)
+    bounds = overall(value.node)
+    if bounds is None:
+        return (None, None)
+    low, high = float(bounds.lower[0]), float(bounds.upper[0])
+    return (None if np.isinf(low) else low, None if np.isinf(high) else high)
+
+
+__all__ = ["Distribution", "distributionMethod", "supportInterval"]

@@ -1,0 +1,127 @@
+"""Imports between Scenic modules, of Python modules beside the program, and models."""
+
+import sys
+from pathlib import Path
+
+import pytest
+
+import scenic
+from scenic.language.errors import InvalidScenarioError
+
+
+def written(folder: Path, files: dict[str, str]) -> Path:
+    for name, text in files.items():
+        file = folder / name
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(text)
+    return folder / "main.scenic"
+
+
+def first(path: Path) -> scenic.Scene:
+    (scene,) = scenic.scenarioFromFile(path).sample(1, seed=0)
+    return scene
+
+
+@pytest.fixture(autouse=True)
+def _elsewhere(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path_factory.mktemp("elsewhere"))
+    monkeypatch.setattr(sys, "dont_write_bytecode", True)
+
+
+def test_python_modules_beside_the_program_are_found_from_anywhere(tmp_path: Path) -> None:
+    main = written(
+        tmp_path,
+        {
+            "helper_one.py": "import helper_two\ndef f(x): return x + helper_two.g()\n",
+            "helper_two.py": "def g(): return 5\n",
+            "main.scenic": "from helper_one import f\ndef late():\n    import helper_two\n    return helper_two.g()\n"
+            "ego = new Object at (f(1), 0)\nrequire late() == 5\n",
+        },
+    )
+    before = list(sys.path)
+    assert first(main).egoObject.position.x == 6
+    assert sys.path == before
+
+
+def test_modules_of_one_program_are_not_those_of_another(tmp_path: Path) -> None:
+    for name, value in (("a", 1), ("b", 2)):
+        written(
+            tmp_path / name,
+            {
+                "same_name.py": f"VALUE = {value}\n",
+                "main.scenic": "import same_name\nparam x = same_name.VALUE\n",
+            },
+        )
+    found = [first(tmp_path / name / "main.scenic").params["x"] for name in "abab"]
+    assert found == [1, 2, 1, 2]
+
+
+PACKAGE = {
+    "pkg/a.scenic": "K = 7\nnew Object at (20, 20)\nparam from_a = 1\n",
+    "pkg/b.scenic": "from .a import K\nfrom . import a\nB = K + a.K\n",
+    "pkg/deep/c.scenic": "from ..a import K\nC = 2 * K\n",
+}
+
+
+@pytest.mark.parametrize(
+    "statement",
+    [
+        "import pkg.a\nx = pkg.a.K",
+        "import pkg.a as m\nx = m.K",
+        "from pkg.a import K as x",
+        "from pkg.a import *\nx = K",
+        "from pkg import a\nx = a.K",
+        "from pkg import b, a\nx = b.B / 2",
+        "from pkg.deep import c\nx = c.C / 2",
+    ],
+)
+def test_scenic_modules_in_packages(tmp_path: Path, statement: str) -> None:
+    main = written(tmp_path, {**PACKAGE, "main.scenic": f"{statement}\nparam x = x\nego = new Object\n"})
+    scene = first(main)
+    assert scene.params == {"from_a": 1, "x": 7}
+    assert len(scene.objects) == 2
+
+
+def test_the_importer_takes_the_ego_unless_it_has_one(tmp_path: Path) -> None:
+    module = "ego = new Object at (3, 3)\nworkspace = Workspace(CircularRegion((0, 0), 9))\n"
+    main = written(tmp_path, {"m.scenic": module, "main.scenic": "import m\n"})
+    assert first(main).egoObject.position.x == 3
+    main = written(tmp_path, {"main.scenic": "ego = new Object\nimport m\n"})
+    assert first(main).egoObject.position.x == 0
+
+
+def test_models_give_names_and_defaults_of_parameters(tmp_path: Path) -> None:
+    files = {
+        "world.scenic": "param a = 1, b = 2\nclass Thing:\n    size: 3\n_hidden = 4\n",
+        "main.scenic": "param a = 5\nmodel world\nparam x = new Thing\nparam y = '_hidden' in globals()\n",
+    }
+    found = first(written(tmp_path, files)).params
+    assert (found["a"], found["b"], found["x"].size, found["y"]) == (5, 2, 3, False)
+    main = written(tmp_path, {"other.scenic": "param a = 9, c = 3\nclass Thing:\n    size: 8\n"})
+    scenario = scenic.scenarioFromFile(main, model="other")
+    assert scenario.sample(1, seed=0)[0].params["x"].size == 8
+
+
+def test_a_missing_model_is_an_error(tmp_path: Path) -> None:
+    with pytest.raises(InvalidScenarioError, match="no world model"):
+        first(written(tmp_path, {"main.scenic": "model nothing_here\n"}))
+
+
+def test_a_missing_file_is_a_file_not_found_error(tmp_path: Path) -> None:
+    with pytest.raises(FileNotFoundError):
+        scenic.scenarioFromFile(tmp_path / "nothing.scenic")
+
+
+def test_errors_tell_their_line_and_text(tmp_path: Path) -> None:
+    for load in (
+        lambda text: scenic.scenarioFromString(text),
+        lambda text: scenic.scenarioFromFile(written(tmp_path, {"main.scenic": text})),
+    ):
+        with pytest.raises(scenic.ScenicSyntaxError) as caught:
+            load("ego = new Object\nx = = 3\n")
+        error = caught.value
+        assert (error.lineno, error.offset, error.text) == (2, 5, "x = = 3\n")
+        with pytest.raises(scenic.SpecifierError) as located:
+            load("ego = new Object at (1, 2), at (3, 4)\n")
+        assert located.value.lineno == 1
+        assert located.value.text == "ego = new Object at (1, 2), at (3, 4)\n"

@@ -1,0 +1,116 @@
+"""Distributions, functions, methods and specifiers that programs define in Python."""
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from scenic.language.errors import InvalidScenarioError, ScenicTypeError, SpecifierError
+from tests.runtime.programs import FALSE_ALARM, draws, failure, scenario, scene
+
+LAW = """
+import random
+class Shifted(Distribution):
+    def __init__(self, low, **options):
+        super().__init__(low, **options)
+        self.low = low
+    def sampleGiven(self, value):
+        return value[self.low] + random.random()
+low = Range(10, 20)
+"""
+
+
+@pytest.mark.parametrize("options", ["", ", valueType=float"])
+def test_a_distribution_of_the_program(options: str) -> None:
+    values = draws(LAW + f"d = Shifted(low{options})\nparam x = (low, d, d + 1, d)", n=2000)
+    gaps = [d - low for low, d, _, _ in values]
+    assert stats.kstest(gaps, stats.uniform(0, 1).cdf).pvalue > FALSE_ALARM
+    assert all(np.isclose(after, d + 1) and again == d for _, d, after, again in values)
+
+
+def test_resampling_draws_anew_from_the_same_dependencies() -> None:
+    values = draws(LAW + "d = Shifted(low)\nparam x = (low, d, resample(d))", n=300)
+    assert all(low <= d <= low + 1 and low <= e <= low + 1 and d != e for low, d, e in values)
+
+
+def test_distributions_of_the_program_work_in_objects_and_requirements() -> None:
+    text = LAW + "d = Shifted(Range(0, 1))\nego = new Object with width d\nrequire d > 1.5\n"
+    assert min(item.egoObject.width for item in scenario(text).sample(20, seed=0)) > 1.5
+    assert isinstance(failure(LAW + "require Shifted(3) > 2"), InvalidScenarioError)
+
+
+def test_functions_and_methods_that_take_random_arguments() -> None:
+    text = """
+@distributionFunction
+def add(x, y=2): return x + y if x > 0 else None
+class K(object):
+    def __init__(self, v): self.v = v
+    @distributionMethod
+    def times(self, x, *, factor=1): return self.v * x * factor
+x = Range(1, 2)
+param x = (x, add(x), add(3), add(x, y=x), K(3).times(x, factor=x), K(3).times(2))
+"""
+    for x, a, b, c, d, e in draws(text, n=20):
+        np.testing.assert_allclose([a, b, c, d, e], [x + 2, 5, 2 * x, 3 * x * x, 6])
+
+
+BESIDE = """
+from scenic import specifier
+@specifier(position=1, parentOrientation=3, reads=("width",))
+def beside(self, other, gap=0):
+    offset = (other.width / 2 + gap + self.width / 2, 0)
+    return {"position": other.relativePosition(offset), "parentOrientation": other.orientation}
+ego = new Object with width Range(1, 2), facing 0.4
+"""
+
+
+def test_specifiers_of_the_program() -> None:
+    item = scene(BESIDE + "a = new Object with beside (ego, 3), with width 4\nb = new Object with beside a\n")
+    ego, a, b = item.objects
+    way = np.array([np.cos(0.4), np.sin(0.4), 0])
+    np.testing.assert_allclose(tuple(a.position), way * (ego.width / 2 + 5), atol=1e-9)
+    np.testing.assert_allclose(tuple(b.position - a.position), way * 2.5, atol=1e-9)
+    assert b.heading == pytest.approx(0.4)
+
+
+def test_specifiers_of_the_program_obey_the_rules_of_resolution() -> None:
+    assert isinstance(failure(BESIDE + "new Object with beside ego, at (1, 2)"), SpecifierError)
+    assert isinstance(failure(BESIDE + "new Object with beside ego, with beside ego"), SpecifierError)
+    assert scene(BESIDE + "new Object with beside (ego, 2), facing 1").objects[1].heading == pytest.approx(1)
+    short = BESIDE.replace(', "parentOrientation": other.orientation}', "}")
+    assert isinstance(failure(short + "new Object with beside ego"), ScenicTypeError)
+
+
+def test_a_specifier_of_the_program_may_modify_what_another_gives() -> None:
+    text = """
+from scenic import specifier
+@specifier(position=2, modifies=("position",), reads=("height",))
+def raised(self, gap):
+    return {"position": self.position + (0, 0, gap + self.height / 2)}
+ego = new Object with raised 3, at (1, 2), with height 2
+"""
+    assert tuple(scene(text).egoObject.position) == (1, 2, 4)
+
+
+def test_what_is_printed_depends_on_the_verbosity(capsys: pytest.CaptureFixture[str]) -> None:
+    import scenic
+
+    text = "verbosePrint('one')\nverbosePrint('two', 3, level=2, indent=False, sep='-')\nego = new Object\n"
+    scenario(text)
+    assert capsys.readouterr().out == ""
+    scenic.setDebuggingOptions(verbosity=2)
+    try:
+        scenario(text)
+    finally:
+        scenic.setDebuggingOptions(verbosity=0)
+    assert capsys.readouterr().out == "  one\ntwo-3\n"
+
+
+def test_a_misspelt_property_is_warned_of() -> None:
+    with pytest.warns(UserWarning, match="did you mean 'width'"):
+        scenario("ego = new Object with widht 3\n")
+
+
+def test_view_angles_are_limited_with_a_warning() -> None:
+    with pytest.warns(UserWarning, match="truncated"):
+        item = scene("ego = new Object with viewAngles (7, 4)\n").egoObject
+    assert item.viewAngles == pytest.approx((2 * np.pi, np.pi))

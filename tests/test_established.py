@@ -1,0 +1,63 @@
+"""Names of the established Python API lead to ours."""
+
+import importlib
+
+import pytest
+
+import scenic
+from scenic.established import MODULES, lookup
+from scenic.language.names import NAMES
+from tests.runtime.programs import params
+
+
+@pytest.mark.parametrize("name", list(MODULES))
+def test_every_name_of_every_module_is_found(name: str) -> None:
+    module = importlib.import_module(name)
+    assert module.__all__
+    for entry in module.__all__:
+        assert getattr(module, entry) is lookup(name, entry)
+    with pytest.raises(AttributeError):
+        _ = module.nothing_of_this_name
+
+
+def test_one_module_holds_every_name_of_the_language() -> None:
+    module = importlib.import_module("scenic.syntax.veneer")
+    own = {"globalParameters", "localPath", "abs", "str", "int", "float"}
+    assert set(dir(module)) >= NAMES.keys() - own
+
+
+def test_programs_import_them() -> None:
+    text = (
+        "import scenic.core.vectors\nfrom scenic.core.regions import CircularRegion as Disc, everywhere\n"
+        "from scenic.core.geometry import normalizeAngle, headingOfSegment\nfrom scenic.core.distributions import *\n"
+        "param a = scenic.core.vectors.Vector(1, 2), b = normalizeAngle(7), c = headingOfSegment((0, 0), (-1, 0))\n"
+        "param d = isinstance(Disc((0, 0), 1), CircularRegion), e = supportInterval(Range(1, 3) + 2)\n"
+    )
+    found = params(text)
+    assert tuple(found["a"]) == (1, 2, 0)
+    assert found["b"] == pytest.approx(7 - 2 * 3.141592653589793)
+    assert found["c"] == pytest.approx(3.141592653589793 / 2)
+    assert found["d"] is True
+    assert found["e"] == pytest.approx((3, 5), abs=1e-9)
+
+
+def test_coercions_of_the_established_modules() -> None:
+    from scenic.core.type_support import Heading, isA, toType, toVector, underlyingType
+    from scenic.core.vectors import Orientation, Vector
+
+    assert tuple(toVector((1, 2))) == (1, 2, 0)
+    assert toType(3, Heading) == 3.0
+    assert isA(Vector(1, 2), Vector)
+    assert (
+        underlyingType(scenic.scenarioFromString("ego = new Object at (Range(1, 2), 3)").egoObject.position)
+        is Vector
+    )
+    for value, ty in (("a", float), ((1, 2, 3, 4), Vector), ((1, 2), Orientation), (3, str)):
+        with pytest.raises(TypeError, match="what I say"):
+            toType(value, ty, "what I say")
+
+
+def test_the_version_is_that_of_the_distribution() -> None:
+    from importlib.metadata import version
+
+    assert scenic.__version__ == version("scenic-lang")
