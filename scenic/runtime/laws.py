@@ -93,6 +93,8 @@ _LAW = Operation(
     lambda call, *columns: boxed(evaluated(call, columns)),
     "A draw of a distribution of the program's own.",
     pure=False,
+    faults=True,
+    rejects=True,
 )
 _SCALAR = Operation(
     "number drawn by Python",
@@ -100,6 +102,8 @@ _SCALAR = Operation(
     _numbers,
     "A draw of a distribution of numbers of the program's own.",
     pure=False,
+    faults=True,
+    rejects=True,
 )
 
 
