@@ -31,15 +31,13 @@ LIBRARIES = {
     "graph": {"numpy", "scipy"},
     "project": set(),
     "ide": {"pygments"},
-    "lsp": {"pygls", "lsprotocol"},
+    "lsp": set(),
 }
 """Libraries of each layer beside the standard library; layers left out may use any dependency."""
 
 ONLY_IN = {
     "embreex": {"runtime", "formats"},
     "z3": {"analysis"},
-    "pygls": {"lsp"},
-    "lsprotocol": {"lsp"},
     "click": {"cli"},
     "rich": {"cli"},
 }

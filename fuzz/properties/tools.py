@@ -5,8 +5,6 @@ import os
 from functools import cache
 from typing import Any, Final
 
-from lsprotocol import types
-
 from fuzz.properties.case import FILENAME, Case, Property, Violation, describe, spans_of
 from scenic.cli.checking import Checker, Task
 from scenic.cli.render import FORMATS, Report, render
@@ -16,7 +14,7 @@ from scenic.language.diagnostics import Diagnostic
 from scenic.language.selection import Rules
 from scenic.language.source import Source
 from scenic.language.spans import Span
-from scenic.lsp.convert import to_diagnostic, to_edits
+from scenic.lsp.convert import Encoding, Lines, to_diagnostic
 from scenic.project.index import Project
 from scenic.project.surroundings import surroundings_in
 
@@ -24,9 +22,9 @@ __all__ = ["OF_TEXTS"]
 
 _URI: Final = "file:///fuzz.scenic"
 _ENCODINGS: Final = {
-    types.PositionEncodingKind.Utf8: "utf-8",
-    types.PositionEncodingKind.Utf16: "utf-16-le",
-    types.PositionEncodingKind.Utf32: "utf-32-le",
+    Encoding.UTF8: "utf-8",
+    Encoding.UTF16: "utf-16-le",
+    Encoding.UTF32: "utf-32-le",
 }
 _UNIT: Final = {"utf-8": 1, "utf-16-le": 2, "utf-32-le": 4}
 
@@ -71,32 +69,31 @@ def places_survive_conversion(case: Case) -> None:
                 raise Violation("the JSON says something else")
 
 
-def _check_protocol(
-    item: Diagnostic, source: Source, kind: types.PositionEncodingKind, encoding: str
-) -> None:
-    made = to_diagnostic(item, source, _URI, kind)
-    if made.code != item.code or not made.message.startswith(item.message):
+def _check_protocol(item: Diagnostic, source: Source, kind: Encoding, encoding: str) -> None:
+    lines = Lines(source, kind)
+    made = to_diagnostic(item, lines, _URI)
+    if made["code"] != item.code or not made["message"].startswith(item.message):
         raise Violation(f"the protocol says something else: {describe(item)}")
     expected = [span for _, span in spans_of(item)]
-    edits = () if item.fix is None else to_edits(item.fix.edits, source, kind, "\n")
+    edits = () if item.fix is None else lines.to_edits(item.fix.edits, "\n")
     ranges = [
-        made.range,
-        *(each.location.range for each in made.related_information or ()),
-        *(each.range for each in edits),
+        made["range"],
+        *(each["location"]["range"] for each in made.get("relatedInformation", ())),
+        *(each["range"] for each in edits),
     ]
     if len(ranges) != len(expected):
         raise Violation(f"the protocol has other labels or changes: {describe(item)}")
     for span, given in zip(expected, ranges, strict=True):
-        back = (*_column(given.start, source, encoding), *_column(given.end, source, encoding))
+        back = (*_column(given["start"], source, encoding), *_column(given["end"], source, encoding))
         if span is not None and back != _clipped(span, source):
             raise Violation(f"{span} comes back from {encoding} as {back}: {describe(item)}")
 
 
-def _column(position: types.Position, source: Source, encoding: str) -> tuple[int, int]:
+def _column(position: dict[str, int], source: Source, encoding: str) -> tuple[int, int]:
     """A position of the protocol in lines and characters, computed from the encoded line."""
-    data = source.line(position.line + 1).encode(encoding, "surrogatepass")
-    before = data[: position.character * _UNIT[encoding]]
-    return position.line + 1, len(before.decode(encoding, "surrogatepass"))
+    data = source.line(position["line"] + 1).encode(encoding, "surrogatepass")
+    before = data[: position["character"] * _UNIT[encoding]]
+    return position["line"] + 1, len(before.decode(encoding, "surrogatepass"))
 
 
 def _clipped(span: Span, source: Source) -> tuple[int, int, int, int]:

@@ -28,10 +28,12 @@ _COMMANDS: Final[Mapping[str, tuple[str, str, str]]] = MappingProxyType(
         "ast": ("scenic.cli.syntax_tree", "syntax_tree", "Show the syntax tree of a program."),
         "python": ("scenic.cli.python_code", "python_code", "Show the Python code that a program becomes."),
         "explain": ("scenic.cli.explain", "explain", "Explain a diagnostic by its code."),
+        "format": ("scenic.cli.format", "format_command", "Put programs into the usual style."),
         "lsp": ("scenic.cli.lsp", "lsp", "Start the language server, for editors."),
+        "preview": ("scenic.cli.preview", "preview", ""),
     }
 )
-"""By name: module, function in it, and what the list of commands says."""
+"""By name: module, function in it, and what the list of commands says; nothing of those that are for programs only."""
 
 _FRAMES: Final = 6
 """So many frames of an internal error are shown."""
@@ -63,7 +65,7 @@ class _Commands(click.Group):
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         with formatter.section("Commands"):
-            formatter.write_dl([(name, text) for name, (_, _, text) in _COMMANDS.items()])
+            formatter.write_dl([(name, text) for name, (_, _, text) in _COMMANDS.items() if text])
 
 
 def _show_version(ctx: click.Context, _parameter: click.Parameter, wanted: bool) -> None:

@@ -1,12 +1,15 @@
 """What is wrong with a document, as the editor shows it: the same as ``scenic check``."""
 
+from collections.abc import Callable
+
 from scenic.compiler.check import check_text
+from scenic.ide.snapshot import Snapshot
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.selection import Rules
 from scenic.project.index import Project
 from scenic.project.surroundings import surroundings_in
 
-__all__ = ["diagnostics"]
+__all__ = ["diagnostics", "found_in"]
 
 
 def diagnostics(
@@ -17,16 +20,37 @@ def diagnostics(
     Without a ``project``, nothing is known of the modules that the document imports. Runs none of the program, and never
     raises.
     """
-    try:
-        surroundings_of = None if project is None else surroundings_in(project)
-        found = check_text(text, filename=filename, surroundings_of=surroundings_of)
-    except Exception as error:  # noqa: BLE001 - an editor must go on; the fault is shown in the document
-        return (
-            Diagnostic(
-                "SC999",
-                f"internal error: {type(error).__name__}: {error}",
-                filename=filename,
-                help="this is a fault of scenic, not of your program; please report it with the program",
-            ),
-        )
-    return found if rules is None else rules.apply(found)
+    return found_in(Snapshot(text, filename), rules or Rules(), project)
+
+
+def found_in(
+    snapshot: Snapshot,
+    rules: Rules,
+    project: Project | None,
+    *,
+    stamp: object = None,
+    go_on: Callable[[], None] = lambda: None,
+) -> tuple[Diagnostic, ...]:
+    """The same for a snapshot, which keeps what was found as long as ``stamp`` is the same.
+
+    ``stamp`` stands for the state of all other files. ``go_on`` is called between steps, and may raise to stop.
+    """
+    go_on()
+
+    def find() -> tuple[Diagnostic, ...]:
+        try:
+            surroundings_of = None if project is None else surroundings_in(project)
+            return check_text(snapshot.text, filename=snapshot.filename, surroundings_of=surroundings_of)
+        except Exception as error:  # noqa: BLE001 - an editor must go on; the fault is shown in the document
+            return (
+                Diagnostic(
+                    "SC999",
+                    f"internal error: {type(error).__name__}: {error}",
+                    filename=snapshot.filename,
+                    help="this is a fault of scenic, not of your program; please report it with the program",
+                ),
+            )
+
+    found = snapshot.derived("diagnostics", find, stamp=stamp)
+    go_on()
+    return rules.apply(found)

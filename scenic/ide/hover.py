@@ -1,22 +1,19 @@
-"""What a word of a program means: keywords, operators, specifiers, properties and the names in scope."""
+"""What a word of a program means: keywords, operators, specifiers, properties, names of the language and of the program."""
 
 import ast
-from bisect import bisect_right
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
 
 from scenic.compiler import tree as scenic
-from scenic.compiler.generated import WORDS
-from scenic.compiler.lexer import lex
-from scenic.compiler.parser import parse
-from scenic.compiler.tokens import NAME, Tokens
-from scenic.ide import documentation
+from scenic.compiler.tokens import NAME
+from scenic.ide import descriptions, documentation
+from scenic.ide.snapshot import Snapshot
 from scenic.language.operators import OPERATORS
-from scenic.language.source import Source
 from scenic.language.spans import Span
 from scenic.language.specifiers import SPECIFIERS
 from scenic.language.statements import STATEMENTS
+from scenic.project.index import Project
+from scenic.project.queries import occurrence_at, symbol_of
 
 __all__ = ["Hover", "hover"]
 
@@ -37,73 +34,38 @@ class Hover:
     span: Span
 
 
-def hover(text: str, line: int, column: int) -> Hover | None:
+def hover(snapshot: Snapshot, line: int, column: int, project: Project | None = None) -> Hover | None:
     """Explain the word at a place: ``line`` from 1, ``column`` in characters from 0.
 
-    ``None`` where there is nothing to explain: in strings and comments, on names that the program defines.
+    ``None`` where there is nothing to explain: in strings and comments. Names that the program defines are explained by
+    ``project``, which must know the document.
     """
-    source = Source(text, "")
-    tokens = lex(text, WORDS)
-    index = _token_at(tokens, source, line, column)
-    if index is None:
+    tokens = snapshot.tokens
+    index = snapshot.token_at(line, column)
+    if index is None or not (snapshot.is_word(index) or tokens.texts[index] == "@"):
         return None
-    node = _innermost(parse(text, filename="").tree, line, tokens.columns[index])
+    span = snapshot.span_of_token(index)
+    node = snapshot.path_to(line, span.column)[-1]
     markdown = _explain(tokens.texts[index], tokens.kinds[index], node)
-    if markdown is None:
+    if project is not None and (markdown is None or isinstance(node, ast.Name | ast.Attribute)):
+        markdown = _defined(project, snapshot, span) or markdown
+    if markdown is None and isinstance(node, ast.Name):
+        markdown = descriptions.of_python(node.id)
+    return None if markdown is None else Hover(markdown, span)
+
+
+def _defined(project: Project, snapshot: Snapshot, span: Span) -> str | None:
+    """What the project knows of a name."""
+    module = project.module(snapshot.filename)
+    found = None if module is None else occurrence_at(module, span.line, span.column)
+    if module is None or found is None or found.span.line != span.line or found.span.column != span.column:
         return None
-    start, end = tokens.columns[index], tokens.end_columns[index]
-    return Hover(markdown, Span(line, source.character(line, start), line, source.character(line, end)))
-
-
-def _token_at(tokens: Tokens, source: Source, line: int, column: int) -> int | None:
-    """The word or operator at a place; between two of them the one on the right."""
-    if not 1 <= line <= len(source.lines) or column > len(source.line(line)):
-        return None
-    place = (line, source.byte(line, column))
-    starts = list(zip(tokens.lines, tokens.columns, strict=True))
-    index = bisect_right(starts, place) - 1
-    while index >= 0 and not tokens.texts[index]:
-        index -= 1
-    for candidate in (index, index - 1):
-        if candidate >= 0 and tokens.lines[candidate] == line == tokens.end_lines[candidate]:
-            touches = tokens.columns[candidate] <= place[1] <= tokens.end_columns[candidate]
-            if touches and tokens.texts[candidate] in WORDS:
-                return candidate
-            if touches and tokens.kinds[candidate] >= NAME:
-                return candidate
-    return None
-
-
-def _innermost(tree: ast.AST, line: int, column: int) -> ast.AST:
-    """The smallest node around a place; found without recursion, since trees may be deep."""
-    node = tree
-    while True:
-        inner = next((child for child in _placed_children(node) if _holds(child, line, column)), None)
-        if inner is None:
-            return node
-        node = inner
-
-
-def _placed_children(node: ast.AST) -> Iterator[ast.AST]:
-    """The children of a node that have places; for those that have none, their children."""
-    stack = list(ast.iter_child_nodes(node))
-    while stack:
-        child = stack.pop()
-        if getattr(child, "end_lineno", None) is None:
-            stack.extend(ast.iter_child_nodes(child))
-        else:
-            yield child
-
-
-def _holds(node: ast.AST, line: int, column: int) -> bool:
-    start = (getattr(node, "lineno", 0), getattr(node, "col_offset", 0))
-    end = (getattr(node, "end_lineno", 0), getattr(node, "end_col_offset", 0))
-    # A word is explained from its first character up to the one after it.
-    return start <= (line, column) < end
+    symbol = symbol_of(project, module, found)
+    return None if symbol is None else descriptions.describe(project, symbol)
 
 
 def _explain(word: str, kind: int, node: ast.AST) -> str | None:
-    """What ``word`` means in ``node``, which is the smallest node around it."""
+    """What ``word`` means in ``node``, which is the smallest node around it, as far as the language says it."""
     if isinstance(node, ast.Name):
         return documentation.of_name(word)
     if isinstance(node, ast.Attribute):

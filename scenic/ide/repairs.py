@@ -3,11 +3,12 @@
 from collections.abc import Sequence
 
 from scenic.compiler.fixes import repair
-from scenic.language.diagnostics import Diagnostic, Edit
-from scenic.language.selection import Rules
+from scenic.ide.snapshot import Snapshot
+from scenic.language.diagnostics import Diagnostic, Edit, Severity
+from scenic.language.selection import Rules, is_lasting
 from scenic.language.spans import Span
 
-__all__ = ["repair_all", "repairs"]
+__all__ = ["ignoring", "repair_all", "repairs"]
 
 
 def repairs(found: Sequence[Diagnostic], span: Span) -> tuple[Diagnostic, ...]:
@@ -18,6 +19,37 @@ def repairs(found: Sequence[Diagnostic], span: Span) -> tuple[Diagnostic, ...]:
         if item.fix is not None
         and any(each is not None and _touch(each, span) for each in (item.span, *_of_fix(item)))
     )
+
+
+def ignoring(
+    snapshot: Snapshot, found: Sequence[Diagnostic], span: Span
+) -> tuple[tuple[Diagnostic, Edit], ...]:
+    """Those of the diagnostics that touch ``span`` and that a comment on their line may silence, with that comment."""
+    commented = {line: (column, text) for line, column, text in snapshot.tokens.comments}
+    result = []
+    for item in found:
+        if (
+            item.span is None
+            or not _touch(item.span, span)
+            or is_lasting(item)
+            or item.severity is Severity.ERROR
+        ):
+            continue
+        line = item.span.line
+        if line in commented:
+            continue  # What the comment says must not become a part of another one.
+        if any(
+            first < line <= last
+            for first, last in zip(snapshot.tokens.lines, snapshot.tokens.end_lines, strict=True)
+            if first != last
+        ):
+            continue  # The line begins in a string.
+        end = len(snapshot.source.line(line).rstrip())
+        edit = Edit(
+            Span(line, end, line, len(snapshot.source.line(line))), f"  # scenic: ignore[{item.code}]"
+        )
+        result.append((item, edit))
+    return tuple(result)
 
 
 def repair_all(text: str, *, filename: str, rules: Rules | None = None) -> Edit | None:

@@ -1,106 +1,133 @@
-"""Between the protocol's types and ours: the only place that knows both.
+"""Between the protocol's positions and ours: the only place that knows both.
 
-The protocol counts lines from 0, and columns in code units of an encoding that client and server agree on;
-we count lines from 1 and columns in characters.
+The protocol counts lines from 0, and columns in code units of an encoding that client and server agree on; we count
+lines from 1 and columns in characters. A byte order mark at the beginning is a character for the protocol, and none for
+us.
 """
 
-from collections.abc import Iterable
-from typing import Final
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from enum import StrEnum
+from typing import Any, Final, TypeAlias
 
-from lsprotocol import types
-
-from scenic.ide.hover import Hover
 from scenic.language.diagnostics import Diagnostic, Edit, Severity
 from scenic.language.source import Source
 from scenic.language.spans import Span
 
-__all__ = ["Encoding", "from_position", "from_range", "to_diagnostic", "to_edits", "to_hover", "to_range"]
+__all__ = ["Encoding", "Json", "Lines", "to_diagnostic", "units"]
 
-Encoding = types.PositionEncodingKind | str
-"""The agreed encoding; anything but UTF-8 and UTF-32 is UTF-16, the protocol's default."""
+Json: TypeAlias = Any
+"""What a message holds: built from dictionaries with texts as keys, lists, texts, numbers, booleans and ``None``."""
 
-_SEVERITIES: Final = {
-    Severity.ERROR: types.DiagnosticSeverity.Error,
-    Severity.WARNING: types.DiagnosticSeverity.Warning,
-    Severity.INFORMATION: types.DiagnosticSeverity.Information,
+_SEVERITIES: Final[Mapping[Severity, int]] = {
+    Severity.ERROR: 1,
+    Severity.WARNING: 2,
+    Severity.INFORMATION: 3,
 }
 _UNNECESSARY: Final = frozenset({"SC205", "SC206", "SC303", "SC390"})
 """Codes of what can be left out, which editors show faded."""
+_TAG_UNNECESSARY: Final = 1
 
 
-def to_range(span: Span, source: Source, encoding: Encoding) -> types.Range:
-    """A span as a range of the protocol."""
-    return types.Range(
-        _to_position(span.line, span.column, source, encoding),
-        _to_position(span.end_line, span.end_column, source, encoding),
-    )
+class Encoding(StrEnum):
+    """How columns are counted."""
+
+    UTF8 = "utf-8"
+    UTF16 = "utf-16"
+    UTF32 = "utf-32"
 
 
-def from_position(position: types.Position, source: Source, encoding: Encoding) -> tuple[int, int]:
-    """A position of the protocol as line and column; inside a character, the column of that character."""
-    content = source.line(position.line + 1)
-    units = seen = 0
-    for seen, character in enumerate(content):
-        units += _units(character, encoding)
-        if units > position.character:
-            return position.line + 1, seen
-    return position.line + 1, len(content)
+def units(text: str, encoding: Encoding) -> int:
+    """The length of a text in code units."""
+    if encoding is Encoding.UTF32 or text.isascii():
+        return len(text)
+    if encoding is Encoding.UTF8:
+        return len(text.encode("utf-8", "surrogatepass"))
+    return len(text.encode("utf-16-le", "surrogatepass")) // 2
 
 
-def from_range(found: types.Range, source: Source, encoding: Encoding) -> Span:
-    """A range of the protocol as a span; one that ends before it starts is empty."""
-    start = from_position(found.start, source, encoding)
-    return Span(*start, *max(start, from_position(found.end, source, encoding)))
+@dataclass(frozen=True, slots=True)
+class Lines:
+    """The lines of a text, and where the protocol sees them; ``marks`` is how many byte order marks it begins with."""
+
+    source: Source
+    encoding: Encoding
+    marks: int = 0
+    _lead: int = field(init=False, default=0)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "_lead", units("\ufeff" * self.marks, self.encoding))
+
+    def to_position(self, line: int, column: int) -> Json:
+        """A place as a position."""
+        character = units(self.source.line(line)[:column], self.encoding)
+        return {"line": line - 1, "character": character + (self._lead if line == 1 else 0)}
+
+    def to_range(self, span: Span) -> Json:
+        """A span as a range."""
+        return {
+            "start": self.to_position(span.line, span.column),
+            "end": self.to_position(span.end_line, span.end_column),
+        }
+
+    def from_position(self, line: int, character: int) -> tuple[int, int]:
+        """A position as line and column.
+
+        Inside a character, the column of that character; past the end of a line, its end; past the end of the text,
+        the end of that.
+        """
+        if line >= len(self.source.lines):
+            return len(self.source.lines), len(self.source.lines[-1])
+        content = self.source.line(line + 1)
+        if line == 0:
+            character = max(0, character - self._lead)
+        if content.isascii() or self.encoding is Encoding.UTF32:
+            return line + 1, min(character, len(content))
+        seen = 0
+        for column, each in enumerate(content):
+            seen += units(each, self.encoding)
+            if seen > character:
+                return line + 1, column
+        return line + 1, len(content)
+
+    def from_range(self, start: tuple[int, int], end: tuple[int, int]) -> Span:
+        """A range, as two pairs of line and character, as a span; one that ends before it starts is empty."""
+        first = self.from_position(*start)
+        return Span(*first, *max(first, self.from_position(*end)))
+
+    def to_edits(self, edits: Iterable[Edit], line_end: str) -> list[Json]:
+        """Changes of the text, with the line ends of the document."""
+        return [
+            {"range": self.to_range(edit.span), "newText": edit.text.replace("\n", line_end)}
+            for edit in edits
+        ]
 
 
-def to_edits(
-    edits: Iterable[Edit], source: Source, encoding: Encoding, line_end: str
-) -> list[types.TextEdit]:
-    """The changes of a repair, with the line ends of the document."""
-    return [
-        types.TextEdit(to_range(edit.span, source, encoding), edit.text.replace("\n", line_end))
-        for edit in edits
-    ]
+def to_diagnostic(
+    diagnostic: Diagnostic, lines: Lines, uri: str, *, related: bool = True, tags: bool = True
+) -> Json:
+    """A diagnostic as the protocol has it: the help is a line of the message, labels are related places.
 
-
-def to_diagnostic(diagnostic: Diagnostic, source: Source, uri: str, encoding: Encoding) -> types.Diagnostic:
-    """A diagnostic as the protocol has it: the help is a line of the message, labels are related places."""
-    span = diagnostic.span or Span(1, 0, 1, 0)
+    ``related`` and ``tags`` tell whether the client shows such.
+    """
     message = diagnostic.message
     if diagnostic.help:
         message += f"\nhelp: {diagnostic.help}"
-    related = [
-        types.DiagnosticRelatedInformation(
-            types.Location(uri, to_range(label.span, source, encoding)), label.text
-        )
+    found: dict[str, Json] = {
+        "range": lines.to_range(diagnostic.span or Span(1, 0, 1, 0)),
+        "severity": _SEVERITIES[diagnostic.severity],
+        "code": diagnostic.code,
+        "source": "scenic",
+        "message": message,
+    }
+    if tags and diagnostic.code in _UNNECESSARY:
+        found["tags"] = [_TAG_UNNECESSARY]
+    places = [
+        {"location": {"uri": uri, "range": lines.to_range(label.span)}, "message": label.text}
         for label in diagnostic.labels
     ]
-    return types.Diagnostic(
-        to_range(span, source, encoding),
-        message,
-        severity=_SEVERITIES[diagnostic.severity],
-        code=diagnostic.code,
-        source="scenic",
-        related_information=related or None,
-        tags=[types.DiagnosticTag.Unnecessary] if diagnostic.code in _UNNECESSARY else None,
-    )
-
-
-def to_hover(hover: Hover, source: Source, encoding: Encoding) -> types.Hover:
-    """An explanation as the protocol has it."""
-    return types.Hover(
-        types.MarkupContent(types.MarkupKind.Markdown, hover.markdown),
-        to_range(hover.span, source, encoding),
-    )
-
-
-def _to_position(line: int, column: int, source: Source, encoding: Encoding) -> types.Position:
-    return types.Position(line - 1, _units(source.line(line)[:column], encoding))
-
-
-def _units(text: str, encoding: Encoding) -> int:
-    if text.isascii() or encoding == types.PositionEncodingKind.Utf32:
-        return len(text)
-    if encoding == types.PositionEncodingKind.Utf8:
-        return len(text.encode("utf-8", "surrogatepass"))
-    return len(text.encode("utf-16-le", "surrogatepass")) // 2
+    if places and related:
+        found["relatedInformation"] = places
+    elif places:
+        found["message"] += "".join(f"\nline {label.span.line}: {label.text}" for label in diagnostic.labels)
+    return found

@@ -1,201 +1,274 @@
-"""The language server: receives what the editor asks, calls one function of `scenic.ide`, sends the answer.
+"""The language server: takes messages in their order, keeps to the protocol's life cycle, and answers every request.
 
-It runs none of the code of the programs that it is shown.
+What an answer says is worked out by the handlers (`scenic.lsp.handlers`). It runs none of the code of the programs that
+it is shown, unless the user asks for that.
 """
 
-import asyncio
 import os
 import sys
-from collections.abc import Iterable, Sequence
+import threading
+import traceback
 from contextlib import redirect_stdout
-from importlib.metadata import PackageNotFoundError, version
-from pathlib import Path
-from typing import Final
+from enum import Enum, auto
+from typing import Any, BinaryIO, Final
 
-from lsprotocol import types
-from pygls.lsp.server import LanguageServer
+from scenic.lsp import parent, reading
+from scenic.lsp.checks import Checks
+from scenic.lsp.errors import ErrorCode, ProtocolError
+from scenic.lsp.handlers import NOTIFICATIONS, REQUESTS
+from scenic.lsp.handlers.lifecycle import initialize
+from scenic.lsp.loop import Cancelled, Job, Loop, Worker
+from scenic.lsp.session import Deferred, Session
+from scenic.lsp.wire import Message, Reader, Writer
 
-from scenic.configuration.project import Configurations
-from scenic.ide.diagnostics import diagnostics
-from scenic.ide.hover import hover
-from scenic.ide.repairs import repair_all, repairs
-from scenic.language.diagnostics import Diagnostic, Edit
-from scenic.language.errors import ScenicError
-from scenic.language.selection import Rules
-from scenic.language.source import Source, read_source
-from scenic.lsp import convert
+__all__ = ["Server", "serve"]
 
-__all__ = ["ScenicServer", "create_server", "serve"]
-
-PAUSE: Final = 0.15
-"""Seconds without a change after which a document is checked again, so that typing is not disturbed."""
-FIX_ALL: Final = f"{types.CodeActionKind.SourceFixAll.value}.scenic"
-"""The kind of the action that makes all repairs of a document, which editors can make when they save it."""
+_CANCEL: Final = "$/cancelRequest"
+_CANCEL_PROGRESS: Final = "window/workDoneProgress/cancel"
 
 
-class ScenicServer(LanguageServer):
-    """The server and the checks that it is about to make."""
+class _Stage(Enum):
+    """How far the conversation is."""
 
-    def __init__(self) -> None:
-        # Whole documents with each change: the library's edits of parts count other line ends than the protocol.
-        super().__init__("scenic", _version(), text_document_sync_kind=types.TextDocumentSyncKind.Full)
-        self._pending: dict[str, asyncio.TimerHandle] = {}
-        self._troubled: dict[str, set[str]] = {}
-        """By document: the files of settings whose problems are shown because of it."""
-        self.is_shut_down = False
+    NEW = auto()
+    RUNNING = auto()
+    SHUT_DOWN = auto()
 
-    @property
-    def encoding(self) -> convert.Encoding:
-        """How columns are counted, as agreed with the client."""
-        return self.workspace.position_encoding or types.PositionEncodingKind.Utf16
 
-    def source(self, uri: str) -> Source:
-        """The present text of a document."""
-        document = self.workspace.get_text_document(uri)
-        return Source(document.source, document.path)
+class Server:
+    """One conversation with one client."""
 
-    def check_soon(self, uri: str) -> None:
-        """Check a document when no change has come for a while."""
-        self.forget(uri)
-        self._pending[uri] = asyncio.get_running_loop().call_later(PAUSE, self.check, uri)
+    def __init__(self, incoming: BinaryIO, outgoing: BinaryIO) -> None:
+        self._reader = Reader(incoming)
+        self._writer = Writer(outgoing)
+        self._loop = Loop()
+        self._session = Session(self._loop, self._writer)
+        self._session.checks = Checks(self._session)
+        self._worker = Worker("requests")
+        self._stage = _Stage.NEW
+        self._code = 0
+        self._cancelled: set[Any] = set()
+        """Requests that the client has taken back before their turn came; written by the reading thread."""
+        self._working: dict[Any, tuple[Job, str | None]] = {}
+        """Requests that are being answered beside the loop, each with the document that it depends on."""
+        self._tokens: dict[int | str, Any] = {}
+        """By the token of its progress: the request."""
 
-    def check(self, uri: str) -> None:
-        """Check a document and publish what is found, by the rules of the project that it belongs to."""
-        self.forget(uri)
-        source = self.source(uri)
-        configurations, rules = _settings(source)
-        found = diagnostics(source.text, filename=source.filename, rules=rules)
-        self.text_document_publish_diagnostics(
-            types.PublishDiagnosticsParams(
-                uri,
-                [convert.to_diagnostic(item, source, uri, self.encoding) for item in found],
-                self.workspace.get_text_document(uri).version,
-            )
-        )
-        self.show_problems(uri, configurations.problems)
+    def run(self) -> int:
+        """Serve until the client says to exit, or goes away; returns the exit code."""
+        threading.Thread(target=self._read, name="reader", daemon=True).start()
+        self._loop.run()
+        return self._code
 
-    def show_problems(self, document: str, problems: Sequence[Diagnostic]) -> None:
-        """Publish what is wrong with the settings of a document, and take back what no longer is."""
-        by_file: dict[str, list[Diagnostic]] = {filename: [] for filename in self._troubled.pop(document, ())}
-        for item in problems:
-            if item.filename is not None:
-                by_file.setdefault(os.path.abspath(item.filename), []).append(item)
-        for filename, found in by_file.items():
-            uri = Path(filename).as_uri()
+    # The reading thread
+
+    def _read(self) -> None:
+        while True:
             try:
-                source = read_source(filename)
-            except ScenicError:
-                source = Source("", filename)
-            self.text_document_publish_diagnostics(
-                types.PublishDiagnosticsParams(
-                    uri, [convert.to_diagnostic(item, source, uri, self.encoding) for item in found]
-                )
+                message = self._reader.read()
+            except ProtocolError as error:
+                self._loop.put(lambda error=error: self._refuse(None, error))  # type: ignore[misc]
+                continue
+            except (OSError, ValueError):
+                message = None
+            if message is None:
+                self._loop.put(self._gone)
+                return
+            if isinstance(message, dict) and message.get("method") == _CANCEL:
+                name = reading.lookup(message, "params", "id")
+                if isinstance(name, int | str):
+                    self._cancelled.add(name)
+            self._loop.put(lambda message=message: self._receive(message))  # type: ignore[misc]
+
+    # The loop's thread
+
+    def _gone(self) -> None:
+        """The client has closed the stream."""
+        self._loop.stop()
+
+    def _receive(self, message: Message | list[Any]) -> None:
+        if isinstance(message, list):
+            wrong = ProtocolError(
+                ErrorCode.INVALID_REQUEST, "batches of messages are not part of the protocol"
             )
-        if problems:
-            self._troubled[document] = {filename for filename, found in by_file.items() if found}
-
-    def repairs(self, params: types.CodeActionParams) -> list[types.CodeAction]:
-        """What can be repaired at a place, and if that is asked for, all that can be repaired in the document."""
-        uri, context = params.text_document.uri, params.context
-        source = self.source(uri)
-        _, rules = _settings(source)
-        actions = []
-        if _wanted(types.CodeActionKind.QuickFix, context):
-            found = diagnostics(source.text, filename=source.filename, rules=rules)
-            for item in repairs(found, convert.from_range(params.range, source, self.encoding)):
-                assert item.fix is not None
-                action = self._action(
-                    item.fix.title, types.CodeActionKind.QuickFix, item.fix.edits, uri, source
+            self._refuse(None, wrong)
+            return
+        method, name = message.get("method"), message.get("id")
+        is_named = isinstance(name, int | str) and not isinstance(name, bool)
+        if message.get("jsonrpc") != "2.0" or ("method" in message and not isinstance(method, str)):
+            wrong = ProtocolError(ErrorCode.INVALID_REQUEST, "this is no message of JSON-RPC 2.0")
+            self._refuse(name if is_named else None, wrong)
+        elif isinstance(method, str) and "id" in message:
+            if is_named:
+                self._request(name, method, message.get("params"))
+            else:
+                wrong = ProtocolError(
+                    ErrorCode.INVALID_REQUEST, "the id of a request is an integer or a string"
                 )
-                action.diagnostics = [convert.to_diagnostic(item, source, uri, self.encoding)]
-                action.is_preferred = True
-                actions.append(action)
-        # It is dear, and an editor asks with each move of the cursor what is offered there.
-        automatic = context.trigger_kind == types.CodeActionTriggerKind.Automatic and not context.only
-        if not automatic and _wanted(FIX_ALL, context):
-            edit = repair_all(source.text, filename=source.filename, rules=rules)
-            if edit is not None:
-                actions.append(self._action("Make all repairs of scenic", FIX_ALL, [edit], uri, source))
-        return actions
+                self._refuse(None, wrong)
+        elif isinstance(method, str):
+            self._notification(method, message.get("params"))
+        elif "result" in message or "error" in message:
+            self._session.answered(name, message.get("result"))
+        else:
+            wrong = ProtocolError(ErrorCode.INVALID_REQUEST, "a message has a method, a result or an error")
+            self._refuse(name if is_named else None, wrong)
 
-    def _action(
-        self, title: str, kind: str, edits: Iterable[Edit], uri: str, source: Source
-    ) -> types.CodeAction:
-        document = self.workspace.get_text_document(uri)
-        line_end = "\r\n" if "\r\n" in document.source else "\n"
-        changes = convert.to_edits(edits, source, self.encoding, line_end)
-        return types.CodeAction(title, kind, edit=types.WorkspaceEdit(changes={uri: changes}))
+    def _request(self, name: Any, method: str, params: Any) -> None:
+        try:
+            if name in self._cancelled:
+                raise ProtocolError(ErrorCode.REQUEST_CANCELLED, "the request was cancelled")
+            result = self._result(method, params)
+        except ProtocolError as error:
+            self._refuse(name, error)
+        except Exception as error:  # noqa: BLE001 - a request is answered whatever happens
+            self._refuse(name, self._internal(method, error))
+        else:
+            if isinstance(result, Deferred):
+                self._begin(name, method, reading.lookup(params, "workDoneToken"), result)
+            else:
+                self._answer(name, result)
+        self._cancelled.discard(name)
 
-    def forget(self, uri: str) -> None:
-        """Give up a check that has not begun yet."""
-        timer = self._pending.pop(uri, None)
-        if timer is not None:
-            timer.cancel()
+    def _result(self, method: str, params: Any) -> Any:
+        """What a request is answered with, by the rules of the life cycle."""
+        if self._stage is _Stage.NEW:
+            if method != "initialize":
+                raise ProtocolError(
+                    ErrorCode.SERVER_NOT_INITIALIZED, "the first request must be `initialize`"
+                )
+            result = initialize(self._session, params)
+            self._stage = _Stage.RUNNING
+            self._watch_parent(params)
+            return result
+        if self._stage is _Stage.SHUT_DOWN:
+            raise ProtocolError(ErrorCode.INVALID_REQUEST, "the server has been shut down")
+        if method == "initialize":
+            raise ProtocolError(ErrorCode.INVALID_REQUEST, "the server is already initialized")
+        if method == "shutdown":
+            self._stage = _Stage.SHUT_DOWN
+            for each in list(self._working):
+                self._cancel(each)
+            return None
+        handler = REQUESTS.get(method)
+        if handler is None:
+            raise ProtocolError(ErrorCode.METHOD_NOT_FOUND, f"there is no method {method}")
+        if not isinstance(params, dict):
+            raise ProtocolError(ErrorCode.INVALID_PARAMS, "the parameters must be an object")
+        return handler(self._session, params)
+
+    def _notification(self, method: str, params: Any) -> None:
+        if method == "exit":
+            self._code = 0 if self._stage is _Stage.SHUT_DOWN else 1
+            self._loop.stop()
+            return
+        if method == _CANCEL:
+            self._cancel(reading.lookup(params, "id"))
+            return
+        if method == _CANCEL_PROGRESS:
+            self._cancel(self._tokens.pop(reading.lookup(params, "token"), None))
+            return
+        if self._stage is not _Stage.RUNNING:
+            return
+        handler = NOTIFICATIONS.get(method)
+        if handler is None:
+            return
+        try:
+            handler(self._session, params)
+            if method == "textDocument/didChange":
+                self._outdate(reading.uri_of(params))
+        except ProtocolError as error:
+            # A notification has no answer; the log is the only place to say it.
+            self._session.log(f"{method}: {error.message}", error=True)
+        except Exception as error:  # noqa: BLE001 - the server goes on
+            self._session.log(f"{method}: {self._internal(method, error).message}", error=True)
+
+    # Requests that take longer
+
+    def _begin(self, name: Any, method: str, token: Any, deferred: Deferred) -> None:
+        def work(job: Job) -> None:
+            try:
+                result = deferred.work(job.go_on)
+            except Cancelled:
+                return
+            except ProtocolError as error:
+                self._loop.put(lambda error=error: self._finish(name, job, error))  # type: ignore[misc]
+            except Exception as error:  # noqa: BLE001 - a request is answered whatever happens
+                wrong = self._internal(method, error)
+                self._loop.put(lambda: self._finish(name, job, wrong))
+            else:
+                self._loop.put(lambda: self._finish(name, job, result))
+
+        job = Job(work)
+        self._working[name] = (job, deferred.document)
+        if isinstance(token, int | str):
+            self._tokens[token] = name
+        if deferred.own_thread:
+            threading.Thread(target=job.run, name=method, daemon=True).start()
+        else:
+            self._worker.put(job)
+
+    def _finish(self, name: Any, job: Job, result: Any) -> None:
+        found = self._working.get(name)
+        if found is None or found[0] is not job:
+            return  # It has been answered already: it was cancelled.
+        del self._working[name]
+        if isinstance(result, ProtocolError):
+            self._refuse(name, result)
+        else:
+            self._answer(name, result)
+
+    def _cancel(self, name: Any) -> None:
+        self._cancelled.discard(name)
+        found = self._working.pop(name, None)
+        if found is not None:
+            found[0].cancel()
+            self._refuse(name, ProtocolError(ErrorCode.REQUEST_CANCELLED, "the request was cancelled"))
+
+    def _outdate(self, uri: str) -> None:
+        """Give up what is being worked out for a version of a document that is no longer there."""
+        for name, (job, document) in list(self._working.items()):
+            if document == uri:
+                del self._working[name]
+                job.cancel()
+                again = ProtocolError(
+                    ErrorCode.SERVER_CANCELLED, "the document has changed", {"retriggerRequest": True}
+                )
+                self._refuse(name, again)
+
+    # Answers
+
+    def _answer(self, name: Any, result: Any) -> None:
+        self._writer.write({"jsonrpc": "2.0", "id": name, "result": result})
+
+    def _refuse(self, name: Any, error: ProtocolError) -> None:
+        self._writer.write({"jsonrpc": "2.0", "id": name, "error": error.as_json()})
+
+    def _internal(self, method: str, error: Exception) -> ProtocolError:
+        sys.stderr.write("".join(traceback.format_exception(error)[-12:]))
+        return ProtocolError(
+            ErrorCode.INTERNAL_ERROR,
+            f"internal error in {method}: {type(error).__name__}: {error}; "
+            "this is a fault of scenic, please report it",
+        )
+
+    def _watch_parent(self, params: Any) -> None:
+        process = reading.lookup(params, "processId")
+        if isinstance(process, int) and not isinstance(process, bool):
+            parent.watch(process, lambda: self._loop.put(self._abandoned))
+
+    def _abandoned(self) -> None:
+        """The process that started us has gone without a word."""
+        self._code = 0 if self._stage is _Stage.SHUT_DOWN else 1
+        self._loop.stop()
 
 
-def create_server() -> ScenicServer:
-    """A server with all its features, not yet connected to a client."""
-    server = ScenicServer()
-
-    @server.feature(types.TEXT_DOCUMENT_DID_OPEN)
-    async def did_open(params: types.DidOpenTextDocumentParams) -> None:
-        server.check(params.text_document.uri)
-
-    @server.feature(types.TEXT_DOCUMENT_DID_CHANGE)
-    async def did_change(params: types.DidChangeTextDocumentParams) -> None:
-        server.check_soon(params.text_document.uri)
-
-    @server.feature(types.TEXT_DOCUMENT_DID_CLOSE)
-    async def did_close(params: types.DidCloseTextDocumentParams) -> None:
-        uri = params.text_document.uri
-        server.forget(uri)
-        server.text_document_publish_diagnostics(types.PublishDiagnosticsParams(uri, []))
-
-    @server.feature(types.TEXT_DOCUMENT_HOVER)
-    async def show_hover(params: types.HoverParams) -> types.Hover | None:
-        source = server.source(params.text_document.uri)
-        line, column = convert.from_position(params.position, source, server.encoding)
-        found = hover(source.text, line, column)
-        return None if found is None else convert.to_hover(found, source, server.encoding)
-
-    @server.feature(
-        types.TEXT_DOCUMENT_CODE_ACTION, types.CodeActionOptions([types.CodeActionKind.QuickFix, FIX_ALL])
-    )
-    async def show_repairs(params: types.CodeActionParams) -> list[types.CodeAction]:
-        return server.repairs(params)
-
-    @server.feature(types.SHUTDOWN)
-    def shut_down(_params: None) -> None:
-        server.is_shut_down = True
-
-    @server.feature(types.EXIT)
-    def leave(_params: None) -> None:
-        # The library would first wait for the thread that reads, and so for the client to close the pipe.
-        os._exit(0 if server.is_shut_down else 1)
-
-    return server
-
-
-def serve() -> None:
-    """Serve one client over standard input and output until it says to exit, or goes away."""
+def serve() -> int:
+    """Serve one client over standard input and output until it says to exit, or goes away; returns the exit code."""
     with os.fdopen(os.dup(sys.stdout.fileno()), "wb") as output, redirect_stdout(sys.stderr):
         # Whatever else is printed must not get between the messages.
-        create_server().start_io(stdout=output)
-
-
-def _settings(source: Source) -> tuple[Configurations, Rules]:
-    """The settings of the project that a document belongs to. Read each time: they may have changed, and are small."""
-    configurations = Configurations()
-    return configurations, configurations.of_file(source.filename).rules_for(source.filename)
-
-
-def _wanted(kind: str, context: types.CodeActionContext) -> bool:
-    """Whether the editor asks for actions of this kind: kinds are parts with dots between, the first ones wider."""
-    return not context.only or any((kind + ".").startswith(asked + ".") for asked in context.only)
-
-
-def _version() -> str:
-    try:
-        return version("scenic-lang")
-    except PackageNotFoundError:
-        return "0"
+        code = Server(sys.stdin.buffer, output).run()
+        output.flush()
+        sys.stderr.flush()
+        # The thread that reads may still wait for the client, and the interpreter would wait for it.
+        os._exit(code)

@@ -5,6 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from scenic.ide.hover import hover
+from scenic.ide.snapshot import Snapshot
 from scenic.language.keywords import SOFT_KEYWORDS
 from scenic.language.names import NAMES
 from scenic.language.operators import OPERATORS
@@ -31,7 +32,7 @@ def at(word: str, *, nth: int = 1, text: str = PROGRAM) -> str | None:
     """What is said about the ``nth`` occurrence of a word, on each of its characters."""
     offset = [found.start() for found in re.finditer(rf"\b{word}\b", text)][nth - 1]
     line, column = text.count("\n", 0, offset) + 1, offset - text.rfind("\n", 0, offset) - 1
-    answers = {hover(text, line, column + index) for index in range(len(word))}
+    answers = {hover(Snapshot(text, "f.scenic"), line, column + index) for index in range(len(word))}
     (answer,) = answers
     if answer is None:
         return None
@@ -98,10 +99,10 @@ def test_beyond_ascii() -> None:
 
 
 def test_places_outside_the_text() -> None:
-    assert [hover(PROGRAM, *place) for place in ((0, 0), (99, 0), (1, 99), (12, 0))] == [None] * 4
+    assert [hover(Snapshot(PROGRAM, "f"), *place) for place in ((0, 0), (99, 0), (1, 99), (12, 0))] == [None] * 4
 
 
 @given(st.text("new at()[]:,\n 'x\"front of é😀.", max_size=40), st.integers(0, 4), st.integers(0, 20))
 def test_any_place_of_any_text(text: str, line: int, column: int) -> None:
-    found = hover(text, line, column)
+    found = hover(Snapshot(text, "f"), line, column)
     assert found is None or found.span.line == line

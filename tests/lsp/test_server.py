@@ -250,7 +250,10 @@ def test_repairs_are_offered(client: Client, tmp_path: Path) -> None:
 
     # Columns count two units for the smiling face.
     column = text.split("\n")[1].index("wdth") + 1
-    (action,) = actions(1, column, triggerKind=2)
+    action, silence = actions(1, column, triggerKind=2)
+    assert applied(text, silence["edit"]["changes"][uri]) == text.replace(
+        "wdth 3", "wdth 3  # scenic: ignore[SC300]"
+    )
     assert (action["title"], action["kind"], action["isPreferred"]) == ("Write `width`", "quickfix", True)
     assert action["diagnostics"][0]["code"] == "SC300"
     assert applied(text, action["edit"]["changes"][uri]) == text.replace("wdth", "width")
@@ -258,7 +261,7 @@ def test_repairs_are_offered(client: Client, tmp_path: Path) -> None:
     assert whole["kind"] == "source.fixAll.scenic"
     repaired = applied(text, whole["edit"]["changes"][uri])
     assert repaired == text.replace("import os\r\n", "").replace("wdth", "width").replace("True", "True:")
-    assert [each["kind"] for each in actions(1, column)] == ["quickfix", "source.fixAll.scenic"]
+    assert [each["kind"] for each in actions(1, column)] == ["quickfix", "quickfix", "source.fixAll.scenic"]
     assert actions(1, column, only=["refactor", "quick"]) == []
     assert actions(1, 0, only=["quickfix"]) == []
     client.change(uri, "x = 1\n", 2)

@@ -1,0 +1,55 @@
+"""``scenic preview``: one page with scenes of a program that is read from standard input, for editors."""
+
+import os
+import sys
+from typing import Final
+
+import click
+
+__all__ = ["preview"]
+
+_MEMORY: Final = 8 << 30
+"""Bytes of address space that a program may take."""
+
+
+@click.command(hidden=True)
+@click.option("--filename", required=True, help="What the program is called; its modules are beside it.")
+@click.option("--scenario", help="Which scenario of the program.")
+@click.option("--seed", type=int, default=0, help="The seed of the scenes.")
+@click.option("-n", "count", type=click.IntRange(1, 100), default=1, help="How many scenes.")
+@click.option("--time-limit", type=click.FloatRange(min=0, min_open=True), default=20.0, help="In seconds.")
+def preview(filename: str, scenario: str | None, seed: int, count: int, time_limit: float) -> int:
+    """Write a page with scenes of a program from standard input to standard output, within limits of time and memory."""
+    _limit(time_limit)
+    text = sys.stdin.buffer.read().decode()
+    output = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
+    # What the program prints must not get into the page.
+    os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
+
+    from scenic.formats.html import Page
+    from scenic.pipeline import scenarioFromString
+    from scenic.runtime.sampling.report import Exhausted
+
+    loaded = scenarioFromString(text, scenario=scenario, filename=filename)
+    page = Page(os.path.basename(filename))
+    for result in loaded.stream(count, seed=seed, time_limit=time_limit):
+        if not isinstance(result, Exhausted):
+            page.add(result)
+    if not len(page):
+        click.echo("no scene was found that meets all requirements within the limits", err=True)
+        return 3
+    with output:
+        output.write(page.text().encode())
+    return 0
+
+
+def _limit(seconds: float) -> None:
+    """Let the system end this process when it takes more than it should."""
+    try:
+        import resource
+    except ImportError:  # There are no such limits on Windows.
+        return
+    for kind, most in ((resource.RLIMIT_CPU, int(4 * seconds) + 10), (resource.RLIMIT_AS, _MEMORY)):
+        _, hard = resource.getrlimit(kind)
+        most = most if hard == resource.RLIM_INFINITY else min(most, hard)
+        resource.setrlimit(kind, (most, most))

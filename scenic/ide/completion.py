@@ -1,0 +1,632 @@
+"""What can be written at a place: words that the grammar allows there, names that are in scope, members, modules."""
+
+import ast
+import builtins
+import os
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from typing import Any, Final
+
+from scenic.compiler.generated import WORDS
+from scenic.compiler.scopes import Binding, BindingKind, ScopeKind
+from scenic.compiler.tokens import FSTRING_MIDDLE, STRING
+from scenic.ide import descriptions, documentation
+from scenic.ide.continuations import Continuation, Continuations, PhraseKind, continuations
+from scenic.ide.expressions import expression, operand_before
+from scenic.ide.snapshot import Snapshot
+from scenic.language.names import LIFTED_METHODS, NAMES, TRACKED, NameKind
+from scenic.language.operators import OPERATORS
+from scenic.language.properties import CLASSES
+from scenic.language.spans import Span
+from scenic.language.specifiers import SPECIFIERS
+from scenic.language.statements import STATEMENTS, Place
+from scenic.project.classes import Class, class_of, class_of_symbol, meaning, module_behind
+from scenic.project.index import Project
+from scenic.project.modules import Module
+from scenic.project.queries import call_signature
+from scenic.project.symbols import Symbol, SymbolKind, symbol_of_binding, symbol_of_exported
+
+__all__ = ["Completion", "CompletionKind", "completions", "document"]
+
+
+class CompletionKind(StrEnum):
+    """What is offered, as far as editors tell it apart."""
+
+    KEYWORD = "keyword"
+    SPECIFIER = "specifier"
+    OPERATOR = "operator"
+    SNIPPET = "snippet"
+    CLASS = "class"
+    FUNCTION = "function"
+    METHOD = "method"
+    BEHAVIOR = "behavior"
+    SCENARIO = "scenario"
+    PROPERTY = "property"
+    ATTRIBUTE = "attribute"
+    VARIABLE = "variable"
+    PARAMETER = "parameter"
+    MODULE = "module"
+    CONSTANT = "constant"
+
+
+@dataclass(frozen=True, slots=True)
+class Completion:
+    """One possibility.
+
+    ``text`` is what takes the place of the word that is begun; ``snippet`` the same with places to fill in, as the
+    protocol writes them (``${1:name}``), if there are any. ``rank`` orders possibilities, the smallest first. ``key``
+    says to `document` what it is about.
+    """
+
+    label: str
+    kind: CompletionKind
+    text: str
+    rank: int
+    detail: str = ""
+    snippet: str | None = None
+    key: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Completions:
+    """The possibilities, and the word that they take the place of."""
+
+    span: Span
+    items: tuple[Completion, ...]
+
+
+_NOTHING: Final = Completions(Span(1, 0, 1, 0), ())
+_EXPRESSIONS: Final = frozenset(
+    {"an expression", "a condition", "an argument", "a subscript", "a target", "a statement"}
+)
+_RUNNING: Final = frozenset({"do", "choose", "shuffle"})
+_BEGUN: Final = re.compile(r"\w*$")
+
+_BLOCKS: Final[Mapping[str, str]] = {
+    "if": "if ${1:condition}:\n\t$0",
+    "elif": "elif ${1:condition}:\n\t$0",
+    "else": "else:\n\t$0",
+    "for": "for ${1:item} in ${2:items}:\n\t$0",
+    "while": "while ${1:condition}:\n\t$0",
+    "def": "def ${1:name}(${2}):\n\t$0",
+    "class": "class ${1:Name}:\n\t${2:width}: ${3:1}$0",
+    "try": "try:\n\t${1:pass}\nexcept ${2:Exception}:\n\t$0",
+    "with": "with ${1:context}:\n\t$0",
+}
+"""Python's statements with blocks, which are no forms of the language's declarations."""
+
+_MEMBERS_OF: Final[Mapping[str, tuple[str, ...]]] = {
+    "vector": (
+        "x", "y", "z", "altitudeTo", "angleTo", "angleWith", "azimuthTo", "cross", "distanceTo", "dot", "norm",
+        "normalized", "offsetLocally", "offsetRadially", "offsetRotated", "rotatedBy", "sphericalCoordinates",
+    ),
+    "orientation": ("yaw", "pitch", "roll", "approxEq", "localAnglesFor"),
+    "region": ("intersect", "union", "difference", "intersects", "containsPoint", "containsObject", "containsRegion"),
+}  # fmt: skip
+"""Members of values that are instances of no class of the language, by the words in which types are declared."""
+
+
+def completions(project: Project, snapshot: Snapshot, line: int, column: int) -> Completions:
+    """What can be written at a place: ``line`` from 1, ``column`` in characters from 0. Nothing in comments."""
+    content = snapshot.source.line(line)[:column]
+    begun = _BEGUN.search(content)
+    start = column if begun is None else begun.start()
+    span = Span(line, start, line, column)
+    if _is_in_comment(snapshot, line, start) or _is_in_open_string(snapshot, line, column):
+        return _NOTHING
+    text = _open_string(snapshot, line, column)
+    if text is not None:
+        return _files(snapshot, line, column, text)
+    if content[start : start + 1].isdigit():
+        return _NOTHING
+    found = continuations(snapshot.text, line, column)
+    items = list(_find(project, snapshot, line, start, found))
+    unique: dict[tuple[str, CompletionKind], Completion] = {}
+    for item in items:
+        unique.setdefault((item.label, item.kind), item)
+    return Completions(span, tuple(sorted(unique.values(), key=lambda item: (item.rank, item.label))))
+
+
+def document(project: Project, snapshot: Snapshot | None, key: tuple[str, ...]) -> str | None:
+    """What a reader should know of a possibility, in Markdown."""
+    match key:
+        case ("specifier", name):
+            return documentation.of_specifier(SPECIFIERS[name]) if name in SPECIFIERS else None
+        case ("operator", name):
+            return documentation.of_operator(OPERATORS[name]) if name in OPERATORS else None
+        case ("temporal operator", name):
+            return documentation.of_temporal(name)
+        case ("statement", name):
+            return documentation.of_statement(STATEMENTS[name]) if name in STATEMENTS else None
+        case ("keyword", name):
+            return documentation.of_keyword(name)
+        case ("property", name):
+            return documentation.of_property(name)
+        case ("provided", name):
+            return documentation.of_name(name) or descriptions.of_python(name)
+        case ("member", filename, owner, name):
+            return _document_member(project, filename, owner, name)
+        case ("name", filename, name, *place):
+            module = project.module(filename)
+            if module is None:
+                return None
+            symbol = _symbol_named(project, module, snapshot, name, place)
+            return None if symbol is None else descriptions.describe(project, symbol)
+    return None
+
+
+# What the place is
+
+
+def _is_in_comment(snapshot: Snapshot, line: int, column: int) -> bool:
+    return any(at == line and begin < column for at, begin, _ in snapshot.tokens.comments)
+
+
+def _is_in_open_string(snapshot: Snapshot, line: int, column: int) -> bool:
+    return any(
+        each.code == "SC101" and each.span is not None and (each.span.line, each.span.column) < (line, column)
+        for each in snapshot.tokens.diagnostics
+        if each.span is not None and each.span.line == line
+    )
+
+
+def _open_string(snapshot: Snapshot, line: int, column: int) -> str | None:
+    """The beginning of the string that a place is in, if it is in one."""
+    tokens, byte = snapshot.tokens, snapshot.source.byte(line, column)
+    for index in range(snapshot.tokens_of_line(line).stop - 1, -1, -1):
+        if tokens.end_lines[index] < line:
+            return None
+        inside = (
+            (tokens.lines[index], tokens.columns[index])
+            < (line, byte)
+            < (
+                tokens.end_lines[index],
+                tokens.end_columns[index],
+            )
+        )
+        if inside and tokens.kinds[index] == STRING:
+            first = snapshot.source.line(line)[:column]
+            return (
+                first[snapshot.source.character(line, tokens.columns[index]) :]
+                if tokens.lines[index] == line
+                else ""
+            )
+        if inside and tokens.kinds[index] == FSTRING_MIDDLE:
+            return ""
+    return None
+
+
+def _files(snapshot: Snapshot, line: int, column: int, text: str) -> Completions:
+    """The files that a string may name, if it is one that names a file."""
+    quote = re.match(r"[A-Za-z]{0,2}(['\"])", text)
+    before = snapshot.source.line(line)[: column - len(text)].rstrip()
+    named = re.search(r"\b(localPath|fromFile)\s*\($", before)
+    if quote is None or named is None or not os.path.isabs(snapshot.filename):
+        return _NOTHING
+    head, slash, tail = text[quote.end() :].rpartition("/")
+    folder = os.path.join(os.path.dirname(snapshot.filename), head + slash)
+    try:
+        entries = sorted(os.scandir(folder), key=lambda entry: entry.name)
+    except (OSError, ValueError):
+        return _NOTHING
+    items = tuple(
+        Completion(
+            entry.name + ("/" if entry.is_dir() else ""), CompletionKind.CONSTANT, entry.name, 0, "file"
+        )
+        for entry in entries
+        if not entry.name.startswith(".")
+    )
+    return Completions(Span(line, column - len(tail), line, column), items)
+
+
+# What fits there
+
+
+def _find(
+    project: Project, snapshot: Snapshot, line: int, column: int, found: Continuations
+) -> Iterator[Completion]:
+    before = found.before or tuple(_words_before(snapshot, line, column))
+    last = before[-1] if before else ""
+    first = before[0] if before else ""
+    module = project.module(snapshot.filename)
+    if module is None:
+        return
+    if first in ("import", "from", "model") and "import" not in before[1:]:
+        yield from _modules(project, snapshot, before)
+        return
+    if first == "from" and "import" in before:
+        yield from _imported(project, module, before)
+        return
+    if last == ".":
+        yield from _members(project, snapshot, before[:-1], line, column)
+        return
+    if last == "new":
+        yield from (each for each in _names(project, module, snapshot, line, column) if each.kind is CompletionKind.CLASS
+                    and _is_scenic(project, module, snapshot, each, line, column))  # fmt: skip
+        return
+    if last == "with" and "new" in before:
+        yield from _properties(project, snapshot, before, line, column)
+        return
+    places = _places(snapshot, line)
+    begun: set[str] = set()
+    for item in found.items:
+        if item.kind is PhraseKind.STATEMENT and not places & STATEMENTS[item.name].places:
+            continue
+        offered = _of_continuation(item)
+        # Of several forms that begin alike, the first one has the words alone for its label.
+        yield replace(offered, label=item.text) if item.words in begun else offered
+        begun.add(item.words)
+    if found.labels & _EXPRESSIONS or "a name" in found.labels:
+        running = last in _RUNNING or (last == "," and first == "do")
+        for each in _names(project, module, snapshot, line, column):
+            if running and each.kind in (CompletionKind.BEHAVIOR, CompletionKind.SCENARIO):
+                yield Completion(each.label, each.kind, each.text, 0, each.detail, each.snippet, each.key)
+            else:
+                yield each
+    if "an argument" in found.labels:
+        yield from _arguments(project, snapshot, before, line, column)
+    if not found.items and not found.labels and not found.kinds:
+        # What stands before on the line cannot be read: names are the best guess.
+        yield from _names(project, module, snapshot, line, column)
+
+
+def _places(snapshot: Snapshot, line: int) -> frozenset[Place]:
+    """Where in a program a line is, as far as that decides which statements may stand there.
+
+    Read off the headers of the blocks around it, since what is being written may not be in the tree.
+    """
+    content = snapshot.source.line(line)
+    level = len(content) - len(content.lstrip())
+    for number in range(line - 1, 0, -1):
+        content = snapshot.source.line(number)
+        indentation = len(content) - len(content.lstrip())
+        if not content.strip() or indentation >= level:
+            continue
+        level = indentation
+        word = content.split(maxsplit=1)[0].rstrip(":")
+        if word in _PLACES:
+            return _PLACES[word]
+        if not level:
+            break
+    return frozenset({Place.TOP})
+
+
+_PLACES: Final[Mapping[str, frozenset[Place]]] = {
+    "behavior": frozenset({Place.BEHAVIOR}),
+    "monitor": frozenset({Place.MONITOR}),
+    "setup": frozenset({Place.SETUP}),
+    "compose": frozenset({Place.COMPOSE}),
+    "scenario": frozenset({Place.SETUP}),
+    "class": frozenset({Place.CLASS}),
+}
+"""By the first word of a header."""
+
+
+def _words_before(snapshot: Snapshot, line: int, column: int) -> list[str]:
+    """The tokens of a line before a place."""
+    tokens, byte = snapshot.tokens, snapshot.source.byte(line, column)
+    return [
+        tokens.texts[index]
+        for index in snapshot.tokens_of_line(line)
+        if tokens.end_columns[index] <= byte and tokens.texts[index].strip()
+    ]
+
+
+def _of_continuation(item: Continuation) -> Completion:
+    kind = {
+        PhraseKind.SPECIFIER: CompletionKind.SPECIFIER,
+        PhraseKind.OPERATOR: CompletionKind.OPERATOR,
+        PhraseKind.TEMPORAL: CompletionKind.OPERATOR,
+        PhraseKind.STATEMENT: CompletionKind.SNIPPET,
+    }.get(item.kind, CompletionKind.KEYWORD)
+    rank = {PhraseKind.SPECIFIER: 1, PhraseKind.TEMPORAL: 1, PhraseKind.STATEMENT: 2}.get(item.kind, 5)
+    snippet = _BLOCKS.get(item.name) if item.kind is PhraseKind.KEYWORD else _snippet(item)
+    detail = item.kind.value if item.text == item.words else item.text
+    return Completion(item.words, kind, item.words, rank, detail, snippet, (item.kind.value, item.name))
+
+
+def _snippet(item: Continuation) -> str | None:
+    """The form with places to fill in; ``None`` if there are none."""
+    count = 0
+
+    def place(found: re.Match[str]) -> str:
+        nonlocal count
+        word = found[0]
+        if word in WORDS and word not in item.operands:
+            return word
+        count += 1
+        return f"${{{count}:{word}}}"
+
+    rest = item.text[len(item.words) :].replace(", ...", "")
+    filled = re.sub(r"[A-Za-z_]\w*", place, rest)
+    while ": ... " in filled:
+        count += 1
+        filled = filled.replace(": ... ", f":\n\t${{{count}:pass}}\n", 1)
+    filled = re.sub(r": \.\.\.$", ":\n\t$0", filled)
+    return item.words + filled if filled.strip() else None
+
+
+def _names(
+    project: Project, module: Module, snapshot: Snapshot, line: int, column: int
+) -> Iterator[Completion]:
+    """The names that can be read at a place."""
+    scope = snapshot.scope_at(line, column)
+    place = (str(line), str(column))
+    seen: set[str] = set()
+    for outer in scope.ancestors():
+        if outer is not scope and outer.kind is ScopeKind.CLASS:
+            continue
+        for name, binding in outer.bindings.items():
+            if name not in seen:
+                seen.add(name)
+                local = outer.kind is not ScopeKind.MODULE
+                kind, detail = _kind_of_binding(project, module, binding)
+                yield Completion(
+                    name, kind, name, 2 if local else 3, detail, key=("name", snapshot.filename, name, *place)
+                )
+    for name, exported in project.exports(module).names.items():
+        if name not in seen and not name.startswith("_"):
+            seen.add(name)
+            brought = None if exported.binding is None else exported.binding
+            kind, detail = (
+                (CompletionKind.VARIABLE, "")
+                if brought is None
+                else _kind_of_binding(project, module, brought)
+            )
+            yield Completion(name, kind, name, 4, detail, key=("name", snapshot.filename, name, *place))
+    for name in TRACKED:
+        yield Completion(name, CompletionKind.VARIABLE, name, 3, "tracked", key=("provided", name))
+    for name, declared in NAMES.items():
+        if name not in seen:
+            kind = {
+                NameKind.FUNCTION: CompletionKind.FUNCTION,
+                NameKind.VALUE: CompletionKind.VARIABLE,
+            }.get(declared.kind, CompletionKind.CLASS)
+            yield Completion(
+                name, kind, name, 6, declared.kind.value, _call(declared.signature), ("provided", name)
+            )
+    for name, value in vars(builtins).items():
+        if name not in seen and name not in NAMES and not name.startswith("_"):
+            kind = CompletionKind.CLASS if isinstance(value, type) else CompletionKind.FUNCTION
+            yield Completion(name, kind, name, 9, "Python", key=("provided", name))
+
+
+def _call(signature: str) -> str | None:
+    """A snippet for a call of something with parameters."""
+    name, bracket, inside = signature.partition("(")
+    if not bracket:
+        return None
+    required = [part.strip() for part in inside.removesuffix(")").split(",") if "=" not in part]
+    if not all(part.isidentifier() for part in required):
+        return f"{name}($0)"
+    return name + "(" + ", ".join(f"${{{index}:{part}}}" for index, part in enumerate(required, 1)) + ")"
+
+
+def _kind_of_binding(project: Project, module: Module, binding: Binding) -> tuple[CompletionKind, str]:
+    kinds = binding.kinds
+    table = (
+        (BindingKind.CLASS, CompletionKind.CLASS),
+        (BindingKind.FUNCTION, CompletionKind.FUNCTION),
+        (BindingKind.BEHAVIOR, CompletionKind.BEHAVIOR),
+        (BindingKind.MONITOR, CompletionKind.BEHAVIOR),
+        (BindingKind.SCENARIO, CompletionKind.SCENARIO),
+        (BindingKind.MODULE, CompletionKind.MODULE),
+        (BindingKind.PARAMETER, CompletionKind.PARAMETER),
+        (BindingKind.SELF, CompletionKind.PARAMETER),
+    )
+    for kind, shown in table:
+        if kind in kinds:
+            return shown, kind.value
+    if BindingKind.IMPORTED in kinds and binding.scope.kind is ScopeKind.MODULE:
+        symbol = symbol_of_exported(project, project.own(module, binding))
+        return _kind_of_symbol(symbol), symbol.kind.value
+    return CompletionKind.VARIABLE, "variable"
+
+
+def _kind_of_symbol(symbol: Symbol) -> CompletionKind:
+    return {
+        SymbolKind.CLASS: CompletionKind.CLASS,
+        SymbolKind.FUNCTION: CompletionKind.FUNCTION,
+        SymbolKind.METHOD: CompletionKind.METHOD,
+        SymbolKind.BEHAVIOR: CompletionKind.BEHAVIOR,
+        SymbolKind.MONITOR: CompletionKind.BEHAVIOR,
+        SymbolKind.SCENARIO: CompletionKind.SCENARIO,
+        SymbolKind.MODULE: CompletionKind.MODULE,
+        SymbolKind.PROPERTY: CompletionKind.PROPERTY,
+        SymbolKind.ATTRIBUTE: CompletionKind.ATTRIBUTE,
+        SymbolKind.PARAMETER: CompletionKind.PARAMETER,
+    }.get(symbol.kind, CompletionKind.VARIABLE)
+
+
+def _is_scenic(
+    project: Project, module: Module, snapshot: Snapshot, item: Completion, line: int, column: int
+) -> bool:
+    """Whether ``new`` can make instances of a class."""
+    if item.key[:1] == ("provided",):
+        return item.label in CLASSES
+    symbol = _symbol_named(project, module, snapshot, item.label, [str(line), str(column)])
+    cls = None if symbol is None else class_of_symbol(project, symbol)
+    return cls is not None and (cls.is_scenic or not cls.complete)
+
+
+def _symbol_named(
+    project: Project, module: Module, snapshot: Snapshot | None, name: str, place: Iterable[str]
+) -> Symbol | None:
+    """What a name means at a place."""
+    binding: Binding | None = module.resolution.module.bindings.get(name)
+    numbers = [int(part) for part in place if part.isdigit()]
+    if snapshot is not None and snapshot.filename == module.filename and len(numbers) == 2:
+        inner = snapshot.scope_at(numbers[0], numbers[1]).lookup(name)
+        if inner is not None and inner.scope.kind is not ScopeKind.MODULE:
+            return symbol_of_binding(module, inner)
+    if binding is not None:
+        return symbol_of_exported(project, project.own(module, binding))
+    exported = project.exports(module).names.get(name)
+    return None if exported is None else symbol_of_exported(project, exported)
+
+
+def _class_made(
+    project: Project, snapshot: Snapshot, before: tuple[str, ...], line: int, column: int
+) -> Class | None:
+    """The class after the last ``new``."""
+    index = len(before) - 1 - before[::-1].index("new")
+    if index + 1 >= len(before):
+        return None
+    found = expression(project, snapshot, before[index + 1], line, column)
+    symbol = None if found is None else meaning(project, *found)
+    return None if symbol is None else class_of_symbol(project, symbol)
+
+
+def _properties(
+    project: Project, snapshot: Snapshot, before: tuple[str, ...], line: int, column: int
+) -> Iterator[Completion]:
+    cls = _class_made(project, snapshot, before, line, column)
+    given = {word for place, word in enumerate(before) if place and before[place - 1] == "with"}
+    if cls is None:
+        cls = class_of_symbol(project, Symbol("Object", SymbolKind.CLASS))
+    for member in () if cls is None else cls.properties:
+        if member.name in given or "final" in member.attributes:
+            continue
+        own = member.symbol is not None
+        key = ("member", snapshot.filename, member.owner, member.name) if own else ("property", member.name)
+        detail = member.type or (f"default: {member.default}" if member.default else member.owner)
+        snippet = f"{member.name} ${{1:{_escaped(member.default or 'value')}}}"
+        yield Completion(
+            member.name, CompletionKind.PROPERTY, member.name, 0 if own else 1, detail, snippet, key
+        )
+
+
+def _escaped(text: str) -> str:
+    return re.sub(r"([\\$}])", r"\\\1", text)
+
+
+def _members(
+    project: Project, snapshot: Snapshot, before: tuple[str, ...], line: int, column: int
+) -> Iterator[Completion]:
+    """What can stand after a dot."""
+    text = operand_before(before)
+    found = expression(project, snapshot, text, line, column) if text else None
+    if found is None:
+        return
+    module, node = found
+    home = module_behind(project, module, node)
+    if home is not None:
+        exports = project.exports_of(home)
+        for name in sorted(exports.public & exports.names.keys()):
+            brought = symbol_of_exported(project, exports.names[name])
+            place = ("name", brought.filename or "", brought.name)
+            yield Completion(name, _kind_of_symbol(brought), name, 1, brought.kind.value, key=place)
+        return
+    symbol = meaning(project, module, node)
+    owner = (
+        symbol if symbol is not None and symbol.kind is SymbolKind.CLASS else class_of(project, module, node)
+    )
+    cls = None if owner is None else class_of_symbol(project, owner)
+    if cls is not None and cls.members:
+        for member in cls.members:
+            kind = {
+                SymbolKind.PROPERTY: CompletionKind.PROPERTY,
+                SymbolKind.METHOD: CompletionKind.METHOD,
+            }.get(member.kind, CompletionKind.ATTRIBUTE)
+            own = member.symbol is not None
+            key = (
+                ("member", snapshot.filename, member.owner, member.name) if own else ("property", member.name)
+            )
+            hidden = member.name.startswith("_")
+            yield Completion(member.name, kind, member.name, 8 if hidden else 1 if own else 2,
+                             member.type or member.owner, key=key)  # fmt: skip
+        return
+    yield from _of_values(project, module, node, owner)
+
+
+def _of_values(
+    project: Project, module: Module, node: ast.expr, owner: Symbol | None
+) -> Iterator[Completion]:
+    """Members of vectors, orientations and regions; of what is not known, those of all."""
+    kinds = list(_MEMBERS_OF)
+    if owner is not None and owner.name in NAMES:
+        is_region = NAMES[owner.name].kind is NameKind.REGION
+        kinds = ["region"] if is_region else [owner.name.lower()]
+    elif isinstance(node, ast.Attribute):
+        base = class_of(project, module, node.value)
+        cls = None if base is None else class_of_symbol(project, base)
+        member = None if cls is None else cls.member(node.attr)
+        if member is not None and member.type is not None:
+            kinds = [kind for kind in _MEMBERS_OF if kind in member.type] or kinds
+    for kind in kinds:
+        for name in _MEMBERS_OF.get(kind, ()):
+            shown = CompletionKind.METHOD if name in LIFTED_METHODS else CompletionKind.ATTRIBUTE
+            yield Completion(name, shown, name, 3, kind)
+
+
+def _modules(project: Project, snapshot: Snapshot, before: tuple[str, ...]) -> Iterator[Completion]:
+    """The modules whose names can go on here."""
+    words = [word for word in before[1:] if word != ","]
+    parts: list[str] = []
+    while len(words) >= 2 and words[-1] == ".":
+        parts.insert(0, words[-2])
+        words = words[:-2]
+    if (
+        before[0] == "from"
+        and len(before) > 1
+        and before[-1] not in (".", "...")
+        and before[-1].isidentifier()
+    ):
+        yield Completion("import", CompletionKind.KEYWORD, "import", 0, key=("keyword", "import"))
+        return
+    folder = os.path.dirname(snapshot.filename)
+    for name in project.finder.importable(folder, ".".join(parts)):
+        found = project.find(".".join([*parts, name]), importer=snapshot.filename)
+        beside = found.filename is not None and found.filename.startswith(folder)
+        if not name.startswith("_"):
+            yield Completion(name, CompletionKind.MODULE, name, 1 if beside else 5, found.kind.value)
+
+
+def _imported(project: Project, module: Module, before: tuple[str, ...]) -> Iterator[Completion]:
+    """The names that can be imported from a module."""
+    name = "".join(before[1 : before.index("import")])
+    level = len(name) - len(name.lstrip("."))
+    found = project.find(name.lstrip("."), importer=module.filename, level=level)
+    exports = project.exports_of(found)
+    taken = set(before[before.index("import") + 1 :])
+    for each in sorted(exports.names):
+        if each not in taken and not each.startswith("__"):
+            symbol = symbol_of_exported(project, exports.names[each])
+            yield Completion(each, _kind_of_symbol(symbol), each, 8 if each.startswith("_") else 1, symbol.kind.value,
+                             key=("name", found.filename or "", each))  # fmt: skip
+
+
+def _arguments(
+    project: Project, snapshot: Snapshot, before: tuple[str, ...], line: int, column: int
+) -> Iterator[Completion]:
+    """Parameters that can be given by name in the call around a place."""
+    depth = 0
+    for index in range(len(before) - 1, -1, -1):
+        if before[index] in ")]}":
+            depth += 1
+        elif before[index] in ("(", "[", "{"):
+            depth -= 1
+            if depth < 0:
+                text = operand_before(before[:index])
+                found = expression(project, snapshot, f"{text}()", line, column) if text else None
+                if found is None or not isinstance(found[1], ast.Call):
+                    return
+                signature = call_signature(project, found[0], found[1])
+                given = {before[at - 1] for at, word in enumerate(before) if word == "=" and at > index}
+                for parameter in () if signature is None else signature.parameters:
+                    if not parameter.prefix and not parameter.positional_only and parameter.name not in given:
+                        label = f"{parameter.name}="
+                        yield Completion(label, CompletionKind.PARAMETER, label, 1, str(parameter))
+                return
+
+
+def _document_member(project: Project, filename: str, owner: str, name: str) -> str | None:
+    module = project.module(filename)
+    symbol: Any = None if module is None else _symbol_named(project, module, None, owner, ())
+    cls = None if symbol is None else class_of_symbol(project, symbol)
+    member = None if cls is None else cls.member(name)
+    if member is None or member.symbol is None:
+        return documentation.of_property(name)
+    return descriptions.describe(project, member.symbol)

@@ -1,0 +1,94 @@
+"""What a reader should know of something that has a name, as Markdown: its header, its documentation, its place."""
+
+import builtins
+import inspect
+import os
+from typing import Final
+
+from scenic.ide import documentation
+from scenic.project.classes import class_of_symbol
+from scenic.project.index import Project
+from scenic.project.signatures import signature_of
+from scenic.project.symbols import Symbol, SymbolKind
+
+__all__ = ["describe", "header", "of_python"]
+
+_WORDS: Final = {
+    SymbolKind.CLASS: "class",
+    SymbolKind.FUNCTION: "def",
+    SymbolKind.METHOD: "def",
+    SymbolKind.BEHAVIOR: "behavior",
+    SymbolKind.MONITOR: "monitor",
+    SymbolKind.SCENARIO: "scenario",
+}
+_MOST_MEMBERS: Final = 30
+
+
+def describe(project: Project, symbol: Symbol) -> str:
+    """A symbol: how it is called or made, what its author says of it, and where it comes from."""
+    if symbol.is_builtin:
+        known = documentation.of_name(symbol.name) or documentation.of_property(symbol.name)
+        if known is not None:
+            return known
+    parts = [f"```scenic\n{header(project, symbol)}\n```"]
+    text = symbol.documentation
+    if text:
+        parts.append(text)
+    if symbol.kind is SymbolKind.CLASS:
+        parts += _members(project, symbol)
+    if symbol.kind in (SymbolKind.PROPERTY, SymbolKind.ATTRIBUTE) and not text:
+        inherited = documentation.of_property(symbol.name)
+        if inherited is not None:
+            parts.append(inherited)
+    if symbol.filename is not None and symbol.span is not None:
+        name = os.path.basename(symbol.filename)
+        parts.append(
+            f"*{name}*" if symbol.kind is SymbolKind.MODULE else f"*{name}, line {symbol.span.line}*"
+        )
+    return "\n\n".join(parts)
+
+
+def header(project: Project, symbol: Symbol) -> str:
+    """One line that says what a symbol is."""
+    word = _WORDS.get(symbol.kind)
+    if symbol.kind is SymbolKind.MODULE:
+        return f"module {symbol.name}"
+    if symbol.kind is SymbolKind.CLASS:
+        cls = class_of_symbol(project, symbol)
+        bases = ", ".join(base.name for base in cls.bases) if cls is not None else ""
+        return f"class {symbol.name}({bases})" if bases else f"class {symbol.name}"
+    if word is not None:
+        signature = signature_of(project, symbol)
+        return f"{word} {symbol.name}(...)" if signature is None else f"{word} {signature}"
+    value = "" if symbol.module is None or symbol.extent is None else _text(symbol)
+    owner = f"{symbol.container}." if symbol.container and symbol.kind is not SymbolKind.PARAMETER else ""
+    shown = value if value.startswith(symbol.name) and value != symbol.name else f"{owner}{symbol.name}"
+    return f"({symbol.kind}) {shown}"
+
+
+def of_python(name: str) -> str | None:
+    """One of Python's own builtins."""
+    value = getattr(builtins, name, None)
+    text = inspect.getdoc(value) if value is not None else None
+    if not text:
+        return None
+    return f"```python\n{name}\n```\n\n{text.partition(chr(10) + chr(10))[0]}"
+
+
+def _text(symbol: Symbol) -> str:
+    """The definition as it is written, if that is one short line."""
+    assert symbol.module is not None
+    assert symbol.extent is not None
+    extent = symbol.extent
+    if extent.line != extent.end_line:
+        return ""
+    text = symbol.module.source.line(extent.line)[extent.column : extent.end_column].strip()
+    return text if len(text) <= 100 else ""
+
+
+def _members(project: Project, symbol: Symbol) -> list[str]:
+    """The properties of a class that it does not inherit from the language, with their defaults."""
+    cls = class_of_symbol(project, symbol)
+    own = [each for each in cls.properties if each.symbol is not None] if cls is not None else []
+    lines = [f"- `{each.name}`: {each.default}" for each in own[:_MOST_MEMBERS]]
+    return ["\n".join(lines)] if lines else []

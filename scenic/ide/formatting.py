@@ -1,0 +1,389 @@
+"""Writing a document in the usual style.
+
+What a statement looks like is the unparser's decision (`scenic.compiler.unparser`): its spacing, quotes and
+parentheses. What a tree does not hold is kept as it stands: comments, blank lines (up to two), and the layout of
+statements that are written over several lines, which are only moved with their block. Lines are never split or joined.
+
+The result means the same and formats to itself; a text with mistakes is left alone. The style is described in
+``docs/format.md``.
+"""
+
+import ast
+import difflib
+import re
+from collections import deque
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+from scenic.compiler import tree as scenic
+from scenic.compiler.generated import WORDS
+from scenic.compiler.lexer import lex
+from scenic.compiler.parser import DEEPEST, parse, recursion_limit
+from scenic.compiler.tokens import DEDENT, ENDMARKER, FSTRING_MIDDLE, INDENT, NEWLINE, STRING, Tokens
+from scenic.compiler.unparser import UnparseError, unparse
+from scenic.ide.snapshot import Snapshot
+from scenic.language.diagnostics import Edit
+from scenic.language.spans import Span
+
+__all__ = ["format_text", "formatting"]
+
+_INDENTATION: Final = "    "
+_DEFINITIONS: Final = frozenset({"class", "def", "behavior", "monitor", "scenario", "@", "async"})
+
+
+@dataclass(slots=True)
+class _Line:
+    """One logical line: its first and last line (from 1), its depth, and its comments.
+
+    ``start`` is its first token.
+    """
+
+    first: int
+    last: int
+    depth: int
+    start: str = ""
+    has_inner_comment: bool = False
+    trailing: str = ""
+    above: list[tuple[int, int, str]] = field(default_factory=list)
+    """Comments on lines of their own before it: line, column, text."""
+
+
+def formatting(snapshot: Snapshot, lines: tuple[int, int] | None = None) -> tuple[Edit, ...]:
+    """The changes that put a document into the usual style, one for each run of lines that change.
+
+    With ``lines``, the first and the last of some, only changes that touch these. None for a text with mistakes.
+    """
+    before = snapshot.text
+    after = snapshot.derived("formatted", lambda: format_text(before))
+    if after is None or after == before:
+        return ()
+    old, new = before.split("\n"), after.split("\n")
+    edits = []
+    for tag, start, end, new_start, new_end in difflib.SequenceMatcher(
+        None, old, new, autojunk=False
+    ).get_opcodes():
+        if tag == "equal" or (
+            lines is not None and not (start + 1 <= lines[1] and max(end, start + 1) >= lines[0])
+        ):
+            continue
+        text = "\n".join(new[new_start:new_end])
+        if end < len(old):
+            span = Span(start + 1, 0, end + 1, 0)
+            text += "\n" if new_end > new_start else ""
+        elif start:
+            # At the end of the text the line end before goes with what is replaced.
+            span = Span(start, len(old[start - 1]), len(old), len(old[-1]))
+            text = "\n" + text if new_end > new_start else ""
+        else:
+            span = Span(1, 0, len(old), len(old[-1]))
+        edits.append(Edit(span, text))
+    return tuple(edits)
+
+
+def format_text(text: str) -> str | None:
+    r"""A program in the usual style; ``None`` if it has mistakes of syntax. ``text`` has ``\n`` at each line end."""
+    parsed = parse(text)
+    if parsed.diagnostics:
+        return None
+    tokens = lex(text, WORDS)
+    standing = _logical_lines(tokens)
+    layout = _Layout(tokens)
+    units = deque(sorted(_units(parsed.tree.body, 0), key=lambda unit: unit.place))
+    for line in standing:
+        own = []
+        while units and units[0].place[0] <= line.last:
+            own.append(units.popleft())
+        layout.add(line, own)
+    last = standing[-1].last if standing else 0
+    layout.comments([comment for comment in tokens.comments if comment[0] > last], 0)
+    result = layout.text()
+    return result if _same(parsed.tree, tokens, result) else None
+
+
+@dataclass(frozen=True, slots=True)
+class _Unit:
+    """What the unparser writes for a statement, or for the header of one with blocks.
+
+    ``place`` is where it begins: line, and column in bytes. ``text`` is ``None`` for what is kept as it stands.
+    """
+
+    place: tuple[int, int]
+    depth: int
+    text: str | None
+
+
+def _units(statements: Sequence[Any], depth: int) -> Iterator[_Unit]:
+    """The statements of a block, and those in them."""
+    for node in statements:
+        for decorator in getattr(node, "decorator_list", ()):
+            yield _Unit(
+                (decorator.lineno, decorator.col_offset - 1),
+                depth,
+                _decorator(decorator),
+            )
+        yield _Unit((node.lineno, node.col_offset), depth, _text_of(node))
+        for handler in (*getattr(node, "handlers", ()), *getattr(node, "interrupts", ())):
+            starred = isinstance(node, ast.TryStar)
+            yield _Unit((handler.lineno, handler.col_offset), depth, _text_of_part(handler, starred=starred))
+            yield from _units(handler.body, depth + 1)
+        for guard in getattr(node, "guards", ()):
+            yield _Unit((guard.lineno, guard.col_offset), depth + 1, _text_of(guard))
+        for case in getattr(node, "cases", ()):
+            # A case has no place of its own; it begins the line of its pattern.
+            yield _Unit((case.pattern.lineno, 0), depth + 1, _text_of_case(case))
+            yield from _units(case.body, depth + 2)
+        for name in ("body", "orelse", "finalbody", "setup", "compose"):
+            yield from _units(getattr(node, name, None) or (), depth + 1)
+
+
+def _decorator(node: ast.expr) -> str | None:
+    return _first_line(lambda: f"@{unparse(node)}")
+
+
+_BLOCKS: Final[Mapping[str, Any]] = {
+    "body": [ast.Pass()],
+    "setup": [ast.Pass()],
+    "orelse": [],
+    "finalbody": [],
+    "decorator_list": [],
+    "guards": [],
+    "compose": None,
+    "docstring": None,
+}
+
+
+def _text_of(node: Any) -> str | None:
+    """A statement as the unparser writes it; of one with blocks, its header."""
+    if isinstance(node, ast.Try | ast.TryStar | scenic.TryInterrupt):
+        return "try:"
+    if scenic.is_documentation(node):
+        return None
+    if isinstance(node, scenic.PropertyDef):
+        # Only in a class has a property a text.
+        owner = ast.ClassDef("C", [], [], [node], [])
+        return _only_line(lambda: unparse(owner).partition("\n")[2].strip())
+    if isinstance(node, scenic.Guard):
+        return _only_line(lambda: f"{node.kind}: {unparse(node.condition)}")
+    if isinstance(node, ast.Match):
+        return _first_line(lambda: f"match {unparse(node.subject)}:")
+    if any(field in node._fields for field in ("body", "setup")):
+        fields = {name: getattr(node, name, None) for name in node._fields}
+        fields.update((name, block) for name, block in _BLOCKS.items() if name in fields)
+        return _first_line(lambda: unparse(node.__class__(**fields)))
+    return _only_line(lambda: unparse(node))
+
+
+def _text_of_case(case: ast.match_case) -> str | None:
+    """The header of a case."""
+    alone = ast.match_case(case.pattern, case.guard, [ast.Pass()])
+    match = ast.Match(ast.Name("x", ast.Load()), [alone])
+    return _first_line(lambda: unparse(match).partition("\n")[2].strip())
+
+
+def _text_of_part(node: Any, *, starred: bool) -> str | None:
+    """The header of a handler."""
+    if isinstance(node, scenic.Interrupt):
+        return _first_line(lambda: f"interrupt when {unparse(node.condition)}:")
+    if node.type is None:
+        return "except:"
+    word = "except*" if starred else "except"
+    name = f" as {node.name}" if node.name else ""
+    return _first_line(lambda: f"{word} {unparse(node.type)}{name}:")
+
+
+def _first_line(write: Callable[[], str]) -> str | None:
+    try:
+        return write().partition("\n")[0]
+    except UnparseError:
+        return None
+
+
+def _only_line(write: Callable[[], str]) -> str | None:
+    try:
+        line, _, more = write().rstrip("\n").partition("\n")
+    except UnparseError:
+        return None
+    return None if more else line
+
+
+def _logical_lines(tokens: Tokens) -> list[_Line]:
+    """The logical lines of a text with their comments."""
+    found: list[_Line] = []
+    comments = deque(tokens.comments)
+    depth = 0
+    line: _Line | None = None
+    # Specifiers that go on in an indented block belong to the line that they begin on.
+    continued = False
+    before = ""
+    for kind, text, at in zip(tokens.kinds, tokens.texts, tokens.lines, strict=True):
+        if continued:
+            continued = kind != DEDENT
+            ends = not continued
+        elif kind == INDENT and before == ",":
+            continued = True
+            ends = False
+            line = found.pop()
+        else:
+            ends = kind == NEWLINE
+            depth += (kind == INDENT) - (kind == DEDENT)
+        if line is not None and (ends or (continued and kind == NEWLINE)):
+            line.last = at if kind == NEWLINE else line.last
+            while comments and comments[0][0] <= line.last:
+                comment = comments.popleft()
+                if comment[0] < line.first:
+                    line.above.append(comment)
+                elif comment[0] == line.last:
+                    line.trailing = comment[2].rstrip()
+                else:
+                    line.has_inner_comment = True
+            if ends:
+                found.append(line)
+                line = None
+        elif kind not in (NEWLINE, INDENT, DEDENT, ENDMARKER):
+            if line is None:
+                line = _Line(at, at, depth, text)
+            before = text
+    return found
+
+
+class _Layout:
+    """The text in the making."""
+
+    def __init__(self, tokens: Tokens) -> None:
+        self._lines: list[str] = []
+        self._old = tokens.text.split("\n")
+        self._fixed = set(_lines_in_strings(tokens))
+        self._depth = 0
+        self._header = False
+        self._end = 0
+        self._previous: _Line | None = None
+
+    def add(self, line: _Line, units: Sequence[_Unit]) -> None:
+        """Write one logical line, with the comments above it; ``units`` begin on it."""
+        depth = line.depth
+        self._blank_lines(line, depth)
+        self.comments(line.above, depth)
+        self._gap(line.first, depth)
+        written = self._written(line, units)
+        if written is None:
+            self._moved(line, depth)
+        else:
+            self._lines += written
+            if line.trailing:
+                self._lines[-1] += f"  {line.trailing}"
+        self._depth = depth + (units[-1].depth - units[0].depth if written and units else 0)
+        self._end = line.last
+        self._previous = line
+
+    def comments(self, comments: Sequence[tuple[int, int, str]], depth: int) -> None:
+        """Write comments that stand on lines of their own; ``depth`` is that of the statement after them."""
+        for at, column, text in comments:
+            level = self._level(column, depth)
+            self._gap(at, level)
+            self._lines.append(_INDENTATION * level + text.rstrip())
+            self._end = at
+
+    def text(self) -> str:
+        """All that was written."""
+        return "\n".join([*self._lines, ""]) if self._lines else ""
+
+    def _blank_lines(self, line: _Line, depth: int) -> None:
+        """Set definitions apart, from what is before and after them."""
+        previous = self._previous
+        if previous is None or depth > self._depth:
+            return
+        after = self._depth > depth and self._ended_definition(depth)
+        if not (_is_definition(line) or after) or previous.start == "@":
+            return
+        wanted = 1 if depth else 2
+        # Comments of the block before come before the gap.
+        while line.above and self._level(line.above[0][1], depth) > depth:
+            self.comments([line.above.pop(0)], depth)
+        first = line.above[0][0] if line.above else line.first
+        self._lines += [""] * wanted
+        self._end = first - 1
+
+    def _level(self, column: int, depth: int) -> int:
+        """How deep a comment stands: one that stands deeper than what follows belongs to the block before."""
+        levels = range(depth, max(depth, self._depth) + 1)
+        return min(levels, key=lambda level: (abs(len(_INDENTATION) * level - column), -level))
+
+    def _ended_definition(self, depth: int) -> bool:
+        """Whether the block that has just ended, at this depth, was a definition."""
+        for line in reversed(self._lines):
+            if line.strip() and not line.lstrip().startswith("#"):
+                indentation = len(line) - len(line.lstrip())
+                if indentation <= depth * len(_INDENTATION):
+                    return line.split(maxsplit=1)[0] in _DEFINITIONS
+        return False
+
+    def _gap(self, first: int, depth: int) -> None:
+        """Keep the blank lines before a line, as far as they are not too many."""
+        if not self._lines:
+            return
+        most = 1 if depth else 2
+        blank = sum(not self._old[number - 1].strip() for number in range(self._end + 1, first))
+        self._lines += [""] * min(blank, most)
+
+    def _moved(self, line: _Line, depth: int) -> None:
+        """A line as it stands, moved to its indentation; what is inside strings stays where it is."""
+        first = self._old[line.first - 1]
+        shift = len(_INDENTATION) * depth - (len(first) - len(first.lstrip()))
+        for number in range(line.first, line.last + 1):
+            text = self._old[number - 1]
+            if number in self._fixed:
+                self._lines.append(text if number + 1 in self._fixed else text.rstrip())
+                continue
+            bare = text.strip(" \t\f")
+            width = max(0, len(text.expandtabs()) - len(text.expandtabs().lstrip()) + shift) if bare else 0
+            keep = number + 1 in self._fixed
+            self._lines.append(" " * width + (text.lstrip() if keep else bare))
+
+    def _written(self, line: _Line, units: Sequence[_Unit]) -> list[str] | None:
+        """A line as the unparser writes it; ``None`` if it stays as it stands."""
+        if line.first != line.last:
+            return None
+        old = self._old[line.first - 1]
+        start = len(old) - len(old.lstrip())
+        found: list[str] = []
+        clause = _CLAUSE.match(old, start)
+        if not units or units[0].place[1] > start:
+            # A clause without a node of its own, maybe with its block on the same line.
+            if clause is None:
+                return None
+            found.append(f"{_INDENTATION * line.depth}{clause[1]}:")
+        base = units[0].depth - (line.depth + len(found)) if units else 0
+        for unit in units:
+            if unit.text is None:
+                return None
+            text = unit.text
+            if not found and old.startswith("elif", start):
+                text = f"el{text}"
+            found.append(_INDENTATION * (unit.depth - base) + text)
+        return found
+
+
+_CLAUSE: Final = re.compile(r"(else|finally|try|setup|compose)[ \t]*:")
+
+
+def _is_definition(line: _Line) -> bool:
+    return line.start in _DEFINITIONS
+
+
+def _lines_in_strings(tokens: Tokens) -> Iterator[int]:
+    """The lines that begin inside a string."""
+    for kind, first, last in zip(tokens.kinds, tokens.lines, tokens.end_lines, strict=True):
+        if kind in (STRING, FSTRING_MIDDLE):
+            yield from range(first + 1, last + 1)
+
+
+def _same(tree: ast.Module, tokens: Tokens, result: str) -> bool:
+    """Whether a text has this tree, and the comments of these tokens."""
+    again = parse(result)
+    if again.diagnostics:
+        return False
+    before = [text.rstrip() for _, _, text in tokens.comments]
+    after = [text.rstrip() for _, _, text in lex(result, WORDS).comments]
+    with recursion_limit(DEEPEST):
+        return before == after and ast.dump(tree) == ast.dump(again.tree)

@@ -1,0 +1,142 @@
+"""Who calls whom, and which class derives from which."""
+
+import ast
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from scenic.compiler import tree as scenic
+from scenic.compiler.traversal import walk
+from scenic.ide.navigation import subclasses
+from scenic.language.spans import Span
+from scenic.project.classes import class_of_symbol, meaning
+from scenic.project.index import Project
+from scenic.project.modules import Module
+from scenic.project.queries import references, symbol_at
+from scenic.project.symbols import Symbol, SymbolKind, symbol_of_binding
+
+__all__ = ["Call", "callable_at", "callees", "callers", "class_at", "subtypes", "supertypes"]
+
+_CALLABLE = (
+    SymbolKind.FUNCTION,
+    SymbolKind.METHOD,
+    SymbolKind.BEHAVIOR,
+    SymbolKind.MONITOR,
+    SymbolKind.SCENARIO,
+)
+_DEFINITIONS = (
+    ast.FunctionDef,
+    ast.AsyncFunctionDef,
+    scenic.BehaviorDef,
+    scenic.MonitorDef,
+    scenic.ScenarioDef,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Call:
+    """Another function, and where the calls are: in the caller's file."""
+
+    symbol: Symbol
+    filename: str
+    spans: tuple[Span, ...]
+
+
+def callable_at(project: Project, filename: str, line: int, column: int) -> Symbol | None:
+    """The function, behavior, monitor or scenario that the name at a place means."""
+    symbol = symbol_at(project, filename, line, column)
+    return symbol if symbol is not None and symbol.kind in _CALLABLE and not symbol.is_builtin else None
+
+
+def class_at(project: Project, filename: str, line: int, column: int) -> Symbol | None:
+    """The class that the name at a place means, if a file defines it."""
+    symbol = symbol_at(project, filename, line, column)
+    return (
+        symbol if symbol is not None and symbol.kind is SymbolKind.CLASS and not symbol.is_builtin else None
+    )
+
+
+def callers(project: Project, symbol: Symbol) -> tuple[Call, ...]:
+    """What calls a function: each caller once. Code outside of functions is its module."""
+    found: dict[Symbol, list[Span]] = {}
+    for place in references(project, symbol):
+        module = project.module(place.filename)
+        if place.defines or module is None:
+            continue
+        if not _is_called(module, place.span):
+            continue
+        caller = _around(module, place.span)
+        found.setdefault(caller, []).append(place.span)
+    return tuple(Call(caller, caller.filename or "", tuple(spans)) for caller, spans in found.items())
+
+
+def callees(project: Project, symbol: Symbol) -> tuple[Call, ...]:
+    """What a function calls: each callee once, with the places of the calls in the function."""
+    module, node = symbol.module, symbol.node
+    if module is None or node is None:
+        return ()
+    found: dict[Symbol, list[Span]] = {}
+    for call in _calls(node):
+        target = meaning(project, module, call)
+        if target is not None and target.kind in _CALLABLE and not target.is_builtin:
+            span = (
+                module.attribute_span(call) if isinstance(call, ast.Attribute) else module.source.span(call)
+            )
+            found.setdefault(target, []).append(span)
+    return tuple(Call(target, module.filename, tuple(spans)) for target, spans in found.items())
+
+
+def supertypes(project: Project, symbol: Symbol) -> tuple[Symbol, ...]:
+    """The classes that a class names as its bases, as far as files define them."""
+    cls = class_of_symbol(project, symbol)
+    return () if cls is None else tuple(base for base in cls.bases if not base.is_builtin)
+
+
+def subtypes(project: Project, symbol: Symbol) -> tuple[Symbol, ...]:
+    """The classes of the workspace that name a class as a base."""
+    return subclasses(project, symbol, deep=False)
+
+
+def _calls(node: ast.AST) -> Iterator[ast.expr]:
+    """The functions that are called in a definition."""
+    for part in walk(node):
+        if isinstance(part, ast.Call):
+            yield part.func
+        elif isinstance(part, scenic.Do | scenic.DoChoose | scenic.DoShuffle):
+            yield from (target for target in part.targets if isinstance(target, ast.Name | ast.Attribute))
+
+
+def _is_called(module: Module, span: Span) -> bool:
+    called = module.derived("called", lambda: _called_spans(module))
+    return (span.line, span.column) in called
+
+
+def _called_spans(module: Module) -> frozenset[tuple[int, int]]:
+    found = set()
+    for function in _calls(module.tree):
+        span = (
+            module.attribute_span(function)
+            if isinstance(function, ast.Attribute)
+            else module.source.span(function)
+        )
+        found.add((span.line, span.column))
+    return frozenset(found)
+
+
+def _around(module: Module, span: Span) -> Symbol:
+    """The innermost definition around a place, or the module."""
+    place = (span.line, module.source.byte(span.line, span.column))
+    inner: Any = None
+    for node in walk(module.tree):
+        if isinstance(node, _DEFINITIONS):
+            start, end = (node.lineno, node.col_offset), (node.end_lineno or 0, node.end_col_offset or 0)
+            if start <= place < end:
+                inner = node
+    binding = None if inner is None else module.binding_of.get(inner)
+    if binding is not None:
+        return symbol_of_binding(module, binding)
+    name = module.filename.replace("\\", "/").rpartition("/")[2]
+    whole = Span(1, 0, len(module.source.lines), len(module.source.lines[-1]))
+    return Symbol(
+        name, SymbolKind.MODULE, module.filename, Span(1, 0, 1, 0), whole, module=module, node=module.tree
+    )

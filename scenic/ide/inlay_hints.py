@@ -1,0 +1,179 @@
+"""What a program leaves unsaid, for editors to show between its words: units, defaults, names of parameters, priorities."""
+
+import ast
+from collections.abc import Iterator
+from dataclasses import dataclass
+from enum import StrEnum
+from types import MappingProxyType
+from typing import Final
+
+from scenic.compiler import tree as scenic
+from scenic.compiler.traversal import walk
+from scenic.ide.places import span_of
+from scenic.ide.snapshot import Snapshot
+from scenic.language.names import NAMES
+from scenic.language.operators import OPERATORS, Operand
+from scenic.language.properties import CLASSES, properties_of
+from scenic.language.spans import Span
+from scenic.language.specifiers import SPECIFIERS
+
+__all__ = ["Hint", "HintKind", "hints"]
+
+_UNITS: Final = MappingProxyType(
+    {
+        **dict.fromkeys(("width", "length", "height", "visibleDistance", "contactTolerance"), "m"),
+        **dict.fromkeys(
+            ("position", "baseOffset", "cameraOffset", "visionSensorOffset", "positionStdDev"), "m"
+        ),
+        **dict.fromkeys(("speed", "velocity"), "m/s"),
+        **dict.fromkeys(("angularSpeed", "angularVelocity"), "rad/s"),
+        "viewRayDensity": "rays/deg",
+    }
+)
+"""Units of properties that are no angles."""
+_DISTANCES: Final = frozenset({"distance"})
+"""Operands that are lengths."""
+
+
+class HintKind(StrEnum):
+    """What a hint tells."""
+
+    UNIT = "unit"
+    DEFAULT = "default"
+    PARAMETER = "parameter"
+    PRIORITY = "priority"
+
+
+@dataclass(frozen=True, slots=True)
+class Hint:
+    """A few words at a place (``line`` from 1, ``column`` in characters), and more about them for who asks."""
+
+    line: int
+    column: int
+    text: str
+    kind: HintKind
+    tooltip: str
+
+
+def hints(snapshot: Snapshot, within: Span | None = None) -> tuple[Hint, ...]:
+    """The hints for a document, or for a part of it, in order of place."""
+    every = snapshot.derived(
+        "hints", lambda: tuple(sorted(_find(snapshot), key=lambda each: (each.line, each.column)))
+    )
+    if within is None:
+        return every
+    start, end = (within.line, within.column), (within.end_line, within.end_column)
+    return tuple(each for each in every if start <= (each.line, each.column) <= end)
+
+
+def _find(snapshot: Snapshot) -> Iterator[Hint]:
+    angles = {name for cls in CLASSES for name, declared in properties_of(cls).items() if declared.angle}
+    for node in walk(snapshot.tree):
+        if isinstance(node, scenic.New):
+            yield from _priorities(snapshot, node)
+        if isinstance(node, scenic.Specifier):
+            declared = SPECIFIERS.get(node.specifier)
+            if node.property is not None:
+                yield from _unit_of_property(snapshot, node.property, node.operands[0], angles)
+            elif declared is not None:
+                yield from _operands(snapshot, node, declared.operands, node.operands)
+        elif isinstance(node, scenic.PropertyDef):
+            yield from _unit_of_property(snapshot, node.name, node.value, angles)
+        elif isinstance(node, scenic.Operation) and node.operator in OPERATORS:
+            yield from _operands(snapshot, node, OPERATORS[node.operator].operands, node.operands)
+        elif isinstance(node, ast.Call):
+            yield from _parameters(snapshot, node)
+
+
+def _operands(
+    snapshot: Snapshot,
+    node: ast.expr | scenic.Specifier,
+    declared: tuple[Operand, ...],
+    given: list[ast.expr | None],
+) -> Iterator[Hint]:
+    """Units of numbers among the operands, and those that are left to their defaults."""
+    unsaid = []
+    for operand, value in zip(declared, given, strict=False):
+        if value is None:
+            if operand.default is not None:
+                unsaid.append((operand, operand.default))
+        elif operand.angle and _is_number(value):
+            yield _after(
+                snapshot,
+                value,
+                " rad",
+                HintKind.UNIT,
+                "a plain number is an angle in radians; write `deg` after degrees",
+            )
+        elif operand.name in _DISTANCES and _is_number(value):
+            yield _after(snapshot, value, " m", HintKind.UNIT, "metres")
+    for operand, default in unsaid:
+        yield _after(snapshot, node, f" ({operand.name}: {default})", HintKind.DEFAULT,
+                     f"`{operand.name}` is left out: {default} is meant")  # fmt: skip
+
+
+def _unit_of_property(
+    snapshot: Snapshot, name: str, value: ast.expr | None, angles: set[str]
+) -> Iterator[Hint]:
+    unit = "rad" if name in angles else _UNITS.get(name)
+    if unit is None or value is None:
+        return
+    if _is_number(value) or (
+        isinstance(value, ast.Tuple) and value.elts and all(map(_is_number, value.elts))
+    ):
+        yield _after(snapshot, value, f" {unit}", HintKind.UNIT, f"`{name}` is measured in {unit}")
+
+
+def _parameters(snapshot: Snapshot, node: ast.Call) -> Iterator[Hint]:
+    """Names of parameters before plain values that are given by position to what the language provides."""
+    if not isinstance(node.func, ast.Name) or node.func.id not in NAMES:
+        return
+    reference = snapshot.resolution.references.get(node.func)
+    if reference is not None and reference.binding is not None:
+        return
+    parameters = NAMES[node.func.id].parameters
+    if len(parameters) < 2 or "..." in parameters:
+        return
+    for name, argument in zip(parameters, node.args, strict=False):
+        if isinstance(argument, ast.Starred):
+            return
+        if name.isidentifier() and not isinstance(argument, ast.Name | ast.Attribute):
+            span = span_of(snapshot, argument)
+            yield Hint(span.line, span.column, f"{name}: ", HintKind.PARAMETER, NAMES[node.func.id].signature)
+
+
+def _priorities(snapshot: Snapshot, node: scenic.New) -> Iterator[Hint]:
+    """Specifiers of which one property is left to another specifier with a higher priority."""
+    strongest: dict[str, tuple[int, str]] = {}
+    for specifier in node.specifiers:
+        declared = SPECIFIERS.get(specifier.specifier)
+        for given in () if declared is None else declared.specifies:
+            if given.property not in strongest or given.priority < strongest[given.property][0]:
+                strongest[given.property] = (given.priority, specifier.specifier)
+        if specifier.property is not None:
+            strongest[specifier.property] = (1, f"with {specifier.property}")
+    for specifier in node.specifiers:
+        declared = SPECIFIERS.get(specifier.specifier)
+        for given in () if declared is None else declared.specifies:
+            priority, winner = strongest[given.property]
+            if priority < given.priority and winner != specifier.specifier:
+                yield _after(
+                    snapshot,
+                    specifier,
+                    f" ({given.property}: `{winner}`)".replace("`", ""),
+                    HintKind.PRIORITY,
+                    f"`{given.property}` comes from `{winner}` (priority {priority}); here it would have priority "
+                    f"{given.priority}",
+                )
+
+
+def _is_number(node: ast.expr) -> bool:
+    """Whether a value is a number that is written out, maybe with a sign."""
+    if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub | ast.UAdd):
+        node = node.operand
+    return isinstance(node, ast.Constant) and type(node.value) in (int, float) and node.value != 0
+
+
+def _after(snapshot: Snapshot, node: ast.AST, text: str, kind: HintKind, tooltip: str) -> Hint:
+    span = span_of(snapshot, node)
+    return Hint(span.end_line, span.end_column, text, kind, tooltip)

@@ -1,0 +1,71 @@
+"""Files that a document names: modules that it imports, meshes and other data that it reads."""
+
+import ast
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Final
+
+from scenic.compiler.traversal import walk
+from scenic.ide.places import span_of
+from scenic.ide.snapshot import Snapshot
+from scenic.language.spans import Span
+from scenic.project.index import Project
+from scenic.project.queries import occurrences, symbol_of
+
+__all__ = ["Link", "links"]
+
+_FILES: Final = frozenset({"localPath", "fromFile", "open", "Path"})
+"""Functions and methods whose first argument names a file."""
+
+
+@dataclass(frozen=True, slots=True)
+class Link:
+    """A name of a file in the text, and the file that it means."""
+
+    span: Span
+    path: str
+
+
+def links(project: Project, snapshot: Snapshot) -> tuple[Link, ...]:
+    """The files that a document names, in order of place, as far as they exist. Runs nothing to find them."""
+    folder = os.path.dirname(snapshot.filename)
+    if not os.path.isabs(snapshot.filename):
+        return ()
+    found = [
+        Link(span, path)
+        for span, name in _names(snapshot)
+        if os.path.exists(path := os.path.normpath(os.path.join(folder, name)))
+    ]
+    found += _modules(project, snapshot)
+    return tuple(sorted(found, key=lambda link: link.span))
+
+
+def _modules(project: Project, snapshot: Snapshot) -> Iterator[Link]:
+    """The modules that are imported: each word of a dotted name leads to its own part of it."""
+    module = project.module(snapshot.filename)
+    for each in () if module is None else occurrences(module):
+        if each.index is None or module is None:
+            continue
+        symbol = symbol_of(project, module, each)
+        if symbol is not None and symbol.filename is not None and os.path.isfile(symbol.filename):
+            yield Link(each.span, symbol.filename)
+
+
+def _names(snapshot: Snapshot) -> Iterator[tuple[Span, str]]:
+    for node in walk(snapshot.tree):
+        if not isinstance(node, ast.Call) or not node.args:
+            continue
+        function = node.func
+        name = function.id if isinstance(function, ast.Name) else getattr(function, "attr", "")
+        argument = node.args[0]
+        if name in _FILES and isinstance(argument, ast.Constant) and isinstance(argument.value, str):
+            text = argument.value
+            span = span_of(snapshot, argument)
+            if text and "\0" not in text and span.line == span.end_line:
+                yield (
+                    Span(
+                        span.line, span.column + 1, span.end_line, max(span.column + 1, span.end_column - 1)
+                    ),
+                    text,
+                )

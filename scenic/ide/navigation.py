@@ -1,0 +1,310 @@
+"""From a name to where it is defined and used, in all files of a project; and giving it another name."""
+
+import ast
+import keyword
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from scenic.compiler.generated import HARD_KEYWORDS
+from scenic.ide.snapshot import Snapshot
+from scenic.language.names import RESERVED, TRACKED
+from scenic.language.spans import Span
+from scenic.project.classes import class_of, class_of_symbol
+from scenic.project.index import Project
+from scenic.project.modules import Module
+from scenic.project.queries import Occurrence, Place, occurrence_at, occurrences, references, symbol_of
+from scenic.project.symbols import Symbol, SymbolKind, symbol_of_binding, symbols_of
+
+__all__ = [
+    "Highlight",
+    "RenameError",
+    "Target",
+    "declarations",
+    "definitions",
+    "highlights",
+    "implementations",
+    "linked",
+    "prepare_rename",
+    "rename",
+    "type_definitions",
+    "usages",
+]
+
+
+@dataclass(frozen=True, slots=True)
+class Target:
+    """Where a name leads: ``origin`` is the name that was asked about, ``extent`` the whole definition."""
+
+    filename: str
+    span: Span
+    extent: Span
+    origin: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Highlight:
+    """A place in the same document that names the same thing; ``writes`` if it gives it a value."""
+
+    span: Span
+    writes: bool
+
+
+class RenameError(Exception):
+    """Why a name cannot be changed, or not into that."""
+
+
+def definitions(project: Project, snapshot: Snapshot, line: int, column: int) -> tuple[Target, ...]:
+    """Where the name at a place is defined: nothing for what the language provides.
+
+    A name that several places bind leads to all of them; a module to its file.
+    """
+    module, found = _occurrence(project, snapshot, line, column)
+    symbol = None if module is None or found is None else symbol_of(project, module, found)
+    if symbol is None or found is None:
+        return _ego(module, found)
+    return _targets(symbol, found.span)
+
+
+def declarations(project: Project, snapshot: Snapshot, line: int, column: int) -> tuple[Target, ...]:
+    """Where the name at a place comes into its module: for an imported one the import, otherwise the definition."""
+    module, found = _occurrence(project, snapshot, line, column)
+    if module is None or found is None:
+        return ()
+    if isinstance(found.node, ast.Name):
+        reference = module.resolution.references.get(found.node)
+        binding = None if reference is None else reference.binding
+        if binding is not None:
+            symbol = symbol_of_binding(module, binding)
+            return _targets(symbol, found.span)
+    return definitions(project, snapshot, line, column)
+
+
+def type_definitions(project: Project, snapshot: Snapshot, line: int, column: int) -> tuple[Target, ...]:
+    """Where the class of the value of the name at a place is defined."""
+    module, found = _occurrence(project, snapshot, line, column)
+    if module is None or found is None:
+        return ()
+    symbol: Symbol | None = None
+    if isinstance(found.node, ast.expr):
+        symbol = class_of(project, module, found.node)
+    if symbol is None:
+        meant = symbol_of(project, module, found)
+        symbol = meant if meant is not None and meant.kind is SymbolKind.CLASS else None
+    return () if symbol is None else _targets(symbol, found.span)
+
+
+def implementations(project: Project, snapshot: Snapshot, line: int, column: int) -> tuple[Target, ...]:
+    """The classes derived from the class at a place, or what they define under the name of the member at a place."""
+    module, found = _occurrence(project, snapshot, line, column)
+    symbol = None if module is None or found is None else symbol_of(project, module, found)
+    if symbol is None or found is None:
+        return ()
+    if symbol.kind is SymbolKind.CLASS:
+        derived = subclasses(project, symbol, deep=True)
+        return tuple(target for each in derived for target in _targets(each, found.span)) or _targets(
+            symbol, found.span
+        )
+    members = (SymbolKind.METHOD, SymbolKind.PROPERTY, SymbolKind.ATTRIBUTE)
+    targets = list(_targets(symbol, found.span))
+    if symbol.kind in members and symbol.container is not None:
+        owner = _owner(symbol)
+        for each in () if owner is None else subclasses(project, owner, deep=True):
+            cls = class_of_symbol(project, each)
+            member = None if cls is None else cls.member(symbol.name)
+            if member is not None and member.owner == each.name and member.symbol is not None:
+                targets += _targets(member.symbol, found.span)
+    return tuple(targets)
+
+
+def usages(
+    project: Project, snapshot: Snapshot, line: int, column: int, *, with_definitions: bool
+) -> tuple[Place, ...]:
+    """Every place of the workspace that names the same as the name at a place."""
+    module, found = _occurrence(project, snapshot, line, column)
+    if module is None or found is None:
+        return ()
+    symbol = symbol_of(project, module, found)
+    if symbol is None or symbol.is_builtin:
+        places = tuple(
+            Place(module.filename, each.span, each.defines) for each in _same(project, module, found)
+        )
+    else:
+        places = references(project, symbol)
+    return tuple(place for place in places if with_definitions or not place.defines)
+
+
+def highlights(project: Project, snapshot: Snapshot, line: int, column: int) -> tuple[Highlight, ...]:
+    """The places of the same document that name the same as the name at a place."""
+    module, found = _occurrence(project, snapshot, line, column)
+    if module is None or found is None:
+        return ()
+    return tuple(Highlight(each.span, each.defines) for each in _same(project, module, found))
+
+
+def linked(project: Project, snapshot: Snapshot, line: int, column: int) -> tuple[Span, ...]:
+    """The places that change together while the name at a place is edited: those of a local name of a function."""
+    module, found = _occurrence(project, snapshot, line, column)
+    if module is None or found is None:
+        return ()
+    symbol = symbol_of(project, module, found)
+    if symbol is None or symbol.binding is None or symbol.container is None:
+        return ()
+    if symbol.kind not in (SymbolKind.VARIABLE, SymbolKind.PARAMETER) or symbol.filename != module.filename:
+        return ()
+    places = tuple(each.span for each in _same(project, module, found))
+    return places if len(places) > 1 else ()
+
+
+def prepare_rename(project: Project, snapshot: Snapshot, line: int, column: int) -> tuple[Span, str] | None:
+    """The name at a place, if it can be changed; ``None`` where there is no name.
+
+    Raises `RenameError` for a name that cannot be changed.
+    """
+    module, found = _occurrence(project, snapshot, line, column)
+    if module is None or found is None:
+        return None
+    symbol = symbol_of(project, module, found)
+    if found.name in RESERVED or found.name in TRACKED or (symbol is not None and symbol.is_builtin):
+        raise RenameError(f"`{found.name}` belongs to the language and cannot be renamed")
+    if symbol is None:
+        raise RenameError(f"it is not known what `{found.name}` means here")
+    if symbol.kind is SymbolKind.MODULE:
+        raise RenameError("rename the file of a module to give it another name")
+    if symbol.filename is not None and not _is_own(project, symbol.filename, snapshot.filename):
+        raise RenameError(f"`{found.name}` is defined outside the workspace, in {symbol.filename}")
+    return found.span, found.name
+
+
+def rename(
+    project: Project, snapshot: Snapshot, line: int, column: int, name: str
+) -> tuple[tuple[Place, str], ...]:
+    """The places that change when the name at a place becomes ``name``, each with its new text.
+
+    Raises `RenameError` if that is impossible, or would change what the program means.
+    """
+    prepared = prepare_rename(project, snapshot, line, column)
+    if prepared is None:
+        raise RenameError("there is no name here")
+    if not name.isidentifier():
+        raise RenameError(f"`{name}` is not a name")
+    if keyword.iskeyword(name) or name in HARD_KEYWORDS:
+        raise RenameError(f"`{name}` is a keyword")
+    if name in RESERVED:
+        raise RenameError(f"`{name}` belongs to the language")
+    module, found = _occurrence(project, snapshot, line, column)
+    assert module is not None
+    assert found is not None
+    symbol = symbol_of(project, module, found)
+    assert symbol is not None
+    binding = symbol.binding
+    if name != found.name and binding is not None and name in binding.scope.bindings:
+        raise RenameError(f"there is a `{name}` already in the same scope")
+    places = references(project, symbol) if symbol.filename is not None else ()
+    # A place that names it differently (`import a as b`) keeps its own name.
+    changed = [(place, name) for place in places if _text(project, place) == symbol.name]
+    if found.name != symbol.name:
+        # Another name was asked about that an import gave: only that one changes.
+        changed = [
+            (Place(module.filename, each.span, each.defines), name)
+            for each in _same(project, module, found)
+            if each.name == found.name
+        ]
+    return tuple(changed)
+
+
+def subclasses(project: Project, symbol: Symbol, *, deep: bool) -> tuple[Symbol, ...]:
+    """The classes of the workspace that derive from a class: directly, or if ``deep``, also through others."""
+    found: list[Symbol] = []
+    for filename in project.files():
+        module = project.module(filename)
+        for each in () if module is None else symbols_of(module):
+            if each.kind is not SymbolKind.CLASS or each.filename != filename or each == symbol:
+                continue
+            if is_derived(project, each, symbol, deep=deep):
+                found.append(each)
+    return tuple(found)
+
+
+def is_derived(project: Project, symbol: Symbol, base: Symbol, *, deep: bool) -> bool:
+    """Whether a class derives from another one."""
+    seen: set[Symbol] = set()
+    pending = [symbol]
+    while pending:
+        cls = class_of_symbol(project, pending.pop())
+        for each in () if cls is None else cls.bases:
+            if each == base:
+                return True
+            if deep and each not in seen:
+                seen.add(each)
+                pending.append(each)
+    return False
+
+
+# Helpers
+
+
+def _occurrence(
+    project: Project, snapshot: Snapshot, line: int, column: int
+) -> tuple[Module | None, Occurrence | None]:
+    module = project.module(snapshot.filename)
+    return module, None if module is None else occurrence_at(module, line, column)
+
+
+def _same(project: Project, module: Module, found: Occurrence) -> Sequence[Occurrence]:
+    """The words of a module that mean the same as one of them; without a meaning, those that are the same."""
+    symbol = symbol_of(project, module, found)
+    names = {found.name} | ({symbol.name} if symbol is not None else set())
+    aliased = {alias.asname for alias in module.import_of if alias.asname}
+    same = [each for each in occurrences(module) if each.name in names or each.name in aliased]
+    if symbol is None:
+        return [each for each in same if each.name == found.name and type(each.node) is type(found.node)]
+    return [each for each in same if symbol_of(project, module, each) == symbol]
+
+
+def _targets(symbol: Symbol, origin: Span) -> tuple[Target, ...]:
+    if symbol.filename is None or symbol.span is None:
+        return ()
+    return (Target(symbol.filename, symbol.span, _around(symbol.extent, symbol.span), origin),)
+
+
+def _around(extent: Span | None, span: Span) -> Span:
+    return extent if extent is not None and extent.contains(span) else span
+
+
+def _ego(module: Module | None, found: Occurrence | None) -> tuple[Target, ...]:
+    """Where the ego or the workspace is set, which is no binding."""
+    if module is None or found is None or found.name not in TRACKED:
+        return ()
+    return tuple(
+        Target(module.filename, each.span, each.span, found.span)
+        for each in occurrences(module)
+        if each.name == found.name and each.defines
+    )
+
+
+def _owner(symbol: Symbol) -> Symbol | None:
+    """The class that a member is defined in."""
+    module: Any = symbol.module
+    if module is None:
+        return None
+    return next(
+        (
+            each
+            for each in symbols_of(module)
+            if each.kind is SymbolKind.CLASS and each.name == symbol.container
+        ),
+        None,
+    )
+
+
+def _is_own(project: Project, filename: str, beside: str) -> bool:
+    """Whether a file belongs to the workspace; without one, whether it is the document itself."""
+    return filename == beside or filename in set(project.files())
+
+
+def _text(project: Project, place: Place) -> str:
+    module = project.module(place.filename)
+    if module is None:
+        return ""
+    return module.source.line(place.span.line)[place.span.column : place.span.end_column]

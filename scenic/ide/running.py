@@ -1,0 +1,82 @@
+"""Running a program because its user asked for that: in a process of its own, within limits of time and size."""
+
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from typing import Final
+
+__all__ = ["RunError", "sample_page"]
+
+TIME_LIMIT: Final = 20.0
+"""Seconds in which scenes must be found."""
+_START: Final = 15.0
+"""Seconds that the process may take besides, to begin and to write."""
+_LARGEST: Final = 64 << 20
+_INTERVAL: Final = 0.02
+
+
+class RunError(Exception):
+    """Why there is no page: what the program's errors are, or which limit it ran into."""
+
+
+def sample_page(
+    text: str,
+    filename: str,
+    *,
+    scenario: str | None = None,
+    seed: int = 0,
+    count: int = 1,
+    go_on: Callable[[], None] = lambda: None,
+) -> str:
+    """A page that shows scenes of a program. **Runs the program.**
+
+    ``text`` is the program as it stands in the editor, ``filename`` where it belongs: modules are found beside it.
+    ``go_on`` is called now and then, and may raise to give up. Raises `RunError` if there is no scene to show.
+    """
+    # -P: a module in the present folder must not take the place of one of ours.
+    command = [sys.executable, "-P", "-m", "scenic.cli.main", "preview", "--filename", filename]
+    command += ["--seed", str(seed), "-n", str(count), "--time-limit", str(TIME_LIMIT)]
+    if scenario is not None:
+        command += ["--scenario", scenario]
+    folder = os.path.dirname(filename)
+    with (
+        tempfile.TemporaryFile() as given,
+        tempfile.TemporaryFile() as page,
+        tempfile.TemporaryFile() as said,
+    ):
+        given.write(text.encode("utf-8", "surrogatepass"))
+        given.seek(0)
+        process = subprocess.Popen(
+            command,
+            stdin=given,
+            stdout=page,
+            stderr=said,
+            cwd=folder if os.path.isdir(folder) else None,
+            start_new_session=True,
+        )
+        try:
+            code = _wait(process, go_on)
+        finally:
+            if process.poll() is None:
+                process.kill()
+                process.wait()
+        if code != 0:
+            said.seek(0)
+            raise RunError(
+                said.read(_LARGEST).decode(errors="replace").strip() or f"the program ended with code {code}"
+            )
+        page.seek(0)
+        return page.read(_LARGEST).decode()
+
+
+def _wait(process: "subprocess.Popen[bytes]", go_on: Callable[[], None]) -> int:
+    end = time.monotonic() + TIME_LIMIT + _START
+    while (code := process.poll()) is None:
+        go_on()
+        if time.monotonic() > end:
+            raise RunError(f"the program took longer than {TIME_LIMIT + _START:.0f} seconds")
+        time.sleep(_INTERVAL)
+    return code

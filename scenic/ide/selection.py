@@ -1,0 +1,28 @@
+"""What a selection grows to, step by step: a word, the expressions around it, statements, blocks, the document."""
+
+from scenic.ide.places import span_of
+from scenic.ide.snapshot import Snapshot
+from scenic.language.spans import Span
+
+__all__ = ["selections"]
+
+
+def selections(snapshot: Snapshot, line: int, column: int) -> tuple[Span, ...]:
+    """The spans around a place, each within the next, the smallest first."""
+    lines = snapshot.source.lines
+    whole = Span(1, 0, len(lines), len(lines[-1]))
+    line = min(max(line, 1), len(lines))
+    column = min(column, len(lines[line - 1]))
+    found = [whole]
+    for node in snapshot.path_to(line, column)[1:]:
+        _grow(found, span_of(snapshot, node))
+    token = snapshot.token_at(line, column)
+    if token is not None:
+        _grow(found, snapshot.span_of_token(token))
+    return tuple(reversed(found))
+
+
+def _grow(found: list[Span], span: Span) -> None:
+    """Add a span within the last one, if it is smaller."""
+    if found[-1] != span and found[-1].contains(span):
+        found.append(span)

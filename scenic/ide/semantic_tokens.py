@@ -1,0 +1,249 @@
+"""What each word of a document is, for editors to colour: what the tree and the scopes know, not only the spelling."""
+
+import ast
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any, Final
+
+from scenic.compiler import tree as scenic
+from scenic.compiler.generated import HARD_KEYWORDS, OPERATORS
+from scenic.compiler.scopes import BindingKind, Resolution, ScopeKind
+from scenic.compiler.tokens import FSTRING_END, FSTRING_MIDDLE, FSTRING_START, NAME, NUMBER, STRING
+from scenic.compiler.traversal import walk
+from scenic.ide.places import name_span
+from scenic.ide.snapshot import Snapshot
+from scenic.language.names import NAMES, TRACKED, NameKind
+
+__all__ = ["MODIFIERS", "TYPES", "SemanticToken", "semantic_tokens"]
+
+TYPES: Final = (
+    "namespace",
+    "type",
+    "class",
+    "parameter",
+    "variable",
+    "property",
+    "function",
+    "method",
+    "keyword",
+    "comment",
+    "string",
+    "number",
+    "operator",
+    "decorator",
+    "event",
+    "macro",
+)
+"""The protocol's names for kinds of tokens; behaviors and monitors are ``event``, scenarios ``macro``."""
+MODIFIERS: Final = (
+    "declaration",
+    "definition",
+    "readonly",
+    "modification",
+    "documentation",
+    "defaultLibrary",
+)
+"""The protocol's names for what can be said of a token besides."""
+
+_MARKS: Final = frozenset({"(", ")", "[", "]", "{", "}", ",", ":", ";", "."})
+_OPERATOR_KINDS: Final = {kind for mark, kind in OPERATORS.items() if mark not in _MARKS}
+_HARD_KINDS: Final = frozenset(HARD_KEYWORDS.values())
+
+_OF_BINDING: Final = {
+    BindingKind.PARAMETER: "parameter",
+    BindingKind.SELF: "parameter",
+    BindingKind.FUNCTION: "function",
+    BindingKind.CLASS: "class",
+    BindingKind.MODULE: "namespace",
+    BindingKind.BEHAVIOR: "event",
+    BindingKind.MONITOR: "event",
+    BindingKind.SCENARIO: "macro",
+    BindingKind.TYPE_PARAMETER: "type",
+}
+_OF_NAME: Final = {
+    NameKind.CLASS: "class",
+    NameKind.EXCEPTION: "class",
+    NameKind.SHAPE: "class",
+    NameKind.DISTRIBUTION: "class",
+    NameKind.REGION: "class",
+    NameKind.FUNCTION: "function",
+    NameKind.VALUE: "variable",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class SemanticToken:
+    """A stretch of one line: ``line`` from 1, columns in characters, what it is and what else can be said of it."""
+
+    line: int
+    column: int
+    end_column: int
+    type: str
+    modifiers: frozenset[str]
+
+
+_What = tuple[str, frozenset[str]]
+
+
+def semantic_tokens(snapshot: Snapshot) -> tuple[SemanticToken, ...]:
+    """All tokens of a document that can be coloured, in order; none goes over a line end, and none overlap."""
+    return snapshot.derived("semantic tokens", lambda: tuple(_find(snapshot)))
+
+
+def _find(snapshot: Snapshot) -> Iterator[SemanticToken]:
+    tokens, source = snapshot.tokens, snapshot.source
+    names = _names(snapshot)
+    plain: frozenset[str] = frozenset()
+    found: list[SemanticToken] = []
+    for index, (kind, line, column) in enumerate(
+        zip(tokens.kinds, tokens.lines, tokens.columns, strict=True)
+    ):
+        what: _What | None = None
+        if kind >= NAME:
+            what = names.get((line, column))
+            if what is None:
+                what = ("keyword", plain) if kind > NAME else ("variable", plain)
+        elif kind in _HARD_KINDS:
+            what = ("keyword", plain)
+        elif kind == NUMBER:
+            what = ("number", plain)
+        elif kind in (STRING, FSTRING_START, FSTRING_MIDDLE, FSTRING_END):
+            what = names.get((line, column), ("string", plain))
+        elif kind in _OPERATOR_KINDS:
+            what = ("operator", plain)
+        if what is None:
+            continue
+        start, end_line = source.character(line, column), tokens.end_lines[index]
+        end = source.character(end_line, tokens.end_columns[index])
+        for at in range(line, end_line + 1):
+            first = start if at == line else 0
+            last = end if at == end_line else len(source.line(at))
+            if last > first:
+                found.append(SemanticToken(at, first, last, *what))
+    for line, column, text in tokens.comments:
+        found.append(SemanticToken(line, column, column + len(text), "comment", plain))
+    found.sort(key=lambda token: (token.line, token.column))
+    end_of_last = (0, 0)
+    for token in found:
+        if (token.line, token.column) >= end_of_last:
+            yield token
+            end_of_last = (token.line, token.end_column)
+
+
+def _names(snapshot: Snapshot) -> dict[tuple[int, int], _What]:
+    """By line and column in bytes: what the names and strings there are that are more than their spelling says."""
+    resolution = snapshot.resolution
+    found: dict[tuple[int, int], _What] = {}
+    none: frozenset[str] = frozenset()
+
+    def put(node: Any, what: str, *modifiers: str, name: str | None = None) -> None:
+        span = name_span(snapshot, node, name)
+        place = (span.line, snapshot.source.byte(span.line, span.column))
+        found[place] = (what, frozenset(modifiers))
+
+    # What a name is because of the node around it, which is visited first.
+    outer: dict[ast.AST, str] = {}
+    for node in walk(snapshot.tree):
+        outer.update((decorator, "decorator") for decorator in getattr(node, "decorator_list", ()))
+        if isinstance(node, ast.Name):
+            place = (node.lineno, node.col_offset)
+            found[place] = (outer[node], none) if node in outer else _of_name(node, resolution)
+        elif isinstance(node, ast.Attribute):
+            found[_end_of(node, node.attr)] = (outer.get(node, "property"), none)
+        elif isinstance(node, ast.Call):
+            if isinstance(node.func, ast.Attribute):
+                outer[node.func] = "method"
+        elif isinstance(node, ast.ClassDef):
+            put(node, "class", "definition")
+        elif isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+            scope = resolution.scopes.get(node)
+            in_class = scope is not None and scope.parent is not None and scope.parent.kind is ScopeKind.CLASS
+            put(node, "method" if in_class else "function", "definition")
+        elif isinstance(node, scenic.BehaviorDef | scenic.MonitorDef):
+            put(node, "event", "definition")
+        elif isinstance(node, scenic.ScenarioDef):
+            put(node, "macro", "definition")
+        elif isinstance(node, ast.arg):
+            found[node.lineno, node.col_offset] = ("parameter", frozenset({"declaration"}))
+        elif isinstance(node, ast.keyword) and node.arg is not None:
+            found[node.lineno, node.col_offset] = ("parameter", none)
+        elif isinstance(node, scenic.PropertyDef | scenic.ParamItem):
+            found[node.lineno, node.col_offset] = ("property", frozenset({"definition"}))
+        elif isinstance(node, scenic.Specifier) and node.property is not None:
+            put(node, "property", name=node.property)
+        elif isinstance(node, ast.Import | ast.ImportFrom | scenic.Model):
+            _of_import(snapshot, node, found)
+        elif isinstance(node, ast.ExceptHandler | ast.MatchAs | ast.MatchStar) and node.name:
+            put(node, "variable", "declaration", name=node.name)
+        elif isinstance(node, ast.MatchMapping) and node.rest:
+            put(node, "variable", "declaration", name=node.rest)
+        elif isinstance(node, ast.Expr) and scenic.is_documentation(node):
+            found[node.lineno, node.col_offset] = ("string", frozenset({"documentation"}))
+    return found
+
+
+def _of_name(node: ast.Name, resolution: Resolution) -> _What:
+    reference = resolution.references.get(node)
+    binding = None if reference is None else reference.binding
+    modifiers = set() if isinstance(node.ctx, ast.Load) else {"modification"}
+    if node.id in TRACKED:
+        return "variable", frozenset({*modifiers, "defaultLibrary"})
+    if binding is None:
+        known = NAMES.get(node.id)
+        if known is not None:
+            return _OF_NAME.get(known.kind, "variable"), frozenset({*modifiers, "defaultLibrary"})
+        if node.id in PYTHON_NAMES:
+            value = PYTHON_NAMES[node.id]
+            return value, frozenset({*modifiers, "defaultLibrary"})
+        return "variable", frozenset(modifiers)
+    for kind, what in _OF_BINDING.items():
+        if kind in binding.kinds:
+            return what, frozenset(modifiers)
+    if node.id.isupper() and len(node.id) > 1:
+        modifiers.add("readonly")
+    return "variable", frozenset(modifiers)
+
+
+def _of_import(
+    snapshot: Snapshot, node: ast.Import | ast.ImportFrom | scenic.Model, found: dict[tuple[int, int], _What]
+) -> None:
+    """Names of modules are namespaces; what is imported from them keeps what is known of it."""
+    tokens = snapshot.tokens
+    resolution = snapshot.resolution
+    place = (node.lineno, node.col_offset)
+    in_module = not isinstance(node, ast.ImportFrom)
+    for index in range(snapshot.tokens_of_line(node.lineno).start, len(tokens.kinds)):
+        at = (tokens.lines[index], tokens.columns[index])
+        if at >= (node.end_lineno or 0, node.end_col_offset or 0):
+            break
+        text = tokens.texts[index]
+        if at <= place or not text.isidentifier():
+            in_module = in_module or (at == place and text == "from")
+            continue
+        if text == "import" and isinstance(node, ast.ImportFrom):
+            in_module = False
+        elif tokens.kinds[index] >= NAME:
+            binding = resolution.module.bindings.get(text)
+            known = (
+                None
+                if binding is None
+                else next((_OF_BINDING[k] for k in _OF_BINDING if k in binding.kinds), None)
+            )
+            found[at] = ("namespace" if in_module else known or "variable", frozenset({"declaration"}))
+
+
+def _end_of(node: ast.Attribute, name: str) -> tuple[int, int]:
+    return node.end_lineno or node.lineno, (node.end_col_offset or 0) - len(name.encode())
+
+
+def _python_names() -> dict[str, str]:
+    import builtins
+
+    return {
+        name: "class" if isinstance(value, type) else "function" if callable(value) else "variable"
+        for name, value in vars(builtins).items()
+    }
+
+
+PYTHON_NAMES: Final = _python_names()
+"""What Python's builtins are."""

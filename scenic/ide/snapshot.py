@@ -1,0 +1,175 @@
+"""One version of a document, and all that is known of it: made once, whichever features ask, in any thread."""
+
+import ast
+import threading
+from bisect import bisect_left, bisect_right
+from collections.abc import Callable, Iterator
+from typing import Any, TypeVar
+
+from scenic.compiler.generated import WORDS
+from scenic.compiler.lexer import lex
+from scenic.compiler.parser import DEEPEST, ParseResult, parse, recursion_limit
+from scenic.compiler.resolver import resolve
+from scenic.compiler.scopes import Resolution, Scope
+from scenic.compiler.tokens import NAME, Tokens
+from scenic.compiler.traversal import parts
+from scenic.language.source import Source
+from scenic.language.spans import Span
+
+__all__ = ["Snapshot"]
+
+_T = TypeVar("_T")
+
+
+class Snapshot:
+    """A document as it stood at one moment. Nothing of it changes; what is derived from its text is derived once.
+
+    Lines count from 1. Columns of places count characters from 0, as in `Span`; those of nodes and tokens count bytes,
+    as in `ast`. Tokens are known by their index in `tokens`.
+    """
+
+    def __init__(self, text: str, filename: str, *, before: "Snapshot | None" = None) -> None:
+        self.source = Source(text, filename)
+        self._lock = threading.Lock()
+        self._making: dict[str, threading.RLock] = {}
+        self._known: dict[str, Any] = {}
+
+    @property
+    def text(self) -> str:
+        """The text, as `Source` has it."""
+        return self.source.text
+
+    @property
+    def filename(self) -> str:
+        """The name of the file, or what stands for it in messages."""
+        return self.source.filename
+
+    @property
+    def tokens(self) -> Tokens:
+        """The tokens of the text."""
+        return self._once("tokens", lambda: lex(self.source.text, WORDS))
+
+    @property
+    def parsed(self) -> ParseResult:
+        """The tree and what is wrong with the syntax."""
+        return self._once("parsed", lambda: parse(self.source.text, filename=self.filename))
+
+    @property
+    def tree(self) -> ast.Module:
+        """The tree, as complete as it could be made."""
+        return self.parsed.tree
+
+    @property
+    def resolution(self) -> Resolution:
+        """The scopes and what each name in them means."""
+        return self._once("resolution", self._resolve)
+
+    def derived(self, key: str, make: Callable[[], _T], *, stamp: object = None) -> _T:
+        """A value that a feature derives from this version, made when it is first asked for and kept.
+
+        It is made anew when ``stamp``, which stands for whatever else it depends on, is another one than last time.
+        """
+        known, value = self._once(f"derived {key}", lambda: (stamp, make()))
+        if known != stamp:
+            value = make()
+            self._known[f"derived {key}"] = (stamp, value)
+        return value
+
+    # Places
+
+    def token_at(self, line: int, column: int) -> int | None:
+        """The word, number, string or mark at a place; between two of them the word, or else the one on the right."""
+        tokens, source = self.tokens, self.source
+        if not 1 <= line <= len(source.lines) or column > len(source.line(line)):
+            return None
+        byte = source.byte(line, column)
+        found = None
+        for index in self.tokens_of_line(line):
+            if tokens.columns[index] <= byte <= tokens.end_columns[index] and tokens.texts[index]:
+                touching = index
+                if byte < tokens.end_columns[index] or self.is_word(index):
+                    if found is None or not self.is_word(found):
+                        found = touching
+                elif found is None:
+                    found = touching
+        return found
+
+    def tokens_of_line(self, line: int) -> range:
+        """The tokens that begin on a line."""
+        lines = self.tokens.lines
+        return range(bisect_left(lines, line), bisect_right(lines, line))
+
+    def is_word(self, token: int) -> bool:
+        """Whether a token is a name or a keyword."""
+        return self.tokens.kinds[token] >= NAME or (
+            self.tokens.texts[token][:1].isidentifier() and self._is_key(token)
+        )
+
+    def _is_key(self, token: int) -> bool:
+        return WORDS.get(self.tokens.texts[token]) == self.tokens.kinds[token]
+
+    def span_of_token(self, token: int) -> Span:
+        """The place of a token."""
+        tokens, source = self.tokens, self.source
+        line, end_line = tokens.lines[token], tokens.end_lines[token]
+        return Span(
+            line,
+            source.character(line, tokens.columns[token]),
+            end_line,
+            source.character(end_line, tokens.end_columns[token]),
+        )
+
+    def path_to(self, line: int, column: int) -> list[ast.AST]:
+        """The nodes around a place, the innermost last; the place between two nodes belongs to the one on the right."""
+        place = (line, self.source.byte(line, column))
+        path: list[ast.AST] = [self.tree]
+        while True:
+            inner = touching = None
+            for child in _placed(path[-1]):
+                start = (getattr(child, "lineno", 0), getattr(child, "col_offset", 0))
+                end = (getattr(child, "end_lineno", 0), getattr(child, "end_col_offset", 0))
+                if start <= place < end:
+                    inner = child
+                    break
+                if place == end:
+                    touching = child
+            inner = inner or touching
+            if inner is None:
+                return path
+            path.append(inner)
+
+    def scope_at(self, line: int, column: int) -> Scope:
+        """The innermost scope at a place."""
+        scopes = self.resolution.scopes
+        found = self.resolution.module
+        for node in self.path_to(line, column):
+            found = scopes.get(node, found)
+        return found
+
+    # How things are made
+
+    def _once(self, key: str, make: Callable[[], _T]) -> _T:
+        if key not in self._known:
+            with self._lock:
+                making = self._making.setdefault(key, threading.RLock())
+            # One lock for each thing: a feature that needs the tree does not wait for a check.
+            with making:
+                if key not in self._known:
+                    self._known[key] = make()
+        value: _T = self._known[key]
+        return value
+
+    def _resolve(self) -> Resolution:
+        with recursion_limit(DEEPEST):
+            return resolve(self.tree, self.source)
+
+
+def _placed(node: ast.AST) -> Iterator[ast.AST]:
+    """The children of a node that have places; for those that have none, their children."""
+    stack = parts(node)[::-1]
+    while stack:
+        child = stack.pop()
+        if getattr(child, "end_lineno", None) is None:
+            stack.extend(parts(child)[::-1])
+        else:
+            yield child

@@ -1,0 +1,177 @@
+"""What a document defines, as a tree, and what a workspace defines, as a list to search in."""
+
+import ast
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Any
+
+from scenic.compiler import tree as scenic
+from scenic.compiler.unparser import UnparseError, unparse
+from scenic.ide.places import name_span, span_of
+from scenic.ide.snapshot import Snapshot
+from scenic.language.spans import Span
+
+__all__ = ["Kind", "Symbol", "flat", "matches", "symbols"]
+
+
+class Kind(StrEnum):
+    """What a symbol is, in the language's own words."""
+
+    CLASS = "class"
+    PROPERTY = "property"
+    FUNCTION = "function"
+    METHOD = "method"
+    BEHAVIOR = "behavior"
+    MONITOR = "monitor"
+    SCENARIO = "scenario"
+    OBJECT = "object"
+    VARIABLE = "variable"
+    CONSTANT = "constant"
+    PARAMETER = "global parameter"
+    REQUIREMENT = "requirement"
+
+
+@dataclass(frozen=True, slots=True)
+class Symbol:
+    """One definition: ``span`` is all of it, ``name_span`` the name in it, ``detail`` what to say beside the name."""
+
+    name: str
+    kind: Kind
+    detail: str
+    span: Span
+    name_span: Span
+    children: tuple["Symbol", ...] = ()
+
+
+def symbols(snapshot: Snapshot) -> tuple[Symbol, ...]:
+    """The definitions of a document, in order."""
+    return snapshot.derived(
+        "symbols", lambda: tuple(_of_block(snapshot, snapshot.tree.body, set(), in_class=False))
+    )
+
+
+def flat(found: Sequence[Symbol], container: str = "") -> Iterator[tuple[Symbol, str]]:
+    """Symbols and those in them, each with the name of what contains it."""
+    for symbol in found:
+        yield symbol, container
+        yield from flat(symbol.children, symbol.name)
+
+
+def matches(name: str, query: str) -> bool:
+    """Whether the characters of a query occur in a name, in order, whatever their case."""
+    rest = iter(name.lower())
+    return all(character in rest for character in query.lower() if not character.isspace())
+
+
+def _of_block(
+    snapshot: Snapshot, statements: Sequence[ast.stmt], seen: set[str], *, in_class: bool
+) -> Iterator[Symbol]:
+    for node in statements:
+        yield from _of_statement(snapshot, node, seen, in_class=in_class)
+
+
+def _of_statement(snapshot: Snapshot, node: Any, seen: set[str], *, in_class: bool) -> Iterator[Symbol]:
+    if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+        kind = Kind.METHOD if in_class else Kind.FUNCTION
+        yield _symbol(snapshot, node, kind, signature(node.args), _inner(snapshot, node.body))
+    elif isinstance(node, ast.ClassDef):
+        bases = ", ".join(_text(base) for base in node.bases)
+        children = tuple(_of_block(snapshot, node.body, set(), in_class=True))
+        yield _symbol(snapshot, node, Kind.CLASS, f"({bases})" if bases else "", children)
+    elif isinstance(node, scenic.BehaviorDef):
+        yield _symbol(snapshot, node, Kind.BEHAVIOR, signature(node.args), _inner(snapshot, node.body))
+    elif isinstance(node, scenic.MonitorDef):
+        yield _symbol(snapshot, node, Kind.MONITOR, signature(node.args), _inner(snapshot, node.body))
+    elif isinstance(node, scenic.ScenarioDef):
+        body = [*(node.setup or ()), *(node.compose or ())]
+        children = tuple(_of_block(snapshot, body, set(), in_class=False))
+        yield _symbol(snapshot, node, Kind.SCENARIO, signature(node.args) if node.args else "", children)
+    elif isinstance(node, scenic.PropertyDef):
+        attributes = f"[{', '.join(node.attributes)}]" if node.attributes else ""
+        yield _symbol(snapshot, node, Kind.PROPERTY, f"{attributes}: {_text(node.value)}".strip(": "))
+    elif isinstance(node, scenic.Param):
+        for item in node.items:
+            yield _symbol(snapshot, item, Kind.PARAMETER, _text(item.value))
+    elif isinstance(node, scenic.Require | scenic.RequireMonitor | scenic.TerminateWhen) and node.name:
+        span = span_of(snapshot, node)
+        name = node.name
+        yield Symbol(name, Kind.REQUIREMENT, "", span, span)
+    elif isinstance(node, ast.Assign | ast.AnnAssign):
+        targets = node.targets if isinstance(node, ast.Assign) else [node.target]
+        for target in targets:
+            for bound in _names(target):
+                if bound.id not in seen:
+                    seen.add(bound.id)
+                    yield Symbol(
+                        bound.id,
+                        _kind_of_value(node.value, bound.id),
+                        "" if node.value is None else _text(node.value),
+                        span_of(snapshot, node),
+                        name_span(snapshot, bound),
+                    )
+    else:
+        # What is defined under a condition or in a loop is defined all the same.
+        for field in ("body", "orelse", "finalbody"):
+            yield from _of_block(snapshot, getattr(node, field, None) or (), seen, in_class=in_class)
+        for part in (
+            *getattr(node, "handlers", ()),
+            *getattr(node, "interrupts", ()),
+            *getattr(node, "cases", ()),
+        ):
+            yield from _of_block(snapshot, part.body, seen, in_class=in_class)
+
+
+def _inner(snapshot: Snapshot, body: Sequence[ast.stmt]) -> tuple[Symbol, ...]:
+    """Definitions in a function; its variables are its own business."""
+    kinds = (Kind.VARIABLE, Kind.CONSTANT, Kind.OBJECT)
+    return tuple(each for each in _of_block(snapshot, body, set(), in_class=False) if each.kind not in kinds)
+
+
+def _symbol(
+    snapshot: Snapshot, node: Any, kind: Kind, detail: str, children: tuple[Symbol, ...] = ()
+) -> Symbol:
+    span, name = span_of(snapshot, node), name_span(snapshot, node)
+    first = getattr(node, "decorator_list", None)
+    if first:
+        start = span_of(snapshot, first[0])
+        span = Span(start.line, 0 if start.column < 2 else start.column - 1, span.end_line, span.end_column)
+    return Symbol(node.name, kind, detail, span, name, children)
+
+
+def _kind_of_value(value: ast.expr | None, name: str) -> Kind:
+    if isinstance(value, scenic.New):
+        return Kind.OBJECT
+    return Kind.CONSTANT if name.isupper() else Kind.VARIABLE
+
+
+def _names(target: ast.expr) -> Iterator[ast.Name]:
+    if isinstance(target, ast.Name):
+        yield target
+    elif isinstance(target, ast.Tuple | ast.List):
+        for part in target.elts:
+            yield from _names(part)
+    elif isinstance(target, ast.Starred):
+        yield from _names(target.value)
+
+
+def signature(args: ast.arguments) -> str:
+    """Parameters as they are written."""
+    function = ast.FunctionDef("f", args, [ast.Pass()], [], None)
+    try:
+        text = unparse(function)
+    except UnparseError:
+        return "(...)"
+    return text.partition("\n")[0].removeprefix("def f").removesuffix(":")
+
+
+def _text(node: ast.expr) -> str:
+    try:
+        text = unparse(node)
+    except UnparseError:
+        return "..."
+    line, more, _ = text.partition("\n")
+    return line[:_LONGEST] + ("..." if more or len(line) > _LONGEST else "")
+
+
+_LONGEST = 80

@@ -1,0 +1,217 @@
+"""When documents are checked, and who is told what was found.
+
+A check begins a moment after a change, beside the loop. A change that arrives while it runs makes it worthless, unless
+the client has waited too long for any result.
+"""
+
+import os
+import re
+import time
+from collections.abc import Callable, Sequence
+from typing import Final, TypeAlias
+
+from scenic.ide.diagnostics import found_in
+from scenic.language.diagnostics import Diagnostic
+from scenic.language.errors import ScenicError
+from scenic.language.source import Source, read_source
+from scenic.lsp.convert import Json, Lines, to_diagnostic
+from scenic.lsp.documents import Document
+from scenic.lsp.loop import Cancelled, Job, Timer
+from scenic.lsp.session import Session
+from scenic.lsp.uris import to_uri
+
+__all__ = ["Checks"]
+
+PAUSE: Final = 0.02
+"""Seconds without a change after which a document is checked."""
+LONG_PAUSE: Final = 0.5
+"""Seconds without a change after which the documents are checked that may import the changed one."""
+LONGEST_WAIT: Final = 0.3
+"""Seconds after the first change that nobody has heard of, after which a check is begun, and no longer given up."""
+
+
+_IMPORTS: Final = re.compile(r"^\s*(?:import|from|model)\b", re.MULTILINE)
+
+
+class Checks:
+    """The checks of the open documents, made beside the loop."""
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self._timers: dict[str, Timer] = {}
+        self._running: dict[str, Job] = {}
+        self._since: dict[str, float] = {}
+        """By document: when the first change came that no result has covered yet."""
+        self._pulled: set[str] = set()
+        """The documents that the client asks for itself."""
+        self._told: set[str] = set()
+        """The documents of which the client has been told something that it should forget one day."""
+        self._others: Timer | None = None
+        self._troubled: dict[str, tuple[Diagnostic, ...]] = {}
+        """By document: the problems of its settings that are shown."""
+
+    # What makes a check necessary
+
+    def changed(self, uri: str) -> None:
+        """A document has changed."""
+        now = time.monotonic()
+        late = now - self._since.setdefault(uri, now) > LONGEST_WAIT
+        if uri in self._running:
+            if late:
+                return  # Its result is waited for; the next check begins when it is there.
+            self._running.pop(uri).cancel()
+        self._stop_timer(uri)
+        if late:
+            self._begin(uri)
+        else:
+            self._timers[uri] = self._session.loop.call_later(PAUSE, lambda: self._begin(uri))
+        if self._others is not None:
+            self._others.cancel()
+        self._others = self._session.loop.call_later(LONG_PAUSE, lambda: self._check_others(uri))
+
+    def opened(self, uri: str) -> None:
+        """A document has been opened: it is checked at once."""
+        self._since[uri] = time.monotonic()
+        self._begin(uri)
+
+    def closed(self, uri: str) -> None:
+        """A document has been closed: nothing is shown of it any more."""
+        self._stop_timer(uri)
+        job = self._running.pop(uri, None)
+        if job is not None:
+            job.cancel()
+        self._since.pop(uri, None)
+        self._pulled.discard(uri)
+        self._told.discard(uri)
+        self._publish(uri, [], None)
+        self._show_problems(uri, ())
+
+    def everything(self) -> None:
+        """Settings or files on the disk have changed: every open document may have other problems now."""
+        for uri in self._session.documents:
+            self.changed(uri)
+
+    def _check_others(self, changed: str) -> None:
+        """Other documents may import the one that has changed."""
+        self._others = None
+        for uri, document in self._session.documents.items():
+            if uri != changed and uri not in self._running and _IMPORTS.search(document.text):
+                self._since.setdefault(uri, time.monotonic())
+                self._begin(uri)
+
+    def pulled(self, uri: str) -> None:
+        """The client asks for a document's problems: they are no longer sent as well, or it would show them twice."""
+        if uri not in self._pulled:
+            self._pulled.add(uri)
+            if uri in self._told:
+                self._told.discard(uri)
+                self._publish(uri, [], None)
+
+    # One check
+
+    def _begin(self, uri: str) -> None:
+        self._stop_timer(uri)
+        document = self._session.documents.get(uri)
+        if document is None:
+            return
+        if uri in self._pulled:
+            self._since.pop(uri, None)
+            return
+        session = self._session
+        find = finder(session, document)
+
+        def work(job: Job) -> None:
+            try:
+                found, problems = find(job.go_on)
+            except Cancelled:
+                return
+            session.loop.put(lambda: self._finish(job, document, found, problems))
+
+        job = Job(work)
+        self._running[uri] = job
+        session.checker.put(job)
+
+    def _finish(
+        self, job: Job, document: Document, found: list[Json], problems: tuple[Diagnostic, ...]
+    ) -> None:
+        uri = document.uri
+        if self._running.get(uri) is not job:
+            return
+        del self._running[uri]
+        self._since.pop(uri, None)
+        present = self._session.documents.get(uri)
+        if present is None:
+            return
+        if uri not in self._pulled:
+            self._told.add(uri)
+            self._publish(uri, found, document.version)
+        self._show_problems(uri, problems)
+        if present is not document:
+            self.changed(uri)
+
+    def _stop_timer(self, uri: str) -> None:
+        timer = self._timers.pop(uri, None)
+        if timer is not None:
+            timer.cancel()
+
+    def _publish(self, uri: str, found: list[Json], version: int | None) -> None:
+        params: dict[str, Json] = {"uri": uri, "diagnostics": found}
+        support, client = ("textDocument", "publishDiagnostics"), self._session.client
+        if version is not None and (client.can(*support, "versionSupport") or not client.has(*support)):
+            params["version"] = version
+        self._session.notify("textDocument/publishDiagnostics", params)
+
+    # Problems of settings
+
+    def _show_problems(self, document: str, problems: tuple[Diagnostic, ...]) -> None:
+        """Publish what is wrong with the settings of a document, and take back what no open document has any more."""
+        before = self._files(self._troubled.pop(document, ()))
+        if problems:
+            self._troubled[document] = problems
+        remaining = self._files([item for found in self._troubled.values() for item in found])
+        for filename in sorted(before | self._files(problems)):
+            shown = [
+                item
+                for item in dict.fromkeys(each for found in self._troubled.values() for each in found)
+                if item.filename is not None and os.path.abspath(item.filename) == filename
+            ]
+            assert shown or filename not in remaining
+            try:
+                source = read_source(filename)
+            except ScenicError:
+                source = Source("", filename)
+            uri = to_uri(filename)
+            self._publish(
+                uri, _protocol(shown, Lines(source, self._session.encoding), uri, self._session), None
+            )
+
+    @staticmethod
+    def _files(problems: Sequence[Diagnostic]) -> set[str]:
+        return {os.path.abspath(item.filename) for item in problems if item.filename is not None}
+
+
+Find: TypeAlias = Callable[[Callable[[], None]], tuple[list[Json], tuple[Diagnostic, ...]]]
+"""Finds what is wrong with a document by the settings of its project, and with these settings.
+
+It calls the function that it is given now and then, which raises when the answer is no longer wanted.
+"""
+
+
+def finder(session: Session, document: Document) -> Find:
+    """What finds the problems of a document, in any thread. To be called in the loop's thread."""
+    project, stamp = session.project_beside(document), session.generation
+
+    def find(go_on: Callable[[], None]) -> tuple[list[Json], tuple[Diagnostic, ...]]:
+        configurations, rules = session.rules(document.snapshot.filename)
+        found = found_in(document.snapshot, rules, project, stamp=stamp, go_on=go_on)
+        return _protocol(found, document.lines, document.uri, session), configurations.problems
+
+    return find
+
+
+def _protocol(found: Sequence[Diagnostic], lines: Lines, uri: str, session: Session) -> list[Json]:
+    client = session.client
+    told = client.has("textDocument", "publishDiagnostics")
+    related = not told or client.can("textDocument", "publishDiagnostics", "relatedInformation")
+    tags = not told or client.has("textDocument", "publishDiagnostics", "tagSupport")
+    return [to_diagnostic(item, lines, uri, related=related, tags=tags) for item in found]

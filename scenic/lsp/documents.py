@@ -1,0 +1,82 @@
+"""The documents that the client has open, version by version."""
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Final
+
+from scenic.ide.snapshot import Snapshot
+from scenic.lsp import reading
+from scenic.lsp.convert import Encoding, Lines, units
+from scenic.lsp.uris import to_path
+
+__all__ = ["Document", "changed", "snapshot_of"]
+
+_LINE_END: Final = re.compile(r"\r\n|\n|\r")
+_MARK: Final = "\ufeff"
+
+
+@dataclass(frozen=True)
+class Document:
+    """One version of a document: the client's text, and what we make of it.
+
+    ``version`` is ``None`` for a file that is not open.
+    """
+
+    uri: str
+    language: str
+    version: int | None
+    text: str
+    encoding: Encoding
+    snapshot: Snapshot
+
+    @cached_property
+    def lines(self) -> Lines:
+        """Its lines with their places in the protocol."""
+        marks = len(self.text) - len(self.text.lstrip(_MARK))
+        return Lines(self.snapshot.source, self.encoding, marks)
+
+    @property
+    def line_end(self) -> str:
+        """How its lines end."""
+        return "\r\n" if "\r\n" in self.text else "\n"
+
+
+def snapshot_of(text: str, uri: str, before: Snapshot | None = None) -> Snapshot:
+    """The snapshot of a text; ``before`` is that of the version before it, of which most may still hold."""
+    path = to_path(uri)
+    return Snapshot(text, uri if path is None else path, before=before)
+
+
+def changed(text: str, changes: Sequence[Any], encoding: Encoding) -> str:
+    """A text after the changes that a client reports, one after the other.
+
+    A place past the end of a line means its end, as the protocol has it.
+    """
+    for index, change in enumerate(changes):
+        new = reading.text(changes, index, "text")
+        if reading.lookup(change, "range") is None:
+            text = new
+            continue
+        start, end = reading.range_of(changes, index, "range")
+        starts = [0, *(found.end() for found in _LINE_END.finditer(text))]
+        first = _offset(text, starts, *start, encoding)
+        text = text[:first] + new + text[max(first, _offset(text, starts, *end, encoding)) :]
+    return text
+
+
+def _offset(text: str, starts: Sequence[int], line: int, character: int, encoding: Encoding) -> int:
+    if line >= len(starts):
+        return len(text)
+    begin = starts[line]
+    end = starts[line + 1] if line + 1 < len(starts) else len(text)
+    content = text[begin:end].rstrip("\r\n") if line + 1 < len(starts) else text[begin:end]
+    if content.isascii() or encoding is Encoding.UTF32:
+        return begin + min(character, len(content))
+    seen = 0
+    for column, each in enumerate(content):
+        seen += units(each, encoding)
+        if seen > character:
+            return begin + column
+    return begin + len(content)

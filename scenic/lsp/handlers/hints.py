@@ -1,0 +1,93 @@
+"""What editors show between the lines: inlay hints, lenses, links."""
+
+from typing import Any, Final
+
+from scenic.ide.inlay_hints import HintKind, hints
+from scenic.ide.lenses import lenses
+from scenic.ide.links import links
+from scenic.lsp import reading
+from scenic.lsp.capabilities import SAMPLE
+from scenic.lsp.convert import Json
+from scenic.lsp.session import Session
+from scenic.lsp.uris import to_uri
+
+__all__ = ["REQUESTS"]
+
+_PARAMETER: Final = 2
+_TYPE: Final = 1
+
+
+def _inlay_hints(session: Session, params: Any) -> Json:
+    document = session.document(reading.uri_of(params))
+    span = document.lines.from_range(*reading.range_of(params, "range"))
+    later = "tooltip" in session.client.lists("textDocument", "inlayHint", "resolveSupport", "properties")
+    found = []
+    for hint in hints(document.snapshot, span):
+        text = hint.text.strip()
+        item: dict[str, Json] = {
+            "position": document.lines.to_position(hint.line, hint.column),
+            "label": text,
+            "paddingLeft": hint.text.startswith(" "),
+            "paddingRight": hint.text.endswith(" "),
+        }
+        if hint.kind is HintKind.PARAMETER:
+            item["kind"] = _PARAMETER
+        elif hint.kind is HintKind.UNIT:
+            item["kind"] = _TYPE
+        if later:
+            item["data"] = {"tooltip": hint.tooltip}
+        else:
+            item["tooltip"] = hint.tooltip
+        found.append(item)
+    return found
+
+
+def _resolve_hint(_session: Session, params: Any) -> Json:
+    tooltip = reading.lookup(params, "data", "tooltip")
+    return {**params, "tooltip": tooltip} if isinstance(tooltip, str) else params
+
+
+def _lenses(session: Session, params: Any) -> Json:
+    document = session.document(reading.uri_of(params))
+    return [
+        {
+            "range": document.lines.to_range(lens.span),
+            "data": {"uri": document.uri, "scenario": lens.scenario},
+        }
+        for lens in lenses(document.snapshot)
+    ]
+
+
+def _resolve_lens(_session: Session, params: Any) -> Json:
+    uri = reading.lookup(params, "data", "uri")
+    if not isinstance(uri, str):
+        return params
+    scenario = reading.lookup(params, "data", "scenario")
+    options = {"scenario": scenario} if isinstance(scenario, str) else {}
+    return {**params, "command": {"title": "Sample a scene", "command": SAMPLE, "arguments": [uri, options]}}
+
+
+def _links(session: Session, params: Any) -> Json:
+    document = session.document(reading.uri_of(params))
+    tooltips = session.client.can("textDocument", "documentLink", "tooltipSupport")
+    found = []
+    for link in links(session.project_with(document), document.snapshot):
+        item = {"range": document.lines.to_range(link.span), "target": to_uri(link.path)}
+        if tooltips:
+            item["tooltip"] = link.path
+        found.append(item)
+    return found
+
+
+def _resolve_link(_session: Session, params: Any) -> Json:
+    return params
+
+
+REQUESTS: Final = {
+    "textDocument/inlayHint": _inlay_hints,
+    "inlayHint/resolve": _resolve_hint,
+    "textDocument/codeLens": _lenses,
+    "codeLens/resolve": _resolve_lens,
+    "textDocument/documentLink": _links,
+    "documentLink/resolve": _resolve_link,
+}

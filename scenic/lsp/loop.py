@@ -1,0 +1,125 @@
+"""What happens one after the other in the server's main thread, and what runs beside it."""
+
+import heapq
+import queue
+import threading
+import time
+from collections.abc import Callable
+from itertools import count
+from typing import Final, TypeAlias
+
+__all__ = ["Cancelled", "Job", "Loop", "Timer", "Worker"]
+
+Action: TypeAlias = Callable[[], None]
+
+_NEVER: Final = 3600.0
+_PATIENCE: Final = 0.1
+"""So many seconds a timer that is due waits for actions; then it is its turn, however many there are."""
+
+
+class Timer:
+    """Something that will be done at a time, unless it is called off."""
+
+    __slots__ = ("_action",)
+
+    def __init__(self, action: Action) -> None:
+        self._action: Action | None = action
+
+    def cancel(self) -> None:
+        """Call it off; does nothing once it is done."""
+        self._action = None
+
+    def run(self) -> None:
+        """Do it now, unless it was called off."""
+        action, self._action = self._action, None
+        if action is not None:
+            action()
+
+
+class Loop:
+    """Runs actions one at a time: those that any thread hands in, in their order, and those whose time has come."""
+
+    def __init__(self) -> None:
+        self._actions: queue.SimpleQueue[Action] = queue.SimpleQueue()
+        self._timers: list[tuple[float, int, Timer]] = []
+        self._count = count()
+        self._stopped = False
+
+    def put(self, action: Action) -> None:
+        """Have an action done after those that are waiting; from any thread."""
+        self._actions.put(action)
+
+    def call_later(self, delay: float, action: Action) -> Timer:
+        """Have an action done after so many seconds; in the loop's own thread only."""
+        timer = Timer(action)
+        heapq.heappush(self._timers, (time.monotonic() + delay, next(self._count), timer))
+        return timer
+
+    def stop(self) -> None:
+        """End after the present action; in the loop's own thread only."""
+        self._stopped = True
+
+    def run(self) -> None:
+        """Work until `stop`."""
+        while not self._stopped:
+            wait = self._timers[0][0] - time.monotonic() if self._timers else _NEVER
+            if wait > -_PATIENCE:
+                # What is waiting comes before timers: a change that has arrived is seen before a check begins.
+                try:
+                    self._actions.get(timeout=max(0.0, wait))()
+                    continue
+                except queue.Empty:
+                    pass
+            if self._timers and self._timers[0][0] <= time.monotonic():
+                heapq.heappop(self._timers)[2].run()
+
+
+class Cancelled(Exception):
+    """Raised in a job that nobody waits for any more."""
+
+
+class Job:
+    """Work beside the loop. ``work`` is given the job, to ask it now and then whether to go on."""
+
+    def __init__(self, work: Callable[["Job"], None]) -> None:
+        self._work = work
+        self._cancelled = threading.Event()
+
+    def cancel(self) -> None:
+        """Say that the result is not wanted; from any thread."""
+        self._cancelled.set()
+
+    @property
+    def is_cancelled(self) -> bool:
+        """Whether the result is not wanted any more."""
+        return self._cancelled.is_set()
+
+    def go_on(self) -> None:
+        """Raise `Cancelled` if the result is not wanted any more."""
+        if self._cancelled.is_set():
+            raise Cancelled
+
+    def run(self) -> None:
+        """Do the work, unless it was cancelled before it began."""
+        if not self._cancelled.is_set():
+            self._work(self)
+
+
+class Worker:
+    """A thread that does jobs in their order."""
+
+    def __init__(self, name: str) -> None:
+        self._jobs: queue.SimpleQueue[Job] = queue.SimpleQueue()
+        self._name = name
+        self._started = False
+
+    def put(self, job: Job) -> None:
+        """Have a job done; the thread begins with the first one. In the loop's thread only."""
+        if not self._started:
+            self._started = True
+            threading.Thread(target=self._run, name=self._name, daemon=True).start()
+        self._jobs.put(job)
+
+    def _run(self) -> None:
+        while True:
+            self._jobs.get().run()
