@@ -19,6 +19,7 @@ from scenic.lsp.documents import Document
 from scenic.lsp.loop import Cancelled, Job, Timer
 from scenic.lsp.session import Session
 from scenic.lsp.uris import to_uri
+from scenic.project.index import Project
 
 __all__ = ["Checks"]
 
@@ -201,12 +202,16 @@ def finder(session: Session, document: Document) -> Find:
     """What finds the problems of a document, in any thread. To be called in the loop's thread."""
     project, stamp = session.project_beside(document), session.generation
 
-    def find(go_on: Callable[[], None]) -> tuple[list[Json], tuple[Diagnostic, ...]]:
-        configurations, rules = session.rules(document.snapshot.filename)
-        found = found_in(document.snapshot, rules, project, stamp=stamp, go_on=go_on)
-        return _protocol(found, document.lines, document.uri, session), configurations.problems
+    return lambda go_on: found_in_document(session, document, project, stamp, go_on)
 
-    return find
+
+def found_in_document(
+    session: Session, document: Document, project: Project, stamp: int, go_on: Callable[[], None]
+) -> tuple[list[Json], tuple[Diagnostic, ...]]:
+    """What is wrong with a document, and with its settings; ``stamp`` is the generation that ``project`` is of."""
+    configurations, rules = session.rules(document.snapshot.filename)
+    found = found_in(document.snapshot, rules, project, stamp=stamp, go_on=go_on)
+    return _protocol(found, document.lines, document.uri, session), configurations.problems
 
 
 def _protocol(found: Sequence[Diagnostic], lines: Lines, uri: str, session: Session) -> list[Json]:

@@ -99,7 +99,9 @@ def test_beyond_ascii() -> None:
 
 
 def test_places_outside_the_text() -> None:
-    assert [hover(Snapshot(PROGRAM, "f"), *place) for place in ((0, 0), (99, 0), (1, 99), (12, 0))] == [None] * 4
+    assert [hover(Snapshot(PROGRAM, "f"), *place) for place in ((0, 0), (99, 0), (1, 99), (12, 0))] == [
+        None
+    ] * 4
 
 
 @given(st.text("new at()[]:,\n 'x\"front of é😀.", max_size=40), st.integers(0, 4), st.integers(0, 20))

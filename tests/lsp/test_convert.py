@@ -71,7 +71,9 @@ def test_clients_are_told_no_more_than_they_can_show() -> None:
 
 def test_what_can_be_left_out_is_marked() -> None:
     codes = ("SC206", "SC300")
-    tags = [to_diagnostic(Diagnostic(code, "m"), lines("import os\n"), "file:///f").get("tags") for code in codes]
+    tags = [
+        to_diagnostic(Diagnostic(code, "m"), lines("import os\n"), "file:///f").get("tags") for code in codes
+    ]
     assert tags == [[1], None]
 
 

@@ -1,16 +1,18 @@
 """Problems that the client asks for: of one document, and of all files of the workspace."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from hashlib import sha256
 from json import dumps
 from typing import Any, Final
 
+from scenic.configuration.project import Configurations
 from scenic.lsp import reading
-from scenic.lsp.checks import finder
+from scenic.lsp.checks import finder, found_in_document
 from scenic.lsp.convert import Json
 from scenic.lsp.progress import Progress
 from scenic.lsp.session import SUFFIXES, Deferred, Session
 from scenic.lsp.uris import to_uri
+from scenic.project.index import Project
 
 __all__ = ["REQUESTS"]
 
@@ -37,23 +39,32 @@ def _workspace(session: Session, params: Any) -> Deferred:
         for each in reading.lookup(params, "previousResultIds") or []
     }
     documents = dict(session.documents)
+    project, stamp = session.project_beside(None), session.generation
     progress = Progress(session, reading.lookup(params, "workDoneToken"), "Checking the workspace")
 
     def work(go_on: Callable[[], None]) -> Json:
         items = []
         with progress:
-            named = {to_uri(path): path for path in session.project.files() if path.endswith(SUFFIXES)}
+            named = {to_uri(path): path for path in _programs(project)}
             for done, uri in enumerate(sorted(named.keys() | documents.keys())):
                 go_on()
                 document = documents.get(uri) or session.file(uri)
                 if document is None:
                     continue
-                found, _ = finder(session, document)(go_on)
+                found, _ = found_in_document(session, document, project, stamp, go_on)
                 items.append({"uri": uri, "version": document.version, **_report(found, previous.get(uri))})
                 progress.report(done + 1, len(named))
         return {"items": items}
 
     return Deferred(work)
+
+
+def _programs(project: Project) -> Iterator[str]:
+    """The programs of the workspace, but for those that its settings leave out."""
+    configurations = Configurations()
+    for path in project.files():
+        if path.endswith(SUFFIXES) and not configurations.of_file(path).excludes(path):
+            yield path
 
 
 def _report(found: list[Json], previous: Json) -> Json:

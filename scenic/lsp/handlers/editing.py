@@ -33,9 +33,7 @@ def _actions(session: Session, params: Any) -> Json:
     _, rules = session.rules(document.snapshot.filename)
     actions: list[Json] = []
     if _wanted(_QUICK_FIX, only):
-        found = found_in(
-            document.snapshot, rules, session.project_beside(document), stamp=session.generation
-        )
+        found = found_in(document.snapshot, rules, session.project_beside(document), stamp=session.generation)
         for item in repairs(found, span):
             assert item.fix is not None
             action = _action(session, document, item.fix.title, _QUICK_FIX, item.fix.edits)
