@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from scenic.formats.buffers import Buffer, Lens, seen
-from scenic.formats.camera import Camera, framing
+from scenic.formats.camera import Camera, corners, framing
 from scenic.formats.colors import encoded, linear
 from scenic.formats.instances import Picture
 from scenic.formats.stage import GROUND, SKY, Stage, ground_light, sequence
@@ -51,7 +51,7 @@ def render(
     width, height = size
     instances = picture.scenes[number]
     stage = Stage(picture.surfaces, instances)
-    lens = Lens(camera or framing(instances, width / height), stage.center, size)
+    lens = Lens(camera or framing(corners(instances), width / height), stage.center, size)
     return paint(stage, lens, seen(lens, stage.rays, exact=False))
 
 
