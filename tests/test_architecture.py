@@ -21,6 +21,7 @@ LAYERS = {
     "project": {"language", "compiler", "configuration"},
     "ide": {"compiler", "language", "project"},
     "lsp": {"ide", "language", "configuration", "project"},
+    "playground": {"ide"},
 }
 """What each layer may import of the others."""
 
@@ -32,12 +33,14 @@ LIBRARIES = {
     "project": set(),
     "ide": {"pygments"},
     "lsp": set(),
+    "playground": {"websockets"},
 }
 """Libraries of each layer beside the standard library; layers left out may use any dependency."""
 
 ONLY_IN = {
     "embreex": {"runtime", "formats"},
     "z3": {"analysis"},
+    "websockets": {"playground"},
     "click": {"cli"},
     "rich": {"cli"},
 }

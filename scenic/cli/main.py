@@ -30,6 +30,7 @@ _COMMANDS: Final[Mapping[str, tuple[str, str, str]]] = MappingProxyType(
         "explain": ("scenic.cli.explain", "explain", "Explain a diagnostic by its code."),
         "format": ("scenic.cli.format", "format_command", "Put programs into the usual style."),
         "lsp": ("scenic.cli.lsp", "lsp", "Start the language server, for editors."),
+        "playground": ("scenic.cli.playground", "playground", "Write and sample programs in the browser."),
         "preview": ("scenic.cli.preview", "preview", ""),
     }
 )

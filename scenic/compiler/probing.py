@@ -15,13 +15,15 @@ from scenic.compiler.parser import DEEPEST, recursion_limit
 from scenic.compiler.syntax import BLOCK_STARTERS, RULES, Reference, first_words
 from scenic.compiler.tokens import DEDENT, ERROR, INDENT, NEWLINE, Tokens
 
-__all__ = ["Wanted", "wanted_at"]
+__all__ = ["CLAUSES", "Wanted", "wanted_at"]
 
 _MARK: Final = "$"
 """Read as a token that fits nowhere: what the parser wants instead of it is what may stand there."""
 _MOST_LINES: Final = 400
 """So many lines before a place are looked at."""
-_CLAUSES: Final = (*sorted(BLOCK_STARTERS - first_words((Reference("statement"),))), ")", "]", "}")
+CLAUSES: Final = frozenset(BLOCK_STARTERS - first_words((Reference("statement"),)))
+"""The first words of lines that go on with the statement before them."""
+_GOING_ON: Final = (*sorted(CLAUSES), ")", "]", "}")
 """What lines begin with that go on with the statement before them."""
 _ALONE: Final = ("statement", "class_item", "specifier_line")
 """What a line may be that is read by itself."""
@@ -107,7 +109,7 @@ def _indentation(text: str) -> int:
 
 def _goes_on(text: str) -> bool:
     """Whether a line goes on with the statement before it."""
-    return text.lstrip().startswith(_CLAUSES)
+    return text.lstrip().startswith(_GOING_ON)
 
 
 def _wanted(tokens: Tokens, mark: int, expected: Iterable[int | str]) -> Wanted:

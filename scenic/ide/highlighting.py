@@ -188,14 +188,28 @@ VOCABULARY: Final = _vocabulary()
 
 @dataclass(frozen=True, slots=True)
 class Pattern:
-    """A regular expression, the same in Python, Oniguruma and JavaScript, and what its groups are shown as.
+    """Pieces of one line that stand one after the other: regular expressions, and what each is shown as, if anything.
 
-    It looks at one line. ``is_line_start`` tells that it matches at the beginning of a line alone.
+    The expressions are the same in Python, Oniguruma and JavaScript. What stands ``before`` and ``after`` the pieces is
+    only looked at; ``is_line_start`` tells that the first piece begins its line.
     """
 
-    regex: str
-    categories: tuple[Category, ...]
+    pieces: tuple[tuple[str, Category | None], ...]
+    after: str = ""
+    before: str = ""
     is_line_start: bool = False
+
+    @property
+    def regex(self) -> str:
+        """One expression with a group for each piece that is shown as something."""
+        pieces = "".join(f"({piece})" if category else piece for piece, category in self.pieces)
+        before = f"(?<={self.before})" if self.before else ""
+        return f"{'^' if self.is_line_start else ''}{before}{pieces}{self.after}"
+
+    @property
+    def categories(self) -> tuple[Category, ...]:
+        """What the groups are shown as."""
+        return tuple(category for _, category in self.pieces if category)
 
 
 def any_of(words: Collection[str]) -> str:
@@ -209,46 +223,44 @@ def _patterns() -> Iterator[Pattern]:
     known = VOCABULARY
     # A name is followed by a blank and a name only before an operator that is a word.
     operand = rf"(?=[ \t]+(?!{any_of(known.infix)}\b)[\w\"'(\[{{])"
-    start = r"^[ \t]*"
-    name = r"([A-Za-z_]\w*)"
-    yield Pattern(rf"\b({any_of(known.definitions)})[ \t]+{name}", (Category.DEFINITION, Category.DEFINED))
-    yield Pattern(rf"{start}({any_of(known.blocks)})(?=[ \t]*:)", (Category.STATEMENT,), is_line_start=True)
+    no_name = r"(?![ \t]*[=(.])"
+    name = r"[A-Za-z_]\w*"
+    blanks = r"[ \t]+"
+    of_statements = [words for words in known.phrases if words[0] in known.statement_starts]
+    of_operators = [words for words in known.phrases if words[0] not in known.statement_starts]
     yield Pattern(
-        rf"{start}({any_of(known.headers)})\b(?=[ \t].*:[ \t]*(?:#.*)?$)",
-        (Category.STATEMENT,),
+        ((rf"\b{any_of(known.definitions)}", Category.DEFINITION), (blanks, None), (name, Category.DEFINED))
+    )
+    for words, after in (
+        (any_of(known.blocks), r"(?=[ \t]*:)"),
+        (any_of(known.headers), r"\b(?=[ \t].*:[ \t]*(?:#.*)?$)"),
+        (any_of(known.whole_statements), r"(?=[ \t]*(?:$|[#;]))"),
+        (_rows(of_statements), rf"\b{no_name}"),
+        (any_of(known.statements), rf"\b{operand}"),
+    ):
+        yield Pattern(((r"[ \t]*", None), (words, Category.STATEMENT)), after, is_line_start=True)
+    yield Pattern(((rf"\b{_rows(of_operators)}", Category.OPERATOR),), r"\b")
+    yield Pattern(((rf"\b{any_of(known.before_operands)}", Category.OPERATOR),), rf"\b{operand}")
+    yield Pattern(
+        ((any_of(known.after_operands), Category.OPERATOR),), rf"\b{no_name}", before=r"[\w)\]][ \t]"
+    )
+    yield Pattern(
+        ((r"\bwith", Category.OPERATOR), (blanks, None), (name, Category.PROPERTY)), after=r"(?=[ \t])"
+    )
+    yield Pattern(
+        ((blanks, None), (name, Category.PROPERTY)),
+        r"(?=[ \t]*(?:\[[a-z, ]+\])?[ \t]*:[ \t]*[^\s#:=])",
         is_line_start=True,
     )
-    yield Pattern(
-        rf"{start}({any_of(known.whole_statements)})(?=[ \t]*(?:$|[#;]))",
-        (Category.STATEMENT,),
-        is_line_start=True,
-    )
-    phrases = [words for words in known.phrases if words[0] in known.statement_starts]
-    yield Pattern(rf"{start}({_rows(phrases)})\b(?![ \t]*[=(.])", (Category.STATEMENT,), is_line_start=True)
-    yield Pattern(
-        rf"{start}({any_of(known.statements)})\b{operand}", (Category.STATEMENT,), is_line_start=True
-    )
-    phrases = [words for words in known.phrases if words[0] not in known.statement_starts]
-    yield Pattern(rf"\b({_rows(phrases)})\b", (Category.OPERATOR,))
-    yield Pattern(rf"\b({any_of(known.before_operands)})\b{operand}", (Category.OPERATOR,))
-    yield Pattern(
-        rf"(?<=[\w)\]][ \t])({any_of(known.after_operands)})\b(?![ \t]*[=(.])", (Category.OPERATOR,)
-    )
-    yield Pattern(rf"\b(with)[ \t]+{name}(?=[ \t])", (Category.OPERATOR, Category.PROPERTY))
-    yield Pattern(
-        rf"^[ \t]+{name}(?=[ \t]*(?:\[[a-z, ]+\])?[ \t]*:[ \t]*[^\s#:=])",
-        (Category.PROPERTY,),
-        is_line_start=True,
-    )
-    for category, words in (
+    for category, single in (
         (Category.CONSTANT, known.constants),
         (Category.OPERATOR, known.operator_words),
         (Category.STATEMENT, known.statement_words | known.definitions & HARD_KEYWORDS.keys()),
         (Category.VARIABLE, known.variables),
         (Category.CLASS, known.classes),
     ):
-        yield Pattern(rf"\b({any_of(words)})\b", (category,))
-    yield Pattern(rf"\b({any_of(known.functions)})(?=\()", (Category.FUNCTION,))
+        yield Pattern(((rf"\b{any_of(single)}", category),), r"\b")
+    yield Pattern(((rf"\b{any_of(known.functions)}", Category.FUNCTION),), r"(?=\()")
 
 
 def _rows(rows: Iterable[tuple[str, ...]]) -> str:

@@ -98,6 +98,7 @@ from scenic.compiler.parser import parse
 from scenic.ide.continuations import continuations
 from scenic.ide.hover import hover
 from scenic.ide.pygments_lexer import ScenicLexer
+from scenic.ide.snapshot import Snapshot
 from editors.generate import texts
 
 from fuzz.derivations import AlternativeId
@@ -116,7 +117,7 @@ def offered(text):
     return [item.form for item in continuations(text, 1, len(text)).items]
 
 def shown(line, column):
-    found = hover(TEXT, line, column)
+    found = hover(Snapshot(TEXT, "x"), line, column)
     return "" if found is None else found.markdown
 
 grammar = read_grammar(Path("grammar/scenic.gram"))

@@ -10,7 +10,7 @@ syn keyword scenicOperator and at await by in is lambda new not of on or to unti
 syn keyword scenicConstant False None True
 syn keyword scenicVariable ego globalParameters self workspace
 syn keyword scenicClass Behavior BoxRegion BoxShape CircularRegion ConeShape CylinderShape Discrete DiscreteRange Distribution File Files GridRegion GuardViolation InvariantViolation MeshShape MeshSurfaceRegion MeshVolumeRegion Monitor Mutator Normal Object Options Orientation OrientedPoint PathRegion Point PointSetRegion PolygonalFootprintRegion PolygonalRegion PolygonalVectorField PolylineRegion PreconditionViolation Range RectangularRegion RejectionException SectorRegion SpheroidRegion SpheroidShape TimeSeries TruncatedNormal Uniform Vector VectorField VerifaiDiscreteRange VerifaiOptions VerifaiParameter VerifaiRange Workspace everywhere nowhere
-syn match scenicFunction /\<\%(distributionFunction\|verbosePrint\|simulation\|localPath\|resample\|filter\|float\|hypot\|range\|round\|abs\|cos\|int\|len\|max\|min\|sin\|str\)\ze(/
+syn match scenicFunction /\<\%(distributionFunction\|distributionMethod\|verbosePrint\|simulation\|localPath\|resample\|filter\|float\|hypot\|range\|round\|abs\|cos\|int\|len\|max\|min\|sin\|str\)\ze(/
 syn match scenicProperty /\<with\s\+\zs\h\w*\ze\s/
 syn match scenicProperty /^\s\+\zs\h\w*\ze\s*\%(\[[a-z, ]\+\]\)\?\s*:\s*[^[:space:]#:=]/
 syn match scenicOperator /\<\%(eventually\|intersects\|following\|implies\|visible\|always\|behind\|beyond\|facing\|follow\|above\|below\|next\)\>\ze\s\+\%(\%(intersects\|relative\|implies\|visible\|offset\|until\|and\|can\|deg\|not\|at\|if\|in\|is\|or\)\>\)\@![[:alnum:]_\"'([{]/

@@ -1,0 +1,62 @@
+"""``scenic playground``: a page on this machine to write programs and look at their scenes."""
+
+import asyncio
+import importlib.util
+import webbrowser
+from contextlib import suppress
+from pathlib import Path
+
+import click
+
+from scenic.cli.output import CLEAN
+
+__all__ = ["playground"]
+
+
+@click.command()
+@click.argument(
+    "file", metavar="[FILE]", required=False, type=click.Path(exists=True, dir_okay=False, path_type=Path)
+)
+@click.option("--port", type=click.IntRange(0, 65535), default=0, help="Listen here.  [default: a free port]")
+@click.option("--no-browser", is_flag=True, help="Only show the address, open no browser.")
+def playground(file: Path | None, port: int, no_browser: bool) -> int:
+    """Write a program in the browser, see what is wrong with it, and turn its scenes.
+
+    The page begins with FILE, or with an example; FILE itself is never changed. The program runs only when "Sample" is
+    pressed, in a process with limits of time and memory. The page can be reached from this machine only, by the address
+    that is shown, which holds a secret.
+    """
+    if importlib.util.find_spec("websockets") is None:
+        raise click.ClickException(
+            'the playground needs another package: pip install "scenic-lang[playground]"'
+        )
+
+    from scenic.playground.server import is_built
+
+    if not is_built():
+        raise click.ClickException(
+            "the page is not built: run `make playground` in the checkout, which needs npm"
+        )
+    with suppress(KeyboardInterrupt):
+        asyncio.run(_serve(file, port, opens=not no_browser))
+    return CLEAN
+
+
+async def _serve(file: Path | None, port: int, *, opens: bool) -> None:
+    from scenic.playground.server import Playground
+
+    try:
+        served = Playground(file)
+    except (OSError, UnicodeDecodeError) as error:
+        raise click.ClickException(f"{file} cannot be read: {error}") from None
+    try:
+        address = await served.start(port)
+    except OSError as error:
+        raise click.ClickException(f"port {port} cannot be used: {error.strerror}") from None
+    click.echo(f"playground: {address} (Ctrl-C ends it)")
+    if opens:
+        webbrowser.open(address)
+    try:
+        await served.wait()
+    finally:
+        await served.stop()

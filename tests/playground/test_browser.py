@@ -1,0 +1,142 @@
+"""The playground as its user meets it, in headless Chromium."""
+
+import shutil
+import time
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import pytest
+from selenium import webdriver
+from selenium.webdriver.chrome.service import Service
+from selenium.webdriver.common.action_chains import ActionChains
+from selenium.webdriver.common.by import By
+from selenium.webdriver.common.keys import Keys
+
+BROWSER = shutil.which("chromium") or shutil.which("google-chrome")
+DRIVER = shutil.which("chromedriver")
+
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(
+        not (BROWSER and DRIVER), reason="needs Chromium: apt-get install chromium chromium-driver"
+    ),
+]
+
+
+@pytest.fixture(scope="module")
+def page(playground: Callable[..., Any]) -> Iterator[webdriver.Chrome]:
+    options = webdriver.ChromeOptions()
+    options.binary_location = str(BROWSER)
+    for argument in (
+        "--headless=new",
+        "--no-sandbox",
+        "--disable-dev-shm-usage",
+        "--disable-background-networking",
+        "--disable-component-update",
+        "--enable-unsafe-swiftshader",
+        "--window-size=1300,900",
+    ):
+        options.add_argument(argument)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+    with playground() as address:
+        driver = webdriver.Chrome(options=options, service=Service(DRIVER))
+        try:
+            driver.get(address)
+            until(lambda: driver.execute_script("return document.body.dataset.server") == "ready")
+            yield driver
+        finally:
+            driver.quit()
+
+
+def until(holds: Callable[[], Any], seconds: float = 40) -> Any:
+    end = time.monotonic() + seconds
+    while not (found := holds()):
+        assert time.monotonic() < end, "waited too long"
+        time.sleep(0.1)
+    return found
+
+
+def press(page: webdriver.Chrome, *keys: str, control: bool = False) -> None:
+    actions = ActionChains(page)
+    if control:
+        actions.key_down(Keys.CONTROL)
+    for key in keys:
+        actions.send_keys(key)
+    if control:
+        actions.key_up(Keys.CONTROL)
+    actions.perform()
+
+
+def program(page: webdriver.Chrome) -> str:
+    """What the editor shows."""
+    return page.find_element(By.CSS_SELECTOR, "#editor .view-lines").text.replace("\u00a0", " ")
+
+
+def squiggles(page: webdriver.Chrome) -> list[Any]:
+    return page.find_elements(By.CSS_SELECTOR, "#editor .squiggly-error")
+
+
+def sampled(page: webdriver.Chrome) -> str:
+    """Press the button, and wait for other scenes than before; their name."""
+    before = page.execute_script("return document.body.dataset.scene")
+    page.find_element(By.ID, "sample").click()
+    found = until(lambda: page.execute_script("return document.body.dataset.scene") not in (before, None))
+    assert found
+    return str(page.execute_script("return document.body.dataset.scene"))
+
+
+def picture(page: webdriver.Chrome) -> bytes:
+    """The scene as it is drawn, once two pictures of it are equal."""
+    frame = page.find_element(By.ID, "scene")
+    last = b""
+    while last != (last := frame.screenshot_as_png):
+        time.sleep(0.3)
+    return last
+
+
+def test_a_mistake_is_underlined_and_repaired(page: webdriver.Chrome) -> None:
+    until(lambda: "require" in program(page))
+    assert not squiggles(page)
+    page.find_element(By.CSS_SELECTOR, "#editor .view-lines").click()
+    press(page, Keys.END, control=True)
+    press(page, "box = new Object lef of chair")
+    press(page, Keys.ESCAPE)
+    until(lambda: squiggles(page))
+    for _ in range(len(" of chair") + 1):
+        press(page, Keys.ARROW_LEFT)
+    until(lambda: "lef of" in program(page))
+    press(page, ".", control=True)
+    until(lambda: page.find_elements(By.CSS_SELECTOR, ".action-widget .action"))
+    press(page, Keys.ENTER)
+    until(lambda: "left of chair" in program(page))
+    until(lambda: not squiggles(page))
+
+
+def test_scenes_are_drawn_and_turned(page: webdriver.Chrome) -> None:
+    empty = picture(page)
+    sampled(page)
+    first = picture(page)
+    assert first != empty
+    frame = page.find_element(By.ID, "scene")
+    ActionChains(page).move_to_element_with_offset(frame, 0, -150).click_and_hold().move_by_offset(
+        120, 30
+    ).release().perform()
+    turned = picture(page)
+    assert turned != first
+    sampled(page)
+    assert picture(page) != turned
+
+
+def test_what_is_wrong_is_shown(page: webdriver.Chrome) -> None:
+    page.find_element(By.CSS_SELECTOR, "#editor .view-lines").click()
+    press(page, "a", control=True)
+    press(page, "x = 1 / 0")
+    press(page, Keys.ESCAPE)
+    press(page, Keys.ENTER, control=True)
+    trouble = page.find_element(By.ID, "trouble")
+    until(lambda: "ZeroDivisionError" in trouble.text)
+    assert page.find_element(By.ID, "status").text == "no scene"
+
+
+def test_the_page_reports_no_errors(page: webdriver.Chrome) -> None:
+    assert [each for each in page.get_log("browser") if each["level"] == "SEVERE"] == []
