@@ -11,6 +11,9 @@ from scenic.runtime.geometry.ragged import expand, pieces
 _CHUNK: Final = 1 << 18
 """Pairs of face and cell looked at together."""
 
+_FINER: Final = 4
+"""Cells on each axis of a coarse cell."""
+
 PADDING: Final = 1e-9
 """By how much cells are widened on every side: far more than the rounding of coordinates in the unit cube."""
 
@@ -41,10 +44,33 @@ def touched_cells(triangles: Floats, resolution: int) -> Iterator[tuple[Indices,
     alone = np.flatnonzero(total == 1)  # the face's bounding box is in one cell: nothing to test
     yield alone, _number(first[alone], resolution)
     spread = np.flatnonzero(total > 1)
+    if resolution % _FINER == 0 and resolution >= _FINER * _FINER:
+        # Large faces are first looked for in coarse cells, each of which holds many of the cells wanted.
+        large = np.flatnonzero(total > _FINER**3)
+        spread = np.flatnonzero((total > 1) & (total <= _FINER**3))
+        for face, coarse in touched_cells(triangles[large], resolution // _FINER):
+            for part in pieces(np.full(len(face), _FINER**3), _CHUNK):
+                owner, index = _cells_within(coarse[part], resolution)
+                faces = large[face[part]]
+                touching = _touching(triangles[faces], owner, index, resolution)
+                yield faces[owner[touching]], _number(index[touching], resolution)
     for part in pieces(total[spread], _CHUNK):
         faces = spread[part]
-        face, cell = _touching(triangles[faces], first[faces], counts[faces], resolution)
-        yield faces[face], cell
+        owner, offset = expand(total[faces])
+        ny, nz = counts[faces[owner], 1], counts[faces[owner], 2]
+        steps = np.stack([offset // (ny * nz), offset // nz % ny, offset % nz], axis=1)
+        index = first[faces[owner]] + steps
+        touching = _touching(triangles[faces], owner, index, resolution)
+        yield faces[owner[touching]], _number(index[touching], resolution)
+
+
+def _cells_within(coarse: Indices, resolution: int) -> tuple[Indices, Indices]:
+    """The cells in each of some coarse ones: which coarse one, and the index ``(k, 3)`` of the cell."""
+    size = resolution // _FINER
+    corner = np.stack([coarse // (size * size), coarse // size % size, coarse % size], axis=1) * _FINER
+    steps = np.stack(np.unravel_index(np.arange(_FINER**3), (_FINER,) * 3), axis=1)
+    index = (corner[:, None] + steps).reshape(-1, 3)
+    return np.repeat(np.arange(len(coarse)), _FINER**3), index
 
 
 def _number(index: Indices, resolution: int) -> Indices:
@@ -52,22 +78,18 @@ def _number(index: Indices, resolution: int) -> Indices:
     return result
 
 
-def _touching(triangles: Floats, first: Indices, counts: Indices, resolution: int) -> tuple[Indices, Indices]:
+def _touching(triangles: Floats, face: Indices, index: Indices, resolution: int) -> Indices:
+    """Which of the cells ``(k, 3)`` touch their faces, numbers ``(k,)`` of ``triangles``."""
     half = 0.5 / resolution + PADDING
     edges = np.roll(triangles, -1, axis=1) - triangles
     normals = np.cross(edges[:, 0], edges[:, 1])
     reach = half * (np.abs(normals[:, 0]) + np.abs(normals[:, 1]) + np.abs(normals[:, 2]))
-    face, offset = expand(counts[:, 0] * counts[:, 1] * counts[:, 2])
-    ny, nz = counts[face, 1], counts[face, 2]
-    index = first[face] + np.stack([offset // (ny * nz), offset // nz % ny, offset % nz], axis=1)
     centre = (index + 0.5) / resolution - 0.5
     from_corner = centre - triangles[face, 0]
     n = normals[face]
     height = n[:, 0] * from_corner[:, 0] + n[:, 1] * from_corner[:, 1] + n[:, 2] * from_corner[:, 2]
-    touching = np.abs(height) <= reach[face]
-    face, index, centre = face[touching], index[touching], centre[touching]
-    touching = _projections_overlap(triangles, edges, face, centre, half)
-    return face[touching], _number(index[touching], resolution)
+    near = np.flatnonzero(np.abs(height) <= reach[face])
+    return near[_projections_overlap(triangles, edges, face[near], centre[near], half)]
 
 
 def _projections_overlap(

@@ -1,4 +1,4 @@
-"""The facade over trimesh: reading mesh files."""
+"""Reading mesh files: the common formats by our own readers, all others by trimesh."""
 
 import bz2
 import gzip
@@ -6,17 +6,41 @@ import io
 import logging
 import warnings
 import zlib
+from collections.abc import Callable, Mapping
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, Final
 
 import numpy as np
 
 from scenic.language.errors import MeshError
 from scenic.runtime.geometry.mesh import Mesh
+from scenic.runtime.geometry.reading.gltf import Neighbour, read_glb, read_gltf
+from scenic.runtime.geometry.reading.obj import read_obj
+from scenic.runtime.geometry.reading.ply import read_ply
+from scenic.runtime.geometry.reading.soup import NotCoveredError, Soup
+from scenic.runtime.geometry.reading.stl import read_stl
 from scenic.runtime.geometry.solids import proper_volume
 from scenic.runtime.geometry.topology import merge_vertices
 
-_PACKINGS: Final = {".bz2": bz2.decompress, ".gz": gzip.decompress}
+MOST_TRIANGLES: Final = 4_000_000
+"""Triangles up to which a mesh is taken: indices and tables for one as large take some gigabytes."""
+
+_MOST_BYTES: Final = 1 << 30
+"""Length of a file, unpacked, up to which it is read."""
+
+_PACKINGS: Final[Mapping[str, Callable[[io.BytesIO], Any]]] = MappingProxyType(
+    {".bz2": bz2.BZ2File, ".gz": lambda stream: gzip.GzipFile(fileobj=stream)}
+)
+_READERS: Final[Mapping[str, Callable[[bytes, Neighbour], Soup]]] = MappingProxyType(
+    {
+        "obj": lambda data, _: read_obj(data),
+        "stl": lambda data, _: read_stl(data),
+        "ply": lambda data, _: read_ply(data),
+        "glb": read_glb,
+        "gltf": read_gltf,
+    }
+)
 _NO_MESHES: Final = frozenset({"bz2", "tar.bz2", "tar.gz", "zip", "dxf", "xyz"})
 """Archives, drawings and point clouds among the formats of trimesh."""
 
@@ -33,12 +57,21 @@ def load_mesh(path: str | Path, *, unify: bool = True, volume: bool = True) -> M
         volume: whether the mesh must bound a solid.
 
     Raises:
-        MeshError: the file is missing, unreadable or empty, or its mesh is not a volume.
+        MeshError: the file is missing, unreadable, empty or too large, or its mesh is not a volume.
 
     """
     file = Path(path)
     name = f"the mesh `{path}`"
     vertices, faces = _read(file, name)
+    if not len(faces):
+        raise MeshError(f"{name} holds no triangles")
+    if len(faces) > MOST_TRIANGLES:
+        raise MeshError(
+            f"{name} has {len(faces)} triangles, more than {MOST_TRIANGLES}",
+            help="simplify it in a mesh editor; bodies rarely need more than some thousand triangles",
+        )
+    if not np.isfinite(vertices).all():
+        raise MeshError(f"{name} has a coordinate that is not finite")
     if volume:
         return proper_volume(Mesh(vertices, faces), unify=unify, name=name)
     vertices, faces = merge_vertices(vertices, faces)
@@ -47,44 +80,63 @@ def load_mesh(path: str | Path, *, unify: bool = True, volume: bool = True) -> M
     return Mesh(vertices, faces)
 
 
-def _read(
-    file: Path, name: str
-) -> tuple[np.ndarray[Any, np.dtype[np.float64]], np.ndarray[Any, np.dtype[np.intp]]]:
-    import trimesh
-
-    formats = set(trimesh.available_formats())
+def _read(file: Path, name: str) -> Soup:
     suffixes = [suffix.lower() for suffix in file.suffixes[-2:]]
     unpack = _PACKINGS.get(suffixes[-1]) if suffixes else None
     if unpack is not None:
         suffixes = suffixes[:-1]
     file_type = suffixes[-1][1:] if suffixes else ""
     try:
-        data = file.read_bytes()
+        data = _limited(file.open("rb"), name)
     except FileNotFoundError:
         raise MeshError(
             f"{name} does not exist", help="relative paths start from the current directory; see `localPath`"
         ) from None
     except OSError as error:
         raise MeshError(f"{name} cannot be read: {error.strerror or error}") from None
-    if file_type not in formats - _NO_MESHES:
-        raise MeshError(
-            f"{name} is of an unknown format{f' `.{file_type}`' if file_type else ''}",
-            help=f"known formats: {', '.join(sorted(formats - _NO_MESHES))}; each also packed as .bz2 or .gz",
-        )
+    if file_type not in _READERS:
+        _check_format(file_type, name)
     if unpack is not None:
         try:
-            data = unpack(data)
-        except (OSError, EOFError, ValueError, zlib.error) as error:
+            data = _limited(unpack(io.BytesIO(data)), name)
+        except (OSError, EOFError, zlib.error) as error:
             raise MeshError(f"{name} cannot be unpacked: {error}") from None
-    loaded = _loaded(data, file_type, file, name, packed=unpack is not None)
-    if not isinstance(loaded, trimesh.Trimesh) or not len(loaded.faces):
-        raise MeshError(f"{name} holds no triangles")
-    return np.asarray(loaded.vertices, dtype=np.float64), np.asarray(loaded.faces, dtype=np.intp)
+    if file_type in _READERS:
+        try:
+            return _READERS[file_type](data, lambda beside: (file.parent / beside).read_bytes())
+        except NotCoveredError:
+            pass
+        except OSError as error:
+            raise MeshError(f"{name} names a file that cannot be read: {error}") from None
+        except (ValueError, OverflowError) as error:
+            raise MeshError(f"{name} cannot be read as {file_type}: {error}") from None
+    return _loaded(data, file_type, file, name, packed=unpack is not None)
 
 
-def _loaded(
-    data: bytes, file_type: str, file: Path, name: str, *, packed: bool
-) -> Any:  # trimesh has no types
+def _limited(stream: Any, name: str) -> bytes:
+    """All of a stream, unless it is too long."""
+    with stream:
+        data: bytes = stream.read(_MOST_BYTES + 1)
+    if len(data) > _MOST_BYTES:
+        raise MeshError(
+            f"{name} is longer than {_MOST_BYTES >> 20} MiB", help="simplify the mesh in a mesh editor"
+        )
+    return data
+
+
+def _check_format(file_type: str, name: str) -> None:
+    import trimesh
+
+    formats = (set(trimesh.available_formats()) | _READERS.keys()) - _NO_MESHES
+    if file_type not in formats:
+        raise MeshError(
+            f"{name} is of an unknown format{f' `.{file_type}`' if file_type else ''}",
+            help=f"known formats: {', '.join(sorted(formats))}; each also packed as .bz2 or .gz",
+        )
+
+
+def _loaded(data: bytes, file_type: str, file: Path, name: str, *, packed: bool) -> Soup:
+    """What trimesh reads."""
     import trimesh
 
     logger = logging.getLogger("trimesh")
@@ -93,7 +145,7 @@ def _loaded(
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            # Formats that refer to neighbouring files (a .gltf to its .bin) find them beside an unpacked file.
+            # Formats that refer to neighbouring files find them beside an unpacked file.
             resolver = None if packed else trimesh.resolvers.FilePathResolver(str(file))
             scene = trimesh.load_scene(
                 io.BytesIO(data),
@@ -102,9 +154,12 @@ def _loaded(
                 process=False,
                 skip_materials=True,
             )
-            return scene.to_mesh()
+            loaded = scene.to_mesh()
     except Exception as error:  # noqa: BLE001  # readers raise whatever their format's parser raises
         reason = str(error).strip() or type(error).__name__
         raise MeshError(f"{name} cannot be read as {file_type}: {reason}") from None
     finally:
         logger.disabled = disabled
+    if not isinstance(loaded, trimesh.Trimesh):
+        raise MeshError(f"{name} holds no triangles")
+    return Soup(np.asarray(loaded.vertices, dtype=np.float64), np.asarray(loaded.faces, dtype=np.intp))

@@ -12,6 +12,9 @@ from scenic.language.errors import MeshError
 from scenic.runtime.geometry import topology
 from scenic.runtime.geometry.poses import Floats, Indices
 
+_MOST_HEIGHTS: Final = 1 << 21
+"""Heights of vertices above faces that are looked at to see that a solid is convex without its hull."""
+
 Derived = TypeVar("Derived")
 
 _CONVEXITY_TOLERANCE: Final = 1e-10
@@ -134,6 +137,11 @@ class Mesh:
     @cached_property
     def hull(self) -> Hull:
         """The convex hull; fails for flat meshes."""
+        if self._is_its_hull:
+            planes = np.concatenate([self.normals, self._offsets[:, None]], axis=1)[self.areas > 0]
+            planes = np.unique(np.round(planes, 12), axis=0)
+            used = np.unique(self.faces)
+            return Hull(_read_only(self.vertices[used]), _read_only(planes), self.volume)
         from scipy.spatial import ConvexHull
 
         # Interior vertices of flat faces are no corners; qhull's default joins such faces, so that no sliver
@@ -164,7 +172,28 @@ class Mesh:
         # Necessary and cheap: no vertex lies above the plane of a face next to it. It spares large meshes the hull.
         if self._has_concave_neighbours():
             return False
-        return abs(self.hull.volume - self.volume) <= _CONVEXITY_TOLERANCE * self.hull.volume
+        return (
+            self._is_its_hull
+            or abs(self.hull.volume - self.volume) <= _CONVEXITY_TOLERANCE * self.hull.volume
+        )
+
+    @cached_property
+    def _offsets(self) -> Floats:
+        """The negative heights of the faces' planes above the origin, ``(f,)``."""
+        n, p = self.normals, self.triangles[:, 0]
+        return _read_only(-(n[:, 0] * p[:, 0] + n[:, 1] * p[:, 1] + n[:, 2] * p[:, 2]))
+
+    @cached_property
+    def _is_its_hull(self) -> bool:
+        """Whether the solid is seen, without the hull, to be convex: no vertex lies above any face."""
+        if len(self.vertices) * len(self.faces) > _MOST_HEIGHTS or not self.is_volume:
+            return False
+        slack = 1e-12 * float(self.extents.max())
+        x, y, z = self.vertices[np.unique(self.faces)].T
+        return all(
+            bool((a * x + b * y + c * z + d).max() <= slack)
+            for (a, b, c), d in zip(self.normals.tolist(), self._offsets.tolist(), strict=True)
+        )
 
     def _has_concave_neighbours(self) -> bool:
         count = len(self.vertices)

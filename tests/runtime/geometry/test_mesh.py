@@ -50,11 +50,16 @@ def test_is_box_only_for_whole_boxes():
     assert not wedge.is_box
 
 
-def test_hull_matches_its_planes():
-    hull = bumpy(3).hull
+@pytest.mark.parametrize("name", SHAPES)
+def test_hull_matches_its_planes(name):
+    mesh = SHAPES[name]()
+    hull = mesh.hull
     heights = hull.vertices @ hull.planes[:, :3].T + hull.planes[:, 3]
     assert heights.max() < 1e-10
-    assert ConvexHull(hull.vertices).volume == pytest.approx(hull.volume)
+    assert (heights.max(axis=0) > -1e-10).all()
+    oracle = ConvexHull(mesh.vertices)
+    assert oracle.volume == pytest.approx(hull.volume)
+    assert {tuple(row) for row in mesh.vertices[oracle.vertices]} <= {tuple(row) for row in hull.vertices}
 
 
 def test_normals_and_areas():

@@ -1,0 +1,274 @@
+"""The readers of mesh formats beside trimesh's."""
+
+import base64
+import bz2
+import io
+import json
+import struct
+
+import numpy as np
+import pytest
+import trimesh
+
+from scenic.language.errors import MeshError
+from scenic.runtime.geometry import loading
+from scenic.runtime.geometry.loading import load_mesh
+from scenic.runtime.geometry.reading.gltf import read_glb, read_gltf
+from scenic.runtime.geometry.reading.obj import read_obj
+from scenic.runtime.geometry.reading.ply import read_ply
+from scenic.runtime.geometry.reading.soup import NotCoveredError, Soup
+from scenic.runtime.geometry.reading.stl import read_stl
+
+from .samples import FILES, bumpy, hollow, real_meshes, table
+
+READERS = {
+    "obj": read_obj,
+    "stl": read_stl,
+    "ply": read_ply,
+    "glb": lambda data: read_glb(data, no_neighbour),
+    "gltf": lambda data: read_gltf(data, no_neighbour),
+}
+
+
+def no_neighbour(name):
+    raise AssertionError(name)
+
+
+def triangles(soup: Soup) -> np.ndarray:
+    """Corners in an order that does not depend on the file's: each triangle from its smallest corner on."""
+    corners = soup.vertices[soup.faces] + 0.0
+    for turn in range(2):
+        rolled = np.roll(corners, turn + 1, axis=1)
+        smaller = [
+            tuple(a) < tuple(b) for a, b in zip(rolled[:, 0].tolist(), corners[:, 0].tolist(), strict=True)
+        ]
+        corners = np.where(np.array(smaller, dtype=bool)[:, None, None], rolled, corners)
+    flat = corners.reshape(-1, 9)
+    return flat[np.lexsort(flat.T[::-1])]
+
+
+def check(data: bytes, kind: str, *, exact=True):
+    found = READERS[kind](data)
+    scene = trimesh.load_scene(io.BytesIO(data), file_type=kind, process=False)
+    expected = scene.to_mesh()
+    proper = Soup(np.asarray(expected.vertices, dtype=float), np.asarray(expected.faces))
+    np.testing.assert_allclose(triangles(found), triangles(proper), rtol=0, atol=0 if exact else 1e-12)
+    return found
+
+
+def exported(mesh, kind, **options) -> bytes:
+    data = trimesh.Trimesh(mesh.vertices, mesh.faces, process=False).export(file_type=kind, **options)
+    return data.encode() if isinstance(data, str) else data
+
+
+@pytest.mark.parametrize("mesh", [bumpy(2), table(), hollow()])
+@pytest.mark.parametrize(
+    ("kind", "options"),
+    [
+        ("obj", {}),
+        ("stl", {}),
+        ("stl_ascii", {}),
+        ("ply", {}),
+        ("ply", {"encoding": "ascii"}),
+        ("glb", {}),
+    ],
+)
+def test_what_trimesh_writes(mesh, kind, options):
+    check(exported(mesh, kind, **options), kind.removesuffix("_ascii"))
+
+
+@real_meshes
+@pytest.mark.parametrize("path", FILES, ids=lambda path: path.name)
+def test_real_meshes(path):
+    check(bz2.decompress(path.read_bytes()), "obj")
+
+
+THREE = "v 0 0 0\nv 1 0 0\nv 0 1 0\n"
+OBJ = {
+    "textures and normals": (THREE + "vt 0 0\nvn 0 0 1\nf 1/1/1 2/1/1 3//1\n", [(0, 1, 2)]),
+    "negative numbers": (THREE + "f -3 -2 -1\nv 0 0 1\nf -4 -3 -1\n", [(0, 1, 2), (0, 1, 3)]),
+    "polygons": (
+        THREE + "v 0 1 0\nv -1 .5 0\nf 1 2 3 4\nf 2 3 4 5 1\n",
+        [(0, 1, 2), (0, 2, 3), (1, 2, 3), (1, 3, 4), (1, 4, 0)],
+    ),
+    "comments and colours": (
+        "# box\no a\nv 0 0 0 1 0 0\ng b\nv 1 0 0\nv 0 1 0 1\nusemtl m\ns off\nf 1 2 3 # x\nl 1 2\n",
+        [(0, 1, 2)],
+    ),
+    "returns and blanks": ("v  0\t0 0\r\nv 1 0 0\r\n\r\n v 0 1e0 0\r\nf 1  2 3 \r\nf\n", [(0, 1, 2)]),
+    "lines that go on": ("v 0 0 0\nv 1 0 0\nv 0 1 \\\n 0\nf 1 \\\r\n2 3\n", [(0, 1, 2)]),
+    "faces first": ("f 1 3 2\n" + THREE, [(0, 2, 1)]),
+}
+
+
+@pytest.mark.parametrize("name", OBJ)
+def test_obj(name):
+    """What trimesh reads wrongly or not at all, too."""
+    text, expected = OBJ[name]
+    found = read_obj(text.encode())
+    np.testing.assert_array_equal(found.faces, expected)
+    np.testing.assert_array_equal(found.vertices[:3], [(0, 0, 0), (1, 0, 0), (0, 1, 0)])
+
+
+HEADER = "ply\nformat {format} 1.0\ncomment made by hand\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+CORNERS = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 2.5)]
+
+
+def ply(order: str, faces, *, kind="int", extra=False, text=False) -> bytes:
+    name = "ascii" if text else {"<": "binary_little_endian", ">": "binary_big_endian"}[order]
+    header = HEADER.format(format=name) + ("property uchar red\n" * extra) + f"element face {len(faces)}\n"
+    header += ("property float quality\n" * extra) + f"property list uchar {kind} vertex_indices\n"
+    header += "property short group\n" * extra + "end_header\n"
+    if text:
+        lines = [" ".join(map(str, (*corner, *[7] * extra))) for corner in CORNERS]
+        lines += [" ".join(map(str, (*[0.5] * extra, len(face), *face, *[9] * extra))) for face in faces]
+        return (header + "\n".join(lines) + "\n").encode()
+    code = {"int": "i", "ushort": "H"}[kind]
+    body = b"".join(struct.pack(f"{order}fff{'B' * extra}", *corner, *[7] * extra) for corner in CORNERS)
+    for face in faces:
+        body += struct.pack(
+            f"{order}{'f' * extra}B{len(face)}{code}{'h' * extra}",
+            *[0.5] * extra,
+            len(face),
+            *face,
+            *[9] * extra,
+        )
+    return header.encode() + body
+
+
+@pytest.mark.parametrize("extra", [False, True])
+@pytest.mark.parametrize("text", [False, True])
+@pytest.mark.parametrize("order", "<>")
+@pytest.mark.parametrize("faces", [[(0, 1, 2), (0, 3, 1)], [(0, 1, 2, 3), (0, 3, 1)]])
+def test_ply(order, faces, text, extra):
+    found = read_ply(ply(order, faces, kind="ushort", extra=extra, text=text))
+    expected = [face[:1] + face[i : i + 2] for face in faces for i in range(1, len(face) - 1)]
+    np.testing.assert_array_equal(found.faces, expected)
+    np.testing.assert_array_equal(found.vertices, CORNERS)
+    if len(faces[0]) == 3 and not extra:
+        check(ply(order, faces, text=text), "ply")
+
+
+def scene_of_instances() -> trimesh.Scene:
+    scene = trimesh.Scene()
+    body = trimesh.Trimesh(table().vertices, table().faces, process=False)
+    rng = np.random.default_rng(1)
+    scene.add_geometry(body, geom_name="body")
+    for number in range(3):
+        matrix = trimesh.transformations.random_rotation_matrix(rng.random(3))
+        matrix[:3, :3] *= rng.uniform(0.5, 2, 3)
+        matrix[:3, 3] = rng.normal(size=3)
+        if number == 2:
+            matrix[:3, 0] *= -1
+        scene.graph.update(
+            f"copy {number}", f"copy {number - 1}" if number else None, matrix=matrix, geometry="body"
+        )
+    return scene
+
+
+def test_instances_of_a_scene():
+    data = scene_of_instances().export(file_type="glb")
+    found = check(data, "glb", exact=False)
+    assert len(found.faces) == 4 * len(table().faces)
+
+
+def test_buffers_beside_the_description(tmp_path):
+    files = scene_of_instances().export(file_type="gltf")
+    for name, data in files.items():
+        (tmp_path / name).write_bytes(data)
+    description = next(name for name in files if name.endswith(".gltf"))
+    whole = load_mesh(tmp_path / description, unify=False)
+    tree = json.loads(files[description])
+    for buffer in tree["buffers"]:
+        buffer["uri"] = (
+            "data:application/octet-stream;base64," + base64.b64encode(files[buffer["uri"]]).decode()
+        )
+    (tmp_path / "alone.gltf").write_text(json.dumps(tree))
+    alone = load_mesh(tmp_path / "alone.gltf", unify=False)
+    np.testing.assert_array_equal(alone.vertices, whole.vertices)
+    assert whole.volume > 0
+    for name in files:
+        if name != description:
+            (tmp_path / name).unlink()
+    with pytest.raises(MeshError, match="names a file that cannot be read"):
+        load_mesh(tmp_path / description)
+
+
+def test_nodes_by_parts_and_strips():
+    corners = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 1, 0)], dtype="<f4")
+    tree = {
+        "asset": {"version": "2.0"},
+        "nodes": [
+            {"children": [1], "translation": [1, 2, 3]},
+            {"mesh": 0, "rotation": [0, 0, 1, 0], "scale": [2, 2, 2]},
+        ],
+        "scenes": [{"nodes": [0]}],
+        "meshes": [
+            {
+                "primitives": [
+                    {"attributes": {"POSITION": 0}, "mode": 5},
+                    {"attributes": {"POSITION": 0}, "mode": 0},
+                ]
+            }
+        ],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3"}],
+        "bufferViews": [{"buffer": 0, "byteLength": 48}],
+        "buffers": [
+            {"byteLength": 48, "uri": "data:;base64," + base64.b64encode(corners.tobytes()).decode()}
+        ],
+    }
+    found = read_gltf(json.dumps(tree).encode(), no_neighbour)
+    np.testing.assert_allclose(found.vertices, corners * (-2, -2, 2) + (1, 2, 3), atol=1e-12)
+    np.testing.assert_array_equal(found.faces, [(0, 1, 2), (3, 2, 1)])
+    tree["nodes"][1]["children"] = [0]
+    with pytest.raises(ValueError, match="circle"):
+        read_gltf(json.dumps(tree).encode(), no_neighbour)
+    tree["accessors"][0]["sparse"] = {}
+    tree["nodes"][1]["children"] = []
+    with pytest.raises(NotCoveredError):
+        read_gltf(json.dumps(tree).encode(), no_neighbour)
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "message"),
+    [
+        ("two.obj", b"v 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "cannot be read as obj"),
+        ("word.obj", b"v 0 0 x\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "cannot be read as obj"),
+        ("zero.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 0 1 2\n", "vertex outside 1 to 3"),
+        ("far.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf -4 1 2\n", "vertex outside 1 to 3"),
+        (
+            "nan.obj",
+            b"v 0 0 0\nv 1 0 0\nv 0 nan 0\nf 1 2 3\n",
+            "nan.obj` has a coordinate that is not finite",
+        ),
+        ("short.stl", b"solid a\nfacet\nvertex 0 0 0\nvertex 1 0 0\n", "three corners"),
+        ("cut.stl", b"\0" * 80 + b"\x02\0\0\0" + b"\0" * 50, "as long as"),
+        ("order.ply", b"ply\nformat cuneiform 1.0\nend_header\n", "its header has the line"),
+        ("far.ply", ply("<", [(0, 1, 9)]), "vertex outside 0 to 3"),
+        ("cut.ply", ply("<", [(0, 1, 2)])[:-5], "ends before"),
+        ("cut_text.ply", ply("<", [(0, 1, 2)], text=True)[:-4], "ends before"),
+        ("points.ply", HEADER.format(format="ascii").encode() + b"end_header\n" + b"0 " * 12, "no faces"),
+        ("json.gltf", b"{", "cannot be read as gltf"),
+        ("hole.gltf", b'{"asset": {"version": "2.0"}, "scenes": [{"nodes": [3]}]}', "description is broken"),
+        ("nothing.gltf", b'{"asset": {"version": "2.0"}}', "holds no triangles"),
+    ],
+)
+def test_broken_files(tmp_path, name, content, message):
+    path = tmp_path / name
+    path.write_bytes(content)
+    with pytest.raises(MeshError, match=message) as caught:
+        load_mesh(path)
+    assert caught.value.code == "SC602"
+
+
+def test_meshes_too_large_are_refused(tmp_path, monkeypatch):
+    path = tmp_path / "box.obj"
+    path.write_bytes(exported(bumpy(2), "obj"))
+    monkeypatch.setattr(loading, "MOST_TRIANGLES", 100)
+    with pytest.raises(MeshError, match="has 320 triangles, more than 100"):
+        load_mesh(path)
+    packed = tmp_path / "box.obj.bz2"
+    packed.write_bytes(bz2.compress(b" " * 10_000_000))
+    monkeypatch.setattr(loading, "_MOST_BYTES", 1 << 20)
+    with pytest.raises(MeshError, match="is longer than 1 MiB"):
+        load_mesh(packed)
