@@ -6,7 +6,7 @@ from scenic.language.errors import MeshError
 from scenic.runtime.geometry import primitives
 from scenic.runtime.geometry.mesh import Mesh
 
-from .samples import FILES, SHAPES, bumpy, hollow, placed, real_meshes, table, unit_mesh
+from .samples import FILES, SHAPES, hollow, placed, real_meshes, table, unit_mesh
 
 
 @pytest.mark.parametrize("name", SHAPES)
