@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from scenic.runtime.established import setDebuggingOptions
     from scenic.runtime.scenario import Scenario
     from scenic.runtime.scene import Scene
+    from scenic.runtime.sensors import DepthSensor, RGBSensor, SSSensor
     from scenic.runtime.specifiers import specifier
 
 _HOMES = MappingProxyType(
@@ -42,6 +43,9 @@ _HOMES = MappingProxyType(
         "ScenicError": "scenic.language.errors",
         "ScenicSyntaxError": "scenic.language.errors",
         "SpecifierError": "scenic.language.errors",
+        "DepthSensor": "scenic.runtime.sensors",
+        "RGBSensor": "scenic.runtime.sensors",
+        "SSSensor": "scenic.runtime.sensors",
         "load": "scenic.pipeline",
         "scenarioFromFile": "scenic.pipeline",
         "scenarioFromString": "scenic.pipeline",
@@ -53,11 +57,14 @@ _HOMES = MappingProxyType(
 )
 
 __all__ = [
+    "DepthSensor",
     "InvalidScenarioError",
     "ParseCompileError",
     "ParseResult",
+    "RGBSensor",
     "RandomControlFlowError",
     "RejectionException",
+    "SSSensor",
     "Scenario",
     "Scene",
     "ScenicError",

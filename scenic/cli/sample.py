@@ -24,6 +24,7 @@ NOT_ALL: Final = 3
 
 _INTEGER: Final = re.compile(r"[+-]?\d+")
 _REAL: Final = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
+_MOST_PIXELS: Final = 16384
 _WORDS: Final = MappingProxyType({"true": True, "True": True, "false": False, "False": False})
 
 
@@ -62,6 +63,35 @@ def _seconds(_context: click.Context, _option: click.Parameter, given: float | N
     if given is not None and not (math.isfinite(given) and given > 0):
         raise click.BadParameter("the time must be a positive number of seconds")
     return given
+
+
+def _image_size(
+    _context: click.Context, _option: click.Parameter, given: str | None
+) -> tuple[int, int] | None:
+    if given is None:
+        return None
+    match = re.fullmatch(r"(\d{1,5})[xX](\d{1,5})", given)
+    if match is None or not all(1 <= int(part) <= _MOST_PIXELS for part in match.groups()):
+        raise click.BadParameter(
+            f"{given!r} is not of the form WIDTHxHEIGHT, in pixels up to {_MOST_PIXELS}: 640x480"
+        )
+    return int(match[1]), int(match[2])
+
+
+def _outlook(_context: click.Context, _option: click.Parameter, given: str | None) -> Mapping[str, float]:
+    if given is None:
+        return {}
+    if given == "above":
+        return {"azimuth": 0.0, "elevation": 90.0}
+    try:
+        azimuth, elevation = (float(part) for part in given.split(","))
+    except ValueError:
+        azimuth = elevation = math.nan
+    if not (math.isfinite(azimuth) and -89.9 <= elevation <= 90):
+        raise click.BadParameter(
+            f"{given!r} is neither 'above' nor AZIMUTH,ELEVATION in degrees, such as -35,33"
+        )
+    return {"azimuth": azimuth, "elevation": elevation}
 
 
 @click.command()
@@ -110,6 +140,31 @@ def _seconds(_context: click.Context, _option: click.Parameter, given: float | N
 @click.option(
     "--png", metavar="PATH", help="Make an image of each scene: in this folder, or at this name with .png."
 )
+@click.option(
+    "--camera",
+    metavar="NAME",
+    help="Make labelled images in the folder OUT: what the sensor of this name sees, or the object of a variable.",
+)
+@click.option(
+    "--image-size",
+    metavar="WxH",
+    callback=_image_size,
+    help="Columns and rows of the images.  [default: 960x720; a sensor's own]",
+)
+@click.option(
+    "--look-from",
+    "outlook",
+    metavar="AZ,EL",
+    callback=_outlook,
+    help="Where --png looks from: degrees east of south and above the horizon, or 'above'.  [default: -35,33]",
+)
+@click.option(
+    "--frame",
+    type=click.Choice(["workspace", "objects"]),
+    default="workspace",
+    help="What --png shows whole: the workspace, so that all scenes are seen alike, or the objects.",
+    show_default=True,
+)
 def sample(
     file: str,
     count: int,
@@ -124,6 +179,10 @@ def sample(
     output: str | None,
     view: str | None,
     png: str | None,
+    camera: str | None,
+    image_size: tuple[int, int] | None,
+    outlook: Mapping[str, float],
+    frame: str,
 ) -> int:
     """Sample scenes from a program.
 
@@ -135,12 +194,20 @@ def sample(
     path = Path(file)
     chosen: list[sinks.Sink] = []
     # All of them are checked before anything is sampled.
-    if output is not None or (view is None and png is None):
+    if camera is not None:
+        if output is None:
+            raise click.UsageError("--camera needs a folder for its images: -o FOLDER")
+        chosen.append(sinks.labelled(Path(output), camera, image_size))
+    elif output is not None or (view is None and png is None):
         chosen.append(sinks.scene_file(Path(output or "-"), count))
     if view is not None:
         chosen.append(sinks.page(Path(view), path.name))
     if png is not None:
-        chosen.append(sinks.images(Path(png), path.stem, count))
+        chosen.append(
+            sinks.images(
+                Path(png), path.stem, count, image_size, {**outlook, "workspace": frame == "workspace"}
+            )
+        )
 
     # These bring in NumPy and the geometry libraries.
     from scenic.pipeline import load

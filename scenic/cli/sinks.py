@@ -4,9 +4,10 @@ A sink's files are complete when its context ends well; when it ends with an err
 """
 
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
+from typing import Any
 
 from scenic.formats.files import check_folder, check_writable, numbered, write, writing
 from scenic.formats.scenes import Scene
@@ -58,8 +59,43 @@ def page(path: Path, title: str) -> Sink:
     return _page(path, title)
 
 
-def images(path: Path, stem: str, count: int) -> Sink:
+def labelled(folder: Path, camera: str, size: tuple[int, int] | None) -> Sink:
+    """Images that a camera of the scenes sees, with labels, in a folder.
+
+    Raises ``OutputError``, ``OutputChoiceError`` or ``MissingLibraryError`` at once if that cannot be.
+    """
+    from scenic.formats.png import require_pillow
+
+    require_pillow()
+    if folder == STANDARD_OUTPUT or folder.suffix.lower() in {*_OTHER_FORMATS, ".glb", ".jsonl"}:
+        raise OutputChoiceError(
+            f"labelled images cannot be written to '{folder}'", help="give a folder: --camera front -o images"
+        )
+    check_folder(folder if folder.exists() else folder.resolve().parent)
+    return _labelled(folder, camera, size)
+
+
+@contextmanager
+def _labelled(folder: Path, camera: str, size: tuple[int, int] | None) -> Iterator[Take]:
+    from scenic.formats.coco import LabelledImages
+
+    made = LabelledImages(folder, camera, size)
+
+    def take(scene: Scene) -> None:
+        folder.mkdir(exist_ok=True)
+        made.add(scene)
+
+    yield take
+    if folder.exists():
+        made.finish()
+
+
+def images(
+    path: Path, stem: str, count: int, size: tuple[int, int] | None, outlook: Mapping[str, Any]
+) -> Sink:
     """A PNG image of each scene: at ``path`` if that ends in ``.png``, else in the folder of that name.
+
+    ``outlook`` holds what is not to be as in an `Outlook` made without arguments.
 
     Raises ``OutputError`` or ``MissingLibraryError`` at once if that cannot be.
     """
@@ -73,7 +109,7 @@ def images(path: Path, stem: str, count: int) -> Sink:
         check_folder(path if path.exists() else path.resolve().parent)
         folder, target = path, path / f"{stem}.png"
     _check_numbered(target, count)
-    return _images(folder, target, count)
+    return _images(folder, target, count, size, outlook)
 
 
 def _check_numbered(path: Path, count: int) -> None:
@@ -125,12 +161,22 @@ def _page(path: Path, title: str) -> Iterator[Take]:
 
 
 @contextmanager
-def _images(folder: Path | None, target: Path, count: int) -> Iterator[Take]:
+def _images(
+    folder: Path | None,
+    target: Path,
+    count: int,
+    size: tuple[int, int] | None,
+    outlook: Mapping[str, Any],
+) -> Iterator[Take]:
+    from scenic.formats.camera import Outlook
     from scenic.formats.png import png
+    from scenic.formats.render import SIZE
+
+    chosen = Outlook(**outlook)
 
     def take(scene: Scene) -> None:
         if folder is not None:
             folder.mkdir(exist_ok=True)
-        write(numbered(target, scene.k, count), png(scene))
+        write(numbered(target, scene.k, count), png(scene, size or SIZE, chosen))
 
     yield take

@@ -7,15 +7,35 @@ from itertools import product
 import numpy as np
 
 from scenic.formats.instances import Array, Instance
+from scenic.formats.regions import bounds as workspace_bounds
+from scenic.formats.scenes import Scene
 
-AZIMUTH = np.radians(-35)
-"""The camera stands to the south-east: this much anticlockwise from due south, seen from above."""
-ELEVATION = np.radians(33)
 FIELD_OF_VIEW = np.radians(38)
 """The vertical opening angle."""
 MARGIN = 1.06
 
 _UNIT_CORNERS = np.array(list(product((-0.5, 0.5), repeat=3)))
+
+
+@dataclass(frozen=True, slots=True)
+class Outlook:
+    """Where a picture of a scene is taken from.
+
+    Attributes:
+        azimuth: in which direction the camera stands, degrees, anticlockwise from due south seen from above: negative
+            to the west of south as the camera looks north.
+        elevation: how far above the horizon it stands, degrees; 90 is straight above.
+        workspace: whether the whole workspace is in the picture, if it is bounded, and not just the objects; so
+            pictures of one program all show the same part of the world.
+
+    """
+
+    azimuth: float = -35.0
+    elevation: float = 33.0
+    workspace: bool = True
+
+
+STANDARD = Outlook()
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,24 +78,32 @@ def ground_height(points: Array) -> float:
     return float(low if low < 0 or low > 4 * extent else 0.0)
 
 
-def framing(instances: Sequence[Instance], aspect: float) -> Camera:
-    """The nearest camera of the standard direction that sees every object whole.
+def framed(scene: Scene, instances: Sequence[Instance], outlook: Outlook) -> Array:
+    """The points that a picture of a scene has to show, ``(n, 3)``: corners of objects, and of the workspace."""
+    points = corners(instances)
+    bounds = workspace_bounds(scene.workspace) if outlook.workspace else None
+    if bounds is None:
+        return points
+    low, high = bounds
+    low[2], high[2] = np.minimum(low[2], points[:, 2].min()), np.maximum(high[2], points[:, 2].max())
+    around = _UNIT_CORNERS * (high - low) + (low + high) / 2
+    return np.concatenate([points, around])
+
+
+def framing(points: Array, aspect: float, outlook: Outlook = STANDARD) -> Camera:
+    """The nearest camera of a direction that sees all points ``(n, 3)``.
 
     A point with coordinates (r, u, a) along right, up and ahead is in sight of an eye at (R, U, A) if
     ``|r - R| <= t (a - A)`` for the tangent t, and likewise for u: linear bounds on the eye, whose largest A is wanted.
     """
+    azimuth, elevation = np.radians(outlook.azimuth), np.radians(outlook.elevation)
     ahead = np.array(
-        [
-            np.sin(AZIMUTH) * np.cos(ELEVATION),
-            np.cos(AZIMUTH) * np.cos(ELEVATION),
-            -np.sin(ELEVATION),
-        ]
+        [np.sin(azimuth) * np.cos(elevation), np.cos(azimuth) * np.cos(elevation), -np.sin(elevation)]
     )
-    right = np.array([np.cos(AZIMUTH), -np.sin(AZIMUTH), 0.0])
+    right = np.array([np.cos(azimuth), -np.sin(azimuth), 0.0])
     up = np.cross(right, ahead)
     vertical = float(np.tan(FIELD_OF_VIEW / 2))
     tangents = (vertical * aspect, vertical)
-    points = corners(instances)
     basis = np.stack([right, up, ahead])
     local = points @ basis.T
     lower, upper, nearest = [], [], []

@@ -2,14 +2,19 @@
 
 import io
 from types import ModuleType
+from typing import Final
 
 import numpy as np
 import numpy.typing as npt
 
+from scenic.formats.camera import STANDARD, Outlook, framed, framing
 from scenic.formats.instances import picture
 from scenic.formats.render import SIZE, render
 from scenic.formats.scenes import Scene
 from scenic.language.errors import Located
+
+_EFFORT: Final = 4
+"""Of zlib's levels: those above it take twice the time for a tenth less."""
 
 
 class MissingLibraryError(Located):
@@ -30,17 +35,19 @@ def require_pillow() -> ModuleType:
     return PIL.Image
 
 
-def png(scene: Scene, size: tuple[int, int] = SIZE) -> bytes:
-    """An image of the scene, seen from above the south-east, as the content of a PNG file.
+def png(scene: Scene, size: tuple[int, int] = SIZE, outlook: Outlook = STANDARD) -> bytes:
+    """An image of the scene, by default seen from above the south-east, as the content of a PNG file.
 
     Raises ``MissingLibraryError`` if Pillow is not installed.
     """
     require_pillow()
-    return encoded(render(picture([scene]), 0, size))
+    drawn = picture([scene])
+    camera = framing(framed(scene, drawn.scenes[0], outlook), size[0] / size[1], outlook)
+    return encoded(render(drawn, 0, size, camera=camera))
 
 
-def encoded(pixels: npt.NDArray[np.uint8]) -> bytes:
-    """Pixels, shape ``(height, width, 3)``, as the content of a PNG file."""
+def encoded(pixels: npt.NDArray[np.uint8] | npt.NDArray[np.uint16]) -> bytes:
+    """Pixels as the content of a PNG file: colours ``(height, width, 3)``, or numbers ``(height, width)``."""
     stream = io.BytesIO()
-    require_pillow().fromarray(pixels).save(stream, format="PNG")
+    require_pillow().fromarray(pixels).save(stream, format="PNG", compress_level=_EFFORT)
     return stream.getvalue()

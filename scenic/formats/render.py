@@ -1,365 +1,430 @@
 """Pictures of scenes without a display: rays are cast at the meshes, for sight, shadow and ambient light.
 
-Light that many rays estimate (soft shadow, ambient occlusion) is sampled sparsely, with another pattern in each of
-4 by 4 neighbouring pixels, and smoothed over such blocks where they show one smooth surface. Pixels at edges are
-sampled again several times. Everything is deterministic.
+Sight is dense: what each pixel sees is found with a ray of its own, or is that of the pixels around it where they agree.
+Light is sparse: soft shadow and ambient light are estimated with several rays at every fourth pixel of every fourth
+row, and spread from there over the surfaces; where the nodes around a pixel disagree, as in half shadow, it gets rays of
+its own. Edges are smoothed by more rays for sight alone. Everything is deterministic.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Final, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
-from scenic.formats.camera import Camera, corners, framing, ground_height
-from scenic.formats.instances import Array, Instance, Picture
-from scenic.formats.poses import rotation_matrix
-from scenic.runtime.geometry.embree import RayScene
-from scenic.runtime.geometry.embree import Singles as Floats
+from scenic.formats.buffers import Buffer, Lens, seen
+from scenic.formats.camera import Camera, corners, framing
+from scenic.formats.colors import encoded, linear
+from scenic.formats.instances import Picture
+from scenic.formats.stage import GROUND, SKY, Stage, ground_light, sequence
+from scenic.runtime.geometry.embree import Singles
+
+Pixels = npt.NDArray[np.intp]
+Groups = npt.NDArray[np.int32]
+_Scalar = TypeVar("_Scalar", bound=np.generic)
 
 SIZE: Final = (960, 720)
 
-_BLOCK: Final = 4
-_AMBIENT_RAYS: Final = 6
-_SUN_RAYS: Final = 2
-_EDGE_SAMPLES: Final = 12
-_CHUNK: Final = 1 << 18
+_NODE: Final = 4
+"""Light is estimated at every so many pixels."""
+_SUN_RAYS: Final = 4
+_OWN_SUN_RAYS: Final = 6
+_SKY_RAYS: Final = 4
+_OWN_SKY_RAYS: Final = 12
+_EDGE_SAMPLES: Final = 4
 _LAYERS: Final = 4
 """So many transparent surfaces are seen through."""
 
-_SUN_COLOR: Final = np.array([1.0, 0.96, 0.9], np.float32) * 0.95
-_SKY_COLOR: Final = np.array([0.86, 0.93, 1.0], np.float32) * 0.62
-_BOUNCE_COLOR: Final = np.array([1.0, 0.95, 0.88], np.float32) * 0.34
-_GROUND_COLOR: Final = np.array([0.80, 0.81, 0.83], np.float32)
-_LINE_COLOR: Final = np.array([0.55, 0.57, 0.61], np.float32)
-_HORIZON: Final = np.array([0.90, 0.92, 0.95], np.float32)
-_ZENITH: Final = np.array([0.74, 0.82, 0.91], np.float32)
+_GROUND_COLOR: Final = (0.80, 0.81, 0.83)
+_LINE_COLOR: Final = (0.55, 0.57, 0.61)
+_HORIZON: Final = (0.90, 0.92, 0.95)
+_ZENITH: Final = (0.74, 0.82, 0.91)
 
-_GROUND: Final = -1
-_SKY: Final = -2
+
+def render(
+    picture: Picture, number: int, size: tuple[int, int] = SIZE, *, camera: Camera | None = None
+) -> npt.NDArray[np.uint8]:
+    """An image of scene ``number`` of the picture; shape ``(height, width, 3)``, sRGB.
+
+    Without a camera, the nearest one of the standard direction that sees every object whole.
+    """
+    width, height = size
+    instances = picture.scenes[number]
+    stage = Stage(picture.surfaces, instances)
+    lens = Lens(camera or framing(corners(instances), width / height), stage.center, size)
+    return paint(stage, lens, seen(lens, stage.rays, exact=False))
+
+
+def paint(stage: Stage, lens: Lens, buffer: Buffer) -> npt.NDArray[np.uint8]:
+    """The image of what the pixels see; shape ``(height, width, 3)``, sRGB."""
+    drawing = _Drawing(stage, lens, buffer)
+    drawing.shade()
+    drawing.see_through()
+    drawing.smooth_edges()
+    return np.ascontiguousarray(encoded(drawing.image).T).reshape(lens.height, lens.width, 3)
 
 
 @dataclass(frozen=True, slots=True)
-class _Seen:
-    """What rays see: object index (or ground, or sky), place, normal, colour and opacity, an entry per ray."""
+class _Light:
+    """Light at the nodes: parts of the sun and of the sky, each ``(rows, columns)``; and what the nodes show."""
 
-    thing: npt.NDArray[np.int32]
-    place: Floats
-    normal: Floats
-    color: Floats
-    alpha: Floats
-    distance: Floats
+    sun: Singles
+    sky: Singles
+    group: Groups
 
 
-class _Stage:
-    """One scene made ready for rays; coordinates are relative to the middle of the scene."""
+class _Drawing:
+    """An image in the making; ``image`` holds linear light, ``(3, pixels)``."""
 
-    def __init__(self, picture: Picture, instances: Sequence[Instance]) -> None:
-        points = corners(instances)
-        self.center = (points.min(axis=0) + points.max(axis=0)) / 2
-        self.reach = float(np.linalg.norm(np.ptp(points, axis=0))) or 1.0
-        self.ground = ground_height(points) - self.center[2]
-        triangles, normals, owners = [np.zeros((0, 3, 3))], [np.zeros((0, 3, 3))], [np.zeros(0, np.int32)]
-        for index, instance in enumerate(instances):
-            surface = picture.surfaces[instance.surface]
-            matrix = instance.matrix()
-            world = surface.vertices @ matrix[:3, :3].T + (matrix[:3, 3] - self.center)
-            turned = surface.normals / instance.size @ rotation_matrix(instance.quaternion).T
-            turned /= np.linalg.norm(turned, axis=1, keepdims=True)
-            triangles.append(world[surface.faces])
-            normals.append(turned[surface.faces])
-            owners.append(np.full(len(surface.faces), index, np.int32))
-        self.triangles = np.concatenate(triangles).astype(np.float32)
-        self.normals = np.concatenate(normals).astype(np.float32)
-        self.owners = np.concatenate(owners)
-        rgba = np.array([instance.color for instance in instances], np.float32).reshape(-1, 4)
-        self.colors = _linear(rgba[:, :3])
-        self.alphas = rgba[:, 3]
-        self.rays = RayScene(self.triangles)
-        self.spacing = _grid_spacing(self.reach)
+    def __init__(self, stage: Stage, lens: Lens, buffer: Buffer) -> None:
+        self._stage = stage
+        self._lens = lens
+        self._triangle = buffer.triangle.reshape(-1)
+        self._second, self._third = buffer.second.reshape(-1), buffer.third.reshape(-1)
+        self._nearness = buffer.nearness.reshape(-1)
+        self.image = np.empty((3, lens.width * lens.height), np.float32)
+        self._group = self._groups(self._triangle)
+        self._lay_ground()
 
-    def see(self, origins: Floats, directions: Floats, pixel: float) -> _Seen:
-        """What rays of unit directions see; ``pixel`` is the angle between neighbouring rays."""
-        hits = self.rays.first_hits(origins, directions)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            to_ground = np.where(
-                directions[:, 2] < -1e-6, (self.ground - origins[:, 2]) / directions[:, 2], np.inf
-            ).astype(np.float32)
-        to_ground[to_ground <= 0] = np.inf
-        distance = np.minimum(hits.distance, to_ground)
-        hit = hits.triangle >= 0
-        thing = np.where(
-            hits.distance <= to_ground, self.owners[hits.triangle] if len(self.owners) else _SKY, _GROUND
+    def _groups(self, triangle: Groups) -> Groups:
+        """Numbers of surfaces: those of the stage, or sky."""
+        if not len(self._stage.face_group):
+            return np.full(triangle.shape, SKY, np.int32)
+        return np.where(triangle >= 0, self._stage.face_group[triangle], np.int32(SKY))
+
+    def _lay_ground(self) -> None:
+        """Put ground where rays that meet no object go down."""
+        lens, stage = self._lens, self._stage
+        fall = stage.ground - float(lens.eye[2])
+        open_pixels = np.flatnonzero(self._triangle < 0)
+        if fall >= 0 or not len(open_pixels):
+            return
+        down = lens.through(open_pixels)[:, 2] < -1e-6
+        below = open_pixels[down]
+        self._group[below] = GROUND
+        self._nearness[below] = lens.through(below)[:, 2] / np.float32(fall)
+
+    # Light
+
+    def shade(self) -> None:
+        """Give every pixel its colour, as if nothing were transparent."""
+        sun, sky = self._spread(self._node_light())
+        stage = self._stage
+        for channel, plane in enumerate(self.image):
+            np.multiply(np.take(stage.flat[channel], self._triangle), sun, out=plane)
+            plane += np.take(stage.flat[channel + 3], self._triangle) * sky
+        if stage.smooth.any():
+            curved = np.flatnonzero(np.take(stage.smooth, self._triangle) & (self._triangle >= 0))
+            self.image[:, curved] = self._curved_color(
+                self._triangle[curved], self._second[curved], self._third[curved], sun[curved], sky[curved]
+            ).T
+        rest = np.flatnonzero(self._triangle < 0)
+        directions = self._lens.through(rest)
+        backdrop = _sky_color(directions)
+        ground = np.flatnonzero(self._group[rest] == GROUND)
+        if len(ground):
+            pixels = rest[ground]
+            near = self._nearness[pixels]
+            place = self._lens.eye + directions[ground] / near[:, None]
+            albedo = _ground_color(stage, place, directions[ground], near, self._lens.pixel)
+            color = ground_light(albedo, sun[pixels], sky[pixels])
+            away = np.hypot(place[:, 0], place[:, 1]) / np.float32(1.2 * stage.reach)
+            fade = np.clip(away - np.float32(0.5), 0, 1)[:, None] ** np.float32(0.8)
+            backdrop[ground] = color + fade * (backdrop[ground] - color)
+        self.image[:, rest] = backdrop.T
+
+    def _thing_color(
+        self, triangle: Groups, second: Singles, third: Singles, sun: Singles, sky: Singles
+    ) -> Singles:
+        """Colours ``(n, 3)`` of places on triangles, in parts of the sun and the sky."""
+        stage = self._stage
+        result = np.empty((len(triangle), 3), np.float32)
+        for channel in range(3):
+            sunny, shady = stage.flat[channel, triangle], stage.flat[channel + 3, triangle]
+            result[:, channel] = sunny * sun + shady * sky
+        curved = np.flatnonzero(stage.smooth[triangle])
+        result[curved] = self._curved_color(
+            triangle[curved], second[curved], third[curved], sun[curved], sky[curved]
         )
-        thing = np.where(np.isfinite(distance), thing, _SKY).astype(np.int32)
-        safe = np.where(np.isfinite(distance), distance, 0).astype(np.float32)
-        place = origins + safe[:, None] * directions
+        return result
+
+    def _curved_color(
+        self, triangle: Groups, second: Singles, third: Singles, sun: Singles, sky: Singles
+    ) -> Singles:
+        """The same on triangles whose corners have different normals."""
+        total = np.zeros((len(triangle), 3), np.float32)
+        for corner, weight in enumerate((1 - second - third, second, third)):
+            sunny, shady = self._stage.sunny[triangle, corner], self._stage.shady[triangle, corner]
+            total += weight[:, None] * (sunny * sun[:, None] + shady * sky[:, None])
+        return total
+
+    def _node_light(self) -> _Light:
+        width, height = self._lens.width, self._lens.height
+        column = np.minimum(np.arange(-(-width // _NODE) + 1) * _NODE, width - 1)
+        row = np.minimum(np.arange(-(-height // _NODE) + 1) * _NODE, height - 1)
+        pixels = (row[:, None] * width + column).reshape(-1)
+        group = self._group[pixels]
+        sun, sky = np.zeros(len(pixels), np.float32), np.ones(len(pixels), np.float32)
+        lit = np.flatnonzero(group > SKY)
+        row_of, column_of = np.divmod(lit, len(column))
+        sun[lit], sky[lit] = self._estimate(
+            pixels[lit], (row_of % 4) * 4 + column_of % 4, _SUN_RAYS, _SKY_RAYS
+        )
+        shape = (len(row), len(column))
+        return _Light(
+            sun.reshape(shape), _averaged(sky.reshape(shape), group.reshape(shape)), group.reshape(shape)
+        )
+
+    def _estimate(
+        self, pixels: Pixels, pattern: npt.NDArray[np.int64], sun_rays: int, sky_rays: int
+    ) -> tuple[Singles, Singles]:
+        """Parts of the sun and the sky that light what pixels see; no rays, no estimate (zeros)."""
+        directions = self._lens.through(pixels)
+        return self._estimate_at(
+            directions, self._nearness[pixels], self._triangle[pixels], pattern, sun_rays, sky_rays
+        )
+
+    def _estimate_at(
+        self,
+        directions: Singles,
+        nearness: Singles,
+        triangle: Groups,
+        pattern: npt.NDArray[np.int64],
+        sun_rays: int,
+        sky_rays: int,
+    ) -> tuple[Singles, Singles]:
+        stage = self._stage
+        place = self._lens.eye + directions / nearness[:, None]
         normal = np.zeros_like(place)
         normal[:, 2] = 1
-        color = np.zeros_like(place)
-        alpha = np.ones(len(place), np.float32)
-        on_thing = hit & (thing >= 0)
-        index = hits.triangle[on_thing]
-        second, third = hits.second[on_thing, None], hits.third[on_thing, None]
-        corner = self.normals[index]
-        smooth = (1 - second - third) * corner[:, 0] + second * corner[:, 1] + third * corner[:, 2]
-        smooth /= np.maximum(np.sqrt(np.einsum("ij,ij->i", smooth, smooth)), 1e-6)[:, None]
-        away = np.einsum("ij,ij->i", smooth, directions[on_thing]) > 0
-        smooth[away] *= -1
-        normal[on_thing] = smooth
-        color[on_thing] = self.colors[thing[on_thing]]
-        alpha[on_thing] = self.alphas[thing[on_thing]]
-        on_ground = thing == _GROUND
-        if on_ground.any():
-            color[on_ground] = self._ground_color(
-                place[on_ground], directions[on_ground], safe[on_ground], pixel
-            )
-        return _Seen(thing, place, normal, color, alpha, safe)
+        on_thing = np.flatnonzero(triangle >= 0)
+        facing = stage.normals[triangle[on_thing]].astype(np.float32)
+        away = np.einsum("ij,ij->i", facing, directions[on_thing]) > 0
+        facing[away] *= -1
+        normal[on_thing] = facing
+        nothing = np.zeros(len(place), np.float32)
+        sun = stage.sunlit(place, normal, pattern, sun_rays) if sun_rays else nothing
+        sky = stage.openness(place, normal, pattern, sky_rays) if sky_rays else nothing
+        return sun, sky
 
-    def _ground_color(self, place: Floats, directions: Floats, distance: Floats, pixel: float) -> Floats:
-        """The grid on the ground: lines a pixel or two wide at any distance, that fade where they crowd."""
-        color = np.broadcast_to(_linear(_GROUND_COLOR), place.shape).copy()
-        footprint = distance * pixel / np.maximum(-directions[:, 2], 0.05)
-        for spacing, strength in ((self.spacing, 0.35), (self.spacing * 5, 0.7)):
-            cover = np.zeros(len(place), np.float32)
-            for axis in (0, 1):
-                position = (place[:, axis] + np.float32(self.center[axis])) / spacing
-                away = np.abs(position - np.round(position)) * spacing
-                cover = np.maximum(cover, np.clip(1.2 - away / footprint, 0, 1))
-            cover *= strength * np.clip(1.5 - 6 * footprint / spacing, 0, 1)
-            color += cover[:, None] * (_linear(_LINE_COLOR) - color)
-        return color.astype(np.float32)
+    def _spread(self, light: _Light) -> tuple[Singles, Singles]:
+        """Parts of the sun and the sky at every pixel, ``(n,)`` each."""
+        width, height = self._lens.width, self._lens.height
+        sun, sky = (_enlarged(values, width, height).reshape(-1) for values in (light.sun, light.sky))
+        nodes = light.group
+        whole = (nodes[:-1, :-1] == nodes[1:, :-1]) & (nodes[:-1, 1:] == nodes[1:, 1:])
+        whole &= nodes[:-1, :-1] == nodes[:-1, 1:]
+        cell = np.where(whole, nodes[:-1, :-1], np.int32(SKY - 1))
+        same = _repeated(cell, width, height).reshape(-1) == self._group
+        low, high = (_around(light.sun, choose) for choose in (np.minimum, np.maximum))
+        steady = _repeated(low == high, width, height).reshape(-1)
+        lit = self._group > SKY
+        self._mend(np.flatnonzero(lit & ~same), light, sun, sky)
+        shadowed = np.flatnonzero(lit & same & ~steady)
+        sun[shadowed] = self._estimate(shadowed, self._pattern(shadowed), _OWN_SUN_RAYS, 0)[0]
+        return sun, sky
 
-    def fade(self, seen: _Seen) -> Floats:
-        """How much the ground at each place goes over into the sky's colour, from 0 to 1."""
-        away = np.hypot(seen.place[:, 0], seen.place[:, 1]) / (1.2 * self.reach)
-        return np.where(seen.thing == _GROUND, np.clip((away - 0.5) / 1.0, 0, 1) ** 0.8, 0).astype(np.float32)
+    def _mend(self, pixels: Pixels, light: _Light, sun: Singles, sky: Singles) -> None:
+        """The light of pixels that not all nodes around them share the surface of."""
+        row, column = np.divmod(pixels, self._lens.width)
+        i, j = row // _NODE, column // _NODE
+        down, right = (row % _NODE) / np.float32(_NODE), (column % _NODE) / np.float32(_NODE)
+        group = self._group[pixels]
+        weight = np.zeros(len(pixels), np.float32)
+        total = np.zeros(len(pixels), np.float32)
+        low, high = np.full(len(pixels), 2, np.float32), np.full(len(pixels), -1, np.float32)
+        for below, part in ((0, 1 - down), (1, down)):
+            for beside, share in ((0, 1 - right), (1, right)):
+                match = light.group[i + below, j + beside] == group
+                heft = np.where(match, part * share + np.float32(1e-3), 0).astype(np.float32)
+                weight += heft
+                total += heft * light.sky[i + below, j + beside]
+                value = light.sun[i + below, j + beside]
+                low = np.where(match, np.minimum(low, value), low)
+                high = np.where(match, np.maximum(high, value), high)
+        known = weight > 0
+        sky[pixels[known]] = total[known] / weight[known]
+        sun[pixels[low == high]] = low[low == high]
+        alone = pixels[~known]
+        sun[alone], sky[alone] = self._estimate(alone, self._pattern(alone), _OWN_SUN_RAYS, _OWN_SKY_RAYS)
+        halfway = pixels[known & (low != high)]
+        sun[halfway] = self._estimate(halfway, self._pattern(halfway), _OWN_SUN_RAYS, 0)[0]
+
+    def _pattern(self, pixels: Pixels) -> npt.NDArray[np.int64]:
+        row, column = np.divmod(pixels, self._lens.width)
+        return np.asarray((row % 4) * 4 + column % 4)
+
+    # What is transparent
+
+    def see_through(self) -> None:
+        """Mix what is behind transparent objects into their pixels."""
+        if not (self._stage.alphas < 1).any():
+            return
+        clear = np.flatnonzero(self._group > 0)
+        clear = clear[self._stage.alphas[self._stage.owner[self._triangle[clear]]] < 1]
+        if len(clear):
+            front = self._triangle[clear]
+            depth = np.float32(1) / self._nearness[clear]
+            behind = self._behind(self._lens.through(clear), depth, self._pattern(clear), _LAYERS)
+            alpha = self._stage.alphas[self._stage.owner[front]]
+            self.image[:, clear] = alpha * self.image[:, clear] + (1 - alpha) * behind.T
+
+    def _behind(
+        self, directions: Singles, depth: Singles, pattern: npt.NDArray[np.int64], layers: int
+    ) -> Singles:
+        """Colours beyond a depth along rays from the eye."""
+        stage, lens = self._stage, self._lens
+        start = depth + np.float32(stage.reach * 1e-4)
+        hits = stage.rays.first_hits(lens.eye + directions * start[:, None], directions)
+        far = start + hits.distance
+        triangle = hits.triangle
+        fall = np.float32(stage.ground) - lens.eye[2]
+        grounded = (triangle < 0) & (directions[:, 2] < -1e-6) & (fall < 0)
+        far = np.where(grounded, fall / np.minimum(directions[:, 2], -1e-6), far)
+        color = _sky_color(directions)
+        lit = np.flatnonzero(grounded | (triangle >= 0))
+        sun, sky = np.zeros(len(color), np.float32), np.ones(len(color), np.float32)
+        sun[lit], sky[lit] = self._estimate_at(
+            directions[lit],
+            np.float32(1) / far[lit],
+            triangle[lit],
+            pattern[lit],
+            _OWN_SUN_RAYS,
+            _OWN_SKY_RAYS,
+        )
+        ground = np.flatnonzero(grounded)
+        place = lens.eye + directions[ground] * far[ground, None]
+        albedo = _ground_color(stage, place, directions[ground], np.float32(1) / far[ground], lens.pixel)
+        color[ground] = ground_light(albedo, sun[ground], sky[ground])
+        thing = np.flatnonzero(triangle >= 0)
+        color[thing] = self._thing_color(
+            triangle[thing], hits.second[thing], hits.third[thing], sun[thing], sky[thing]
+        )
+        through = thing[stage.alphas[stage.owner[triangle[thing]]] < 1]
+        if len(through) and layers > 1:
+            alpha = stage.alphas[stage.owner[triangle[through]], None]
+            beyond = self._behind(directions[through], far[through], pattern[through], layers - 1)
+            color[through] = alpha * color[through] + (1 - alpha) * beyond
+        return color
+
+    # Edges
+
+    def smooth_edges(self) -> None:
+        """Give pixels at edges the mean colour of what several rays through them see.
+
+        A ray takes the colour of its pixel or of the neighbour on its side that shows the same surface.
+        """
+        width, height = self._lens.width, self._lens.height
+        group = self._group.reshape(height, width)
+        edge = np.zeros((height, width), np.bool_)
+        across, along = group[:, 1:] != group[:, :-1], group[1:] != group[:-1]
+        edge[:, 1:] |= across
+        edge[:, :-1] |= across
+        edge[1:] |= along
+        edge[:-1] |= along
+        edge |= self._jumps()
+        pixels = np.flatnonzero(edge.reshape(-1))
+        row, column = np.divmod(pixels, width)
+        total = np.zeros((3, len(pixels)), np.float32)
+        for dx, dy in sequence(_EDGE_SAMPLES).astype(np.float32):
+            directions = self._lens.directions(column.astype(np.float32) + dx, row.astype(np.float32) + dy)
+            found = self._groups(self._stage.rays.first_triangles(self._lens.eye, directions))
+            if self._lens.eye[2] > self._stage.ground:
+                found[(found == SKY) & (directions[:, 2] < -1e-6)] = GROUND
+            beside = np.clip(column + (1 if dx > 0.5 else -1), 0, width - 1)
+            below = np.clip(row + (1 if dy > 0.5 else -1), 0, height - 1)
+            source = pixels.copy()
+            open_rays = self._group[pixels] != found
+            for other in (row * width + beside, below * width + column, below * width + beside):
+                fits = open_rays & (self._group[other] == found)
+                source[fits] = other[fits]
+                open_rays &= ~fits
+            total += self.image[:, source]
+        self.image[:, pixels] = total / np.float32(_EDGE_SAMPLES)
+
+    def _jumps(self) -> npt.NDArray[np.bool_]:
+        """Pixels of objects whose depth is not on a line with that of their neighbours: nearness is linear on planes."""
+        near = self._nearness.reshape(self._lens.height, self._lens.width)
+        result = np.zeros(near.shape, np.bool_)
+        middle = near[1:-1] * np.float32(2)
+        result[1:-1] |= np.abs(near[:-2] + near[2:] - middle) > np.float32(0.01) * middle
+        middle = near[:, 1:-1] * np.float32(2)
+        result[:, 1:-1] |= np.abs(near[:, :-2] + near[:, 2:] - middle) > np.float32(0.01) * middle
+        return result & (self._group.reshape(near.shape) > 0)
 
 
-def render(picture: Picture, number: int, size: tuple[int, int] = SIZE) -> npt.NDArray[np.uint8]:
-    """An image of scene ``number`` of the picture; shape ``(height, width, 3)``, sRGB."""
-    width, height = size
-    instances = picture.scenes[number]
-    camera = framing(instances, width / height)
-    stage = _Stage(picture, instances)
-    columns, rows = np.meshgrid(np.arange(width), np.arange(height))
-    image, edges = _first_pass(stage, camera, columns.reshape(-1), rows.reshape(-1), size)
-    _refine(stage, camera, image, np.flatnonzero(edges), size)
-    return _encode(image).reshape(height, width, 3)
-
-
-def _rays(
-    stage: _Stage, camera: Camera, x: Array, y: Array, size: tuple[int, int]
-) -> tuple[Floats, Floats, float]:
-    """Rays through image positions in pixels."""
-    width, height = size
-    directions = camera.directions(2 * x / width - 1, 1 - 2 * y / height).astype(np.float32)
-    origins = np.broadcast_to((camera.eye - stage.center).astype(np.float32), directions.shape)
-    return origins, directions, 2 * camera.tangents[1] / height
-
-
-def _first_pass(
-    stage: _Stage,
-    camera: Camera,
-    columns: npt.NDArray[np.int64],
-    rows: npt.NDArray[np.int64],
-    size: tuple[int, int],
-) -> tuple[Floats, npt.NDArray[np.bool_]]:
-    """One ray a pixel; returns colours, shape ``(n, 3)``, in linear light, and which pixels are at edges."""
-    width, height = size
-    origins, directions, pixel = _rays(stage, camera, np.add(columns, 0.5), np.add(rows, 0.5), size)
-    seen = stage.see(origins, directions, pixel)
-    pattern = (rows % _BLOCK) * _BLOCK + columns % _BLOCK
-    sun, ambient = _light(stage, seen, pattern)
-    edges = _edges(seen, directions, size)
-    sun, ambient = _smoothed(np.stack([sun, ambient]), seen, size)
-    image = _shade(stage, seen, directions, sun, ambient)
-    see_through = seen.alpha < 1
-    edges |= _grown(see_through.reshape(height, width)).reshape(-1) & see_through
-    return image, edges
-
-
-def _refine(
-    stage: _Stage, camera: Camera, image: Floats, pixels: npt.NDArray[np.int64], size: tuple[int, int]
-) -> None:
-    """Sample pixels again at several places each; the image is changed in place."""
-    step = max(1, _CHUNK // _EDGE_SAMPLES)
-    offsets = _sequence(_EDGE_SAMPLES)
-    for start in range(0, len(pixels), step):
-        part = pixels[start : start + step]
-        x = (part % size[0])[:, None] + offsets[:, 0]
-        y = (part // size[0])[:, None] + offsets[:, 1]
-        pattern = np.tile(np.arange(_EDGE_SAMPLES), len(part)) % _BLOCK**2
-        origins, directions, pixel = _rays(stage, camera, x.reshape(-1), y.reshape(-1), size)
-        colors = _color(stage, origins, directions, pixel, pattern, _LAYERS)
-        image[part] = colors.reshape(len(part), _EDGE_SAMPLES, 3).mean(axis=1)
-
-
-def _color(
-    stage: _Stage,
-    origins: Floats,
-    directions: Floats,
-    pixel: float,
-    pattern: npt.NDArray[np.int64],
-    layers: int,
-) -> Floats:
-    """Colours that rays see, through transparent surfaces too."""
-    seen = stage.see(origins, directions, pixel)
-    sun, ambient = _light(stage, seen, pattern)
-    color = _shade(stage, seen, directions, sun, ambient)
-    through = np.flatnonzero(seen.alpha < 1)
-    if len(through) and layers:
-        alpha = seen.alpha[through, None]
-        beyond = seen.place[through] + directions[through] * np.float32(stage.reach * 1e-4)
-        behind = _color(stage, beyond, directions[through], pixel, pattern[through], layers - 1)
-        color[through] = alpha * color[through] + (1 - alpha) * behind
-    return color
-
-
-def _shade(stage: _Stage, seen: _Seen, directions: Floats, sun: Floats, ambient: Floats) -> Floats:
-    upward = seen.normal[:, 2:3] * 0.5 + 0.5
-    light = sun[:, None] * _SUN_COLOR
-    light = light + ambient[:, None] * (upward * _SKY_COLOR + (1 - upward) * _BOUNCE_COLOR)
-    sky = _sky(directions)
-    color: Floats = np.where((seen.thing == _SKY)[:, None], sky, seen.color * light)
-    return (color + stage.fade(seen)[:, None] * (sky - color)).astype(np.float32)
-
-
-def _sky(directions: Floats) -> Floats:
-    """A pale gradient; below the horizon it is the horizon's colour."""
-    up = np.clip(directions[:, 2:3] * 2, 0, 1)
-    return (_linear(_HORIZON) * (1 - up) + _linear(_ZENITH) * up).astype(np.float32)
-
-
-def _light(stage: _Stage, seen: _Seen, pattern: npt.NDArray[np.int64]) -> tuple[Floats, Floats]:
-    """Estimates of sunlight received and of open sky, in [0, 1] each, for every place seen."""
-    sun = np.zeros(len(seen.thing), np.float32)
-    ambient = np.ones(len(seen.thing), np.float32)
-    lit = np.flatnonzero(seen.thing != _SKY)
-    for start in range(0, len(lit), _CHUNK):
-        part = lit[start : start + _CHUNK]
-        normal = seen.normal[part]
-        place = seen.place[part] + normal * np.float32(stage.reach * 2e-4)
-        sun[part] = _sunlight(stage, place, normal, pattern[part])
-        ambient[part] = _openness(stage, place, normal, pattern[part])
-    return sun, ambient
-
-
-def _sunlight(stage: _Stage, place: Floats, normal: Floats, pattern: npt.NDArray[np.int64]) -> Floats:
-    """Light of a sun that is a small disc, in the west-south-west."""
-    middle = np.array([-0.55, -0.33, 0.77])
-    middle /= np.linalg.norm(middle)
-    side = np.cross(middle, [0, 0, 1])
-    side /= np.linalg.norm(side)
-    points = _sequence(_SUN_RAYS * _BLOCK**2)
-    radius, angle = 0.035 * np.sqrt(points[:, 0]), 2 * np.pi * points[:, 1]
-    disc = (
-        middle
-        + np.outer(radius * np.cos(angle), side)
-        + np.outer(radius * np.sin(angle), np.cross(middle, side))
+def _around(values: Singles, choose: np.ufunc) -> Singles:
+    """The least or greatest of the four nodes around each cell."""
+    result: Singles = choose(
+        choose(values[:-1, :-1], values[1:, :-1]), choose(values[:-1, 1:], values[1:, 1:])
     )
-    table = (disc / np.linalg.norm(disc, axis=1, keepdims=True)).astype(np.float32)
-    facing = np.maximum(normal @ middle.astype(np.float32), 0)
-    total = np.zeros(len(place), np.float32)
-    lit = np.flatnonzero(facing > 0)
-    for k in range(_SUN_RAYS):
-        directions = table[(pattern[lit] * 7 + k * _BLOCK**2) % len(table)]
-        total[lit] += ~stage.rays.blocked(place[lit], directions)
-    return (facing * total / _SUN_RAYS).astype(np.float32)
+    return result
 
 
-def _openness(stage: _Stage, place: Floats, normal: Floats, pattern: npt.NDArray[np.int64]) -> Floats:
-    """The part of the sky, weighed by the cosine, that nothing near hides; the ground hides the lower half."""
-    points = _sequence(_AMBIENT_RAYS * _BLOCK**2)
-    z = 2 * points[:, 0] - 1
-    angle = 2 * np.pi * points[:, 1]
-    ring = np.sqrt(1 - z * z)
-    ball = np.column_stack([ring * np.cos(angle), ring * np.sin(angle), z]).astype(np.float32)
-    total = np.zeros(len(place), np.float32)
-    for k in range(_AMBIENT_RAYS):
-        # A point on the unit sphere about the tip of the normal is distributed by the cosine.
-        directions = normal * np.float32(1.001) + ball[(pattern * 5 + k * _BLOCK**2) % len(ball)]
-        total += ~stage.rays.blocked(place, directions, stage.reach * 0.25)
-    return (total / _AMBIENT_RAYS).astype(np.float32)
-
-
-def _edges(seen: _Seen, directions: Floats, size: tuple[int, int]) -> npt.NDArray[np.bool_]:
-    """Pixels whose neighbours show another object, a sharp edge or a jump in depth."""
-    width, height = size
-    thing = seen.thing.reshape(height, width)
-    normal = seen.normal.reshape(height, width, 3)
-    slope = np.einsum("ij,ij->i", seen.normal, directions).reshape(height, width)
-    depth = seen.distance.reshape(height, width)
-    edges = np.zeros((height, width), dtype=bool)
-    for first, second in (
-        ((slice(None), slice(1, None)), (slice(None), slice(None, -1))),
-        ((slice(1, None), slice(None)), (slice(None, -1), slice(None))),
-    ):
-        bent = np.einsum("ijk,ijk->ij", normal[first], normal[second]) < 0.9
-        steep = np.minimum(np.abs(slope[first]), np.abs(slope[second]))
-        jump = np.abs(depth[first] - depth[second]) * steep > 0.01 * depth[first]
-        change = (thing[first] != thing[second]) | ((bent | jump) & (thing[first] != _SKY))
-        edges[first] |= change
-        edges[second] |= change
-    return edges.reshape(-1)
-
-
-def _grown(mask: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
-    grown = mask.copy()
-    grown[1:] |= mask[:-1]
-    grown[:-1] |= mask[1:]
-    return grown
-
-
-def _smoothed(values: Floats, seen: _Seen, size: tuple[int, int]) -> tuple[Floats, Floats]:
-    """Means over 4 by 4 pixels, first along rows and then along columns, within one smooth surface."""
-    width, height = size
-    layers = values.reshape(2, height, width)
-    thing = seen.thing.reshape(height, width)
-    normal = seen.normal.reshape(height, width, 3)
+def _averaged(values: Singles, group: Groups) -> Singles:
+    """Means over the five by five nodes around each one that show the same surface, first down and then along."""
     for axis in (0, 1):
-        total, weight = layers.copy(), np.ones((height, width), np.float32)
+        total, weight = values.copy(), np.ones(values.shape, np.float32)
         for shift in (-2, -1, 1, 2):
-            near = _shifted(thing, shift, axis) == thing
-            near &= np.einsum("ijk,ijk->ij", _shifted(normal, shift, axis), normal) > 0.95
-            # Five neighbours make four: the outer two count half.
-            share = near * np.float32(0.5 if abs(shift) == 2 else 1)
-            total += share * _shifted(layers, shift, axis + 1)
+            index = np.clip(np.arange(values.shape[axis]) + shift, 0, values.shape[axis] - 1)
+            match = np.take(group, index, axis=axis) == group
+            # Four nodes hold one of each pattern: the outer two of five count half.
+            share = match * np.float32(0.5 if abs(shift) == 2 else 1)
+            total += share * np.take(values, index, axis=axis)
             weight += share
-        layers = total / weight
-    return layers[0].reshape(-1), layers[1].reshape(-1)
+        values = total / weight
+    return values
 
 
-def _shifted(values: npt.NDArray[Any], shift: int, axis: int) -> npt.NDArray[Any]:
-    index = np.clip(np.arange(values.shape[axis]) + shift, 0, values.shape[axis] - 1)
-    return np.take(values, index, axis=axis)
+def _repeated(values: npt.NDArray[_Scalar], width: int, height: int) -> npt.NDArray[_Scalar]:
+    """Values of cells, for each of their pixels."""
+    return np.repeat(np.repeat(values, _NODE, axis=1)[:, :width], _NODE, axis=0)[:height]
 
 
-def _sequence(count: int) -> Array:
-    """Evenly spread points of the unit square, shape ``(count, 2)``: Roberts's R2 sequence."""
-    root = 1.32471795724474602596  # the real root of x**3 = x + 1
-    return np.asarray((0.5 + np.outer(np.arange(1, count + 1), [1 / root, 1 / root**2])) % 1)
+def _enlarged(values: Singles, width: int, height: int) -> Singles:
+    """Values at nodes, linear in between, for each pixel."""
+    for axis, length in ((0, height), (1, width)):
+        place = np.arange(length)
+        part = ((place % _NODE) / _NODE).astype(np.float32)
+        part = part[:, None] if axis == 0 else part
+        before, after = (np.take(values, place // _NODE + more, axis=axis) for more in (0, 1))
+        values = before + part * (after - before)
+    return values
+
+
+def _sky_color(directions: Singles) -> Singles:
+    """A pale gradient; below the horizon it is the horizon's colour."""
+    length = np.sqrt(np.einsum("ij,ij->i", directions, directions))
+    up = np.clip(directions[:, 2] / length * np.float32(2), 0, 1)[:, None]
+    low, high = linear(_HORIZON), linear(_ZENITH)
+    result: Singles = low + up * (high - low)
+    return result
+
+
+def _ground_color(
+    stage: Stage, place: Singles, directions: Singles, nearness: Singles, pixel: float
+) -> Singles:
+    """The grid on the ground: lines a pixel or two wide at any distance, that fade where they crowd."""
+    steepness = np.maximum(-directions[:, 2], np.float32(0.05))
+    footprint = np.float32(pixel) / (nearness * steepness)
+    cover = np.zeros(len(place), np.float32)
+    spacing = _grid_spacing(stage.reach)
+    for step, strength in ((spacing, 0.35), (spacing * 5, 0.7)):
+        away = np.full(len(place), np.inf, np.float32)
+        for axis in (0, 1):
+            position = place[:, axis] * np.float32(1 / step) + np.float32(stage.center[axis] / step)
+            position -= np.round(position)
+            np.minimum(away, np.abs(position, out=position), out=away)
+        line = np.clip(np.float32(1.2) - away * np.float32(step) / footprint, 0, 1)
+        line *= np.float32(strength) * np.clip(np.float32(1.5) - footprint * np.float32(6 / step), 0, 1)
+        # A line that crosses another covers what that leaves.
+        cover += line * (1 - cover)
+    ground, lines = linear(_GROUND_COLOR), linear(_LINE_COLOR)
+    result: Singles = ground + cover[:, None] * (lines - ground)
+    return result
 
 
 def _grid_spacing(reach: float) -> float:
     """One, two or five times a power of ten metres, so that a scene has some twenty lines."""
     power = 10.0 ** np.floor(np.log10(reach / 12))
-    return float(
-        min((step for step in (1, 2, 5, 10)), key=lambda step: abs(np.log(step * power * 12 / reach))) * power
-    )
-
-
-def _linear(srgb: Floats) -> Floats:
-    """Components in sRGB as linear light (IEC 61966-2-1)."""
-    values = np.asarray(srgb, np.float32)
-    return np.where(
-        values <= 0.04045, values / 12.92, ((np.maximum(values, 0) + 0.055) / 1.055) ** 2.4
-    ).astype(np.float32)
-
-
-def _encode(light: Floats) -> npt.NDArray[np.uint8]:
-    """Linear light as 8-bit sRGB."""
-    values = np.clip(light, 0, 1)
-    srgb = np.where(values <= 0.0031308, values * 12.92, 1.055 * values ** (1 / 2.4) - 0.055)
-    return (srgb * 255 + 0.5).astype(np.uint8)
+    return float(min((1, 2, 5, 10), key=lambda step: abs(np.log(step * power * 12 / reach))) * power)

@@ -100,5 +100,9 @@ class Scene(Protocol):
     @property
     def egoObject(self) -> SceneObject | None: ...
     @property
+    def workspace(self) -> object:
+        """The region in which all objects have to be; anything else where there is none."""
+
+    @property
     def names(self) -> Mapping[Any, str]:
         """The names of the program's variables that hold objects, as far as they are known."""

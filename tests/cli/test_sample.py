@@ -186,7 +186,7 @@ def test_one_glb_or_several(stub: Stub, tmp_path: Path) -> None:
 
 
 def test_a_page_and_images(stub: Stub, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("scenic.formats.png.png", lambda scene: b"image %d" % scene.k)
+    monkeypatch.setattr("scenic.formats.png.png", lambda scene, *_: b"image %d" % scene.k)
     result = run(
         "-n", 2, "--view", tmp_path / "page.html", "--png", tmp_path / "images", "-o", "-", "--seed", 1
     )

@@ -75,7 +75,7 @@ def test_a_scene_without_objects_is_a_picture_of_the_ground() -> None:
 def test_the_camera_sees_every_corner_and_is_no_farther_than_needed() -> None:
     things = [Object(position=(5, -3, 1), width=4), Object(position=(-9, 8, 20)), Object(height=12.0)]
     instances = picture([Scene(things)]).scenes[0]
-    camera = framing(instances, 4 / 3)
+    camera = framing(corners(instances), 4 / 3)
     relative = corners(instances) - camera.eye
     depth = relative @ camera.ahead
     assert depth.min() > 0

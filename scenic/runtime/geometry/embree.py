@@ -49,6 +49,18 @@ class RayScene:
         distance = np.where(triangle >= 0, found["tfar"], np.float32(np.inf))
         return Hits(triangle, distance, found["u"], found["v"])
 
+    def first_triangles(self, origin: Singles, directions: Singles) -> npt.NDArray[np.int32]:
+        """The triangle that each ray from one place meets first, -1 for none."""
+        count = len(directions)
+        if self._empty or not count:
+            return np.full(count, -1, np.int32)
+        origins = np.empty((count, 3), np.float32)
+        origins[:] = origin
+        found: npt.NDArray[np.int32] = self._scene.run(
+            origins, np.ascontiguousarray(directions), query="INTERSECT"
+        )
+        return found
+
     def blocked(self, origins: Singles, directions: Singles, reach: float = 1e30) -> npt.NDArray[np.bool_]:
         """Whether each ray meets anything within ``reach`` lengths of its direction."""
         count = len(origins)

@@ -1,0 +1,157 @@
+"""One scene made ready for rays: its triangles with what they look like in sunlight and under the open sky.
+
+Light is the sum of two parts, each a colour for every corner of a triangle times a share in [0, 1] that rays
+estimate: what the sun gives where nothing stands before it, and what the sky and the ground give where nothing is near.
+Coordinates are relative to the middle of the scene, which keeps single precision fine.
+"""
+
+from collections.abc import Sequence
+from typing import Final
+
+import numpy as np
+import numpy.typing as npt
+
+from scenic.formats.camera import corners, ground_height
+from scenic.formats.colors import linear
+from scenic.formats.instances import Array, Instance, Surface
+from scenic.formats.poses import rotation_matrix
+from scenic.runtime.geometry.embree import RayScene, Singles
+
+GROUND: Final = -1
+SKY: Final = -2
+
+_SUN: Final = np.array([-0.55, -0.33, 0.77]) / np.linalg.norm([-0.55, -0.33, 0.77])
+"""Where the sun stands: in the west-south-west."""
+
+_SUN_COLOR: Final = np.array([1.0, 0.96, 0.9]) * 0.95
+_SKY_COLOR: Final = np.array([0.86, 0.93, 1.0]) * 0.62
+_BOUNCE_COLOR: Final = np.array([1.0, 0.95, 0.88]) * 0.34
+_SUN_RADIUS: Final = 0.035
+
+SUN_SAMPLES: Final = 64
+SKY_SAMPLES: Final = 256
+
+
+class Stage:
+    """The triangles of a scene, and the light on them.
+
+    Attributes:
+        center: middle of the scene in the world, ``(3,)``, the origin of all places here.
+        reach: the scene's diagonal, metres.
+        ground: height of the ground, relative to the center.
+        owner: index of the instance of each triangle, ``(t,)``.
+        normals: unit normals of the triangles, ``(t, 3)``.
+        smooth: whether the normals at the corners of a triangle differ, ``(t,)``.
+        sunny: linear colour that the sun gives each corner, ``(t, 3, 3)``: triangle, corner, colour.
+        shady: linear colour that the open sky gives each corner, likewise.
+        flat: the three components of both at the first corner, ``(6, t + 1)``; 0 in the entry for no triangle.
+        alphas: opacity of each instance, ``(n,)``.
+        face_group: a number for each instance and rough direction of its faces, ``(t,)``, at least 1.
+
+    """
+
+    def __init__(self, surfaces: Sequence[Surface], instances: Sequence[Instance]) -> None:
+        points = corners(instances)
+        self.center = (points.min(axis=0) + points.max(axis=0)) / 2
+        self.reach = float(np.linalg.norm(np.ptp(points, axis=0))) or 1.0
+        self.ground = float(ground_height(points) - self.center[2])
+        triangles, normals, owners = [np.zeros((0, 3, 3))], [np.zeros((0, 3, 3))], [np.zeros(0, np.int32)]
+        for index, instance in enumerate(instances):
+            surface = surfaces[instance.surface]
+            matrix = instance.matrix()
+            world = surface.vertices @ matrix[:3, :3].T + (matrix[:3, 3] - self.center)
+            turned = surface.normals / instance.size @ rotation_matrix(instance.quaternion).T
+            turned /= np.linalg.norm(turned, axis=1, keepdims=True)
+            triangles.append(world[surface.faces])
+            normals.append(turned[surface.faces])
+            owners.append(np.full(len(surface.faces), index, np.int32))
+        self.triangles = np.concatenate(triangles).astype(np.float32)
+        corner_normals = np.concatenate(normals)
+        self.owner = np.concatenate(owners)
+        rgba = np.array([instance.color for instance in instances]).reshape(-1, 4)
+        self.alphas = rgba[:, 3].astype(np.float32)
+        mean = corner_normals.sum(axis=1)
+        self.normals = mean / np.maximum(np.linalg.norm(mean, axis=1, keepdims=True), 1e-9)
+        self.smooth = np.abs(corner_normals - self.normals[:, None]).max(axis=(1, 2), initial=0) > 1e-3
+        albedo = linear(rgba[:, :3]).astype(np.float64)[self.owner][:, None]
+        self.sunny, self.shady = _light_on(corner_normals, albedo)
+        # Flat triangles are most of the pixels; entries of one array after the other are quick to take.
+        flat = np.concatenate([self.sunny[:, 0], self.shady[:, 0]], axis=1).T
+        self.flat = np.concatenate([flat, np.zeros((6, 1), np.float32)], axis=1)
+        rough = np.round(self.normals * 2).astype(np.int64) + 2
+        code = (rough[:, 0] * 5 + rough[:, 1]) * 5 + rough[:, 2]
+        self.face_group = (self.owner.astype(np.int64) * 125 + code + 1).astype(np.int32)
+        self.rays = RayScene(self.triangles)
+
+    def sunlit(self, places: Singles, normals: Singles, pattern: npt.NDArray[np.int64], rays: int) -> Singles:
+        """The part of the sun seen from places ``(n, 3)``, by so many rays each; 0 where it is behind the surface.
+
+        Places of another ``pattern``, ``(n,)``, use other rays; those of one are neighbours in the sequence of samples,
+        and so are spread evenly by themselves.
+        """
+        table = _sun_directions()
+        total = np.zeros(len(places), np.float32)
+        facing = np.flatnonzero(normals @ _SUN.astype(np.float32) > 0)
+        start = places[facing] + normals[facing] * np.float32(self.reach * 2e-4)
+        for k in range(rays):
+            directions = table[(pattern[facing] * rays + k) % SUN_SAMPLES]
+            total[facing] += ~self.rays.blocked(start, directions)
+        result: Singles = total / np.float32(rays)
+        return result
+
+    def openness(
+        self, places: Singles, normals: Singles, pattern: npt.NDArray[np.int64], rays: int
+    ) -> Singles:
+        """The part of the sky, weighed by the cosine, that nothing near hides."""
+        ball = _ball()
+        total = np.zeros(len(places), np.float32)
+        start = places + normals * np.float32(self.reach * 2e-4)
+        for k in range(rays):
+            # A point on the unit sphere about the tip of the normal is distributed by the cosine.
+            directions = normals * np.float32(1.001) + ball[(pattern * rays + k) % SKY_SAMPLES]
+            total += ~self.rays.blocked(start, directions, self.reach * 0.25)
+        result: Singles = total / np.float32(rays)
+        return result
+
+
+def ground_light(albedo: Singles, sun: Singles, sky: Singles) -> Singles:
+    """Linear colours ``(n, 3)`` of ground of a colour, in so much of the sun's light and of the sky's, ``(n,)``."""
+    sunny = (_SUN_COLOR * _SUN[2]).astype(np.float32)
+    result: Singles = albedo * (sun[:, None] * sunny + sky[:, None] * _SKY_COLOR.astype(np.float32))
+    return result
+
+
+def _light_on(normals: Array, albedo: Array) -> tuple[Singles, Singles]:
+    facing = np.maximum(normals @ _SUN, 0.0)[..., None]
+    upward = normals[..., 2:3] * 0.5 + 0.5
+    sunny = albedo * facing * _SUN_COLOR
+    shady = albedo * (upward * _SKY_COLOR + (1 - upward) * _BOUNCE_COLOR)
+    return sunny.astype(np.float32), shady.astype(np.float32)
+
+
+def _sun_directions() -> Singles:
+    """Directions to evenly spread points of the sun's disc, ``(SUN_SAMPLES, 3)``."""
+    side = np.cross(_SUN, [0, 0, 1])
+    side /= np.linalg.norm(side)
+    points = sequence(SUN_SAMPLES)
+    radius, angle = _SUN_RADIUS * np.sqrt(points[:, 0]), 2 * np.pi * points[:, 1]
+    disc = (
+        _SUN + np.outer(radius * np.cos(angle), side) + np.outer(radius * np.sin(angle), np.cross(_SUN, side))
+    )
+    result: Singles = (disc / np.linalg.norm(disc, axis=1, keepdims=True)).astype(np.float32)
+    return result
+
+
+def _ball() -> Singles:
+    """Evenly spread points of the unit sphere, ``(SKY_SAMPLES, 3)``."""
+    points = sequence(SKY_SAMPLES)
+    z = 2 * points[:, 0] - 1
+    angle = 2 * np.pi * points[:, 1]
+    ring = np.sqrt(1 - z * z)
+    return np.column_stack([ring * np.cos(angle), ring * np.sin(angle), z]).astype(np.float32)
+
+
+def sequence(count: int) -> Array:
+    """Evenly spread points of the unit square, shape ``(count, 2)``: Roberts's R2 sequence."""
+    root = 1.32471795724474602596  # the real root of x**3 = x + 1
+    return np.asarray((0.5 + np.outer(np.arange(1, count + 1), [1 / root, 1 / root**2])) % 1)

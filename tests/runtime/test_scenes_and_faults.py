@@ -1,0 +1,277 @@
+"""What decides which scenes come out, and which errors: whatever the batch, the seed and the number of scenes."""
+
+import subprocess
+import sys
+from collections import Counter
+from pathlib import Path
+
+import pytest
+from scipy import stats
+
+import scenic
+from scenic.language.errors import SamplingError
+from tests.runtime.programs import FALSE_ALARM, draws, fingerprint, scenario
+
+ROOT = Path(__file__).parents[2]
+LANES = (1, 64, 4096)
+
+# Faults
+
+RARE = """
+x, y, z = Range(0, 1), Range(0, 1), Range(0, 1)
+def fails(value):
+    if value > {limit}:
+        raise KeyError("rare")
+    return True
+def small(value):
+    return value < 0.05
+param x = x, y = y
+"""
+
+
+@pytest.mark.parametrize("fault", ["fails(x)", "1 / (0 if x > 0.999 else 1) == 1", "fails(x) or y > 2"])
+def test_a_rare_fault_that_a_rare_requirement_rejects(fault: str) -> None:
+    """Of 4,000 candidates some fail, and each of them is rejected: by what stands before, between, or after."""
+    conditions = ["x < 0.9 or z > 2", "small(y)", fault]
+    for place in range(3):
+        order = [*conditions[place:], *conditions[:place]]
+        text = RARE.format(limit=0.999) + "".join(f"require {condition}\n" for condition in order)
+        scenes = scenario(text).sample(200, seed=3)
+        assert max(scene.params["x"] for scene in scenes) < 0.9
+        assert sum(scene.attempts for scene in scenes) > 3000
+    for lanes in LANES:
+        others = scenario(text).sample(200, seed=3, lanes=lanes)
+        assert [fingerprint(scene) for scene in others] == [fingerprint(scene) for scene in scenes]
+
+
+@pytest.mark.parametrize(
+    "written", ["require fails(x)\nrequire small(y)\n", "require small(y)\nrequire fails(x)\n"]
+)
+def test_a_rare_fault_that_nothing_rejects(written: str) -> None:
+    """It surfaces at one scene, after the same scenes, whatever the batch."""
+    text = RARE.format(limit=0.98) + written
+    found = set()
+    for lanes in LANES:
+        before = []
+        with pytest.raises(SamplingError, match="KeyError: 'rare'"):
+            before.extend(
+                fingerprint(scene)
+                for scene in scenario(text.replace("0.05", "0.5")).stream(400, seed=5, lanes=lanes)
+                if isinstance(scene, scenic.Scene)
+            )
+        found.add(tuple(before))
+    assert len(found) == 1
+
+
+def test_a_fault_is_that_of_the_first_scene_that_has_one() -> None:
+    """A part of the scenes has the fault that the whole has there, if it has any."""
+    text = RARE.format(limit=0.98) + "require small(y) or y < 0.5\nrequire fails(x)\n"
+
+    def outcome(first: int, n: int, lanes: int) -> tuple[int, bool]:
+        count = 0
+        try:
+            for _ in scenario(text).stream(n, seed=11, first=first, lanes=lanes):
+                count += 1
+        except SamplingError:
+            return count, True
+        return count, False
+
+    count, failed = outcome(0, 1000, 512)
+    assert failed
+    for lanes in LANES:
+        assert outcome(0, count, lanes) == (count, False)
+        assert outcome(count, 1, lanes) == (0, True)
+        assert outcome(count - 1, 5, lanes) == (1, True)
+
+
+# Rejection
+
+
+@pytest.mark.parametrize(
+    "condition",
+    [
+        "not (k > 100)",
+        "not f(k)",
+        "not (k > 100 and n >= 0)",
+        "not not (k >= 0)",
+        "not (f(k) or k < 0)",
+        "not min(k, 200) > 100",
+        "(k > 100) == False",
+        "not u > 100",
+    ],
+)
+def test_a_rejected_operand_under_a_negation(condition: str) -> None:
+    """Where a draw is rejected no condition holds, the negation of one no more than the condition."""
+    text = f"n = DiscreteRange(0, 9)\nk = DiscreteRange(5, n)\nu = Uniform(k, k)\ndef f(v): return v > 100\nparam n = n\nrequire {condition}\n"
+    for lanes in LANES:
+        scenes = scenario(text).sample(60, seed=2, lanes=lanes)
+        assert {scene.params["n"] for scene in scenes} == set(range(5, 10))
+
+
+def test_a_rejected_value_that_is_only_an_output() -> None:
+    text = "n = DiscreteRange(0, 9)\nparam n = n, k = DiscreteRange(5, n)\n"
+    scenes = scenario(text).sample(80, seed=2)
+    assert {scene.params["n"] for scene in scenes} == set(range(5, 10))
+    assert all(5 <= scene.params["k"] <= scene.params["n"] for scene in scenes)
+
+
+def test_what_is_not_drawn_does_not_reject() -> None:
+    text = "n = DiscreteRange(0, 9)\nk = Uniform(7, DiscreteRange(5, n))\nparam n = n, k = k\n"
+    scenes = scenario(text).sample(300, seed=4)
+    assert {scene.params["n"] for scene in scenes if scene.params["k"] == 7} == set(range(10))
+    assert all(scene.params["k"] == 7 or 5 <= scene.params["k"] <= scene.params["n"] for scene in scenes)
+
+
+# Seeds
+
+
+def test_seeds_of_either_sign_and_any_size() -> None:
+    program = scenario("param x = Range(0, 1), y = Uniform(*range(1000)), z = Normal(0, 1)\n")
+    seeds = (
+        0,
+        1,
+        -1,
+        3,
+        -3,
+        2**31,
+        -(2**31),
+        2**32 + 3,
+        2**63,
+        2**64,
+        2**64 + 3,
+        -(2**64) + 3,
+        2**128 + 3,
+        3 << 64,
+    )
+    found = {seed: [fingerprint(scene)[2:] for scene in program.sample(3, seed=seed)] for seed in seeds}
+    everything = [item for scenes in found.values() for item in scenes]
+    assert len(set(everything)) == len(everything)
+    for seed in seeds:
+        assert [fingerprint(scene)[2:] for scene in program.sample(3, seed=seed, lanes=1)] == found[seed]
+
+
+def test_draws_of_neighbours_are_independent() -> None:
+    """Scenes, seeds and draws next to each other: no correlation of more than chance gives."""
+    program = scenario("param a = Range(0, 1), b = Range(0, 1), c = Range(0, 1)\n")
+    rows = [
+        [scene.params[name] for name in "abc"]
+        for seed in range(40)
+        for scene in program.sample(40, seed=seed)
+    ]
+    columns = list(zip(*rows, strict=True))
+    for column in columns:
+        assert stats.kstest(column, "uniform").pvalue > FALSE_ALARM
+    pairs = [
+        (columns[0], columns[1]),
+        (columns[1], columns[2]),
+        (columns[0][:-1], columns[0][1:]),
+        (columns[0][:-1], columns[1][1:]),
+        (columns[0][:-40], columns[0][40:]),
+    ]
+    for one, other in pairs:
+        assert stats.pearsonr(one, other).pvalue > FALSE_ALARM
+
+
+# Choices
+
+
+def frequencies(values: list[object], expected: dict[object, float]) -> float:
+    counts = Counter(values)
+    assert set(counts) <= set(expected)
+    n = len(values)
+    observed = [counts[key] for key in expected]
+    return float(stats.chisquare(observed, [n * share for share in expected.values()]).pvalue)
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("x = Uniform(*(1, 2, 3))", {1: 1 / 3, 2: 1 / 3, 3: 1 / 3}),
+        (
+            "xs = Uniform([1, 2, 3], [4, 5])\nx = Uniform(*xs)",
+            {1: 1 / 6, 2: 1 / 6, 3: 1 / 6, 4: 1 / 4, 5: 1 / 4},
+        ),
+        ("xs = Uniform([1, 2], [3])\nx = Uniform(*xs, 9)", {1: 1 / 6, 2: 1 / 6, 9: 5 / 12, 3: 1 / 4}),
+        (
+            "xs = Uniform([1], [2, 3, 4])\nx = Uniform(0, *xs)",
+            {0: 3 / 8, 1: 1 / 4, 2: 1 / 8, 3: 1 / 8, 4: 1 / 8},
+        ),
+        ("xs = Uniform([], [2, 3])\nx = Uniform(*xs)", {2: 1 / 2, 3: 1 / 2}),
+        ("x = Uniform(*[1, 2], *Uniform([3], [4]))", {1: 1 / 3, 2: 1 / 3, 3: 1 / 6, 4: 1 / 6}),
+        ("x = Discrete({1: 3, 2: 0, 3: 1})", {1: 3 / 4, 3: 1 / 4}),
+        ("x = DiscreteRange(2, 4, (1, 0, 3))", {2: 1 / 4, 4: 3 / 4}),
+        ("x = DiscreteRange(-2.5, 1.5)", {-2: 1 / 4, -1: 1 / 4, 0: 1 / 4, 1: 1 / 4}),
+        ("x = Uniform(1, Uniform(2, 3))", {1: 1 / 2, 2: 1 / 4, 3: 1 / 4}),
+        ("x = filter(lambda v: v > 1, Uniform([1, 2, 3], [4]))[0]", {2: 1 / 2, 4: 1 / 2}),
+    ],
+)
+def test_choices_are_as_likely_as_they_say(text: str, expected: dict[object, float]) -> None:
+    for n, seed in ((2000, 6), (2000, -6)):
+        assert frequencies(draws(f"{text}\nparam x = x\n", n=n, seed=seed), expected) > FALSE_ALARM
+
+
+# Reports
+
+
+@pytest.mark.parametrize(("moved", "pair"), [("a", "bc"), ("b", "ac"), ("c", "ab")])
+def test_the_report_of_a_collision_names_the_right_pair(moved: str, pair: str) -> None:
+    """Two of three collide in every candidate; the third is elsewhere."""
+    lines = [
+        f"{name} = new Object at ({'Range(50, 51)' if name == moved else 'Range(0, 0.1)'}, Range(0, 0.1), 0)"
+        for name in "abc"
+    ]
+    (result,) = scenario("\n".join(lines) + "\n").stream(1, seed=0, max_attempts=50)
+    assert not isinstance(result, scenic.Scene)
+    told = [row for row in result.report.rows if "collision" in row.label]
+    assert [(row.rejected, row.alone) for row in told if row.rejected] == [(1.0, 1.0)]
+    (label,) = (row.label for row in told if row.rejected)
+    for name in "abc":
+        assert (f"line {'abc'.index(name) + 1}" in label) == (name in pair)
+
+
+def test_reports_count_pairs_for_themselves() -> None:
+    """Three objects; by construction the pairs collide in 1/2, 1/4 and none of the candidates."""
+    text = (
+        "i, j = DiscreteRange(0, 1), DiscreteRange(0, 3)\na = new Object at (0, 0, 0)\n"
+        "b = new Object at (9 * i + 0.2, 0, 0)\nc = new Object at (0, 5 * min(j, 1) + 0.3, 30 * min(i, 0) + 0.2)\n"
+        "def never(v): return v > 9\nrequire never(j)\n"
+    )
+    (result,) = scenario(text).stream(1, seed=1, max_attempts=4000)
+    assert not isinstance(result, scenic.Scene)
+    found = {row.label: row.rejected for row in result.report.rows}
+    shares = {lines: share for label, share in found.items() for lines in ["23", "24", "34"] if all(f"(line {n})" in label for n in lines)}  # fmt: skip
+    n = result.report.candidates
+    for lines, expected in (("23", 0.5), ("24", 0.25), ("34", 0.125)):
+        observed = round(shares.get(lines, 0.0) * n)
+        assert stats.binomtest(observed, n, expected).pvalue > FALSE_ALARM
+
+
+# Memory
+
+STREAM = """
+import sys
+import scenic
+scenario = scenic.scenarioFromString(sys.argv[1])
+def peak():
+    with open("/proc/self/status") as status:
+        (found,) = (line.split()[1] for line in status if line.startswith("VmHWM:"))
+    return int(found)
+for number, _ in enumerate(scenario.stream(6000, seed=1, lanes=256)):
+    if number == 1000:
+        early = peak()
+print(peak() - early)
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="only Linux tells the peak of a process")
+def test_memory_of_a_long_stream_is_bounded() -> None:
+    text = (
+        "ego = new Object at (Range(-9, 9), 0, 0), with note [Range(0, 1) for i in range(20)]\n"
+        "new Object at (0, Range(3, 9), 0)\ndef f(x): return x > 0\nrequire f(ego.x)\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", STREAM, text], cwd=ROOT, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    assert int(done.stdout) < 1_500  # kilobytes; 5,000 scenes that are kept take more
