@@ -81,7 +81,8 @@ def _box_voxels(mesh: Mesh) -> Voxels:
 def _cover(occupied: Booleans) -> Floats:
     """Boxes around the occupied cells: the box that holds most empty cells is cut in two, again and again."""
     # Coarser cells do for this, and are eight times fewer.
-    occupied = occupied.reshape(*(_COVER_RESOLUTION, RESOLUTION // _COVER_RESOLUTION) * 3).any(axis=(1, 3, 5))
+    blocks = occupied.reshape(*(_COVER_RESOLUTION, RESOLUTION // _COVER_RESOLUTION) * 3)
+    occupied = np.asarray(np.logical_or.reduce(blocks, axis=(1, 3, 5)))
     whole = _tight(occupied, (0, 0, 0))
     boxes = [whole]
     while len(boxes) < COVER_BOXES:
