@@ -127,8 +127,12 @@ def deep_check(path: str | Path) -> tuple[Diagnostic, ...]:
 
 
 def conditions(scenario: Scenario) -> list[Condition]:
-    """The hard requirements of a scenario, as analysis reads them."""
-    return [Condition(item.condition, item.label, item.span) for item in scenario.outline.requirements]
+    """The hard requirements of a scenario, as analysis reads them: those of the program, then containment."""
+    outline = scenario.outline
+    return [
+        *(Condition(item.condition, item.label, item.span) for item in outline.requirements),
+        *(Condition(item.node, item.label, item.span) for item in outline.containment),
+    ]
 
 
 def diagnose(error: BaseException) -> Diagnostic | None:

@@ -147,8 +147,6 @@ WHEN_RUN = [
     "«PolygonalRegion([(0, 0), (1, 0), (0, 1)], orientation=3)»",
     "«BoxRegion((1, 2, 3), orientation=3)»",
     "new Object «in ego.occupiedSpace»",
-    "new Object «in Uniform(disc, everywhere)»",
-    "new Object «on Uniform(disc, everywhere)»",
     "new Object at (0, 0, 9), «on BoxRegion((9, 9, 1))»",
     "new Object «with requireVisible True»",
 ]

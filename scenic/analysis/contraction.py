@@ -211,7 +211,8 @@ class _State:
         nothing = [None] * len(operands)
         if inverse is None or result is None:
             return nothing
-        if node.operation.strict and any(operand is None for operand in operands):
+        blind = node.operation.strict and not node.operation.partial
+        if blind and any(operand is None for operand in operands):
             return nothing
         with np.errstate(all="ignore"):
             return inverse(node.payload, result, *operands)

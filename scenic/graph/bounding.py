@@ -54,7 +54,8 @@ def forward(node: Node, operands: Sequence[Bounds | None]) -> Bounds | None:
 def read(operation: Operation, kind: Kind, payload: Any, operands: Sequence[Bounds | None]) -> Bounds | None:
     """The operation's bounds reading where it says something, else the bounds of the kind."""
     default = of_kind(kind)
-    if operation.bounds is None or (operation.strict and any(operand is None for operand in operands)):
+    blind = operation.strict and not operation.partial
+    if operation.bounds is None or (blind and any(operand is None for operand in operands)):
         return default
     with np.errstate(all="ignore"):
         bounds = operation.bounds(payload, *operands)

@@ -153,7 +153,7 @@ BatchReading = Callable[..., Column]
 BoundsReading = Callable[..., Bounds | None]
 """``(payload, *operand bounds) -> bounds``, rounded outward; ``None`` where nothing is known.
 
-Operands without bounds (Python objects) are ``None``; only operations that are not strict see those. Known bounds mean that
+Operands without bounds (Python objects) are ``None``; only operations that are not strict, or `partial`, see those. Known bounds mean that
 the value is a number, a vector or an orientation, whatever the node's kind.
 """
 
@@ -190,7 +190,8 @@ class Operation:
 
     ``faults`` and ``rejects`` declare that a lane may fail with an exception, or have no value and be rejected; doing either
     undeclared is an internal error. An operation that ``stacks`` evaluates the columns of several alike nodes in one
-    call: it is elementwise over all leading dimensions. ``rewrite`` simplifies a node before it is made.
+    call: it is elementwise over all leading dimensions. A ``partial`` one has readings of bounds that take operands of which
+    nothing is known. ``rewrite`` simplifies a node before it is made.
     """
 
     name: str
@@ -206,6 +207,7 @@ class Operation:
     faults: Declared = False
     rejects: Declared = False
     stacks: bool = False
+    partial: bool = False
     rewrite: Rewriting | None = None
 
     def may_fault(self, operands: Sequence[Operand], payload: Any, kind: Kind) -> bool:

@@ -15,6 +15,7 @@ from scenic.runtime.fields import field_of, frame_at, is_field, relative_to
 from scenic.runtime.lazy import defer, is_lazy
 from scenic.runtime.objects import SIDES, Object, OrientedPoint, oriented_point
 from scenic.runtime.regions.base import Region
+from scenic.runtime.regions.choice import as_region
 from scenic.runtime.specifiers import Ego, is_kind
 from scenic.runtime.values import (
     Random,
@@ -123,8 +124,9 @@ def _apparent_heading(ego: Ego, target: Any, origin: Any) -> Any:
 def _distance(ego: Ego, origin: Any, target: Any) -> Any:
     start, end = (ego() if operand is None else operand for operand in (origin, target))
     for near, far in ((start, end), (end, start)):
-        if isinstance(near, Region):
-            return near.distance_from(to_vector(far, "`distance`"))
+        region = as_region(near)
+        if region is not None:
+            return region.distance_from(to_vector(far, "`distance`"))
     return operate("distance", to_vector(start, "`distance`"), to_vector(end, "`distance`"))
 
 
@@ -149,10 +151,11 @@ def _altitude(ego: Ego, origin: Any, target: Any) -> Any:
 
 
 def _intersects(_ego: Ego, left: Any, right: Any) -> Any:
-    for operand in (left, right):
+    one, other = (as_region(operand) or operand for operand in (left, right))
+    for operand in (one, other):
         if not isinstance(operand, Region) and not is_kind(operand, Object):
             raise wrong_type("an object or a region", operand, "`intersects`")
-    return left.intersects(right)
+    return one.intersects(other)
 
 
 def _side(name: str, attribute: str) -> Callable[..., Any]:

@@ -43,6 +43,7 @@ from scenic.runtime.program import (
 )
 from scenic.runtime.properties import ATTRIBUTES, PropertyDefinition
 from scenic.runtime.regions.base import Region, Workspace
+from scenic.runtime.regions.choice import as_region
 from scenic.runtime.resolution import build
 from scenic.runtime.samples import Sample
 from scenic.runtime.specifiers import BUILDERS, Specifier, UserSpecifier, specify
@@ -364,11 +365,10 @@ class Prelude:
 
     def contains(self, item: Any, container: Any) -> Any:
         """``item in container``: containment in a region, else Python's."""
-        if isinstance(container, Region):
+        region = as_region(container)
+        if region is not None:
             return (
-                container.containsObject(item)
-                if hasattr(item, "occupiedSpace")
-                else container.containsPoint(item)
+                region.containsObject(item) if hasattr(item, "occupiedSpace") else region.containsPoint(item)
             )
         raise conditions.NotSymbolicError
 

@@ -17,7 +17,8 @@ from scenic.runtime.context import here
 from scenic.runtime.fields import field_of, frame_at, is_field
 from scenic.runtime.lazy import Lazy, defer, reads_of, resolve
 from scenic.runtime.objects import Object, OrientedPoint, Point
-from scenic.runtime.regions.base import Region, unsupported
+from scenic.runtime.regions.base import Region
+from scenic.runtime.regions.choice import as_region
 from scenic.runtime.values import (
     Orientation,
     Random,
@@ -81,13 +82,10 @@ def is_kind(value: Any, cls: type[Point]) -> bool:
 
 def region_of(value: Any, what: str) -> Region:
     """A region; raises `ScenicTypeError` for anything else."""
-    if isinstance(value, Region):
-        return value
-    if isinstance(value, Random) and value.node.operation is TABLE["select"]:
-        options = [as_value(option) for option in value.node.operands[1:]]
-        if all(isinstance(option, Region) for option in options):
-            raise unsupported("a random choice among regions")
-    raise wrong_type("a region", value, what)
+    region = as_region(value)
+    if region is None:
+        raise wrong_type("a region", value, what)
+    return region
 
 
 # The specifiers

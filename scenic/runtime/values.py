@@ -16,7 +16,7 @@ from scenic.graph import construction
 from scenic.graph.batch import Batch
 from scenic.graph.draws import Counter
 from scenic.graph.kinds import Kind
-from scenic.graph.node import Graph, Node, axis, constant
+from scenic.graph.node import Graph, Node, axis, constant, key
 from scenic.graph.operation import Call, Operation, always, by_lane
 from scenic.graph.operations import TABLE
 from scenic.graph.schedule import Scheduler
@@ -495,6 +495,14 @@ def uniform() -> Any:
     """One axis of the cube as a value: uniform on (0, 1)."""
     drawn = uniform_draw()
     return Random(axis(here(), next_address())) if drawn is None else drawn
+
+
+def random_key() -> Any:
+    """A random word as a value, which keys the further draws of an operation that retries."""
+    drawn = uniform_draw()
+    if drawn is None:
+        return Random(key(here(), next_address()))
+    return as_value(constant(drawn, Kind.KEY, int(drawn * 2.0**52)))
 
 
 # Attributes and calls

@@ -142,6 +142,11 @@ def _matrix(orientation: Bounds) -> list[list[Bounds]]:
     ]
 
 
+def turned(orientation: Bounds, vector: Bounds) -> Bounds:
+    """Bounds ``(m, 3)`` of vectors turned by orientations."""
+    return _turned(_matrix(orientation), vector)
+
+
 def _turned(rows: list[list[Bounds]], vector: Bounds) -> Bounds:
     parts = intervals.components(vector)
     result = intervals.stacked(
@@ -158,7 +163,7 @@ def _turned(rows: list[list[Bounds]], vector: Bounds) -> Bounds:
 
 
 def _rotate_bounds(_payload: Any, orientation: Bounds, vector: Bounds) -> Bounds:
-    return _turned(_matrix(orientation), vector)
+    return turned(orientation, vector)
 
 
 def _rotate_inverse(

@@ -127,7 +127,7 @@ def in_polygons(body: Body, polygons: Polygons, lanes: int) -> Booleans:
     result[:] = polygons.holds_discs(centre[:, 0], centre[:, 1], radius)
     for mesh, every in body.by_mesh(lanes):
         left = every[~result[every]]
-        left = left[_chunked(vertices_inside, left, _extreme_corners(mesh))]
+        left = left[_chunked(vertices_inside, left, extreme_corners(mesh))]
         for points in (_BOX_CORNERS, mesh.hull.vertices):
             for part in rows(len(left), len(points), _CHUNK):
                 result[left[part]] = covered(left[part], points)
@@ -214,7 +214,7 @@ def mesh_in_mesh(inner: Mesh, inner_poses: Poses, outer: Mesh, outer_poses: Pose
         result: Booleans = np.logical_and.reduce(held.reshape(images[0].shape), axis=0)
         return result
 
-    result = _chunked(vertices_inside, every, _extreme_corners(inner))
+    result = _chunked(vertices_inside, every, extreme_corners(inner))
     left = np.flatnonzero(result)
     result[left] = _chunked(vertices_inside, left, inner.component_vertices)
     left = np.flatnonzero(result)
@@ -244,7 +244,7 @@ def _all_inside(body: Body, lanes: int, test: _Test) -> Booleans:
         chosen = chosen[~whole]
         if mesh.is_box:
             continue
-        chosen = chosen[_chunked(test, chosen, _extreme_corners(mesh))]
+        chosen = chosen[_chunked(test, chosen, extreme_corners(mesh))]
         result[chosen] = _chunked(test, chosen, mesh.hull.vertices)
     return result
 
@@ -252,7 +252,8 @@ def _all_inside(body: Body, lanes: int, test: _Test) -> Booleans:
 _BOX_CORNERS: Final = np.array([(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
 
 
-def _extreme_corners(mesh: Mesh) -> Floats:
+def extreme_corners(mesh: Mesh) -> Floats:
+    """The hull's corners farthest along the axes and the diagonals, ``(k, 3)`` with k up to 26."""
     return mesh.derived(_find_extreme_corners)
 
 

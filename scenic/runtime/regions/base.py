@@ -6,6 +6,8 @@ requirement nodes that the sampler tests in batches, and the points that specifi
 """
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from copy import copy
 from typing import Any, ClassVar
 
 import numpy as np
@@ -16,21 +18,30 @@ from scenic.graph.operation import Call, Operation, always
 from scenic.language.errors import InvalidScenarioError, ScenicTypeError, UnsupportedError
 from scenic.runtime.context import here
 from scenic.runtime.geometry.collision import Body, Poses
-from scenic.runtime.values import apply, is_random, to_scalar, to_vector, vector
+from scenic.runtime.regions.knowledge import Containment, containment_bounds, containment_inverse, payload_box
+from scenic.runtime.values import apply, is_random, random_key, to_scalar, to_vector, uniform, vector
 
 Points = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 
 class Region(ABC):
-    """A set of points in space.
+    """A set of points in space: a structure that is fixed, and parameters that may be random.
 
-    Subclasses set ``parameters`` (values, definite or random) and implement the geometry over their columns.
+    Subclasses give the structure and its *primitives*: functions over the columns of the parameters, each for many lanes.
+    Everything else (answers to programs, requirements, points that specifiers draw, choices among regions, what analysis
+    knows) is made of these here, so that a new kind of region is one class with its primitives.
     """
 
     scenic_kind: ClassVar[Kind] = Kind.REGION
+    parameter_names: ClassVar[tuple[str, ...]] = ()
+    """Attributes that hold the parameters, in order; a region with random ones is sampled through them."""
     dimension: float
     """0 for points to 3 for volumes; infinite for all of space."""
+    draws: int = 3
+    """How many uniform numbers a point of the region takes."""
+    may_find_none: bool = False
+    """Whether `draw_points` may find no point."""
     has_orientation: bool = False
     """Whether every point has a preferred orientation."""
 
@@ -38,7 +49,7 @@ class Region(ABC):
         self.parameters: tuple[Any, ...] = parameters
         self.name = name
 
-    # Geometry over columns; ``columns`` are those of ``parameters``.
+    # Primitives over lanes; ``columns`` are those of ``parameters``, one row for each lane or a single one.
 
     @abstractmethod
     def contains_points(self, points: Points, *columns: Column) -> Mask:
@@ -48,11 +59,69 @@ class Region(ABC):
     def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
         """In which lanes the whole body lies in the region, shape ``(lanes,)``."""
 
+    def draw_points(self, uniforms: Column, keys: Column, *columns: Column) -> tuple[Points, Mask | None]:
+        """Uniform points ``(n, 3)`` from uniform numbers ``(draws, n)``, and where there is one (``None``: everywhere).
+
+        A region that retries keys its further draws with the words ``keys``, ``(n,)``.
+        """
+        raise unsupported(f"drawing a point of a {type(self).__name__}")
+
+    def orientations(self, points: Points, *columns: Column) -> Column:
+        """Preferred orientations ``(n, 4)`` at points of the region; only where `has_orientation`."""
+        raise unsupported(f"the orientation of a {type(self).__name__}")
+
+    def distances(self, points: Points, *columns: Column) -> NDArray[np.float64]:
+        """Distances of points ``(n, 3)`` from the region, shape ``(n,)``; 0 inside."""
+        raise unsupported(f"the distance to a {type(self).__name__}")
+
+    def gaps(self, points: Points, *columns: Column) -> NDArray[np.float64]:
+        """How far points ``(n, 3)`` are at least from the region as a container, shape ``(n,)``; 0 where unknown."""
+        return np.zeros(len(points))
+
+    def box(self, *columns: Column) -> tuple[Points, Points]:
+        """Lower and upper corners ``(n | 1, 3)`` of boxes that hold the region; infinite where it is not bounded."""
+        return np.full((1, 3), -np.inf), np.full((1, 3), np.inf)
+
+    def container_box(self, *columns: Column) -> tuple[Points, Points]:
+        """As `box`, of the region as a container: one in the plane holds what is above and below it."""
+        lower, upper = self.box(*columns)
+        if self.dimension != 2:
+            return lower, upper
+        z = np.array([False, False, True])
+        return np.where(z, -np.inf, lower), np.where(z, np.inf, upper)
+
+    def sizes(self, *columns: Column) -> NDArray[np.float64]:
+        """The measure ``(n | 1,)`` of the region: count, metres, square or cubic metres by its dimension."""
+        return np.full(1, np.nan)
+
     # Values for programs and specifiers
 
-    @abstractmethod
     def uniform_placement(self) -> tuple[Any, Any]:
         """A uniform random point, and its preferred orientation (``None`` if the region has none)."""
+        numbers = [uniform() for _ in range(self.draws)]
+        point = apply(_DRAW, *numbers, random_key(), *self.parameters, payload=self)
+        return point, self.orientation_at(point)
+
+    def orientation_at(self, point: Any) -> Any:
+        """The preferred orientation at a point of the region; ``None`` if the region has none."""
+        if not self.has_orientation:
+            return None
+        return apply(_ORIENTATION, to_vector(point), *self.parameters, payload=self)
+
+    def random_parts(self) -> list[Any]:
+        """The parameters, for sampling."""
+        return list(self.parameters)
+
+    def sampled(self, sample: Any) -> "Region":
+        """The region of one sample."""
+        if not self.is_random:
+            return self
+        region = copy(self)
+        region.parameters = tuple(sample.value(value) for value in self.parameters)
+        if self.parameter_names:
+            for name, value in zip(self.parameter_names, region.parameters, strict=True):
+                setattr(region, name, value)
+        return region
 
     def project(self, point: Any, direction: Any) -> tuple[Any, Any]:
         """The point of the region where ``point`` lands along ``direction``, and its preferred orientation.
@@ -67,10 +136,6 @@ class Region(ABC):
     def distance_from(self, point: Any) -> Any:
         """Distance from a point to the nearest point of the region, in metres; 0 inside."""
         return apply(_DISTANCE, to_vector(point), *self.parameters, payload=self)
-
-    def distances(self, points: Points, *columns: Column) -> NDArray[np.float64]:
-        """Distances of points ``(n, 3)`` from the region, shape ``(n,)``."""
-        raise unsupported(f"the distance to a {type(self).__name__}")
 
     @property
     def is_random(self) -> bool:
@@ -88,7 +153,9 @@ class Region(ABC):
 
     def containsObject(self, thing: Any) -> Any:
         """Whether the region holds the whole of an object."""
-        return apply(_CONTAINS_BODY, *body_operands(thing), *self.parameters, payload=self)
+        operands = body_operands(thing)
+        mesh = None if is_random(operands[3]) else operands[3].mesh
+        return apply(_CONTAINS_BODY, *operands, *self.parameters, payload=Containment(self, mesh))
 
     def distanceTo(self, point: Any) -> Any:
         """Distance from a point to the nearest point of the region, in metres."""
@@ -171,13 +238,86 @@ def body_of(position: Column, orientation: Column, size: Column, shape: Column) 
 def _contains_body(
     call: Call, position: Column, orientation: Column, size: Column, shape: Column, *columns: Column
 ) -> Column:
-    lanes = max(len(column) for column in (position, orientation, size, shape, *columns))
-    body = body_of(position, orientation, size, shape)
-    return np.asarray(call.payload.contains_bodies(body, lanes, *columns), dtype=np.bool_)
+    """All members and lanes as the lanes of one body, for each shape that there is."""
+    lead = np.broadcast_shapes(
+        position.shape[:-1], orientation.shape[:-1], size.shape[:-1], shape.shape, *_leading(call, columns)
+    )
+    flat = [
+        _flattened(column, lead, kind)
+        for column, kind in zip((position, orientation, size, shape, *columns), call.kinds, strict=True)
+    ]
+    body = body_of(*flat[:4])
+    inside = call.payload.region.contains_bodies(body, int(np.prod(lead)), *flat[4:])
+    return np.asarray(inside, dtype=np.bool_).reshape(lead)
+
+
+def _leading(call: Call, columns: Sequence[Column]) -> list[tuple[int, ...]]:
+    """Shapes of the parameters' columns without the components of vectors."""
+    kinds = call.kinds[-len(columns) :] if columns else ()
+    return [
+        column.shape[: column.ndim - len(kind.trailing)] for column, kind in zip(columns, kinds, strict=True)
+    ]
+
+
+def _flattened(column: Column, lead: tuple[int, ...], kind: Kind) -> Column:
+    """A column of members and lanes as one of lanes; what is the same everywhere stays a single row."""
+    trailing = column.shape[column.ndim - len(kind.trailing) :]
+    if column.size == int(np.prod(trailing)):
+        return column.reshape(1, *trailing)
+    return np.ascontiguousarray(np.broadcast_to(column, (*lead, *trailing))).reshape(-1, *trailing)
 
 
 _CONTAINS_BODY = Operation(
-    "region contains object", always(Kind.BOOLEAN), _contains_body, "Whether a region holds a whole object."
+    "region contains object",
+    always(Kind.BOOLEAN),
+    _contains_body,
+    "Whether a region holds a whole object.",
+    bounds=containment_bounds,
+    inverse=containment_inverse,
+    stacks=True,
+    partial=True,
+)
+
+
+def _draw(call: Call, *columns: Column) -> Column:
+    region: Region = call.payload
+    count = region.draws
+    lanes = call.lanes
+    uniforms = (
+        np.stack([np.broadcast_to(column, lanes) for column in columns[:count]])
+        if count
+        else (np.empty((0, lanes)))
+    )
+    points, known = region.draw_points(uniforms, columns[count], *columns[count + 1 :])
+    if known is not None:
+        call.reject(~known)
+    return points
+
+
+def _may_find_none(_operands: Sequence[Any], payload: Any) -> bool:
+    return bool(payload.may_find_none)
+
+
+_DRAW = Operation(
+    "region point",
+    always(Kind.VECTOR),
+    _draw,
+    "A uniform point of a region, from uniform numbers and a key; rejected where the region is empty.",
+    bounds=lambda payload, *bounds: payload_box(payload, bounds[payload.draws + 1 :]),
+    rejects=_may_find_none,
+)
+
+
+def _orientation(call: Call, points: Points, *columns: Column) -> Column:
+    region: Region = call.payload
+    return region.orientations(points, *columns)
+
+
+_ORIENTATION = Operation(
+    "region orientation",
+    always(Kind.ORIENTATION),
+    _orientation,
+    "The preferred orientation of a region at one of its points.",
 )
 
 
@@ -239,12 +379,31 @@ class Workspace(Region):
         self.region = region
         self.has_orientation = region.has_orientation
         self.dimension = region.dimension
+        self.draws, self.may_find_none = region.draws, region.may_find_none
 
     def contains_points(self, points: Points, *columns: Column) -> Mask:
         return self.region.contains_points(points, *columns)
 
     def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
         return self.region.contains_bodies(body, lanes, *columns)
+
+    def draw_points(self, uniforms: Column, keys: Column, *columns: Column) -> tuple[Points, Mask | None]:
+        return self.region.draw_points(uniforms, keys, *columns)
+
+    def orientations(self, points: Points, *columns: Column) -> Column:
+        return self.region.orientations(points, *columns)
+
+    def distances(self, points: Points, *columns: Column) -> NDArray[np.float64]:
+        return self.region.distances(points, *columns)
+
+    def gaps(self, points: Points, *columns: Column) -> NDArray[np.float64]:
+        return self.region.gaps(points, *columns)
+
+    def box(self, *columns: Column) -> tuple[Points, Points]:
+        return self.region.box(*columns)
+
+    def sizes(self, *columns: Column) -> NDArray[np.float64]:
+        return self.region.sizes(*columns)
 
     def uniform_placement(self) -> tuple[Any, Any]:
         return self.region.uniform_placement()

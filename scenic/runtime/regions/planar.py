@@ -4,6 +4,7 @@ Containment ignores z; points are drawn at the region's height (section 9.2 of t
 """
 
 import math
+from abc import abstractmethod
 from collections.abc import Iterable, Sequence
 from typing import Any
 
@@ -45,6 +46,20 @@ class PlanarRegion(Region):
     def footprint(self) -> Region:
         return self
 
+    @abstractmethod
+    def beside(self, points: Points, *columns: Column) -> Column:
+        """Distances of points ``(n, 3)`` from the region seen from above, ``(n,)``; z is ignored."""
+
+    def heights(self, *columns: Column) -> Column:
+        """The z of the plane, ``(n | 1,)``."""
+        return np.zeros(1)
+
+    def gaps(self, points: Points, *columns: Column) -> Column:
+        return self.beside(points, *columns)
+
+    def distances(self, points: Points, *columns: Column) -> Column:
+        return np.hypot(self.beside(points, *columns), points[:, 2] - self.heights(*columns))
+
     def project(self, point: Any, direction: Any) -> tuple[Any, Any]:
         """Vertically onto the plane; a point beside the region lands nowhere."""
         target = to_vector(point)
@@ -74,10 +89,15 @@ def _positive(value: Any, what: str) -> Any:
     return size
 
 
-def _disc_point(_call: Call, first: Column, second: Column) -> Column:
+def disc_points(first: Column, second: Column) -> Points:
+    """Uniform points ``(n, 3)`` of the unit disc from two uniform numbers ``(n,)``."""
     # The radius of a uniform point of the unit disc is distributed as the square root of a uniform number.
     radius, angle = np.sqrt(first), 2 * math.pi * second
     return np.stack([radius * np.cos(angle), radius * np.sin(angle), np.zeros_like(radius)], axis=-1)
+
+
+def _disc_point(_call: Call, first: Column, second: Column) -> Column:
+    return disc_points(first, second)
 
 
 def _disc_bounds(_payload: Any, first: Bounds, _second: Bounds) -> Bounds:
@@ -105,6 +125,9 @@ class CircularRegion(PlanarRegion):
 
     """
 
+    parameter_names = ("center", "radius")
+    draws = 2
+
     def __init__(self, center: Any, radius: Any, resolution: int = 32, *, name: str | None = None) -> None:
         self.center = to_vector(center, "`CircularRegion` center")
         self.radius = _positive(radius, "`CircularRegion` radius")
@@ -119,17 +142,31 @@ class CircularRegion(PlanarRegion):
         offset = apply(DISC_POINT, uniform(), uniform())
         return operate("add", self.center, operate("multiply", offset, self.radius)), None
 
+    def draw_points(self, uniforms: Column, keys: Column, *columns: Column) -> tuple[Points, Mask | None]:
+        center, radius = columns
+        return center + disc_points(uniforms[0], uniforms[1]) * radius[:, np.newaxis], None
+
+    def heights(self, *columns: Column) -> Column:
+        return columns[0][:, 2]
+
+    def box(self, *columns: Column) -> tuple[Points, Points]:
+        center, radius = columns
+        reach = radius[:, np.newaxis] * np.array([1.0, 1.0, 0.0])
+        return center - reach, center + reach
+
+    def sizes(self, *columns: Column) -> Column:
+        return np.asarray(math.pi * columns[1] ** 2)
+
     def contains_points(self, points: Points, *columns: Column) -> Mask:
         center, radius = columns
         dx, dy = points[:, 0] - center[:, 0], points[:, 1] - center[:, 1]
         inside: Mask = dx * dx + dy * dy <= radius * radius
         return inside
 
-    def distances(self, points: Points, *columns: Column) -> Column:
+    def beside(self, points: Points, *columns: Column) -> Column:
         center, radius = columns
         dx, dy = points[:, 0] - center[:, 0], points[:, 1] - center[:, 1]
-        beside = np.maximum(np.hypot(dx, dy) - radius, 0)
-        return np.asarray(np.hypot(beside, points[:, 2] - center[:, 2]))
+        return np.asarray(np.maximum(np.hypot(dx, dy) - radius, 0))
 
     def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
         center, radius = columns
@@ -149,6 +186,9 @@ class RectangularRegion(PlanarRegion):
         length: extent along the heading, metres.
 
     """
+
+    parameter_names = ("position", "heading", "width", "length")
+    draws = 2
 
     def __init__(
         self, position: Any, heading: Any, width: Any, length: Any, *, name: str | None = None
@@ -172,17 +212,36 @@ class RectangularRegion(PlanarRegion):
             offset = operate("rotate", frame, offset)
         return operate("add", self.position, offset), None
 
+    def draw_points(self, uniforms: Column, keys: Column, *columns: Column) -> tuple[Points, Mask | None]:
+        position, heading, width, length = columns
+        across, along = (uniforms[0] - 0.5) * width, (uniforms[1] - 0.5) * length
+        cos, sin = np.cos(heading), np.sin(heading)
+        offsets = [across * cos - along * sin, across * sin + along * cos, np.zeros_like(across)]
+        return position + np.stack(offsets, axis=-1), None
+
+    def heights(self, *columns: Column) -> Column:
+        return columns[0][:, 2]
+
+    def box(self, *columns: Column) -> tuple[Points, Points]:
+        position, heading, width, length = columns
+        cos, sin = np.abs(np.cos(heading)), np.abs(np.sin(heading))
+        x, y = (width * cos + length * sin) / 2, (width * sin + length * cos) / 2
+        reach = np.stack([x, y, np.zeros_like(x)], axis=-1)
+        return position - reach, position + reach
+
+    def sizes(self, *columns: Column) -> Column:
+        return np.asarray(columns[2] * columns[3])
+
     def contains_points(self, points: Points, *columns: Column) -> Mask:
         across, along = self._local(points, *columns)
         inside: Mask = (np.abs(across) <= columns[2] / 2) & (np.abs(along) <= columns[3] / 2)
         return inside
 
-    def distances(self, points: Points, *columns: Column) -> Column:
+    def beside(self, points: Points, *columns: Column) -> Column:
         across, along = self._local(points, *columns)
-        beside = np.hypot(
+        return np.hypot(
             np.maximum(np.abs(across) - columns[2] / 2, 0), np.maximum(np.abs(along) - columns[3] / 2, 0)
         )
-        return np.hypot(beside, points[:, 2] - columns[0][:, 2])
 
     def _local(
         self, points: Points, position: Column, heading: Column, *_size: Column
@@ -265,28 +324,27 @@ class PolygonalRegion(PlanarRegion):
         merged = Polygons.union([member.polygons for member in members], buf)
         return PolygonalRegion(polygon=merged.polygon, z=members[0].z)
 
-    def uniform_placement(self) -> tuple[Any, Any]:
-        point = apply(_POLYGON_POINT, uniform(), uniform(), uniform(), payload=self)
-        return point, None
-
     def contains_points(self, points: Points, *columns: Column) -> Mask:
         return self.polygons.contains(points[:, 0], points[:, 1])
 
-    def distances(self, points: Points, *columns: Column) -> Column:
-        return np.hypot(self.polygons.distances(points[:, 0], points[:, 1]), points[:, 2] - self.z)
+    def beside(self, points: Points, *columns: Column) -> Column:
+        return self.polygons.distances(points[:, 0], points[:, 1])
+
+    def heights(self, *columns: Column) -> Column:
+        return np.full(1, self.z)
+
+    def draw_points(self, uniforms: Column, keys: Column, *columns: Column) -> tuple[Points, Mask | None]:
+        points = np.empty((uniforms.shape[1], 3))
+        points[:, :2] = self.polygons.sample(*uniforms)
+        points[:, 2] = self.z
+        return points, None
+
+    def box(self, *columns: Column) -> tuple[Points, Points]:
+        x, y, last_x, last_y = self.polygons.polygon.bounds
+        return np.array([[x, y, self.z]]), np.array([[last_x, last_y, self.z]])
+
+    def sizes(self, *columns: Column) -> Column:
+        return np.full(1, self.area)
 
     def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
         return containment.in_polygons(body, self.polygons, lanes)
-
-
-def _polygon_point(call: Call, choice: Column, first: Column, second: Column) -> Column:
-    region: PolygonalRegion = call.payload
-    points = np.empty((max(len(choice), len(first), len(second)), 3))
-    points[:, :2] = region.polygons.sample(choice, first, second)
-    points[:, 2] = region.z
-    return points
-
-
-_POLYGON_POINT = Operation(
-    "polygon point", always(Kind.VECTOR), _polygon_point, "A point of a polygon, uniform by area."
-)

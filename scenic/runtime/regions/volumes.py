@@ -1,6 +1,7 @@
 """Solid boxes and ellipsoids as regions, in closed form (section 9.2 of the specification)."""
 
 import math
+from abc import abstractmethod
 from typing import Any
 
 import numpy as np
@@ -36,6 +37,7 @@ class PlacedVolume(Region):
     """
 
     dimension: float = 3
+    parameter_names = ("dimensions", "position", "rotation")
 
     def __init__(
         self,
@@ -63,6 +65,17 @@ class PlacedVolume(Region):
     def project(self, point: Any, direction: Any) -> tuple[Any, Any]:
         raise unsupported(f"placing things `on` a {type(self).__name__}")
 
+    @abstractmethod
+    def unit_points(self, uniforms: Column) -> Points:
+        """Uniform points ``(n, 3)`` of the volume of dimensions 1 about the origin, from numbers ``(3, n)``."""
+
+    def draw_points(self, uniforms: Column, keys: Column, *columns: Column) -> tuple[Points, Mask | None]:
+        dimensions, position, rotation = columns
+        return position + quaternions.rotate(rotation, self.unit_points(uniforms) * dimensions), None
+
+    def gaps(self, points: Points, *columns: Column) -> Column:
+        return self.distances(points, *columns)
+
     def _placed(self, x: Any, y: Any, z: Any) -> tuple[Any, Any]:
         """The point at these fractions of the dimensions from the centre."""
         size = self.dimensions
@@ -86,6 +99,18 @@ class BoxRegion(PlacedVolume):
     def uniform_placement(self) -> tuple[Any, Any]:
         return self._placed(*(operate("subtract", uniform(), 0.5) for _ in range(3)))
 
+    def unit_points(self, uniforms: Column) -> Points:
+        return uniforms.T - 0.5
+
+    def box(self, *columns: Column) -> tuple[Points, Points]:
+        dimensions, position, rotation = columns
+        matrix = np.abs(quaternions.to_matrix(rotation))
+        reach = (matrix * dimensions[:, np.newaxis, :] / 2).sum(axis=2)
+        return position - reach, position + reach
+
+    def sizes(self, *columns: Column) -> Column:
+        return np.asarray(columns[0][:, 0] * columns[0][:, 1] * columns[0][:, 2])
+
     def contains_points(self, points: Points, *columns: Column) -> Mask:
         local = np.abs(_local(points, *columns))
         inside: Mask = (local[:, 0] <= 0.5) & (local[:, 1] <= 0.5) & (local[:, 2] <= 0.5)
@@ -100,6 +125,11 @@ class BoxRegion(PlacedVolume):
 
 
 def _ball_point(_call: Call, first: Column, second: Column, third: Column) -> Column:
+    return ball_points(first, second, third)
+
+
+def ball_points(first: Column, second: Column, third: Column) -> Points:
+    """Uniform points ``(n, 3)`` of the unit ball from three uniform numbers ``(n,)``."""
     # Archimedes: height and azimuth of a uniform point of the sphere are uniform; the radius is a cube root.
     radius, z, angle = np.cbrt(first), 2 * second - 1, 2 * math.pi * third
     level = np.sqrt((1 - z) * (1 + z))
@@ -130,6 +160,19 @@ class SpheroidRegion(PlacedVolume):
     def uniform_placement(self) -> tuple[Any, Any]:
         point = apply(BALL_POINT, uniform(), uniform(), uniform())
         return self._placed(*(operate("multiply", 0.5, part) for part in point))
+
+    def unit_points(self, uniforms: Column) -> Points:
+        return ball_points(*uniforms) / 2
+
+    def box(self, *columns: Column) -> tuple[Points, Points]:
+        # An ellipsoid reaches as far along an axis of the world as the length of that row of R diag(half axes).
+        dimensions, position, rotation = columns
+        scaled = quaternions.to_matrix(rotation) * dimensions[:, np.newaxis, :] / 2
+        reach = np.sqrt((scaled * scaled).sum(axis=2))
+        return position - reach, position + reach
+
+    def sizes(self, *columns: Column) -> Column:
+        return np.asarray(math.pi / 6 * columns[0][:, 0] * columns[0][:, 1] * columns[0][:, 2])
 
     def contains_points(self, points: Points, *columns: Column) -> Mask:
         local = _local(points, *columns)

@@ -11,13 +11,14 @@ from numpy.typing import NDArray
 from scenic.graph.bounding import overall
 from scenic.graph.domain import Domain
 from scenic.graph.node import Graph, Node
-from scenic.language.errors import InvalidScenarioError, UnsupportedError
+from scenic.language.errors import InvalidScenarioError
 from scenic.language.spans import Span
 from scenic.runtime.conditions import connect, truth
 from scenic.runtime.geometry.collision import collide
 from scenic.runtime.objects import Object
 from scenic.runtime.program import Program, Requirement
-from scenic.runtime.regions.base import Everywhere, Region, Workspace, body_operands
+from scenic.runtime.regions.base import Everywhere, Workspace, body_operands
+from scenic.runtime.regions.choice import as_region
 from scenic.runtime.samples import dependencies
 from scenic.runtime.sampling.checks import (
     BUILT_IN,
@@ -28,7 +29,7 @@ from scenic.runtime.sampling.checks import (
     ObjectNodes,
 )
 from scenic.runtime.sampling.engine import Plan
-from scenic.runtime.values import CODEC, Random, as_node, fixed_batch, is_random, operate
+from scenic.runtime.values import CODEC, as_node, fixed_batch, is_random, operate
 from scenic.runtime.visibility import sees_in_plane
 
 
@@ -40,7 +41,9 @@ class Outline:
     checks: tuple[Check, ...]
     outputs: tuple[Node, ...]
     requirements: tuple[Requirement, ...]
-    """The hard requirements of the program that are nodes, for analysis."""
+    """The hard requirements of the program, for analysis."""
+    containment: tuple[NodeCheck, ...]
+    """That objects are inside their containers, likewise."""
     bodies: int
     """The number of objects."""
 
@@ -58,7 +61,8 @@ def outline(program: Program, ego: Object | None, workspace: Workspace, *, mode_
     outputs = dependencies([*program.objects, *program.instances, *program.parameters.values()])
     checks: list[Check] = _drawing(outputs)
     checks += _sizes(program)
-    checks += _containment(program, workspace)
+    containment = _containment(program, workspace)
+    checks += containment
     if mode_2d:
         checks += _visibility(program, ego)
     checks += _collisions(program)
@@ -66,7 +70,7 @@ def outline(program: Program, ego: Object | None, workspace: Workspace, *, mode_
     nodes = [node for check in checks for node in check.nodes]
     graph = Graph([*outputs, *nodes])
     hard = tuple(item for item in program.requirements if item.probability == 1)
-    return Outline(graph, tuple(checks), tuple(outputs), hard, len(program.objects))
+    return Outline(graph, tuple(checks), tuple(outputs), hard, tuple(containment), len(program.objects))
 
 
 def _drawing(outputs: Sequence[Node]) -> list[Check]:
@@ -139,22 +143,18 @@ def _sizes(program: Program) -> list[Check]:
     return checks
 
 
-def _containment(program: Program, workspace: Workspace) -> list[Check]:
-    checks: list[Check] = []
+def _containment(program: Program, workspace: Workspace) -> list[NodeCheck]:
+    checks: list[NodeCheck] = []
     for item in program.objects:
         container = item.regionContainedIn
-        if isinstance(container, Random):
-            raise UnsupportedError(
-                "a random `regionContainedIn` is not supported yet", span=_place(program, item)[0]
-            )
-        region: Region = workspace if container is None else container
+        region = as_region(workspace if container is None else container)
         while isinstance(region, Workspace):
             region = region.region
         if isinstance(region, Everywhere):
             continue
-        if not isinstance(region, Region):
+        if region is None:
             raise InvalidScenarioError(
-                f"`regionContainedIn` must be a region, not {region!r}", span=_place(program, item)[0]
+                f"`regionContainedIn` must be a region, not {container!r}", span=_place(program, item)[0]
             )
         checks += _required(
             truth(region.footprint.containsObject(item)),
@@ -168,7 +168,7 @@ def _containment(program: Program, workspace: Workspace) -> list[Check]:
 
 def _required(
     node: Node, label: str, place: tuple[Span | None, str | None], never: str, help: str
-) -> list[Check]:
+) -> list[NodeCheck]:
     """The check of a built-in requirement: none where it always holds; an error, ``never``, where it never does."""
     span, filename = place
     if not node.is_constant:

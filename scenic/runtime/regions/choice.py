@@ -1,0 +1,129 @@
+"""A random choice among regions, as a region: each lane has the one that it draws."""
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from scenic.graph.kinds import Column
+from scenic.graph.operations import TABLE
+from scenic.runtime.geometry.collision import Body
+from scenic.runtime.regions.base import Mask, Points, Region
+from scenic.runtime.values import Random, as_value
+
+
+class RegionChoice(Region):
+    """One of several regions.
+
+    Args:
+        index: which one, random.
+        options: the regions.
+
+    """
+
+    def __init__(self, index: Any, options: Sequence[Region]) -> None:
+        super().__init__(index, *(value for option in options for value in option.parameters))
+        self.options = tuple(options)
+        self.dimension = max(option.dimension for option in options)
+        self.draws = max(option.draws for option in options)
+        self.has_orientation = all(option.has_orientation for option in options)
+        self.may_find_none = any(option.may_find_none for option in options)
+
+    @property
+    def footprint(self) -> Region:
+        footprints = [option.footprint for option in self.options]
+        if all(new is old for new, old in zip(footprints, self.options, strict=True)):
+            return self
+        return RegionChoice(self.parameters[0], footprints)
+
+    def uniform_placement(self) -> tuple[Any, Any]:
+        for option in self.options:
+            if option.dimension == np.inf:
+                option.uniform_placement()  # says why not
+        return super().uniform_placement()
+
+    def sampled(self, sample: Any) -> Region:
+        """The region that a sample draws."""
+        region: Region = self.options[sample.value(self.parameters[0])].sampled(sample)
+        return region
+
+    def _drawn(
+        self, lanes: int, columns: Sequence[Column]
+    ) -> Iterator[tuple[Region, NDArray[np.intp], list[Column]]]:
+        """Each option with the lanes that draw it and the columns of its parameters there."""
+        index = np.broadcast_to(columns[0], lanes)
+        first = 1
+        for number, option in enumerate(self.options):
+            mine = columns[first : first + len(option.parameters)]
+            first += len(option.parameters)
+            chosen = np.flatnonzero(index == number)
+            if len(chosen):
+                yield option, chosen, [part if len(part) == 1 else part[chosen] for part in mine]
+
+    def contains_points(self, points: Points, *columns: Column) -> Mask:
+        lanes = _lanes(points, *columns)
+        points = np.broadcast_to(points, (lanes, 3))
+        result = np.zeros(lanes, dtype=np.bool_)
+        for option, chosen, mine in self._drawn(lanes, columns):
+            result[chosen] = option.contains_points(points[chosen], *mine)
+        return result
+
+    def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
+        result = np.zeros(lanes, dtype=np.bool_)
+        for option, chosen, mine in self._drawn(lanes, columns):
+            part = body if len(body) == 1 else body.take(chosen)
+            result[chosen] = option.contains_bodies(part, len(chosen), *mine)
+        return result
+
+    def distances(self, points: Points, *columns: Column) -> NDArray[np.float64]:
+        lanes = _lanes(points, *columns)
+        points = np.broadcast_to(points, (lanes, 3))
+        result = np.zeros(lanes)
+        for option, chosen, mine in self._drawn(lanes, columns):
+            result[chosen] = option.distances(points[chosen], *mine)
+        return result
+
+    def draw_points(self, uniforms: Column, keys: Column, *columns: Column) -> tuple[Points, Mask | None]:
+        lanes = uniforms.shape[1]
+        points, known = np.zeros((lanes, 3)), np.ones(lanes, dtype=np.bool_)
+        for option, chosen, mine in self._drawn(lanes, columns):
+            drawn, found = option.draw_points(uniforms[: option.draws, chosen], keys[chosen], *mine)
+            points[chosen] = drawn
+            if found is not None:
+                known[chosen] = found
+        return points, known if self.may_find_none else None
+
+    def orientations(self, points: Points, *columns: Column) -> Column:
+        lanes = _lanes(points, *columns)
+        points = np.broadcast_to(points, (lanes, 3))
+        result = np.zeros((lanes, 4))
+        for option, chosen, mine in self._drawn(lanes, columns):
+            result[chosen] = option.orientations(points[chosen], *mine)
+        return result
+
+    def box(self, *columns: Column) -> tuple[Points, Points]:
+        first = 1
+        lower, upper = [], []
+        for option in self.options:
+            low, high = option.box(*columns[first : first + len(option.parameters)])
+            first += len(option.parameters)
+            lower.append(low)
+            upper.append(high)
+        return np.minimum.reduce(lower), np.maximum.reduce(upper)
+
+
+def as_region(value: Any) -> Region | None:
+    """A region, or a random choice among regions; ``None`` for anything else."""
+    if isinstance(value, Region):
+        return value
+    if not isinstance(value, Random) or value.node.operation is not TABLE["select"]:
+        return None
+    index, *options = (as_value(node) for node in value.node.operands)
+    regions = [as_region(option) for option in options]
+    known = [region for region in regions if region is not None]
+    return RegionChoice(index, known) if len(known) == len(regions) else None
+
+
+def _lanes(*columns: Column) -> int:
+    return max(len(column) for column in columns)
