@@ -20,6 +20,8 @@ from scenic.language.errors import (
     RejectionException,
     ScenarioChoiceError,
     ScenicSyntaxError,
+    annotate,
+    annotation,
 )
 from scenic.language.source import Source, read_source
 from scenic.language.spans import Span
@@ -30,6 +32,7 @@ from scenic.runtime.objects import Object, Point
 from scenic.runtime.prelude import Loader
 from scenic.runtime.program import Module, Program, ScenarioClass, ScenarioInstance
 from scenic.runtime.randomness import preserved, seed_globals
+from scenic.runtime.saving import program_digest
 from scenic.runtime.scenario import Scenario
 from scenic.runtime.values import is_random
 
@@ -139,6 +142,9 @@ def diagnose(error: BaseException) -> Diagnostic | None:
     """An exception as a diagnostic: with its place in the program, if the program or its use caused it."""
     if isinstance(error, Located):
         return error.diagnostic()
+    told = annotation(error)
+    if told is not None:
+        return told
     place = locate(error.__traceback__) if error.__traceback__ is not None else None
     if place is None:
         return None
@@ -186,6 +192,7 @@ def _scenario(
     prune: bool = True,
     strict_params: bool = False,
 ) -> Scenario:
+    options = {"params": dict(params), "model": model, "scenario": chosen, "2d": mode_2d}
     compiled = compile_text(text, filename=filename)
     if compiled.code is None:
         errors = [item for item in compiled.diagnostics if item.severity == "error"]
@@ -216,6 +223,7 @@ def _scenario(
             workspace=state.workspace,
             names=_names(module, state.ego),
             mode_2d=mode_2d,
+            digest=program_digest(text, options),
         )
     except RejectionException as error:
         place = locate(error.__traceback__) if error.__traceback__ is not None else None
@@ -232,6 +240,15 @@ def _scenario(
             error.filename = error.filename or (place.filename if place else filename)
         if error.filename == filename:
             error.program = text
+        raise
+    except Exception as error:
+        found = diagnose(error)
+        if found is not None and found.span is not None:
+            annotate(
+                error,
+                found,
+                f"{found.filename}:{found.span.line}:{found.span.column + 1}: raised while the program ran",
+            )
         raise
     finally:
         current.reset(token)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scenic.graph.domain import Domain
 from scenic.graph.draws import BOX, Source
 from scenic.graph.kinds import Codec, Column, Kind, boxed
-from scenic.graph.node import Node
+from scenic.graph.node import Graph, Node
 from scenic.graph.operation import FAULT, OK, Call, Status
 from scenic.graph.schedule import Draw, Fixed, Gather, Gathered, Place, Run, Schedule, Scheduler, Slot, Step
 
@@ -70,6 +70,11 @@ class Batch:
 
     def __len__(self) -> int:
         return len(self.rows)
+
+    @property
+    def graph(self) -> Graph:
+        """The graph that is evaluated."""
+        return self._scheduler.graph
 
     # Lanes
 

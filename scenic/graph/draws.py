@@ -8,6 +8,7 @@ So no draw depends on which others there are, in which order they are asked for,
 
 import hashlib
 from collections.abc import Mapping
+from types import MappingProxyType
 from typing import Any, Final, Protocol, Self
 
 import numpy as np
@@ -125,19 +126,27 @@ class Points:
 
     Args:
         values: numbers ``(n,)`` of the open unit interval by address.
-        rest: where the numbers of all other addresses, and all words, come from.
+        rest: where the numbers and words of all other addresses come from.
+        words: words ``(n,)`` by address.
 
     """
 
-    def __init__(self, values: Mapping[int, Floats], rest: Source) -> None:
+    def __init__(
+        self, values: Mapping[int, Floats], rest: Source, words: Mapping[int, Words] = MappingProxyType({})
+    ) -> None:
         self._values = values
         self._rest = rest
+        self._words = words
 
     def __len__(self) -> int:
         return len(self._rest)
 
     def take(self, lanes: NDArray[np.intp]) -> "Points":
-        return Points({name: column[lanes] for name, column in self._values.items()}, self._rest.take(lanes))
+        return Points(
+            {name: column[lanes] for name, column in self._values.items()},
+            self._rest.take(lanes),
+            {name: column[lanes] for name, column in self._words.items()},
+        )
 
     def uniforms(self, addresses: Words) -> Floats:
         result = self._rest.uniforms(addresses)
@@ -147,7 +156,11 @@ class Points:
         return result
 
     def words(self, addresses: Words) -> Words:
-        return self._rest.words(addresses)
+        result = self._rest.words(addresses)
+        for row, name in enumerate(addresses.tolist()):
+            if name in self._words:
+                result[row] = self._words[name]
+        return result
 
 
 class Recorded:

@@ -166,6 +166,7 @@ CODES: Final = MappingProxyType(
         "SC604": "bad option",
         "SC605": "scenario cannot be chosen",
         "SC606": "bad configuration",
+        "SC607": "saved scene cannot be used",
         # Found by analysis.
         "SC700": "requirements contradict each other",
         "SC701": "requirement always holds",

@@ -165,8 +165,26 @@ class ScenarioChoiceError(Located, RuntimeError):
     code = "SC605"
 
 
+class SerializationError(Located):
+    """A saved scene that cannot be read, or that is of another program."""
+
+    code = "SC607"
+
+
 class RejectionException(Exception):
     """The current sample is rejected; or, from ``generate``, no sample was accepted."""
+
+
+def annotate(error: BaseException, diagnostic: Diagnostic, note: str) -> None:
+    """Tell an exception of the program's own code where in the program it came up, without changing its type."""
+    if annotation(error) is None:
+        error.add_note(note)
+        error.scenic_diagnostic = diagnostic  # type: ignore[attr-defined]
+
+
+def annotation(error: BaseException) -> Diagnostic | None:
+    """What `annotate` has told an exception."""
+    return getattr(error, "scenic_diagnostic", None)
 
 
 class InternalError(Exception):

@@ -3,17 +3,22 @@
 import random
 import time
 from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
+from pathlib import Path
 from typing import Any
 
 from scenic.graph.domain import Domain
-from scenic.language.errors import Located, RejectionException, SamplingError
+from scenic.graph.node import Graph
+from scenic.language.errors import Located, RejectionException, SamplingError, SerializationError, annotate
 from scenic.runtime.objects import Object
 from scenic.runtime.program import Program
 from scenic.runtime.regions.base import Workspace, everywhere
-from scenic.runtime.sampling.engine import CandidateError, Engine, Task
+from scenic.runtime.samples import dependencies
+from scenic.runtime.sampling.engine import Accepted, CandidateError, Engine, Task
 from scenic.runtime.sampling.foresight import SEED_BITS, Foreseen
 from scenic.runtime.sampling.planning import Outline, outline
 from scenic.runtime.sampling.report import Exhausted
+from scenic.runtime.saving import SavedScene, draws_of, fixed_draws, source_of
 from scenic.runtime.scene import Scene
 
 PROOF_CANDIDATES = 200
@@ -41,8 +46,12 @@ class Scenario:
         workspace: Workspace | None,
         names: Mapping[int, str],
         mode_2d: bool = False,
+        digest: str = "",
     ) -> None:
         self.filename = filename
+        self.digest = digest
+        """What a saved scene remembers of the program."""
+        self._condition: tuple[Mapping[int, float], Mapping[int, int]] = ({}, {})
         self.workspace = workspace or Workspace(everywhere)
         self.egoObject = ego
         self.outline: Outline = outline(program, ego, self.workspace, mode_2d=mode_2d)
@@ -103,7 +112,8 @@ class Scenario:
             lanes: candidates evaluated at a time. Changes speed and memory, never the scenes.
 
         Raises:
-            SamplingError: if a requirement or property fails on a candidate.
+            SamplingError: if a requirement or property fails on a candidate; an exception of the program's own code keeps
+                its type, and tells the place in a note.
 
         """
         tasks = [Task(seed, k) for k in range(first, first + n)]
@@ -134,9 +144,13 @@ class Scenario:
                 if isinstance(result, Exhausted):
                     yield result
                 else:
-                    yield Scene(result, self._program, self.egoObject, self.workspace, self._names)
+                    yield self._scene(result)
         except CandidateError as error:
-            raise self._sampling_error(error) from error.__cause__
+            failure = error
+        else:
+            return
+        problem = self._sampling_error(failure)
+        raise problem from (None if problem is failure.__cause__ else failure.__cause__)
 
     def sample(
         self,
@@ -151,7 +165,8 @@ class Scenario:
 
         Raises:
             RejectionException: if a scene is not found within the limits; the message lists what rejected it.
-            SamplingError: if a requirement or property fails on a candidate.
+            SamplingError: if a requirement or property fails on a candidate; an exception of the program's own code keeps
+                its type, and tells the place in a note.
 
         """
         chosen = random.getrandbits(SEED_BITS) if seed is None else seed
@@ -213,13 +228,81 @@ class Scenario:
             cause.span = cause.span or check.span
             cause.filename = cause.filename or check.filename or self.filename
             return cause
-        what = "unknown error" if cause is None else f"{type(cause).__name__}: {cause}"
-        return SamplingError(
-            f"{check.label} failed: {what}",
+        found = SamplingError(
+            f"{check.label} failed" + ("" if cause is None else f": {type(cause).__name__}: {cause}"),
             span=check.span,
             filename=check.filename or self.filename,
-            help="this came up in a sampled candidate; guard against the value, or reject it by an earlier "
-            "`require`",
+            help="this came up in a sampled candidate; guard against the value, or reject it by a `require`",
+        )
+        if not isinstance(cause, Exception) or isinstance(cause, Located):
+            return found
+        # The program's own exception keeps its type; a note tells where it came up.
+        annotate(cause, found.diagnostic(), f"{found} (attempt {error.attempt} at scene {error.k})")
+        return cause
+
+    # Scenes as data
+
+    def sceneToBytes(self, scene: Scene, allowPickle: bool = False) -> bytes:
+        """A scene as data, which `sceneFromBytes` takes up again. ``allowPickle`` is accepted for compatibility."""
+        numbers, words = draws_of(scene.accepted)
+        return SavedScene(scene.digest, scene.accepted.task, scene.attempts, numbers, words).to_bytes()
+
+    def sceneFromBytes(self, data: bytes, verify: bool = True, allowPickle: bool = False) -> Scene:
+        """The scene in the data of `sceneToBytes`, exactly as it was.
+
+        Raises:
+            SerializationError: if the data is damaged, or of another program (not checked if ``verify`` is false).
+
+        """
+        saved = SavedScene.from_bytes(data)
+        if verify and saved.program != self.digest:
+            raise SerializationError(
+                "the saved scene is of another program",
+                help="load the program, parameters and options with which it was saved",
+            )
+        source = source_of(saved, self._engine.plan.graph)
+        return self._scene(self._engine.replay(source, saved.task, saved.attempts))
+
+    def replay(self, path: str | Path) -> Scene:
+        """The scene that `Scene.save` has written; raises `SerializationError` as `sceneFromBytes` does."""
+        return self.sceneFromBytes(Path(path).read_bytes())
+
+    def conditionOn(
+        self,
+        scene: Scene | None = None,
+        objects: Sequence[Any] = (),
+        params: Mapping[str, Any] | Sequence[str] = (),
+    ) -> None:
+        """Let objects and parameters have the values of a scene in all later scenes; those not named vary as before.
+
+        Args:
+            scene: a scene of this scenario.
+            objects: objects of the scenario, or their places in its `objects`.
+            params: names of global parameters.
+
+        All random values that they depend on are fixed, also where others depend on them too.
+
+        """
+        if scene is None:
+            self._condition = ({}, {})
+        else:
+            chosen = [self.objects[item] if isinstance(item, int) else item for item in objects]
+            values = [*chosen, *(self._program.parameters[name] for name in params)]
+            nodes = Graph(dependencies(values)).nodes
+            numbers, words = draws_of(scene.accepted, nodes)
+            self._condition = ({**self._condition[0], **numbers}, {**self._condition[1], **words})
+        self._engine = Engine(self.outline.plan(), partial(fixed_draws, *self._condition))
+        self._foreseen = Foreseen()
+
+    def _scene(self, accepted: Accepted) -> Scene:
+        return Scene(
+            accepted,
+            self._program,
+            self.egoObject,
+            self.workspace,
+            self._names,
+            self.digest,
+            self.sceneToBytes,
         )
 
 

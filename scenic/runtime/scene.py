@@ -1,9 +1,13 @@
 """Scenes: one sample of a scenario."""
 
-from collections.abc import Mapping
-from typing import Any
+import sys
+import tempfile
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any, TextIO
 
 from scenic.graph.node import Node
+from scenic.runtime.dumping import program_of
 from scenic.runtime.objects import Object
 from scenic.runtime.program import Program
 from scenic.runtime.regions.base import Workspace
@@ -28,12 +32,16 @@ class Scene:
         ego: Object | None,
         workspace: Workspace,
         names: Mapping[int, str],
+        digest: str,
+        keep: Callable[["Scene"], bytes],
     ) -> None:
         self.seed = accepted.task.seed
         self.k = accepted.task.k
         self.attempts = accepted.attempts
         self.workspace = workspace
-        self._accepted = accepted
+        self.accepted = accepted
+        self.digest = digest
+        self._keep = keep
         self._program = program
         self._ego = ego
         self._names = names
@@ -42,7 +50,7 @@ class Scene:
         self._params: dict[str, Any] | None = None
 
     def _lookup(self, node: Node) -> Any:
-        return self._accepted.batch.value(node, self._accepted.lane)
+        return self.accepted.batch.value(node, self.accepted.lane)
 
     @property
     def objects(self) -> tuple[Any, ...]:
@@ -75,6 +83,21 @@ class Scene:
             for item in self.objects
             if (name := self._names.get(id(item.__dict__.get("_source")))) is not None
         }
+
+    def save(self, path: str | Path) -> None:
+        """Write the scene to a file, from which `Scenario.replay` takes it up again; the file is complete or absent."""
+        target = Path(path)
+        with tempfile.NamedTemporaryFile(dir=target.absolute().parent, delete=False) as file:
+            file.write(self._keep(self))
+        Path(file.name).replace(target)
+
+    def dump(self) -> str:
+        """A program whose only scene is this one: concrete objects, no requirements."""
+        return program_of(self.objects, self.egoObject, self.params, self.names)
+
+    def dumpAsScenicCode(self, stream: TextIO | None = None) -> None:
+        """Write `dump` to a stream (standard output by default)."""
+        (sys.stdout if stream is None else stream).write(self.dump())
 
     def __repr__(self) -> str:
         return f"<Scene {self.k} of seed {self.seed}: {len(self.objects)} objects>"

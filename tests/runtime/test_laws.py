@@ -17,7 +17,6 @@ from scipy import stats
 from scenic.language.errors import (
     InvalidScenarioError,
     RandomControlFlowError,
-    SamplingError,
     ScenicTypeError,
     ScenicValueError,
 )
@@ -194,15 +193,15 @@ def test_a_missing_attribute_is_an_error_only_where_it_is_drawn() -> None:
     text = "a = new Object with foo 1\nb = new Object at (9, 9)\nc = Uniform(a, b)\n"
     scenario(text + "require c is a\nrequire c.foo == 1").sample(40, seed=0)
     found = failure(text + "\nparam x = c.foo", n=20)
-    assert isinstance(found, SamplingError)
-    assert "AttributeError: Object has no property or attribute 'foo'" in str(found)
+    assert isinstance(found, AttributeError)
+    assert "Object has no property or attribute 'foo'" in str(found)
     assert place(found)[1] == "5:11-5:16"
 
 
 def test_a_failing_call_is_an_error_only_where_it_is_drawn() -> None:
     text = "import math\nf = Uniform(math.sqrt, abs)\n"
     scenario(text + "require f is abs\nrequire f(-4) == 4").sample(40, seed=0)
-    assert isinstance(failure(text + "require f(-4) == 4", n=20), SamplingError)
+    assert isinstance(failure(text + "require f(-4) == 4", n=20), ValueError)
 
 
 def test_choices_among_instances_share_their_values() -> None:

@@ -14,7 +14,6 @@ from scenic.language.errors import (
     InvalidScenarioError,
     RandomControlFlowError,
     RejectionException,
-    SamplingError,
     ScenicTypeError,
 )
 from tests.runtime.programs import FALSE_ALARM, draws, failure, fingerprint, place, scenario
@@ -236,8 +235,11 @@ def test_a_fault_counts_only_if_no_requirement_rejects(lanes: int, opaque: bool)
         guarded = scenario(text + "".join(f"require {condition}\n" for condition in order))
         assert {scene.params["x"] for scene in guarded.sample(60, seed=0, lanes=lanes)} == {0, 1, 3, 4}
     alone = scenario(text + f"require {inverse}\nrequire {wrap.format('n != 3')}\n")
-    with pytest.raises(SamplingError, match=r"<string>:4:1: requirement on line 4 failed: ZeroDivisionError"):
+    with pytest.raises(ZeroDivisionError) as caught:
         alone.sample(60, seed=0, lanes=lanes)
+    assert caught.value.__notes__[0].startswith(
+        "<string>:4:1: requirement on line 4 failed: ZeroDivisionError"
+    )
 
 
 def test_scenes_before_the_fault_come_out_whatever_the_batch() -> None:
@@ -245,15 +247,15 @@ def test_scenes_before_the_fault_come_out_whatever_the_batch() -> None:
     found = set()
     for lanes in (1, 7, 512, 4096):
         seen = []
-        with pytest.raises(SamplingError):
+        with pytest.raises(ZeroDivisionError):
             seen.extend(fingerprint(scene) for scene in scenario(text).stream(10_000, seed=4, lanes=lanes))
         count = 0
         stream = scenario(text).stream(10_000, seed=4, lanes=lanes)
         try:
             for _ in stream:
                 count += 1
-        except SamplingError as error:
-            found.add((count, str(error)))
+        except ZeroDivisionError as error:
+            found.add((count, *error.__notes__))
     assert len(found) == 1
     assert next(iter(found))[0] > 0
 
@@ -280,11 +282,11 @@ def test_rejection_in_a_function_of_a_condition() -> None:
         ("def f():\n    param a = 1\nrequire f()", InvalidScenarioError, "cannot be set here"),
         ("require ego.x > 0", InvalidScenarioError, "ego object is used before it is set"),
         ("require nothing_here > 0", NameError, None),
-        ("require x.nothing > 0", SamplingError, "AttributeError"),
-        ("require x + 'a' > 0", SamplingError, "TypeError"),
-        ("require 1 / 0 > 0", SamplingError, "ZeroDivisionError"),
-        ("require x < 'a'", SamplingError, "TypeError"),
-        ("require (1, 2) in x", SamplingError, "TypeError"),
+        ("require x.nothing > 0", AttributeError, "nothing"),
+        ("require x + 'a' > 0", TypeError, ""),
+        ("require 1 / 0 > 0", ZeroDivisionError, "division by zero"),
+        ("require x < 'a'", TypeError, ""),
+        ("require (1, 2) in x", TypeError, ""),
         ("require distance from x to (1, 2)", ScenicTypeError, "expected a vector"),
         ("require front of x", ScenicTypeError, "expected an object"),
     ],

@@ -7,8 +7,9 @@ are fixed in advance by their addresses (`scenic.graph.draws`).
 """
 
 import time
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import islice
 
 import numpy as np
@@ -67,12 +68,13 @@ class Task:
 
 @dataclass(frozen=True, slots=True)
 class Accepted:
-    """A scene's values: one lane of a finished batch."""
+    """A scene's values: one lane of a finished batch. ``again`` makes a batch of that lane alone, to look at its draws."""
 
     task: Task
     attempts: int
     batch: Batch
     lane: int
+    again: Callable[[], Batch]
 
 
 class CandidateError(Exception):
@@ -104,11 +106,13 @@ class Engine:
 
     Args:
         plan: what to sample.
+        conditioned: the draws of lanes, with those fixed that are to be the same in all scenes.
 
     """
 
-    def __init__(self, plan: Plan) -> None:
+    def __init__(self, plan: Plan, conditioned: Callable[[Counter], Source] = lambda source: source) -> None:
         self.plan = plan
+        self._conditioned = conditioned
         self.candidates = 0
         """Candidates tried so far."""
         self.passed = 0
@@ -185,7 +189,7 @@ class Engine:
         starts = np.array([scene.attempts for scene in active], dtype=np.int64)
         attempts = starts[owner] + np.arange(len(owner)) - firsts[owner]
         keys = np.array([scene.key for scene in active], dtype=np.uint64)
-        batch = self._batch(Counter(attempt_keys(keys[owner], attempts)))
+        batch = self._batch(self._conditioned(Counter(attempt_keys(keys[owner], attempts))))
         inactive = None
         if self._soft:
             inactive = np.array([scene.inactive for scene in active], dtype=np.bool_)[owner]
@@ -208,11 +212,20 @@ class Engine:
             batch.settle(self.plan.outputs)
             for lane, row in enumerate(rows[good].tolist()):
                 scene = active[int(owner[row])]
-                done[scene.number] = Accepted(scene.task, int(attempts[row]) + 1, batch, lane)
+                attempt = int(attempts[row])
+                again = partial(self._alone, scene.task, attempt)
+                done[scene.number] = Accepted(scene.task, attempt + 1, batch, lane, again)
         for scene in active:
             if scene.number not in done and scene.attempts >= max_attempts:
                 done[scene.number] = self._give_up(scene, "attempts")
         self._pace.add(len(owner), passed, time.perf_counter() - begun)
+
+    def replay(self, source: Source, task: Task, attempts: int) -> Accepted:
+        """The scene of given draws, one lane of points of the cube; no check is made again."""
+        batch = Batch(self._single, source, self.plan.codec, rejections=(RejectionException,))
+        batch.settle(self.plan.outputs)
+        again = partial(Batch, self._single, source, self.plan.codec, rejections=(RejectionException,))
+        return Accepted(task, attempts, batch, 0, again)
 
     def _batch(self, source: Source, *, grouped: bool = True) -> Batch:
         return Batch(
@@ -271,13 +284,16 @@ class Engine:
                 scene.inactive = inactive[:, lane]
         return scenes
 
-    def source(self, task: Task, attempt: int) -> Counter:
+    def _alone(self, task: Task, attempt: int) -> Batch:
+        return self._batch(self.source(task, attempt), grouped=False)
+
+    def source(self, task: Task, attempt: int) -> Source:
         """The random numbers of one attempt at a scene."""
-        return Counter.of(task.seed, task.k, attempt)
+        return self._conditioned(Counter.of(task.seed, task.k, attempt))
 
     def _error(self, check: Check, scene: _Pending, attempt: int) -> CandidateError:
         """The error of a lane, found by evaluating it alone."""
-        batch = self._batch(self.source(scene.task, attempt), grouped=False)
+        batch = self._alone(scene.task, attempt)
         check.test(batch)
         error = CandidateError(check, scene.task.k, attempt)
         error.__cause__ = next((batch.errors[node] for node in check.nodes if node in batch.errors), None)
@@ -300,7 +316,7 @@ class Engine:
             [
                 part
                 for check in self.plan.checks
-                for part in check.parts(self._batch(Counter(attempt_keys(key, numbers))))
+                for part in check.parts(self._batch(self._conditioned(Counter(attempt_keys(key, numbers)))))
             ]
             for numbers in np.split(np.arange(count, dtype=np.int64), range(size, count, size))
         ]

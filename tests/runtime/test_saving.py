@@ -1,0 +1,120 @@
+"""Scenes kept as data and as programs, and taken up again."""
+
+import io
+import json
+from pathlib import Path
+
+import pytest
+
+import scenic
+from scenic.language.errors import SerializationError
+from scenic.pipeline import diagnose
+from tests.runtime.programs import fingerprint, scenario
+
+PROGRAM = """
+import random
+class Car:
+    tag: Uniform('a', 'b')
+ego = new Car at (Range(0, 5), Normal(0, 1)), facing (Range(0, 3), 0.2, 0.1)
+b = new Object at (Range(10, 15), 0), with shape CylinderShape(), with width Range(1, 2), with color (0.1, 0.2, 0.3)
+def lucky(x):
+    return random.random() < 0.5
+require lucky(ego)
+require[0.3] ego.position.x > 2.5
+require ego.position.x > 1
+mutate b
+param p = Range(0, 1), q = (1, Uniform(2, 3)), r = {'k': Range(0, 1)}
+"""
+
+
+@pytest.mark.parametrize("prune", [True, False])
+def test_a_saved_scene_is_the_same_again(tmp_path: Path, prune: bool) -> None:
+    program = tmp_path / "main.scenic"
+    program.write_text(PROGRAM)
+    loaded = scenic.load(program, prune=prune)
+    other = scenic.load(program, prune=not prune)
+    for scene in loaded.sample(10, seed=5):
+        scene.save(tmp_path / "one.scene")
+        for again in (loaded.replay(tmp_path / "one.scene"), other.replay(tmp_path / "one.scene")):
+            assert fingerprint(again) == fingerprint(scene)
+        assert loaded.sceneToBytes(again) == loaded.sceneToBytes(scene)
+    assert [file.name for file in tmp_path.iterdir() if file.suffix != ".scenic"] == ["one.scene"]
+
+
+def test_a_saved_scene_is_data_only(tmp_path: Path) -> None:
+    loaded = scenario(PROGRAM)
+    data = json.loads(loaded.sceneToBytes(loaded.sample(1, seed=0)[0]))
+    assert set(data) == {"format", "version", "program", "seed", "scene", "attempts", "numbers", "words"}
+    assert "lucky" not in json.dumps(data)
+
+
+def test_data_of_another_program_or_damaged_is_refused() -> None:
+    loaded = scenario(PROGRAM)
+    (scene,) = loaded.sample(1, seed=0)
+    data = loaded.sceneToBytes(scene)
+    for other in (scenario(PROGRAM + "\n"), scenario(PROGRAM, params={"p": 1})):
+        with pytest.raises(SerializationError, match="another program"):
+            other.sceneFromBytes(data)
+    assert fingerprint(scenario(PROGRAM + "\n").sceneFromBytes(data, verify=False)) == fingerprint(scene)
+    with pytest.raises(SerializationError, match="other random values"):
+        scenario("x = Range(0, 1)\nparam x = x").sceneFromBytes(data, verify=False)
+    for broken in (
+        b"",
+        b"{}",
+        b"\xff",
+        data[:-5],
+        data.replace(b"0x1.", b"0x9."),
+        data.replace(b'"version":1', b'"version":2'),
+    ):
+        with pytest.raises(SerializationError) as caught:
+            loaded.sceneFromBytes(broken)
+        found = diagnose(caught.value)
+        assert found is not None
+        assert (found.code, bool(found.help)) == ("SC607", True)
+
+
+def test_a_dumped_scene_compiles_back_to_itself() -> None:
+    loaded = scenario(PROGRAM)
+    for scene in loaded.sample(10, seed=1):
+        stream = io.StringIO()
+        scene.dumpAsScenicCode(stream)
+        assert stream.getvalue() == scene.dump()
+        (again,) = scenario(scene.dump()).sample(1, seed=99)
+        assert again.params == scene.params
+        for old, new in zip(scene.objects, again.objects, strict=True):
+            assert type(old).__name__ == type(new).__name__
+            kept = dict(old.properties)
+            for name in ("mutationScale", "allowCollisions", "regionContainedIn", "shape", "mutator"):
+                kept.pop(name)
+            for name, value in kept.items():
+                assert getattr(new, name) == pytest.approx(value) if isinstance(value, float) else True, name
+            assert tuple(new.position) == tuple(old.position)
+            assert new.orientation.approxEq(old.orientation)
+            assert repr(new.shape) == repr(old.shape)
+
+
+def test_scenes_conditioned_on_one_keep_what_was_named() -> None:
+    loaded = scenario(PROGRAM)
+    (first,) = loaded.sample(1, seed=3)
+    loaded.conditionOn(first, objects=[0], params=["p"])
+    later = loaded.sample(20, seed=4)
+    assert {tuple(item.egoObject.position) for item in later} == {tuple(first.egoObject.position)}
+    assert {item.egoObject.tag for item in later} == {first.egoObject.tag}
+    assert {item.params["p"] for item in later} == {first.params["p"]}
+    assert len({item.params["r"]["k"] for item in later}) == 20
+    assert len({item.objects[1].position.x for item in later}) == 20
+    assert fingerprint(loaded.sceneFromBytes(loaded.sceneToBytes(later[3])))[1:] == fingerprint(later[3])[1:]
+    loaded.conditionOn()
+    assert len({item.params["p"] for item in loaded.sample(5, seed=4)}) == 5
+
+
+def test_exceptions_of_the_program_keep_their_type_and_tell_the_place() -> None:
+    text = "x = Range(0, 1)\ndef f(v):\n    return {}[v]\nrequire f(x)\n"
+    with pytest.raises(KeyError) as caught:
+        scenario(text).sample(1, seed=0)
+    (note,) = caught.value.__notes__
+    assert "<string>:4:1: requirement on line 4 failed: KeyError" in note
+    assert "attempt 0 at scene 0" in note
+    with pytest.raises(KeyError) as caught:
+        scenario("x = 1\ny = {}[x]\n")
+    assert "<string>:2:5" in caught.value.__notes__[0]
