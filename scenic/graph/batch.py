@@ -67,6 +67,7 @@ class Batch:
         self._schedule: Schedule = scheduler.start
         self._groups: dict[Slot, _Group] = {}
         self._boxes: NDArray[np.intp] | None = None
+        self._rows: dict[Node, tuple[int, list[Any]]] = {}
 
     def __len__(self) -> int:
         return len(self.rows)
@@ -96,6 +97,7 @@ class Batch:
         wanted = {self._schedule.places[node].slot for node in nodes if not node.is_constant}
         self._groups = {slot: self._group(slot) for slot in sorted(wanted)}
         self._kept = []
+        self._rows = {}
         self._generation = 0
         for group in self._groups.values():
             group.generation = 0
@@ -148,8 +150,11 @@ class Batch:
 
     def value(self, node: Node, lane: int = 0) -> Any:
         """The Python value of ``node`` in one lane."""
-        column = self.column(node)
-        return self._codec.decode(node.kind, column[lane if len(column) > 1 else 0])
+        known = self._rows.get(node)
+        if known is None or known[0] != self._generation:
+            known = self._rows[node] = self._generation, self.column(node).tolist()
+        rows = known[1]
+        return self._codec.decode(node.kind, rows[lane if len(rows) > 1 else 0])
 
     def _place(self, node: Node) -> Place:
         place = self._schedule.places.get(node)
@@ -256,7 +261,8 @@ class Batch:
         lanes = max(len(column) for column in columns)
         first = columns[0]
         result = np.empty((*first.shape[1:], len(columns), lanes), dtype=first.dtype)
-        result = np.moveaxis(result, (-2, -1), (0, 1))
+        if result.ndim == 3:
+            result = result.transpose(1, 2, 0)
         for member, column in enumerate(columns):
             result[member] = column
         if all(status is None for status in statuses):
@@ -290,13 +296,14 @@ class Batch:
         rejected = np.zeros(lanes, dtype=np.bool_)
         error: Exception | None = None
         blank = _blank(step.kind)
+        plain = [column.tolist() for column in columns]
         for lane in range(lanes):
             if bad is not None and bad[lane] != OK:
                 rows.append(blank)
                 continue
             values = [
-                decode(kind, column[lane if len(column) > 1 else 0])
-                for kind, column in zip(call.kinds, columns, strict=True)
+                decode(kind, items[lane if len(items) > 1 else 0])
+                for kind, items in zip(call.kinds, plain, strict=True)
             ]
             try:
                 rows.append(encode(step.kind, function(*values)))
@@ -319,7 +326,7 @@ def _lanes(column: Column, lanes: NDArray[np.intp]) -> Column:
     """Some lanes of a group's columns; vectors stay stored component by component."""
     if column.ndim == 2:
         return column.take(lanes, axis=1)
-    return np.moveaxis(np.moveaxis(column, -1, 0).take(lanes, axis=2), 0, -1)
+    return column.transpose(2, 0, 1).take(lanes, axis=2).transpose(1, 2, 0)
 
 
 def _combined(statuses: Iterable[Status | None]) -> Status | None:

@@ -19,50 +19,36 @@ once, with one more leading dimension for the nodes.
 class Kind(Enum):
     """Static type of a node. The last four differ in meaning only: their columns hold Python objects."""
 
-    SCALAR = "scalar"  # float64, (n,)
-    INTEGER = "integer"  # int64, (n,); only where bounds prove that it cannot overflow
-    BOOLEAN = "boolean"  # bool, (n,)
-    VECTOR = "vector"  # float64, (n, 3): x, y, z in metres
-    ORIENTATION = "orientation"  # float64, (n, 4): unit quaternion x, y, z, w
-    KEY = "key"  # uint64, (n,): a random word that keys further draws
-    REGION = "region"
-    SHAPE = "shape"
-    OBJECT = "object"
-    OTHER = "other"
+    SCALAR = "scalar", np.float64
+    INTEGER = "integer", np.int64  # only where bounds prove that it cannot overflow
+    BOOLEAN = "boolean", np.bool_
+    VECTOR = "vector", np.float64, (3,)  # x, y, z in metres
+    ORIENTATION = "orientation", np.float64, (4,)  # unit quaternion x, y, z, w
+    KEY = "key", np.uint64  # a random word that keys further draws
+    REGION = "region", object
+    SHAPE = "shape", object
+    OBJECT = "object", object
+    OTHER = "other", object
 
-    @property
-    def is_number(self) -> bool:
-        """Whether Python's arithmetic applies to the column as it is."""
-        return self in _NUMBERS
+    dtype: np.dtype[Any]
+    """Element type of the column."""
+    trailing: tuple[int, ...]
+    """Shape of one lane's value."""
+    is_number: bool
+    """Whether Python's arithmetic applies to the column as it is."""
+    is_boxed: bool
+    """Whether columns of this kind hold Python objects."""
 
-    @property
-    def is_boxed(self) -> bool:
-        """Whether columns of this kind hold Python objects."""
-        return self in _BOXED
+    def __new__(cls, word: str, dtype: type[Any], trailing: tuple[int, ...] = ()) -> "Kind":
+        kind = object.__new__(cls)
+        kind._value_ = word
+        kind.dtype = np.dtype(dtype)
+        kind.trailing = trailing
+        kind.is_number = dtype in (np.float64, np.int64, np.bool_) and not trailing
+        kind.is_boxed = dtype is object
+        return kind
 
-    @property
-    def trailing(self) -> tuple[int, ...]:
-        """Shape of one lane's value."""
-        return _TRAILING.get(self, ())
-
-    @property
-    def dtype(self) -> np.dtype[Any]:
-        """Element type of the column."""
-        return _DTYPES.get(self, _OBJECT)
-
-
-_NUMBERS = frozenset({Kind.SCALAR, Kind.INTEGER, Kind.BOOLEAN})
-_BOXED = frozenset({Kind.REGION, Kind.SHAPE, Kind.OBJECT, Kind.OTHER})
-_TRAILING = {Kind.VECTOR: (3,), Kind.ORIENTATION: (4,)}
-_OBJECT = np.dtype(object)
-_DTYPES = {
-    Kind.SCALAR: np.dtype(np.float64),
-    Kind.INTEGER: np.dtype(np.int64),
-    Kind.BOOLEAN: np.dtype(np.bool_),
-    Kind.VECTOR: np.dtype(np.float64),
-    Kind.ORIENTATION: np.dtype(np.float64),
-    Kind.KEY: np.dtype(np.uint64),
-}
+    __hash__ = object.__hash__  # members are single; the enumeration's own hash runs in Python
 
 
 def join(*kinds: Kind) -> Kind:
@@ -82,7 +68,7 @@ class Codec(Protocol):
     """
 
     def decode(self, kind: Kind, row: Any) -> Any:
-        """The Python value of one lane."""
+        """The Python value of one lane, from its row as plain Python numbers (an item of ``column.tolist()``)."""
 
     def encode(self, kind: Kind, value: Any) -> Any:
         """The row for a Python value; raises ``TypeError`` when it does not fit the kind."""

@@ -74,7 +74,8 @@ def evaluated(call: Call, columns: Sequence[Column]) -> list[Any]:
         if status is not None:
             absent |= status != OK
     error: Exception | None = None
-    seeds = columns[0].tolist()
+    rows = {node: column.tolist() for node, column in zip(code.operands, columns, strict=True)}
+    seeds = rows[code.operands[0]]
     context = code.context
     was_evaluating = context is not None and context.evaluating
     token = current.set(context)
@@ -83,7 +84,7 @@ def evaluated(call: Call, columns: Sequence[Column]) -> list[Any]:
             context.evaluating = True
         with preserved():
             for lane in np.flatnonzero(~absent).tolist():
-                sample = Sample(_row(code, columns, lane), code.names)
+                sample = Sample(_row(rows, lane), code.names)
                 seed_globals(seeds[lane])
                 try:
                     args = [sample.value(item) for item in code.args]
@@ -104,12 +105,12 @@ def evaluated(call: Call, columns: Sequence[Column]) -> list[Any]:
     return results
 
 
-def _row(code: OpaqueCode, columns: Sequence[Column], lane: int) -> Callable[[Node], Any]:
-    by_node = dict(zip(code.operands, columns, strict=True))
+def _row(rows: Mapping[Node, list[Any]], lane: int) -> Callable[[Node], Any]:
+    """The value of each node in one lane."""
 
     def lookup(node: Node) -> Any:
-        column = by_node[node]
-        return CODEC.decode(node.kind, column[lane if len(column) > 1 else 0])
+        values = rows[node]
+        return CODEC.decode(node.kind, values[lane if len(values) > 1 else 0])
 
     return lookup
 

@@ -206,11 +206,11 @@ class Scenario:
         result = self._foreseen.take(seed, limit)
         if result is None:
             tasks = [Task(seed, 0), *(Task(next_seed, 0) for next_seed in self._foreseen.seeds())]
-            begun = time.perf_counter()
+            begun = time.thread_time()
             results = self._find(tasks, max_attempts=limit)
             result = next(results)
             others = list(_until_error(results))
-            self._foreseen.keep(others, limit, time.perf_counter() - begun)
+            self._foreseen.keep(others, limit, time.thread_time() - begun)
         if isinstance(result, Exhausted):
             raise RejectionException(exhaustion_message(result))
         return result, result.attempts

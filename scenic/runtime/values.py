@@ -368,10 +368,10 @@ class ValueCodec:
     def decode(self, kind: Kind, row: Any) -> Any:
         """The value of one lane."""
         if kind is Kind.VECTOR:
-            return Vector.of(row.tolist())
+            return Vector.of(row)
         if kind is Kind.ORIENTATION:
-            return Orientation.of(row.tolist())
-        return row.item() if kind.is_number else row
+            return Orientation.of(row)
+        return row
 
     def encode(self, kind: Kind, value: Any) -> Any:
         """The row of a value; raises ``TypeError`` where it is of another kind."""
@@ -483,7 +483,7 @@ def evaluate(operation: Operation, nodes: Sequence[Node], payload: Any) -> Any:
         raise InvalidScenarioError(
             f"this {operation.name} can never be drawn", span=here(), help="it rejects every sample"
         )
-    return CODEC.decode(kind, column[0])
+    return CODEC.decode(kind, column[:1].tolist()[0])
 
 
 def fixed_batch(nodes: Iterable[Node]) -> Batch:

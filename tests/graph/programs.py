@@ -33,10 +33,8 @@ class PlainCodec:
 
     def decode(self, kind, row):
         if kind is Kind.VECTOR:
-            return Triple(row.tolist())
-        if kind is Kind.ORIENTATION:
-            return tuple(row.tolist())
-        return row.item() if kind.is_number else row
+            return Triple(row)
+        return tuple(row) if kind is Kind.ORIENTATION else row
 
     def encode(self, kind, value):
         if kind.is_number and not isinstance(value, bool | int | float):

@@ -42,6 +42,7 @@ def choose(call: Call, masks: Sequence[Column], columns: Sequence[Column], *, fi
         for lane in np.flatnonzero(mask):
             if status is None or status[lane] == OK:
                 row = column[lane if len(column) > 1 else 0]
+                row = row if option.is_boxed else row.tolist()
                 result[lane] = call.codec.encode(kind, call.codec.decode(option, row))
     return result
 

@@ -14,7 +14,7 @@ from scenic.graph.operation import Call, Operation, Terms, always
 from scenic.graph.operations.encoding import root_of_squares, within
 from scenic.graph.operations.functions import length_bounds
 from scenic.graph.operations.narrowing import before_rounding, sides
-from scenic.graph.quaternions import normalize_angle
+from scenic.graph.quaternions import components_last, normalize_angle
 
 
 def _vector(_call: Call, x: Column, y: Column, z: Column) -> Column:
@@ -25,7 +25,7 @@ def _stacked(x: Column, y: Column, z: Column) -> Column:
     """Vectors of three columns of numbers; stored component by component, which suits what reads them."""
     result = np.empty((3, *np.broadcast_shapes(x.shape, y.shape, z.shape)))
     result[0], result[1], result[2] = x, y, z
-    return np.moveaxis(result, 0, -1)
+    return components_last(result)
 
 
 def _component(call: Call, vector: Column) -> Column:

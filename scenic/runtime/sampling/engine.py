@@ -180,7 +180,7 @@ class Engine:
         max_attempts: int,
         most: int,
     ) -> None:
-        begun = time.perf_counter()
+        begun = time.thread_time()
         chosen = self._pace.choose(min(len(pending), most), most)
         active = pending[: chosen.scenes]
         counts = [min(chosen.ahead, max_attempts - scene.attempts) for scene in active]
@@ -218,7 +218,7 @@ class Engine:
         for scene in active:
             if scene.number not in done and scene.attempts >= max_attempts:
                 done[scene.number] = self._give_up(scene, "attempts")
-        self._pace.add(len(owner), passed, time.perf_counter() - begun)
+        self._pace.add(len(owner), passed, time.thread_time() - begun)
 
     def replay(self, source: Source, task: Task, attempts: int) -> Accepted:
         """The scene of given draws, one lane of points of the cube; no check is made again."""
@@ -247,14 +247,14 @@ class Engine:
         for stage in self._stages.order(len(batch)):
             if len(batch) == 0:
                 break
-            begun = time.perf_counter()
+            begun = time.thread_time()
             batch.need(stage.nodes)
-            shared = (time.perf_counter() - begun) / len(stage.checks)
+            shared = (time.thread_time() - begun) / len(stage.checks)
             rows = batch.rows
             alive = np.ones(len(rows), dtype=np.bool_)
             for index in stage.checks:
                 check = checks[index]
-                begun = time.perf_counter()
+                begun = time.thread_time()
                 verdict = check.test(batch)
                 if inactive is not None and check.probability < 1:
                     verdict = _unless(verdict, inactive[rows, self._soft.index(index)])
@@ -264,7 +264,7 @@ class Engine:
                     earlier = verdict.failed & (check.position < failed_at[rows])
                     failures[rows[earlier]] = index
                     failed_at[rows[earlier]] = check.position
-                seconds = shared + time.perf_counter() - begun
+                seconds = shared + time.thread_time() - begun
                 self._stages.measure(index, len(rows), seconds, int(np.count_nonzero(passes)))
                 alive &= passes
             if not alive.all():

@@ -18,7 +18,7 @@ _MOST: Final = 256
 """Scenes foreseen at a time, at most."""
 
 _SECONDS: Final = 0.05
-"""A refill takes at most about as long as this."""
+"""Processor time that a refill may take before fewer scenes are foreseen."""
 
 
 class Foreseen:
@@ -31,7 +31,7 @@ class Foreseen:
         """How many seeds to foresee: twice as many after a success, none after a miss."""
         self._used = False
         self._foreseen = 0
-        self._each: float = 0.0
+        self._seconds: float = 0.0
 
     def take(self, seed: int, limit: int) -> Scene | Exhausted | None:
         """The scene of a seed, if it has been foreseen under the same limit of candidates."""
@@ -44,11 +44,10 @@ class Foreseen:
     def seeds(self) -> list[int]:
         """The seeds that ``random`` will give next, as many as past success suggests."""
         if self._used or not self._foreseen:
-            self._count = min(_MOST, 2 * self._count + 1)
+            # The cost of a round is mostly the same whatever its size, so that only a long refill ends the growth.
+            self._count = min(_MOST, 2 * self._count + 1) if self._seconds < _SECONDS else self._count // 2
         else:
             self._count = 0
-        if self._each > 0:
-            self._count = min(self._count, max(0, int(_SECONDS / self._each) - 1))
         self._foreseen = self._count
         if not self._count:
             return []
@@ -57,8 +56,8 @@ class Foreseen:
         return [copy.getrandbits(SEED_BITS) for _ in range(self._count)]
 
     def keep(self, scenes: Sequence[Scene | Exhausted], limit: int, seconds: float) -> None:
-        """Keep the scenes of the seeds foreseen last; ``seconds`` is what they took, with the first one."""
-        self._each = seconds / (1 + len(scenes))
+        """Keep the scenes of the seeds foreseen last; ``seconds`` is the processor time that they took, with the first one."""
+        self._seconds = seconds
         self._scenes = {scene.seed: scene for scene in scenes}
         self._limit = limit
         self._used = False

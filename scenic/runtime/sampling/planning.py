@@ -172,7 +172,7 @@ def _required(
     """The check of a built-in requirement: none where it always holds; an error, ``never``, where it never does."""
     span, filename = place
     if not node.is_constant:
-        return [NodeCheck(node, label, span, BUILT_IN, cost=20, separate=True, filename=filename)]
+        return [NodeCheck(node, label, span, BUILT_IN, cost=20, filename=filename)]
     if not node.value:
         raise InvalidScenarioError(never, span=span, filename=filename, help=help)
     return []
