@@ -1,7 +1,7 @@
 """The kinds of values a node may have, and how a column of each looks."""
 
 from enum import Enum, unique
-from typing import Any, Protocol
+from typing import Any, Protocol, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,7 +39,7 @@ class Kind(Enum):
     is_boxed: bool
     """Whether columns of this kind hold Python objects."""
 
-    def __new__(cls, word: str, dtype: type[Any], trailing: tuple[int, ...] = ()) -> "Kind":
+    def __new__(cls, word: str, dtype: type[Any], trailing: tuple[int, ...] = ()) -> Self:
         kind = object.__new__(cls)
         kind._value_ = word
         kind.dtype = np.dtype(dtype)
