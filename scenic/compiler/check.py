@@ -3,15 +3,18 @@
 This one function is what ``scenic check`` and the language server show.
 """
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
+from types import MappingProxyType
 
-from scenic.compiler.compile import compile_text
+from scenic.compiler.compile import Checked, Warned, check_parsed, compile_text
 from scenic.compiler.ignores import apply_ignores
+from scenic.compiler.parser import ParseResult
 from scenic.compiler.surroundings import SurroundingsOf
 from scenic.language.diagnostics import Diagnostic
+from scenic.language.source import Source
 
-__all__ = ["check_text", "in_order"]
+__all__ = ["check_again", "check_text", "in_order"]
 
 
 def check_text(
@@ -25,6 +28,24 @@ def check_text(
     compiled = compile_text(text, filename=filename, thorough=True, surroundings_of=surroundings_of)
     found = in_order(compiled.diagnostics, filename=filename)
     return in_order(apply_ignores(text, found, filename=filename), filename=filename)
+
+
+def check_again(
+    parsed: ParseResult,
+    source: Source,
+    *,
+    surroundings_of: SurroundingsOf | None = None,
+    warned: Warned = MappingProxyType({}),
+    go_on: Callable[[], None] = lambda: None,
+) -> Checked:
+    """The same for a program that is parsed already, and of which an earlier version may have been checked.
+
+    See `scenic.compiler.compile.check_parsed` for ``warned`` and ``go_on``.
+    """
+    checked = check_parsed(parsed, source, surroundings_of=surroundings_of, warned=warned, go_on=go_on)
+    found = in_order(checked.diagnostics, filename=source.filename)
+    kept = apply_ignores(source.text, found, filename=source.filename)
+    return Checked(in_order(kept, filename=source.filename), checked.warned)
 
 
 def in_order(diagnostics: Iterable[Diagnostic], *, filename: str) -> tuple[Diagnostic, ...]:

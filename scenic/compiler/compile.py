@@ -2,19 +2,22 @@
 
 import ast
 import warnings
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from types import CodeType
+from types import CodeType, MappingProxyType
+from typing import TypeAlias
 
 from scenic.compiler.checks import lint
 from scenic.compiler.lowering import lower
-from scenic.compiler.parser import DEEPEST, parse, recursion_limit
+from scenic.compiler.parser import DEEPEST, ParseResult, ordinary_recursion, parse, recursion_limit
 from scenic.compiler.resolver import resolve_within
+from scenic.compiler.scopes import Resolution
 from scenic.compiler.surroundings import SurroundingsOf
 from scenic.language.diagnostics import Diagnostic, Severity
 from scenic.language.source import Source
 from scenic.language.spans import Span
 
-__all__ = ["Compiled", "Lowered", "compile_text", "lower_text"]
+__all__ = ["Checked", "Compiled", "Lowered", "Warned", "check_parsed", "compile_text", "lower_text"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,6 +36,18 @@ class Compiled:
     diagnostics: tuple[Diagnostic, ...]
 
 
+Warned: TypeAlias = Mapping[str, tuple[tuple[int, str], ...]]
+"""What Python warns of in statements of the top level, by their text: lines from 0, and messages."""
+
+
+@dataclass(frozen=True, slots=True)
+class Checked:
+    """What was found in a program; ``warned`` saves the next check of it from compiling what has not changed."""
+
+    diagnostics: tuple[Diagnostic, ...]
+    warned: Warned
+
+
 def lower_text(
     text: str, *, filename: str, thorough: bool = False, surroundings_of: SurroundingsOf | None = None
 ) -> Lowered:
@@ -43,16 +58,14 @@ def lower_text(
     """
     source = Source(text, filename)
     parsed = parse(source.text, filename=filename)
-    found = list(parsed.diagnostics)
+    found, resolution = _checked(parsed, source, thorough, surroundings_of)
+    if resolution is None:
+        return Lowered(None, found)
     try:
         with recursion_limit(DEEPEST):
-            resolution, surroundings = resolve_within(parsed.tree, source, surroundings_of)
-            hints = lint(parsed.tree, source, resolution, surroundings) if thorough else ()
-            found = list(dict.fromkeys([*found, *resolution.diagnostics, *hints]))
-            module = None if _has_errors(found) else lower(parsed.tree, resolution)
+            return Lowered(lower(parsed.tree, resolution), found)
     except RecursionError:
         return Lowered(None, (*found, _too_deep(source)))
-    return Lowered(module, tuple(found))
 
 
 def compile_text(
@@ -66,24 +79,155 @@ def compile_text(
     if lowered.module is None:
         return Compiled(None, lowered.diagnostics)
     source = Source(text, filename)
-    code: CodeType | None = None
+    code, error, warned = _compiled(lowered.module, source)
     found = list(lowered.diagnostics)
+    if error is not None:
+        found.append(error)
+    found += [_python_warning(line, message, source) for line, message in warned]
+    return Compiled(code, tuple(found))
+
+
+def check_parsed(
+    parsed: ParseResult,
+    source: Source,
+    *,
+    surroundings_of: SurroundingsOf | None = None,
+    warned: Warned = MappingProxyType({}),
+    go_on: Callable[[], None] = lambda: None,
+) -> Checked:
+    """All that `compile_text` says of a program when it is ``thorough``, without making code of what has not changed.
+
+    ``warned`` is that of an earlier check of the program. ``go_on`` is called between steps, and may raise to stop.
+    """
+    found, resolution = _checked(parsed, source, True, surroundings_of, go_on)
+    if resolution is None:
+        return Checked(found, warned)
+    go_on()
+    blocks = _blocks(parsed.tree, source)
+    fresh = [block for block in blocks if block.text not in warned]
+    if warned and len(fresh) * 2 < len(blocks) and not _is_one_piece(parsed.tree):
+        statements = [each for block in fresh for each in block.statements]
+        part = ast.Module(body=statements, type_ignores=[])
+        error, noted = _complaints(part, resolution, source)
+        if error is None:
+            known = {block.text: warned[block.text] for block in blocks if block.text in warned}
+            return _with_warnings(found, source, blocks, {**_by_block(fresh, noted), **known})
+    # Python stops at the first error, whichever it takes for that: all must be there.
+    error, noted = _complaints(parsed.tree, resolution, source)
+    if error is not None:
+        warnings_found = [_python_warning(line, message, source) for line, message in noted]
+        return Checked((*found, error, *warnings_found), MappingProxyType({}))
+    return _with_warnings(found, source, blocks, _by_block(blocks, noted))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Block:
+    """The statements of the top level that begin on one line, with their text, from ``line`` on."""
+
+    line: int
+    text: str
+    statements: list[ast.stmt]
+
+
+def _blocks(tree: ast.Module, source: Source) -> list[_Block]:
+    found: list[_Block] = []
+    end = 0
+    for node in tree.body:
+        decorators = getattr(node, "decorator_list", None)
+        line = decorators[0].lineno if decorators else node.lineno
+        last = node.end_lineno or node.lineno
+        if found and line <= end:
+            before = found.pop()
+            line, statements = before.line, [*before.statements, node]
+        else:
+            statements = [node]
+        end = max(end, last)
+        found.append(_Block(line, "\n".join(source.lines[line - 1 : end]), statements))
+    return found
+
+
+def _is_one_piece(tree: ast.Module) -> bool:
+    """Whether what Python says of one statement of the top level depends on others."""
+    return any(
+        isinstance(node, ast.Global) or (isinstance(node, ast.ImportFrom) and node.module == "__future__")
+        for node in tree.body
+    )
+
+
+def _by_block(
+    blocks: Sequence[_Block], noted: Sequence[tuple[int, str]]
+) -> dict[str, tuple[tuple[int, str], ...]]:
+    return {
+        block.text: tuple(
+            (line - block.line, message)
+            for line, message in noted
+            if block.line <= line <= block.line + block.text.count("\n")
+        )
+        for block in blocks
+    }
+
+
+def _with_warnings(
+    found: tuple[Diagnostic, ...], source: Source, blocks: Sequence[_Block], warned: Warned
+) -> Checked:
+    noted = [
+        _python_warning(block.line + line, message, source)
+        for block in blocks
+        for line, message in warned[block.text]
+    ]
+    return Checked((*found, *noted), warned)
+
+
+def _checked(
+    parsed: ParseResult,
+    source: Source,
+    thorough: bool,
+    surroundings_of: SurroundingsOf | None,
+    go_on: Callable[[], None] = lambda: None,
+) -> tuple[tuple[Diagnostic, ...], Resolution | None]:
+    """What is wrong with a parsed program; its names, if it has no errors."""
+    found = list(parsed.diagnostics)
+    try:
+        with recursion_limit(DEEPEST):
+            go_on()
+            resolution, surroundings = resolve_within(parsed.tree, source, surroundings_of)
+            go_on()
+            hints = lint(parsed.tree, source, resolution, surroundings) if thorough else ()
+    except RecursionError:
+        return (*found, _too_deep(source)), None
+    found = list(dict.fromkeys([*found, *resolution.diagnostics, *hints]))
+    return tuple(found), None if _has_errors(found) else resolution
+
+
+def _complaints(
+    tree: ast.Module, resolution: Resolution, source: Source
+) -> tuple[Diagnostic | None, list[tuple[int, str]]]:
+    """What Python says of a program: an error, and warnings by line."""
+    try:
+        with recursion_limit(DEEPEST):
+            module = lower(tree, resolution)
+    except RecursionError:
+        return _too_deep(source), []
+    return _compiled(module, source)[1:]
+
+
+def _compiled(
+    module: ast.Module, source: Source
+) -> tuple[CodeType | None, Diagnostic | None, list[tuple[int, str]]]:
+    """The code of a lowered program, the error that Python stopped at, and what it warned of: lines and messages."""
+    code: CodeType | None = None
+    error: Diagnostic | None = None
     with warnings.catch_warnings(record=True) as noted:
         warnings.simplefilter("always")
         try:
-            code = compile(lowered.module, filename, "exec", dont_inherit=True)
-        except SyntaxError as error:
-            found.append(_python_error(error, source))
+            with ordinary_recursion():
+                code = compile(module, source.filename, "exec", dont_inherit=True)
+        except SyntaxError as problem:
+            error = _python_error(problem, source)
         except RecursionError:
-            found.append(_too_deep(source))
-    seen: set[tuple[int, str]] = set()
-    for warning in noted:
-        key = (warning.lineno, str(warning.message))
-        # A condition is compiled twice, so it may be warned about twice.
-        if key not in seen:
-            seen.add(key)
-            found.append(_python_warning(*key, source))
-    return Compiled(code, tuple(found))
+            error = _too_deep(source)
+    # A condition is compiled twice, so it may be warned about twice.
+    return code, error, list(dict.fromkeys((warning.lineno, str(warning.message)) for warning in noted))
 
 
 def _has_errors(diagnostics: list[Diagnostic]) -> bool:

@@ -6,11 +6,12 @@ mistake goes through `scenic.compiler.recovery`, which explains the mistakes and
 
 import ast
 import sys
+import threading
 from bisect import bisect_left, bisect_right
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, replace
-from typing import Final
+from typing import Final, TypeAlias
 
 from scenic.compiler.actions import Actions, Problem
 from scenic.compiler.actions.common import Place
@@ -19,7 +20,7 @@ from scenic.compiler.closing_words import closed_operands, in_parentheses
 from scenic.compiler.garbage import no_garbage_collection
 from scenic.compiler.generated import WORDS, build_parser
 from scenic.compiler.lexer import lex
-from scenic.compiler.tokens import Tokens
+from scenic.compiler.tokens import ENDMARKER, Tokens
 from scenic.language.diagnostics import Diagnostic, Edit, Fix, Label
 from scenic.language.source import Source
 from scenic.language.spans import Span
@@ -38,6 +39,23 @@ class ParseResult:
     diagnostics: tuple[Diagnostic, ...]
 
 
+Statements: TypeAlias = Mapping[int, tuple[list[ast.stmt], int]]
+"""Statements of the top level by the token with which they begin: what was made of one, and the token after it."""
+
+Known: TypeAlias = Callable[[Tokens], Statements]
+"""Finds the statements in some tokens that are known already."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Parsed:
+    """What was made of some tokens: the tree, what is wrong, and where the statements of the top level stand."""
+
+    tokens: Tokens
+    tree: ast.Module
+    problems: list[Problem]
+    statements: Statements
+
+
 def parse(text: str, *, filename: str = "<string>") -> ParseResult:
     """Parse a Scenic program.
 
@@ -45,65 +63,96 @@ def parse(text: str, *, filename: str = "<string>") -> ParseResult:
     `scenic.compiler.tree.ErrorStatement` nodes in the tree, and what is wrong with them is in the diagnostics.
     """
     with no_garbage_collection():
-        tokens, tree, problems = _parse_text(text)
-        if not problems and not tokens.diagnostics:
-            return ParseResult(tree, ())
+        parsed = parse_tokens(lex(text, WORDS))
+        return result_of(parsed, filename)
+
+
+def result_of(parsed: Parsed, filename: str) -> ParseResult:
+    """The tree, and what is wrong as diagnostics."""
+    tokens, problems = parsed.tokens, parsed.problems
+    if not problems and not tokens.diagnostics:
+        return ParseResult(parsed.tree, ())
     source = Source(tokens.text, filename)
     diagnostics = {replace(each, filename=filename) for each in tokens.diagnostics}
     diagnostics.update(_diagnostic(each, source) for each in problems)
-    return ParseResult(tree, tuple(sorted(diagnostics, key=_order)))
+    return ParseResult(parsed.tree, tuple(sorted(diagnostics, key=_order)))
 
 
-def _parse_text(text: str) -> tuple[Tokens, ast.Module, list[Problem]]:
-    """The tokens and the tree of a text, and what is wrong with it, as far as the lexer did not notice."""
-    tokens = lex(text, WORDS)
-    tree, problems = _fast(tokens)
-    if tree is not None:
-        return tokens, tree, problems
+def parse_tokens(tokens: Tokens, known: Known = lambda _tokens: {}) -> Parsed:
+    """Parse the tokens of a text, as the plain lexer gives them; statements that are ``known`` are taken over."""
+    text = tokens.text
+    parsed = _fast(tokens, known)
+    if parsed is not None:
+        return parsed
     # Statements that are wrong because an operator took a closing word from another are read once more without that.
     operands = closed_operands(tokens)
     if operands:
-        again = in_parentheses(tokens, operands)
-        tree, problems = _fast(again)
-        if tree is not None:
-            return again, tree, problems
+        parsed = _fast(in_parentheses(tokens, operands), known)
+        if parsed is not None:
+            return parsed
     # Now the text is known to be wrong.
     tokens = lex_carefully(text, WORDS)
     operands = closed_operands(tokens) if operands else []
     for _ in range(2):
         if not operands:
             break
-        again = in_parentheses(tokens, operands)
-        tree, problems = _recovered(again)
-        wrong = [problem.place[:2] for problem in problems]
+        parsed = _recovered(in_parentheses(tokens, operands), known)
+        wrong = [problem.place[:2] for problem in parsed.problems]
         wrong += [(each.span.line, each.span.column) for each in tokens.diagnostics if each.span is not None]
         wrong.sort()
         right = [
             each for each in operands if bisect_left(wrong, each.start) == bisect_right(wrong, each.stop)
         ]
         if len(right) == len(operands):
-            return again, tree, problems
+            return parsed
         operands = right
-    return tokens, *_recovered(tokens)
+    return _recovered(tokens, known)
 
 
-def _fast(tokens: Tokens) -> tuple[ast.Module | None, list[Problem]]:
-    """The tree of a text that has no mistake of syntax, with what else is wrong."""
+def _fast(tokens: Tokens, known: Known) -> Parsed | None:
+    """What is made of the tokens of a text that has no mistake of syntax; ``None`` if it has one."""
+    if tokens.diagnostics:
+        return None
     actions = Actions(tokens)
-    tree = _parse_file(tokens, actions)
-    return tree, list(actions.problems.values())
+    kinds, *others = tokens.lists()
+    run = build_parser(kinds, *others, actions)
+    old = dict(known(tokens))
+    statements: dict[int, tuple[list[ast.stmt], int]] = {}
+    position = 0
+    before: int | None = None
+    try:
+        while kinds[position] != ENDMARKER:
+            found = old.get(position)
+            if found is None:
+                node, end = run("statement", position)
+                if node is None:
+                    if before not in old:
+                        return None
+                    # The known statement before may go on with what is no statement by itself.
+                    position = before
+                    del old[position], statements[position]
+                    before = None
+                    continue
+                found = (node if isinstance(node, list) else [node], end)
+            statements[position] = found
+            before, position = position, found[1]
+    except RecursionError:
+        return None
+    tree = actions.module([node for found, _ in statements.values() for node in found])
+    return Parsed(tokens, tree, list(actions.problems.values()), statements)
 
 
-def _recovered(tokens: Tokens) -> tuple[ast.Module, list[Problem]]:
-    """The tree of a text with mistakes, and what they are."""
+def _recovered(tokens: Tokens, known: Known) -> Parsed:
+    """What is made of the tokens of a text with mistakes."""
     # A text without mistakes does not wait for all that explains them.
     from scenic.compiler.recovery import Recovery
 
     actions = Actions(tokens)
-    recovery = Recovery(tokens, actions)
+    recovery = Recovery(tokens, actions, known(tokens))
     with recursion_limit(DEEPEST):
         tree = recovery.file()
-    return tree, [*actions.problems.values(), *recovery.problems]
+    problems = [*actions.problems.values(), *recovery.problems]
+    return Parsed(tokens, tree, problems, recovery.top_level)
 
 
 def _diagnostic(problem: Problem, source: Source) -> Diagnostic:
@@ -136,24 +185,49 @@ def _order(diagnostic: Diagnostic) -> tuple[int, int, str, str]:
     return (span.line, span.column, diagnostic.code, diagnostic.message)
 
 
-def _parse_file(tokens: Tokens, actions: Actions) -> ast.Module | None:
-    """The tree of a text without mistakes, ``None`` if it has one."""
-    if tokens.diagnostics:
-        return None
-    run = build_parser(*tokens.lists(), actions)
-    try:
-        tree: ast.Module | None = run("file", 0)[0]
-    except RecursionError:
-        return None
-    return tree
+class _Recursion:
+    """The limit of recursion, which all threads share: raised as long as any of them asks for that."""
+
+    def __init__(self) -> None:
+        self._changed = threading.Condition()
+        self._deep = 0
+        self._ordinary = sys.getrecursionlimit()
+
+    @contextmanager
+    def raised(self, limit: int) -> Iterator[None]:
+        with self._changed:
+            if not self._deep:
+                self._ordinary = sys.getrecursionlimit()
+            self._deep += 1
+            sys.setrecursionlimit(max(limit, sys.getrecursionlimit()))
+        try:
+            yield
+        finally:
+            with self._changed:
+                self._deep -= 1
+                if not self._deep:
+                    sys.setrecursionlimit(self._ordinary)
+                    self._changed.notify_all()
+
+    @contextmanager
+    def ordinary(self) -> Iterator[None]:
+        with self._changed:
+            while self._deep:
+                self._changed.wait()
+            yield
 
 
-@contextmanager
-def recursion_limit(limit: int) -> Iterator[None]:
+_RECURSION: Final = _Recursion()
+
+
+def recursion_limit(limit: int) -> AbstractContextManager[None]:
     """Allow deeper recursion of Python functions for a while."""
-    before = sys.getrecursionlimit()
-    sys.setrecursionlimit(max(limit, before))
-    try:
-        yield
-    finally:
-        sys.setrecursionlimit(before)
+    return _RECURSION.raised(limit)
+
+
+def ordinary_recursion() -> AbstractContextManager[None]:
+    """Wait until no other thread needs deeper recursion, and let none begin: for what recurses on the stack of C.
+
+    Not to be used where the same thread has allowed deeper recursion.
+    """
+    return _RECURSION.ordinary()

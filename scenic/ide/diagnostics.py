@@ -2,8 +2,7 @@
 
 from collections.abc import Callable
 
-from scenic.compiler.check import check_text
-from scenic.ide.snapshot import Snapshot
+from scenic.ide.snapshot import Cancelled, Snapshot
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.selection import Rules
 from scenic.project.index import Project
@@ -33,14 +32,17 @@ def found_in(
 ) -> tuple[Diagnostic, ...]:
     """The same for a snapshot, which keeps what was found as long as ``stamp`` is the same.
 
-    ``stamp`` stands for the state of all other files. ``go_on`` is called between steps, and may raise to stop.
+    ``stamp`` stands for the state of all other files. ``go_on`` is called between steps, and may raise
+    `Cancelled` to stop.
     """
     go_on()
 
     def find() -> tuple[Diagnostic, ...]:
         try:
             surroundings_of = None if project is None else surroundings_in(project)
-            return check_text(snapshot.text, filename=snapshot.filename, surroundings_of=surroundings_of)
+            return snapshot.check(surroundings_of, go_on)
+        except Cancelled:
+            raise
         except Exception as error:  # noqa: BLE001 - an editor must go on; the fault is shown in the document
             return (
                 Diagnostic(

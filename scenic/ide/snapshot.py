@@ -6,19 +6,27 @@ from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Iterator
 from typing import Any, TypeVar
 
+from scenic.compiler.check import check_again
+from scenic.compiler.compile import Warned
 from scenic.compiler.generated import WORDS
-from scenic.compiler.lexer import lex
-from scenic.compiler.parser import DEEPEST, ParseResult, parse, recursion_limit
+from scenic.compiler.incremental import Revision, revise
+from scenic.compiler.parser import DEEPEST, ParseResult, recursion_limit
 from scenic.compiler.resolver import resolve
 from scenic.compiler.scopes import Resolution, Scope
+from scenic.compiler.surroundings import SurroundingsOf
 from scenic.compiler.tokens import NAME, Tokens
 from scenic.compiler.traversal import parts
+from scenic.language.diagnostics import Diagnostic
 from scenic.language.source import Source
 from scenic.language.spans import Span
 
-__all__ = ["Snapshot"]
+__all__ = ["Cancelled", "Snapshot"]
 
 _T = TypeVar("_T")
+
+
+class Cancelled(Exception):
+    """Raised by work that nobody waits for any more."""
 
 
 class Snapshot:
@@ -30,6 +38,8 @@ class Snapshot:
 
     def __init__(self, text: str, filename: str, *, before: "Snapshot | None" = None) -> None:
         self.source = Source(text, filename)
+        self._before = None if before is None else before._latest()
+        self._warned: Warned = {} if before is None else before._warned
         self._lock = threading.Lock()
         self._making: dict[str, threading.RLock] = {}
         self._known: dict[str, Any] = {}
@@ -47,12 +57,17 @@ class Snapshot:
     @property
     def tokens(self) -> Tokens:
         """The tokens of the text."""
-        return self._once("tokens", lambda: lex(self.source.text, WORDS))
+        return self.revision.tokens
+
+    @property
+    def revision(self) -> Revision:
+        """The text as it was lexed and parsed, for the next version to take over what stays the same."""
+        return self._once("revision", self._revise)
 
     @property
     def parsed(self) -> ParseResult:
         """The tree and what is wrong with the syntax."""
-        return self._once("parsed", lambda: parse(self.source.text, filename=self.filename))
+        return self.revision.result
 
     @property
     def tree(self) -> ast.Module:
@@ -158,6 +173,26 @@ class Snapshot:
                     self._known[key] = make()
         value: _T = self._known[key]
         return value
+
+    def check(
+        self, surroundings_of: SurroundingsOf | None, go_on: Callable[[], None] = lambda: None
+    ) -> tuple[Diagnostic, ...]:
+        """What the static check finds. Compiles only what no version before has been found right in."""
+        checked = check_again(
+            self.parsed, self.source, surroundings_of=surroundings_of, warned=self._warned, go_on=go_on
+        )
+        self._warned = checked.warned
+        return checked.diagnostics
+
+    def _latest(self) -> Revision | None:
+        """The revision, if it has been made; otherwise the one before it."""
+        revision: Revision | None = self._known.get("revision", self._before)
+        return revision
+
+    def _revise(self) -> Revision:
+        revision = revise(self.source.text, self._before, filename=self.filename)
+        self._before = None
+        return revision
 
     def _resolve(self) -> Resolution:
         with recursion_limit(DEEPEST):

@@ -11,12 +11,13 @@ from collections.abc import Callable, Sequence
 from typing import Final, TypeAlias
 
 from scenic.ide.diagnostics import found_in
+from scenic.ide.snapshot import Cancelled
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.errors import ScenicError
 from scenic.language.source import Source, read_source
 from scenic.lsp.convert import Json, Lines, to_diagnostic
 from scenic.lsp.documents import Document
-from scenic.lsp.loop import Cancelled, Job, Timer
+from scenic.lsp.loop import Job, Timer
 from scenic.lsp.session import Session
 from scenic.lsp.uris import to_uri
 from scenic.project.index import Project

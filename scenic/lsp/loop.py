@@ -8,7 +8,9 @@ from collections.abc import Callable
 from itertools import count
 from typing import Final, TypeAlias
 
-__all__ = ["Cancelled", "Job", "Loop", "Timer", "Worker"]
+from scenic.ide.snapshot import Cancelled
+
+__all__ = ["Job", "Loop", "Timer", "Worker"]
 
 Action: TypeAlias = Callable[[], None]
 
@@ -72,10 +74,6 @@ class Loop:
                     pass
             if self._timers and self._timers[0][0] <= time.monotonic():
                 heapq.heappop(self._timers)[2].run()
-
-
-class Cancelled(Exception):
-    """Raised in a job that nobody waits for any more."""
 
 
 class Job:

@@ -12,12 +12,13 @@ from contextlib import redirect_stdout
 from enum import Enum, auto
 from typing import Any, BinaryIO, Final
 
+from scenic.ide.snapshot import Cancelled
 from scenic.lsp import parent, reading
 from scenic.lsp.checks import Checks
 from scenic.lsp.errors import ErrorCode, ProtocolError
 from scenic.lsp.handlers import NOTIFICATIONS, REQUESTS
 from scenic.lsp.handlers.lifecycle import initialize
-from scenic.lsp.loop import Cancelled, Job, Loop, Worker
+from scenic.lsp.loop import Job, Loop, Worker
 from scenic.lsp.session import Deferred, Session
 from scenic.lsp.wire import Message, Reader, Writer
 

@@ -19,7 +19,7 @@ def test_a_fault_of_the_compiler_is_shown(monkeypatch: pytest.MonkeyPatch) -> No
     def fail(*_: object, **__: object) -> None:
         raise KeyError("oops")
 
-    monkeypatch.setattr(module, "check_text", fail)
+    monkeypatch.setattr(module.Snapshot, "check", fail)
     (found,) = diagnostics("x = 1\n", filename="a.scenic")
     assert found.code == "SC999"
     assert "KeyError" in found.message
