@@ -183,7 +183,10 @@ class Operation:
     """An entry of the table.
 
     ``batch`` is the NumPy reading. ``python`` is Python's own function of the same meaning where there is one: it
-    evaluates constants and lanes that hold Python objects, so that results equal Python's. ``bounds``, ``inverse`` and
+    evaluates constants and lanes that hold Python objects, so that results equal Python's. ``scalar`` is the batch reading's
+    formula on plain Python numbers, ``(payload, *operands)`` with vectors and quaternions as tuples: what is computed at
+    once (while a program is loaded, during a simulation) takes no arrays, and the result is the same in every bit. It
+    gives ``NotImplemented`` for operands that it leaves to the other readings. ``bounds``, ``inverse`` and
     ``solver`` may be missing: analysis then knows nothing of the result, never something wrong. An operation that is
     not ``strict`` decides itself which operands' faults and rejections reach its result (a choice ignores the options
     that were not drawn). ``pure`` operations with constant operands are evaluated at once; equal ones are one node.
@@ -199,6 +202,7 @@ class Operation:
     batch: BatchReading
     doc: str
     python: Callable[..., Any] | None = None
+    scalar: Callable[..., Any] | None = None
     bounds: BoundsReading | None = None
     inverse: InverseReading | None = None
     solver: SolverReading | None = None

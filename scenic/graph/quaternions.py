@@ -7,12 +7,19 @@ new X and the new Y, with the rotation matrix ``Rz(yaw) Rx(pitch) Ry(roll)``; ``
 p, then q expressed in p's frame.
 """
 
-from typing import Final, TypeAlias
+import math
+from typing import Any, Final, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 Array: TypeAlias = npt.NDArray[np.float64]
+
+Parts: TypeAlias = tuple[Any, Any, Any, Any]
+"""Components x, y, z, w: arrays of one shape, or plain floats."""
+
+Triple: TypeAlias = tuple[Any, Any, Any]
+"""Components of a vector, likewise."""
 
 TAU: Final = 2 * np.pi
 
@@ -23,14 +30,23 @@ _GIMBAL: Final = 1e-9
 def multiply(p: npt.ArrayLike, q: npt.ArrayLike) -> Array:
     """The composition ``p q`` of quaternions ``(..., 4)``: q expressed in the frame p."""
     a, b = _rows(p), _rows(q)
-    px, py, pz, pw = a[..., 0], a[..., 1], a[..., 2], a[..., 3]
-    qx, qy, qz, qw = b[..., 0], b[..., 1], b[..., 2], b[..., 3]
+    p_parts = a[..., 0], a[..., 1], a[..., 2], a[..., 3]
+    q_parts = b[..., 0], b[..., 1], b[..., 2], b[..., 3]
     result = _empty(np.broadcast_shapes(a.shape[:-1], b.shape[:-1]), 4)
-    result[..., 0] = pw * qx + px * qw + py * qz - pz * qy
-    result[..., 1] = pw * qy + py * qw + pz * qx - px * qz
-    result[..., 2] = pw * qz + pz * qw + px * qy - py * qx
-    result[..., 3] = pw * qw - px * qx - py * qy - pz * qz
+    result[..., 0], result[..., 1], result[..., 2], result[..., 3] = product(p_parts, q_parts)
     return result
+
+
+def product(p: Parts, q: Parts) -> Parts:
+    """As `multiply`, over components: of arrays, or of plain floats."""
+    px, py, pz, pw = p
+    qx, qy, qz, qw = q
+    return (
+        pw * qx + px * qw + py * qz - pz * qy,
+        pw * qy + py * qw + pz * qx - px * qz,
+        pw * qz + pz * qw + px * qy - py * qx,
+        pw * qw - px * qx - py * qy - pz * qz,
+    )
 
 
 def conjugate(q: npt.ArrayLike) -> Array:
@@ -46,30 +62,43 @@ def rotate(q: npt.ArrayLike, v: npt.ArrayLike) -> Array:
     Uses ``v + 2w (u × v) + 2 u × (u × v)`` with ``u = (x, y, z)``; the identity gives back v exactly.
     """
     a, b = _rows(q), _rows(v)
-    x, y, z, w = a[..., 0], a[..., 1], a[..., 2], a[..., 3]
-    vx, vy, vz = b[..., 0], b[..., 1], b[..., 2]
+    parts = a[..., 0], a[..., 1], a[..., 2], a[..., 3]
+    result = _empty(np.broadcast_shapes(a.shape[:-1], b.shape[:-1]), 3)
+    result[..., 0], result[..., 1], result[..., 2] = turned(parts, (b[..., 0], b[..., 1], b[..., 2]))
+    return result
+
+
+def turned(q: Parts, v: Triple) -> Triple:
+    """As `rotate`, over components: of arrays, or of plain floats."""
+    x, y, z, w = q
+    vx, vy, vz = v
     tx = 2 * (y * vz - z * vy)
     ty = 2 * (z * vx - x * vz)
     tz = 2 * (x * vy - y * vx)
-    result = _empty(np.broadcast_shapes(a.shape[:-1], b.shape[:-1]), 3)
-    result[..., 0] = vx + w * tx + (y * tz - z * ty)
-    result[..., 1] = vy + w * ty + (z * tx - x * tz)
-    result[..., 2] = vz + w * tz + (x * ty - y * tx)
-    return result
+    return vx + w * tx + (y * tz - z * ty), vy + w * ty + (z * tx - x * tz), vz + w * tz + (x * ty - y * tx)
 
 
 def from_euler(yaw: npt.ArrayLike, pitch: npt.ArrayLike, roll: npt.ArrayLike) -> Array:
     """The quaternions ``(..., 4)`` of Euler angles in radians, each of shape ``(...)``."""
-    half_yaw, half_pitch, half_roll = (_rows(angle) * 0.5 for angle in (yaw, pitch, roll))
+    angles = tuple(_rows(angle) for angle in (yaw, pitch, roll))
+    result = _empty(np.broadcast_shapes(*(angle.shape for angle in angles)), 4)
+    result[..., 0], result[..., 1], result[..., 2], result[..., 3] = of_euler(*angles)
+    return result
+
+
+def of_euler(yaw: Any, pitch: Any, roll: Any) -> Parts:
+    """As `from_euler`, over arrays or plain floats."""
+    half_yaw, half_pitch, half_roll = yaw * 0.5, pitch * 0.5, roll * 0.5
+    # NumPy's functions also for floats: the C library's may differ from them in the last bit.
     cy, sy = np.cos(half_yaw), np.sin(half_yaw)
     cp, sp = np.cos(half_pitch), np.sin(half_pitch)
     cr, sr = np.cos(half_roll), np.sin(half_roll)
-    result = _empty(np.broadcast_shapes(cy.shape, cp.shape, cr.shape), 4)
-    result[..., 0] = cy * sp * cr - sy * cp * sr
-    result[..., 1] = cy * cp * sr + sy * sp * cr
-    result[..., 2] = sy * cp * cr + cy * sp * sr
-    result[..., 3] = cy * cp * cr - sy * sp * sr
-    return result
+    return (
+        cy * sp * cr - sy * cp * sr,
+        cy * cp * sr + sy * sp * cr,
+        sy * cp * cr + cy * sp * sr,
+        cy * cp * cr - sy * sp * sr,
+    )
 
 
 def from_yaw(yaw: npt.ArrayLike) -> Array:
@@ -104,6 +133,39 @@ def to_euler(q: npt.ArrayLike) -> tuple[Array, Array, Array]:
     half_difference = np.where(up, half_sum, half_difference)
     half_sum = np.where(down, half_difference, half_sum)
     return normalize_angle(half_sum + half_difference), pitch, normalize_angle(half_sum - half_difference)
+
+
+def euler_angle(q: tuple[float, float, float, float], index: int) -> float:
+    """One of the angles of `to_euler` of a quaternion of plain floats; equal to it in every bit."""
+    x, y, z, w = q
+    sum_sine, sum_cosine = z + y, w + x
+    difference_sine, difference_cosine = z - y, w - x
+    plus = float(np.hypot(sum_sine, sum_cosine))
+    minus = float(np.hypot(difference_sine, difference_cosine))
+    if index == 1:
+        return 2 * float(np.arctan2(plus, minus)) - np.pi / 2
+    half_sum = float(np.arctan2(sum_sine, sum_cosine))
+    half_difference = float(np.arctan2(difference_sine, difference_cosine))
+    if minus <= _GIMBAL * plus:
+        half_difference = half_sum
+    if plus <= _GIMBAL * minus:
+        half_sum = half_difference
+    return normal_angle(half_sum + half_difference if index == 0 else half_sum - half_difference)
+
+
+def normal_angle(angle: float) -> float:
+    """As `normalize_angle`, of a plain float."""
+    if abs(angle) <= np.pi:
+        return angle
+    if not math.isfinite(angle):
+        return math.nan
+    turns = math.ceil((angle - np.pi) / TAU) if angle > 0 else math.floor((angle + np.pi) / TAU)
+    moved = angle - TAU * turns
+    if moved > np.pi:
+        moved -= TAU
+    elif moved < -np.pi:
+        moved += TAU
+    return min(max(moved, -np.pi), np.pi)
 
 
 def to_matrix(q: npt.ArrayLike) -> Array:

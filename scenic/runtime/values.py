@@ -236,7 +236,7 @@ class Orientation(OrientationMethods, Hooks):
     @classmethod
     def of(cls, row: Any) -> Self:
         """The orientation of a unit quaternion x, y, z, w."""
-        self = cls()
+        self = object.__new__(cls)
         self._row = (row[0], row[1], row[2], row[3])
         return self
 
@@ -458,12 +458,33 @@ def operate(name: str, *operands: Any, payload: Any = None) -> Any:
 
 def apply(operation: Operation, *operands: Any, payload: Any = None) -> Any:
     """Apply any operation to values: at once when all are definite, as a new node otherwise; later where one is lazy."""
+    if operation.scalar is not None:
+        result = _at_once(operation.scalar, payload, operands)
+        if result is not NotImplemented:
+            return result
     if any(isinstance(operand, Lazy) for operand in operands):
         return defer(apply, operation, *operands, payload=payload)
     nodes = [as_node(operand) for operand in operands]
     if operation.pure and all(node.is_constant for node in nodes):
         return evaluate(operation, nodes, payload)
     return as_value(construction.apply(operation, nodes, payload, here()))
+
+
+def _at_once(scalar: Callable[..., Any], payload: Any, operands: Sequence[Any]) -> Any:
+    """The value of an operation on plain numbers, vectors and orientations; ``NotImplemented`` where there are others."""
+    rows = []
+    for operand in operands:
+        cls = type(operand)
+        if cls is float or cls is int:
+            rows.append(operand)
+        elif cls is Vector or cls is Orientation:
+            rows.append(operand._row)
+        else:
+            return NotImplemented
+    result = scalar(payload, *rows)
+    if type(result) is tuple:
+        return Vector.of(result) if len(result) == 3 else Orientation.of(result)
+    return result
 
 
 def evaluate(operation: Operation, nodes: Sequence[Node], payload: Any) -> Any:

@@ -133,6 +133,43 @@ def _absolute_inverse(_payload: Any, result: Bounds, a: Bounds) -> list[Bounds]:
     return [Bounds(lower, upper)]
 
 
+# On plain numbers; vectors are triples.
+
+
+def _add_scalar(_payload: Any, a: Any, b: Any) -> Any:
+    if type(a) is tuple:
+        return (a[0] + b[0], a[1] + b[1], a[2] + b[2]) if type(b) is tuple and len(a) == 3 else NotImplemented
+    return NotImplemented if type(b) is tuple else a + b
+
+
+def _subtract_scalar(_payload: Any, a: Any, b: Any) -> Any:
+    if type(a) is tuple:
+        return (a[0] - b[0], a[1] - b[1], a[2] - b[2]) if type(b) is tuple and len(a) == 3 else NotImplemented
+    return NotImplemented if type(b) is tuple else a - b
+
+
+def _multiply_scalar(_payload: Any, a: Any, b: Any) -> Any:
+    if type(a) is tuple:
+        return NotImplemented if type(b) is tuple or len(a) != 3 else (a[0] * b, a[1] * b, a[2] * b)
+    if type(b) is tuple:
+        return (a * b[0], a * b[1], a * b[2]) if len(b) == 3 else NotImplemented
+    return a * b
+
+
+def _divide_scalar(_payload: Any, a: Any, b: Any) -> Any:
+    if type(b) is tuple:
+        return NotImplemented
+    if type(a) is tuple:
+        return (a[0] / b, a[1] / b, a[2] / b) if len(a) == 3 else NotImplemented
+    return a / b
+
+
+def _negative_scalar(_payload: Any, a: Any) -> Any:
+    if type(a) is tuple:
+        return (-a[0], -a[1], -a[2]) if len(a) == 3 else NotImplemented
+    return -a
+
+
 # Simpler nodes of the same value.
 
 
@@ -193,6 +230,7 @@ OPERATIONS = (
         solver=componentwise(lambda _terms, a, b: a + b),
         stacks=True,
         rewrite=_without_zero,
+        scalar=_add_scalar,
     ),
     Operation(
         "subtract",
@@ -205,6 +243,7 @@ OPERATIONS = (
         solver=componentwise(lambda _terms, a, b: a - b),
         stacks=True,
         rewrite=_minus_zero,
+        scalar=_subtract_scalar,
     ),
     Operation(
         "multiply",
@@ -217,6 +256,7 @@ OPERATIONS = (
         solver=componentwise(lambda _terms, a, b: a * b),
         stacks=True,
         rewrite=_times_one,
+        scalar=_multiply_scalar,
     ),
     Operation(
         "divide",
@@ -230,6 +270,7 @@ OPERATIONS = (
         faults=may_divide_by_zero,
         stacks=True,
         rewrite=_over_one,
+        scalar=_divide_scalar,
     ),
     Operation(
         "negative",
@@ -241,6 +282,7 @@ OPERATIONS = (
         inverse=_negative_inverse,
         solver=componentwise(lambda _terms, a: -a),
         stacks=True,
+        scalar=_negative_scalar,
     ),
     Operation(
         "positive",

@@ -15,7 +15,7 @@ from scenic.graph.operation import Call, Operation, Terms, always
 from scenic.graph.operations.encoding import root_of_squares, within
 from scenic.graph.operations.narrowing import sides, where
 from scenic.graph.operations.possibilities import may_be_infinite
-from scenic.graph.quaternions import normalize_angle
+from scenic.graph.quaternions import normal_angle, normalize_angle
 
 
 def _periodic(function: Callable[[float], float]) -> Callable[[Call, Column], Column]:
@@ -148,6 +148,7 @@ OPERATIONS = (
         solver=_wave_solver,
         faults=may_be_infinite,
         stacks=True,
+        scalar=lambda _payload, angle: math.sin(angle),
     ),
     Operation(
         "cos",
@@ -159,6 +160,7 @@ OPERATIONS = (
         solver=_wave_solver,
         faults=may_be_infinite,
         stacks=True,
+        scalar=lambda _payload, angle: math.cos(angle),
     ),
     Operation(
         "hypot",
@@ -182,6 +184,7 @@ OPERATIONS = (
         solver=_normalize_solver,
         stacks=True,
         rewrite=_already_normal,
+        scalar=lambda _payload, angle: normal_angle(float(angle)),
     ),
 )
 

@@ -26,6 +26,20 @@ def _from_euler(_call: Call, yaw: Column, pitch: Column, roll: Column) -> Column
     return quaternions.from_euler(*(angle.astype(np.float64) for angle in (yaw, pitch, roll)))
 
 
+def _from_euler_scalar(_payload: Any, yaw: float, pitch: float, roll: float) -> Any:
+    if not math.isfinite(yaw + pitch + roll):
+        return NotImplemented
+    x, y, z, w = quaternions.of_euler(float(yaw), float(pitch), float(roll))
+    return float(x), float(y), float(z), float(w)
+
+
+def _from_yaw_scalar(_payload: Any, yaw: float) -> Any:
+    if not math.isfinite(yaw):
+        return NotImplemented
+    half = yaw * 0.5
+    return 0.0, 0.0, float(np.sin(half)), float(np.cos(half))
+
+
 def _from_yaw(_call: Call, yaw: Column) -> Column:
     return quaternions.from_yaw(yaw)
 
@@ -201,6 +215,7 @@ FROM_YAW: Final = Operation(
     "The orientation of a rotation about the vertical axis (radians).",
     bounds=_from_yaw_bounds,
     stacks=True,
+    scalar=_from_yaw_scalar,
 )
 
 
@@ -268,6 +283,7 @@ OPERATIONS = (
         bounds=_from_euler_bounds,
         stacks=True,
         rewrite=_only_yaw,
+        scalar=_from_euler_scalar,
     ),
     Operation(
         "compose",
@@ -277,6 +293,7 @@ OPERATIONS = (
         bounds=_compose_bounds,
         stacks=True,
         rewrite=_with_identity,
+        scalar=lambda _payload, outer, inner: quaternions.product(outer, inner),
     ),
     Operation(
         "inverse",
@@ -287,6 +304,7 @@ OPERATIONS = (
         inverse=_inverse_inverse,
         stacks=True,
         rewrite=_twice_inverse,
+        scalar=lambda _payload, q: (-q[0], -q[1], -q[2], q[3]),
     ),
     Operation(
         "rotate",
@@ -298,6 +316,7 @@ OPERATIONS = (
         solver=_rotate_solver,
         stacks=True,
         rewrite=_not_turned,
+        scalar=lambda _payload, orientation, vector: quaternions.turned(orientation, vector),
     ),
     Operation(
         "euler",
@@ -308,5 +327,6 @@ OPERATIONS = (
         solver=_euler_solver,
         stacks=True,
         rewrite=_angle_of_yaw,
+        scalar=lambda payload, orientation: quaternions.euler_angle(orientation, payload),
     ),
 )

@@ -14,7 +14,7 @@ from scenic.graph.operation import Call, Operation, Terms, always
 from scenic.graph.operations.encoding import root_of_squares, within
 from scenic.graph.operations.functions import length_bounds
 from scenic.graph.operations.narrowing import before_rounding, sides
-from scenic.graph.quaternions import components_last, normalize_angle
+from scenic.graph.quaternions import components_last, normal_angle, normalize_angle
 
 
 def _vector(_call: Call, x: Column, y: Column, z: Column) -> Column:
@@ -74,6 +74,40 @@ def _normalized(_call: Call, vector: Column) -> Column:
     length = _norm(_call, vector)
     # The zero vector has no direction and stays as it is.
     return np.asarray(vector / np.where(length == 0, 1.0, length)[..., np.newaxis])
+
+
+# On plain numbers; vectors are triples. NumPy's functions, where the C library's may differ in the last bit.
+
+
+def _norm_scalar(_payload: Any, vector: Any) -> float:
+    x, y, z = vector
+    return math.sqrt(x * x + y * y + z * z)
+
+
+def _dot_scalar(_payload: Any, a: Any, b: Any) -> Any:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def _cross_scalar(_payload: Any, a: Any, b: Any) -> Any:
+    (ax, ay, az), (bx, by, bz) = a, b
+    return ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
+
+
+def _distance_scalar(_payload: Any, a: Any, b: Any) -> float:
+    return _norm_scalar(None, (a[0] - b[0], a[1] - b[1], a[2] - b[2]))
+
+
+def _azimuth_scalar(_payload: Any, vector: Any) -> float:
+    return normal_angle(float(np.arctan2(vector[1], vector[0])) - np.pi / 2)
+
+
+def _altitude_scalar(_payload: Any, vector: Any) -> float:
+    return float(np.arctan2(vector[2], np.hypot(vector[0], vector[1])))
+
+
+def _normalized_scalar(_payload: Any, vector: Any) -> Any:
+    length = _norm_scalar(None, vector) or 1.0
+    return vector[0] / length, vector[1] / length, vector[2] / length
 
 
 def _vector_bounds(_payload: Any, *parts: Bounds) -> Bounds:
@@ -252,6 +286,7 @@ OPERATIONS = (
         inverse=_vector_inverse,
         solver=_vector_solver,
         stacks=True,
+        scalar=lambda _payload, x, y, z: (float(x), float(y), float(z)),
     ),
     Operation(
         "component",
@@ -263,6 +298,7 @@ OPERATIONS = (
         solver=_component_solver,
         stacks=True,
         rewrite=_part_of_vector,
+        scalar=lambda payload, vector: vector[payload],
     ),
     Operation(
         "norm",
@@ -273,6 +309,7 @@ OPERATIONS = (
         inverse=_norm_inverse,
         solver=_norm_solver,
         stacks=True,
+        scalar=_norm_scalar,
     ),
     Operation(
         "dot",
@@ -283,6 +320,7 @@ OPERATIONS = (
         inverse=_dot_inverse,
         solver=_dot_solver,
         stacks=True,
+        scalar=_dot_scalar,
     ),
     Operation(
         "cross",
@@ -292,6 +330,7 @@ OPERATIONS = (
         bounds=_cross_bounds,
         solver=_cross_solver,
         stacks=True,
+        scalar=_cross_scalar,
     ),
     Operation(
         "distance",
@@ -302,6 +341,7 @@ OPERATIONS = (
         inverse=_distance_inverse,
         solver=_distance_solver,
         stacks=True,
+        scalar=_distance_scalar,
     ),
     Operation(
         "azimuth",
@@ -311,6 +351,7 @@ OPERATIONS = (
         bounds=_azimuth_bounds,
         solver=_azimuth_solver,
         stacks=True,
+        scalar=_azimuth_scalar,
     ),
     Operation(
         "altitude",
@@ -320,6 +361,7 @@ OPERATIONS = (
         bounds=_altitude_bounds,
         solver=_altitude_solver,
         stacks=True,
+        scalar=_altitude_scalar,
     ),
     Operation(
         "normalized",
@@ -329,5 +371,6 @@ OPERATIONS = (
         bounds=_normalized_bounds,
         solver=_normalized_solver,
         stacks=True,
+        scalar=_normalized_scalar,
     ),
 )
