@@ -38,6 +38,7 @@ def _definitions(table: Mapping[str, Any]) -> dict[str, PropertyDefinition]:
 def _combine_properties(cls: type["Point"]) -> None:
     chain = [base.__dict__["_definitions"] for base in cls.__mro__ if "_definitions" in base.__dict__]
     cls.scenic_properties = MappingProxyType(combine(chain))
+    cls._resolutions = {}
 
 
 class Point:
@@ -46,6 +47,8 @@ class Point:
     scenic_kind: ClassVar[Kind] = Kind.OBJECT
     scenic_properties: ClassVar[Mapping[str, Property]]
     """All properties of the class, with what their definitions combine to."""
+    _resolutions: ClassVar[dict[Any, Any]]
+    """What combinations of specifiers come to; see `scenic.runtime.resolution`."""
     _definitions: ClassVar[Mapping[str, PropertyDefinition]] = _definitions(
         {
             "position": builtin(lambda _: vector(0, 0, 0), attributes=("dynamic",)),
@@ -109,6 +112,11 @@ class Point:
         # Reached only for what is not stored yet: a property of a sampled instance, or a vector's attribute.
         stored = object.__getattribute__(self, "__dict__")
         source = stored.get("_source")
+        whole = stored if source is None else source.__dict__
+        if "_implied" in whole and name not in whole and name in type(self).scenic_properties:
+            _fill(self if source is None else source, name)
+            if source is None:
+                return stored[name]
         if source is not None and name in source.__dict__:
             value = stored["_sample"].value(source.__dict__[name])
             stored[name] = value
@@ -172,11 +180,11 @@ class OrientedPoint(Point):
         return self.orientation
 
     def relativePosition(self, offset: Any) -> Any:
-        """The global position of ``offset``, given in this frame."""
+        """The global position of ``offset``, a vector given in this frame."""
         return operate("add", self.position, operate("rotate", self.orientation, to_vector(offset)))
 
     def relativize(self, offset: Any) -> "OrientedPoint":
-        """The oriented point at ``offset``, given in this frame, with this orientation."""
+        """The oriented point at ``offset``, a vector given in this frame, turned as this one is."""
         return oriented_point(self.relativePosition(offset), self.orientation)
 
     def distancePast(self, point: Any) -> Any:
@@ -186,12 +194,16 @@ class OrientedPoint(Point):
 
     def _placed(self, x: float, y: float, z: float) -> "OrientedPoint":
         """The oriented point at these multiples of the half extents, in this frame."""
+        return oriented_point(self._place(x, y, z), self.orientation)
+
+    def _place(self, x: float, y: float, z: float) -> Any:
+        """The global point at these multiples of the half extents, in this frame."""
         offset = vector(
             operate("multiply", x / 2, to_scalar(self.width)),
             operate("multiply", y / 2, to_scalar(self.length)),
             operate("multiply", z / 2, to_scalar(self.height)),
         )
-        return self.relativize(offset)
+        return self.relativePosition(offset)
 
 
 class Object(OrientedPoint):
@@ -258,9 +270,7 @@ class Object(OrientedPoint):
     @property
     def corners(self) -> tuple[Any, ...]:
         """The eight corners of the bounding box in this object's frame, as global points."""
-        return tuple(
-            self._placed(x, y, z).position for z in (1, -1) for x, y in ((1, 1), (-1, 1), (-1, -1), (1, -1))
-        )
+        return tuple(self._place(x, y, z) for z in (1, -1) for x, y in ((1, 1), (-1, 1), (-1, -1), (1, -1)))
 
     def containsPoint(self, point: Any) -> Any:
         """Whether the shape holds a point."""
@@ -346,22 +356,24 @@ for _name in ("visibleRegion", "boundingBox", "inradius", "planarInradius"):
 
 
 def oriented_point(position: Any, orientation: Any) -> OrientedPoint:
-    """An oriented point that the program did not create with ``new``: all other properties at their defaults."""
+    """An oriented point that the program did not create with ``new``.
+
+    All its other properties are at their defaults, which are computed when they are asked for.
+    """
     values: dict[str, Any] = {"position": position, "parentOrientation": to_orientation(orientation)}
     instance = OrientedPoint._make(values)
     for name in ("yaw", "pitch", "roll"):
         instance.__dict__[name] = 0.0
     instance.__dict__["orientation"] = instance.parentOrientation
     instance.__dict__["heading"] = instance.orientation.yaw
-    for name in OrientedPoint.scenic_properties:
-        _fill(instance, name)
+    instance.__dict__["_implied"] = True
     return instance
 
 
-def _fill(instance: OrientedPoint, name: str) -> None:
+def _fill(instance: Any, name: str) -> None:
     """Give a property its default, after those that the default reads."""
     if name not in instance.__dict__:
-        entry = OrientedPoint.scenic_properties[name]
+        entry = type(instance).scenic_properties[name]
         for needed in entry.dependencies:
             _fill(instance, needed)
         instance.__dict__[name] = entry.default(instance)

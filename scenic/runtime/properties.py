@@ -6,7 +6,8 @@ Section 5.2 of the specification.
 import math
 import warnings
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from types import MappingProxyType
 from typing import Any
 
 from scenic.language.errors import InvalidScenarioError, ScenicValueError
@@ -52,11 +53,12 @@ class Property:
     additive: bool
     dynamic: bool
     final: bool
+    dependencies: frozenset[str] = field(init=False)
+    """Properties that the default reads."""
 
-    @property
-    def dependencies(self) -> frozenset[str]:
-        """Properties that the default reads."""
-        return frozenset(name for definition in self.definitions for name in definition.dependencies)
+    def __post_init__(self) -> None:
+        names = (name for definition in self.definitions for name in definition.dependencies)
+        object.__setattr__(self, "dependencies", frozenset(names))
 
     def default(self, instance: Any) -> Any:
         """The default for one instance; additive properties give all definitions, most derived first."""
@@ -122,26 +124,39 @@ _ANGLES = frozenset({"yaw", "pitch", "roll"})
 
 def normalised(name: str, value: Any) -> Any:
     """A property's value as instances store it: vectors, scalars and angles in (-pi, pi] by name."""
-    if name in _VECTORS:
-        return to_vector(value, f"property {name!r}")
-    if name in _SCALARS:
-        return to_scalar(value, f"property {name!r}")
-    if name in _ANGLES:
-        return operate("normalize angle", to_scalar(value, f"property {name!r}"))
-    if name == "parentOrientation":
-        return to_orientation(value, "property 'parentOrientation'")
-    if name == "viewAngles":
-        return _view_angles(value)
-    if name == "color":
-        return _colour(value)
-    if name == "shape" and not isinstance(value, Shape | Random):
-        raise wrong_type("a shape", value, "property 'shape'")
-    if name == "regionContainedIn" and not isinstance(value, Region | Random | None):
-        raise wrong_type("a region", value, "property 'regionContainedIn'")
+    normalise = _NORMAL.get(name)
+    return value if normalise is None else normalise(name, value)
+
+
+def _vector(name: str, value: Any) -> Any:
+    return value if type(value) is Vector else to_vector(value, f"property {name!r}")
+
+
+def _scalar(name: str, value: Any) -> Any:
+    return value if type(value) is float else to_scalar(value, f"property {name!r}")
+
+
+def _angle(name: str, value: Any) -> Any:
+    return operate("normalize angle", _scalar(name, value))
+
+
+def _orientation(name: str, value: Any) -> Any:
+    return to_orientation(value, f"property {name!r}")
+
+
+def _shape(name: str, value: Any) -> Any:
+    if not isinstance(value, Shape | Random):
+        raise wrong_type("a shape", value, f"property {name!r}")
     return value
 
 
-def _view_angles(value: Any) -> Any:
+def _container(name: str, value: Any) -> Any:
+    if not isinstance(value, Region | Random | None):
+        raise wrong_type("a region", value, f"property {name!r}")
+    return value
+
+
+def _view_angles(_name: str, value: Any) -> Any:
     """A pair of angles, at most all around; random ones are limited when they are used."""
     if isinstance(value, Random):
         return value
@@ -167,7 +182,7 @@ def _view_angles(value: Any) -> Any:
     return tuple(limited)
 
 
-def _colour(value: Any) -> Any:
+def _colour(_name: str, value: Any) -> Any:
     if value is None or isinstance(value, Random):
         return value
     parts = tuple(value) if isinstance(value, tuple | list) else ()
@@ -202,3 +217,17 @@ def update(instance: Any, changes: Mapping[str, Any]) -> None:
 
     for name in derived.keys() - changes.keys():
         settle(name)
+
+
+_NORMAL: Mapping[str, Callable[[str, Any], Any]] = MappingProxyType(
+    {
+        **dict.fromkeys(_VECTORS, _vector),
+        **dict.fromkeys(_SCALARS, _scalar),
+        **dict.fromkeys(_ANGLES, _angle),
+        "parentOrientation": _orientation,
+        "viewAngles": _view_angles,
+        "color": _colour,
+        "shape": _shape,
+        "regionContainedIn": _container,
+    }
+)

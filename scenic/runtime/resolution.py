@@ -15,23 +15,46 @@ from scenic.runtime.objects import TWO_D_DEFAULTS, Object, Point
 from scenic.runtime.properties import Property, normalised
 from scenic.runtime.shapes import BoxShape
 from scenic.runtime.specifiers import Specifier
-from scenic.runtime.values import is_number
+from scenic.runtime.values import Orientation, Vector, is_number
 
 MISSPELT = 3
 """Names of at most so many letters are near to others by chance."""
 
 
 @dataclass(frozen=True, slots=True)
+class Step:
+    """One specifier's turn: which of its values are taken.
+
+    ``number`` is its place among the specifiers of the statement; those of defaults come with the step.
+    """
+
+    number: int | None
+    default: Specifier | None
+    names: tuple[str, ...]
+    modifies: bool
+
+    def specifier(self, given: Sequence[Specifier]) -> Specifier:
+        """The specifier, ``given`` those of the statement."""
+        if self.default is not None:
+            return self.default
+        assert self.number is not None
+        return given[self.number]
+
+
+@dataclass(frozen=True, slots=True)
 class Resolution:
-    """Specifiers in the order in which to evaluate them, with the properties each one owns and modifies."""
+    """Specifiers in the order in which to evaluate them, with what is taken of each.
 
-    order: tuple[Specifier, ...]
-    owns: Mapping[Specifier, frozenset[str]]
-    modifies: Mapping[Specifier, frozenset[str]]
-    providers: Mapping[str, Specifier]
+    It depends on the kinds of the specifiers alone, not on their values: a class keeps its resolutions.
+    """
+
+    steps: tuple[Step, ...]
+    providers: Mapping[str, Step]
     """Whose value of a property the others read: its modifier if it has one, else its owner."""
+    names: tuple[str, ...]
+    """All properties, those of the class first."""
 
-    def provider(self, name: str, reader: Specifier) -> Specifier:
+    def provider(self, name: str, reader: Specifier) -> Step:
         """Who provides a property that ``reader`` reads."""
         provider = self.providers.get(name)
         if provider is None:
@@ -41,52 +64,75 @@ class Resolution:
         return provider
 
 
+_PLAIN = frozenset({bool, int, float, str, type(None), Vector, Orientation})
+"""Types of values that are never lazy and hold nothing that is."""
+
+
 def build(cls: type[Point], specifiers: Sequence[Specifier], *, mode_2d: bool = False) -> Any:
     """A new instance of ``cls``.
 
     Raises `SpecifierError` where the specifiers do not fit together or to the class, `ScenicTypeError` and
     `ScenicValueError` where a value does not fit its property.
     """
-    resolution = resolve(cls, specifiers, class_defaults(cls, mode_2d=mode_2d))
+    resolution = resolution_of(cls, specifiers, mode_2d=mode_2d)
     instance = cls._make({})
     values = instance.__dict__
-    done: set[Specifier] = set()
+    done: set[Step] = set()
+    is_object = issubclass(cls, Object)
 
-    def evaluate(specifier: Specifier) -> None:
-        if specifier in done:
+    def evaluate(step: Step) -> None:
+        if step in done:
             return
-        done.add(specifier)
-        modifying = resolution.modifies.get(specifier, frozenset())
-        names = resolution.owns.get(specifier, frozenset()) | modifying
-        function = specifier.modify if modifying and specifier.modify else specifier.evaluate
+        done.add(step)
+        specifier = step.specifier(specifiers)
+        function = specifier.modify if step.modifies and specifier.modify else specifier.evaluate
         try:
             offered = function(instance)
-            for name in sorted(reads_of([offered[name] for name in names])):
+            for name in sorted(_reads(offered, step.names)):
                 # A default that is lazy, which shows only when it is evaluated.
-                evaluate(resolution.provider(name, specifier))
+                provider = resolution.provider(name, specifier)
+                evaluate(provider)
                 if name not in values:
-                    raise _circle([specifier, resolution.provider(name, specifier)])
-            for name in sorted(names):
-                values[name] = normalised(name, settle(offered[name], instance))
-                if issubclass(cls, Object):
-                    _check_value(name, values[name], mode_2d=mode_2d)
+                    raise _circle([specifier, provider.specifier(specifiers)])
+            for name in step.names:
+                value = offered[name]
+                if type(value) not in _PLAIN:
+                    value = settle(value, instance)
+                value = values[name] = normalised(name, value)
+                if is_object:
+                    _check_value(name, value, mode_2d=mode_2d)
         except Located as error:
             if not specifier.is_default:
                 error.span = specifier.span or error.span
             raise
 
-    for specifier in resolution.order:
-        evaluate(specifier)
+    for step in resolution.steps:
+        evaluate(step)
     values.pop(MEMO, None)
-    values["_names"] = tuple(sorted(values, key=list(_order(cls, values)).index))
+    values["_names"] = resolution.names
     if issubclass(cls, Object) and mode_2d:
         position = values["position"]
         values["position"] = normalised("position", (position.x, position.y, 0))
     return instance
 
 
-def _order(cls: type[Point], values: Mapping[str, Any]) -> dict[str, None]:
-    return dict.fromkeys([*cls.scenic_properties, *values])
+def _reads(offered: Mapping[str, Any], names: Sequence[str]) -> frozenset[str]:
+    """The properties that lazy values among those offered read."""
+    lazy = [value for name in names if type(value := offered[name]) not in _PLAIN]
+    return reads_of(lazy) if lazy else frozenset()
+
+
+def resolution_of(cls: type[Point], specifiers: Sequence[Specifier], *, mode_2d: bool) -> Resolution:
+    """As `resolve`; what has been resolved for the class before is not resolved again."""
+    kinds = tuple(
+        (item.name, tuple(item.priorities.items()), item.dependencies, item.modifiable) for item in specifiers
+    )
+    known = cls._resolutions
+    resolution = known.get((mode_2d, kinds))
+    if resolution is None:
+        resolution = resolve(cls, specifiers, class_defaults(cls, mode_2d=mode_2d))
+        known[mode_2d, kinds] = resolution
+    return resolution
 
 
 def class_defaults(cls: type[Point], *, mode_2d: bool) -> dict[str, Property]:
@@ -131,8 +177,21 @@ def resolve(
             claims[name] = _default_specifier(name, entry)
     owns = _by_specifier(claims)
     modifies = _by_specifier(modifiers)
-    order = _topological(owns, modifies, claims, modifiers)
-    return Resolution(order, owns, modifies, {**claims, **modifiers})
+    numbers = {specifier: number for number, specifier in enumerate(specifiers)}
+    steps = {
+        specifier: Step(
+            numbers.get(specifier),
+            None if specifier in numbers else specifier,
+            tuple(sorted(owns.get(specifier, frozenset()) | modifies.get(specifier, frozenset()))),
+            specifier in modifies,
+        )
+        for specifier in _topological(owns, modifies, claims, modifiers)
+    }
+    return Resolution(
+        tuple(steps.values()),
+        {name: steps[specifier] for name, specifier in {**claims, **modifiers}.items()},
+        tuple(dict.fromkeys([*cls.scenic_properties, *claims])),
+    )
 
 
 def _reject_duplicates(specifiers: Sequence[Specifier]) -> None:
