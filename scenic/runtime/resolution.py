@@ -31,7 +31,8 @@ class Step:
     number: int | None
     default: Specifier | None
     names: tuple[str, ...]
-    modifies: bool
+    modifies: frozenset[str]
+    """Those of ``names`` whose value another specifier has given before."""
 
     def specifier(self, given: Sequence[Specifier]) -> Specifier:
         """The specifier, ``given`` those of the statement."""
@@ -183,7 +184,7 @@ def resolve(
             numbers.get(specifier),
             None if specifier in numbers else specifier,
             tuple(sorted(owns.get(specifier, frozenset()) | modifies.get(specifier, frozenset()))),
-            specifier in modifies,
+            modifies.get(specifier, frozenset()),
         )
         for specifier in _topological(owns, modifies, claims, modifiers)
     }

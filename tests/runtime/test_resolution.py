@@ -29,9 +29,16 @@ def specifier(
 def owners(*specifiers: Specifier) -> tuple[dict[str, str], dict[str, str], list[str]]:
     """Who owns and who modifies each property that is not at its default, and the order of evaluation."""
     found = resolve(Object, specifiers, class_defaults(Object, mode_2d=False))
-    owns = {name: item.name for item, names in found.owns.items() for name in names if item in specifiers}
-    modifies = {name: item.name for item, names in found.modifies.items() for name in names}
-    return owns, modifies, [item.name for item in found.order if item in specifiers]
+    steps = [step for step in found.steps if step.default is None]
+    names = [step.specifier(specifiers).name for step in steps]
+    owns = {
+        name: who
+        for step, who in zip(steps, names, strict=True)
+        for name in step.names
+        if name not in step.modifies
+    }
+    modifies = {name: who for step, who in zip(steps, names, strict=True) for name in step.modifies}
+    return owns, modifies, names
 
 
 def test_the_smaller_number_wins_whatever_the_order() -> None:
