@@ -5,7 +5,7 @@ import inspect
 import sys
 from collections.abc import Mapping
 from pathlib import Path
-from types import CodeType, FrameType, ModuleType
+from types import CodeType, FrameType, ModuleType, TracebackType
 from typing import Any
 
 from scenic.analysis.contraction import contract
@@ -26,11 +26,12 @@ from scenic.language.errors import (
 from scenic.language.source import Source, read_source
 from scenic.language.spans import Span
 from scenic.runtime.context import Context, current
+from scenic.runtime.dynamics.definitions import ModularScenario
 from scenic.runtime.importing import beside
 from scenic.runtime.mutation import apply_noise
 from scenic.runtime.objects import Object, Point
 from scenic.runtime.prelude import Loader
-from scenic.runtime.program import Module, Program, ScenarioClass, ScenarioInstance
+from scenic.runtime.program import Module, Program
 from scenic.runtime.randomness import preserved, seed_globals
 from scenic.runtime.saving import program_digest
 from scenic.runtime.scenario import Scenario
@@ -201,19 +202,20 @@ def _scenario(
         raise failure
     locator = Locator()
 
-    def span_of(frame: FrameType) -> Span | None:
-        place = locator.place(frame)
+    def span_of(where: FrameType | TracebackType) -> Span | None:
+        place = locator.place(where)
         return None if place is None else place.span
 
     context = Context(locate=span_of, name=locator.name, mode_2d=mode_2d)
-    program = Program(overrides=dict(params))
+    program = Program(overrides=dict(params), context=context)
     modules = Loader(_Modules(Path(filename).parent), context, program, model=model)
     token = current.set(context)
     try:
         with preserved(), beside(Path(filename).parent):
             seed_globals(PROGRAM_SEED)
             module, state = modules.run(compiled.code, filename, {SOURCE_NAME: Source(text, filename)})
-            _run_chosen(module, state, chosen)
+            program.top = _run_chosen(module, state, chosen)
+            program.ego, program.workspace = state.ego, state.workspace
             apply_noise(program)
         _settle_parameters(program, strict=strict_params)
         scenario = Scenario(
@@ -258,12 +260,15 @@ def _scenario(
     return scenario
 
 
-def _run_chosen(module: ModuleType, state: Module, chosen: str | None) -> None:
+def _run_chosen(module: ModuleType, state: Module, chosen: str | None) -> ModularScenario | None:
     """Run the set-up of the scenario that the file means (section 2.6 of the specification)."""
     defined = {
-        item.name: item
+        item.__name__: item
         for item in vars(module).values()
-        if isinstance(item, ScenarioClass) and item.setup.__globals__ is vars(module)
+        if isinstance(item, type)
+        and issubclass(item, ModularScenario)
+        and item._definition.setup is not None
+        and item._definition.setup.__globals__ is vars(module)
     }
     if chosen is not None and chosen not in defined:
         near = difflib.get_close_matches(chosen, defined, n=1)
@@ -284,20 +289,24 @@ def _run_chosen(module: ModuleType, state: Module, chosen: str | None) -> None:
                 filename=state.filename,
                 help="choose one with `--scenario NAME`",
             )
-        return
+        return None
     needed = _needed(scenario)
     if needed:
         raise ScenarioChoiceError(
-            f"scenario {scenario.name!r} needs arguments: {', '.join(needed)}",
+            f"scenario {scenario.__name__!r} needs arguments: {', '.join(needed)}",
             filename=state.filename,
             help="give its parameters default values",
         )
-    instance = ScenarioInstance(scenario, (), {})
-    scenario.setup(instance)
+    instance = scenario()
+    definition = scenario._definition
+    assert definition.setup is not None
+    arguments = instance._arguments
+    definition.setup(instance, *arguments.args, **arguments.kwargs)
+    return instance
 
 
-def _needed(scenario: ScenarioClass) -> list[str]:
-    parameters = list(inspect.signature(scenario.setup).parameters.values())[1:]
+def _needed(scenario: type[ModularScenario]) -> list[str]:
+    parameters = scenario._definition.signature.parameters.values()
     variadic = (inspect.Parameter.VAR_POSITIONAL, inspect.Parameter.VAR_KEYWORD)
     return [
         item.name

@@ -187,5 +187,50 @@ def annotation(error: BaseException) -> Diagnostic | None:
     return getattr(error, "scenic_diagnostic", None)
 
 
+class RejectSimulationException(Exception):
+    """The running simulation is rejected; users see ``None`` as the result of ``simulate``."""
+
+
+class GuardViolation(Exception):
+    """A guard of a behavior or scenario does not hold.
+
+    Args:
+        behavior: what it guards.
+        lineno: line of the guard, from 1.
+
+    """
+
+    violationType = "guard"
+
+    def __init__(self, behavior: object, lineno: int | None) -> None:
+        super().__init__(f"violated {self.violationType} of {behavior} on line {lineno}")
+        self.behavior = behavior
+        self.lineno = lineno
+
+
+class PreconditionViolation(GuardViolation):
+    """A precondition does not hold when a behavior or scenario starts."""
+
+    violationType = "precondition"
+
+
+class InvariantViolation(GuardViolation):
+    """An invariant does not hold when a behavior or scenario starts or goes on."""
+
+    violationType = "invariant"
+
+
+class SimulationCreationError(Exception):
+    """The scene cannot be set up in the simulator."""
+
+
+class DivergenceError(Exception):
+    """A replayed simulation goes another way than the one that was recorded."""
+
+
+class StuckBehaviorWarning(UserWarning):
+    """Code of a program has run for long without taking an action or waiting."""
+
+
 class InternalError(Exception):
     """A fault of this implementation, never of the program."""

@@ -25,24 +25,19 @@ _TEMPORAL = (
         ("condition",),
         ("always condition",),
         "The condition holds at every step from now on.",
-        available=False,
     ),
     TemporalOperator(
         "eventually",
         ("condition",),
         ("eventually condition",),
         "The condition holds at some step from now on.",
-        available=False,
     ),
-    TemporalOperator(
-        "next", ("condition",), ("next condition",), "The condition holds at the next step.", available=False
-    ),
+    TemporalOperator("next", ("condition",), ("next condition",), "The condition holds at the next step."),
     TemporalOperator(
         "until",
         ("condition", "end"),
         ("condition until end",),
         "The end comes, and the condition holds at every step before.",
-        available=False,
     ),
     TemporalOperator(
         "implies",

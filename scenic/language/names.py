@@ -128,11 +128,11 @@ _ALL = (
     ),
     _class("Workspace(region)", "The region that contains all objects, for `workspace = Workspace(region)`."),
     _class("Mutator", "Base class of what adds noise to mutated objects."),
-    _class("Behavior", "Base class of all behaviors.", available=False),
-    _class("Monitor", "Base class of all monitors.", available=False),
+    _class("Behavior", "Base class of all behaviors."),
+    _class("Monitor", "Base class of all monitors."),
     _class("Distribution", "Base class of distributions written in Python."),
-    _class("File(pattern, **options)", "A recorder that writes one file per series.", available=False),
-    _class("Files(pattern, **options)", "A recorder that writes one file per value.", available=False),
+    _class("File(pattern, **options)", "A recorder that writes one file per series."),
+    _class("Files(pattern, **options)", "A recorder that writes one file per value."),
     Name(
         "globalParameters",
         NameKind.VALUE,
@@ -141,9 +141,9 @@ _ALL = (
     ),
     # Exceptions
     _exception("RejectionException", "Raised by a function to reject the current sample."),
-    _exception("GuardViolation", "A guard of a behavior or scenario does not hold.", available=False),
-    _exception("PreconditionViolation", "A precondition does not hold.", available=False),
-    _exception("InvariantViolation", "An invariant does not hold.", available=False),
+    _exception("GuardViolation", "A guard of a behavior or scenario does not hold."),
+    _exception("PreconditionViolation", "A precondition does not hold."),
+    _exception("InvariantViolation", "An invariant does not hold."),
     # Functions
     _function("sin(x)", "The sine of an angle in radians.", lifted=True, angles=("x",)),
     _function("cos(x)", "The cosine of an angle in radians.", lifted=True, angles=("x",)),
@@ -172,7 +172,7 @@ _ALL = (
         "distributionMethod(method)",
         "Makes a method written in Python accept random arguments: it is then called with sampled ones.",
     ),
-    _function("simulation()", "The running simulation.", available=False),
+    _function("simulation()", "The running simulation."),
     # Distributions
     _distribution("Range(low, high)", "A real number, uniform on an interval."),
     _distribution("DiscreteRange(low, high, weights=None)", "An integer between two, both included."),

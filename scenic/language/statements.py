@@ -82,7 +82,6 @@ _ALL = (
         ("require monitor value", "require monitor value as name"),
         _BLOCKS,
         "Runs a monitor alongside the simulation, which rejects it when one of its requirements fails.",
-        available=False,
     ),
     Statement(
         "Record",
@@ -90,7 +89,6 @@ _ALL = (
         ("record value as name", "record initial value", "record final value"),
         _TOP_AND_SETUP,
         "Saves a value during simulations: at every step, at the start or at the end.",
-        available=False,
     ),
     Statement(
         "Mutate",
@@ -105,7 +103,6 @@ _ALL = (
         ("terminate when condition", "terminate simulation when condition"),
         _TOP_AND_SETUP,
         "Ends the scenario, or the whole simulation, as soon as the condition holds.",
-        available=False,
     ),
     Statement(
         "TerminateAfter",
@@ -113,7 +110,6 @@ _ALL = (
         ("terminate after duration",),
         _TOP_AND_SETUP,
         "Ends the scenario after so many seconds or steps.",
-        available=False,
     ),
     Statement(
         "Terminate",
@@ -121,7 +117,6 @@ _ALL = (
         ("terminate", "terminate simulation"),
         _DYNAMIC,
         "Ends the current scenario, or the whole simulation, now.",
-        available=False,
         suspends=True,
     ),
     Statement(
@@ -130,7 +125,6 @@ _ALL = (
         ("take action, ...",),
         frozenset({Place.BEHAVIOR}),
         "Takes actions in this step of the simulation and waits for the next.",
-        available=False,
         suspends=True,
     ),
     Statement(
@@ -139,7 +133,6 @@ _ALL = (
         ("wait",),
         _DYNAMIC,
         "Takes no action in this step of the simulation.",
-        available=False,
         suspends=True,
     ),
     Statement(
@@ -148,7 +141,6 @@ _ALL = (
         ("wait for duration",),
         _DYNAMIC,
         "Takes no action for so many seconds or steps.",
-        available=False,
         suspends=True,
     ),
     Statement(
@@ -157,7 +149,6 @@ _ALL = (
         ("wait until condition",),
         _DYNAMIC,
         "Takes no action until the condition holds.",
-        available=False,
         suspends=True,
     ),
     Statement(
@@ -167,7 +158,6 @@ _ALL = (
         _DYNAMIC,
         "Runs a behavior or scenario until it ends, a time is over or a condition holds; in a compose block, several "
         "scenarios in parallel.",
-        available=False,
         suspends=True,
     ),
     Statement(
@@ -176,7 +166,6 @@ _ALL = (
         ("do choose behavior, ...", "do choose {behavior: weight, ...}"),
         _DYNAMIC,
         "Runs one of several behaviors or scenarios, drawn at random among those whose guards allow it.",
-        available=False,
         suspends=True,
     ),
     Statement(
@@ -185,7 +174,6 @@ _ALL = (
         ("do shuffle behavior, ...", "do shuffle {behavior: weight, ...}"),
         _DYNAMIC,
         "Runs several behaviors or scenarios one after the other in random order.",
-        available=False,
         suspends=True,
     ),
     Statement(
@@ -194,7 +182,6 @@ _ALL = (
         ("try: ... interrupt when condition: ...",),
         _DYNAMIC,
         "Runs a block that handlers interrupt while their conditions hold; later handlers win.",
-        available=False,
         suspends=True,
     ),
     Statement(
@@ -203,7 +190,6 @@ _ALL = (
         ("abort",),
         _DYNAMIC,
         "Ends the innermost enclosing try-interrupt statement.",
-        available=False,
         suspends=True,
     ),
     Statement(
@@ -212,7 +198,6 @@ _ALL = (
         ("override object specifier, ...",),
         _DYNAMIC | {Place.SETUP},
         "Gives properties of an existing object new values until the scenario ends.",
-        available=False,
     ),
     Statement(
         "BehaviorDef",
@@ -227,7 +212,6 @@ _ALL = (
         ("monitor name(parameters): ...",),
         _TOP_AND_SETUP,
         "Defines a process that watches a simulation and can reject or end it.",
-        available=False,
     ),
     Statement(
         "ScenarioDef",

@@ -10,7 +10,7 @@ from scenic.language.statements import STATEMENTS
 
 __all__ = ["COMPOSE_AVAILABLE", "refused_features"]
 
-COMPOSE_AVAILABLE = False
+COMPOSE_AVAILABLE = True
 """Whether the compose block of a scenario is built; it has no node of its own in the tree."""
 
 

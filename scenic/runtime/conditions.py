@@ -16,10 +16,13 @@ from scenic.graph.node import Node
 from scenic.graph.operation import Call, Operation, always
 from scenic.graph.operations import TABLE
 from scenic.runtime.context import here
+from scenic.runtime.dynamics.declarations import Tree
 from scenic.runtime.lazy import definite
 from scenic.runtime.opaque import evaluated, later
 from scenic.runtime.samples import Globals
 from scenic.runtime.values import as_node
+
+Build = Callable[[], Node]
 
 
 class NotSymbolicError(Exception):
@@ -27,18 +30,78 @@ class NotSymbolicError(Exception):
 
 
 class Condition:
-    """A condition of a requirement: a node while a scenario is compiled, its truth during a simulation.
+    """A condition: the formula that simulations follow and, while a scenario is compiled, what builds nodes.
 
-    ``build`` makes the node. It is made where the condition stands, and once more when the program has mutated something:
-    a condition means the objects as they come out in the end.
+    ``build`` makes the node that says whether a scene may meet the condition. It is made where the condition stands, and once
+    more when the program has mutated something: a condition means the objects as they come out in the end. ``sure`` makes
+    the node that says whether a scene meets it however a simulation goes on; it differs where the condition speaks of time.
     """
 
-    __slots__ = ("build", "node", "truth")
+    __slots__ = ("build", "sure", "tree")
 
-    def __init__(self, build: Callable[[], Node] | None, truth: bool | None) -> None:
+    def __init__(self, tree: Tree, build: Build | None = None, sure: Build | None = None) -> None:
+        self.tree = tree
         self.build = build
-        self.node = None if build is None else build()
-        self.truth = truth
+        self.sure = build if sure is None else sure
+
+
+def connected(operation: str, parts: Sequence[Condition]) -> Condition:
+    """``and`` or ``or``."""
+    tree: Tree = (operation, *(part.tree for part in parts))
+    builds = [part.build for part in parts if part.build is not None]
+    sures = [part.sure for part in parts if part.sure is not None]
+    if len(builds) < len(parts):
+        return Condition(tree)
+
+    def build() -> Node:
+        return connect(operation, [each() for each in builds])
+
+    def sure() -> Node:
+        return connect(operation, [each() for each in sures])
+
+    return Condition(tree, build, build if builds == sures else sure)
+
+
+def negated(part: Condition) -> Condition:
+    """``not``: it may hold where the part is not sure to."""
+    tree: Tree = ("not", part.tree)
+    may, certain = part.build, part.sure
+    if may is None or certain is None:
+        return Condition(tree)
+
+    def build() -> Node:
+        return connect("not", [certain()])
+
+    def sure() -> Node:
+        return connect("not", [may()])
+
+    return Condition(tree, build, build if may is certain else sure)
+
+
+def in_time(operator: str, parts: Sequence[Condition]) -> Condition:
+    """A temporal operator. What a scene alone can tell of it is what its first state decides."""
+    tree: Tree = (operator, *(part.tree for part in parts))
+    if operator == "implies":
+        either = connected("or", [negated(parts[0]), parts[1]])
+        return Condition(tree, either.build, either.sure)
+    if any(part.build is None for part in parts):
+        return Condition(tree)
+
+    def open_() -> Node:
+        return as_node(True)
+
+    def unsure() -> Node:
+        return as_node(False)
+
+    match operator:
+        case "always":
+            return Condition(tree, parts[0].build, unsure)
+        case "eventually":
+            return Condition(tree, open_, parts[0].sure)
+        case "next":
+            return Condition(tree, open_, unsure)
+        case _:
+            return Condition(tree, connected("or", parts).build, parts[1].sure)
 
 
 def leaf(

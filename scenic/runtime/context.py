@@ -8,7 +8,7 @@ import sys
 from collections import Counter
 from collections.abc import Callable, Hashable
 from contextvars import ContextVar
-from types import FrameType
+from types import FrameType, TracebackType
 from typing import Any
 
 import numpy as np
@@ -16,9 +16,9 @@ import numpy as np
 from scenic.graph.draws import address
 from scenic.language.spans import Span
 
-Locator = Callable[[FrameType], Span | None]
-"""Where in the Scenic source a Python frame is (`scenic.compiler.tracebacks`); passed in, since the runtime knows
-nothing of source text."""
+Locator = Callable[[FrameType | TracebackType], Span | None]
+"""Where in the Scenic source a Python frame or the failure of a traceback is (`scenic.compiler.tracebacks`); passed
+in, since the runtime knows nothing of source text."""
 
 Namer = Callable[[FrameType], Hashable]
 """What names the place of a frame whatever is added before it: the text of its line, not the number."""
@@ -57,9 +57,27 @@ class Context:
         """Whether distributions stand for values to be drawn later."""
         return self.generator is None
 
+    @property
+    def locator(self) -> Locator:
+        """What finds places, for a context of the same program."""
+        return self._locate
+
+    def place_of(self, traceback: TracebackType) -> Span | None:
+        """Place in the program where an exception comes from."""
+        return self._locate(traceback)
+
     def place(self) -> Span | None:
         """Place in the program of whoever called the runtime."""
         return self._locate(sys._getframe(1))
+
+    @property
+    def namer(self) -> Namer:
+        """What names places, for a context of the same program."""
+        return self._name
+
+    def place_name(self) -> Hashable:
+        """What names the place in the program of whoever called the runtime."""
+        return self._name(sys._getframe(1))
 
     def next_address(self) -> int:
         """The address of a new draw: the place in the program that makes it, and how many it has made before."""

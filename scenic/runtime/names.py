@@ -9,7 +9,10 @@ from typing import Any
 from scenic.language import errors
 from scenic.language.errors import InvalidScenarioError
 from scenic.runtime import distributions, fields, functions, laws, shapes
-from scenic.runtime.context import here
+from scenic.runtime.context import current, here
+from scenic.runtime.dynamics.definitions import Behavior, Monitor
+from scenic.runtime.dynamics.recorders import File, Files
+from scenic.runtime.dynamics.run import RunContext
 from scenic.runtime.mutators import Mutator
 from scenic.runtime.objects import Object, OrientedPoint, Point
 from scenic.runtime.program import Program
@@ -17,6 +20,19 @@ from scenic.runtime.regions.base import Workspace, everywhere, nowhere, unsuppor
 from scenic.runtime.regions.planar import CircularRegion, PolygonalRegion, RectangularRegion
 from scenic.runtime.regions.volumes import BoxRegion, SpheroidRegion
 from scenic.runtime.values import Orientation, Vector
+
+
+def running_simulation() -> Any:
+    """The simulation that is running; raises `InvalidScenarioError` where none is."""
+    context = current.get()
+    if not isinstance(context, RunContext):
+        raise InvalidScenarioError(
+            "there is no simulation yet",
+            span=here(),
+            help="`simulation()` can be used in behaviors, monitors, compose blocks and their conditions",
+        )
+    return context.run.simulation
+
 
 _NAMES: Mapping[str, Any] = MappingProxyType(
     {
@@ -63,31 +79,31 @@ _NAMES: Mapping[str, Any] = MappingProxyType(
         "BoxRegion": BoxRegion,
         "SpheroidRegion": SpheroidRegion,
         "RejectionException": errors.RejectionException,
+        "GuardViolation": errors.GuardViolation,
+        "PreconditionViolation": errors.PreconditionViolation,
+        "InvariantViolation": errors.InvariantViolation,
+        "Behavior": Behavior,
+        "Monitor": Monitor,
+        "File": File,
+        "Files": Files,
+        "simulation": running_simulation,
     }
 )
 
 _UNSUPPORTED = (
-    "Behavior",
-    "File",
-    "Files",
     "GridRegion",
-    "GuardViolation",
-    "InvariantViolation",
     "MeshSurfaceRegion",
     "MeshVolumeRegion",
-    "Monitor",
     "PathRegion",
     "PointSetRegion",
     "PolygonalFootprintRegion",
     "PolylineRegion",
-    "PreconditionViolation",
     "SectorRegion",
     "TimeSeries",
     "VerifaiDiscreteRange",
     "VerifaiOptions",
     "VerifaiParameter",
     "VerifaiRange",
-    "simulation",
 )
 
 

@@ -20,27 +20,23 @@ from scenic.graph.kinds import Kind
 from scenic.graph.operations import TABLE
 from scenic.language.errors import (
     InvalidScenarioError,
-    RejectionException,
     ScenicTypeError,
     UnsupportedError,
 )
 from scenic.runtime import conditions, mutation, names
 from scenic.runtime.conditions import Condition
-from scenic.runtime.context import Context, here
+from scenic.runtime.context import Context, current, here
+from scenic.runtime.dynamics.declarations import Kept, required
+from scenic.runtime.dynamics.definitions import Behavior
+from scenic.runtime.dynamics.language import Dynamics
+from scenic.runtime.dynamics.run import RunContext
 from scenic.runtime.functions import convert
 from scenic.runtime.importing import beside, forget_stranger
 from scenic.runtime.lazy import definite
 from scenic.runtime.methods import OrientationMethods, VectorMethods
 from scenic.runtime.objects import Object, Point
 from scenic.runtime.operators import OPERATORS, operation
-from scenic.runtime.program import (
-    Behavior,
-    BehaviorClass,
-    Module,
-    Program,
-    Requirement,
-    ScenarioClass,
-)
+from scenic.runtime.program import Module, Program, Requirement
 from scenic.runtime.properties import ATTRIBUTES, PropertyDefinition
 from scenic.runtime.regions.base import Region, Workspace
 from scenic.runtime.regions.choice import as_region
@@ -48,6 +44,7 @@ from scenic.runtime.resolution import build
 from scenic.runtime.samples import Sample
 from scenic.runtime.specifiers import BUILDERS, Specifier, UserSpecifier, specify
 from scenic.runtime.spreading import spread
+from scenic.runtime.temporal.formulas import is_temporal
 from scenic.runtime.values import (
     Random,
     as_node,
@@ -80,13 +77,13 @@ class Modules(Protocol):
         """The compiled code of a file; raises `ScenicSyntaxError`."""
 
 
-class Prelude:
+class Prelude(Dynamics):
     """What one module of generated code can do. Method names are fixed by the compiler."""
 
     Object = Object
 
     def __init__(self, context: Context, program: Program, module: Module, modules: "Loader") -> None:
-        self._context = context
+        self._compilation = context
         self._program = program
         self._module = module
         self._modules = modules
@@ -95,7 +92,7 @@ class Prelude:
 
     def snapshot(self) -> "Prelude":
         """The prelude with the ego and workspace of this moment, whatever the program sets later."""
-        return Prelude(self._context, self._program, replace(self._module), self._modules)
+        return Prelude(self._compilation, self._program, replace(self._module), self._modules)
 
     def random_parts(self) -> list[Any]:
         """The ego, for sampling."""
@@ -104,7 +101,7 @@ class Prelude:
     def sampled(self, sample: Sample) -> "Prelude":
         """The prelude whose ego is that of a sample."""
         module = replace(self._module, ego=sample.value(self._module.ego))
-        return Prelude(self._context, self._program, module, self._modules)
+        return Prelude(self._compilation, self._program, module, self._modules)
 
     def __eq__(self, other: object) -> bool:
         """Whether two preludes are of the same module in the same state."""
@@ -117,11 +114,20 @@ class Prelude:
 
     __hash__ = object.__hash__
 
+    @property
+    def _context(self) -> Context:
+        """How the program is read: that of the running simulation, if one is."""
+        active = current.get()
+        return active if isinstance(active, RunContext) else self._compilation
+
     # Ego and workspace
 
     @property
     def ego(self) -> Any:
         """The ego object; raises `InvalidScenarioError` before it is set."""
+        run = self._run
+        if run is not None and run.current.ego is not None:
+            return run.current.ego
         if self._module.ego is None:
             raise InvalidScenarioError(
                 "the ego object is used before it is set",
@@ -135,7 +141,10 @@ class Prelude:
         if not isinstance(value, Object):
             hint = f"write `ego = new {value.__name__}`" if isinstance(value, type) else None
             raise ScenicTypeError(f"the ego must be an object, not {describe(value)}", span=here(), help=hint)
-        self._module.ego = value
+        if self._run is not None:
+            self._run.current.ego = value
+        else:
+            self._module.ego = value
 
     def _ego(self) -> Any:
         return self.ego
@@ -143,6 +152,9 @@ class Prelude:
     @property
     def workspace(self) -> Any:
         """The workspace; all of space where the program sets none."""
+        run = self._run
+        if run is not None and run.current.workspace is not None:
+            return run.current.workspace
         if self._module.workspace is None:
             raise InvalidScenarioError(
                 "the workspace is used before it is set",
@@ -159,7 +171,10 @@ class Prelude:
                 span=here(),
                 help="write `workspace = Workspace(region)`",
             )
-        self._module.workspace = value
+        if self._run is not None:
+            self._run.current.workspace = value
+        else:
+            self._module.workspace = value
 
     # Instances
 
@@ -191,16 +206,20 @@ class Prelude:
         self._check_supported(instance)
         if self._context.evaluating:
             return instance
-        self._program.instances.append(instance)
         if isinstance(instance, Object):
-            self._program.objects.append(instance)
             behavior = instance.behavior
-            if isinstance(behavior, BehaviorClass):
+            if isinstance(behavior, type) and issubclass(behavior, Behavior):
                 instance.__dict__["behavior"] = behavior()
             elif behavior is not None and not isinstance(behavior, Behavior | Random):
                 raise ScenicTypeError(
                     f"property 'behavior' must be a behavior, not {describe(behavior)}", span=here()
                 )
+        if self._run is not None:
+            self._run.create(instance)
+            return instance
+        self._program.instances.append(instance)
+        if isinstance(instance, Object):
+            self._program.objects.append(instance)
         self._program.places[id(instance)] = (here(), self._module.filename)
         return instance
 
@@ -224,14 +243,6 @@ class Prelude:
                 here(),
             )
         return PropertyDefinition(name, frozenset(attributes), value, tuple(reads), here())
-
-    def behavior(self, signature: Callable[..., Any]) -> BehaviorClass:
-        """A behavior definition, given its signature."""
-        return BehaviorClass(signature.__name__, signature)
-
-    def scenario(self, setup: Callable[..., Any]) -> ScenarioClass:
-        """A scenario definition, given its set-up."""
-        return ScenarioClass(setup.__name__, setup)
 
     # Operators
 
@@ -285,55 +296,58 @@ class Prelude:
     def require(
         self, condition: Condition, *, probability: float | None = None, name: str | None = None
     ) -> None:
-        """``require condition``: recorded while compiling, checked at once during a simulation."""
+        """``require condition``: recorded while compiling, checked or followed during a simulation."""
         if self._context.evaluating:
             raise InvalidScenarioError("a requirement cannot contain another one", span=here())
-        chance = 1.0 if probability is None else probability
-        if not self._context.is_symbolic:
-            generator = self._context.generator
-            assert generator is not None
-            if chance < 1 and generator.random() >= chance:
-                return
-            if not condition.truth:
-                raise RejectionException(name or "requirement")
-            return
-        assert condition.node is not None
-        assert condition.build is not None
         span = here()
         label = name or (f"requirement on line {span.line}" if span else "requirement")
+        formula = required(condition.tree, label, span, self._module.filename)
+        if probability not in (None, 1) and is_temporal(formula.formula):
+            raise InvalidScenarioError(
+                "a temporal requirement cannot have a probability",
+                span=span,
+                help="leave the probability out",
+            )
+        chance = 1.0 if probability is None else probability
+        if not self._context.is_symbolic:
+            self._require_now(formula, chance)
+            return
+        assert condition.build is not None
         self._program.requirements.append(
-            Requirement(condition.node, chance, label, span, self._module.filename, condition.build)
+            Requirement(
+                condition.build(), chance, label, span, self._module.filename, condition.build, formula
+            )
         )
 
     # Conditions
 
     def condition(
-        self, symbolic: Callable[..., Any] | None, concrete: Callable[..., Any], captured: Sequence[Any]
+        self,
+        symbolic: Callable[..., Any] | None,
+        concrete: Callable[..., Any],
+        captured: Sequence[Any],
+        margin: Callable[..., Any] | None = None,
     ) -> Condition:
         """A leaf of a condition; see `scenic.runtime.conditions`."""
-        if self._context.is_symbolic:
-            return Condition(conditions.leaf(symbolic, concrete, captured), None)
-        return Condition(None, bool(concrete(*captured)))
+        kept = Kept(concrete, captured, margin)
+        build = conditions.leaf(symbolic, concrete, captured) if self._context.is_symbolic else None
+        return Condition(kept, build)
 
     def conjunction(self, *parts: Condition) -> Condition:
         """``and``."""
-        return self._connect("and", all, parts)
+        return conditions.connected("and", parts)
 
     def disjunction(self, *parts: Condition) -> Condition:
         """``or``."""
-        return self._connect("or", any, parts)
+        return conditions.connected("or", parts)
 
     def negation(self, part: Condition) -> Condition:
         """``not``."""
-        return self._connect("not", lambda truths: not truths[0], [part])
+        return conditions.negated(part)
 
-    def _connect(
-        self, operation: str, decide: Callable[[Sequence[Any]], bool], parts: Sequence[Condition]
-    ) -> Condition:
-        builds = [part.build for part in parts if part.build is not None]
-        if len(builds) == len(parts):
-            return Condition(lambda: conditions.connect(operation, [build() for build in builds]), None)
-        return Condition(None, decide([part.truth for part in parts]))
+    def temporal(self, operator: str, *parts: Condition) -> Condition:
+        """A temporal operator, or ``implies``."""
+        return conditions.in_time(operator, parts)
 
     # Inside the symbolic reading of a condition
 
@@ -392,11 +406,11 @@ class Prelude:
 
     def choose(self, test: Condition, then: Callable[[], Any], otherwise: Callable[[], Any]) -> Any:
         """``then if test else otherwise``."""
-        if test.node is None:
-            return then() if test.truth else otherwise()
-        if test.node.is_constant:
-            return then() if test.node.value else otherwise()
-        return as_value(apply(TABLE["if"], [test.node, as_node(then()), as_node(otherwise())], span=here()))
+        assert test.build is not None
+        node = test.build()
+        if node.is_constant:
+            return then() if node.value else otherwise()
+        return as_value(apply(TABLE["if"], [node, as_node(then()), as_node(otherwise())], span=here()))
 
 
 class Loader:

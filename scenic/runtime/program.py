@@ -1,12 +1,14 @@
 """What running a program produces: the raw material of a scenario."""
 
-import inspect
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
 from scenic.graph.node import Node
 from scenic.language.spans import Span
+from scenic.runtime.context import Context
+from scenic.runtime.dynamics.declarations import Declared, Required
+from scenic.runtime.dynamics.definitions import Invocable, ModularScenario
 from scenic.runtime.objects import Object, Point
 from scenic.runtime.regions.base import Workspace
 from scenic.runtime.samples import Globals
@@ -26,6 +28,8 @@ class Requirement:
     span: Span | None = None
     filename: str | None = None
     build: Callable[[], Node] | None = field(default=None, compare=False)
+    formula: Required | None = field(default=None, compare=False)
+    """The requirement as simulations follow it."""
 
     def rebuilt(self) -> "Requirement":
         """The requirement about the objects as they are now."""
@@ -40,6 +44,7 @@ class Program:
     """
 
     overrides: Mapping[str, Any] = field(default_factory=dict)
+    context: Context = field(default_factory=Context)
     instances: list[Point] = field(default_factory=list)
     objects: list[Object] = field(default_factory=list)
     requirements: list[Requirement] = field(default_factory=list)
@@ -47,10 +52,32 @@ class Program:
     read_parameters: set[str] = field(default_factory=set)
     """Parameters that the program has asked for by name."""
     simulator: Callable[[], Any] | None = None
+    declared: Declared = field(default_factory=Declared)
+    """What the program asks of simulations, beside requirements."""
+    invocables: list[type[Invocable]] = field(default_factory=list)
+    """The behaviors, monitors and scenarios that it defines."""
+    top: ModularScenario | None = None
+    """The scenario that the program means, where it is one of those that it defines."""
+    ego: Object | None = None
+    workspace: Workspace | None = None
     places: dict[int, tuple[Span | None, str | None]] = field(default_factory=dict)
     """Where each instance was created, by its identity: span and file."""
     names: Globals = field(default_factory=Globals)
     """Global names as they are when the program has run, for the functions and methods in its scenes."""
+
+    def reachable(self) -> Iterator[Any]:
+        """Values of which simulations need samples."""
+        yield from self.objects
+        yield from self.instances
+        yield from self.parameters.values()
+        for invocable in self.invocables:
+            yield from invocable._definition.functions
+        yield from self.declared.random_parts()
+        for requirement in self.requirements:
+            if requirement.formula is not None:
+                for atom in requirement.formula.atoms:
+                    yield from atom.random_parts()
+        yield self.top
 
 
 @dataclass(slots=True)
@@ -65,56 +92,3 @@ class Module:
     """The package that relative imports start from."""
     scope: dict[str, Any] = field(default_factory=dict)
     """The module's global names."""
-
-
-@dataclass(frozen=True, slots=True)
-class ScenarioClass:
-    """A ``scenario`` definition: its name and its set-up, called with the running instance and the arguments."""
-
-    name: str
-    setup: Callable[..., Any]
-
-    def __call__(self, *args: Any, **kwargs: Any) -> "ScenarioInstance":
-        return ScenarioInstance(self, args, kwargs)
-
-
-class ScenarioInstance:
-    """A scenario with its arguments; the local variables of its set-up become attributes."""
-
-    def __init__(self, scenario: ScenarioClass, args: tuple[Any, ...], kwargs: dict[str, Any]) -> None:
-        self.scenario = scenario
-        self.args = args
-        self.kwargs = kwargs
-
-
-@dataclass(frozen=True, slots=True)
-class BehaviorClass:
-    """A ``behavior`` definition. Static scenes carry behaviors as data: which one, with which arguments."""
-
-    name: str
-    signature: Callable[..., Any]
-
-    def __call__(self, *args: Any, **kwargs: Any) -> "Behavior":
-        bound = inspect.signature(self.signature).bind(*args, **kwargs)
-        bound.apply_defaults()
-        return Behavior(self, dict(bound.arguments))
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Behavior:
-    """A behavior with its arguments, which may be random."""
-
-    behavior: BehaviorClass
-    arguments: Mapping[str, Any]
-
-    def random_parts(self) -> list[Any]:
-        """The arguments, for sampling."""
-        return list(self.arguments.values())
-
-    def sampled(self, sample: Any) -> "Behavior":
-        """The behavior with sampled arguments."""
-        return Behavior(self.behavior, {name: sample.value(value) for name, value in self.arguments.items()})
-
-    def __repr__(self) -> str:
-        inside = ", ".join(f"{name}={value!r}" for name, value in self.arguments.items())
-        return f"{self.behavior.name}({inside})"

@@ -6,6 +6,7 @@ Nothing of ours draws from them (`scenic.graph.draws`).
 import random
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import Any
 
 import numpy as np
 
@@ -13,12 +14,23 @@ import numpy as np
 @contextmanager
 def preserved() -> Iterator[None]:
     """Both generators are afterwards as they were before."""
-    python_state, numpy_state = random.getstate(), np.random.get_state()  # noqa: NPY002 - what programs use
+    before = states()
     try:
         yield
     finally:
-        random.setstate(python_state)
-        np.random.set_state(numpy_state)  # noqa: NPY002 - what programs use
+        restore(before)
+
+
+def states() -> Any:
+    """The states of both generators, for `restore`."""
+    return random.getstate(), np.random.get_state()  # noqa: NPY002 - what programs use
+
+
+def restore(before: Any) -> None:
+    """Put both generators into the states of another moment."""
+    python_state, numpy_state = before
+    random.setstate(python_state)
+    np.random.set_state(numpy_state)  # noqa: NPY002 - what programs use
 
 
 def seed_globals(seed: int) -> None:

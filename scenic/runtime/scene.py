@@ -3,11 +3,13 @@
 import sys
 import tempfile
 from collections.abc import Callable, Mapping
+from copy import copy
 from pathlib import Path
 from typing import Any, TextIO
 
 from scenic.graph.node import Node
 from scenic.runtime.dumping import program_of
+from scenic.runtime.dynamics.declarations import Copier
 from scenic.runtime.objects import Object
 from scenic.runtime.program import Program
 from scenic.runtime.regions.base import Workspace
@@ -45,12 +47,25 @@ class Scene:
         self._program = program
         self._ego = ego
         self._names = names
-        self._sample = Sample(self._lookup, program.names)
+        self._sample: Copier = Sample(self.lookup, program.names)
         self._objects: tuple[Any, ...] | None = None
         self._params: dict[str, Any] | None = None
 
-    def _lookup(self, node: Node) -> Any:
+    def lookup(self, node: Node) -> Any:
+        """The value of a node in this scene."""
         return self.accepted.batch.value(node, self.accepted.lane)
+
+    @property
+    def program(self) -> Program:
+        """What the scene is a sample of."""
+        return self._program
+
+    def within(self, copies: Copier) -> "Scene":
+        """The same scene over other copies of its values, as a simulation changes them."""
+        scene = copy(self)
+        scene._sample = copies
+        scene._objects = scene._params = None
+        return scene
 
     @property
     def objects(self) -> tuple[Any, ...]:

@@ -24,7 +24,7 @@ from scenic.compiler.lowering.build import (
     start_of,
     tuple_,
 )
-from scenic.compiler.scopes import PROVIDED, Resolution
+from scenic.compiler.scopes import PROVIDED, Resolution, ScopeKind
 from scenic.compiler.traversal import walk
 from scenic.language.names import CONVERSIONS, LIFTED_FUNCTIONS, LIFTED_METHODS, TRACKED
 from scenic.language.operators import EGO, OPERATORS
@@ -55,6 +55,12 @@ class Conditions:
         self._resolution = resolution
         self._ordinary = ordinary
         self._captured = captured
+        self._changing = {
+            name
+            for scope in resolution.scopes.values()
+            if scope.kind is not ScopeKind.MODULE
+            for name in scope.global_names
+        }
 
     def condition(self, node: ast.expr) -> ast.expr:
         """The argument of the prelude's ``require``."""
@@ -71,27 +77,40 @@ class Conditions:
                 return prelude_call("disjunction", [self._split(value) for value in values], node)
             case ast.UnaryOp(op=ast.Not(), operand=operand):
                 return prelude_call("negation", [self._split(operand)], node)
-            case scenic.Temporal(operator="implies", operands=[premise, conclusion]):
-                failed = prelude_call("negation", [self._split(premise)], premise)
-                return prelude_call("disjunction", [failed, self._split(conclusion)], node)
+            case scenic.Temporal(operator=operator, operands=operands):
+                parts = [self._split(operand) for operand in operands]
+                return prelude_call("temporal", [constant(operator, node), *parts], node)
             case _:
                 return self._leaf(node)
 
     def _leaf(self, node: ast.expr) -> ast.expr:
-        free = list(self._free_names(node))
-        if not any(part.id == "ego" for part in free):
-            free.extend(_unwritten_ego(node))
-        parameters = [(part.id, part) for part in free]
+        parameters = self._parameters(node)
         try:
             # What is nested in a leaf finds the names as parameters of the leaf.
             nested = Conditions(self._resolution, self._captured, self._captured)
             symbolic = _Symbolic(self._resolution, nested._split)
-            traced: ast.expr = lambda_(parameters, symbolic.expression(node), node)
+            traced: ast.expr = lambda_(
+                [(part.id, part) for part in parameters], symbolic.expression(node), node
+            )
         except _OpaqueError:
             traced = start_of(ast.Constant(None), node)
-        concrete = lambda_(parameters, self._captured(node), node)
-        values = tuple_([self._ordinary(part) for part in free], node)
-        return prelude_call("condition", [traced, concrete, values], node)
+        return prelude_call("condition", [traced, *self.kept(node)], node)
+
+    def kept(self, node: ast.expr) -> list[ast.expr]:
+        """An expression to be evaluated later: a function of the names in it, and their values now.
+
+        What functions of the program assign by ``global`` may change until then: it is read when it is needed.
+        """
+        free = self._parameters(node)
+        concrete = lambda_([(part.id, part) for part in free], self._captured(node), node)
+        return [concrete, tuple_([self._ordinary(part) for part in free], node)]
+
+    def _parameters(self, node: ast.expr) -> list[ast.Name]:
+        """The names in an expression that the functions made of it have as parameters."""
+        free = list(self._free_names(node))
+        if not any(part.id == "ego" for part in free):
+            free.extend(_unwritten_ego(node))
+        return free
 
     def _free_names(self, node: ast.expr) -> Iterator[ast.Name]:
         """The first occurrence of every name that a leaf takes from outside, other than provided ones."""
@@ -100,6 +119,8 @@ class Conditions:
         for part in _in_order(node):
             binding = self._resolution.binding(part)
             if part.id in seen or (binding is not None and binding.scope in inner):
+                continue
+            if part.id in self._changing and binding is not None and binding.scope.kind is ScopeKind.MODULE:
                 continue
             if isinstance(part.ctx, ast.Store):
                 # The leaf assigns the name before it reads it.

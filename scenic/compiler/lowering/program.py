@@ -6,10 +6,10 @@ from types import MappingProxyType
 from typing import Any, Final
 
 from scenic.compiler import tree as scenic
+from scenic.compiler.lowering import dynamics
 from scenic.compiler.lowering.build import (
     at,
     constant,
-    function,
     instance_attribute,
     lambda_,
     name,
@@ -22,6 +22,7 @@ from scenic.compiler.lowering.build import (
     tuple_,
 )
 from scenic.compiler.lowering.conditions import Conditions, implicit_ego
+from scenic.compiler.lowering.dynamics import Blocks
 from scenic.compiler.scopes import Binding, BindingKind, Resolution, Scope, ScopeKind
 from scenic.language.errors import InternalError
 from scenic.language.names import CONVERSIONS, TRACKED
@@ -38,7 +39,7 @@ def lower(tree: ast.Module, resolution: Resolution) -> ast.Module:
 
 
 _VALUE: Final = "__value__"
-"""Holds the value of an assignment expression while it is stored on a scenario's instance."""
+"""Holds the value of an assignment expression while it is stored on a running instance."""
 
 
 class _Program:
@@ -59,6 +60,7 @@ class _Program:
             for site in binding.sites
         }
         self._conditions: Conditions | None = None
+        self.blocks = Blocks()
 
     def module(self, tree: ast.Module) -> ast.Module:
         return rebuilt(tree, body=self.block(tree.body), type_ignores=[])
@@ -80,9 +82,9 @@ class _Program:
 
     def _lower(self, node: Any) -> Any:
         rule = _RULES.get(type(node))
-        return self._copy(node) if rule is None else rule(self, node)
+        return self.copy(node) if rule is None else rule(self, node)
 
-    def _copy(self, node: ast.AST, **changes: Any) -> Any:
+    def copy(self, node: ast.AST, **changes: Any) -> Any:
         """Lowers the fields of a Python node that are not in ``changes``; the node itself if nothing changes."""
         if isinstance(node, scenic.ScenicStatement | scenic.ScenicExpression | scenic.ScenicPart):
             raise InternalError(f"{type(node).__name__} has no lowering")
@@ -124,14 +126,14 @@ class _Program:
         return node if instance is None else instance_attribute(instance, node.id, node, node.ctx)
 
     def _instance(self, node: ast.Name) -> str | None:
-        """The scenario's instance that a name is an attribute of."""
+        """The running instance that a name is an attribute of."""
         binding = self._resolution.binding(node)
         return _instance_name(binding.scope) if binding is not None and _is_kept(binding) else None
 
     def walrus(self, node: ast.NamedExpr) -> ast.expr:
         instance = None if self._captured else self._instance(node.target)
         if instance is None:
-            lowered: ast.expr = self._copy(node)
+            lowered: ast.expr = self.copy(node)
             return lowered
         # `(__value__ := e, __instance__.__setattr__("x", __value__))[0]`: only names can be assigned in expressions.
         value = at(
@@ -162,9 +164,9 @@ class _Program:
 
     def new(self, node: scenic.New) -> ast.expr:
         cls = self.expression(node.cls)
-        return prelude_call("new", [cls, *[self._specifier(part) for part in node.specifiers]], node)
+        return prelude_call("new", [cls, *[self.specifier(part) for part in node.specifiers]], node)
 
-    def _specifier(self, node: scenic.Specifier) -> ast.expr:
+    def specifier(self, node: scenic.Specifier) -> ast.expr:
         args = [constant(node.specifier, node), *self._operands(node.operands, node)]
         options = {} if node.property is None else {"property": node.property}
         return prelude_call("specifier", args, node, options=options)
@@ -177,7 +179,7 @@ class _Program:
                 return prelude_call("convert", [constant(function, node.func), *args], node)
         if any(isinstance(arg, ast.Starred) for arg in node.args):
             return self._starred_call(node)
-        lowered: ast.expr = self._copy(node)
+        lowered: ast.expr = self.copy(node)
         return lowered
 
     def _starred_call(self, node: ast.Call) -> ast.expr:
@@ -225,13 +227,17 @@ class _Program:
         return statement(prelude_call("mutate", args, node), node)
 
     def require(self, node: scenic.Require) -> ast.stmt:
+        condition = self.conditions().condition(node.condition)
+        options = {"probability": node.probability, "name": node.name}
+        return statement(prelude_call("require", [condition], node, options=options), node)
+
+    def conditions(self) -> Conditions:
+        """The lowering of conditions."""
         if self._conditions is None:
             self._conditions = Conditions(
                 self._resolution, self.expression, _Program(self._resolution, captured=True).expression
             )
-        condition = self._conditions.condition(node.condition)
-        options = {"probability": node.probability, "name": node.name}
-        return statement(prelude_call("require", [condition], node, options=options), node)
+        return self._conditions
 
     # Definitions
 
@@ -244,7 +250,7 @@ class _Program:
             elif item is properties[0]:
                 body.append(self._properties(properties))
         bases = [self.expression(base) for base in node.bases] or [start_of(prelude("Object", node), node)]
-        return self._kept(node, self._copy(node, bases=bases, body=body))
+        return self._kept(node, self.copy(node, bases=bases, body=body))
 
     def _properties(self, nodes: Sequence[scenic.PropertyDef]) -> ast.stmt:
         first = nodes[0]
@@ -273,7 +279,9 @@ class _Program:
         )
 
     def function_definition(self, node: Any) -> Any:
-        return self._kept(node, self._copy(node))
+        with self.blocks.inside(False):
+            lowered = self.copy(node)
+        return self._kept(node, lowered)
 
     def implication(self, node: scenic.Temporal) -> ast.expr:
         """One that is part of a leaf of a condition. No other temporal operator can be: they are not available yet."""
@@ -284,14 +292,23 @@ class _Program:
         return at(ast.BoolOp(ast.Or(), [failed, conclusion]), node)
 
     def behavior(self, node: scenic.BehaviorDef) -> Any:
-        # A static scene carries behaviors as data: what they do is compiled only where there are simulations.
-        match node.body[:1]:
-            case [ast.Expr(value=ast.Constant(value=str())) as docstring]:
-                body: list[ast.stmt] = [docstring]
-            case _:
-                body = [start_of(ast.Pass(), node)]
-        args: ast.arguments = self._lower(node.args)
-        return self._kept(node, function(node.name, args, body, "behavior", node))
+        own = _instance_name(self._resolution.scopes[node])
+        with self.blocks.running(own):
+            guards = dynamics.guards(self, node, ["self"])
+            body = self.block(node.body)
+        args = self._with_instance(node.args, node, own, "self")
+        return self._kept(
+            node, dynamics.definition(node, decorator="behavior", parts=guards, arguments=args, body=body)
+        )
+
+    def monitor(self, node: scenic.MonitorDef) -> Any:
+        own = _instance_name(self._resolution.scopes[node])
+        with self.blocks.running(own):
+            body = self.block(node.body)
+        args = self._with_instance(node.args, node, own)
+        return self._kept(
+            node, dynamics.definition(node, decorator="monitor", parts=[], arguments=args, body=body)
+        )
 
     def scenario(self, node: scenic.ScenarioDef) -> Any:
         args: ast.arguments = (
@@ -301,19 +318,27 @@ class _Program:
         if node.docstring is not None:
             body.append(start_of(ast.Expr(start_of(ast.Constant(node.docstring), node)), node))
         own = _instance_name(self._resolution.scopes[node])
-        every = [*args.posonlyargs, *args.args, args.vararg, *args.kwonlyargs, args.kwarg]
-        body.extend(store_on_instance(own, arg.arg, arg) for arg in every if arg is not None)
-        body.extend(self.block(node.setup or ()))
-        lowered: ast.arguments = self._lower(args)
-        instance = start_of(ast.arg(own, None), node)
-        signature = rebuilt(lowered, posonlyargs=[instance, *lowered.posonlyargs])
-        definition = function(node.name, signature, body or [start_of(ast.Pass(), node)], "scenario", node)
-        return self._kept(node, definition)
+        with self.blocks.running(own):
+            guards = dynamics.guards(self, node, [])
+            body.extend(self.block(node.setup or ()))
+            functions, compose = dynamics.compose(self, node)
+        signature = self._with_instance(args, node, own)
+        definition = dynamics.definition(
+            node, decorator="scenario", parts=[*guards, compose], arguments=signature, body=body
+        )
+        lowered = self._kept(node, definition)
+        return [*functions, *lowered] if isinstance(lowered, list) else [*functions, lowered]
 
-    # Local names of scenarios that other nodes than names bind
+    def _with_instance(self, args: ast.arguments, node: Any, *own: str) -> ast.arguments:
+        """The parameters of a definition, after those for the running instance and its agent."""
+        lowered: ast.arguments = self._lower(args)
+        first = [start_of(ast.arg(identifier, None), node) for identifier in own]
+        return rebuilt(lowered, posonlyargs=[*first, *lowered.posonlyargs])
+
+    # Local names of running instances that other nodes than names bind
 
     def _kept(self, site: ast.AST, lowered: Any) -> Any:
-        """A definition, stored on the scenario's instance if it is local to a scenario."""
+        """A definition, stored on the running instance if it is local to one."""
         return [lowered, self._store(site)] if site in self._bound_by else lowered
 
     def _store(self, site: ast.AST) -> ast.stmt:
@@ -327,8 +352,8 @@ class _Program:
     def type_alias(self, node: Any) -> Any:
         instance = self._instance(node.name)
         if instance is None:
-            return self._copy(node)
-        return [self._copy(node, name=node.name), store_on_instance(instance, node.name.id, node.name)]
+            return self.copy(node)
+        return [self.copy(node, name=node.name), store_on_instance(instance, node.name.id, node.name)]
 
     def nonlocal_declaration(self, node: ast.Nonlocal) -> ast.stmt:
         scope = self._resolution.nonlocals[node]
@@ -338,20 +363,24 @@ class _Program:
         return rebuilt(node, names=names) if names else at(ast.Pass(), node)
 
     def annotated(self, node: ast.AnnAssign) -> ast.stmt:
-        lowered: ast.AnnAssign = self._copy(node)
+        lowered: ast.AnnAssign = self.copy(node)
         # What was a name may have become an attribute.
         return (
             lowered if isinstance(lowered.target, ast.Name) or not node.simple else rebuilt(lowered, simple=0)
         )
 
+    def handlers(self, nodes: Sequence[ast.ExceptHandler]) -> list[ast.ExceptHandler]:
+        """The ``except`` clauses of a statement."""
+        return [self.exception_handler(node) for node in nodes]
+
     def exception_handler(self, node: ast.ExceptHandler) -> ast.ExceptHandler:
-        lowered: ast.ExceptHandler = self._copy(node)
+        lowered: ast.ExceptHandler = self.copy(node)
         if node not in self._bound_by:
             return lowered
         return rebuilt(lowered, body=[self._store(node), *lowered.body])
 
     def match_case(self, node: ast.match_case) -> ast.match_case:
-        lowered: ast.match_case = self._copy(node)
+        lowered: ast.match_case = self.copy(node)
         captures = [part for part in ast.walk(node.pattern) if part in self._bound_by]
         if not captures:
             return lowered
@@ -372,8 +401,8 @@ class _Program:
 
 
 def _instance_name(scope: Scope) -> str:
-    """The parameter that holds the instance of a scenario; scenarios inside others have their own."""
-    depth = sum(outer.kind is ScopeKind.SCENARIO for outer in scope.ancestors()) - 1
+    """The parameter that holds the running instance; definitions inside others have their own."""
+    depth = sum(outer.kind in _RUNNING for outer in scope.ancestors()) - 1
     return f"__instance_{depth}__" if depth else "__instance__"
 
 
@@ -382,13 +411,17 @@ def _attributes(node: ast.expr) -> Iterator[ast.Attribute]:
 
 
 def _is_kept(binding: Binding | None) -> bool:
-    """Whether a name is local to a scenario, and so an attribute of its instance wherever it is used.
+    """Whether a name is local to a scenario, behavior or monitor, and so an attribute of the running instance.
 
-    Parameters that are never assigned, and the names of exceptions, which Python deletes again, stay what they are.
+    The names of exceptions, which Python deletes again, stay what they are.
     """
-    if binding is None or binding.scope.kind is not ScopeKind.SCENARIO:
+    if binding is None or binding.scope.kind not in _RUNNING:
         return False
-    return bool(binding.kinds - {BindingKind.PARAMETER, BindingKind.EXCEPTION})
+    return bool(binding.kinds - {BindingKind.SELF, BindingKind.EXCEPTION})
+
+
+_RUNNING: Final = frozenset({ScopeKind.SCENARIO, ScopeKind.BEHAVIOR, ScopeKind.MONITOR})
+"""What is run as an instance with names of its own."""
 
 
 def _rules() -> Mapping[type[ast.AST], Callable[[_Program, Any], Any]]:
@@ -414,7 +447,9 @@ def _rules() -> Mapping[type[ast.AST], Callable[[_Program, Any], Any]]:
         scenic.Mutate: _Program.mutate,
         scenic.Require: _Program.require,
         scenic.BehaviorDef: _Program.behavior,
+        scenic.MonitorDef: _Program.monitor,
         scenic.ScenarioDef: _Program.scenario,
+        **dynamics.RULES,
     }
     if hasattr(ast, "TypeAlias"):  # Python 3.12
         table[ast.TypeAlias] = _Program.type_alias

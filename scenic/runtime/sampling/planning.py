@@ -58,7 +58,7 @@ def outline(program: Program, ego: Object | None, workspace: Workspace, *, mode_
 
     Raises `InvalidScenarioError` where a built-in requirement can be seen to fail in every scene.
     """
-    outputs = dependencies([*program.objects, *program.instances, *program.parameters.values()])
+    outputs = dependencies(program.reachable())
     checks: list[Check] = _drawing(outputs)
     checks += _sizes(program)
     containment = _containment(program, workspace)

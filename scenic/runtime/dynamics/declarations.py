@@ -1,0 +1,155 @@
+"""What a scenario asks for beside its objects: requirements, monitors, ends, records.
+
+The same for the scenario that is compiled and for those that are set up during a simulation.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+from scenic.language.errors import InvalidScenarioError
+from scenic.language.spans import Span
+from scenic.runtime.temporal.formulas import Atom, Formula, Operation
+
+__all__ = ["Copier", "Declared", "End", "Kept", "MonitorUse", "RecordUse", "Required", "Tree", "required"]
+
+
+class Copier(Protocol):
+    """Gives the values of a program in a simulation."""
+
+    def value(self, value: Any) -> Any:
+        """The value in the simulation."""
+
+
+@dataclass(frozen=True, slots=True)
+class Kept:
+    """An expression to be evaluated later: a function, and the values of the names in it when the statement ran.
+
+    ``margin`` gives instead of the truth of a comparison by how much it holds, if it is one.
+    """
+
+    function: Callable[..., Any]
+    captured: Sequence[Any]
+    margin: Callable[..., Any] | None = None
+
+    def within(self, copier: Copier) -> "Kept":
+        """The same over the values of a simulation."""
+        return Kept(
+            copier.value(self.function),
+            [copier.value(item) for item in self.captured],
+            copier.value(self.margin),
+        )
+
+    def __call__(self) -> Any:
+        return self.function(*self.captured)
+
+    def random_parts(self) -> list[Any]:
+        """What may be random in it."""
+        return [self.function, *self.captured]
+
+
+Tree = Kept | tuple[Any, ...]
+"""A condition: an atom, or an operator's name with its operands."""
+
+
+@dataclass(frozen=True, slots=True)
+class Required:
+    """A requirement as a simulation checks it: a formula over atoms."""
+
+    formula: Formula
+    atoms: Sequence[Kept]
+    label: str
+    span: Span | None = None
+    filename: str | None = None
+
+    def within(self, copier: Copier) -> "Required":
+        """The same over the values of a simulation."""
+        atoms = [atom.within(copier) for atom in self.atoms]
+        return Required(self.formula, atoms, self.label, self.span, self.filename)
+
+
+def required(tree: Tree, label: str, span: Span | None, filename: str | None) -> Required:
+    """The requirement of a condition."""
+    atoms: list[Kept] = []
+
+    def formula(part: Tree) -> Formula:
+        if isinstance(part, Kept):
+            atoms.append(part)
+            return Atom(len(atoms) - 1)
+        operator, *operands = part
+        return Operation(operator, tuple(formula(operand) for operand in operands))
+
+    return Required(formula(tree), atoms, label, span, filename)
+
+
+@dataclass(frozen=True, slots=True)
+class End:
+    """``terminate when``; ``simulation`` if it ends all."""
+
+    condition: Kept
+    label: str
+    simulation: bool
+
+    def within(self, copier: Copier) -> "End":
+        """The same over the values of a simulation."""
+        return End(self.condition.within(copier), self.label, self.simulation)
+
+
+@dataclass(frozen=True, slots=True)
+class MonitorUse:
+    """``require monitor``."""
+
+    monitor: Any
+    label: str
+
+
+@dataclass(frozen=True, slots=True)
+class RecordUse:
+    """``record``. ``every`` and ``after`` are numbers with their units; ``to`` is a recorder or a pattern of names."""
+
+    value: Kept
+    moment: str | None
+    name: str
+    every: tuple[float, str] | None = None
+    after: tuple[float, str] | None = None
+    to: Any = None
+
+    def within(self, copier: Copier) -> "RecordUse":
+        """The same over the values of a simulation."""
+        return RecordUse(
+            self.value.within(copier), self.moment, self.name, self.every, self.after, copier.value(self.to)
+        )
+
+
+@dataclass(slots=True)
+class Declared:
+    """What one scenario asks for, in program order."""
+
+    ends: list[End] = field(default_factory=list)
+    monitors: list[MonitorUse] = field(default_factory=list)
+    records: list[RecordUse] = field(default_factory=list)
+    limit: tuple[float, str] | None = None
+
+    def within(self, copier: Copier) -> "Declared":
+        """The same over the values of a simulation."""
+        return Declared(
+            [item.within(copier) for item in self.ends],
+            [MonitorUse(copier.value(item.monitor), item.label) for item in self.monitors],
+            [item.within(copier) for item in self.records],
+            self.limit,
+        )
+
+    def random_parts(self) -> list[Any]:
+        """What may be random in it, for sampling."""
+        parts: list[Any] = [item.monitor for item in self.monitors]
+        for item in self.ends:
+            parts += item.condition.random_parts()
+        for record in self.records:
+            parts += [*record.value.random_parts(), record.to]
+        return parts
+
+    def limit_to(self, limit: tuple[float, str], span: Span | None) -> None:
+        """Set the time limit."""
+        if self.limit is not None:
+            raise InvalidScenarioError("the scenario has a time limit already", span=span)
+        self.limit = limit

@@ -1,0 +1,104 @@
+"""Random numbers of one simulation: each a function of where in the program, and when, it is drawn.
+
+The address of a draw is the running scenario, the agent whose behavior draws, the place in the program, and how many
+draws there have been at that address before. So an agent that draws more than before changes nothing for the others, and a
+simulation can be repeated, replayed from what was drawn, or driven by numbers from elsewhere.
+"""
+
+import hashlib
+from collections.abc import Callable, Hashable, Mapping
+from typing import Protocol
+
+from scenic.graph.draws import address
+
+__all__ = ["Draws", "Recorded", "Seeded", "Source"]
+
+class Source(Protocol):
+    """Gives numbers from (0, 1) by address."""
+
+    def draw(self, place: int) -> float:
+        """The number at an address of 64 bits."""
+
+    def word(self, place: int) -> int:
+        """64 bits at an address."""
+
+
+class Seeded:
+    """Numbers by hashing the address with a key.
+
+    Args:
+        key: of the simulation; any bytes of at most 64.
+
+    """
+
+    def __init__(self, key: bytes) -> None:
+        self.key = key
+
+    def draw(self, place: int) -> float:
+        """The number at an address."""
+        # 52 bits and a half: never 0 or 1.
+        return ((self.word(place) >> 12) + 0.5) * 2.0**-52
+
+    def word(self, place: int) -> int:
+        """64 bits at an address."""
+        digest = hashlib.blake2b(place.to_bytes(8, "little"), digest_size=8, key=self.key).digest()
+        return int.from_bytes(digest, "little")
+
+
+class Recorded:
+    """The numbers of an earlier simulation, and those of another source where there are none.
+
+    ``missing`` is called before the first number that is taken from elsewhere.
+    """
+
+    def __init__(
+        self, numbers: Mapping[int, float], otherwise: Source, missing: Callable[[], None] = lambda: None
+    ) -> None:
+        self._numbers = dict(numbers)
+        self._otherwise = otherwise
+        self._missing = missing
+
+    def word(self, place: int) -> int:
+        """64 bits at an address."""
+        return self._otherwise.word(place)
+
+    def draw(self, place: int) -> float:
+        """The number at an address."""
+        number = self._numbers.pop(place, None)
+        if number is not None:
+            return number
+        if self._numbers:
+            # Not exhausted, and yet something else is drawn: the replay goes another way.
+            self._missing()
+        return self._otherwise.draw(place)
+
+
+class Draws:
+    """What the distributions of a running simulation draw from.
+
+    Args:
+        source: of the numbers.
+        where: who draws, and where in the program, as far as the simulation knows.
+
+    """
+
+    def __init__(self, source: Source, where: Callable[[], Hashable]) -> None:
+        self._source = source
+        self._where = where
+        self._counts: dict[Hashable, int] = {}
+        self.made: list[tuple[int, float]] = []
+        """Addresses and numbers so far, in order."""
+
+    def random(self) -> float:
+        """The next number, from (0, 1)."""
+        where = self._where()
+        count = self._counts.get(where, 0)
+        self._counts[where] = count + 1
+        place = address(where, count)
+        number = self._source.draw(place)
+        self.made.append((place, number))
+        return number
+
+    def seed(self, purpose: str) -> int:
+        """64 bits for something else than a distribution, not among what was drawn."""
+        return self._source.word(address(purpose))

@@ -1,0 +1,238 @@
+"""The part of the prelude that is about time: what generated code of dynamic statements calls."""
+
+import inspect
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any
+
+from scenic.language.errors import (
+    InvalidScenarioError,
+    RejectionException,
+    RejectSimulationException,
+    ScenicTypeError,
+)
+from scenic.runtime.context import Context, here
+from scenic.runtime.dynamics import statements
+from scenic.runtime.dynamics.activations import Termination, Yielded
+from scenic.runtime.dynamics.declarations import End, Kept, MonitorUse, RecordUse, Required
+from scenic.runtime.dynamics.definitions import (
+    Behavior,
+    Definition,
+    Guard,
+    Invocable,
+    ModularScenario,
+    Monitor,
+    define,
+)
+from scenic.runtime.dynamics.recording import check_duration, check_target
+from scenic.runtime.dynamics.run import Run, RunContext
+from scenic.runtime.dynamics.scenarios import not_a_monitor
+from scenic.runtime.temporal.formulas import Monitor as Follower
+from scenic.runtime.temporal.formulas import is_temporal
+from scenic.runtime.values import describe, is_number
+
+if TYPE_CHECKING:
+    from scenic.runtime.program import Program
+
+__all__ = ["Dynamics"]
+
+
+class Dynamics:
+    """Methods of the prelude for what takes time."""
+
+    ABORT = statements.ABORT
+    BREAK = statements.BREAK
+    CONTINUE = statements.CONTINUE
+
+    _program: "Program"
+
+    @property
+    def _context(self) -> Context:
+        raise AssertionError
+
+    @property
+    def _run(self) -> Run | None:
+        """The running simulation."""
+        context = self._context
+        return context.run if isinstance(context, RunContext) else None
+
+    # Definitions
+
+    def behavior(
+        self, preconditions: Sequence[Guard], invariants: Sequence[Guard]
+    ) -> Callable[[Callable[..., Any]], Any]:
+        """A behavior definition, given its guards; the function takes the instance, the agent and the arguments."""
+
+        def make(body: Callable[..., Any]) -> Any:
+            definition = Definition(
+                body.__name__, _signature(body, 2), body, None, preconditions, invariants, here()
+            )
+            return self._defined(define(Behavior, definition, body.__doc__, body.__module__))
+
+        return make
+
+    def monitor(self) -> Callable[[Callable[..., Any]], Any]:
+        """A monitor definition; the function takes the instance and the arguments."""
+
+        def make(body: Callable[..., Any]) -> Any:
+            definition = Definition(body.__name__, _signature(body, 1), body, span=here())
+            return self._defined(define(Monitor, definition, body.__doc__, body.__module__))
+
+        return make
+
+    def scenario(
+        self, preconditions: Sequence[Guard], invariants: Sequence[Guard], compose: Callable[..., Any] | None
+    ) -> Callable[[Callable[..., Any]], Any]:
+        """A scenario definition, given guards and compose block; the function is its set-up."""
+
+        def make(setup: Callable[..., Any]) -> Any:
+            definition = Definition(
+                setup.__name__, _signature(setup, 1), compose, setup, preconditions, invariants, here()
+            )
+            return self._defined(define(ModularScenario, definition, setup.__doc__, setup.__module__))
+
+        return make
+
+    def _defined(self, cls: Any) -> Any:
+        if self._run is None:
+            self._program.invocables.append(cls)
+        return cls
+
+    # Statements that take time; `instance` is what runs
+
+    def take(self, instance: Invocable, *actions: Any) -> Yielded:
+        """``take``, and ``wait`` as taking nothing: what to yield."""
+        instance._activation.direct = True
+        if len(actions) == 1 and isinstance(actions[0], list | tuple):
+            return tuple(actions[0])
+        return actions
+
+    def terminate(self, instance: Invocable, *, simulation: bool) -> Yielded:
+        """``terminate``: what to yield."""
+        instance._activation.direct = True
+        return Termination(simulation=simulation, span=here())
+
+    def do(
+        self, instance: Invocable, targets: Sequence[Any], limit: Any = None, unit: str | None = None
+    ) -> Any:
+        """``do``: what to delegate to."""
+        return statements.do(instance._activation, targets, limit, unit)
+
+    def wait(self, instance: Invocable, limit: Any, unit: str) -> Any:
+        """``wait for`` and ``wait until``: what to delegate to."""
+        return statements.wait(instance._activation, limit, unit)
+
+    def do_choose(self, instance: Invocable, *targets: Any) -> Any:
+        """``do choose``: what to delegate to."""
+        return statements.choose(instance._activation, targets)
+
+    def do_shuffle(self, instance: Invocable, *targets: Any) -> Any:
+        """``do shuffle``: what to delegate to."""
+        return statements.shuffle(instance._activation, targets)
+
+    def interruptible(
+        self,
+        instance: Invocable,
+        body: Callable[[], Any],
+        clauses: Sequence[tuple[Callable[[], Any], Callable[[], Any]]],
+    ) -> Any:
+        """``try-interrupt``: what to delegate to."""
+        return statements.interruptible(instance._activation, body, clauses)
+
+    def leave(self, value: Any) -> statements.Outcome:
+        """``return value`` in a block of ``try-interrupt``."""
+        return statements.Outcome("return", value)
+
+    def returned(self, outcome: statements.Outcome | None) -> bool:
+        """Whether a block ended by ``return``."""
+        return outcome is not None and outcome.way == "return"
+
+    # Statements that do not
+
+    def override(self, target: Any, *specifiers: Any) -> None:
+        """``override``."""
+        run = self._run
+        if run is None:
+            raise InvalidScenarioError(
+                "nothing can be overridden before the simulation",
+                span=here(),
+                help="give the object its properties where it is created",
+            )
+        run.current.overrides.apply(target, specifiers)
+
+    def require_monitor(self, monitor: Any, *, name: str | None = None) -> None:
+        """``require monitor``."""
+        if not isinstance(monitor, Monitor):
+            raise not_a_monitor(monitor)
+        use = MonitorUse(monitor, name or _numbered("monitor"))
+        if self._run is not None:
+            self._run.current.add_monitor(use)
+        else:
+            self._program.declared.monitors.append(use)
+
+    def terminate_when(
+        self, concrete: Callable[..., Any], captured: Sequence[Any], *, simulation: bool, name: str | None
+    ) -> None:
+        """``terminate when``."""
+        label = name or _numbered("termination condition")
+        self._declared.ends.append(End(Kept(concrete, captured), label, simulation))
+
+    def terminate_after(self, value: Any, unit: str) -> None:
+        """``terminate after``."""
+        if not is_number(value) or isinstance(value, bool):
+            raise ScenicTypeError(
+                f"`terminate after`: expected a fixed number of {unit}, not {describe(value)}", span=here()
+            )
+        self._declared.limit_to((value, unit), here())
+
+    def record(
+        self,
+        concrete: Callable[..., Any],
+        captured: Sequence[Any],
+        *,
+        moment: str | None,
+        name: str | None,
+        every: tuple[Any, str] | None = None,
+        after: tuple[Any, str] | None = None,
+        to: Any = None,
+    ) -> None:
+        """``record``."""
+        span = here()
+        check_duration(every, "every", 0, span)
+        check_duration(after, "after", 0, span)
+        check_target(to, span)
+        key = name or ("record" if span is None else f"record{span.line}")
+        self._declared.records.append(RecordUse(Kept(concrete, captured), moment, key, every, after, to))
+
+    @property
+    def _declared(self) -> Any:
+        run = self._run
+        return self._program.declared if run is None else run.current.declared
+
+    def _require_now(self, requirement: Required, chance: float) -> None:
+        """``require`` while values are definite: followed from now on if it speaks of time, else checked at once."""
+        run, context = self._run, self._context
+        if run is not None and is_temporal(requirement.formula):
+            run.current.require(requirement)
+            return
+        if chance < 1 and (context.generator is None or context.generator.random() >= chance):
+            return
+        before, context.evaluating = context.evaluating, True
+        try:
+            verdict = Follower(requirement.formula).add(lambda index: bool(requirement.atoms[index]()))
+        finally:
+            context.evaluating = before
+        if not verdict:
+            raise (RejectionException if run is None else RejectSimulationException)(
+                f"{requirement.label} is violated"
+            )
+
+
+def _numbered(what: str) -> str:
+    span = here()
+    return what if span is None else f"{what} on line {span.line}"
+
+
+def _signature(function: Callable[..., Any], own: int) -> inspect.Signature:
+    """The signature of a definition, without the parameters that the compiler adds."""
+    signature = inspect.signature(function)
+    return signature.replace(parameters=list(signature.parameters.values())[own:])

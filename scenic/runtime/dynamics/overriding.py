@@ -1,0 +1,98 @@
+"""``override``: other values for properties of an object, until the scenario that asked for them stops."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from scenic.language.errors import ScenicTypeError, SpecifierError
+from scenic.runtime.context import here
+from scenic.runtime.dynamics.activations import Activation
+from scenic.runtime.dynamics.definitions import Behavior
+from scenic.runtime.objects import Object
+from scenic.runtime.properties import normalised
+from scenic.runtime.resolution import class_defaults, resolve
+from scenic.runtime.specifiers import Specifier
+from scenic.runtime.values import describe
+
+if TYPE_CHECKING:
+    from scenic.runtime.dynamics.run import Run
+
+__all__ = ["Overrides"]
+
+
+class Overrides:
+    """The overrides of one running scenario."""
+
+    __slots__ = ("_before", "_run")
+
+    def __init__(self, run: "Run") -> None:
+        self._run = run
+        self._before: dict[tuple[int, str], tuple[Any, Any]] = {}
+        """The value before the first override, by object and property."""
+
+    def apply(self, target: Any, specifiers: Sequence[Specifier]) -> None:
+        """Give the properties that the specifiers claim new values.
+
+        Raises `ScenicTypeError` if the target is no object, `SpecifierError` where the properties cannot be overridden.
+        """
+        if not isinstance(target, Object):
+            raise ScenicTypeError(f"`override`: expected an object, not {describe(target)}", span=here())
+        properties = class_defaults(type(target), mode_2d=self._run.context.mode_2d)
+        known = target.__dict__
+        resolution = resolve(type(target), specifiers, properties)
+        values: dict[str, Any] = {}
+        for specifier in resolution.order:
+            if specifier.is_default:
+                continue
+            names = resolution.owns.get(specifier, frozenset()) | resolution.modifies.get(
+                specifier, frozenset()
+            )
+            for name in sorted(names):
+                entry = properties.get(name)
+                if entry is None and name not in known:
+                    raise SpecifierError(
+                        f"there is no property {name!r} to override",
+                        span=specifier.span,
+                        help="an override changes properties that the object has",
+                    )
+                if entry is not None and entry.dynamic:
+                    raise SpecifierError(
+                        f"property {name!r} is dynamic and cannot be overridden: the simulator decides it",
+                        span=specifier.span,
+                    )
+            modifying = resolution.modifies.get(specifier) and specifier.modify
+            offered = (specifier.modify if modifying else specifier.evaluate)(target)  # type: ignore[misc]
+            values.update((name, normalised(name, offered[name])) for name in names)
+        for name, value in values.items():
+            self._set(target, name, value)
+        self._run.refresh(target)
+
+    def _set(self, target: Object, name: str, value: Any) -> None:
+        old = target.__dict__.get(name)
+        if name == "behavior":
+            if isinstance(value, type) and issubclass(value, Behavior):
+                value = value()
+            if value is not None and not isinstance(value, Behavior):
+                raise ScenicTypeError(
+                    f"property 'behavior' must be a behavior, not {describe(value)}", span=here()
+                )
+            if value is not None:
+                Activation(self._run, value, target, self._run.current).start()
+                self._run.note_agent(target)
+            if (
+                (id(target), name) in self._before
+                and isinstance(old, Behavior)
+                and old._activation is not None
+            ):
+                old._activation.stop()  # It was an override itself, and will not come back.
+        self._before.setdefault((id(target), name), (target, old))
+        target.__dict__[name] = value
+
+    def revert(self) -> None:
+        """Give everything its value from before the first override."""
+        for (_, name), (target, old) in self._before.items():
+            present = target.__dict__.get(name)
+            if name == "behavior" and isinstance(present, Behavior) and present._activation is not None:
+                present._activation.stop()
+            target.__dict__[name] = old
+            self._run.refresh(target)
+        self._before = {}

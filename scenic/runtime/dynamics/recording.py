@@ -1,0 +1,104 @@
+"""``record``: values of expressions, kept in the result of a simulation and written to files (section 12.8)."""
+
+import math
+from typing import TYPE_CHECKING, Any
+
+from scenic.language.errors import ScenicTypeError, ScenicValueError
+from scenic.language.spans import Span
+from scenic.runtime.dynamics.declarations import RecordUse
+from scenic.runtime.dynamics.recorders import File, Files, Recorder, for_pattern
+from scenic.runtime.values import describe, is_number
+
+if TYPE_CHECKING:
+    from scenic.runtime.dynamics.run import Run
+
+__all__ = ["Recording", "check_duration", "check_target"]
+
+
+class Recording:
+    """One ``record`` statement of a running scenario."""
+
+    __slots__ = ("_delay", "_ended", "_period", "_recorder", "_run", "begun", "use")
+
+    def __init__(self, use: RecordUse, run: "Run") -> None:
+        self.use = use
+        self._run = run
+        self._period = max(1, self._in_steps(use.every, 1))
+        self._delay = self._in_steps(use.after, 0)
+        self._recorder: Recorder | None = None
+        self._ended = False
+        self.begun = False
+        """Whether there is a value."""
+        run.recordings.append(self)
+        if use.to is not None:
+            recorder = use.to if isinstance(use.to, Recorder) else for_pattern(use.to)
+            simulation = run.simulation
+            recorder.beginRecording(use, simulation.name, simulation.timestep, run.parameters)
+            self._recorder = recorder
+
+    def _in_steps(self, duration: tuple[float, str] | None, otherwise: int) -> int:
+        if duration is None:
+            return otherwise
+        value, unit = duration
+        # A millionth of a step for what should be whole.
+        return math.floor(value / self._run.simulation.timestep + 1e-6) if unit == "seconds" else int(value)
+
+    def add(self, step: int, records: dict[str, Any]) -> None:
+        """Record the present value, if this step is recorded."""
+        name, moment = self.use.name, self.use.moment
+        if moment is None and (step < self._delay or step % self._period != 0):
+            return
+        with self._run.condition():
+            value = self.use.value()
+        self.begun = True
+        if moment is not None:
+            records[name] = value
+        else:
+            series = records.setdefault(name, [])
+            if series and series[-1][0] == step:
+                series[-1] = (step, value)
+            else:
+                series.append((step, value))
+        if self._recorder is not None:
+            self._recorder.recordValue(value, step)
+
+    def finish(self) -> None:
+        """The scenario has stopped."""
+        if not self._ended and self._recorder is not None:
+            self._recorder.endRecording(False)
+        self._ended = True
+
+    def cancel(self) -> None:
+        """The simulation was rejected or failed: no file should remain."""
+        if isinstance(self._recorder, File | Files):
+            self._recorder.discard()
+        elif not self._ended and self._recorder is not None:
+            self._recorder.endRecording(True)
+        self._ended = True
+
+
+def check_duration(duration: tuple[Any, str] | None, what: str, least: float, span: Span | None) -> None:
+    """Raise an error for a period or delay that cannot be one."""
+    if duration is None:
+        return
+    value, unit = duration
+    if not is_number(value) or isinstance(value, bool) or (unit == "steps" and value != int(value)):
+        wanted = "a whole number of steps" if unit == "steps" else "a number of seconds"
+        raise ScenicTypeError(f"`record ... {what}`: expected {wanted}, not {describe(value)}", span=span)
+    if value < least or (least == 0 and what == "every" and value == 0):
+        raise ScenicValueError(
+            f"`record ... {what}` must be {'more than 0' if what == 'every' else 'at least 0'}, not {value:g}",
+            span=span,
+        )
+
+
+def check_target(target: Any, span: Span | None) -> None:
+    """Raise an error for something to which nothing can be recorded."""
+    if target is None or isinstance(target, Recorder):
+        return
+    if not isinstance(target, str):
+        raise ScenicTypeError(
+            f"`record ... to`: expected a pattern of file names or a recorder, not {describe(target)}",
+            span=span,
+        )
+    for_pattern(target)

@@ -1,0 +1,410 @@
+"""One simulation as the language sees it: what runs, what has been drawn, and the procedure of a step (section 12.7)."""
+
+from collections.abc import Callable, Hashable, Iterator, Mapping
+from contextlib import contextmanager, suppress
+from typing import Any, Protocol
+
+from scenic.language.errors import InvalidScenarioError
+from scenic.runtime.context import Context, Locator, Namer, current, here
+from scenic.runtime.dynamics.activations import Activation, Termination
+from scenic.runtime.dynamics.copies import Copies
+from scenic.runtime.dynamics.definitions import Behavior, Invocable, ModularScenario
+from scenic.runtime.dynamics.draws import Draws, Source
+from scenic.runtime.dynamics.recording import Recording
+from scenic.runtime.dynamics.requirements import Followed
+from scenic.runtime.dynamics.scenarios import ScenarioActivation
+from scenic.runtime.objects import Object
+from scenic.runtime.program import Program
+
+__all__ = ["Ending", "Run", "RunContext", "Simulated"]
+
+
+class Simulated(Protocol):
+    """What a run needs of the simulation that it is part of (`scenic.simulators.simulation.Simulation`)."""
+
+    name: str
+    timestep: float
+    currentTime: int
+    objects: list[Any]
+    agents: list[Any]
+    records: dict[str, Any]
+
+    def add(self, obj: Any) -> None:
+        """Create an object in the simulator."""
+
+    def sense(self) -> None:
+        """Let every object observe."""
+
+    def recordCurrentState(self) -> None:
+        """Append to the trajectory."""
+
+    def scheduleForAgents(self) -> Any:
+        """The agents in the order in which they act."""
+
+    def check_actions(self, agent: Any, actions: tuple[Any, ...]) -> None:
+        """Raise `InvalidScenarioError` for actions that cannot be taken together."""
+
+    def act(self, actions: Mapping[Any, tuple[Any, ...]]) -> None:
+        """Log and execute the actions of a step."""
+
+    def advance(self) -> None:
+        """One step of the simulator, after which properties are read back."""
+
+
+class Ending:
+    """Why a simulation ends: a member of ``TerminationType`` by name, and a text."""
+
+    __slots__ = ("kind", "reason")
+
+    def __init__(self, kind: str, reason: str) -> None:
+        self.kind = kind
+        self.reason = reason
+
+
+class RunContext(Context):
+    """The context of a running simulation: distributions draw at once."""
+
+    def __init__(self, run: "Run", locate: Locator, name: Namer, *, mode_2d: bool) -> None:
+        super().__init__(locate=locate, name=name, generator=run.draws, mode_2d=mode_2d)  # type: ignore[arg-type] # it has `random`
+        self.run = run
+
+
+class Run:
+    """The running program.
+
+    Args:
+        simulation: what it is part of.
+        program: what was compiled.
+        copies: the program's values in this simulation.
+        source: of random numbers.
+        locate: finds places of frames.
+        name: names them, for the addresses of draws.
+        mode_2d: whether the 2D compatibility mode is on.
+        robustness: whether to follow by how much requirements hold, which needs memory for every step.
+
+    """
+
+    def __init__(
+        self,
+        simulation: Simulated,
+        program: Program,
+        copies: Copies,
+        source: Source,
+        locate: Locator,
+        name: Namer,
+        *,
+        mode_2d: bool = False,
+        robustness: bool = False,
+    ) -> None:
+        self.simulation = simulation
+        self.program = program
+        self.copies = copies
+        self.draws = Draws(source, self._where)
+        self.context = RunContext(self, locate, name, mode_2d=mode_2d)
+        self.wants_robustness = robustness
+        self.scenarios: list[ScenarioActivation] = []
+        """Those that run, in the order in which they started."""
+        self.followed: list[Followed] = []
+        self.parameters: dict[str, Any] = {
+            name: copies.value(value) for name, value in program.parameters.items()
+        }
+        self.agent: Any = None
+        """Whose behavior is running."""
+        self.ending: Ending | None = None
+        self._finished = False
+        self._count = 0
+        self._creating: ScenarioActivation | None = None
+        self._new_agents: list[Any] = []
+        self._numbers: dict[int, int] = {}
+        self.recordings: list[Recording] = []
+        """All that have begun."""
+        self.top = ScenarioActivation(self, None, None)
+        self.current: ScenarioActivation = self.top
+
+    # Where we are
+
+    def number_of(self, _activation: ScenarioActivation) -> int:
+        """A number for a scenario that is made ready, in order."""
+        self._count += 1
+        return self._count
+
+    def _where(self) -> Hashable:
+        agent = None if self.agent is None else self._numbers.get(id(self.agent))
+        return (self.current.number, agent, self.context.place_name())
+
+    @contextmanager
+    def active(self) -> Iterator[None]:
+        """Code of the program runs within this."""
+        token = current.set(self.context)
+        try:
+            yield
+        finally:
+            current.reset(token)
+
+    @contextmanager
+    def within(self, scenario: ScenarioActivation, *, creating: bool = False) -> Iterator[None]:
+        """Code of a scenario runs within this; ``creating`` if it may create objects."""
+        before, self.current = self.current, scenario
+        allowed, self._creating = self._creating, scenario if creating else None
+        try:
+            yield
+        finally:
+            self.current = before
+            self._creating = allowed
+
+    @contextmanager
+    def condition(self) -> Iterator[None]:
+        """A condition is evaluated within this."""
+        context = self.context
+        before, context.evaluating = context.evaluating, True
+        try:
+            yield
+        finally:
+            context.evaluating = before
+
+    def holds(self, condition: Callable[[], Any]) -> bool:
+        """Whether a condition of an interrupt holds; one that reads a variable that is not set yet does not."""
+        context = self.context
+        before, context.evaluating = context.evaluating, True
+        try:
+            return bool(condition())
+        except (AttributeError, NameError) as error:
+            if isinstance(error, AttributeError) and not _is_unset(error):
+                raise
+            if isinstance(error, NameError) and not isinstance(error, UnboundLocalError):
+                raise
+            return False
+        finally:
+            context.evaluating = before
+
+    def activation(self, target: ModularScenario, parent: ScenarioActivation) -> ScenarioActivation:
+        """A scenario, ready to be started by another one."""
+        return ScenarioActivation(self, target, parent)
+
+    # Objects and agents
+
+    def create(self, instance: Any) -> None:
+        """A new instance of the running program."""
+        if not isinstance(instance, Object):
+            return
+        scenario = self._creating
+        if scenario is None:
+            raise InvalidScenarioError(
+                "objects can be created during a simulation only in the setup of a scenario",
+                span=here(),
+                help="put the object into a scenario, and run it with `do` in a compose block",
+            )
+        scenario.objects.append(instance)
+        if instance.behavior is not None:
+            scenario.agents.append(instance)
+        self.simulation.add(instance)
+        self._numbers[id(instance)] = len(self._numbers)
+
+    def start_behavior(self, agent: Any, scenario: ScenarioActivation) -> None:
+        """Make the behavior of an agent ready for its first turn."""
+        behavior = agent.behavior
+        if behavior is None or (behavior._activation is not None and behavior._activation.agent is agent):
+            return
+        with self.within(scenario):
+            Activation(self, behavior, agent, scenario).start()
+        self.note_agent(agent)
+
+    def note_agent(self, agent: Any) -> None:
+        """An object has a behavior."""
+        if not any(known is agent for known in (*self.simulation.agents, *self._new_agents)):
+            self._new_agents.append(agent)
+
+    def refresh(self, obj: Any) -> None:
+        """Compute again what a dynamic final property is made of."""
+        for name, entry in type(obj).scenic_properties.items():
+            if entry.dynamic and entry.final:
+                obj.__dict__[name] = entry.default(obj)
+
+    # The procedure
+
+    def begin(self) -> None:
+        """Start the top-level scenario, whose objects exist."""
+        program, top, copies = self.program, self.top, self.copies
+        top.ego = copies.value(program.ego)
+        top.workspace = copies.value(program.workspace)
+        top.declared = program.declared.within(copies)
+        top.objects = list(self.simulation.objects)
+        for number, obj in enumerate(top.objects):
+            self._numbers[id(obj)] = number
+        top.agents = [obj for obj in top.objects if obj.behavior is not None]
+        if program.top is not None:
+            top.instance = copies.value(program.top)
+            top.instance._activation = top
+            definition = top.instance._definition
+            top._preconditions = [copies.value(guard) for guard in definition.preconditions]
+            top._invariants = [copies.value(guard) for guard in definition.invariants]
+        top.check_all()
+        for requirement in program.requirements:
+            if requirement.formula is not None and self._is_active(requirement):
+                top.require(requirement.formula.within(copies))
+        top.go()
+
+    def _is_active(self, requirement: Any) -> bool:
+        return bool(requirement.probability == 1)
+
+    def end(self, reason: str) -> None:
+        """A compose block asks for the end of the simulation."""
+        self._remember("scenarioComplete", reason)
+
+    def _remember(self, kind: str, reason: str) -> None:
+        if self.ending is None:
+            self.ending = Ending(kind, reason)
+
+    def steps(self, max_steps: int | None) -> Iterator[None]:
+        """The steps of the simulation; at its end ``ending`` says why. Yields before each step of the simulator."""
+        simulation, top = self.simulation, self.top
+        while True:
+            # 1. Scenarios
+            if top.running and top.resume() is None:
+                self._remember("scenarioComplete", top.reason or "")
+            # 2. Sensors
+            simulation.sense()
+            # 3. Records
+            self._record(simulation.currentTime)
+            simulation.recordCurrentState()
+            # 4. Monitors
+            self._monitors()
+            # 5. Is it over?
+            if self.ending is None:
+                self._end_conditions()
+            if self.ending is None and max_steps is not None and simulation.currentTime >= max_steps:
+                self._remember("timeLimit", f"reached time limit ({max_steps} steps)")
+            if self.ending is not None:
+                return
+            # 6. Behaviors
+            actions = self._behaviors()
+            if actions is None:
+                return
+            # 7. to 9. Actions, the simulator's step, reading back
+            simulation.act(actions)
+            yield
+            simulation.advance()
+
+    def _record(self, step: int) -> None:
+        records = self.simulation.records
+        # The top-level scenario may have stopped in this step, which belongs to it.
+        for scenario in (self.top, *(each for each in self.scenarios if each is not self.top)):
+            with self.within(scenario):
+                for recording in scenario.records:
+                    moment = recording.use.moment
+                    if moment is None or (moment == "initial" and not recording.begun):
+                        recording.add(step, records)
+
+    def finish_records(self, scenario: ScenarioActivation) -> None:
+        """A scenario has stopped: its final values, and its files. Those of the top-level scenario come last."""
+        if scenario is not self.top or self._finished:
+            with self.within(scenario):
+                for recording in scenario.records:
+                    if recording.use.moment == "final":
+                        recording.add(self.simulation.currentTime, self.simulation.records)
+                    recording.finish()
+
+    def _monitors(self) -> None:
+        for scenario in list(self.scenarios):
+            for monitor in list(scenario.monitors):
+                with self.within(scenario):
+                    output = monitor.resume()
+                if output is None:
+                    if monitor in scenario.monitors:
+                        scenario.monitors.remove(monitor)
+                elif isinstance(output, Termination):
+                    if output.simulation:
+                        self._remember("terminatedByMonitor", output.reason)
+                    else:
+                        scenario.stop(output.reason)
+                        if scenario is self.top:
+                            self._remember("terminatedByMonitor", output.reason)
+
+    def _end_conditions(self) -> None:
+        for scenario in self.scenarios:
+            for end in scenario.declared.ends:
+                if end.simulation and scenario.holds(end):
+                    self._remember("simulationTerminationCondition", end.label)
+                    return
+
+    def _behaviors(self) -> dict[Any, tuple[Any, ...]] | None:
+        """What each agent does; ``None`` if one of them ends the simulation."""
+        simulation = self.simulation
+        simulation.agents.extend(self._new_agents)
+        self._new_agents = []
+        for agent in simulation.agents:
+            agent.__dict__["lastActions"] = ()
+        chosen: dict[int, tuple[Any, ...]] = {}
+        for agent in simulation.scheduleForAgents():
+            actions = self._turn(agent)
+            if actions is None:
+                return None
+            chosen[id(agent)] = actions
+        # In the order of the agents, whatever the schedule was.
+        return {agent: chosen[id(agent)] for agent in simulation.agents if id(agent) in chosen}
+
+    def _turn(self, agent: Any) -> tuple[Any, ...] | None:
+        behavior: Behavior | None = agent.behavior
+        activation: Activation | None = None if behavior is None else behavior._activation
+        if activation is None:
+            return ()
+        before, self.current = self.current, activation.scenario
+        self.agent = agent
+        try:
+            output = activation.resume()
+        finally:
+            self.current = before
+            self.agent = None
+        if output is None:
+            return ()
+        if isinstance(output, Termination):
+            if output.simulation:
+                self._remember("terminatedByBehavior", output.reason)
+                return None
+            scenario = activation.scenario
+            scenario.stop(output.reason)
+            if scenario is self.top:
+                self._remember("terminatedByBehavior", output.reason)
+                return None
+            return ()
+        if output:
+            self.simulation.check_actions(agent, output)
+        return output
+
+    # The end
+
+    def finish(self) -> None:
+        """Stop what still runs, newest first, and evaluate what is recorded at the end."""
+        top = self.top
+        for scenario in reversed(list(self.scenarios)):
+            scenario.stop("simulation ended")
+        for obj in self.simulation.objects:
+            behavior = obj.behavior
+            if isinstance(behavior, Behavior) and behavior._activation is not None:
+                behavior._activation.stop()
+        self._finished = True
+        self.finish_records(top)
+
+    def abandon(self) -> None:
+        """Give up after a rejection or an error: close what is open and remove what was recorded."""
+        for scenario in reversed(list(self.scenarios)):
+            scenario.followed = []
+            scenario.records = []
+            _quietly(scenario.stop)
+        for recording in self.recordings:
+            _quietly(recording.cancel)
+        for obj in self.simulation.objects:
+            behavior = obj.__dict__.get("behavior")
+            if isinstance(behavior, Behavior) and behavior._activation is not None:
+                _quietly(behavior._activation.stop)
+
+
+def _quietly(stop: Callable[[], None]) -> None:
+    """Stop something; what its clean-up raises comes second to what ended the simulation."""
+    with suppress(Exception):  # code of the program, run while another exception is on its way
+        stop()
+
+
+def _is_unset(error: AttributeError) -> bool:
+    """Whether an attribute is missing because a local variable of a running instance is not set yet."""
+    return isinstance(getattr(error, "obj", None), Invocable)

@@ -1,0 +1,243 @@
+"""Running scenarios: prepared, started, stepped, stopped (section 12.5 of the specification)."""
+
+import inspect
+from collections.abc import Generator
+from typing import TYPE_CHECKING, Any
+
+from scenic.language.errors import (
+    GuardViolation,
+    InvalidScenarioError,
+    InvariantViolation,
+    PreconditionViolation,
+    RejectionException,
+    ScenicTypeError,
+)
+from scenic.runtime.context import here
+from scenic.runtime.dynamics.activations import Activation, Termination, Yielded
+from scenic.runtime.dynamics.declarations import Declared, End, MonitorUse, Required
+from scenic.runtime.dynamics.definitions import Guard, ModularScenario, Monitor
+from scenic.runtime.dynamics.overriding import Overrides
+from scenic.runtime.dynamics.recording import Recording
+from scenic.runtime.dynamics.requirements import Followed
+from scenic.runtime.dynamics.statements import limit_in_steps
+from scenic.runtime.values import describe
+
+if TYPE_CHECKING:
+    from scenic.runtime.dynamics.run import Run
+
+__all__ = ["ScenarioActivation"]
+
+
+class ScenarioActivation:
+    """One run of a scenario.
+
+    Args:
+        run: the simulation.
+        instance: the scenario; ``None`` for a program that is one scenario as a whole.
+        parent: what started it; ``None`` for the top-level scenario.
+
+    """
+
+    composes = True
+
+    def __init__(
+        self, run: "Run", instance: ModularScenario | None, parent: "ScenarioActivation | None"
+    ) -> None:
+        if instance is not None and instance._activation is not None:
+            raise InvalidScenarioError(
+                f"scenario {instance!r} has been run already",
+                span=here(),
+                help=f"create one for each use: `{instance._definition.name}(...)`",
+            )
+        self.run = run
+        self.instance = instance
+        self.parent = parent
+        self.ego: Any = None if parent is None else parent.ego
+        self.workspace: Any = None if parent is None else parent.workspace
+        self.objects: list[Any] = []
+        self.agents: list[Any] = []
+        self.agent = None
+        self.scenario = self
+        self.declared = Declared()
+        self.followed: list[Followed] = []
+        self.monitors: list[Activation] = []
+        self.records: list[Recording] = []
+        self.overrides = Overrides(run)
+        self.direct = True
+        self.running = False
+        self.reason: str | None = None
+        """Why it stopped."""
+        self.number = run.number_of(self)
+        self._elapsed = 0
+        self._limit: float | None = None
+        self._compose: Generator[Yielded, None, Any] | None = None
+        self._resumed = False
+        self._preconditions: list[Guard] = []
+        self._invariants: list[Guard] = []
+        if instance is not None:
+            value = run.copies.value
+            self._preconditions = [value(guard) for guard in instance._definition.preconditions]
+            self._invariants = [value(guard) for guard in instance._definition.invariants]
+
+    # Beginning
+
+    def start(self) -> None:
+        """Prepare and start: guards, set-up, then the compose block, behaviors, monitors and records."""
+        self.check_all()
+        if self.instance is not None and self.parent is not None:
+            self.instance._activation = self
+            arguments = self.instance._arguments
+            setup = self.run.copies.value(self.instance._definition.setup)
+            with self.run.within(self, creating=True):
+                setup(self.instance, *arguments.args, **arguments.kwargs)
+        self.go()
+
+    def go(self) -> None:
+        """Start what has been set up."""
+        run = self.run
+        body = None if self.instance is None else self.instance._definition.body
+        if body is not None:
+            assert self.instance is not None
+            if not inspect.isgeneratorfunction(body):
+                raise InvalidScenarioError(
+                    f"the compose block of scenario {self.instance._definition.name!r} never waits",
+                    span=self.instance._definition.span,
+                    help="use `do`, `wait` or `terminate` in it",
+                )
+            self._compose = run.copies.value(body)(self.instance)
+        if self.declared.limit is not None:
+            self._limit = limit_in_steps(*self.declared.limit, run.simulation.timestep, "`terminate after`")
+        self.running = True
+        run.scenarios.append(self)
+        for agent in self.agents:
+            run.start_behavior(agent, self)
+        for use in self.declared.monitors:
+            self._start_monitor(use)
+        self.records = [Recording(record, run) for record in self.declared.records]
+
+    def require(self, requirement: Required) -> None:
+        """Follow a requirement from the present step on."""
+        followed = Followed(requirement, self.run)
+        self.followed.append(followed)
+        if self.running:
+            followed.follow()
+
+    def add_monitor(self, use: MonitorUse) -> None:
+        """Run a monitor from the start, or from now on."""
+        if not isinstance(use.monitor, Monitor):
+            raise not_a_monitor(use.monitor)
+        self.declared.monitors.append(use)
+        if self.running:
+            self._start_monitor(use)
+
+    def _start_monitor(self, use: MonitorUse) -> None:
+        activation = Activation(self.run, use.monitor, None, self)
+        activation.start()
+        self.monitors.append(activation)
+
+    # Guards
+
+    def check_all(self) -> None:
+        """Raise `GuardViolation` unless all guards hold."""
+        for guard in self._preconditions:
+            self._check(guard, PreconditionViolation)
+        self.check_invariants()
+
+    def check_invariants(self) -> None:
+        """Raise `InvariantViolation` unless all invariants hold."""
+        for guard in self._invariants:
+            self._check(guard, InvariantViolation)
+
+    def _check(self, guard: Guard, violation: type[GuardViolation]) -> None:
+        try:
+            with self.run.within(self), self.run.condition():
+                holds = bool(guard(self.instance))
+        except RejectionException:
+            holds = False
+        if not holds:
+            raise violation(self.instance, guard.__code__.co_firstlineno)
+
+    def may_start(self) -> bool:
+        """Whether all guards hold."""
+        try:
+            self.check_all()
+        except GuardViolation:
+            return False
+        return True
+
+    # Every step
+
+    def resume(self) -> Yielded | None:
+        """Take one step; ``None`` if the scenario has ended. Raises what its code raises."""
+        run = self.run
+        for requirement in self.followed:
+            requirement.follow()
+        if self._limit is not None and self._elapsed >= self._limit:
+            return self._stopped("reached time limit")
+        self._elapsed += 1
+        with run.within(self):
+            violation: InvariantViolation | None = None
+            if self._invariants and self.direct and (self._resumed or self._compose is None):
+                try:
+                    self.check_invariants()
+                except InvariantViolation as found:
+                    if self._compose is None:
+                        raise
+                    violation = found
+            if self._compose is not None:
+                self._resumed = True
+                try:
+                    # A violation is raised where the block waits: there, or further out, it may be caught.
+                    output = next(self._compose) if violation is None else self._compose.throw(violation)
+                except StopIteration:
+                    return self._stopped("finished compose block")
+                if isinstance(output, Termination):
+                    if not output.simulation:
+                        return self._stopped(output.reason)
+                    run.end(output.reason)
+        for end in self.declared.ends:
+            if not end.simulation and self.holds(end):
+                return self._stopped(end.label)
+        return ()
+
+    def holds(self, end: End) -> bool:
+        """Whether the condition of a ``terminate when`` holds."""
+        with self.run.within(self), self.run.condition():
+            return bool(end.condition())
+
+    # End
+
+    def _stopped(self, reason: str) -> Yielded | None:
+        """Stop within a step, which yields nothing then."""
+        self.stop(reason)
+        return None
+
+    def stop(self, reason: str = "stopped") -> None:
+        """End it, in this order: monitors, what its compose block runs, overrides, requirements, records."""
+        if not self.running:
+            return
+        self.running = False
+        self.reason = reason
+        for monitor in self.monitors:
+            monitor.stop()
+        self.monitors = []
+        compose, self._compose = self._compose, None
+        if compose is not None:
+            with self.run.within(self):
+                compose.close()
+        self.overrides.revert()
+        self.run.scenarios.remove(self)
+        for requirement in self.followed:
+            requirement.finish()
+        self.run.finish_records(self)
+
+
+def not_a_monitor(value: Any) -> Exception:
+    """The error for something else where a monitor belongs."""
+    is_class = isinstance(value, type) and issubclass(value, Monitor)
+    hint = (
+        f"write `require monitor {value.__name__}()`" if is_class else "monitors are defined with `monitor`"
+    )
+    return ScenicTypeError(
+        f"`require monitor`: expected a monitor, not {describe(value)}", span=here(), help=hint
+    )

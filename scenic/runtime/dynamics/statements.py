@@ -1,0 +1,211 @@
+"""The statements that take time, as generators to which code delegates (sections 12.2 and 12.4)."""
+
+import inspect
+from collections.abc import Callable, Generator, Iterator, Sequence
+from typing import Any, Final, cast
+
+from scenic.language.errors import RejectSimulationException, ScenicTypeError, ScenicValueError
+from scenic.runtime.context import here
+from scenic.runtime.dynamics.activations import Activation, Yielded
+from scenic.runtime.dynamics.definitions import Behavior, Invocable, ModularScenario, Monitor
+from scenic.runtime.values import describe, is_number
+
+__all__ = [
+    "ABORT",
+    "BREAK",
+    "CONTINUE",
+    "Outcome",
+    "choose",
+    "do",
+    "interruptible",
+    "limit_in_steps",
+    "shuffle",
+    "wait",
+]
+
+Running = Any  # Activation | ScenarioActivation: what resumes, checks guards and stops
+Steps = Generator[Yielded, None, Any]
+
+
+class Outcome:
+    """How a block of ``try-interrupt`` ended, other than at its end; ``value`` is that of ``return``."""
+
+    __slots__ = ("value", "way")
+
+    def __init__(self, way: str, value: Any = None) -> None:
+        self.way = way
+        self.value = value
+
+
+ABORT: Final = Outcome("abort")
+BREAK: Final = Outcome("break")
+CONTINUE: Final = Outcome("continue")
+
+
+def limit_in_steps(value: Any, unit: str, timestep: float, what: str) -> float:
+    """A duration in steps, not rounded."""
+    if not is_number(value) or isinstance(value, bool):
+        raise ScenicTypeError(f"{what}: expected a number of {unit}, not {describe(value)}", span=here())
+    return value / timestep if unit == "seconds" else value
+
+
+def _stop_test(owner: Running, limit: Any, unit: str | None) -> Callable[[], bool] | None:
+    """What tells before each resumption whether to stop."""
+    if unit is None:
+        return None
+    run = owner.run
+    if unit == "until":
+
+        def holds() -> bool:
+            with run.condition():
+                return bool(limit())
+
+        return holds
+    steps = limit_in_steps(limit, unit, run.simulation.timestep, "`for`")
+    start = run.simulation.currentTime
+    return lambda: run.simulation.currentTime - start >= steps
+
+
+def begin(owner: Running, target: Any) -> Running:
+    """Make something ready to be started from within something else."""
+    in_compose = owner.composes
+    if isinstance(target, type) and issubclass(target, Invocable):
+        hint = f"write `do {target.__name__}()`"
+    else:
+        hint = None
+    if in_compose and isinstance(target, ModularScenario):
+        return owner.run.activation(target, owner)
+    wanted = Monitor if owner.instance._kind == "monitor" else Behavior
+    if not in_compose and isinstance(target, Behavior | wanted):
+        return Activation(owner.run, target, owner.agent, owner.scenario)
+    expected = "a scenario" if in_compose else "a behavior"
+    raise ScenicTypeError(f"`do`: expected {expected}, not {describe(target)}", span=here(), help=hint)
+
+
+def do(owner: Running, targets: Sequence[Any], limit: Any = None, unit: str | None = None) -> Steps:
+    """``do``, with ``for`` or ``until``."""
+    stop = _stop_test(owner, limit, unit)
+    started: list[Running] = []
+    try:
+        for target in targets:
+            sub = begin(owner, target)
+            started.append(sub)
+            sub.start()
+        waiting = started
+        while stop is None or not stop():
+            if len(waiting) == 1:
+                output = waiting[0].resume()
+                if output is None:
+                    break
+            else:
+                # In parallel only scenarios are, which take no actions.
+                output = ()
+                waiting = [sub for sub in waiting if sub.resume() is not None]
+                if not waiting:
+                    break
+            owner.direct = False
+            yield output
+        owner.direct = True
+    finally:
+        for sub in started:
+            sub.stop()
+    owner.check_invariants()
+
+
+def wait(owner: Running, limit: Any, unit: str) -> Steps:
+    """``wait for`` and ``wait until``."""
+    stop = _stop_test(owner, limit, unit)
+    assert stop is not None
+    while not stop():
+        owner.direct = False
+        yield ()
+    owner.direct = True
+    owner.check_invariants()
+
+
+def choose(owner: Running, targets: Sequence[Any]) -> Steps:
+    """``do choose``."""
+    options = _weighted(targets, "choose")
+    index = _drawn(owner, options, "choose")
+    yield from do(owner, [options[index][0]])
+
+
+def shuffle(owner: Running, targets: Sequence[Any]) -> Steps:
+    """``do shuffle``."""
+    options = _weighted(targets, "shuffle")
+    while options:
+        target, _ = options.pop(_drawn(owner, options, "shuffle"))
+        yield from do(owner, [target])
+
+
+def _weighted(targets: Sequence[Any], what: str) -> list[tuple[Any, float]]:
+    """The targets with their weights."""
+    if len(targets) == 1 and isinstance(targets[0], dict):
+        options = list(targets[0].items())
+        for _, weight in options:
+            if not is_number(weight):
+                raise ScenicTypeError(
+                    f"`do {what}`: a weight is a number, not {describe(weight)}", span=here()
+                )
+            if not weight >= 0:
+                raise ScenicValueError(f"`do {what}`: a weight cannot be negative", span=here())
+        return options
+    return [(target, 1.0) for target in targets]
+
+
+def _drawn(owner: Running, options: Sequence[tuple[Any, float]], what: str) -> int:
+    """The number of one of those that may start now."""
+    eligible = [
+        index
+        for index, (target, weight) in enumerate(options)
+        if weight > 0 and begin(owner, target).may_start()
+    ]
+    if not eligible:
+        raise RejectSimulationException(f"nothing that `do {what}` names may start")
+    mark = owner.run.draws.random() * sum(options[index][1] for index in eligible)
+    for index in eligible:
+        mark -= options[index][1]
+        if mark < 0:
+            return index
+    return eligible[-1]
+
+
+def interruptible(
+    owner: Running, body: Callable[[], Any], clauses: Sequence[tuple[Callable[[], Any], Callable[[], Any]]]
+) -> Generator[Yielded, None, Outcome | None]:
+    """``try-interrupt``: the body, and conditions with their handlers in program order; returns how it ended."""
+    run = owner.run
+    blocks: list[Any] = [None] * len(clauses)  # The handlers that have begun.
+    main: Any = None
+    conditions = [condition for condition, _ in clauses]
+    order = range(len(clauses) - 1, -1, -1)
+    try:
+        while True:
+            selected = -1
+            for index in order:
+                if blocks[index] is not None or run.holds(conditions[index]):
+                    selected = index
+                    break
+            if selected < 0:
+                block = main = body() if main is None else main
+            elif blocks[selected] is None:
+                block = blocks[selected] = clauses[selected][1]()
+            else:
+                block = blocks[selected]
+            if inspect.isgenerator(block):
+                try:
+                    output = next(cast("Iterator[Yielded]", block))
+                except StopIteration as end:
+                    outcome = end.value
+                else:
+                    yield output
+                    continue
+            else:
+                outcome = block  # A block in which nothing takes time has run to its end.
+            if outcome is not None or selected < 0:
+                return outcome  # type: ignore[no-any-return] # blocks return outcomes
+            blocks[selected] = None
+    finally:
+        for block in (*blocks, main):
+            if inspect.isgenerator(block):
+                block.close()

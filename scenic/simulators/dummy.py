@@ -1,0 +1,58 @@
+"""A simulator for tests: objects drift, and anything is an action."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from scenic.runtime.scene import Scene
+from scenic.runtime.values import Vector
+from scenic.simulators.simulation import Simulation
+from scenic.simulators.simulator import Simulator
+
+__all__ = ["DummySimulation", "DummySimulator"]
+
+
+class DummySimulation(Simulation):
+    """Every object moves by ``drift`` metres along Y in each step; actions have no effect."""
+
+    def __init__(self, scene: Scene, drift: float = 0, **options: Any) -> None:
+        self.drift = drift
+        super().__init__(scene, **options)
+
+    def createObjectInSimulator(self, obj: Any) -> None:
+        """There is nothing to do."""
+
+    def actionsAreCompatible(self, agent: Any, actions: Sequence[Any]) -> bool:
+        """Any are."""
+        return True
+
+    def executeActions(self, allActions: Mapping[Any, Sequence[Any]]) -> None:
+        """Nothing happens."""
+
+    def step(self) -> None:
+        """All objects drift."""
+        if self.drift:
+            for obj in self.objects:
+                x, y, z = obj.position
+                obj.__dict__["position"] = Vector.of((x, y + self.drift, z))
+
+    def getProperties(self, obj: Any, properties: Any) -> Mapping[str, Any]:
+        """What the properties are."""
+        stored = obj.__dict__
+        return {name: stored[name] for name in properties}
+
+
+class DummySimulator(Simulator):
+    """Makes dummy simulations.
+
+    Args:
+        drift: metres along Y that objects move in each step.
+
+    """
+
+    def __init__(self, drift: float = 0) -> None:
+        super().__init__()
+        self.drift = drift
+
+    def createSimulation(self, scene: Scene, **options: Any) -> DummySimulation:
+        """A simulation that has run."""
+        return DummySimulation(scene, drift=self.drift, **options)

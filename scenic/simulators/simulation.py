@@ -1,0 +1,399 @@
+"""One simulation: the part of the interface that a simulator fills in, and what joins it to the running program."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import ExitStack
+from typing import Any
+
+from scenic.graph.kinds import Kind
+from scenic.language.errors import InternalError, InvalidScenarioError, Located
+from scenic.runtime.dynamics.copies import Copies
+from scenic.runtime.dynamics.run import Run
+from scenic.runtime.properties import normalised
+from scenic.runtime.randomness import preserved, restore, seed_globals, states
+from scenic.runtime.scene import Scene
+from scenic.runtime.values import describe, kind_of
+from scenic.simulators.replays import Replay, Tape, fresh_key
+from scenic.simulators.results import SimulationResult, TerminationType
+
+__all__ = ["Simulation"]
+
+
+class Simulation(ABC):
+    """One run of a scene; it has run when the constructor returns.
+
+    A simulator's subclass provides `createObjectInSimulator`, `step` and `getProperties`, and passes the keywords that it does
+    not know to this constructor.
+
+    Args:
+        scene: what to simulate.
+        maxSteps: after how many steps to end at the latest; ``None`` for no limit.
+        name: of the simulation, for files and messages.
+        timestep: seconds in a step (1 if ``None``).
+        replay: the bytes of an earlier simulation's `getReplay`, whose random draws are used again.
+        enableReplay: whether to keep what `getReplay` needs.
+        allowPickle: accepted for compatibility; replays hold numbers only.
+        enableDivergenceCheck: whether to keep the dynamic properties of all steps, and to compare with those of a replay.
+        divergenceTolerance: by how much numbers may differ.
+        continueAfterDivergence: whether to go on with other draws then, rather than to raise `DivergenceError`.
+        verbosity: what to print, 3 for actions.
+        key: decides all random draws; drawn from Python's ``random`` if ``None``.
+        robustness: whether to compute by how much requirements hold.
+        deferred: do not run now: the caller calls `begin`, then `advanceOnce` until it returns false.
+
+    Attributes:
+        objects: the objects, first those of the scene. While the simulation runs they are copies, whose properties change; then
+            again those of the scene.
+        agents: those with behaviors.
+        result: once it has ended; a `SimulationResult`.
+        records: what has been recorded so far.
+        currentTime: steps made.
+        trajectory: the states so far.
+
+    """
+
+    def __init__(
+        self,
+        scene: Scene,
+        *,
+        maxSteps: int | None,
+        name: str,
+        timestep: float | None,
+        replay: bytes | None = None,
+        enableReplay: bool = True,
+        allowPickle: bool = False,
+        enableDivergenceCheck: bool = False,
+        divergenceTolerance: float = 0,
+        continueAfterDivergence: bool = False,
+        verbosity: int = 0,
+        key: bytes | None = None,
+        robustness: bool = False,
+        deferred: bool = False,
+    ) -> None:
+        self.result: SimulationResult | None = None
+        self.scene = scene
+        self.objects: list[Any] = []
+        self.agents: list[Any] = []
+        self.trajectory: list[Any] = []
+        self.actionSequence: list[dict[Any, Any]] = []
+        self.records: dict[str, Any] = {}
+        self.currentTime = 0
+        self.timestep = 1 if timestep is None else timestep
+        self.verbosity = verbosity
+        self.name = name
+        self.screen: Any = None
+        self.worker_num = 0
+        self._max_steps = maxSteps
+        self._original = scene
+        self._copies = Copies(scene.lookup)
+        self._properties: dict[type, tuple[str, ...]] = {}
+        self._finals: dict[type, tuple[Any, ...]] = {}
+        self._adopted: dict[tuple[int, str], Any] = {}
+        self._destroyed = False
+        earlier = None if replay is None else Replay.decoded(replay)
+        self._tape = Tape(
+            earlier,
+            key=(fresh_key() if key is None else key) if earlier is None else earlier.key,
+            keep_draws=enableReplay,
+            keep_states=enableDivergenceCheck,
+            tolerance=divergenceTolerance,
+            go_on=continueAfterDivergence,
+        )
+        program = scene.program
+        self._run = Run(
+            self,
+            program,
+            self._copies,
+            self._tape.source,
+            program.context.locator,
+            program.context.namer,
+            mode_2d=program.context.mode_2d,
+            robustness=robustness,
+        )
+        self._tape.draws = self._run.draws
+        self._isolated = _Isolated(self._run)
+        self._loop = self._whole()
+        if not deferred:
+            self.runToEnd()
+
+    # Running
+
+    def runToEnd(self) -> None:
+        """Run until the simulation ends."""
+        with self._isolated:
+            for _ in self._loop:
+                pass
+
+    def begin(self) -> None:
+        """Set the scene up in the simulator and start the program."""
+        with self._isolated:
+            next(self._loop)
+
+    def advanceOnce(self) -> bool:
+        """Make one step; false once the simulation has ended."""
+        with self._isolated:
+            return next(self._loop, None) is not None
+
+    def _whole(self) -> Iterator[bool]:
+        """The simulation from its set-up to its end, a step at a time."""
+        run = self._run
+        ended = False
+        try:
+            self.scene = self._original.within(self._copies)
+            self.setup()
+            run.begin()
+            self._check_objects()
+            self.updateObjects(first=True)
+            yield True
+            for _ in run.steps(self._max_steps):
+                yield True
+            run.finish()
+            assert run.ending is not None
+            self._restore()
+            self.result = SimulationResult(
+                self.trajectory,
+                self.actionSequence,
+                TerminationType[run.ending.kind],
+                run.ending.reason,
+                self.records,
+                [item.outcome for item in run.followed],
+            )
+            ended = True
+        except Exception as error:
+            self._say_where(error)
+            raise
+        finally:
+            if not ended:
+                run.abandon()
+                self._restore()
+            self._destroy_once()
+
+    def _destroy_once(self) -> None:
+        if not self._destroyed:
+            self._destroyed = True
+            self.destroy()
+
+    def _say_where(self, error: Exception) -> None:
+        """Give an exception of the program its place."""
+        place = None if error.__traceback__ is None else self._run.context.place_of(error.__traceback__)
+        if place is None:
+            return
+        if isinstance(error, Located):
+            error.span = error.span or place
+        elif not getattr(error, "__notes__", None):
+            error.add_note(f"in the program, line {place.line}")
+
+    def _restore(self) -> None:
+        """Put the scene's own objects in the place of the copies that the simulation has changed."""
+        copied = list(self.scene.objects) if self.scene is not self._original else []
+        back = {id(copy): item for copy, item in zip(copied, self._original.objects, strict=False)}
+        self.objects = [back.get(id(item), item) for item in self.objects]
+        self.agents = [back.get(id(item), item) for item in self.agents]
+        self.actionSequence = [
+            {back.get(id(agent), agent): taken for agent, taken in step.items()}
+            for step in self.actionSequence
+        ]
+        self.scene = self._original
+
+    # What a simulator provides
+
+    def setup(self) -> None:
+        """Set the simulation up; creates the scene's objects. Overrides call this one."""
+        for obj in self.scene.objects:
+            self.add(obj)
+
+    @abstractmethod
+    def createObjectInSimulator(self, obj: Any) -> None:
+        """Create an object; raises `SimulationCreationError` if that is impossible."""
+
+    @abstractmethod
+    def step(self) -> None:
+        """Advance by ``timestep`` seconds."""
+
+    @abstractmethod
+    def getProperties(self, obj: Any, properties: Any) -> Mapping[str, Any]:
+        """The present values of exactly these properties of an object."""
+
+    def scheduleForAgents(self) -> Sequence[Any]:
+        """The agents, in the order in which they decide what to do."""
+        return self.agents
+
+    def actionsAreCompatible(self, agent: Any, actions: Sequence[Any]) -> bool:
+        """Whether an agent can take these actions in one step."""
+        return all(hasattr(action, "canBeTakenBy") and action.canBeTakenBy(agent) for action in actions)
+
+    def executeActions(self, allActions: Mapping[Any, Sequence[Any]]) -> None:
+        """Execute the actions of all agents."""
+        for agent, actions in allActions.items():
+            for action in actions:
+                action.applyTo(agent, self)
+
+    def currentState(self) -> Any:
+        """What the trajectory keeps of the present state: the positions of the objects."""
+        return tuple(obj.position for obj in self.objects)
+
+    def valuesHaveDiverged(self, obj: Any, prop: str, expected: Any, actual: Any) -> bool:
+        """Whether a property differs from the replayed simulation's by more than the tolerance."""
+        return self._tape.differ(expected, actual)
+
+    def destroy(self) -> None:  # noqa: B027 - most simulators have nothing to clean up
+        """Clean up, once, however the simulation ended."""
+
+    @property
+    def currentRealTime(self) -> float:
+        """Seconds simulated."""
+        return self.currentTime * self.timestep
+
+    # What the program calls
+
+    def add(self, obj: Any) -> None:
+        """Create an object in the simulator, and let it take part."""
+        self.objects.append(obj)
+        self.createObjectInSimulator(obj)
+        obj.startDynamicSimulation()
+        if self._run.top.running:
+            self._update(obj, first=False)
+
+    _createObject = add
+
+    def sense(self) -> None:
+        """Let every object with sensors observe."""
+        for obj in self.objects:
+            sensors = obj.sensors
+            if sensors:
+                obj.__dict__["observations"] = {
+                    name: sensor.getObservation() for name, sensor in sensors.items()
+                }
+
+    def recordCurrentState(self) -> None:
+        """Append the state to the trajectory."""
+        self.trajectory.append(self.currentState())
+
+    def check_actions(self, agent: Any, actions: tuple[Any, ...]) -> None:
+        """Raise `InvalidScenarioError` for actions that cannot be taken together."""
+        if not self.actionsAreCompatible(agent, actions):
+            listed = ", ".join(describe(action) for action in actions)
+            raise InvalidScenarioError(
+                f"agent {agent!r} cannot take these actions in one step: {listed}",
+                help="actions derive from `Action`; see its `canBeTakenBy`, and the simulator's rules",
+            )
+
+    def act(self, actions: Mapping[Any, tuple[Any, ...]]) -> None:
+        """Log and execute the actions of a step."""
+        self.actionSequence.append(dict(actions))
+        if self.verbosity >= 3:
+            for agent, taken in actions.items():
+                print(f"      Agent {agent!r} takes action(s) {taken!r}")  # noqa: T201 - asked for by the user
+        self.executeActions(actions)
+        for agent, taken in actions.items():
+            agent.__dict__["lastActions"] = tuple(taken)
+
+    def advance(self) -> None:
+        """One step of the simulator, after which properties are read back."""
+        self.step()
+        self.currentTime += 1
+        self.updateObjects()
+
+    # Dynamic properties
+
+    def _dynamic(self, cls: type) -> tuple[str, ...]:
+        """The properties that the simulator decides."""
+        names = self._properties.get(cls)
+        if names is None:
+            entries = cls.scenic_properties.items()  # type: ignore[attr-defined] # classes of objects have them
+            names = tuple(name for name, entry in entries if entry.dynamic and not entry.final)
+            self._properties[cls] = names
+            self._finals[cls] = tuple(
+                (name, entry) for name, entry in entries if entry.dynamic and entry.final
+            )
+        return names
+
+    def _check_objects(self) -> None:
+        present = {id(obj) for obj in self.objects}
+        for obj in self.scene.objects:
+            if id(obj) not in present:
+                raise InternalError("setup() did not create all objects: it should call super().setup()")
+
+    def updateObjects(self, *, first: bool = False) -> None:
+        """Read the dynamic properties of all objects back from the simulator."""
+        self._tape.begin_state()
+        for obj in self.objects:
+            self._update(obj, first=first)
+        self._tape.end_state(self.currentTime)
+
+    def _update(self, obj: Any, *, first: bool) -> None:
+        cls = type(obj)
+        names = self._dynamic(cls)
+        values = self.getProperties(obj, set(names))
+        if len(values) != len(names) or any(name not in values for name in names):
+            wrong = set(names) ^ set(values)
+            raise RuntimeError(
+                f"simulator gave other properties of {obj!r} than it was asked for: {', '.join(sorted(wrong))}"
+            )
+        stored = obj.__dict__
+        changed = first
+        for name in names:
+            value, old = values[name], stored[name]
+            if value is not old:
+                stored[name] = self._checked(obj, name, old, value)
+                changed = True
+        if changed:
+            # The simulator's angles are global where the object's own frame is turned.
+            for name, entry in self._finals[cls]:
+                stored[name] = entry.default(obj)
+        self._tape.note(self, obj, names)
+
+    def _checked(self, obj: Any, name: str, old: Any, value: Any) -> Any:
+        """The value as the object stores it; raises ``RuntimeError`` for one of another type than before."""
+        kind, wanted = kind_of(value), kind_of(old)
+        if wanted.is_number and wanted is not Kind.BOOLEAN and kind.is_number and kind is not Kind.BOOLEAN:
+            return value
+        if wanted is kind and (not kind.is_boxed or old is None or isinstance(value, type(old))):
+            return value
+        if old is None:
+            adopted = self._adopted.setdefault((id(obj), name), kind)
+            if adopted is kind:
+                return value
+        if wanted is Kind.VECTOR and not kind.is_number and kind is not Kind.ORIENTATION:
+            try:
+                return normalised(name, value)
+            except TypeError:
+                pass
+        raise RuntimeError(
+            f"simulator gave property {name!r} of {obj!r} a value of type {type(value).__name__}, "
+            f"where the type is {type(old).__name__}"
+        )
+
+    # Replay
+
+    def getReplay(self) -> bytes:
+        """The random draws of the simulation, and what is needed to notice another course, as bytes."""
+        return self._tape.replay().encoded()
+
+    @property
+    def replaying(self) -> bool:
+        """Whether draws of an earlier simulation are still used."""
+        return self._tape.replaying
+
+
+class _Isolated:
+    """Within this the simulation goes on: in the run's context, with Python's and NumPy's global generators for itself."""
+
+    def __init__(self, run: Run) -> None:
+        self._run = run
+        self._states: Any = None
+        self._open: ExitStack | None = None
+
+    def __enter__(self) -> None:
+        self._open = ExitStack()
+        self._open.enter_context(self._run.active())
+        self._open.enter_context(preserved())
+        if self._states is None:
+            seed_globals(self._run.draws.seed("global generators"))
+        else:
+            restore(self._states)
+
+    def __exit__(self, *details: object) -> None:
+        assert self._open is not None
+        self._states = states()
+        self._open.close()

@@ -1,0 +1,106 @@
+"""Simulators: what runs scenes."""
+
+from abc import ABC, abstractmethod
+from typing import Any
+
+from scenic.language.errors import GuardViolation, RejectionException, RejectSimulationException
+from scenic.runtime.scene import Scene
+from scenic.simulators.simulation import Simulation
+
+__all__ = ["Simulator"]
+
+
+class Simulator(ABC):
+    """Runs scenes; a subclass provides `createSimulation`."""
+
+    def __init__(self) -> None:
+        self._destroyed = False
+
+    def simulate(
+        self,
+        scene: Scene,
+        maxSteps: int | None = None,
+        maxIterations: int = 1,
+        *,
+        timestep: float | None = None,
+        name: str | None = None,
+        verbosity: int | None = None,
+        raiseGuardViolations: bool = False,
+        replay: bytes | None = None,
+        enableReplay: bool = True,
+        enableDivergenceCheck: bool = False,
+        divergenceTolerance: float = 0,
+        continueAfterDivergence: bool = False,
+        allowPickle: bool = False,
+        **options: Any,
+    ) -> Simulation | None:
+        """Run a scene until a simulation is not rejected; ``None`` if all are.
+
+        Args:
+            scene: what to simulate.
+            maxSteps: steps of a simulation at most.
+            maxIterations: simulations tried.
+            timestep: seconds in a step; the simulator's own if ``None``.
+            name: of the simulations; the number of the one tried is appended.
+            verbosity: what to print, from 0 (the default) to 3.
+            raiseGuardViolations: let a violated guard that nothing catches be raised, rather than reject the simulation.
+            replay: bytes of an earlier simulation's `getReplay`.
+            enableReplay: see `Simulation`, as all that follow.
+            enableDivergenceCheck: keep and compare states.
+            divergenceTolerance: by how much numbers may differ.
+            continueAfterDivergence: go on with other draws.
+            allowPickle: has no effect.
+            options: for the simulator.
+
+        """
+        if getattr(self, "_destroyed", False):
+            raise RuntimeError("the simulator has been destroyed")
+        if maxIterations <= 0:
+            raise ValueError("maxIterations must be at least 1")
+        for iteration in range(1, maxIterations + 1):
+            try:
+                return self._runSingleSimulation(
+                    scene,
+                    maxSteps,
+                    name=str(iteration) if name is None else f"{name}.{iteration}",
+                    verbosity=0 if verbosity is None else verbosity,
+                    raiseGuardViolations=raiseGuardViolations,
+                    timestep=timestep,
+                    replay=replay,
+                    enableReplay=enableReplay,
+                    enableDivergenceCheck=enableDivergenceCheck,
+                    divergenceTolerance=divergenceTolerance,
+                    continueAfterDivergence=continueAfterDivergence,
+                    allowPickle=allowPickle,
+                    **options,
+                )
+            except (RejectSimulationException, RejectionException, GuardViolation) as error:
+                if isinstance(error, GuardViolation) and raiseGuardViolations:
+                    raise
+                if verbosity is not None and verbosity >= 2:
+                    print(f"  Rejected simulation {iteration}: {error}")  # noqa: T201 - asked for by the user
+        return None
+
+    def replay(self, scene: Scene, replay: bytes, **options: Any) -> Simulation | None:
+        """Run a scene as an earlier simulation ran, given the bytes of its `getReplay`."""
+        return self.simulate(scene, replay=replay, **options)
+
+    def _runSingleSimulation(
+        self,
+        scene: Scene,
+        maxSteps: int | None,
+        *,
+        name: str,
+        verbosity: int,
+        raiseGuardViolations: bool = False,
+        **options: Any,
+    ) -> Simulation:
+        return self.createSimulation(scene, maxSteps=maxSteps, name=name, verbosity=verbosity, **options)
+
+    @abstractmethod
+    def createSimulation(self, scene: Scene, **options: Any) -> Simulation:
+        """A simulation of a scene, which has run; ``options`` are for the constructor of `Simulation`."""
+
+    def destroy(self) -> None:
+        """Clean up; the simulator cannot be used any more."""
+        self._destroyed = True
