@@ -14,8 +14,8 @@ import random
 from bisect import bisect_right
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cache, lru_cache
-from itertools import accumulate, product
-from typing import Final, NamedTuple
+from itertools import accumulate
+from typing import Any, Final, NamedTuple
 
 from hypothesis import strategies as st
 from hypothesis.strategies import DrawFn, SearchStrategy
@@ -29,7 +29,7 @@ from fuzz.properties.case import Case, Property, Violation, describe
 from fuzz.properties.differences import difference
 from fuzz.properties.operands import OF_FORMULAS as OF_EXCHANGED
 from fuzz.terminals import FIXED, Piece, Shape
-from fuzz.traces import Formula, State, atoms_of, conditional, formula_of, holds, text_of, verdict
+from fuzz.traces import Formula, State, atoms_of, conditional, formula_of, text_of, verdict
 from grammar.generator import read_grammar_text
 from grammar.generator.model import Gather, Item, Optional, Reference, Repeat, Token
 from scenic.compiler import tree
@@ -39,6 +39,8 @@ from scenic.compiler.precedence import Ladder
 from scenic.compiler.resolver import resolve
 from scenic.compiler.tokens import NEWLINE
 from scenic.compiler.unparser import unparse
+from scenic.runtime.dynamics.declarations import Kept, required
+from scenic.runtime.temporal.formulas import Monitor
 
 __all__ = ["FORMULAS", "OF_FORMULAS", "formulas", "make_formula", "predicted", "texts", "written_in_full"]
 
@@ -52,7 +54,6 @@ _TEMPORAL: Final = 5.0
 _TRACES: Final = 8
 _LONGEST: Final = 5
 _OFTEN: Final = (0.1, 0.5, 0.8, 0.9)
-_DYNAMIC: Final = frozenset({"always", "eventually", "next", "until"})
 """Temporal operators that are about more than one state."""
 
 _COMMON: Final = """
@@ -392,61 +393,55 @@ def the_table_alone_gives_the_verdict(case: Case) -> None:
             raise Violation(f"{text_of(found)} is not {text_of(expected)} on {trace}")
 
 
-def operators_over_states_wait(case: Case) -> None:
-    """The check says of each operator that is about more than one state that it is not supported, and of no other."""
-    expected = [
-        (each.lineno, each.col_offset, each.operator)
-        for each in ast.walk(condition_of(case.text))
-        if isinstance(each, tree.Temporal) and each.operator in _DYNAMIC
-    ]
-    found = [
-        (each.span.line, each.span.column, each.message.split("`")[1])
-        for each in case.checked
-        if each.code == "SC900" and each.span is not None and "temporal operator `" in each.message
-    ]
-    if sorted(found) != sorted(expected):
-        raise Violation(f"said to wait: {sorted(found)}; that wait: {sorted(expected)}")
-
-
-def static_formulas_are_lowered_as_meant(case: Case) -> None:
-    """The code of a formula over one state has the value of the formula there, whatever its atoms are."""
+def formulas_are_followed_as_meant(case: Case) -> None:
+    """What the code of a formula gives to simulations has the verdict of the formula, on any trace."""
     condition = condition_of(case.text)
-    if not _is_propositional(condition) or _DYNAMIC & _operators_of(condition):
+    if not _is_propositional(condition):
         return
     formula = formula_of(condition)
-    atoms = sorted(atoms_of(formula))
     lowered = lower(case.result.tree, resolve(case.result.tree, case.source))
-    code = compile(lowered, "<fuzz>", "exec")
-    for values in product((False, True), repeat=len(atoms)):
-        state = dict(zip(atoms, values, strict=True))
-        prelude = _Prelude()
-        exec(code, {**state, "__scenic__": prelude})
-        meant = holds(formula, [frozenset(atom for atom in atoms if state[atom])], 0)
-        if prelude.required != [meant]:
-            raise Violation(f"the code requires {prelude.required}, not {meant}, where {state}")
+    prelude = _Prelude()
+    names = dict.fromkeys(atoms_of(formula), False)
+    exec(compile(lowered, "<fuzz>", "exec"), {**names, "__scenic__": prelude})
+    followed = required(prelude.required, "", None, None)
+    for trace in random_traces(case.number, sorted(atoms_of(formula))):
+        monitor = Monitor(followed.formula)
+        for state in trace:
+            monitor.add(lambda index, state=state: _holds(followed.atoms[index], state))
+        meant = verdict(formula, trace)
+        if monitor.verdict is None or monitor.verdict.name != meant.name:
+            raise Violation(f"simulations find {monitor.verdict}, not {meant}, on {trace}")
+
+
+def _holds(atom: Kept, state: State) -> bool:
+    code = atom.function.__code__
+    return bool(atom.function(*(name in state for name in code.co_varnames[: code.co_argcount])))
 
 
 class _Prelude:
-    """What the code of requirements calls, for truth values instead of random ones."""
+    """What the code of requirements calls: it keeps the formula."""
 
     def __init__(self) -> None:
-        self.required: list[bool] = []
+        self.required: Any = None
 
-    def require(self, condition: bool, **_: object) -> None:
-        self.required.append(condition)
+    def require(self, condition: object, **_: object) -> None:
+        self.required = condition
 
-    def condition(self, traced: object, concrete: Callable[..., bool], values: Sequence[bool]) -> bool:
+    def condition(self, traced: object, concrete: Callable[..., bool], values: Sequence[bool]) -> Kept:
         del traced  # It builds nodes for the same value.
-        return concrete(*values)
+        return Kept(concrete, values)
 
-    def conjunction(self, *values: bool) -> bool:
-        return all(values)
+    def conjunction(self, *parts: object) -> object:
+        return ("and", *parts)
 
-    def disjunction(self, *values: bool) -> bool:
-        return any(values)
+    def disjunction(self, *parts: object) -> object:
+        return ("or", *parts)
 
-    def negation(self, value: bool) -> bool:
-        return not value
+    def negation(self, part: object) -> object:
+        return ("not", part)
+
+    def temporal(self, operator: str, *parts: object) -> object:
+        return (operator, *parts)
 
 
 def _is_propositional(condition: ast.expr) -> bool:
@@ -456,10 +451,6 @@ def _is_propositional(condition: ast.expr) -> bool:
     except ValueError:
         return False
     return True
-
-
-def _operators_of(condition: ast.expr) -> set[str]:
-    return {each.operator for each in ast.walk(condition) if isinstance(each, tree.Temporal)}
 
 
 def _pairs(text: str) -> Iterator[tuple[int, int]]:
@@ -495,8 +486,7 @@ OF_FORMULAS: Final[tuple[Property, ...]] = (
             all_texts_have_one_verdict,
             the_table_alone_gives_the_verdict,
             no_parentheses_are_needless,
-            operators_over_states_wait,
-            static_formulas_are_lowered_as_meant,
+            formulas_are_followed_as_meant,
         ),
     ),
     *OF_EXCHANGED,

@@ -16,6 +16,9 @@ class Traced:
     steps: int = 6
     timestep: float = 1
     drift: float = 0
+    differs: str = ""
+    """Why the reference does something else: the tag of a defect in section 16 of the specification, a section that says
+    what ours does, or "crash"."""
 
 
 def programs(file: Path) -> dict[str, Traced]:
@@ -37,4 +40,10 @@ def programs(file: Path) -> dict[str, Traced]:
 def recorded(file: Path) -> dict[str, dict[str, Any]]:
     """What was recorded of them."""
     table: dict[str, dict[str, Any]] = json.loads(file.with_suffix(".json").read_text(encoding="utf-8"))
+    return table
+
+
+def reviewed() -> dict[str, dict[str, Any]]:
+    """What the programs that differ are to do, by name."""
+    table: dict[str, dict[str, Any]] = json.loads((FOLDER / "differing.json").read_text(encoding="utf-8"))
     return table

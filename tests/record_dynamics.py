@@ -15,7 +15,14 @@ from tests.record_reference import run
 
 
 def recorded(reference: str, program: Traced) -> dict[str, Any]:
-    options = ["--simulate", str(program.steps), "--timestep", str(program.timestep), "--drift", str(program.drift)]
+    options = [
+        "--simulate",
+        str(program.steps),
+        "--timestep",
+        str(program.timestep),
+        "--drift",
+        str(program.drift),
+    ]
     (row,) = run(reference, program.text, *options)
     return {key: value for key, value in row.items() if key != "iterations"}
 

@@ -26,38 +26,13 @@ USES = {
     "operator can see": "ego = new Object\nrequire «ego can see (1, 2)»",
     "specifier visible": "ego = new Object\nnew Object «visible»",
     "specifier not visible": "ego = new Object\nnew Object «not visible»",
-    "temporal operator always": "require «always True»",
-    "temporal operator eventually": "require «eventually True»",
-    "temporal operator next": "require «next True»",
-    "temporal operator until": "require «True until True»",
-    "statement require monitor": "x = 3\n«require monitor x»",
-    "statement record": "«record 3»",
-    "statement terminate when": "«terminate when True»",
-    "statement terminate after": "«terminate after 3 seconds»",
-    "statement monitor": "«monitor M():»\n    wait",
-    "block compose": "scenario S():\n    compose:\n        «wait»",
 }
 """Each unavailable feature at work; the quotation marks are round the place to be named."""
-
-IN_BLOCKS = {
-    "statement terminate": "terminate",
-    "statement take": None,
-    "statement wait": "wait",
-    "statement wait for": "wait for 3 steps",
-    "statement wait until": "wait until True",
-    "statement do": "do S()",
-    "statement do choose": "do choose S(), S()",
-    "statement do shuffle": "do shuffle S(), S()",
-    "statement try ... interrupt when": "try:\n            wait\n        interrupt when True:\n            wait",
-    "statement abort": "try:\n            wait\n        interrupt when True:\n            abort",
-    "statement override": "override x with speed 3",
-}
-"""Statements of blocks that are refused as a whole (``None``: of behaviors only, which are carried as data)."""
 
 
 def test_every_unavailable_feature_is_covered() -> None:
     named = {f"name {name}" for name, entry in NAMES.items() if not entry.available}
-    assert set(refused_features()) == USES.keys() | IN_BLOCKS.keys() | named
+    assert set(refused_features()) == USES.keys() | named
 
 
 def refused(text: str, *, filename: str = "<string>") -> Located:
@@ -75,22 +50,6 @@ def test_unavailable_features_are_refused_at_their_place(feature: str) -> None:
     assert span is not None
     assert (span.line, span.column, span.end_column) == place
     assert error.help
-
-
-@pytest.mark.parametrize("feature", [feature for feature, body in IN_BLOCKS.items() if body])
-def test_statements_of_compose_blocks_are_refused_with_the_block(feature: str) -> None:
-    text = f"scenario S():\n    setup:\n        x = new Object\n    compose:\n        {IN_BLOCKS[feature]}\n"
-    error = refused(text)
-    assert error.span is not None
-    assert error.span.line == 5
-
-
-@pytest.mark.parametrize("feature", list(IN_BLOCKS))
-def test_behaviors_are_carried_as_data(feature: str) -> None:
-    body = (IN_BLOCKS[feature] or "take 3").replace("\n        ", "\n    ")
-    text = f"behavior S():\n    {body.replace('override x', 'override self')}\n    take 1\nego = new Object with behavior S()\n"
-    (scene,) = scenic.scenarioFromString(text).sample(1, seed=0)
-    assert repr(scene.egoObject.behavior) == "S()"
 
 
 UNAVAILABLE = [name for name, entry in NAMES.items() if not entry.available]

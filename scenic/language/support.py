@@ -8,10 +8,7 @@ from scenic.language.operators import OPERATORS
 from scenic.language.specifiers import SPECIFIERS
 from scenic.language.statements import STATEMENTS
 
-__all__ = ["COMPOSE_AVAILABLE", "refused_features"]
-
-COMPOSE_AVAILABLE = True
-"""Whether the compose block of a scenario is built; it has no node of its own in the tree."""
+__all__ = ["refused_features"]
 
 
 def refused_features() -> Iterator[str]:
@@ -28,8 +25,6 @@ def refused_features() -> Iterator[str]:
     for statement in STATEMENTS.values():
         if not statement.available:
             yield f"statement {statement.title}"
-    if not COMPOSE_AVAILABLE:
-        yield "block compose"
     for name in NAMES.values():
         if not name.available:
             yield f"name {name.name}"

@@ -71,14 +71,26 @@ class Recorder:
         self._note("property")
         return name, tuple(attributes), value, tuple(reads)
 
-    def behavior(self, function: Any) -> Any:
+    def behavior(self, preconditions: Sequence[Any], invariants: Sequence[Any]) -> Any:
         self._note("behavior")
-        return function
+        return lambda function: function
 
-    def scenario(self, function: Any) -> Any:
+    def monitor(self) -> Any:
+        self._note("monitor")
+        return lambda function: function
+
+    def scenario(self, preconditions: Sequence[Any], invariants: Sequence[Any], compose: Any) -> Any:
         self._note("scenario")
-        self.scenarios[function.__name__] = function
-        return function
+
+        def keep(function: Any) -> Any:
+            self.scenarios[function.__name__] = function
+            return function
+
+        return keep
+
+    def take(self, instance: Any, *actions: Any) -> Any:
+        self._note("take")
+        return actions
 
     def operation(self, name: str, *operands: Any) -> Any:
         self._note(f"operation {name}")
@@ -126,6 +138,10 @@ class Recorder:
 
     def negation(self, part: Any) -> Any:
         return not part
+
+    def temporal(self, operator: str, *parts: Any) -> Any:
+        assert operator == "implies"
+        return not parts[0] or parts[1]
 
     def read(self, value: Any, name: str) -> Any:
         return getattr(value, name)

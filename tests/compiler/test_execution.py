@@ -140,7 +140,7 @@ def test_scenario_locals_are_attributes() -> None:
         "        require total + count > top and key == 1\n"
     )
     recorder, scope = run(text)
-    instance = SimpleNamespace()
+    instance = SimpleNamespace(count=3, size=2, rest=(), key=1)
     recorder.scenarios["Main"](instance, 3)
     found = vars(instance)
     assert scope["Main"].__doc__ == "Doc."
@@ -178,11 +178,15 @@ def test_names_of_scenarios_do_not_leak_into_functions() -> None:
     assert scope["f"]() == 2
 
 
-def test_behaviors_are_signatures() -> None:
-    _, scope = run("behavior B(a, b=1 + 1):\n    '''Doc.'''\n    take a\n")
+def test_behaviors_are_generators() -> None:
+    _, scope = run("behavior B(a, b=1 + 1):\n    '''Doc.'''\n    take a, b, self\n    a += 1\n    take a\n")
     assert scope["B"].__doc__ == "Doc."
     assert scope["B"].__defaults__ == (2,)
-    assert scope["B"](1) is None
+    instance = SimpleNamespace(a=3, b=4)
+    running = scope["B"](instance, "agent", 3, 4)
+    assert next(running) == (3, 4, "agent")
+    assert next(running) == (4,)
+    assert instance.a == 4
 
 
 def test_other_statements() -> None:

@@ -287,16 +287,6 @@ def test_a_refusal_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
     assert "refused" in violated("formulas_are_accepted")
 
 
-def test_an_operator_that_does_not_wait_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
-    checked = Case.checked.func
-
-    def forgetful(case: Case) -> object:
-        return tuple(each for each in checked(case) if "`next`" not in each.message)
-
-    monkeypatch.setattr(Case, "checked", property(forgetful))
-    assert "wait" in violated("operators_over_states_wait")
-
-
 class Reversed(ast.NodeTransformer):
     """Takes the premise for the conclusion."""
 
@@ -314,7 +304,7 @@ def test_wrong_code_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
         return lower(wrong, resolve(wrong, Case("").source))
 
     monkeypatch.setattr(temporal, "lower", reversing)
-    assert "the code requires" in violated("static_formulas_are_lowered_as_meant", 1500)
+    assert "simulations find" in violated("formulas_are_followed_as_meant", 1500)
 
 
 def test_the_climbing_parser_is_driven_by_its_table() -> None:

@@ -16,14 +16,13 @@ from scenic.language.operators import OPERATORS
 from scenic.language.properties import CLASSES
 from scenic.language.specifiers import SPECIFIERS
 from scenic.language.statements import STATEMENTS
-from scenic.language.support import COMPOSE_AVAILABLE
 
 __all__ = ["NOTED", "check_support"]
 
 _STATEMENTS: Final = tuple(
     getattr(scenic, statement.node) for statement in STATEMENTS.values() if not statement.available
 )
-NOTED: Final = (scenic.Operation, scenic.Specifier, scenic.Temporal, scenic.ScenarioDef, *_STATEMENTS)
+NOTED: Final = (scenic.Operation, scenic.Specifier, scenic.Temporal, *_STATEMENTS)
 """The nodes that a feature can belong to, beside names."""
 
 _NAMES: Final = frozenset(name.name for name in NAMES.values() if not name.available)
@@ -32,8 +31,7 @@ _NAMES: Final = frozenset(name.name for name in NAMES.values() if not name.avail
 def check_support(context: Context, misplaced: Container[ast.AST]) -> Iterator[Diagnostic]:
     """SC900: every use of a feature that is declared but not available, but for statements that are misplaced anyway.
 
-    The bodies of behaviors are carried as data until there are simulations, so nothing in them is refused; what stands
-    in a block whose beginning is wrong may be in such a body.
+    What only simulations run is refused when one comes to it; so may be what stands in a block whose beginning is wrong.
     """
     resolution = context.resolution
     gaps = [node for node, _ in context.nodes(scenic.ErrorStatement)]
@@ -53,13 +51,6 @@ def check_support(context: Context, misplaced: Container[ast.AST]) -> Iterator[D
                 and not any(_within(node, gap) for gap in gaps)
             ):
                 yield _refusal(feature, node, context)
-            if (
-                cls is scenic.ScenarioDef
-                and node.compose
-                and not COMPOSE_AVAILABLE
-                and not _carried(node, scope)
-            ):
-                yield _refusal("the compose block of a scenario", node.compose[0], context)
     if not resolution.wildcard:
         for reference in resolution.references.values():
             name = reference.node
@@ -95,15 +86,13 @@ def _refused(node: Any) -> str | None:
     return None if statement is None or statement.available else f"`{statement.title}`"
 
 
-def _carried(node: Any, scope: Scope) -> bool:
-    """Whether a node stands in code that is kept as data, to be run by simulations only."""
+def _carried(node: ast.AST, scope: Scope) -> bool:
+    """Whether a node stands in code that only simulations run."""
     for outer in scope.ancestors():
         if outer.kind in (ScopeKind.BEHAVIOR, ScopeKind.MONITOR):
             return True
-        if outer.kind is ScopeKind.SCENARIO and not COMPOSE_AVAILABLE:
-            scenario: Any = outer.node
-            if in_compose(node, scenario) or any(_within(node, guard) for guard in scenario.guards):
-                return True
+        if isinstance(outer.node, scenic.ScenarioDef) and in_compose(node, outer.node):
+            return True
     return False
 
 

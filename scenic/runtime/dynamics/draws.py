@@ -13,6 +13,7 @@ from scenic.graph.draws import address
 
 __all__ = ["Draws", "Recorded", "Seeded", "Source"]
 
+
 class Source(Protocol):
     """Gives numbers from (0, 1) by address."""
 

@@ -169,6 +169,8 @@ class ScenarioActivation:
 
     def resume(self) -> Yielded | None:
         """Take one step; ``None`` if the scenario has ended. Raises what its code raises."""
+        if not self.running:
+            return None
         run = self.run
         for requirement in self.followed:
             requirement.follow()
