@@ -13,7 +13,7 @@ import ast
 import random
 from bisect import bisect_right
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from functools import cache, lru_cache
+from functools import cache, lru_cache, partial
 from itertools import accumulate
 from typing import Any, Final, NamedTuple
 
@@ -39,7 +39,7 @@ from scenic.compiler.precedence import Ladder
 from scenic.compiler.resolver import resolve
 from scenic.compiler.tokens import NEWLINE
 from scenic.compiler.unparser import unparse
-from scenic.runtime.dynamics.declarations import Kept, required
+from scenic.runtime.dynamics.declarations import Kept, Required, required
 from scenic.runtime.temporal.formulas import Monitor
 
 __all__ = ["FORMULAS", "OF_FORMULAS", "formulas", "make_formula", "predicted", "texts", "written_in_full"]
@@ -401,21 +401,23 @@ def formulas_are_followed_as_meant(case: Case) -> None:
     formula = formula_of(condition)
     lowered = lower(case.result.tree, resolve(case.result.tree, case.source))
     prelude = _Prelude()
-    names = dict.fromkeys(atoms_of(formula), False)
-    exec(compile(lowered, "<fuzz>", "exec"), {**names, "__scenic__": prelude})
+    names = sorted(atoms_of(formula))
+    scope: dict[str, Any] = {**dict.fromkeys(names, False), "__scenic__": prelude}
+    exec(compile(lowered, "<fuzz>", "exec"), scope)
     followed = required(prelude.required, "", None, None)
-    for trace in random_traces(case.number, sorted(atoms_of(formula))):
+    for trace in random_traces(case.number, names):
         monitor = Monitor(followed.formula)
         for state in trace:
-            monitor.add(lambda index, state=state: _holds(followed.atoms[index], state))
+            # Nothing in the text binds the names, so that the code reads them when it is called.
+            scope.update((name, name in state) for name in names)
+            monitor.add(partial(_holds, followed))
         meant = verdict(formula, trace)
         if monitor.verdict is None or monitor.verdict.name != meant.name:
             raise Violation(f"simulations find {monitor.verdict}, not {meant}, on {trace}")
 
 
-def _holds(atom: Kept, state: State) -> bool:
-    code = atom.function.__code__
-    return bool(atom.function(*(name in state for name in code.co_varnames[: code.co_argcount])))
+def _holds(followed: Required, index: int) -> bool:
+    return bool(followed.atoms[index]())
 
 
 class _Prelude:

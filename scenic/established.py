@@ -14,6 +14,8 @@ _LANGUAGE: Final = "the language"
 """Home of names that every program finds in scope."""
 
 _ERRORS: Final = "scenic.language.errors"
+_DEFINITIONS: Final = "scenic.runtime.dynamics.definitions"
+_RECORDERS: Final = "scenic.runtime.dynamics.recorders"
 _ESTABLISHED: Final = "scenic.runtime.established"
 _FIELDS: Final = "scenic.runtime.fields"
 _VALUES: Final = "scenic.runtime.values"
@@ -44,6 +46,24 @@ MODULES: Final[Mapping[str, Mapping[str, str]]] = MappingProxyType(
             (_ESTABLISHED, "needsSampling toDistribution"),
             (_FUNCTIONS, "monotonicDistributionFunction=distributionFunction"),
         ),
+        "scenic.core.dynamics": _homes(
+            ("scenic.simulators.actions", "Action"),
+            (
+                _ERRORS,
+                (
+                    "GuardViolation PreconditionViolation InvariantViolation RejectSimulationException"
+                    " StuckBehaviorWarning"
+                ),
+            ),
+        ),
+        "scenic.core.dynamics.actions": _homes(("scenic.simulators.actions", "Action")),
+        "scenic.core.dynamics.behaviors": _homes((_DEFINITIONS, "Behavior Monitor")),
+        "scenic.core.dynamics.guards": _homes(
+            (_ERRORS, "GuardViolation PreconditionViolation InvariantViolation")
+        ),
+        "scenic.core.dynamics.invocables": _homes((_DEFINITIONS, "Invocable")),
+        "scenic.core.dynamics.scenarios": _homes((_DEFINITIONS, "DynamicScenario=ModularScenario")),
+        "scenic.core.dynamics.utils": _homes((_ERRORS, "RejectSimulationException StuckBehaviorWarning")),
         "scenic.core.errors": _homes(
             (
                 _ERRORS,
@@ -94,6 +114,18 @@ MODULES: Final[Mapping[str, Mapping[str, str]]] = MappingProxyType(
         "scenic.core.shapes": _homes(
             (_LANGUAGE, "MeshShape BoxShape CylinderShape ConeShape SpheroidShape"),
             ("scenic.runtime.shapes", "Shape"),
+        ),
+        "scenic.core.sensors": _homes(
+            ("scenic.runtime.sensors", "Sensor RGBSensor SSSensor"),
+            (_RECORDERS, "Recorder File Files"),
+        ),
+        "scenic.core.simulators": _homes(
+            ("scenic.simulators.simulator", "Simulator"),
+            ("scenic.simulators.simulation", "Simulation"),
+            ("scenic.simulators.results", "SimulationResult TerminationType"),
+            ("scenic.simulators.dummy", "DummySimulator DummySimulation"),
+            ("scenic.simulators.actions", "Action"),
+            (_ERRORS, "SimulationCreationError DivergenceError GuardViolation RejectSimulationException"),
         ),
         "scenic.core.specifiers": _homes(("scenic.runtime.specifiers", "Specifier")),
         "scenic.core.type_support": _homes(
@@ -166,10 +198,11 @@ def provide(package: ModuleType) -> None:
     """Make the modules of a package of the established API importable; called by the package itself."""
     for name in MODULES:
         holder, _, short = name.rpartition(".")
-        if holder == package.__name__:
+        if name.startswith(f"{package.__name__}."):
             module = _Established(name, "Names of the established Python API; see `scenic.established`.")
             sys.modules[name] = module
-            setattr(package, short, module)
+            # Modules stand in the table before those in them.
+            setattr(sys.modules[holder], short, module)
 
 
 __all__ = ["MODULES", "lookup", "provide"]

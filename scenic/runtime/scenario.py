@@ -267,6 +267,32 @@ class Scenario:
         """The scene that `Scene.save` has written; raises `SerializationError` as `sceneFromBytes` does."""
         return self.sceneFromBytes(Path(path).read_bytes())
 
+    def getSimulator(self) -> Any:
+        """What the program's ``simulator`` statement says; raises ``RuntimeError`` if it has none."""
+        if self._program.simulator is None:
+            raise RuntimeError("the program has no `simulator` statement, so no simulator is known")
+        return self._program.simulator()
+
+    def simulationToBytes(self, simulation: Any, allowPickle: bool = False) -> bytes:
+        """A simulation as data: its scene, and what has been drawn in it. `simulationFromBytes` runs it again."""
+        scene = self.sceneToBytes(simulation.scene)
+        return len(scene).to_bytes(4, "little") + scene + bytes(simulation.getReplay())
+
+    def simulationFromBytes(
+        self, data: bytes, simulator: Any, *, verify: bool = True, allowPickle: bool = False, **options: Any
+    ) -> Any:
+        """Run the simulation in the data of `simulationToBytes` again; ``options`` are those of `Simulator.simulate`.
+
+        Raises:
+            SerializationError: if the data is damaged, or of another program (not checked if ``verify`` is false).
+
+        """
+        end = 4 + int.from_bytes(data[:4], "little")
+        if len(data) < end:
+            raise SerializationError("the saved simulation is damaged", help="save it again")
+        scene = self.sceneFromBytes(data[4:end], verify=verify)
+        return simulator.replay(scene, data[end:], **options)
+
     def conditionOn(
         self,
         scene: Scene | None = None,

@@ -6,17 +6,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any, Final
 
-from scenic.language.errors import DivergenceError
+from scenic.language.errors import DivergenceError, SerializationError
 from scenic.runtime.dynamics.draws import Draws, Recorded, Seeded, Source
 from scenic.runtime.values import Orientation, Vector, is_number
 
-__all__ = ["Replay", "ReplayError", "Tape", "fresh_key"]
+__all__ = ["Replay", "Tape", "fresh_key"]
 
 _MAGIC: Final = b"SCR1"
-
-
-class ReplayError(Exception):
-    """The bytes are no replay."""
 
 
 def fresh_key() -> bytes:
@@ -43,10 +39,10 @@ class Replay:
 
     @staticmethod
     def decoded(data: bytes) -> "Replay":
-        """From bytes; raises `ReplayError` for any others."""
+        """From bytes; raises `SerializationError` for any others."""
         try:
             if data[:4] != _MAGIC:
-                raise ReplayError("these bytes are no replay of a simulation")
+                raise SerializationError("these bytes are no replay of a simulation")
             position = 5 + data[4]
             key = data[5:position]
             (count,) = struct.unpack_from("<I", data, position)
@@ -64,9 +60,9 @@ class Replay:
                 states.append(list(struct.unpack_from(f"<{width}d", data, position + 4)))
                 position += 4 + 8 * width
         except (struct.error, IndexError) as error:
-            raise ReplayError("the replay of a simulation is damaged") from error
+            raise SerializationError("the replay of a simulation is damaged") from error
         if position != len(data) or len(draws) != count:
-            raise ReplayError("the replay of a simulation is damaged")
+            raise SerializationError("the replay of a simulation is damaged")
         return Replay(key, draws, states)
 
 
