@@ -7,9 +7,11 @@ from scenic.language.errors import ScenicTypeError, SpecifierError
 from scenic.runtime.context import here
 from scenic.runtime.dynamics.activations import Activation
 from scenic.runtime.dynamics.definitions import Behavior
+from scenic.runtime.lazy import MEMO
+from scenic.runtime.lazy import resolve as settle
 from scenic.runtime.objects import Object
 from scenic.runtime.properties import normalised
-from scenic.runtime.resolution import class_defaults, resolve
+from scenic.runtime.resolution import class_defaults, resolution_of
 from scenic.runtime.specifiers import Specifier
 from scenic.runtime.values import describe
 
@@ -38,15 +40,13 @@ class Overrides:
             raise ScenicTypeError(f"`override`: expected an object, not {describe(target)}", span=here())
         properties = class_defaults(type(target), mode_2d=self._run.context.mode_2d)
         known = target.__dict__
-        resolution = resolve(type(target), specifiers, properties)
+        resolution = resolution_of(type(target), specifiers, mode_2d=self._run.context.mode_2d)
         values: dict[str, Any] = {}
-        for specifier in resolution.order:
-            if specifier.is_default:
+        for step in resolution.steps:
+            if step.default is not None:
                 continue
-            names = resolution.owns.get(specifier, frozenset()) | resolution.modifies.get(
-                specifier, frozenset()
-            )
-            for name in sorted(names):
+            specifier = step.specifier(specifiers)
+            for name in step.names:
                 entry = properties.get(name)
                 if entry is None and name not in known:
                     raise SpecifierError(
@@ -59,9 +59,10 @@ class Overrides:
                         f"property {name!r} is dynamic and cannot be overridden: the simulator decides it",
                         span=specifier.span,
                     )
-            modifying = resolution.modifies.get(specifier) and specifier.modify
-            offered = (specifier.modify if modifying else specifier.evaluate)(target)  # type: ignore[misc]
-            values.update((name, normalised(name, offered[name])) for name in names)
+            function = specifier.modify if step.modifies and specifier.modify else specifier.evaluate
+            offered = function(target)
+            values.update((name, normalised(name, settle(offered[name], target))) for name in step.names)
+        known.pop(MEMO, None)
         for name, value in values.items():
             self._set(target, name, value)
         self._run.refresh(target)
