@@ -32,7 +32,7 @@ class FaceTree:
 
     Attributes:
         middle: the centres of the boxes, ``(nodes, 3)``.
-        half: half their extents, a little widened, ``(nodes, 3)``.
+        half: half their extents, a little widened (by enough for unit meshes), ``(nodes, 3)``.
         starts: where the faces of each leaf begin in ``faces``, ``(leaves + 1,)``.
         faces: face numbers, leaf by leaf; one or two to a leaf.
 
@@ -45,25 +45,29 @@ class FaceTree:
 
 
 def face_tree(mesh: Mesh) -> FaceTree:
-    """The tree of a unit mesh. Get it as ``mesh.derived(face_tree)``."""
-    corners = mesh.triangles
+    """The tree of a mesh. Get it as ``mesh.derived(face_tree)``."""
+    return tree_of(mesh.triangles)
+
+
+def tree_of(corners: Floats) -> FaceTree:
+    """The tree of triangles ``(f, 3, 3)``, at least one; they may have collapsed to segments or points."""
     # Written out, since reductions over short axes are slow.
     lowest = np.minimum(np.minimum(corners[:, 0], corners[:, 1]), corners[:, 2])
     highest = np.maximum(np.maximum(corners[:, 0], corners[:, 1]), corners[:, 2])
     centre = lowest + highest
+    extent = float(np.ptp(centre, axis=0).max())
+    scaled = (centre - centre.min(axis=0)) / (extent or 1.0)
     count = len(corners)
     depth = count.bit_length() - 1
     faces = np.arange(count)
     for level in range(depth):
         starts = _starts(count, level)
-        sorted_centre = centre[faces]
-        spread = np.maximum.reduceat(sorted_centre, starts[:-1]) - np.minimum.reduceat(
-            sorted_centre, starts[:-1]
-        )
+        placed = scaled[faces]
+        spread = np.maximum.reduceat(placed, starts[:-1]) - np.minimum.reduceat(placed, starts[:-1])
         node = np.repeat(np.arange(len(spread)), np.diff(starts))
-        along = sorted_centre[np.arange(count), np.argmax(spread, axis=1)[node]]
-        # Coordinates lie within the unit cube, so that one number sorts by node first.
-        faces = faces[np.argsort(4.0 * node + along)]
+        along = placed[np.arange(count), np.argmax(spread, axis=1)[node]]
+        # Coordinates from 0 to 1, so that one number sorts by node first.
+        faces = faces[np.argsort(2.0 * node + along)]
     starts = _starts(count, depth)
     lower = [np.minimum.reduceat(lowest[faces], starts[:-1])]
     upper = [np.maximum.reduceat(highest[faces], starts[:-1])]
@@ -86,20 +90,20 @@ class Forest:
         trees = [mesh.derived(face_tree) for mesh in meshes]
         nodes = np.array([len(tree.middle) for tree in trees])
         sizes = np.array([len(tree.faces) for tree in trees])
-        self._roots = np.cumsum(nodes) - nodes
+        self.roots = np.cumsum(nodes) - nodes
         first_face = np.cumsum(sizes) - sizes
-        self._middle = _columns([tree.middle for tree in trees])
-        self._half = _columns([tree.half for tree in trees])
+        self.middle = _columns([tree.middle for tree in trees])
+        self.half = _columns([tree.half for tree in trees])
         child, start, end = [], [], []
-        for tree, root, face in zip(trees, self._roots.tolist(), first_face.tolist(), strict=True):
+        for tree, root, face in zip(trees, self.roots.tolist(), first_face.tolist(), strict=True):
             leaves = len(tree.starts) - 1
             inner = np.arange(leaves - 1)
             child += [root + 2 * inner + 1, np.full(leaves, -1)]
             start += [np.zeros(leaves - 1, dtype=np.intp), face + tree.starts[:-1]]
             end += [np.zeros(leaves - 1, dtype=np.intp), face + tree.starts[1:]]
-        self._child = np.concatenate(child)
+        self.child = np.concatenate(child)
         """The first child of each node, the second comes next; -1 for leaves."""
-        self._start, self._count = np.concatenate(start), np.concatenate(end) - np.concatenate(start)
+        self.start, self.count = np.concatenate(start), np.concatenate(end) - np.concatenate(start)
         ordered = [(mesh, tree.faces) for mesh, tree in zip(meshes, trees, strict=True)]
         self.corners: Final = [
             _columns([mesh.triangles[faces, number] for mesh, faces in ordered]) for number in range(3)
@@ -122,7 +126,7 @@ class Forest:
 
         """
         there, here = _Maps(forth), _Maps(back)
-        fronts = [(np.arange(len(first)), self._roots[first], self._roots[second])]
+        fronts = [(np.arange(len(first)), self.roots[first], self.roots[second])]
         while fronts:
             entry, one, two = fronts.pop()
             left = np.flatnonzero(~settled[entry])
@@ -136,24 +140,24 @@ class Forest:
             entry, one, two = entry[near], one[near], two[near]
             near = self._meet(here, entry, two, one)
             entry, one, two = entry[near], one[near], two[near]
-            ends = (self._child[one] < 0) & (self._child[two] < 0)
+            ends = (self.child[one] < 0) & (self.child[two] < 0)
             if ends.any():
-                yield self._faces(entry[ends], one[ends], two[ends])
+                yield self.faces_of(entry[ends], one[ends], two[ends])
                 go_on = ~ends
                 entry, one, two = entry[go_on], one[go_on], two[go_on]
             if len(entry):
-                below = self._below(entry, one, two)
-                fronts.append(self._below(*below) if len(below[0]) <= _SMALL else below)
+                below = self.below(entry, one, two)
+                fronts.append(self.below(*below) if len(below[0]) <= _SMALL else below)
 
     def _meet(self, maps: "_Maps", entry: Indices, moving: Indices, still: Indices) -> Indices:
         """Which boxes around images of moving boxes meet still boxes."""
-        middle = [column[moving] for column in self._middle]
-        half = [column[moving] for column in self._half]
+        middle = [column[moving] for column in self.middle]
+        half = [column[moving] for column in self.half]
         near: Booleans | None = None
         for axis in range(3):
             matrix, size = maps.matrix[axis], maps.size[axis]
-            centre = maps.offset[axis][entry] - self._middle[axis][still]
-            reach = self._half[axis][still]
+            centre = maps.offset[axis][entry] - self.middle[axis][still]
+            reach = self.half[axis][still]
             for other in range(3):
                 centre += matrix[other][entry] * middle[other]
                 reach += size[other][entry] * half[other]
@@ -162,9 +166,9 @@ class Forest:
         assert near is not None
         return np.flatnonzero(near)
 
-    def _below(self, entry: Indices, one: Indices, two: Indices) -> tuple[Indices, Indices, Indices]:
+    def below(self, entry: Indices, one: Indices, two: Indices) -> tuple[Indices, Indices, Indices]:
         """The pairs of the children; a leaf stays beside the children of the other."""
-        child_one, child_two = self._child[one], self._child[two]
+        child_one, child_two = self.child[one], self.child[two]
         wide_one, wide_two = (child_one >= 0) + 1, (child_two >= 0) + 1
         owner, offset = expand(wide_one * wide_two)
         width = wide_two[owner]
@@ -172,15 +176,15 @@ class Forest:
         next_two = np.where(child_two < 0, two, child_two)[owner] + offset % width
         return entry[owner], next_one, next_two
 
-    def _faces(self, entry: Indices, one: Indices, two: Indices) -> tuple[Indices, Indices, Indices]:
+    def faces_of(self, entry: Indices, one: Indices, two: Indices) -> tuple[Indices, Indices, Indices]:
         """The pairs of the faces of leaves."""
-        width = self._count[two]
-        owner, offset = expand(self._count[one] * width)
+        width = self.count[two]
+        owner, offset = expand(self.count[one] * width)
         width = width[owner]
         return (
             entry[owner],
-            self._start[one][owner] + offset // width,
-            self._start[two][owner] + offset % width,
+            self.start[one][owner] + offset // width,
+            self.start[two][owner] + offset % width,
         )
 
 

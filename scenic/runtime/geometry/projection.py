@@ -11,9 +11,11 @@ import numpy as np
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.facegrid import face_grid
 from scenic.runtime.geometry.mesh import Mesh
+from scenic.runtime.geometry.nearest import nearest_on_triangles
 from scenic.runtime.geometry.poses import Booleans, Floats, Indices, Poses
 from scenic.runtime.geometry.ragged import rows
 from scenic.runtime.geometry.surface import Side, face_normals, side_contains
+from scenic.runtime.geometry.vectors import cross, dot, length
 
 TOLERANCE: Final = 1e-6
 """Metres within which a point is on a surface."""
@@ -71,9 +73,9 @@ def landing_points(body: Body, faces: Indices, points: Floats, directions: Float
     for mesh, chosen in body.by_mesh(lanes):
         start, way = (np.broadcast_to(part, (lanes, 3))[chosen] for part in (points, directions))
         corners = body.poses.take(chosen).to_world(mesh.triangles[np.maximum(faces[chosen], 0)])
-        height = _dot(normals[chosen], corners[:, 0] - start)
-        rate = _dot(normals[chosen], way)
-        distance = distance_to_triangles(start, corners[:, 0], corners[:, 1], corners[:, 2])
+        height = dot(normals[chosen], corners[:, 0] - start)
+        rate = dot(normals[chosen], way)
+        distance = length(start - nearest_on_triangles(start, corners[:, 0], corners[:, 1], corners[:, 2]))
         moves = (distance > TOLERANCE) & (rate != 0)
         travel[chosen] = np.where(moves, height / np.where(moves, rate, 1.0), 0.0)
     return points + travel[:, None] * directions
@@ -112,13 +114,14 @@ def _faces_near(
         widest = reach[entry].max(axis=1)
         offset = local[entry] - mesh.triangles[face, 0]
         # The plane is close in the world only if it is close in the unit frame, where the smallest extent rules.
-        close = np.flatnonzero(np.abs(_dot(mesh.normals[face], offset)) <= widest)
+        close = np.flatnonzero(np.abs(dot(mesh.normals[face], offset)) <= widest)
         entry, face = entry[close], face[close]
         close = np.flatnonzero(side_contains(mesh, poses, side, threshold, entry, face))
         entry, face = entry[close], face[close]
         if len(entry):
             corners = [mesh.triangles[face, corner] * size[entry] for corner in range(3)]
-            distance = distance_to_triangles(local[entry] * size[entry], *corners)
+            place = local[entry] * size[entry]
+            distance = length(place - nearest_on_triangles(place, *corners))
             within = np.flatnonzero(distance <= TOLERANCE)
             first = np.unique(entry[within], return_index=True)
             result[first[0]] = face[within][first[1]]
@@ -170,57 +173,16 @@ def _crossings(mesh: Mesh, points: Floats, directions: Floats, faces: Indices) -
     """
     a = mesh.triangles[faces, 0]
     ab, ac = mesh.triangles[faces, 1] - a, mesh.triangles[faces, 2] - a
-    p = _cross(directions, ac)
-    determinant = _dot(ab, p)
-    scale = _length(directions) * _length(ab) * _length(ac)
+    p = cross(directions, ac)
+    determinant = dot(ab, p)
+    scale = length(directions) * length(ab) * length(ac)
     crosses = np.abs(determinant) > _EDGE * scale
     inverse = 1 / np.where(crosses, determinant, 1.0)
     offset = points - a
-    u = _dot(offset, p) * inverse
-    q = _cross(offset, ab)
-    v = _dot(directions, q) * inverse
+    u = dot(offset, p) * inverse
+    q = cross(offset, ab)
+    v = dot(directions, q) * inverse
     # What rounding does to u and v grows with the distance to the face and where the line grazes it.
-    slack = _EDGE * (1 + _length(offset) * scale * np.abs(inverse) / np.maximum(_length(ab), 1e-300))
+    slack = _EDGE * (1 + length(offset) * scale * np.abs(inverse) / np.maximum(length(ab), 1e-300))
     hits = crosses & (u >= -slack) & (v >= -slack) & (u + v <= 1 + slack)
-    return hits, _dot(ac, q) * inverse
-
-
-def distance_to_triangles(points: Floats, a: Floats, b: Floats, c: Floats) -> Floats:
-    """The distances ``(m,)`` of points ``(m, 3)`` from triangles with corners ``(m, 3)`` each."""
-    normal = _cross(b - a, c - a)
-    length = _length(normal)
-    inside = length > 0
-    for first, second in ((a, b), (b, c), (c, a)):
-        inside &= _dot(_cross(second - first, points - first), normal) >= 0
-    to_plane = np.abs(_dot(normal, points - a)) / np.where(length > 0, length, 1.0)
-    to_edges = np.minimum(
-        np.minimum(_to_segment(points, a, b), _to_segment(points, b, c)), _to_segment(points, c, a)
-    )
-    return np.where(inside, to_plane, to_edges)
-
-
-def _to_segment(points: Floats, a: Floats, b: Floats) -> Floats:
-    along, offset = b - a, points - a
-    squared = _dot(along, along)
-    part = np.clip(_dot(offset, along) / np.where(squared > 0, squared, 1.0), 0.0, 1.0)
-    return _length(offset - part[:, None] * along)
-
-
-def _dot(a: Floats, b: Floats) -> Floats:
-    result: Floats = a[:, 0] * b[:, 0] + a[:, 1] * b[:, 1] + a[:, 2] * b[:, 2]
-    return result
-
-
-def _length(a: Floats) -> Floats:
-    return np.sqrt(_dot(a, a))
-
-
-def _cross(a: Floats, b: Floats) -> Floats:
-    return np.stack(
-        [
-            a[:, 1] * b[:, 2] - a[:, 2] * b[:, 1],
-            a[:, 2] * b[:, 0] - a[:, 0] * b[:, 2],
-            a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0],
-        ],
-        axis=1,
-    )
+    return hits, dot(ac, q) * inverse

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from scenic.runtime.geometry.facegrid import face_grid
-from scenic.runtime.geometry.projection import distance_to_triangles
+from scenic.runtime.geometry.nearest import nearest_on_triangles
 
 from .samples import bumpy, table
 
@@ -19,9 +19,9 @@ def test_near_points_misses_no_face(mesh):
     )
     for number, point in enumerate(points):
         corners = mesh.triangles
-        distance = distance_to_triangles(
-            np.broadcast_to(point, corners[:, 0].shape), corners[:, 0], corners[:, 1], corners[:, 2]
-        )
+        points_here = np.broadcast_to(point, corners[:, 0].shape)
+        nearest = nearest_on_triangles(points_here, corners[:, 0], corners[:, 1], corners[:, 2])
+        distance = np.linalg.norm(nearest - point, axis=1)
         assert {(number, face) for face in np.flatnonzero(distance <= 0.05).tolist()} <= found
 
 

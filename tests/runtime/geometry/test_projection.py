@@ -119,15 +119,6 @@ def test_near_surface_against_distances():
                 assert found[entry]
 
 
-def test_distance_to_triangles():
-    rng = np.random.default_rng(46)
-    points, *corners = rng.normal(size=(4, 500, 3))
-    expected = np.linalg.norm(
-        points - trimesh.triangles.closest_point(np.stack(corners, axis=1), points), axis=1
-    )
-    np.testing.assert_allclose(projection.distance_to_triangles(points, *corners), expected, atol=1e-12)
-
-
 @pytest.mark.parametrize("mesh", [primitives.box(), bumpy(3)], ids=["small", "large"])
 @pytest.mark.parametrize("batch", [1, 7, 512])
 def test_batches_do_not_matter(mesh, batch):

@@ -4,7 +4,7 @@ import pytest
 from scenic.runtime.geometry import primitives
 from scenic.runtime.geometry.cells import touched_cells
 from scenic.runtime.geometry.inside import contains_points
-from scenic.runtime.geometry.projection import distance_to_triangles
+from scenic.runtime.geometry.nearest import nearest_on_triangles
 from scenic.runtime.geometry.voxels import PROBES, RESOLUTION, voxels
 
 from .samples import FILES, SHAPES, real_meshes, unit_mesh
@@ -35,7 +35,8 @@ def check(mesh):
     assert held[:2].all() or mesh.is_box
     corners = np.repeat(mesh.triangles[None], PROBES, axis=0)[~held].reshape(-1, 3, 3)
     beside = np.repeat(known.probes[~held], len(mesh.faces), axis=0)
-    distance = distance_to_triangles(beside, *np.moveaxis(corners, 1, 0)).reshape(-1, len(mesh.faces))
+    gap = np.linalg.norm(beside - nearest_on_triangles(beside, *np.moveaxis(corners, 1, 0)), axis=1)
+    distance = gap.reshape(-1, len(mesh.faces))
     assert (distance.min(axis=1) < 1e-12).all()
 
 

@@ -1,0 +1,167 @@
+import numpy as np
+import pytest
+import shapely
+import trimesh
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.optimize import minimize
+
+from scenic.runtime.geometry import distance
+from scenic.runtime.geometry.bodies import Body
+from scenic.runtime.geometry.nearest import Nearest, nearest_on_triangles
+
+from .samples import (
+    SHAPES,
+    bumpy,
+    common_volume,
+    in_batches,
+    random_poses,
+    solid,
+    table,
+    world_vertices,
+    yawed,
+)
+
+COUNT = 40
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.integers(0, 10**6))
+def test_nearest_points_of_triangles(seed):
+    rng = np.random.default_rng(seed)
+    corners = rng.normal(size=(3, 1, 3))
+    if seed % 3 == 0:
+        corners[2] = corners[1]  # a segment
+    if seed % 6 == 0:
+        corners[1:] = corners[0]  # a point
+    point = rng.normal(size=(1, 3)) * 2
+    found = nearest_on_triangles(point, *corners)[0]
+
+    def place(weights):
+        return (1 - weights.sum()) * corners[0, 0] + weights[0] * corners[1, 0] + weights[1] * corners[2, 0]
+
+    def squared(weights):
+        return ((place(weights) - point[0]) ** 2).sum()
+
+    best = min(
+        minimize(
+            squared,
+            start,
+            bounds=[(0, 1)] * 2,
+            constraints={"type": "ineq", "fun": lambda weights: 1 - weights.sum()},
+            method="SLSQP",
+            options={"ftol": 1e-14},
+        ).fun
+        for start in ([0.3, 0.3], [0.0, 0.0])
+    )
+    assert ((found - point[0]) ** 2).sum() == pytest.approx(best, abs=1e-7)
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_points_and_surfaces(name):
+    mesh = SHAPES[name]()
+    poses = random_poses(COUNT, 1, spread=0.4)
+    points = np.random.default_rng(2).uniform(-0.7, 0.7, (COUNT, 3))
+    body = Body((mesh,), None, poses)
+    found = distance.to_surface(body, points, COUNT)
+    signs = distance.signed(body, points, COUNT)
+    np.testing.assert_allclose(np.abs(signs), found.distance)
+    np.testing.assert_allclose(np.linalg.norm(points - found.point, axis=1), found.distance, rtol=1e-9)
+    np.testing.assert_array_equal(distance.to_solid(body, points, COUNT), np.maximum(signs, 0))
+    inside = 0
+    for entry in range(COUNT):
+        world = trimesh.Trimesh(world_vertices(mesh, poses, entry), mesh.faces, process=False)
+        triangles = world.triangles
+        each = np.linalg.norm(
+            trimesh.triangles.closest_point(triangles, np.tile(points[entry], (len(triangles), 1)))
+            - points[entry],
+            axis=1,
+        )
+        assert found.distance[entry] == pytest.approx(each.min(), abs=1e-12)
+        assert each[found.number[entry]] == pytest.approx(each.min(), abs=1e-12)
+        assert (signs[entry] < 0) == (world.contains(points[entry : entry + 1])[0])
+        inside += int(signs[entry] < 0)
+    assert 0 < inside < COUNT
+
+
+PAIRS = [
+    ("box", "box"),
+    ("box", "cone"),
+    ("table", "spheroid"),
+    ("cylinder", "table"),
+    ("bumpy", "bumpy"),
+    ("hollow", "cone"),
+]
+
+
+@pytest.mark.parametrize(("first", "second"), PAIRS)
+def test_bodies(first, second):
+    seed = PAIRS.index((first, second))
+    mesh_a, mesh_b = SHAPES[first](), SHAPES[second]()
+    a, b = random_poses(COUNT, seed, spread=1.0), random_poses(COUNT, seed + 50, spread=1.0)
+    found = distance.between(Body((mesh_a,), None, a), Body((mesh_b,), None, b), COUNT)
+    back = distance.between(Body((mesh_b,), None, b), Body((mesh_a,), None, a), COUNT)
+    np.testing.assert_allclose(found, back, atol=1e-12)
+    for entry in range(COUNT):
+        if found[entry] == 0:
+            assert common_volume(mesh_a, a, mesh_b, b, entry) > 0
+        else:
+            gap = solid(mesh_a, a, entry).min_gap(solid(mesh_b, b, entry), 10.0)
+            assert found[entry] == pytest.approx(gap, abs=1e-6)
+    assert 0 < (found == 0).mean() < 1
+
+
+def test_a_body_inside_another_is_at_no_distance():
+    outer, inner = (
+        Body((SHAPES["box"](),), None, yawed((0, 0, 0))),
+        Body((table(),), None, yawed((0, 0, 0), 0, (0.1,) * 3)),
+    )
+    assert distance.between(outer, inner, 1) == 0
+    cavity = Body((SHAPES["hollow"](),), None, yawed((0, 0, 0)))
+    assert distance.between(cavity, inner, 1)[0] == pytest.approx(0.2)
+
+
+def test_choices_and_fixed_bodies():
+    meshes = (SHAPES["box"](), table())
+    choice = np.arange(9) % 2
+    poses = random_poses(9, 5, spread=3)
+    still = Body((SHAPES["cone"](),), None, yawed((0, 0, 0)))
+    found = distance.between(Body(meshes, choice, poses), still, 9)
+    for lane in range(9):
+        alone = Body((meshes[choice[lane]],), None, poses.take(np.array([lane])))
+        assert distance.between(still, alone, 1)[0] == pytest.approx(found[lane], abs=1e-12)
+
+
+@pytest.mark.parametrize("batch", [1, 7])
+def test_batches_do_not_matter(batch):
+    a, b = random_poses(60, 6, spread=1), random_poses(60, 7, spread=1)
+    points = np.random.default_rng(8).normal(size=(60, 3))
+
+    def gaps(lanes):
+        bodies = Body((bumpy(2),), None, a.take(lanes)), Body((table(),), None, b.take(lanes))
+        return distance.between(*bodies, len(lanes))
+
+    def signs(lanes):
+        return distance.signed(Body((bumpy(2),), None, a.take(lanes)), points[lanes], len(lanes))
+
+    for function in (gaps, signs):
+        np.testing.assert_array_equal(in_batches(function, 60, batch), function(np.arange(60)))
+
+
+def test_polylines_and_point_sets():
+    rng = np.random.default_rng(9)
+    lines = [np.cumsum(rng.normal(size=(length, 2)), axis=0) for length in (2, 50, 400)]
+    points = rng.normal(size=(300, 2)) * 15
+    flat = np.c_[points, np.zeros(300)]
+    found = Nearest.of_polylines(lines).find(flat)
+    oracle = shapely.MultiLineString([line.tolist() for line in lines])
+    np.testing.assert_allclose(found.distance, shapely.distance(oracle, shapely.points(points)), atol=1e-12)
+    segments = np.concatenate([np.stack([line[:-1], line[1:]], axis=1) for line in lines])
+    ends = shapely.linestrings(segments[found.number])
+    np.testing.assert_allclose(shapely.distance(ends, shapely.points(found.point[:, :2])), 0, atol=1e-12)
+    cloud = rng.normal(size=(500, 3)) * 5
+    queries = rng.normal(size=(200, 3)) * 8
+    found = Nearest.of_points(cloud).find(queries)
+    gaps = np.linalg.norm(queries[:, None] - cloud, axis=2)
+    np.testing.assert_allclose(found.distance, gaps.min(axis=1))
+    np.testing.assert_array_equal(found.number, gaps.argmin(axis=1))
