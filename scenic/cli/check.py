@@ -177,7 +177,7 @@ def check(
 def _conclusion(report: Report) -> str:
     files = f"{report.files} file{'' if report.files == 1 else 's'}"
     text = f"{summary(report.diagnostics)} in {files}"
-    repairable = sum(item.fix is not None for item in report.diagnostics)
+    repairable = sum(item.fix is not None and item.fix.certain for item in report.diagnostics)
     if report.fixed:
         text += f"; {_repairs(report.fixed)} made"
     elif repairable:

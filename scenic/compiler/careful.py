@@ -34,6 +34,9 @@ __all__ = ["lex_carefully"]
 _HEADERS: Final = frozenset(WORDS[word] for word in BLOCK_STARTERS)
 """The first words of lines that begin a block."""
 
+_LEAST_TYPED: Final = 3
+"""So many letters of such a word are enough to know it by them."""
+
 _COLON: Final = OPERATORS[":"]
 _COMMA: Final = OPERATORS[","]
 
@@ -83,6 +86,15 @@ _STATEMENT: Final = re.compile(
     rf"|(?:\*?{_TARGET}[ \t]*+,[ \t]*+){{0,8}}+\*?{_TARGET}[ \t]*+(?:[-+*/%&|^@]|//|\*\*|<<|>>)?=(?!=)"
 )
 """A line that starts so is a statement if it is indented no more than the statement around it."""
+
+_AFTER_TEXT: Final = re.compile(
+    r"(?:def|class|behavior|monitor|scenario)[ \t]++\w++[ \t]*+[(:]"
+    r"|from[ \t]++[\w.]++[ \t]++import\b|(?:import|model)[ \t]++[\w.]++(?:[ \t]++as[ \t]++\w++)?+[ \t]*+(?=[#\n,;])"
+    r"|@[A-Za-z_]|(?:if|for|while|with|try|else|elif|setup|compose)\b[^\n]*+(?<=:)(?=\n)"
+    rf"|(?:param[ \t]++)?(?:{_TARGET}[ \t]*+,[ \t]*+){{0,8}}+{_TARGET}[ \t]*+=(?!=)"
+    r"|(?:\w++[ \t]++)?new[ \t]++[A-Z]|require\b[^\n]*+[<>=()\[]"
+)
+"""A line of a text that is never closed which starts so is hardly prose."""
 
 _CALL: Final = re.compile(
     r"[A-Za-z_][\w.]*+\([^\n]*+(?<=\))[ \t]*+(?=\n)|[a-z]\w*+(?:\[[a-z, ]++\])?+:[ \t]++\S"
@@ -227,7 +239,16 @@ class _CarefulLexer(Lexer):
             return False
         if kinds[-2] in (_COLON, _COMMA):
             return True
-        return kinds[self.statement_start()] in _HEADERS or _SPECIFIER.match(self.text, end) is not None
+        first = self.statement_start()
+        if kinds[first] in _HEADERS or _SPECIFIER.match(self.text, end) is not None:
+            return True
+        # A header of which one word is being typed.
+        word = self.tokens.texts[first]
+        return (
+            first == len(kinds) - 2
+            and len(word) >= _LEAST_TYPED
+            and any(each.startswith(word) for each in BLOCK_STARTERS)
+        )
 
     def statement_start(self) -> int:
         """The first token of the logical line that the tokens end with."""
@@ -365,7 +386,10 @@ class _CarefulLexer(Lexer):
         if triple:
             return self.open_text(start, end)
         closing = self.closers(end, in_text=True)
+        fields = len(self.fields)
         stop = super().open_string(start, end)
+        if len(self.fields) < fields:
+            return stop  # It was the end of an f-string around it.
         # The brackets around it were to be closed after it.
         if self.fields:
             if len(self.fields[-1].string.quote) == 1:
@@ -385,6 +409,14 @@ class _CarefulLexer(Lexer):
         before = text[line_start : end - 3].strip()
         return before[-1:] in ("=", "(", ",", "[") and _STATEMENT.match(before + "\n") is not None
 
+    def is_code_again(self, line_start: int, first: int) -> bool:
+        """Whether a line in a text that is never closed looks like a statement that follows it."""
+        text = self.text
+        if not _STATEMENT.match(text, first):
+            return False
+        before = text[text.rfind("\n", 0, max(0, line_start - 1)) + 1 : max(0, line_start - 1)]
+        return not before.strip() or _AFTER_TEXT.match(text, first) is not None
+
     def open_text(self, start: int, end: int) -> int:
         """A text is not closed: go on at the next line that looks like a statement; ``end`` is after its quotes."""
         text = self.text
@@ -397,7 +429,7 @@ class _CarefulLexer(Lexer):
             first = found.end() if found else line_end + 1
             line_start = text.rfind("\n", line_end, first) + 1
             if first < len(text):
-                if measure(text[line_start:first])[0] <= column and _STATEMENT.match(text, first):
+                if measure(text[line_start:first])[0] <= column and self.is_code_again(line_start, first):
                     break
                 line_end = text.index("\n", first)
             else:

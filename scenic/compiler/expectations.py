@@ -5,7 +5,7 @@ from typing import Final
 
 from scenic.compiler.actions import Problem
 from scenic.compiler.generated import HARD_KEYWORDS, INFIX_KINDS, OPERATORS, SOFT_KEYWORDS
-from scenic.compiler.mistakes import Situation, Trials, explain, header_without_colon
+from scenic.compiler.mistakes import Situation, Trials, explain, header_without_colon, unfinished_header
 from scenic.compiler.tokens import (
     DEDENT,
     ENDMARKER,
@@ -97,6 +97,22 @@ class Expectations:
         missing = at.before and (at.at_end() or found in _SEPARATORS) and not wanted.startswith("an operator")
         where = f" after `{at.before}`" if missing else ""
         return Problem("SC110", at.here(), f"expected {wanted}{where}, but found {found}")
+
+    def unfinished_header(self, first: int) -> Problem | None:
+        """The mistake of a line before an indented one, if it is the beginning of a header."""
+        start, end = self._trials.line(max(first - 3, 0))
+        return unfinished_header(Situation(self._tokens, self._trials, start, end, frozenset()))
+
+    def unfinished_clause(self, first: int) -> Problem:
+        """The mistake of a line that is the beginning of a clause."""
+        start, end = self._trials.line(first)
+        at = Situation(self._tokens, self._trials, start, end, frozenset())
+        return Problem(
+            "SC110",
+            at.place(first),
+            f"`{at.word(first)}` is no complete clause",
+            "write the whole clause, with a colon at its end",
+        )
 
     def unexpected_block(self, first: int) -> Problem:
         """The mistake of a line, with its first token, that is indented more than the one before."""

@@ -36,7 +36,7 @@ def repair(
     shown: Callable[[Sequence[Diagnostic]], Sequence[Diagnostic]],
     surroundings_of: SurroundingsOf | None = None,
 ) -> Repaired:
-    """Make the repairs of the diagnostics that ``shown`` leaves, again and again until none is left.
+    """Make the certain repairs of the diagnostics that ``shown`` leaves, again and again until none is left.
 
     A repair that would leave the program with more errors than before is not made. ``surroundings_of`` as in
     `check_text`.
@@ -49,7 +49,9 @@ def repair(
     found = check(text)
     seen = {text}
     for _ in range(_MOST_ROUNDS):
-        fixes = list(dict.fromkeys(item.fix for item in shown(found) if item.fix is not None))
+        fixes = list(
+            dict.fromkeys(item.fix for item in shown(found) if item.fix is not None and item.fix.certain)
+        )
         if not fixes:
             break
         better = _attempt(text, fixes, found, check) or _one_by_one(text, fixes, found, check)

@@ -210,11 +210,16 @@ class _Recursion:
                     self._changed.notify_all()
 
     @contextmanager
-    def ordinary(self) -> Iterator[None]:
+    def ordinary(self, limit: int) -> Iterator[None]:
         with self._changed:
             while self._deep:
                 self._changed.wait()
-            yield
+            before = sys.getrecursionlimit()
+            sys.setrecursionlimit(max(limit, before))
+            try:
+                yield
+            finally:
+                sys.setrecursionlimit(before)
 
 
 _RECURSION: Final = _Recursion()
@@ -225,9 +230,10 @@ def recursion_limit(limit: int) -> AbstractContextManager[None]:
     return _RECURSION.raised(limit)
 
 
-def ordinary_recursion() -> AbstractContextManager[None]:
+def ordinary_recursion(limit: int = 0) -> AbstractContextManager[None]:
     """Wait until no other thread needs deeper recursion, and let none begin: for what recurses on the stack of C.
 
-    Not to be used where the same thread has allowed deeper recursion.
+    A higher ``limit`` than the ordinary one is for a thread with a larger stack. Not to be used where the same thread has
+    allowed deeper recursion.
     """
-    return _RECURSION.ordinary()
+    return _RECURSION.ordinary(limit)

@@ -40,6 +40,8 @@ _COLON, _COMMA, _STAR = (OPERATORS[mark] for mark in (":", ",", "*"))
 _CLAUSES: Final = frozenset([_ELIF, _ELSE, _EXCEPT, _FINALLY])
 """Words that start nothing but a further clause of a statement with a block."""
 
+_CLAUSE_WORDS: Final = ("elif", "else", "except", "finally", "interrupt")
+
 _SOFT_CLAUSES: Final = frozenset([_CASE, _SETUP, _COMPOSE])
 """Words that start a clause, or a part of a scenario, if a block follows; otherwise they are names."""
 
@@ -126,19 +128,29 @@ class Recovery:
         body: list[Any] = []
         first = position
         previous: int | None = None
-        part: int | None = None
+        parts: list[int] = []
         while kinds[position] not in (DEDENT, ENDMARKER):
             if kinds[position] == INDENT:
-                inner, position = self._unexpected_block(rule, position)
-                body += inner
+                inner, end, is_header = self._unexpected_block(rule, position)
+                if is_header and previous is not None and body:
+                    # What stands in the block belongs to a header that is not complete.
+                    body[-1] = self._error(previous, end, inner)
+                else:
+                    body += inner
+                position = end
                 continue
             start = position
             if kinds[start] in (_SETUP, _COMPOSE) and rule in _OF_STATEMENTS and self._is_clause(start):
-                part = start if part is None else part
+                parts.append(start)
                 found, position, _ = self._clause(start)
                 node = self._error(start, position, found)
             elif rule in _OF_STATEMENTS and self._is_clause(start):
-                node, position = self._stray_clause(start, previous)
+                unfinished = self._unfinished_clause(start)
+                node, position = self._stray_clause(start, previous, unfinished=unfinished is not None)
+                if unfinished is not None and unfinished == previous and isinstance(body[-1], ast.Expr):
+                    body[-1] = self._error(previous, start, [])
+                if unfinished is not None and self._reported.isdisjoint(range(unfinished, start)):
+                    self._add(self.expectations.unfinished_clause(unfinished), unfinished)
             else:
                 node, position = self._statement(rule, start)
             if isinstance(node, list) and rule != "specifier_line":
@@ -148,16 +160,32 @@ class Recovery:
             if previous is not None and kinds[start] == ERROR and isinstance(body[-1], tree.ErrorStatement):
                 self._forget_closer(start, previous)
             previous = start
-        if part is not None:
-            self._stray_part(first, part, position)
+        if parts:
+            self._stray_part(first, parts, position)
         return body, position
 
-    def _stray_part(self, first: int, part: int, end: int) -> None:
-        """A part of a scenario stands among other statements, in a block from ``first`` to ``end``.
+    def _stray_part(self, first: int, parts: list[int], end: int) -> None:
+        """Parts of a scenario stand among other statements, in a block from ``first`` to ``end``.
 
         If something else is wrong with the block or its header, that is why.
         """
         kinds = self._kinds
+        part = parts[0]
+        for index, again in enumerate(parts):
+            earlier = next((each for each in parts[:index] if kinds[each] == kinds[again]), None)
+            if earlier is not None and earlier + 1 not in self._reported:
+                word = self.tokens.texts[again]
+                place = self.actions.place_of_token
+                problem = Problem(
+                    "SC210",
+                    place(again),
+                    f"a scenario has only one `{word}` block",
+                    "move its statements into the first, or write a second scenario",
+                    ((place(earlier), f"the first `{word}` is here"),),
+                )
+                self._add(problem, again)
+                self._spoilt.append((self.tokens.lines[first], self.tokens.lines[end]))
+                return
         header = max(0, first - 3)
         while header > 0 and kinds[header - 1] not in (NEWLINE, INDENT, DEDENT):
             header -= 1
@@ -223,10 +251,26 @@ class Recovery:
             position += 1
         return kinds[position] == NEWLINE and kinds[position + 1] == INDENT
 
-    def _stray_clause(self, start: int, previous: int | None) -> tuple[Any, int]:
-        """A clause that stands for itself; the statement before it starts at ``previous``."""
+    def _unfinished_clause(self, position: int) -> int | None:
+        """The line before the one at ``position``, if it is the beginning of a clause that is being typed."""
+        kinds = self._kinds
+        if position < 2 or kinds[position - 1] != NEWLINE:
+            return None
+        start = position - 1
+        while start > 0 and kinds[start - 1] not in (NEWLINE, INDENT, DEDENT) and position - start < 4:
+            start -= 1
+        words = self.tokens.texts[start : position - 1]
+        if not words or len(words[0]) < 2 or words[1:] not in ([], ["when"]):
+            return None
+        return start if any(word.startswith(words[0]) for word in _CLAUSE_WORDS) else None
+
+    def _stray_clause(self, start: int, previous: int | None, *, unfinished: bool) -> tuple[Any, int]:
+        """A clause that stands for itself; the statement before it starts at ``previous``.
+
+        If that one is an ``unfinished`` clause, this one is right where it stands.
+        """
         body, end, right = self._clause(start)
-        if right:
+        if right and not unfinished:
             # Then it must be the place that is wrong.
             actions = self.actions
             outer_failure = actions.failure
@@ -433,19 +477,24 @@ class Recovery:
             return False
         return kinds[self._line_end(position) - 1] != _COLON
 
-    def _unexpected_block(self, rule: str, position: int) -> tuple[list[Any], int]:
-        """A block that nothing begins; its statements count as those of the block around it."""
+    def _unexpected_block(self, rule: str, position: int) -> tuple[list[Any], int, bool]:
+        """A block that nothing begins; its statements count as those of the block around it.
+
+        Also tells whether the line before is a header that is not complete.
+        """
         first = position + 1
+        header = None
         specifiers = rule == "specifier_line" or self._is_specifier(first)
         if not self._lexical_between(first, first) and first not in self._reported:
             if specifiers and rule != "specifier_line" and self._may_take_specifiers(position - 2):
                 self._add(self._no_specifiers(position), first)
             else:
-                self._add(self.expectations.unexpected_block(first), first)
+                header = self.expectations.unfinished_header(first)
+                self._add(header or self.expectations.unexpected_block(first), first)
         body, end = self.statements("specifier_line" if specifiers else rule, first)
         if specifiers and rule != "specifier_line":
             body = []
-        return body, end + (self._kinds[end] == DEDENT)
+        return body, end + (self._kinds[end] == DEDENT), header is not None
 
     def _may_take_specifiers(self, last: int) -> bool:
         """Whether the line that ends with the token ``last`` may be one that makes an instance."""

@@ -47,11 +47,13 @@ class Edit:
 class Fix:
     """A repair that a machine can apply: all ``edits`` at once, none of which overlap.
 
-    ``title`` says what it does, in the imperative.
+    ``title`` says what it does, in the imperative. One that is not ``certain`` is a guess: people may choose it, and no
+    tool makes it by itself.
     """
 
     title: str
     edits: tuple[Edit, ...]
+    certain: bool = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,6 +147,9 @@ CODES: Final = MappingProxyType(
         "SC308": "specifiers that depend on each other",
         "SC309": "default value that is changed",
         "SC310": "misspelt guard",
+        "SC311": "comma that makes a tuple",
+        "SC312": "behavior that nothing runs",
+        "SC313": "attribute where a property is meant",
         "SC390": "ignore comment that silences nothing",
         "SC391": "ignore comment that cannot be understood",
         # Found while the program runs.

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 
-__all__ = ["distance", "nearest"]
+__all__ = ["distance", "is_slip", "nearest"]
 
 
 def distance(first: str, second: str, *, limit: int) -> int:
@@ -26,6 +26,25 @@ def distance(first: str, second: str, *, limit: int) -> int:
             return limit + 1
         before_last, last = last, row
     return min(last[-1], limit + 1)
+
+
+def is_slip(name: str, meant: str) -> bool:
+    """Whether ``name`` is hardly anything else than ``meant`` mistyped.
+
+    That is one letter too many, missing, or swapped with its neighbour, in names of four letters or more; or a wrong
+    one, but not the first, in names of six or more. Digits tell names apart, so they must agree.
+    """
+    if len(name) < 4 or _digits(name) != _digits(meant):
+        return False
+    if name.lower() == meant.lower():
+        return True
+    if distance(name, meant, limit=1) > 1:
+        return False
+    return len(name) != len(meant) or sorted(name) == sorted(meant) or (len(name) > 5 and name[0] == meant[0])
+
+
+def _digits(name: str) -> str:
+    return "".join(character for character in name if character.isdigit())
 
 
 def nearest(name: str, candidates: Iterable[str], *, limit: int | None = None) -> str | None:

@@ -15,7 +15,7 @@ from scenic.language.diagnostics import Diagnostic, Edit, Fix, Severity
 from scenic.language.libraries import FAMILIES, LIBRARIES
 from scenic.language.source import Source
 from scenic.language.spans import Span
-from scenic.language.spelling import nearest
+from scenic.language.spelling import is_slip, nearest
 from scenic.project.index import Exported, Exports, Project
 from scenic.project.search import Found, ModuleKind
 
@@ -283,7 +283,7 @@ class Imports:
                 for reference in self._resolution.references.values()
                 if reference.binding is not None and node in reference.binding.sites
             ]
-        return Fix(f"Write `{near}`", tuple(edits))
+        return Fix(f"Write `{near}`", tuple(edits), is_slip(name, near))
 
     def _is_guarded(self, node: ast.AST) -> bool:
         """Whether a node stands in a ``try``, so that its failure may be provided for."""

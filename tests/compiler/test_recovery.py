@@ -122,7 +122,7 @@ def test_an_open_string_does_not_hide_the_brackets_around_it() -> None:
 
 
 def test_an_open_docstring_ends_at_the_first_statement() -> None:
-    text = 'def f():\n    """Does this\n    and that.\n    return 1 1\n\ndef g():\n    """Fine."""\n    x x\n'
+    text = 'def f():\n    """Does this\n    and that.\n    y = 1 1\n\ndef g():\n    """Fine."""\n    x x\n'
     assert lines(text) == [2, 4, 8]
     body = parse(text).tree.body
     assert statements(body) == ["FunctionDef", "FunctionDef"]

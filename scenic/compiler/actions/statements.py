@@ -80,7 +80,10 @@ class StatementActions(DefinitionActions, ExpressionActions):
         for item in items:
             if item.name in seen:
                 self._report(
-                    place_of(item), f"the parameter `{item.name}` is set twice in one statement", code="SC210"
+                    place_of(item),
+                    f"the parameter `{item.name}` is set twice in one statement",
+                    help="remove one of the settings",
+                    code="SC210",
                 )
             seen.add(item.name)
         return True

@@ -6,6 +6,7 @@ that no rule has to walk it again.
 """
 
 import ast
+from collections import Counter
 from collections.abc import Collection, Iterable, Iterator
 from typing import Final
 
@@ -13,15 +14,18 @@ from scenic.compiler import tree as scenic
 from scenic.compiler.checks import (
     angles,
     arguments,
+    bodies,
     conditions,
     declarations,
     defaults,
     flow,
     guards,
     instances,
+    making,
     names,
     order,
     placement,
+    randomness,
     specifiers,
     support,
     uses,
@@ -36,7 +40,9 @@ from scenic.language.source import Source
 __all__ = ["NOTED", "check", "lint"]
 
 _NODE_RULES: Final[tuple[tuple[type[ast.AST], NodeRule], ...]] = tuple(
-    rule for module in (angles, arguments, conditions, specifiers) for rule in module.RULES.items()
+    rule
+    for module in (angles, arguments, bodies, conditions, making, randomness, specifiers)
+    for rule in module.RULES.items()
 )
 _PROGRAM_RULES: Final[tuple[ProgramRule, ...]] = (
     defaults.check_defaults,
@@ -46,6 +52,9 @@ _PROGRAM_RULES: Final[tuple[ProgramRule, ...]] = (
     order.check_order,
     uses.check_uses,
 )
+
+MOST_OF_ONE_CODE: Final = 200
+"""So many findings of one kind are told."""
 
 NOTED: Final = frozenset(
     {
@@ -87,11 +96,11 @@ def check(
         yield from names.check_reserved(context, reserved)
         yield from names.check_names(context, provided)
         misplaced = dict(placement.check_placement(context))
-        yield from misplaced.values()
+        yield from filter(None, misplaced.values())
         yield from support.check_support(context, misplaced)
         yield from declarations.check_declarations(context)
 
-    return tuple(sorted(findings(), key=_order))
+    return tuple(_capped(sorted(findings(), key=_order)))
 
 
 def lint(
@@ -112,7 +121,16 @@ def lint(
             yield from (item for item in program_rule(context) if item.span not in places)
 
     with no_garbage_collection():
-        return tuple(sorted(dict.fromkeys(findings()), key=_order))
+        return tuple(_capped(sorted(dict.fromkeys(findings()), key=_order)))
+
+
+def _capped(found: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
+    """The diagnostics without those of one code that nobody would read any more."""
+    counts: Counter[str] = Counter()
+    for item in found:
+        counts[item.code] += 1
+        if counts[item.code] <= MOST_OF_ONE_CODE:
+            yield item
 
 
 def _order(diagnostic: Diagnostic) -> tuple[int, int, str]:

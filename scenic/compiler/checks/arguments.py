@@ -146,7 +146,7 @@ def _arguments(node: ast.Call, callee: _Callee, context: Context) -> Iterator[Di
                 place,
                 f"did you mean `{suggestion}`?" if suggestion else f"it takes {_listed(sorted(by_name))}",
                 labels=labels,
-                fix=context.replacement(f"Write `{suggestion}`", place, suggestion) if suggestion else None,
+                fix=context.renaming(place, keyword.arg, suggestion) if suggestion else None,
             )
     if wrong or spread or spread_names:
         return

@@ -55,6 +55,17 @@ class Classes:
         """All properties of a class that the program defines; ``None`` if they cannot be known."""
         return self._defined(definition) if isinstance(definition, ast.ClassDef) else None
 
+    def inherited(self, definition: ast.ClassDef) -> Mapping[str, Property] | None:
+        """The properties that a class has from its bases; ``None`` if they cannot be known."""
+        found: dict[str, Property] = {}
+        for properties in reversed(
+            [self.properties(base) for base in definition.bases] or [BUILT_IN["Object"]]
+        ):
+            if properties is None or definition.keywords:
+                return None
+            found.update(properties)
+        return found
+
     def is_built_in(self, properties: Mapping[str, Property]) -> bool:
         """Whether these are the properties of a class of the language, whose defaults need no checking."""
         return any(properties is built_in for built_in in BUILT_IN.values())
@@ -62,20 +73,12 @@ class Classes:
     def _defined(self, node: ast.ClassDef) -> Mapping[str, Property] | None:
         if node not in self._known:
             self._known[node] = None  # A class among its own bases: nothing is known.
-            found: dict[str, Property] = {}
-            for properties in reversed(
-                [self.properties(base) for base in node.bases] or [BUILT_IN["Object"]]
-            ):
-                if properties is None or node.keywords:
-                    break
-                found.update(properties)
-            else:
-                found.update(
-                    (item.name, own_property(item))
-                    for item in node.body
-                    if isinstance(item, scenic.PropertyDef)
+            inherited = self.inherited(node)
+            if inherited is not None:
+                own = (item for item in node.body if isinstance(item, scenic.PropertyDef))
+                self._known[node] = MappingProxyType(
+                    {**inherited, **{item.name: own_property(item) for item in own}}
                 )
-                self._known[node] = MappingProxyType(found)
         return self._known[node]
 
 

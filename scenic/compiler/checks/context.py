@@ -14,6 +14,7 @@ from scenic.compiler.surroundings import Foreign, Surroundings
 from scenic.language.diagnostics import Diagnostic, Edit, Fix, Label, Severity
 from scenic.language.source import Source
 from scenic.language.spans import Span
+from scenic.language.spelling import is_slip
 
 __all__ = ["DEFINITIONS", "Context", "Definition", "NodeRule", "ProgramRule"]
 
@@ -284,10 +285,14 @@ class Context:
             ),
         )
 
-    def replacement(self, title: str, place: ast.AST | Span, text: str) -> Fix:
+    def replacement(self, title: str, place: ast.AST | Span, text: str, *, certain: bool = True) -> Fix:
         """A repair that puts a text in the place of a node."""
         span = place if isinstance(place, Span) else self.source.span(place)
-        return Fix(title, (Edit(span, text),))
+        return Fix(title, (Edit(span, text),), certain)
+
+    def renaming(self, place: ast.AST | Span, name: str, meant: str, *, certain: bool = True) -> Fix:
+        """A repair of a misspelt name, certain at most if it can hardly be anything else."""
+        return self.replacement(f"Write `{meant}`", place, meant, certain=certain and is_slip(name, meant))
 
 
 NodeRule = Callable[[Any, Scope, Context], Iterator[Diagnostic]]

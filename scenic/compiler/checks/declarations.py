@@ -24,8 +24,6 @@ NOTED: Final = (ast.ClassDef, scenic.New, scenic.Param, scenic.PropertyDef, scen
 
 def check_declarations(context: Context) -> Iterator[Diagnostic]:
     """SC110, SC200, SC210, SC220 and SC300 in declarations and specifiers."""
-    for node, _ in context.nodes(scenic.Param):
-        yield from _duplicates(context, [(item.name, item) for item in node.items], "parameter")
     for node, _ in context.nodes(ast.ClassDef):
         definitions = [item for item in node.body if isinstance(item, scenic.PropertyDef)]
         yield from _duplicates(context, [(item.name, item) for item in definitions], "property")
@@ -97,5 +95,5 @@ def _misspelt(context: Context, node: Any) -> Iterator[Diagnostic]:
                 f"`{node.cls.id}` has no property `{name}`, so `with` creates it",
                 place,
                 f"did you mean `{suggestion}`?",
-                fix=context.replacement(f"Write `{suggestion}`", place, suggestion),
+                fix=context.renaming(place, name, suggestion),
             )

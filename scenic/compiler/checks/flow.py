@@ -178,11 +178,16 @@ def _lasts(body: list[Any]) -> bool:
     stack: list[ast.AST] = [*body]
     while stack:
         node = stack.pop()
-        if isinstance(node, _LASTING):
+        if isinstance(node, _LASTING) or _is_begun(node):
             return True
         if not isinstance(node, (*_OWN_BODIES, ast.expr)):
             stack.extend(parts(node))
     return False
+
+
+def _is_begun(node: ast.AST) -> bool:
+    """Whether a statement is a `take` of which only the word is written."""
+    return isinstance(node, ast.Expr) and isinstance(node.value, ast.Name) and node.value.id == "take"
 
 
 def _loops(body: list[Any]) -> Iterator[ast.AST]:

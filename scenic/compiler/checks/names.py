@@ -1,6 +1,7 @@
 """Names that must not be bound, and names that nothing binds."""
 
 import ast
+import builtins
 import re
 from collections.abc import Collection, Iterable, Iterator
 from typing import Any, Final
@@ -10,6 +11,7 @@ from scenic.compiler.checks.arguments import kind_of
 from scenic.compiler.checks.blocks import position
 from scenic.compiler.checks.context import Context
 from scenic.compiler.checks.places import word_span
+from scenic.compiler.checks.unfinished import begun_word, text_before, unfinished
 from scenic.compiler.scopes import Binding, Reference, ScopeKind
 from scenic.language.diagnostics import Diagnostic, Label
 from scenic.language.names import CONVERSIONS, NAMES, TRACKED, NameKind
@@ -22,6 +24,8 @@ NOTED: Final = (scenic.ErrorStatement, scenic.New)
 
 MOST_SUGGESTIONS: Final = 100
 """Names for which a similar one is looked for: a file full of undefined names must not take long."""
+
+_BUILTINS: Final = frozenset(dir(builtins))
 
 _NOT_SCENIC: Final = frozenset({NameKind.DISTRIBUTION, NameKind.FUNCTION, NameKind.REGION, NameKind.SHAPE})
 """Kinds of provided names that are no classes of objects, whatever they are in Python."""
@@ -75,6 +79,10 @@ def check_names(context: Context, provided: Collection[str]) -> Iterator[Diagnos
                 suggestions[name] = nearest(name, _classes_in_reach(reference, context))
             yield _unknown_class(context, reference, suggestions.get(name))
             continue
+        keyword = unfinished(context, node)
+        if keyword is not None:
+            yield keyword
+            continue
         if _names_property(context, reference):
             yield _without_self(context, reference)
             continue
@@ -82,16 +90,32 @@ def check_names(context: Context, provided: Collection[str]) -> Iterator[Diagnos
             yield _out_of_reach(context, reference, elsewhere[name])
             continue
         if name not in suggestions and len(suggestions) < MOST_SUGGESTIONS:
-            candidates = reference.scope.names_in_reach() | {word for word in provided if word[0] != "_"}
-            suggestions[name] = nearest(name, candidates.union(context.brought))
+            own = reference.scope.names_in_reach().union(context.brought)
+            suggestions[name] = (
+                begun_word(context, node)
+                or nearest(name, own | {word for word in provided if word[0] != "_"})
+                or _only_one(each for each in own.union(TRACKED) if len(name) > 1 and each.startswith(name))
+            )
         suggestion = suggestions.get(name)
         yield context.error(
             "SC202",
             f"the name `{name}` is not defined",
             node,
-            f"did you mean `{suggestion}`?" if suggestion else "define it before it is used, or import it",
-            fix=context.replacement(f"Write `{suggestion}`", node, suggestion) if suggestion else None,
+            "a comment begins with `#`, not with `//`"
+            if text_before(context, node).endswith("//")
+            else f"did you mean `{suggestion}`?"
+            if suggestion
+            else "define it before it is used, or import it",
+            # What the program does not define may be any of the many names that are always there.
+            fix=context.renaming(node, name, suggestion, certain=suggestion not in provided)
+            if suggestion
+            else None,
         )
+
+
+def _only_one(candidates: Iterable[str]) -> str | None:
+    found = set(candidates)
+    return found.pop() if len(found) == 1 else None
 
 
 def _skipped_words(context: Context) -> set[str]:
@@ -164,6 +188,16 @@ def _no_class(context: Context, name: ast.Name) -> Iterator[Diagnostic]:
         what = f"`{provided}` is a {NAMES[provided].kind} of the language, not a class of objects"
         yield context.error("SC203", what, name, f"leave out `new`: write `{NAMES[provided].signature}`")
         return
+    if provided is not None and provided in _BUILTINS and provided not in NAMES:
+        meant = nearest(provided, _classes_in_reach(context.resolution.references[name], context))
+        yield context.error(
+            "SC203",
+            f"`{provided}` is a name of Python, not a class of objects",
+            name,
+            f"did you mean `{meant}`?" if meant else "name a class, for example `Object`",
+            fix=context.renaming(name, provided, meant) if meant else None,
+        )
+        return
     foreign = context.foreign(name)
     definition: Any = context.definition(name) if foreign is None else foreign.definition
     labels: tuple[Label, ...] = ()
@@ -201,5 +235,5 @@ def _unknown_class(context: Context, reference: Reference, suggestion: str | Non
         f"there is no class `{name}`",
         reference.node,
         f"did you mean `{suggestion}`?" if suggestion else f"define `class {name}:`, or import it",
-        fix=context.replacement(f"Write `{suggestion}`", reference.node, suggestion) if suggestion else None,
+        fix=context.renaming(reference.node, name, suggestion) if suggestion else None,
     )

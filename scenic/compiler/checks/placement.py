@@ -17,13 +17,25 @@ NOTED: Final = (ast.Await, ast.Yield, ast.YieldFrom)
 """The expressions that cannot stand everywhere."""
 
 
-def check_placement(context: Context) -> Iterator[tuple[ast.AST, Diagnostic]]:
-    """SC201: every node that stands where it must not, and what is to be said about it."""
+def check_placement(context: Context) -> Iterator[tuple[ast.AST, Diagnostic | None]]:
+    """SC201: every node that stands where it must not, and what is to be said about it.
+
+    Nothing is said where that follows from another mistake.
+    """
     for _, statements, where in context.blocks:
         if where.broken:
             continue
+        header_before = False
         for statement in statements:
+            if statement.__class__ is scenic.ErrorStatement:
+                header_before = True
+            elif statement.__class__ in _DEFINITIONS:
+                header_before = False
             if statement.__class__ in _CHECKED:
+                if header_before and statement.__class__ in _OF_BEHAVIORS:
+                    # It may belong to the block whose header is wrong.
+                    yield statement, None
+                    continue
                 for message, help_ in _problems(statement, where):
                     yield statement, context.error("SC201", message, statement, help_)
     if context.broken:
@@ -100,6 +112,15 @@ def _misplaced_expression(node: Any, where: Where) -> Iterator[tuple[str, str]]:
     elif where.function is None:
         yield f"`yield` cannot be used {where.place}", "it belongs in a function"
 
+
+_DEFINITIONS: Final = frozenset(
+    {ast.ClassDef, ast.FunctionDef, scenic.BehaviorDef, scenic.Model, scenic.MonitorDef, scenic.ScenarioDef}
+)
+
+_OF_BEHAVIORS: Final = frozenset(
+    getattr(scenic, statement.node) for statement in STATEMENTS.values() if statement.suspends
+)
+"""Statements that stand in behaviors and the like only."""
 
 _CHECKED: Final = frozenset(
     {

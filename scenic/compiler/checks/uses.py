@@ -106,6 +106,8 @@ def _unused_import(binding: Binding, scope: Scope, context: Context) -> Iterator
     statement, guarded, _ = found
     if guarded or not _has_no_effects(statement, site, context):
         return
+    if scope is context.resolution.module and _is_library(context):
+        return  # Others may import it from here.
     span = context.source.span(site)
     yield context.warning(
         "SC206",
@@ -113,6 +115,19 @@ def _unused_import(binding: Binding, scope: Scope, context: Context) -> Iterator
         word_span(context.source, site, binding.name.partition(".")[0]),
         "remove the import",
         fix=Fix("Remove the import", (_removal(statement, site, span, context),)),
+    )
+
+
+def _is_library(context: Context) -> bool:
+    """Whether a file defines things and makes no scene: then others may take from it what it imports."""
+    module = context.resolution.module
+    return any(isinstance(statement, DEFINITIONS) for statement in context.tree.body) and not (
+        bool(context.nodes(scenic.ScenarioDef))
+        or any(scope is module for _, scope in context.nodes(scenic.New))
+        or any(
+            reference.node.id == "ego" and not isinstance(reference.node.ctx, ast.Load)
+            for reference in context.resolution.references.values()
+        )
     )
 
 

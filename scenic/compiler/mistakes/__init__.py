@@ -9,17 +9,18 @@ from typing import Final
 
 from scenic.compiler.actions import Problem
 from scenic.compiler.mistakes import blocks, elsewhere, instances, operators, python, statements, words
-from scenic.compiler.mistakes.blocks import header_without_colon
+from scenic.compiler.mistakes.blocks import header_without_colon, unfinished_header
 from scenic.compiler.mistakes.situation import Situation
 from scenic.compiler.mistakes.trial import Trials
 
-__all__ = ["RULES", "Situation", "Trials", "explain", "header_without_colon"]
+__all__ = ["RULES", "Situation", "Trials", "explain", "header_without_colon", "unfinished_header"]
 
 Rule = Callable[[Situation], Problem | None]
 
 RULES: Final[tuple[Rule, ...]] = (
     # Forms that nothing else looks like.
     python.replacement_field,
+    elsewhere.comment,
     elsewhere.else_if,
     blocks.clause_without_beginning,
     statements.parts_of_scenario,
@@ -45,12 +46,16 @@ RULES: Final[tuple[Rule, ...]] = (
     statements.probability,
     statements.message_of_requirement,
     statements.setting_of_parameter,
+    statements.quoted_module,
+    words.negated_sight,
+    words.other_word,
     statements.initial_or_final_clause,
     instances.missing_comma_between_lines,
     statements.stray_specifier,
     # Those that a trial confirms.
     instances.comma_after_class,
     python.trailing_comma,
+    instances.another_place,
     words.misspelt,
     statements.target_first,
     words.order_of_corners,

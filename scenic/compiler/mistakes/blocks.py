@@ -9,6 +9,7 @@ from scenic.compiler.mistakes.situation import Situation, insertion
 from scenic.compiler.mistakes.trial import Change
 from scenic.compiler.mistakes.words import misspelt
 from scenic.compiler.tokens import DEDENT, INDENT, NEWLINE
+from scenic.language.spelling import nearest
 
 __all__ = [
     "clause_without_beginning",
@@ -95,6 +96,29 @@ def header_without_colon(at: Situation) -> Problem | None:
     return _colon(at.elsewhere(at.start, at.end), f"the colon after `{at.word(at.first)}` is missing", [])
 
 
+_NAMED: Final = ("behavior", "class", "def", "monitor", "scenario")
+_LEAST: Final = 3
+"""So many letters of a word are enough to know it by them."""
+
+
+def unfinished_header(at: Situation) -> Problem | None:
+    """``behavior``, ``beha`` before the lines of a block: a header of which one word is typed so far."""
+    word = at.word(at.first)
+    if at.end != at.first + 1 or not at.is_name(at.first) or word in ("setup", "compose"):
+        return None
+    if word in _NAMED:
+        return at.problem(
+            "SC110", at.gap(at.end), f"the name of the {word} is missing", f"write `{word} Name():`"
+        )
+    meant = next((each for each in _HEADERS if len(word) >= _LEAST and each.startswith(word)), None)
+    if meant is None:
+        meant = nearest(word, _HEADERS)
+    if meant is None:
+        return None
+    shown = f"{meant} Name():" if meant in _NAMED else f"{meant} ...:"
+    return at.problem("SC118", at.place(at.first), f"`{word}` begins no block", f"did you mean `{shown}`?")
+
+
 def missing_block(at: Situation) -> Problem | None:
     """The header of a block is followed by no indented line."""
     if INDENT not in at.expected and at.expected != {"an indented block"}:
@@ -105,21 +129,19 @@ def missing_block(at: Situation) -> Problem | None:
     line, _ = at.trials.line(header)
     first = at.tokens.texts[line]
     what = _HEADERS.get(first, "this line")
-    labels = ((at.place(line, header + 1), "the block belongs to this line"),) if header > 0 else ()
+    place = at.place(line, header + 1) if header > 0 else at.here()
     if at.tokens.texts[header] == ",":
         return at.problem(
             "SC127",
-            at.here(),
+            place,
             "after a comma at the end of the line, specifiers have to follow, indented",
             "indent the lines of the specifiers",
-            labels=labels,
         )
     return at.problem(
         "SC127",
-        at.here(),
+        place,
         f"{what} needs an indented block" if first in _HEADERS else "an indented block has to follow",
         "indent the lines of the block; `pass` stands for an empty one",
-        labels=labels,
     )
 
 

@@ -7,7 +7,16 @@ from scenic.compiler.actions import Problem
 from scenic.compiler.mistakes.situation import Situation
 from scenic.compiler.mistakes.trial import Change
 
-__all__ = ["declaration", "else_if", "first_word", "import_from", "increment", "operator"]
+__all__ = [
+    "OTHER_WORDS",
+    "comment",
+    "declaration",
+    "else_if",
+    "first_word",
+    "import_from",
+    "increment",
+    "operator",
+]
 
 _PAIRS: Final = {
     ("&", "&"): "and",
@@ -40,6 +49,9 @@ _FIRST_WORDS: Final = {
     "agent": ("class",),
 }
 """The first words of statements of other languages, and those of ours that mean the same."""
+
+OTHER_WORDS: Final = frozenset(_FIRST_WORDS)
+"""The first words of statements of other languages, which are no misspelt words of ours."""
 
 _TYPES: Final = frozenset(
     ("var", "let", "const", "auto", "int", "float", "double", "string", "bool", "str", "def")
@@ -78,6 +90,22 @@ def operator(at: Situation) -> Problem | None:
             fix=(f"replace `{written}` by `{meant}`", [change]),
         )
     return None
+
+
+def comment(at: Situation) -> Problem | None:
+    """``x = 3 // a note``, and lines that start with ``//``."""
+    first = next((i for i in range(at.first, min(at.token, at.end - 1) + 1) if at.word(i) == "//"), None)
+    if first is None or not (at.word(first + 1) or first == at.first):
+        return None
+    if first > at.first and not at.repairs(Change(first, at.end, ())):
+        return None
+    return Problem(
+        "SC129",
+        at.place(first),
+        "a comment begins with `#`, not with `//`",
+        "write `#`",
+        fix=("Write `#`", ((at.place(first), "#"),)),
+    )
 
 
 def increment(at: Situation) -> Problem | None:

@@ -10,6 +10,7 @@ from scenic.compiler.tokens import DEDENT, NUMBER
 from scenic.language.specifiers import SPECIFIERS
 
 __all__ = [
+    "another_place",
     "call_of_class",
     "comma_after_class",
     "dotted_class",
@@ -264,7 +265,9 @@ def equals_in_specifier(at: Situation) -> Problem | None:
     if at.found not in ("=", ":"):
         return None
     first = at.token - 2 if at.word(at.token - 2) == "with" else at.token - 1
-    if at.tokens.kinds[first] not in SPECIFIER_KINDS or at.word(first - 1) in (".", ""):
+    if at.tokens.kinds[first] not in SPECIFIER_KINDS or at.word(first - 1) == ".":
+        return None
+    if not at.word(first - 1) and at.context() != "specifiers":
         return None
     change = Change(at.token, at.token + 1, ())
     if not at.helps(change):
@@ -276,6 +279,64 @@ def equals_in_specifier(at: Situation) -> Problem | None:
         f"`{at.found}` cannot stand in a specifier",
         f"write `{words} value`",
         fix=(f"remove `{at.found}`", [change]),
+    )
+
+
+_PLACES: Final = {
+    ("front", "of"): ("ahead", "of"),
+    ("back", "of"): ("behind",),
+    ("infront", "of"): ("ahead", "of"),
+    ("in", "front", "of"): ("ahead", "of"),
+    ("on", "top", "of"): ("on",),
+    ("inside", "of"): ("in",),
+    ("inside",): ("in",),
+    ("within",): ("in",),
+    ("under",): ("below",),
+    ("underneath",): ("below",),
+    ("beneath",): ("below",),
+    ("over",): ("above",),
+    ("next", "to"): ("left", "of"),
+    ("close", "to"): ("left", "of"),
+    ("beside",): ("left", "of"),
+    ("near",): ("left", "of"),
+}
+"""What places are called by people, and the specifier for them."""
+
+_VAGUE: Final = frozenset({"next", "close", "beside", "near"})
+"""The first words of those that do not say which side is meant."""
+
+
+def another_place(at: Situation) -> Problem | None:
+    """``new C front of x``, ``new C next to x``."""
+    for first in (at.token, at.token - 1):
+        words = next(
+            (each for each in _PLACES if each == tuple(at.word(first + i) for i in range(len(each)))), None
+        )
+        if words is not None and (
+            at.word(first - 1) == "," or at.word(first - 2) == "new" or first == at.first
+        ):
+            break
+    else:
+        return None
+    meant = _PLACES[words]
+    change = Change(first, first + len(words), meant)
+    if not at.helps(change):
+        return None
+    shown, right = " ".join(words), " ".join(meant)
+    place = at.place(first, first + len(words))
+    if words[0] in _VAGUE:
+        return at.problem(
+            "SC114",
+            place,
+            f"there is no specifier `{shown}`, which does not say on which side",
+            "write `left of`, `right of`, `ahead of` or `behind`, with `by` for the distance",
+        )
+    return at.problem(
+        "SC114",
+        place,
+        f"there is no specifier `{shown}`",
+        f"write `{right}`",
+        fix=(f"replace it by `{right}`", [change]),
     )
 
 

@@ -8,7 +8,7 @@ from scenic.compiler.mistakes.situation import Situation, insertion
 from scenic.compiler.mistakes.trial import Change
 from scenic.compiler.mistakes.words import misspelt
 from scenic.compiler.syntax import SOFT_STATEMENT_WORDS, STATEMENT_WORDS
-from scenic.compiler.tokens import STRING
+from scenic.compiler.tokens import NUMBER, STRING
 from scenic.language.spelling import nearest
 
 __all__ = [
@@ -25,6 +25,7 @@ __all__ = [
     "not_a_plain_name",
     "parts_of_scenario",
     "probability",
+    "quoted_module",
     "setting_of_parameter",
     "statement_in_expression",
     "stray_specifier",
@@ -193,7 +194,22 @@ def message_of_requirement(at: Situation) -> Problem | None:
 def probability(at: Situation) -> Problem | None:
     """``require[p] x``: the probability has to be written out."""
     first = at.first
-    if at.word(first) != "require" or at.word(first + 1) != "[":
+    if at.word(first) != "require":
+        return None
+    close = at.token - 1
+    if (at.word(first + 1), at.word(close), close) == ("(", ")", first + 3) and at.tokens.kinds[
+        first + 2
+    ] == NUMBER:
+        number = at.word(first + 2)
+        changes = [Change(first + 1, first + 2, ("[",)), Change(close, close + 1, ("]",))]
+        return at.problem(
+            "SC110",
+            at.place(first + 1, at.token),
+            "the probability of a requirement stands in brackets",
+            f"write `require[{number}] ...`",
+            fix=("write brackets", changes),
+        )
+    if at.word(first + 1) != "[":
         return None
     if at.before == "]" and at.opener(at.token - 1) == first + 1:
         return at.problem(
@@ -203,6 +219,24 @@ def probability(at: Situation) -> Problem | None:
             "write it out, as in `require[0.5] ...`",
         )
     return None
+
+
+def quoted_module(at: Situation) -> Problem | None:
+    """``model 'x'``, ``import 'x'``."""
+    if at.word(at.first) not in ("model", "import", "from") or at.token != at.first + 1:
+        return None
+    if at.tokens.kinds[at.token] != STRING:
+        return None
+    name = at.found.strip("'\"")
+    if not all(part.isidentifier() for part in name.split(".")):
+        name = ""
+    return Problem(
+        "SC110",
+        at.here(),
+        "the name of a module is written without quotes",
+        f"write `{at.before} {name or 'folder.name'}`",
+        fix=("Remove the quotes", ((at.here(), name),)) if name else None,
+    )
 
 
 def setting_of_parameter(at: Situation) -> Problem | None:
@@ -277,18 +311,17 @@ def constructor(at: Situation) -> Problem | None:
 def definition_without_parentheses(at: Situation) -> Problem | None:
     """``behavior B:``, ``def f:``."""
     word = at.word(at.first + 1) if at.word(at.first) == "async" else at.word(at.first)
-    if word not in ("behavior", "def") or at.found not in (":", "->") or not at.is_name(at.token - 1):
+    if word not in ("behavior", "def") or not at.is_name(at.token - 1) or at.word(at.token - 2) != word:
         return None
-    if at.word(at.token - 2) != word:
+    if at.found not in (":", "->") and not at.at_end():
         return None
     what = "a behavior" if word == "behavior" else "a function"
-    return at.problem(
-        "SC133",
-        at.here(),
-        f"the definition of {what} needs parentheses",
-        f"write `{word} {at.before}():`",
-        fix=("insert `()`", [insertion(at.token, "(", ")")]),
-    )
+    message, advice = f"the definition of {what} needs parentheses", f"write `{word} {at.before}():`"
+    if at.at_end():
+        place = at.gap(at.token)
+        return Problem("SC133", place, message, advice, fix=("Insert `():`", ((place, "():"),)))
+    fix = ("insert `()`", [insertion(at.token, "(", ")")])
+    return at.problem("SC133", at.here(), message, advice, fix=fix)
 
 
 def attribute_of_property(at: Situation) -> Problem | None:

@@ -5,6 +5,7 @@ from typing import Final
 
 from scenic.compiler.actions import Problem
 from scenic.compiler.generated import HARD_KEYWORDS, SOFT_KEYWORDS
+from scenic.compiler.mistakes.elsewhere import OTHER_WORDS
 from scenic.compiler.mistakes.situation import Situation, insertion
 from scenic.compiler.mistakes.trial import Change
 from scenic.compiler.phrases import BEFORE_CONNECTORS, CONNECTORS
@@ -18,8 +19,10 @@ __all__ = [
     "missing_word",
     "misspelt",
     "needless_word",
+    "negated_sight",
     "operator_without_left_side",
     "order_of_corners",
+    "other_word",
     "perhaps_misspelt",
     "wrong_word",
 ]
@@ -45,6 +48,8 @@ _CORNER_STEP: Final = {"top": 0, "bottom": 0, "front": 1, "back": 1, "left": 2, 
 
 def _near(word: str) -> Iterator[str]:
     """Keywords that ``word`` may have been meant to be, nearest first."""
+    if word.lower() in OTHER_WORDS:
+        return iter(())
     reach = max(1, len(word) // 3) if len(word) > 1 else 0
     found = []
     for keyword in _KEYWORDS:
@@ -116,6 +121,58 @@ def _misspelt(at: Situation, index: int, keyword: str) -> Problem:
         f"unknown keyword `{at.word(index)}`",
         f"did you mean `{keyword}`?",
         fix=(f"replace it by `{keyword}`", [Change(index, index + 1, (keyword,))]),
+    )
+
+
+_OTHER_WORDS: Final = {
+    ("facing", "at"): "toward",
+    ("facing", "to"): "toward",
+    ("interrupt", "if"): "when",
+    ("interrupt", "while"): "when",
+    ("terminate", "if"): "when",
+    ("terminate", "once"): "when",
+    ("simulation", "if"): "when",
+}
+"""Words after which another one is often written than the form has, and that one."""
+
+
+def other_word(at: Situation) -> Problem | None:
+    """``terminate if c``, ``interrupt if c:``, ``facing at x``."""
+    for index in range(at.first + 1, min(at.token, at.end - 1) + 1):
+        meant = _OTHER_WORDS.get((at.word(index - 1), at.word(index)))
+        if meant is None or (at.word(index - 1) != "facing" and index > at.first + 2):
+            continue
+        change = Change(index, index + 1, (meant,))
+        if at.repairs(change) or at.word(index - 1) == "interrupt":
+            return at.problem(
+                "SC114",
+                at.place(index),
+                f"`{at.word(index - 1)}` is followed by `{meant}`, not by `{at.word(index)}`",
+                f"write `{at.word(index - 1)} {meant} ...`",
+                fix=(f"replace `{at.word(index)}` by `{meant}`", [change]),
+            )
+    return None
+
+
+def negated_sight(at: Situation) -> Problem | None:
+    """``a can not see b``, ``a cannot see b``."""
+    if at.found == "cannot" and at.word(at.token + 1) == "see":
+        first, last = at.token, at.token + 1
+    elif (at.before, at.found, at.word(at.token + 1)) == ("can", "not", "see"):
+        first, last = at.token - 1, at.token + 1
+    else:
+        return None
+    start = first
+    while at.word(start - 1) not in ("", "require", "=", "(", ",", "and", "or", "not", "if", "when", "until"):
+        start -= 1
+    left, right = at.words(start, first), at.word(last + 1) or "..."
+    changes = [insertion(start, "not"), Change(first, last + 1, ("can", "see"))]
+    return at.problem(
+        "SC114",
+        at.place(first, last + 1),
+        "there is no operator `can not see`: `not` stands before the whole",
+        f"write `not {left} can see {right}`",
+        fix=("put `not` in front", changes),
     )
 
 

@@ -12,7 +12,7 @@ import pytest
 
 from scenic.compiler.check import check_text
 from scenic.compiler.checks import lint
-from scenic.compiler.fixes import apply_fixes
+from scenic.compiler.fixes import apply_fixes, repair
 from scenic.compiler.parser import parse
 from scenic.compiler.resolver import resolve
 from scenic.language.diagnostics import CODES, Diagnostic, Fix, Severity
@@ -22,7 +22,7 @@ from scenic.language.source import Source
 FOLDER = Path(__file__).parents[2] / "data" / "checks" / "lint"
 CASES = sorted(FOLDER.glob("*.scenic"))
 MARK = re.compile(r"^( *)#( *)(\^+) (SC\d+)(?: (.*))?$")
-ERRORS = {"SC202", "SC203", "SC204", "SC209", "SC211", "SC301", "SC308"}
+ERRORS = {"SC202", "SC203", "SC204", "SC209", "SC211", "SC301", "SC308", "SC313"}
 
 
 def marks(text: str) -> list[tuple[int, int, int, str, str]]:
@@ -83,7 +83,7 @@ def test_repairs_repair(case: Path) -> None:
     text = case.read_text(encoding="utf-8")
     before = findings(text)
     for item in before:
-        if item.fix is not None:
+        if item.fix is not None and item.fix.certain:
             repaired = applied(text, item.fix)
             after = [(other.code, other.message) for other in findings(repaired)]
             assert len(after) < len(before)
@@ -91,6 +91,78 @@ def test_repairs_repair(case: Path) -> None:
                 if (other.code, other.message) in after:
                     after.remove((other.code, other.message))
             assert after == [], item
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("ego = new Object at 1, 2\n", [("SC311", 1, 23)]),
+        ("ego = new Object with width 4,\nx = 3\n", [("SC311", 1, 29)]),
+        ("ego = new Object at (1, 2)\nx = (new Object, 3)\n", []),
+        ("ego = Object(width=3)\n", [("SC135", 1, 6)]),
+        ("class Car(Object): pass\nego = new Object\nx = Car()\n", [("SC135", 3, 4)]),
+        ("class Plain(object): pass\nego = new Object\nx = Plain()\n", []),
+        ("x = Range(0, 1)\nif x > 0.5:\n    y = 3\nego = new Object\n", [("SC403", 2, 3)]),
+        ("x = Range(0, 1)\ny = 1 if abs(-x) > 0.5 else 2\nego = new Object\n", [("SC403", 2, 9)]),
+        ("x = Uniform(1, 2)\nwhile x: pass\nego = new Object\n", [("SC403", 2, 6)]),
+        ("x = Range(0, 1)\nx = 3\nif x > 0.5:\n    y = 3\nego = new Object\n", []),
+        ("x = Range(0, 1)\nif x is None:\n    y = 3\nego = new Object\n", []),
+        (
+            "x = Range(0, 1)\ndef f():\n    if x > 1: return 3\nego = new Object\nrequire (1 if x > 1 else 2) > 1\n",
+            [],
+        ),
+        ("Range = max\nx = Range(0, 1)\nif x > 1: y = 3\nego = new Object\n", []),
+        ("x = Uniform(3)\nif x > 1: y = 3\nego = new Object\n", []),
+        ("ego = new Object facing toward\n", [("SC110", 1, 24)]),
+        ("ego = new Object\nrequire always\n", [("SC110", 2, 8)]),
+        ("behavior B():\n    do choose\n    wait\nego = new Object with behavior B\n", [("SC110", 2, 7)]),
+        ("behavior B():\n    take\nego = new Object with behavior B\n", [("SC110", 2, 4)]),
+        ("toward = always = 1\nego = new Object facing toward\nrequire always\n", []),
+        ("param a = 1, a = 2\nego = new Object\n", [("SC210", 1, 13)]),
+        (
+            "scenario Main():\n    setup:\n        ego = new Object\n    compose:\n        take 3\n",
+            [("SC201", 5, 8)],
+        ),
+    ],
+)
+def test_errors_of_other_kinds(text: str, expected: list[tuple[str, int, int]]) -> None:
+    found = [item for item in check_text(text, filename="f") if item.severity is Severity.ERROR]
+    assert [(item.code, item.span.line, item.span.column) for item in found if item.span] == expected
+
+
+def test_a_monitor_is_not_required_as_a_condition() -> None:
+    text = "monitor M():\n    wait\nrequire M()\nego = new Object\n"
+    [found] = [item for item in check_text(text, filename="f") if item.code == "SC114"]
+    assert found.fix is not None
+    assert applied(text, found.fix).split("\n")[2] == "require monitor M()"
+
+
+@pytest.mark.parametrize("code", ["SC202", "SC205"])
+def test_of_one_kind_not_all_are_told(code: str) -> None:
+    undefined = "".join(f"print(name{number})\n" for number in range(500))
+    unused = "def f():\n" + "".join(f"    v{number} = {number}\n" for number in range(500)) + "    return 1\n"
+    found = check_text({"SC202": undefined, "SC205": unused}[code], filename="f")
+    assert sum(item.code == code for item in found) == 200
+
+
+@pytest.mark.parametrize(
+    ("text", "certain"),
+    [
+        ("x = limt\n", False),
+        ("x = pos(3)\n", False),
+        ("distance_of = 3\nx = distance_off\n", True),
+        ("car1 = 3\ncar2 = 4\nx = car3\n", False),
+        ("ego = new Objcet\n", True),
+        ("ego = new Object with weight 3\n", False),
+        ("ego = new Object with widht 3\n", True),
+    ],
+)
+def test_only_slips_are_repaired_without_asking(text: str, certain: bool) -> None:
+    [found] = check_text(text, filename="f")
+    assert found.fix is not None
+    assert found.fix.certain is certain
+    repaired = repair(text, filename="f", shown=lambda items: items)
+    assert (repaired.text != text) is certain
 
 
 def test_every_code_of_these_rules_has_a_case() -> None:

@@ -46,7 +46,7 @@ monitor Energy(actors):
         wait
     terminate simulation
 
-class DummySimulator:
+class DummySimulator(object):
     def __init__(self, drift=0.0):
         self.drift = drift
 

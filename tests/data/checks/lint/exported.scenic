@@ -2,3 +2,4 @@ import os
 import sys
 #      ^^^ SC206
 __all__ = ["os"]
+new Object

@@ -74,3 +74,4 @@ else:
     def either(): pass
 x = [thing for thing in [1, 2]]
 print(BoxShape, x)
+new Object

@@ -1,0 +1,93 @@
+"""Bodies of classes of objects: attributes where properties are meant, and properties under misspelt names."""
+
+import ast
+from collections.abc import Iterator, Mapping
+from typing import Final
+
+from scenic.compiler import tree as scenic
+from scenic.compiler.checks.context import Context, NodeRule
+from scenic.compiler.checks.places import word_span
+from scenic.compiler.scopes import Scope
+from scenic.compiler.surroundings import Property
+from scenic.language.diagnostics import Diagnostic, Edit, Fix
+from scenic.language.spans import Span
+from scenic.language.spelling import distance
+
+__all__ = ["RULES"]
+
+
+def _class(node: ast.ClassDef, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+    known = context.classes.of(node)
+    if known is None:
+        return
+    own = {item.name for item in node.body if isinstance(item, scenic.PropertyDef)}
+    inherited = context.classes.inherited(node) or {}
+    for item in node.body:
+        match item:
+            case ast.Assign(targets=[ast.Name(id=name) as target]) if name in known:
+                yield _attribute(context, node, target, item.value, known=name in own)
+            case scenic.PropertyDef(name=name) if name not in inherited:
+                yield from _misspelt(context, node, item, inherited, own)
+
+
+def _attribute(
+    context: Context, node: ast.ClassDef, target: ast.Name, value: ast.expr, *, known: bool
+) -> Diagnostic:
+    """SC313: ``width = 0.3``."""
+    start, end = context.source.span(target), context.source.span(value)
+    between = Span(start.end_line, start.end_column, end.line, end.column)
+    plain = (
+        start.end_line == end.line
+        and context.source.line(end.line)[start.end_column : end.column].strip() == "="
+    )
+    return context.error(
+        "SC313",
+        f"`{target.id}` is a property of `{node.name}`, which an attribute of that name does not set",
+        target,
+        "remove the attribute" if known else f"write `{target.id}: {context.text(value) or 'value'}`",
+        fix=Fix("Write `:`", (Edit(between, ": "),)) if plain and not known else None,
+    )
+
+
+def _misspelt(
+    context: Context,
+    node: ast.ClassDef,
+    item: scenic.PropertyDef,
+    inherited: Mapping[str, Property],
+    own: set[str],
+) -> Iterator[Diagnostic]:
+    """SC300: ``lenght: 4``, of which nothing else in the program speaks."""
+    name = item.name
+    if name in context.attributes or name in _given(context):
+        return
+    for meant in sorted(inherited):
+        if meant not in own and _is_slip(name, meant):
+            place = word_span(context.source, item, name)
+            yield context.warning(
+                "SC300",
+                f"`{node.name}` has no property `{name}` to give a default, so this line defines one",
+                place,
+                f"did you mean `{meant}`?",
+                fix=context.renaming(place, name, meant),
+            )
+            return
+
+
+_SHORTEST: Final = 5
+
+
+def _is_slip(name: str, meant: str) -> bool:
+    """Whether a new property is more likely an old one mistyped: a letter missing, doubled or swapped, no other word."""
+    if len(meant) < _SHORTEST or name[0] != meant[0] or not name.isalpha() or meant + "s" == name:
+        return False
+    if distance(name, meant, limit=1) > 1:
+        return False
+    return len(name) != len(meant) or sorted(name) == sorted(meant)
+
+
+def _given(context: Context) -> set[str | None]:
+    """The properties that the program gives with `with`."""
+    return {node.property for node, _ in context.nodes(scenic.Specifier)}
+
+
+RULES: Final[dict[type[ast.AST], NodeRule]] = {ast.ClassDef: _class}

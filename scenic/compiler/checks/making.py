@@ -1,0 +1,147 @@
+"""What looks like the making or running of something and is neither: calls of classes, tuples, behaviors without `do`."""
+
+import ast
+from collections.abc import Iterator
+from typing import Any, Final
+
+from scenic.compiler import tree as scenic
+from scenic.compiler.checks.blocks import DYNAMIC, position, where_of
+from scenic.compiler.checks.context import Context, NodeRule
+from scenic.compiler.scopes import Scope
+from scenic.language.diagnostics import Diagnostic, Edit, Fix
+from scenic.language.spans import Span
+from scenic.language.statements import Place
+
+__all__ = ["RULES"]
+
+_RUN: Final = {
+    scenic.BehaviorDef: "behavior",
+    scenic.MonitorDef: "monitor",
+    scenic.ScenarioDef: "scenario",
+}
+
+
+def _call(node: ast.Call, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+    """SC135: ``ego = Object(width=3)``."""
+    if not isinstance(node.func, ast.Name) or context.classes.properties(node.func) is None:
+        return
+    name = node.func.id
+    example = f"new {name}"
+    given = [keyword for keyword in node.keywords if keyword.arg is not None]
+    if given:
+        value = context.text(given[0].value) or "value"
+        example += f" with {given[0].arg} {value if len(value) < 40 else 'value'}"
+    yield context.error(
+        "SC135",
+        f"`{name}` is a class of objects, which are made with `new` and specifiers, not by a call",
+        node,
+        f"write `{example}{', ...' if len(given) > 1 else ''}`",
+    )
+
+
+def _assign(node: ast.Assign, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+    """SC311: ``ego = new Object at 1, 2``, ``ego = new Object with width 3,``."""
+    value = node.value
+    if not (isinstance(value, ast.Tuple) and value.elts and isinstance(value.elts[0], scenic.New)):
+        return
+    first, rest = value.elts[0], value.elts[1:]
+    if position(value) != position(first) or len(node.targets) != 1:
+        return  # in parentheses
+    target = node.targets[0]
+    if isinstance(target, ast.Tuple | ast.List) or any(isinstance(each, scenic.New) for each in rest):
+        return
+    ego = isinstance(target, ast.Name) and target.id == "ego"
+    say = context.error if ego else context.warning
+    if rest:
+        operand = _last_operand(first)
+        shown = None
+        if operand is not None and not isinstance(operand, ast.Tuple):
+            texts = [context.text(each) for each in (operand, *rest)]
+            shown = ", ".join(text for text in texts if text) if all(texts) else None
+        yield say(
+            "SC311",
+            "this comma makes a tuple of the object and what follows",
+            Span(context.span(rest[0]).line, context.span(rest[0]).column, *_end(context, rest[0])),
+            f"put the coordinates in parentheses: `({shown})`"
+            if shown
+            else "put parentheses around what belongs together, or write a specifier after the comma",
+        )
+        return
+    end = context.source.span(first)
+    line = context.source.line(end.end_line)
+    comma = line.find(",", end.end_column)
+    if comma < 0:
+        return
+    place = Span(end.end_line, comma, end.end_line, comma + 1)
+    yield say(
+        "SC311",
+        "this comma makes a tuple that holds nothing but the object",
+        place,
+        "remove the comma, or write more specifiers after it",
+        fix=Fix("Remove the comma", (Edit(place, ""),)),
+    )
+
+
+def _end(context: Context, node: ast.AST) -> tuple[int, int]:
+    span = context.span(node)
+    return span.end_line, span.end_column
+
+
+def _last_operand(node: scenic.New) -> ast.expr | None:
+    operands = node.specifiers[-1].operands if node.specifiers else []
+    return operands[-1] if operands else None
+
+
+def _statement(node: ast.Expr, scope: Scope, context: Context) -> Iterator[Diagnostic]:
+    """SC312: a behavior, monitor or scenario that is called without `do` or `require monitor`."""
+    value = node.value
+    if not isinstance(value, ast.Call):
+        return
+    foreign = context.foreign(value.func)
+    definition: Any = context.definition(value.func) if foreign is None else foreign.definition
+    kind = _RUN.get(type(definition))
+    if kind is None:
+        return
+    name = definition.name
+    where = where_of(node, scope)
+    if kind == "monitor":
+        advice = f"start it with `require monitor {name}(...)`"
+    elif (
+        where.place in DYNAMIC
+        and where.function is None
+        and (kind == "scenario") == (where.place is Place.COMPOSE)
+    ):
+        advice = f"run it with `do {name}(...)`"
+    elif kind == "scenario":
+        advice = f"run it with `do {name}(...)` in the compose block of a scenario"
+    else:
+        advice = f"give it to an object `with behavior {name}(...)`, or run it with `do` in another behavior"
+    yield context.warning("SC312", f"this makes the {kind} `{name}`, and nothing runs it", node, advice)
+
+
+def _require(node: scenic.Require, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+    """SC114: ``require M()`` where ``M`` is a monitor."""
+    condition = node.condition
+    if not isinstance(condition, ast.Call):
+        return
+    foreign = context.foreign(condition.func)
+    definition: Any = context.definition(condition.func) if foreign is None else foreign.definition
+    if not isinstance(definition, scenic.MonitorDef) or node.probability is not None:
+        return
+    start = context.source.span(condition)
+    place = Span(start.line, start.column, start.line, start.column)
+    yield context.error(
+        "SC114",
+        f"`monitor` is missing: `{definition.name}` is a monitor, not a condition",
+        condition,
+        f"write `require monitor {definition.name}(...)`",
+        fix=Fix("Insert `monitor`", (Edit(place, "monitor "),)),
+    )
+
+
+RULES: Final[dict[type[ast.AST], NodeRule]] = {
+    ast.Assign: _assign,
+    ast.Call: _call,
+    ast.Expr: _statement,
+    scenic.Require: _require,
+}

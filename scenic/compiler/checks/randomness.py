@@ -1,0 +1,91 @@
+"""Conditions at the top level that are certainly random: which way they go is not known while a program is compiled."""
+
+import ast
+from collections.abc import Iterator
+from typing import Final
+
+from scenic.compiler import tree as scenic
+from scenic.compiler.checks.blocks import where_of
+from scenic.compiler.checks.context import Context, NodeRule
+from scenic.compiler.scopes import Scope
+from scenic.language.diagnostics import Diagnostic
+from scenic.language.names import LIFTED_FUNCTIONS, NAMES, NameKind
+from scenic.language.statements import Place
+
+__all__ = ["RULES"]
+
+_DEEPEST: Final = 20
+"""How far values are looked into."""
+
+
+def _is_random(value: ast.AST | None, context: Context, depth: int = 0) -> bool:
+    """Whether a value is certainly random."""
+    if depth > _DEEPEST or value is None:
+        return False
+    match value:
+        case ast.Call(func=function, args=args):
+            name = context.provided(function)
+            if name is None or name not in NAMES or not args:
+                return False
+            if NAMES[name].kind is NameKind.DISTRIBUTION:
+                # What is drawn from one value is that value.
+                return name not in ("Uniform", "Discrete", "Options") or len(args) > 1
+            return name in LIFTED_FUNCTIONS and any(_is_random(each, context, depth + 1) for each in args)
+        case ast.BinOp(left=left, right=right):
+            return _is_random(left, context, depth + 1) or _is_random(right, context, depth + 1)
+        case ast.UnaryOp(operand=operand):
+            return _is_random(operand, context, depth + 1)
+        case ast.Compare(left=left, ops=ops, comparators=comparators):
+            if any(isinstance(each, ast.Is | ast.IsNot | ast.In | ast.NotIn) for each in ops):
+                return False
+            return any(_is_random(each, context, depth + 1) for each in (left, *comparators))
+        case ast.Name():
+            return _is_random(_assigned(value, context), context, depth + 1)
+    return False
+
+
+def _assigned(name: ast.Name, context: Context) -> ast.expr | None:
+    """The value of a name that is bound just once in the module."""
+    binding = context.resolution.binding(name)
+    if binding is None or len(binding.sites) != 1 or context.resolution.reflective:
+        return None
+    if binding.scope is not context.resolution.module or binding.name in context.brought:
+        return None
+    return context.assigned.get(binding.sites[0])
+
+
+def _decides(node: ast.If | ast.While | ast.IfExp, scope: Scope, context: Context) -> Iterator[Diagnostic]:
+    """SC403: ``if x > 1`` with a random ``x``."""
+    where = where_of(node, scope)
+    if scope is not context.resolution.module or where.place is not Place.TOP:
+        return
+    if _in_condition(node, context) or not _is_random(node.test, context):
+        return
+    what = "comparing" if isinstance(node.test, ast.Compare) else "deciding by"
+    yield context.error(
+        "SC403",
+        f"{what} a random value is not possible while the scenario is being built",
+        node.test,
+        "its value is known only in a sampled scene; use `require`, or make the choice itself random with "
+        "`Uniform(...)` or `Discrete({...})`",
+    )
+
+
+def _in_condition(node: ast.AST, context: Context) -> bool:
+    """Whether a conditional expression is a part of what is evaluated later, on samples."""
+    if not isinstance(node, ast.IfExp):
+        return False
+    place = (node.lineno, node.col_offset)
+    later = (scenic.Require, scenic.Record, scenic.TerminateWhen)
+    return any(
+        (statement.lineno, statement.col_offset) <= place < (statement.end_lineno, statement.end_col_offset)
+        for statement in context.tree.body
+        if isinstance(statement, later)
+    )
+
+
+RULES: Final[dict[type[ast.AST], NodeRule]] = {
+    ast.If: _decides,
+    ast.IfExp: _decides,
+    ast.While: _decides,
+}

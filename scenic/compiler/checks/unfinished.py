@@ -1,0 +1,94 @@
+"""Names that are words of the language in what is not finished: ``facing toward``, ``require always``, ``do choose``."""
+
+import ast
+from collections.abc import Iterator, Mapping
+from functools import cache
+from itertools import pairwise
+from types import MappingProxyType
+from typing import Final
+
+from scenic.compiler.checks.context import Context
+from scenic.language.diagnostics import Diagnostic
+from scenic.language.keywords import SOFT_KEYWORDS, TEMPORAL_OPERATORS
+from scenic.language.operators import OPERATORS
+from scenic.language.specifiers import SPECIFIERS
+from scenic.language.statements import STATEMENTS
+
+__all__ = ["begun_word", "text_before", "unfinished"]
+
+_ENDS: Final = ("", ",", ")", "]", "}", ";", ":", "#")
+"""What may follow where something is missing: the end of the line, or one of these."""
+
+
+@cache
+def _following() -> Mapping[tuple[str, str], str]:
+    """For two words that follow each other in a form of the language, the form."""
+    found: dict[tuple[str, str], str] = {}
+    forms = [form for specifier in SPECIFIERS.values() for form in specifier.forms]
+    forms += [form for operator in OPERATORS.values() for form in operator.forms]
+    forms += [form for statement in STATEMENTS.values() for form in statement.forms]
+    for form in forms:
+        words = form.split()
+        for first, second in pairwise(words):
+            if second in SOFT_KEYWORDS:
+                found.setdefault((first, second), form)
+    for temporal in TEMPORAL_OPERATORS.values():
+        for form in temporal.forms:
+            if form.split()[0] in SOFT_KEYWORDS:
+                found.setdefault(("require", form.split()[0]), f"require {form}")
+    return MappingProxyType(found)
+
+
+@cache
+def _beginnings() -> Mapping[str, str]:
+    """For the words that begin statements and may be names, the form."""
+    found: dict[str, str] = {}
+    for statement in STATEMENTS.values():
+        for form in statement.forms:
+            first, *rest = form.split()
+            if first in SOFT_KEYWORDS and rest:
+                found.setdefault(first, form)
+    return MappingProxyType(found)
+
+
+def text_before(context: Context, node: ast.Name) -> str:
+    """What stands before a name on its line, without blanks at the end."""
+    span = context.source.span(node)
+    return context.source.line(span.line)[: span.column].rstrip()
+
+
+def _word_before(context: Context, node: ast.Name) -> str:
+    words = text_before(context, node).replace("(", " ").split()
+    return words[-1] if words else ""
+
+
+def unfinished(context: Context, node: ast.Name) -> Diagnostic | None:
+    """What is missing after a name that is a word of the language, and nothing else in its place."""
+    if node.id not in SOFT_KEYWORDS:
+        return None
+    span = context.source.span(node)
+    rest = context.source.line(span.line)[span.end_column :].lstrip()
+    if rest[:1] not in _ENDS:
+        return None
+    form = _following().get((_word_before(context, node), node.id))
+    if form is None and not text_before(context, node) and node in _alone(context):
+        form = _beginnings().get(node.id)
+    if form is None:
+        return None
+    return context.error("SC110", f"something is missing after `{node.id}`", node, f"the form is `{form}`")
+
+
+def _alone(context: Context) -> set[ast.expr]:
+    """The expressions that are whole statements."""
+    return {node.value for node, _ in context.nodes(ast.Expr)}
+
+
+def begun_word(context: Context, node: ast.Name) -> str | None:
+    """The one word of the language that a name at the end of a line may be the beginning of."""
+    before = _word_before(context, node)
+    found = {second for first, second in _candidates(before) if second.startswith(node.id)}
+    return found.pop() if len(found) == 1 and len(node.id) > 1 else None
+
+
+def _candidates(before: str) -> Iterator[tuple[str, str]]:
+    return (pair for pair in _following() if pair[0] == before)
