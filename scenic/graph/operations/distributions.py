@@ -328,7 +328,8 @@ def _normal_inverse(
 
     shift = before_rounding(intervals.subtract(before_rounding(result), mean))
     z = intervals.widened(intervals.relaxed(intervals.divide(shift, deviation), 1e-12), 1e-12)
-    place = Bounds(ndtr(z.lower) * (1 - 1e-11), ndtr(z.upper) * (1 + 1e-11))
+    # Far in the tail a probability is a few units in the last place, or rounded to nothing.
+    place = outward(ndtr(z.lower) * (1 - 1e-11), ndtr(z.upper) * (1 + 1e-11), ulps=4)
     inside = _opened(axis)
     drawn = intervals.widened(
         intervals.relaxed(Bounds(ndtri(inside.lower), ndtri(inside.upper)), 1e-12), 1e-12

@@ -127,8 +127,10 @@ def _power_inverse(_payload: Any, result: Bounds, a: Bounds, b: Bounds) -> list[
     exponent = np.where(fixed, b.lower, 1.0)
     odd = np.mod(exponent, 2) == 1
     even = np.mod(exponent, 2) == 0
-    signed = Bounds(_root(result.lower, exponent), _root(result.upper, exponent))
-    signed = intervals.relaxed(signed, 1e-14)
+    # With a small exponent very different bases have the same rounded power; the root's own error grows with the
+    # logarithm of the base.
+    exact = before_rounding(result, 4)
+    signed = intervals.relaxed(Bounds(_root(exact.lower, exponent), _root(exact.upper, exponent)), 1e-12)
     low, high = np.maximum(signed.lower, 0.0), np.maximum(signed.upper, 0.0)
     # An even power hides the sign of its base; a broken one admits no negative base.
     lower = np.where(odd, signed.lower, np.where(even & (a.lower < 0), -high, low))
