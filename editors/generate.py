@@ -1,13 +1,15 @@
 """Writes what editors and the documentation take from the grammar: ``python -m editors.generate`` (``make generate``).
 
-TextMate grammar and snippets for Visual Studio Code, the syntax file for Vim and Neovim, tables and diagrams for
+TextMate grammar, configuration and snippets for Visual Studio Code, the syntax file for Vim and Neovim, tables and diagrams for
 ``docs/``. What is written is in git, since editors install folders as they are; a test tells when it is stale.
 """
 
+import json
 from collections.abc import Mapping
 from pathlib import Path
 
 from editors import documentation, snippets, textmate, vim
+from scenic.ide.language_configuration import language_configuration
 
 __all__ = ["texts", "write"]
 
@@ -18,6 +20,7 @@ def texts() -> Mapping[str, str]:
     """The texts of all generated files by their paths in the project."""
     return {
         "editors/vscode/syntaxes/scenic.tmLanguage.json": textmate.grammar(),
+        "editors/vscode/language-configuration.json": json.dumps(language_configuration(), indent=2) + "\n",
         "editors/vscode/snippets/scenic.json": snippets.snippets(),
         "editors/neovim/syntax/scenic.vim": vim.syntax(),
         "docs/syntax.md": documentation.page(),
