@@ -217,6 +217,9 @@ def _scenario(
             program.top = _run_chosen(module, state, chosen)
             program.ego, program.workspace = state.ego, state.workspace
             apply_noise(program)
+            if context.looks:
+                # What may stand in the way of a look is all there only now.
+                program.requirements[:] = [requirement.rebuilt() for requirement in program.requirements]
         _settle_parameters(program, strict=strict_params)
         scenario = Scenario(
             program,

@@ -21,11 +21,6 @@ from tests.runtime.programs import marked
 
 USES = {
     "operator minimum distance": "ego = new Object\nx = «minimum distance to ego»",
-    "operator visible": "x = «visible everywhere»",
-    "operator not visible": "x = «not visible everywhere»",
-    "operator can see": "ego = new Object\nrequire «ego can see (1, 2)»",
-    "specifier visible": "ego = new Object\nnew Object «visible»",
-    "specifier not visible": "ego = new Object\nnew Object «not visible»",
 }
 """Each unavailable feature at work; the quotation marks are round the place to be named."""
 
@@ -89,11 +84,9 @@ def test_unavailable_names_are_refused_when_a_module_might_have_brought_them(
 
 SETTING = "disc = CircularRegion((0, 0), 3)\nego = new Object\nx = 0\n"
 WHEN_RUN = [
-    "«ego.visibleRegion»",
     "«ego.boundingBox»",
     "«ego.inradius»",
     "«ego.planarInradius»",
-    "«ego.canSee((1, 2))»",
     "«disc.intersect(disc)»",
     "«disc.union(disc)»",
     "«disc.difference(disc)»",
@@ -107,7 +100,6 @@ WHEN_RUN = [
     "«BoxRegion((1, 2, 3), orientation=3)»",
     "new Object «in ego.occupiedSpace»",
     "new Object at (0, 0, 9), «on BoxRegion((9, 9, 1))»",
-    "new Object «with requireVisible True»",
 ]
 """Refused while the program runs; each is the end of a program."""
 

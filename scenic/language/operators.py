@@ -225,7 +225,6 @@ _ALL = (
         "region",
         ("visible region", "region visible from viewer"),
         "The part of a region that the viewer's view volume covers; nothing occludes here.",
-        available=False,
     ),
     Operator(
         "not visible",
@@ -233,7 +232,6 @@ _ALL = (
         "region",
         ("not visible region", "region not visible from viewer"),
         "The part of a region that the viewer's view volume does not cover; nothing occludes here.",
-        available=False,
     ),
     Operator(
         "can see",
@@ -241,7 +239,6 @@ _ALL = (
         "boolean",
         ("viewer can see target",),
         "Whether the viewer sees the target past the other objects. For requirements and dynamic code only.",
-        available=False,
     ),
     Operator(
         "intersects",

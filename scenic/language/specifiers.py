@@ -169,7 +169,6 @@ _ALL = (
         ("visible", "visible from viewer"),
         "The viewer must see the object. Without another specifier of the position it is uniformly at random among "
         "the positions where the viewer can.",
-        available=False,
     ),
     SpecifierDeclaration(
         "not visible",
@@ -180,7 +179,6 @@ _ALL = (
         ("not visible", "not visible from viewer"),
         "The viewer must not see the object. Without another specifier of the position it is uniformly at random in "
         "the object's container.",
-        available=False,
     ),
     _beside("left of", "left (-X)", "width"),
     _beside("right of", "right (+X)", "width"),

@@ -15,7 +15,7 @@ from scenic.graph.kinds import Column, Kind
 from scenic.graph.node import Node
 from scenic.graph.operation import Call, Operation, always
 from scenic.graph.operations import TABLE
-from scenic.runtime.context import here
+from scenic.runtime.context import current, here
 from scenic.runtime.dynamics.declarations import Tree
 from scenic.runtime.lazy import definite
 from scenic.runtime.opaque import evaluated, later
@@ -113,12 +113,18 @@ def leaf(
     def build() -> Node:
         nonlocal names
         if symbolic is not None:
+            context = current.get()
+            if context is not None:
+                context.judging = True
             try:
                 value = symbolic(*captured)
             except Exception:  # noqa: BLE001 - whatever went wrong goes wrong again, with its place, on a sample
                 pass
             else:
                 return truth(definite(value, "the requirement"))
+            finally:
+                if context is not None:
+                    context.judging = False
         # The names that functions in reach have at the `require` statement count.
         names = Globals() if names is None else names
         return later(OPAQUE, concrete, captured, names=names)

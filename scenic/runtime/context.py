@@ -6,7 +6,7 @@ function (``Range(0, 1)``) find it in a context variable, so that several scenar
 
 import sys
 from collections import Counter
-from collections.abc import Callable, Hashable
+from collections.abc import Callable, Hashable, Sequence
 from contextvars import ContextVar
 from types import FrameType, TracebackType
 from typing import Any
@@ -51,6 +51,21 @@ class Context:
         self.mode_2d = mode_2d
         self.evaluating = False
         """Whether a requirement's condition is being evaluated: nothing may be created then."""
+        self.judging = False
+        """Whether the node of a requirement's condition is being made."""
+        self.objects: list[Any] = []
+        """The objects of the scenario so far, in order of creation: what may stand in the way of a look."""
+        self.sample: Any = None
+        """The sample on which Python code is being called."""
+        self.looks = False
+        """Whether some condition asks what is seen: it has to be made again when all objects are there."""
+
+    @property
+    def present(self) -> Sequence[Any]:
+        """The objects that are there, as values of whoever asks: of the program, of a sample, of a simulation."""
+        if self.sample is None:
+            return self.objects
+        return [self.sample.value(item) for item in self.objects]
 
     @property
     def is_symbolic(self) -> bool:

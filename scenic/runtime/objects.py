@@ -17,7 +17,9 @@ from scenic.runtime.mutators import OrientationMutator, PositionMutator
 from scenic.runtime.properties import Property, PropertyDefinition, combine
 from scenic.runtime.regions.base import unsupported
 from scenic.runtime.regions.bodies import OccupiedSpace, SideSurface
+from scenic.runtime.regions.views import ViewRegion
 from scenic.runtime.shapes import BoxShape
+from scenic.runtime.sight import sees
 from scenic.runtime.values import Orientation, operate, to_orientation, to_scalar, to_vector, vector
 
 
@@ -130,6 +132,15 @@ class Point:
     def toVector(self) -> Any:
         """The position."""
         return self.position
+
+    def canSee(self, other: Any, occludingObjects: Any = ()) -> Any:
+        """Whether it sees a vector, a point or an object past some objects."""
+        return sees(self, other, occludingObjects)
+
+    @property
+    def visibleRegion(self) -> Any:
+        """The places in its view, as far as nothing hides them."""
+        return ViewRegion(self)
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__}>"
@@ -295,10 +306,6 @@ class Object(OrientedPoint):
         """Where things stand that are ``on`` this object: its top surface, unless a class says otherwise."""
         return self.topSurface
 
-    def canSee(self, other: Any, occludingObjects: Any = ()) -> Any:
-        """Whether this object sees a point or an object: not built yet."""
-        raise unsupported("`canSee`")
-
     def startDynamicSimulation(self) -> None:
         """Called when the object is created in a simulation; does nothing unless a class overrides it."""
 
@@ -351,7 +358,7 @@ for _name, _place in SIDES.items():
     setattr(Object, _name, _corner(*_place))
 for _name in ("top", "bottom", "left", "right", "front", "back"):
     setattr(Object, f"{_name}Surface", _surface(_name))
-for _name in ("visibleRegion", "boundingBox", "inradius", "planarInradius"):
+for _name in ("boundingBox", "inradius", "planarInradius"):
     setattr(Object, _name, _refused(_name))
 
 

@@ -18,7 +18,7 @@ from scenic.graph.operation import OK, Call, Operation, always
 from scenic.language.errors import RejectionException
 from scenic.runtime.context import Context, current, here, next_address
 from scenic.runtime.randomness import preserved, seed_globals
-from scenic.runtime.samples import Globals, Sample, dependencies
+from scenic.runtime.samples import Globals, Sample, dependencies, mention
 from scenic.runtime.values import CODEC, as_value
 
 
@@ -51,8 +51,13 @@ def later(
     """
     seen = Globals() if names is None else names
     own = key(here(), next_address())
-    operands = (own, *dependencies([function, *args, *keywords.values()], seen))
-    code = OpaqueCode(function, tuple(args), keywords, operands, seen, current.get())
+    context = current.get()
+    reads: list[Any] = [function, *args, *keywords.values()]
+    if context is not None and mention(reads, seen, "can see"):
+        context.looks = True
+        reads += context.objects
+    operands = (own, *dependencies(reads, seen))
+    code = OpaqueCode(function, tuple(args), keywords, operands, seen, context)
     return apply(operation, operands, code, here())
 
 
@@ -74,6 +79,7 @@ def evaluated(call: Call, columns: Sequence[Column]) -> list[Any]:
         if status is not None:
             absent |= status != OK
     error: Exception | None = None
+    sample_before = None if code.context is None else code.context.sample
     rows = {node: column.tolist() for node, column in zip(code.operands, columns, strict=True)}
     seeds = rows[code.operands[0]]
     context = code.context
@@ -85,6 +91,8 @@ def evaluated(call: Call, columns: Sequence[Column]) -> list[Any]:
         with preserved():
             for lane in np.flatnonzero(~absent).tolist():
                 sample = Sample(_row(rows, lane), code.names)
+                if context is not None:
+                    context.sample = sample
                 seed_globals(seeds[lane])
                 try:
                     args = [sample.value(item) for item in code.args]
@@ -98,6 +106,7 @@ def evaluated(call: Call, columns: Sequence[Column]) -> list[Any]:
     finally:
         if context is not None:
             context.evaluating = was_evaluating
+            context.sample = sample_before
         current.reset(token)
     if error is not None:
         call.fault(failed, error)

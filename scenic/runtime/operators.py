@@ -9,14 +9,16 @@ from types import MappingProxyType
 from typing import Any
 
 from scenic.graph.kinds import Kind
-from scenic.language.errors import ScenicTypeError
-from scenic.runtime.context import here
+from scenic.language.errors import InvalidScenarioError, ScenicTypeError
+from scenic.runtime.context import current, here
 from scenic.runtime.fields import field_of, frame_at, is_field, relative_to
 from scenic.runtime.lazy import defer, is_lazy
 from scenic.runtime.objects import SIDES, Object, OrientedPoint, oriented_point
 from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.choice import as_region
-from scenic.runtime.specifiers import Ego, is_kind
+from scenic.runtime.regions.views import part_of
+from scenic.runtime.sight import sees
+from scenic.runtime.specifiers import Ego, is_kind, region_of
 from scenic.runtime.values import (
     Random,
     Vector,
@@ -158,6 +160,25 @@ def _intersects(_ego: Ego, left: Any, right: Any) -> Any:
     return one.intersects(other)
 
 
+def _can_see(_ego: Ego, viewer: Any, target: Any) -> Any:
+    context = current.get()
+    assert context is not None
+    if context.judging:
+        context.looks = True
+    elif context.is_symbolic and context.sample is None:
+        raise InvalidScenarioError(
+            "`can see` cannot be used while the program runs: the scene is not there yet",
+            span=here(),
+            help="use it in a requirement: `require ego can see x`",
+        )
+    return sees(viewer, target, context.present)
+
+
+def _part_in_view(ego: Ego, region: Any, viewer: Any, *, seen: bool) -> Region:
+    what = "`visible`" if seen else "`not visible`"
+    return part_of(region_of(region, what), ego() if viewer is None else viewer, seen=seen)
+
+
 def _side(name: str, attribute: str) -> Callable[..., Any]:
     def build(_ego: Ego, target: Any) -> Any:
         if not is_kind(target, Object):
@@ -192,6 +213,9 @@ OPERATORS: Mapping[str, Callable[..., Any]] = MappingProxyType(
         "angle": _angle,
         "altitude": _altitude,
         "intersects": _intersects,
+        "can see": _can_see,
+        "visible": lambda ego, region, viewer: _part_in_view(ego, region, viewer, seen=True),
+        "not visible": lambda ego, region, viewer: _part_in_view(ego, region, viewer, seen=False),
         **_sides(),
     }
 )

@@ -20,6 +20,7 @@ from scenic.graph.kinds import Kind
 from scenic.graph.operations import TABLE
 from scenic.language.errors import (
     InvalidScenarioError,
+    RejectionException,
     ScenicTypeError,
     UnsupportedError,
 )
@@ -38,10 +39,11 @@ from scenic.runtime.objects import Object, Point
 from scenic.runtime.operators import OPERATORS, operation
 from scenic.runtime.program import Module, Program, Requirement
 from scenic.runtime.properties import ATTRIBUTES, PropertyDefinition
-from scenic.runtime.regions.base import Region, Workspace
+from scenic.runtime.regions.base import Region, Workspace, everywhere
 from scenic.runtime.regions.choice import as_region
 from scenic.runtime.resolution import build
 from scenic.runtime.samples import Sample
+from scenic.runtime.sight import sees
 from scenic.runtime.specifiers import BUILDERS, Specifier, UserSpecifier, specify
 from scenic.runtime.spreading import spread
 from scenic.runtime.temporal.formulas import is_temporal
@@ -84,6 +86,7 @@ class Prelude(Dynamics):
 
     def __init__(self, context: Context, program: Program, module: Module, modules: "Loader") -> None:
         self._compilation = context
+        context.objects = program.objects
         self._program = program
         self._module = module
         self._modules = modules
@@ -190,6 +193,9 @@ class Prelude(Dynamics):
                 (value,) = operands
                 return own(*value) if type(value) is tuple else own(value)
             return specify(name, self._ego, property, *operands)
+        if name in ("visible", "not visible"):
+            workspace = self._module.workspace
+            return specify(name, self._ego, *operands, everywhere if workspace is None else workspace)
         return specify(name, self._ego, *operands)
 
     def new(self, cls: Any, *specifiers: Specifier) -> Any:
@@ -203,7 +209,6 @@ class Prelude(Dynamics):
         if self._context.evaluating and issubclass(cls, Object):
             raise InvalidScenarioError("a requirement cannot create an object", span=here())
         instance = build(cls, specifiers, mode_2d=self._context.mode_2d)
-        self._check_supported(instance)
         if self._context.evaluating:
             return instance
         if isinstance(instance, Object):
@@ -214,20 +219,19 @@ class Prelude(Dynamics):
                 raise ScenicTypeError(
                     f"property 'behavior' must be a behavior, not {describe(behavior)}", span=here()
                 )
+        sightings = [specifier.sighting for specifier in specifiers if specifier.sighting is not None]
         if self._run is not None:
+            for sighting in sightings:
+                if bool(sees(sighting.observer, instance, self._context.present)) != sighting.wanted:
+                    raise RejectionException(f"whether the {cls.__name__} is seen")
             self._run.create(instance)
             return instance
+        self._program.sightings += [(instance, sighting) for sighting in sightings]
         self._program.instances.append(instance)
         if isinstance(instance, Object):
             self._program.objects.append(instance)
         self._program.places[id(instance)] = (here(), self._module.filename)
         return instance
-
-    def _check_supported(self, instance: Point) -> None:
-        """Refuse the properties whose meaning is not built yet."""
-        values = instance.__dict__
-        if not self._context.mode_2d and values.get("requireVisible", False) is not False:
-            raise UnsupportedError("visibility requirements are not supported yet", span=here())
 
     def property(
         self, name: str, attributes: Sequence[str], value: Callable[[Any], Any], reads: Sequence[str]

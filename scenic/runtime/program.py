@@ -12,6 +12,7 @@ from scenic.runtime.dynamics.definitions import Invocable, ModularScenario
 from scenic.runtime.objects import Object, Point
 from scenic.runtime.regions.base import Workspace
 from scenic.runtime.samples import Globals
+from scenic.runtime.sight import Sighting
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,6 +49,8 @@ class Program:
     instances: list[Point] = field(default_factory=list)
     objects: list[Object] = field(default_factory=list)
     requirements: list[Requirement] = field(default_factory=list)
+    sightings: list[tuple[Point, Sighting]] = field(default_factory=list)
+    """Instances that somebody must see, or must not."""
     parameters: dict[str, Any] = field(default_factory=dict)
     read_parameters: set[str] = field(default_factory=set)
     """Parameters that the program has asked for by name."""

@@ -90,6 +90,21 @@ def dependencies(values: Iterable[Any], names: Globals | None = None) -> list[No
     return list(dict.fromkeys(value.node for value in walk if isinstance(value, Random)))
 
 
+def mention(values: Iterable[Any], names: Globals, word: str) -> bool:
+    """Whether functions of the program among the values, or reached by them, hold a text among their constants."""
+    return any(
+        _mentions(value.__code__, word)
+        for value in reachable(values, names)
+        if isinstance(value, FunctionType) and PRELUDE in value.__globals__
+    )
+
+
+def _mentions(code: CodeType, word: str) -> bool:
+    return any(
+        item == word or (isinstance(item, CodeType) and _mentions(item, word)) for item in code.co_consts
+    )
+
+
 def reachable(values: Iterable[Any], names: Globals) -> Iterator[Any]:
     """Everything that the values are made of as far as sampling goes, themselves included, each once."""
     seen: dict[int, Any] = {}

@@ -7,18 +7,21 @@ a function from the partially built instance to values. Which of the offered val
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from types import MappingProxyType
 from typing import Any
 
 from scenic.graph.operations import TABLE
-from scenic.language.errors import ScenicTypeError
+from scenic.language.errors import InvalidScenarioError, ScenicTypeError
 from scenic.language.spans import Span
 from scenic.runtime.context import here
 from scenic.runtime.fields import field_of, frame_at, is_field
 from scenic.runtime.lazy import Lazy, defer, reads_of, resolve
 from scenic.runtime.objects import Object, OrientedPoint, Point
-from scenic.runtime.regions.base import Region
+from scenic.runtime.regions.base import Everywhere, Region, Workspace
 from scenic.runtime.regions.choice import as_region
+from scenic.runtime.regions.views import place_near
+from scenic.runtime.sight import Sighting
 from scenic.runtime.values import (
     Orientation,
     Random,
@@ -46,7 +49,8 @@ class Specifier:
 
     ``priorities`` maps each property offered to the strength of the offer (1 is strongest). ``modify`` is the function
     used when the specifier modifies a property that another one specifies; ``modifiable`` names those properties.
-    ``is_default`` marks the default of a property, which the program did not write here.
+    ``is_default`` marks the default of a property, which the program did not write here. ``sighting`` is a demand on
+    who sees the instance.
     """
 
     name: str
@@ -57,6 +61,7 @@ class Specifier:
     modify: Evaluate | None = None
     span: Span | None = None
     is_default: bool = False
+    sighting: Sighting | None = None
 
     def __str__(self) -> str:
         return f"`{self.name}`"
@@ -306,6 +311,32 @@ def apparently_facing(ego: Ego, heading: Any, origin: Any) -> Specifier:
     return _specifier("apparently facing", {"yaw": 1}, evaluate, "position", "parentOrientation")
 
 
+def visible(ego: Ego, viewer: Any, workspace: Region, *, wanted: bool = True) -> Specifier:
+    """Section 11.4: who must see the object, or must not; and, if nothing else says so, any position in its container."""
+    name = "visible" if wanted else "not visible"
+    observer = ego() if viewer is None else viewer
+    if not is_kind(observer, Point):
+        raise wrong_type("a point or an object", observer, f"`{name} from`")
+
+    def evaluate(instance: Any) -> Mapping[str, Any]:
+        container = instance.regionContainedIn
+        region = workspace if container is None else region_of(container, f"`{name}`")
+        while isinstance(region, Workspace):
+            region = region.region
+        if wanted:
+            return {"position": place_near(observer, region, instance)}
+        if isinstance(region, Everywhere):
+            raise InvalidScenarioError(
+                "`not visible` needs to know where the object may be",
+                span=here(),
+                help="set `workspace = Workspace(region)`, or say where: `not visible, in region`",
+            )
+        return {"position": region.uniform_placement()[0]}
+
+    reads = ("regionContainedIn", "width", "length", "height") if wanted else ("regionContainedIn",)
+    return _specifier(name, {"position": 3}, evaluate, *reads, sighting=Sighting(observer, wanted))
+
+
 BUILDERS: Mapping[str, Callable[..., Specifier]] = MappingProxyType(
     {
         "with": with_,
@@ -329,6 +360,8 @@ BUILDERS: Mapping[str, Callable[..., Specifier]] = MappingProxyType(
         "facing directly toward": _facing_point("facing directly toward", away=False, directly=True),
         "facing directly away from": _facing_point("facing directly away from", away=True, directly=True),
         "apparently facing": apparently_facing,
+        "visible": visible,
+        "not visible": partial(visible, wanted=False),
     }
 )
 """How each specifier of `scenic.language.specifiers` is built: ``(ego, *operands)``; ``with`` gets its property

@@ -1,6 +1,6 @@
 """One simulation as the language sees it: what runs, what has been drawn, and the procedure of a step (section 12.7)."""
 
-from collections.abc import Callable, Hashable, Iterator, Mapping
+from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from typing import Any, Protocol
 
@@ -67,6 +67,11 @@ class RunContext(Context):
     def __init__(self, run: "Run", locate: Locator, name: Namer, *, mode_2d: bool) -> None:
         super().__init__(locate=locate, name=name, generator=run.draws, mode_2d=mode_2d)  # type: ignore[arg-type] # it has `random`
         self.run = run
+
+    @property
+    def present(self) -> Sequence[Any]:
+        """The objects of the simulation as they are now."""
+        return tuple(self.run.simulation.objects)
 
 
 class Run:

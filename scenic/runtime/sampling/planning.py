@@ -29,6 +29,7 @@ from scenic.runtime.sampling.checks import (
     ObjectNodes,
 )
 from scenic.runtime.sampling.engine import Plan
+from scenic.runtime.sight import looks, sees
 from scenic.runtime.values import CODEC, as_node, fixed_batch, is_random, operate
 from scenic.runtime.visibility import sees_in_plane
 
@@ -63,8 +64,7 @@ def outline(program: Program, ego: Object | None, workspace: Workspace, *, mode_
     checks += _sizes(program)
     containment = _containment(program, workspace)
     checks += containment
-    if mode_2d:
-        checks += _visibility(program, ego)
+    checks += _visibility(program, ego, mode_2d=mode_2d)
     checks += _collisions(program)
     checks += _requirements(program)
     nodes = [node for check in checks for node in check.nodes]
@@ -178,9 +178,28 @@ def _required(
     return []
 
 
-def _visibility(program: Program, ego: Object | None) -> list[Check]:
-    """In 2D mode the ego must see every object that asks for it."""
+def _visibility(program: Program, ego: Object | None, *, mode_2d: bool) -> list[Check]:
+    """What has to be seen by whom, and what must not be (section 10.1)."""
+
+    def seen(observer: Any, target: Any) -> Node:
+        if mode_2d:
+            return truth(sees_in_plane(observer, target))
+        return truth(sees(observer, target, program.objects))
+
     checks: list[Check] = []
+    for item, sighting in program.sightings:
+        node = seen(sighting.observer, item)
+        name, whom = _name(item), _name(sighting.observer)
+        if sighting.wanted:
+            label, never = f"{name} visible from the {whom}", f"this {name} cannot be seen from the {whom}"
+        else:
+            label, never = (
+                f"{name} not visible from the {whom}",
+                f"this {name} is always seen from the {whom}",
+            )
+            node = as_node(not node.value) if node.is_constant else connect("not", [node])
+        advice = "move one of the two, or what stands between them"
+        checks += _required(node, label, _place(program, item), never, advice)
     for item in program.objects:
         wanted = item.requireVisible
         if item is ego or (not is_random(wanted) and not wanted):
@@ -193,7 +212,7 @@ def _visibility(program: Program, ego: Object | None) -> list[Check]:
                 filename=filename,
                 help="set `ego = new Object ...`, or write `with requireVisible False`",
             )
-        node = truth(sees_in_plane(ego, item))
+        node = seen(ego, item)
         if is_random(wanted):
             node = connect("or", [connect("not", [truth(wanted)]), node])
         checks += _required(
@@ -268,6 +287,7 @@ def _requirements(program: Program) -> list[Check]:
         node = item.condition
         if node.is_constant and node.value:
             continue
+        dear = looks(node)
         checks.append(
             NodeCheck(
                 node,
@@ -275,7 +295,8 @@ def _requirements(program: Program) -> list[Check]:
                 item.span,
                 position,
                 item.probability,
-                cost=2,
+                cost=60 if dear else 2,
+                separate=dear,
                 filename=item.filename,
             )
         )

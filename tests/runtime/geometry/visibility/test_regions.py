@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from scenic.runtime.geometry.inside import contains_points
-from scenic.runtime.geometry.visibility.regions import draw_places, view_mesh
+from scenic.runtime.geometry.visibility.regions import draw_near, draw_places, near_volume, view_mesh
 from scenic.runtime.geometry.visibility.views import Views, extents
 
 ANGLES = [
@@ -80,3 +80,27 @@ def test_the_directions_of_boxes_are_those_of_their_points() -> None:
         inside |= (azimuth + turn >= found.azimuth[:, :1]) & (azimuth + turn <= found.azimuth[:, 1:])
     assert (inside | found.around[:, None]).all()
     assert 20 < found.around.sum() < 280
+
+
+@pytest.mark.parametrize(("horizontal", "vertical"), ANGLES[:-1])
+@pytest.mark.parametrize("radius", [0.0, 0.05, 0.4, 3.0])
+def test_balls_that_meet_the_view_have_their_middles_among_what_is_drawn(
+    horizontal: float, vertical: float, radius: float
+) -> None:
+    rng = np.random.default_rng(8)
+    count = 20000
+    view = Views.fixed((1, 2, 3), angles=(horizontal, vertical), distance=2).spread(count)
+    radii = np.full(count, radius)
+    drawn = draw_near(view, radii, rng.random((count, 4)))
+    # Middles of balls that touch the view: places in view, moved by up to the radius.
+    step = rng.normal(size=(count, 3))
+    step *= radius * rng.random((count, 1)) / np.linalg.norm(step, axis=1, keepdims=True)
+    middles = draw_places(view, rng.random((count, 3))) + step
+    # As many draws per volume in small boxes about such middles as in all of the set.
+    chosen = middles[:40]
+    side = 0.35
+    inside = (np.abs(drawn[:, None] - chosen[None]) <= side / 2).all(axis=2).sum(axis=0)
+    expected = count * side**3 / near_volume(view.take(np.arange(1)), radii[:1])[0]
+    assert inside.max() <= expected + 6 * math.sqrt(expected) + 6
+    assert inside.mean() > 0.2 * expected
+    assert (inside > 0).all() or expected < 8

@@ -1,0 +1,237 @@
+"""What observers have in view, as regions: `visibleRegion`, and the parts of other regions that are in view or are not.
+
+Occlusion is ignored here (section 11.2 of the specification).
+"""
+
+from collections.abc import Callable, Sequence
+from typing import Any, Final
+
+import numpy as np
+
+from scenic.graph.draws import mix, open_unit, words_of
+from scenic.graph.kinds import Column
+from scenic.runtime.geometry import containment
+from scenic.runtime.geometry.bodies import Body
+from scenic.runtime.geometry.poses import Poses
+from scenic.runtime.geometry.visibility.proving import Proof, prove
+from scenic.runtime.geometry.visibility.regions import (
+    draw_near,
+    draw_places,
+    near_volume,
+    region_angles,
+    view_mesh,
+    view_volume,
+)
+from scenic.runtime.geometry.visibility.views import CORNERS, Views
+from scenic.runtime.regions.base import Everywhere, Mask, Points, Region, Workspace
+from scenic.runtime.sight import view_operands
+from scenic.runtime.values import operate, to_scalar, vector
+
+VIEW_PARAMETERS: Final = 5
+"""The first so many of an observer's operands say what is in view: the others are about rays."""
+
+_TRIES: Final = 1000
+"""So often a point is drawn again until it lies in the right place; then the region counts as empty."""
+
+
+class ViewRegion(Region):
+    """The places in view of an observer: a part of a ball."""
+
+    dimension: float = 3
+
+    def __init__(self, observer: Any) -> None:
+        super().__init__(*view_operands(observer)[:VIEW_PARAMETERS])
+
+    def draw_points(self, uniforms: Column, keys: Column, *columns: Column) -> tuple[Points, Mask | None]:
+        return draw_places(views_over(columns).spread(uniforms.shape[1]), uniforms.T), None
+
+    def contains_points(self, points: Points, *columns: Column) -> Mask:
+        return views_over(columns).contain(points)
+
+    def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
+        views = views_over(columns).spread(lanes)
+        result = np.zeros(lanes, dtype=np.bool_)
+        for angles in np.unique(views.angles, axis=0):
+            chosen = np.flatnonzero((views.angles == angles).all(axis=1))
+            unit, centre, extents = view_mesh(*angles.tolist()).normalized()
+            view, reach = views.take(chosen), views.distance[chosen, None]
+            x, y, z = (reach * centre).T
+            turn = view.matrix
+            offset = np.stack(
+                [turn[:, i, 0] * x + turn[:, i, 1] * y + turn[:, i, 2] * z for i in range(3)], -1
+            )
+            poses = Poses(view.camera + offset, view.orientation, reach * extents)
+            part = body if len(body) == 1 else body.take(chosen)
+            result[chosen] = containment.in_body(part, Body((unit,), None, poses), len(chosen))
+        return result
+
+    def box(self, *columns: Column) -> tuple[Points, Points]:
+        camera, reach = columns[0], columns[4][:, None]
+        return camera - reach, camera + reach
+
+    def sizes(self, *columns: Column) -> Column:
+        return view_volume(views_over(columns))
+
+
+def views_over(columns: Sequence[Column]) -> Views:
+    """The views whose first operands have these columns, with the angles that their regions have."""
+    camera, orientation, horizontal, vertical, distance = columns
+    angles = np.stack(np.broadcast_arrays(horizontal, vertical), axis=-1).astype(np.float64)
+    one, none = np.ones(1), np.zeros((1, 2))
+    angles = region_angles(angles)
+    return Views(camera, orientation, angles, distance, one, none, np.zeros(1, dtype=np.bool_))
+
+
+class SeenPart(Region):
+    """The part of a region that is in an observer's view, or the part that is not."""
+
+    may_find_none = True
+
+    def __init__(self, region: Region, view: ViewRegion, *, seen: bool) -> None:
+        super().__init__(*region.parameters, *view.parameters)
+        self.region, self.view, self.seen = region, view, seen
+        self.dimension = region.dimension
+        self.draws = region.draws
+        self.has_orientation = region.has_orientation
+
+    def sampled(self, sample: Any) -> Region:
+        if not self.is_random:
+            return self
+        view = self.view.sampled(sample)
+        assert isinstance(view, ViewRegion)
+        return SeenPart(self.region.sampled(sample), view, seen=self.seen)
+
+    def contains_points(self, points: Points, *columns: Column) -> Mask:
+        inside = self.region.contains_points(points, *columns[:-VIEW_PARAMETERS])
+        in_view = views_over(columns[-VIEW_PARAMETERS:]).contain(points)
+        return np.asarray(inside & (in_view if self.seen else ~in_view))
+
+    def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
+        inside = self.region.contains_bodies(body, lanes, *columns[:-VIEW_PARAMETERS])
+        view = columns[-VIEW_PARAMETERS:]
+        if self.seen:
+            return np.asarray(inside & self.view.contains_bodies(body, lanes, *view))
+        # A body reaches into the view if it could be seen were nothing in the way.
+        return np.asarray(inside & (prove(views_over(view), body, (), lanes) == Proof.HIDDEN))
+
+    def draw_points(self, uniforms: Column, keys: Column, *columns: Column) -> tuple[Points, Mask | None]:
+        views = views_over(columns[-VIEW_PARAMETERS:]).spread(uniforms.shape[1])
+
+        def draw(numbers: Column, words: Column, lanes: Column) -> tuple[Points, Mask]:
+            own = _rows(columns[:-VIEW_PARAMETERS], lanes)
+            points, found = self.region.draw_points(numbers, words, *own)
+            fits = views.take(lanes).contain(points) == self.seen
+            return points, fits if found is None else fits & found
+
+        return _drawn_until_fit(uniforms, keys, draw)
+
+    def orientations(self, points: Points, *columns: Column) -> Column:
+        return self.region.orientations(points, *columns[:-VIEW_PARAMETERS])
+
+    def box(self, *columns: Column) -> tuple[Points, Points]:
+        return self.region.box(*columns[:-VIEW_PARAMETERS])
+
+    @property
+    def footprint(self) -> Region:
+        flat = self.region.footprint
+        return self if flat is self.region else SeenPart(flat, self.view, seen=self.seen)
+
+
+class NearView(Region):
+    """The places in a container where an observer may see something of a size, as far as range and angles say.
+
+    Uniform points of it, conditioned on the thing being seen there, are distributed as uniform points of the container
+    are: what is left out are places from which nothing can be seen. A container in the plane is a column, and
+    one without bounds none at all.
+    """
+
+    dimension: float = 3
+    draws = 4
+    may_find_none = True
+
+    def __init__(self, container: Region, observer: Any, thing: Any) -> None:
+        size = vector(to_scalar(thing.width), to_scalar(thing.length), to_scalar(thing.height))
+        radius = operate("multiply", 0.5, operate("norm", size))
+        self.container = container.footprint
+        super().__init__(*self.container.parameters, *view_operands(observer)[:VIEW_PARAMETERS], radius)
+
+    def contains_points(self, points: Points, *columns: Column) -> Mask:
+        inside = self.container.contains_points(points, *columns[: -VIEW_PARAMETERS - 1])
+        return np.asarray(inside & self._reached(points, columns))
+
+    @staticmethod
+    def _reached(points: Points, columns: Sequence[Column]) -> Mask:
+        camera, reach = columns[-VIEW_PARAMETERS - 1], columns[-2] + columns[-1]
+        x, y, z = (points - camera.reshape(-1, *(1,) * (points.ndim - 2), 3)).transpose(
+            -1, *range(points.ndim - 1)
+        )
+        return np.asarray(np.sqrt(x * x + y * y + z * z) <= reach.reshape(-1, *(1,) * (points.ndim - 2)))
+
+    def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
+        inside = self.container.contains_bodies(body, lanes, *columns[: -VIEW_PARAMETERS - 1])
+        return np.asarray(inside & self._reached(body.poses.to_world(CORNERS[None]), columns).all(axis=1))
+
+    def draw_points(self, uniforms: Column, keys: Column, *columns: Column) -> tuple[Points, Mask | None]:
+        count = uniforms.shape[1]
+        views = views_over(columns[-VIEW_PARAMETERS - 1 : -1]).spread(count)
+        radius = np.broadcast_to(columns[-1], (count,))
+        container = columns[: -VIEW_PARAMETERS - 1]
+        volume = np.broadcast_to(self.container.sizes(*container), (count,))
+        # A small container is drawn from itself.
+        direct = (volume < near_volume(views, radius)) & (self.container.dimension == 3)
+
+        def draw(numbers: Column, words: Column, lanes: Column) -> tuple[Points, Mask]:
+            own = _rows(container, lanes)
+            points = draw_near(views.take(lanes), radius[lanes], numbers.T)
+            fits = self.container.contains_points(points, *own)
+            mine = np.flatnonzero(direct[lanes])
+            if len(mine):
+                parts = _rows(container, lanes[mine])
+                found, there = self.container.draw_points(
+                    numbers[: self.container.draws, mine], words[mine], *parts
+                )
+                points[mine] = found
+                fits[mine] = True if there is None else there
+            return points, fits
+
+        return _drawn_until_fit(uniforms, keys, draw)
+
+
+_Draw = Callable[[Column, Column, Column], tuple[Points, Mask]]
+
+
+def _drawn_until_fit(uniforms: Column, keys: Column, draw: _Draw) -> tuple[Points, Mask]:
+    """Points that fit, and where one was found: each lane draws again by numbers that follow from its key."""
+    count = uniforms.shape[1]
+    points, found = np.zeros((count, 3)), np.zeros(count, dtype=np.bool_)
+    lanes = np.arange(count)
+    words = np.broadcast_to(keys, (count,))
+    addresses = np.arange(len(uniforms), dtype=np.uint64)
+    for attempt in range(_TRIES):
+        mine = mix(words[lanes] ^ mix(np.full(1, attempt, dtype=np.uint64)))
+        numbers = uniforms[:, lanes] if attempt == 0 else open_unit(words_of(mine, addresses))
+        drawn, fits = draw(numbers, mine, lanes)
+        points[lanes], found[lanes] = drawn, fits
+        lanes = lanes[~fits]
+        if not len(lanes):
+            break
+    return points, found
+
+
+def _rows(columns: Sequence[Column], lanes: Column) -> list[Column]:
+    return [column if len(column) == 1 else column[lanes] for column in columns]
+
+
+def place_near(observer: Any, container: Region, thing: Any) -> Any:
+    """A uniform point of a container, as far as an observer may see a thing there."""
+    if container.dimension < 2:
+        return container.uniform_placement()[0]
+    return NearView(container, observer, thing).uniform_placement()[0]
+
+
+def part_of(region: Region, observer: Any, *, seen: bool) -> Region:
+    """The part of a region that an observer has in view, or has not."""
+    view = ViewRegion(observer)
+    while isinstance(region, Workspace):
+        region = region.region
+    return view if seen and isinstance(region, Everywhere) else SeenPart(region, view, seen=seen)

@@ -1,0 +1,171 @@
+"""Whether observers see things, as values: nodes of the graph over everything that decides it (section 11.3).
+
+Observers and targets are known by what they have, so that classes of objects can offer `canSee` themselves.
+"""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Any, Final
+
+import numpy as np
+
+from scenic.graph.kinds import Column, Kind
+from scenic.graph.node import Graph, Node
+from scenic.graph.operation import Call, Operation, always
+from scenic.language.errors import ScenicTypeError
+from scenic.runtime.context import here
+from scenic.runtime.geometry.visibility.bodies import sees_bodies
+from scenic.runtime.geometry.visibility.obstacles import Occluder
+from scenic.runtime.geometry.visibility.points import sees_points
+from scenic.runtime.geometry.visibility.views import Views
+from scenic.runtime.regions.base import body_of, body_operands
+from scenic.runtime.values import (
+    Orientation,
+    Random,
+    apply,
+    describe,
+    operate,
+    per_option,
+    to_scalar,
+    to_vector,
+    wrong_type,
+)
+
+VIEW_OPERANDS: Final = 9
+"""How many values describe an observer."""
+
+
+def sees(observer: Any, target: Any, occluders: Iterable[Any]) -> Any:
+    """Whether an observer sees a vector, a point or an object past others: true or false, or a random truth value.
+
+    The observer and the target hide nothing, even if they are among the occluders.
+    """
+    everything = tuple(occluders)
+    return per_option(
+        observer, lambda viewer: per_option(target, lambda thing: _sees(viewer, thing, everything))
+    )
+
+
+def _sees(observer: Any, target: Any, occluders: Sequence[Any]) -> Any:
+    operands = list(view_operands(observer))
+    is_object = is_body(target)
+    operands += body_operands(target) if is_object else [to_vector(target, "`can see`")]
+    for thing in occluders:
+        if thing is not observer and thing is not target:
+            hides = thing.occluding
+            if isinstance(hides, Random) or hides:
+                operands += [*body_operands(thing), hides]
+    return apply(SEES, *operands, payload=is_object)
+
+
+def is_body(value: Any) -> bool:
+    """Whether a value is an object: something with a shape, not just a place."""
+    return not isinstance(value, Random) and hasattr(type(value), "occupiedSpace")
+
+
+def camera_of(observer: Any) -> tuple[Any, Any]:
+    """The place that an observer looks from, and the orientation of its view (section 11.1)."""
+    if not hasattr(type(observer), "canSee"):
+        raise wrong_type("a point or an object", observer, "an observer")
+    if not _is_turned(observer):
+        return observer.position, Orientation()
+    orientation = observer.orientation
+    if not is_body(observer):
+        return observer.position, orientation
+    offset = to_vector(observer.cameraOffset)
+    return operate("add", observer.position, operate("rotate", orientation, offset)), orientation
+
+
+def _is_turned(observer: Any) -> bool:
+    return hasattr(type(observer), "toOrientation")
+
+
+def view_operands(observer: Any) -> tuple[Any, ...]:
+    """Everything that describes an observer's view, for `views_of`; of a random choice, each value is one."""
+    if isinstance(observer, Random):
+        return tuple(per_option(observer, partial(_view_operand, number)) for number in range(VIEW_OPERANDS))
+    camera, orientation = camera_of(observer)
+    horizontal, vertical = _pair(observer.viewAngles, "viewAngles")
+    if not _is_turned(observer):
+        horizontal, vertical = 2 * np.pi, np.pi
+    count = observer.viewRayCount
+    across, upward = (0, 0) if count is None else _pair(count, "viewRayCount")
+    return (
+        camera,
+        orientation,
+        horizontal,
+        vertical,
+        to_scalar(observer.visibleDistance),
+        to_scalar(observer.viewRayDensity),
+        across,
+        upward,
+        observer.viewRayDistanceScaling,
+    )
+
+
+def _view_operand(number: int, observer: Any) -> Any:
+    return view_operands(observer)[number]
+
+
+def _pair(value: Any, name: str) -> tuple[Any, Any]:
+    if not isinstance(value, Random):
+        try:
+            first, second = value
+        except (TypeError, ValueError) as error:
+            raise ScenicTypeError(
+                f"property '{name}' must be a pair of numbers, not {describe(value)}", span=here()
+            ) from error
+    else:
+        first, second = operate("getitem", value, 0), operate("getitem", value, 1)
+    return to_scalar(first, f"'{name}'"), to_scalar(second, f"'{name}'")
+
+
+def views_of(columns: Sequence[Column]) -> Views:
+    """The views whose operands have these columns."""
+    camera, orientation, horizontal, vertical, distance, density, across, upward, scaling = columns
+    return Views(
+        camera,
+        orientation,
+        _stacked(horizontal, vertical),
+        distance,
+        density,
+        _stacked(across, upward),
+        np.asarray(scaling, dtype=np.bool_),
+    )
+
+
+def _stacked(first: Column, second: Column) -> Column:
+    first, second = np.broadcast_arrays(first, second)
+    return np.stack([first, second], axis=-1).astype(np.float64)
+
+
+def _seen(call: Call, *columns: Column) -> Column:
+    views, rest = views_of(columns[:VIEW_OPERANDS]), columns[VIEW_OPERANDS:]
+    width = 4 if call.payload else 1
+    occluders = [
+        Occluder(body_of(*rest[at : at + 4]), np.asarray(rest[at + 4], dtype=np.bool_))
+        for at in range(width, len(rest), 5)
+    ]
+    lanes = max(len(column) for column in columns)
+    if call.payload:
+        return sees_bodies(views, body_of(*rest[:4]), occluders, lanes)
+    return sees_points(views, rest[0], occluders, lanes)
+
+
+SEES = Operation(
+    "sees", always(Kind.BOOLEAN), _seen, "Whether an observer sees a point or an object past others."
+)
+
+
+def looks(root: Node) -> bool:
+    """Whether a condition asks what is seen, as far as that is not hidden in Python code."""
+    return any(node.operation is SEES for node in Graph([root]).nodes if not node.is_axis)
+
+
+@dataclass(frozen=True, slots=True)
+class Sighting:
+    """That an observer has to see an instance, or must not: what the specifiers `visible` and `not visible` ask for."""
+
+    observer: Any
+    wanted: bool

@@ -1,0 +1,202 @@
+"""Visibility in the language: operators, specifiers, built-in requirements and regions, against the kernel's own answers."""
+
+import math
+
+import numpy as np
+import pytest
+
+import scenic
+from scenic.formats.labels import body_of
+from scenic.language.errors import Located
+from scenic.runtime.geometry.visibility.bodies import sees_bodies
+from scenic.runtime.geometry.visibility.obstacles import Occluder
+from scenic.runtime.geometry.visibility.points import sees_points
+from scenic.runtime.geometry.visibility.views import Views
+
+
+def view(thing: object) -> Views:
+    offset = np.array(list(getattr(thing, "cameraOffset", (0, 0, 0))))
+    turn = thing.orientation
+    x, y, z, w = turn.x, turn.y, turn.z, turn.w
+    matrix = np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+    return Views.fixed(
+        np.array(list(thing.position)) + matrix @ offset,
+        (x, y, z, w),
+        angles=tuple(thing.viewAngles),
+        distance=thing.visibleDistance,
+    )
+
+
+def sees(scene: object, observer: object, target: object) -> bool:
+    occluders = [
+        Occluder(body_of(thing))
+        for thing in scene.objects
+        if thing is not observer and thing is not target and thing.occluding
+    ]
+    return bool(sees_bodies(view(observer), body_of(target), occluders, 1)[0])
+
+
+OBSERVER = (
+    "ego = new Object with viewAngles (90 deg, 60 deg), with visibleDistance 20, facing Range(-20, 20) deg\n"
+)
+SCENE = (
+    OBSERVER
+    + "box = new Object at (Range(-10, 10), Range(4, 15), 0), facing Range(0, 360) deg\n"
+    + "{condition}\n"
+    # What stands in the way comes after the requirement.
+    + "wall = new Object at (Range(-3, 3), 2.5, 0), with width 3, with height 3, with length 0.1, with occluding {hides}\n"
+)
+
+
+@pytest.mark.parametrize("hides", ["True", "Uniform(True, False)"])
+@pytest.mark.parametrize(
+    ("condition", "wanted"),
+    [
+        ("require ego can see box", True),
+        ("require not (ego can see box)", False),
+        ("require all([ego can see thing for thing in [box]])", True),
+        ("def seen(a, b):\n    return a can see b\nrequire not seen(ego, box)", False),
+    ],
+)
+def test_requirements_see_past_everything_in_the_scene(condition: str, wanted: bool, hides: str) -> None:
+    scenario = scenic.scenarioFromString(SCENE.format(condition=condition, hides=hides))
+    scenes = scenario.sample(40, seed=3)
+    assert [sees(scene, *scene.objects[:2]) for scene in scenes] == [wanted] * 40
+    assert sum(scene.attempts for scene in scenes) > 50
+
+
+def test_node_and_python_code_choose_the_same_scenes() -> None:
+    texts = ["require ego can see box", "require all([ego can see thing for thing in [box]])"]
+    drawn = [
+        [
+            (scene.attempts, *scene.objects[1].position)
+            for scene in scenic.scenarioFromString(SCENE.format(condition=text, hides="True")).sample(
+                20, seed=5
+            )
+        ]
+        for text in texts
+    ]
+    assert drawn[0] == drawn[1]
+
+
+def test_points_are_seen_and_hidden() -> None:
+    text = (
+        OBSERVER
+        + "wall = new Object at (0, 3, 0), with width 3, with height 3, with length 0.1\n"
+        + "spot = new Point at (Range(-8, 8), Range(1, 10), 0)\n"
+        + "require {}ego can see spot\nparam spot = spot.position\n"
+    )
+    for word in ("", "not "):
+        for scene in scenic.scenarioFromString(text.format(word)).sample(30, seed=1):
+            point = np.array([list(scene.params["spot"])])
+            wall = Occluder(body_of(scene.objects[1]))
+            assert sees_points(view(scene.egoObject), point, [wall], 1)[0] == (word == "")
+
+
+def test_specifiers_ask_for_sight_and_blindness() -> None:
+    text = (
+        "workspace = Workspace(BoxRegion((20, 20, 4)))\n"
+        "ego = new Object with viewAngles (120 deg, 80 deg), with visibleDistance 8\n"
+        "wall = new Object at (0, 3, 0), with width 3, with height 3, with length 0.1\n"
+        "new Object visible, with width 0.5\n"
+        "new Object not visible, facing Range(0, 90) deg\n"
+        "new Object at (Range(-9, 9), Range(-9, 9), 0), visible from wall\n"
+    )
+    for scene in scenic.scenarioFromString(text).sample(25, seed=2):
+        ego, wall, seen, unseen, other = scene.objects
+        assert sees(scene, ego, seen)
+        assert not sees(scene, ego, unseen)
+        assert sees(scene, wall, other)
+
+
+def test_the_law_of_visible_objects_is_that_of_uniform_ones_that_are_seen() -> None:
+    text = (
+        "workspace = Workspace(BoxRegion((12, 12, 4)))\n"
+        "ego = new Object with viewAngles (70 deg, 50 deg), with visibleDistance 5\n"
+        "new Object at (1, 3, 0), with width 1, with height 3, with length 0.1\n"
+    )
+    first = scenic.scenarioFromString(text + "new Object visible").sample(600, seed=1)
+    second = scenic.scenarioFromString(text + "x = new Object in workspace\nrequire ego can see x").sample(
+        600, seed=2
+    )
+    from scipy.stats import ks_2samp
+
+    for axis in range(3):
+        one, other = (
+            [list(scene.objects[2].position)[axis] for scene in scenes] for scenes in (first, second)
+        )
+        assert ks_2samp(one, other).pvalue > 1e-4
+
+
+def test_without_a_container_objects_are_wherever_they_may_be_seen() -> None:
+    text = "ego = new Object with visibleDistance 10, with viewAngles (90 deg, 90 deg)\nnew Object visible, with width 6"
+    scenes = scenic.scenarioFromString(text).sample(300, seed=1)
+    distances = [np.linalg.norm(list(scene.objects[1].position)) for scene in scenes]
+    # The middle may be out of range, by up to half the diagonal, while a part is seen.
+    assert 10 < max(distances) < 10 + math.sqrt(9 + 0.5)
+    assert min(scene.objects[1].position.y for scene in scenes) < min(distances) + 2
+
+
+@pytest.mark.parametrize("wanted", ["True", "Uniform(True, False)"])
+def test_objects_that_must_be_visible_are(wanted: str) -> None:
+    text = SCENE.format(condition="", hides="True").replace(
+        "facing Range(0, 360) deg", f"with requireVisible {wanted}"
+    )
+    scenes = scenic.scenarioFromString(text).sample(40, seed=7)
+    for scene in scenes:
+        assert sees(scene, *scene.objects[:2]) or not scene.objects[1].requireVisible
+    if "Uniform" in wanted:
+        assert not all(sees(scene, *scene.objects[:2]) for scene in scenes)
+
+
+def test_view_regions_are_regions() -> None:
+    text = (
+        "ego = new Object facing Range(0, 360) deg, with viewAngles (90 deg, 40 deg), with visibleDistance 6\n"
+        "square = RectangularRegion((0, 0, 0), 0, 10, 10)\n"
+        "a = new Point in visible square\n"
+        "b = new Point in not visible square\n"
+        "c = new Point in square visible from ego\n"
+        "d = new Point in ego.visibleRegion\n"
+        "e = new Object in ego.visibleRegion, with width 0.3, with length 0.3, with height 0.3, with allowCollisions True\n"
+        "require e in ego.visibleRegion\n"
+        "require (d in visible square) or True\n"
+        "param points = [a.position, b.position, c.position, d.position]\n"
+    )
+    for scene in scenic.scenarioFromString(text).sample(40, seed=1):
+        points = np.array([list(point) for point in scene.params["points"]])
+        assert view(scene.egoObject).contain(points).tolist() == [True, False, True, True]
+        assert np.abs(points[:3, :2]).max() <= 5
+
+
+def test_objects_answer_what_they_see() -> None:
+    text = (
+        "ego = new Object\nwall = new Object at (0, 3, 0), with width 3, with height 3, with length 0.1\n"
+        "box = new Object at (0, 6, 0)\n"
+        "param alone = ego.canSee(box), hidden = ego.canSee(box, [wall]), point = ego.canSee((0, 5, 0), (wall,))\n"
+    )
+    (scene,) = scenic.scenarioFromString(text).sample(1, seed=1)
+    assert scene.params == {"alone": True, "hidden": False, "point": False}
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("ego = new Object\nx = ego can see (1, 2)", "cannot be used while the program runs"),
+        ("ego = new Object\nnew Object not visible", "needs to know where"),
+        ("ego = new Object\nnew Object at (0, 90, 0), visible", "cannot be seen from the Object"),
+        ("ego = new Object\nnew Object at (0, 9, 0), not visible", "always seen"),
+        ("new Object with requireVisible True", "there is no ego"),
+        ("ego = new Object with viewAngles (0, 1)\nnew Object at 5 @ 5, visible", "greater than 0"),
+        ("ego = new Object\nnew Object visible from (1, 2)", "visible from"),
+    ],
+)
+def test_what_makes_no_sense_is_refused(text: str, message: str) -> None:
+    with pytest.raises(Exception, match=message) as caught:
+        scenic.scenarioFromString(text)
+    assert isinstance(caught.value, Located)
