@@ -10,6 +10,15 @@ Names are looked up when they are first used, so that ``scenic check`` and the l
 NumPy and the geometry libraries.
 """
 
+import sys
+
+if sys.argv[:1] == ["-m"] and not sys.flags.safe_path:
+    # `python -m scenic...` looks for modules in the present folder first. What lies there may be anything: a program finds
+    # the modules beside it by itself, and the language server runs nothing of the folder that it is started in.
+    _started = sys.orig_argv[sys.orig_argv.index("-m") + 1 :][:1] if "-m" in sys.orig_argv else []
+    if _started and _started[0].partition(".")[0] == "scenic":
+        del sys.path[0]
+
 from importlib import import_module
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any

@@ -28,7 +28,7 @@ from scenic.project.modules import Module
 from scenic.project.queries import call_signature
 from scenic.project.symbols import Symbol, SymbolKind, symbol_of_binding, symbol_of_exported
 
-__all__ = ["Completion", "CompletionKind", "completions", "document"]
+__all__ = ["Completion", "CompletionKind", "completions", "document", "must_follow"]
 
 
 class CompletionKind(StrEnum):
@@ -127,6 +127,12 @@ def completions(project: Project, snapshot: Snapshot, line: int, column: int) ->
     for item in items:
         unique.setdefault((item.label, item.kind), item)
     return Completions(span, tuple(sorted(unique.values(), key=lambda item: (item.rank, item.label))))
+
+
+def must_follow(snapshot: Snapshot, line: int, column: int) -> bool:
+    """Whether something must follow after the blank before a place: possibilities are not offered after each."""
+    before = snapshot.source.line(line)[:column].split()
+    return bool(before) and (before[-1].endswith(",") or (before[-1] in WORDS and before[-1].isidentifier()))
 
 
 def document(project: Project, snapshot: Snapshot | None, key: tuple[str, ...]) -> str | None:

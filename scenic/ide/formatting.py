@@ -60,12 +60,8 @@ def formatting(snapshot: Snapshot, lines: tuple[int, int] | None = None) -> tupl
         return ()
     old, new = before.split("\n"), after.split("\n")
     edits = []
-    for tag, start, end, new_start, new_end in difflib.SequenceMatcher(
-        None, old, new, autojunk=False
-    ).get_opcodes():
-        if tag == "equal" or (
-            lines is not None and not (start + 1 <= lines[1] and max(end, start + 1) >= lines[0])
-        ):
+    for start, end, new_start, new_end in _changes(old, new):
+        if lines is not None and not (start + 1 <= lines[1] and max(end, start + 1) >= lines[0]):
             continue
         text = "\n".join(new[new_start:new_end])
         if end < len(old):
@@ -79,6 +75,24 @@ def formatting(snapshot: Snapshot, lines: tuple[int, int] | None = None) -> tupl
             span = Span(1, 0, len(old), len(old[-1]))
         edits.append(Edit(span, text))
     return tuple(edits)
+
+
+def _changes(old: Sequence[str], new: Sequence[str]) -> Iterator[tuple[int, int, int, int]]:
+    """Where two texts differ: lines of the one, and those of the other that take their place, as few as can be."""
+    for tag, *change in difflib.SequenceMatcher(None, old, new, autojunk=False).get_opcodes():
+        if tag == "equal":
+            continue
+        start, end, new_start, new_end = change
+        # Lines that say the same are changed one by one.
+        while start < end and new_start < new_end and _said(old[start]) == _said(new[new_start]):
+            yield start, start + 1, new_start, new_start + 1
+            start, new_start = start + 1, new_start + 1
+        if start < end or new_start < new_end:
+            yield start, end, new_start, new_end
+
+
+def _said(line: str) -> str:
+    return "".join(filter(str.isalnum, line))
 
 
 def format_text(text: str) -> str | None:

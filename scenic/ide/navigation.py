@@ -61,7 +61,7 @@ def definitions(project: Project, snapshot: Snapshot, line: int, column: int) ->
     """
     module, found = _occurrence(project, snapshot, line, column)
     symbol = None if module is None or found is None else symbol_of(project, module, found)
-    if symbol is None or found is None:
+    if symbol is None or found is None or symbol.is_builtin:
         return _ego(module, found)
     return _targets(symbol, found.span)
 

@@ -1,8 +1,9 @@
 """What each word of a document is, for editors to colour: what the tree and the scopes know, not only the spelling."""
 
 import ast
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import cache
 from typing import Any, Final
 
 from scenic.compiler import tree as scenic
@@ -13,6 +14,8 @@ from scenic.compiler.traversal import walk
 from scenic.ide.places import name_span
 from scenic.ide.snapshot import Snapshot
 from scenic.language.names import NAMES, TRACKED, NameKind
+from scenic.project.index import Project
+from scenic.project.symbols import SymbolKind, symbol_of_exported
 
 __all__ = ["MODIFIERS", "TYPES", "SemanticToken", "semantic_tokens"]
 
@@ -60,6 +63,14 @@ _OF_BINDING: Final = {
     BindingKind.SCENARIO: "macro",
     BindingKind.TYPE_PARAMETER: "type",
 }
+_OF_SYMBOL: Final = {
+    SymbolKind.MODULE: "namespace",
+    SymbolKind.CLASS: "class",
+    SymbolKind.FUNCTION: "function",
+    SymbolKind.BEHAVIOR: "event",
+    SymbolKind.MONITOR: "event",
+    SymbolKind.SCENARIO: "macro",
+}
 _OF_NAME: Final = {
     NameKind.CLASS: "class",
     NameKind.EXCEPTION: "class",
@@ -85,14 +96,19 @@ class SemanticToken:
 _What = tuple[str, frozenset[str]]
 
 
-def semantic_tokens(snapshot: Snapshot) -> tuple[SemanticToken, ...]:
-    """All tokens of a document that can be coloured, in order; none goes over a line end, and none overlap."""
-    return snapshot.derived("semantic tokens", lambda: tuple(_find(snapshot)))
+def semantic_tokens(
+    snapshot: Snapshot, project: Project | None = None, *, stamp: object = None
+) -> tuple[SemanticToken, ...]:
+    """All tokens of a document that can be coloured, in order; none goes over a line end, and none overlap.
+
+    ``project`` knows what imported names are; ``stamp`` stands for its state.
+    """
+    return snapshot.derived("semantic tokens", lambda: tuple(_find(snapshot, project)), stamp=stamp)
 
 
-def _find(snapshot: Snapshot) -> Iterator[SemanticToken]:
+def _find(snapshot: Snapshot, project: Project | None) -> Iterator[SemanticToken]:
     tokens, source = snapshot.tokens, snapshot.source
-    names = _names(snapshot)
+    names = _names(snapshot, _imported(snapshot, project))
     plain: frozenset[str] = frozenset()
     found: list[SemanticToken] = []
     for index, (kind, line, column) in enumerate(
@@ -130,7 +146,22 @@ def _find(snapshot: Snapshot) -> Iterator[SemanticToken]:
             end_of_last = (token.line, token.end_column)
 
 
-def _names(snapshot: Snapshot) -> dict[tuple[int, int], _What]:
+def _imported(snapshot: Snapshot, project: Project | None) -> Callable[[str], str | None]:
+    """Tells what an imported name of the module is."""
+    module = None if project is None else project.module(snapshot.filename)
+    if project is None or module is None:
+        return lambda _name: None
+    names = project.exports(module).names
+
+    @cache
+    def kind_of(name: str) -> str | None:
+        exported = names.get(name)
+        return None if exported is None else _OF_SYMBOL.get(symbol_of_exported(project, exported).kind)
+
+    return kind_of
+
+
+def _names(snapshot: Snapshot, imported: Callable[[str], str | None]) -> dict[tuple[int, int], _What]:
     """By line and column in bytes: what the names and strings there are that are more than their spelling says."""
     resolution = snapshot.resolution
     found: dict[tuple[int, int], _What] = {}
@@ -147,7 +178,7 @@ def _names(snapshot: Snapshot) -> dict[tuple[int, int], _What]:
         outer.update((decorator, "decorator") for decorator in getattr(node, "decorator_list", ()))
         if isinstance(node, ast.Name):
             place = (node.lineno, node.col_offset)
-            found[place] = (outer[node], none) if node in outer else _of_name(node, resolution)
+            found[place] = (outer[node], none) if node in outer else _of_name(node, resolution, imported)
         elif isinstance(node, ast.Attribute):
             found[_end_of(node, node.attr)] = (outer.get(node, "property"), none)
         elif isinstance(node, ast.Call):
@@ -182,12 +213,16 @@ def _names(snapshot: Snapshot) -> dict[tuple[int, int], _What]:
     return found
 
 
-def _of_name(node: ast.Name, resolution: Resolution) -> _What:
+def _of_name(node: ast.Name, resolution: Resolution, imported: Callable[[str], str | None]) -> _What:
     reference = resolution.references.get(node)
     binding = None if reference is None else reference.binding
     modifiers = set() if isinstance(node.ctx, ast.Load) else {"modification"}
     if node.id in TRACKED:
         return "variable", frozenset({*modifiers, "defaultLibrary"})
+    if binding is None or BindingKind.IMPORTED in binding.kinds:
+        brought = imported(node.id)
+        if brought is not None:
+            return brought, frozenset(modifiers)
     if binding is None:
         known = NAMES.get(node.id)
         if known is not None:

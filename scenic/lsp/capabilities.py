@@ -42,10 +42,10 @@ def capabilities(client: Client) -> Json:
         "definitionProvider": True,
         "typeDefinitionProvider": True,
         "implementationProvider": True,
-        "referencesProvider": True,
+        "referencesProvider": {"workDoneProgress": True},
         "documentHighlightProvider": True,
         "documentSymbolProvider": True,
-        "workspaceSymbolProvider": {"resolveProvider": True},
+        "workspaceSymbolProvider": {"resolveProvider": True, "workDoneProgress": True},
         "codeActionProvider": {
             "codeActionKinds": ["quickfix", FIX_ALL],
             "resolveProvider": True,
@@ -55,6 +55,7 @@ def capabilities(client: Client) -> Json:
         else True,
         "codeLensProvider": {"resolveProvider": True},
         "documentLinkProvider": {"resolveProvider": True},
+        "colorProvider": True,
         "documentFormattingProvider": True,
         "documentRangeFormattingProvider": True,
         "renameProvider": {"prepareProvider": True}

@@ -210,6 +210,8 @@ def found_in_document(
     session: Session, document: Document, project: Project, stamp: int, go_on: Callable[[], None]
 ) -> tuple[list[Json], tuple[Diagnostic, ...]]:
     """What is wrong with a document, and with its settings; ``stamp`` is the generation that ``project`` is of."""
+    if not document.is_program:
+        return [], ()
     configurations, rules = session.rules(document.snapshot.filename)
     found = found_in(document.snapshot, rules, project, stamp=stamp, go_on=go_on)
     return _protocol(found, document.lines, document.uri, session), configurations.problems

@@ -1,5 +1,6 @@
 """The documents that the client has open, version by version."""
 
+import os
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -14,6 +15,7 @@ from scenic.lsp.uris import to_path
 __all__ = ["Document", "changed", "snapshot_of"]
 
 _LINE_END: Final = re.compile(r"\r\n|\n|\r")
+_OTHERS: Final = frozenset({"python", "toml"})
 _MARK: Final = "\ufeff"
 
 
@@ -38,6 +40,11 @@ class Document:
         return Lines(self.snapshot.source, self.encoding, marks)
 
     @property
+    def is_program(self) -> bool:
+        """Whether it is a Scenic program: an editor may also show us the Python modules beside it."""
+        return self.language not in _OTHERS and not self.snapshot.filename.endswith((".py", ".pyi", ".toml"))
+
+    @property
     def line_end(self) -> str:
         """How its lines end."""
         return "\r\n" if "\r\n" in self.text else "\n"
@@ -45,8 +52,9 @@ class Document:
 
 def snapshot_of(text: str, uri: str, before: Snapshot | None = None) -> Snapshot:
     """The snapshot of a text; ``before`` is that of the version before it, of which most may still hold."""
-    path = to_path(uri)
-    return Snapshot(text, uri if path is None else path, before=before)
+    # What is no file gets a name that is none either, and that no file has.
+    path = to_path(uri) or os.path.abspath(os.sep + re.sub(r"[/\\]", "_", uri))
+    return Snapshot(text, path, before=before)
 
 
 def changed(text: str, changes: Sequence[Any], encoding: Encoding) -> str:

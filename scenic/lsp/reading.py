@@ -5,7 +5,7 @@ from typing import Any
 
 from scenic.lsp.errors import ErrorCode, ProtocolError
 
-__all__ = ["flag", "integer", "items", "lookup", "position", "range_of", "text", "texts", "uri_of"]
+__all__ = ["flag", "integer", "items", "lookup", "number", "position", "range_of", "text", "texts", "uri_of"]
 
 
 def lookup(value: Any, *path: str | int) -> Any:
@@ -36,6 +36,14 @@ def integer(params: Any, *path: str | int) -> int:
     if not isinstance(value, int) or isinstance(value, bool):
         raise _wrong("an integer", path)
     return value
+
+
+def number(params: Any, *path: str | int) -> float:
+    """The number at a path."""
+    value = lookup(params, *path)
+    if not isinstance(value, int | float) or isinstance(value, bool):
+        raise _wrong("a number", path)
+    return float(value)
 
 
 def flag(params: Any, *path: str | int) -> bool:

@@ -16,7 +16,7 @@ from scenic.ide.snapshot import Cancelled
 from scenic.lsp import parent, reading
 from scenic.lsp.checks import Checks
 from scenic.lsp.errors import ErrorCode, ProtocolError
-from scenic.lsp.handlers import NOTIFICATIONS, REQUESTS
+from scenic.lsp.handlers import notification_handler, request_handler
 from scenic.lsp.handlers.lifecycle import initialize
 from scenic.lsp.loop import Job, Loop, Worker
 from scenic.lsp.session import Deferred, Session
@@ -151,7 +151,7 @@ class Server:
             for each in list(self._working):
                 self._cancel(each)
             return None
-        handler = REQUESTS.get(method)
+        handler = request_handler(method)
         if handler is None:
             raise ProtocolError(ErrorCode.METHOD_NOT_FOUND, f"there is no method {method}")
         if not isinstance(params, dict):
@@ -171,7 +171,7 @@ class Server:
             return
         if self._stage is not _Stage.RUNNING:
             return
-        handler = NOTIFICATIONS.get(method)
+        handler = notification_handler(method)
         if handler is None:
             return
         try:

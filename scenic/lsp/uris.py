@@ -31,8 +31,8 @@ def to_path(uri: str) -> str | None:
             path = found[1].lower() + path[found.end() - 1 :]
         elif parts.netloc:
             path = f"//{parts.netloc}{path}"
-        return path.replace("/", os.sep)
-    return path
+        path = path.replace("/", os.sep)
+    return os.path.abspath(path) if os.path.isabs(path) else None
 
 
 def to_uri(path: str) -> str:

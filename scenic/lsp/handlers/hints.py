@@ -1,7 +1,8 @@
-"""What editors show between the lines: inlay hints, lenses, links."""
+"""What editors show beside the text: inlay hints, lenses, links, colours."""
 
 from typing import Any, Final
 
+from scenic.ide.colors import colors, presentation
 from scenic.ide.inlay_hints import HintKind, hints
 from scenic.ide.lenses import lenses
 from scenic.ide.links import links
@@ -52,6 +53,7 @@ def _lenses(session: Session, params: Any) -> Json:
     return [
         {
             "range": document.lines.to_range(lens.span),
+            "command": _command(document.uri, lens.scenario),
             "data": {"uri": document.uri, "scenario": lens.scenario},
         }
         for lens in lenses(document.snapshot)
@@ -63,8 +65,13 @@ def _resolve_lens(_session: Session, params: Any) -> Json:
     if not isinstance(uri, str):
         return params
     scenario = reading.lookup(params, "data", "scenario")
-    options = {"scenario": scenario} if isinstance(scenario, str) else {}
-    return {**params, "command": {"title": "Sample a scene", "command": SAMPLE, "arguments": [uri, options]}}
+    return {**params, "command": _command(uri, scenario if isinstance(scenario, str) else None)}
+
+
+def _command(uri: str, scenario: str | None) -> Json:
+    title = "Sample a scene" if scenario is None else f"Sample a scene of {scenario}"
+    options = {} if scenario is None else {"scenario": scenario}
+    return {"title": title, "command": SAMPLE, "arguments": [uri, options]}
 
 
 def _links(session: Session, params: Any) -> Json:
@@ -83,7 +90,25 @@ def _resolve_link(_session: Session, params: Any) -> Json:
     return params
 
 
+def _colors(session: Session, params: Any) -> Json:
+    document = session.document(reading.uri_of(params))
+    return [
+        {
+            "range": document.lines.to_range(each.span),
+            "color": {"red": each.red, "green": each.green, "blue": each.blue, "alpha": each.opacity},
+        }
+        for each in colors(document.snapshot)
+    ]
+
+
+def _presentations(_session: Session, params: Any) -> Json:
+    parts = [reading.number(params, "color", part) for part in ("red", "green", "blue", "alpha")]
+    return [{"label": presentation(*parts)}]
+
+
 REQUESTS: Final = {
+    "textDocument/documentColor": _colors,
+    "textDocument/colorPresentation": _presentations,
     "textDocument/inlayHint": _inlay_hints,
     "inlayHint/resolve": _resolve_hint,
     "textDocument/codeLens": _lenses,

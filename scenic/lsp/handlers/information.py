@@ -2,7 +2,7 @@
 
 from typing import Any, Final
 
-from scenic.ide.completion import CompletionKind, completions, document
+from scenic.ide.completion import CompletionKind, completions, document, must_follow
 from scenic.ide.hover import hover
 from scenic.ide.signatures import signature_help
 from scenic.lsp import reading
@@ -60,6 +60,10 @@ def _hover(session: Session, params: Any) -> Json:
 
 def _completion(session: Session, params: Any) -> Json:
     document, line, column = place_of(session, params)
+    if reading.lookup(params, "context", "triggerCharacter") == " " and not must_follow(
+        document.snapshot, line, column
+    ):
+        return {"isIncomplete": False, "items": []}
     found = completions(session.project_with(document), document.snapshot, line, column)
     snippets = session.client.can("textDocument", "completion", "completionItem", "snippetSupport")
     items = []

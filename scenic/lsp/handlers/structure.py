@@ -81,14 +81,14 @@ def _selection(session: Session, params: Any) -> Json:
 
 def _full(session: Session, params: Any) -> Json:
     document = session.document(reading.uri_of(params))
-    data = _encoded(document, semantic_tokens(document.snapshot))
+    data = _encoded(document, _tokens(session, document))
     return {"resultId": session.tokens.keep(document.uri, data), "data": data}
 
 
 def _delta(session: Session, params: Any) -> Json:
     document = session.document(reading.uri_of(params))
     before = session.tokens.known(document.uri, reading.text(params, "previousResultId"))
-    data = _encoded(document, semantic_tokens(document.snapshot))
+    data = _encoded(document, _tokens(session, document))
     name = session.tokens.keep(document.uri, data)
     if before is None:
         return {"resultId": name, "data": data}
@@ -112,11 +112,15 @@ def _range(session: Session, params: Any) -> Json:
     span = document.lines.from_range(*reading.range_of(params, "range"))
     tokens = [
         token
-        for token in semantic_tokens(document.snapshot)
+        for token in _tokens(session, document)
         if (token.line, token.end_column) > (span.line, span.column)
         and (token.line, token.column) < (span.end_line, span.end_column)
     ]
     return {"data": _encoded(document, tokens)}
+
+
+def _tokens(session: Session, document: Document) -> Sequence[SemanticToken]:
+    return semantic_tokens(document.snapshot, session.project_with(document), stamp=session.generation)
 
 
 def _encoded(document: Document, tokens: Sequence[SemanticToken]) -> list[int]:

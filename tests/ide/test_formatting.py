@@ -1,0 +1,189 @@
+"""The usual style: what is written means the same, keeps its comments, and formats to itself."""
+
+import ast
+import random
+from pathlib import Path
+
+import pytest
+
+from scenic.compiler.generated import WORDS
+from scenic.compiler.lexer import lex
+from scenic.compiler.parser import parse
+from scenic.ide.formatting import format_text, formatting
+from scenic.ide.snapshot import Snapshot
+from scenic.language.source import Source
+
+ROOT = Path(__file__).parents[2]
+TEXTS = [
+    text
+    for file in sorted([*ROOT.glob("tests/data/**/*.scenic"), *ROOT.glob("examples/*.scenic")])
+    if not parse(text := Source(file.read_text(encoding="utf-8"), "").text).diagnostics
+]
+
+UGLY = """\
+# head
+import  os
+from x  import (a,
+     b)   # tail
+
+
+param   time=3   # t
+class Foo( Object ):
+  '''doc
+     x'''
+  # inner comment
+  width :  3
+  def f(self,a=1):
+       return (a)+1   # c
+
+  # end of class
+x=new Foo at (1 ,2),
+      facing 3 deg   # trailing
+# about the behavior
+behavior B( a ) :
+      precondition:  a>1
+      try: do  x ;  wait
+      interrupt when  a  : take  y
+      except  E as e :
+          pass
+
+
+
+      take y
+      # end of the behavior
+if True: y = 1
+elif  z : y=3
+else:
+    y=2
+z = [1,
+   2, # inner
+   3]
+match a :
+    case 1 : require(x>1)
+    case _: pass
+@dec
+def g(): return 'a'
+# last
+"""
+PRETTY = '''\
+# head
+import os
+from x  import (a,
+     b)   # tail
+
+
+param time = 3  # t
+
+
+class Foo(Object):
+    """doc
+     x"""
+    # inner comment
+    width: 3
+
+    def f(self, a=1):
+        return a + 1  # c
+
+    # end of class
+
+
+x=new Foo at (1 ,2),
+      facing 3 deg   # trailing
+
+
+# about the behavior
+behavior B(a):
+    precondition: a > 1
+    try:
+        do x
+        wait
+    interrupt when a:
+        take y
+    except E as e:
+        pass
+
+    take y
+    # end of the behavior
+
+
+if True:
+    y = 1
+elif z:
+    y = 3
+else:
+    y = 2
+z = [1,
+   2, # inner
+   3]
+match a:
+    case 1:
+        require x > 1
+    case _:
+        pass
+
+
+@dec
+def g():
+    return "a"
+# last
+'''
+
+
+def check(text: str, formatted: str | None) -> None:
+    assert formatted is not None
+    before, after = parse(text), parse(formatted)
+    assert not after.diagnostics
+    assert ast.dump(before.tree) == ast.dump(after.tree)
+    comments = [[each[2].rstrip() for each in lex(which, WORDS).comments] for which in (text, formatted)]
+    assert comments[0] == comments[1]
+    assert format_text(formatted) == formatted
+
+
+def test_style() -> None:
+    formatted = format_text(UGLY.replace("'''", '"""'))
+    check(UGLY.replace("'''", '"""'), formatted)
+    assert formatted == PRETTY
+
+
+@pytest.mark.parametrize("index", range(len(TEXTS)))
+def test_programs(index: int) -> None:
+    check(TEXTS[index], format_text(TEXTS[index]))
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_bad_layout(seed: int) -> None:
+    """Programs whose blanks, blank lines and comments have been disturbed."""
+    chance = random.Random(seed)
+    lines = chance.choice(TEXTS).split("\n")
+    for _ in range(12):
+        at = chance.randrange(len(lines))
+        kind = chance.randrange(4)
+        if kind == 0:
+            lines.insert(at, chance.choice(["", "", "   ", "# comment", "    # deeper", "        # deepest"]))
+        elif kind == 1 and lines[at].strip() and lines[at][-1] not in "\\'\"":
+            lines[at] += chance.choice(["   ", "#c", "   # c"])
+        elif kind == 2:
+            lines[at] = lines[at].replace(" = ", "=").replace(", ", "  ,")
+        else:
+            lines[at] = lines[at].replace("(", "( ", 1)
+    text = "\n".join(lines)
+    if not parse(text).diagnostics:
+        check(text, format_text(text))
+
+
+@pytest.mark.parametrize("text", ["x = (\n", "x = 1\n  y = 2\n", "ego = new Object at\n"])
+def test_mistakes_are_left_alone(text: str) -> None:
+    assert format_text(text) is None
+    assert formatting(Snapshot(text, "f")) == ()
+
+
+@pytest.mark.parametrize("text", ["", "\n", "\n\n\n", "# c", "   \n", "x = 1", "x = 1\n\n\n"])
+def test_small_texts(text: str) -> None:
+    check(text, format_text(text))
+
+
+def test_only_what_is_asked_for() -> None:
+    snapshot = Snapshot("x=1\ny = 2\nz=3\n", "f")
+    assert [edit.text for edit in formatting(snapshot)] == ["x = 1\n", "z = 3\n"]
+    assert [edit.text for edit in formatting(snapshot, (2, 3))] == ["z = 3\n"]
+    assert formatting(snapshot, (2, 2)) == ()
