@@ -1,6 +1,11 @@
 """Options of the whole test suite."""
 
+import os
+
 import pytest
+
+# Tests compute everything themselves, and leave nothing behind in the home of whoever runs them.
+os.environ["SCENIC_CACHE"] = "off"
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

@@ -11,6 +11,7 @@ import numpy.typing as npt
 from scenic.language.errors import MeshError
 from scenic.runtime.geometry import topology
 from scenic.runtime.geometry.poses import Floats, Indices
+from scenic.runtime.geometry.store import Arrays, kept
 
 _MOST_HEIGHTS: Final = 1 << 21
 """Heights of vertices above faces that are looked at to see that a solid is convex without its hull."""
@@ -142,15 +143,21 @@ class Mesh:
             planes = np.unique(np.round(planes, 12), axis=0)
             used = np.unique(self.faces)
             return Hull(_read_only(self.vertices[used]), _read_only(planes), self.volume)
+        found = kept("hull 1", (self.vertices,), self._computed_hull)
+        return Hull(_read_only(found["vertices"]), _read_only(found["planes"]), float(found["volume"]))
+
+    def _computed_hull(self) -> Arrays:
         from scipy.spatial import ConvexHull
 
         # Interior vertices of flat faces are no corners; qhull's default joins such faces, so that no sliver
         # gives a plane of its own.
         found = ConvexHull(self.vertices)
         planes = np.unique(np.round(found.equations, 12), axis=0)
-        return Hull(
-            _read_only(self.vertices[np.sort(found.vertices)]), _read_only(planes), float(found.volume)
-        )
+        return {
+            "vertices": self.vertices[np.sort(found.vertices)],
+            "planes": planes,
+            "volume": np.array(found.volume),
+        }
 
     @cached_property
     def is_box(self) -> bool:

@@ -14,6 +14,7 @@ from scenic.runtime.geometry.cells import touched_cells
 from scenic.runtime.geometry.inside import contains_lattice, contains_points
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.poses import Booleans, Floats
+from scenic.runtime.geometry.store import Arrays, kept
 
 RESOLUTION: Final = 64
 
@@ -53,6 +54,19 @@ def voxels(mesh: Mesh) -> Voxels:
     """The cells of a closed unit mesh. Get them as ``mesh.derived(voxels)``."""
     if mesh.is_box:
         return _box_voxels(mesh)
+    found = kept(f"voxels 1, {RESOLUTION}", (mesh.vertices, mesh.faces), lambda: _computed(mesh))
+    solid, occupied = (_unpacked(found[name]) for name in ("solid", "occupied"))
+    filled = np.zeros((RESOLUTION + 1,) * 3, dtype=np.int32)
+    filled[1:, 1:, 1:] = occupied.cumsum(axis=0).cumsum(axis=1).cumsum(axis=2)
+    return Voxels(solid, filled, found["cover"], found["probes"])
+
+
+def _unpacked(bits: npt.NDArray[np.uint8]) -> Booleans:
+    return np.unpackbits(bits).view(np.bool_).reshape((RESOLUTION,) * 3)
+
+
+def _computed(mesh: Mesh) -> Arrays:
+    """What `voxels` are made of, the cells as bits."""
     touched = np.zeros(RESOLUTION**3, dtype=np.bool_)
     for _, cell in touched_cells(mesh.triangles, RESOLUTION):
         touched[cell] = True
@@ -60,10 +74,12 @@ def voxels(mesh: Mesh) -> Voxels:
     axis = (np.arange(RESOLUTION) + 0.5) / RESOLUTION - 0.5
     inside = contains_lattice(mesh, axis, axis, axis)
     solid = inside & ~cut
-    filled = np.zeros((RESOLUTION + 1,) * 3, dtype=np.int32)
-    filled[1:, 1:, 1:] = (solid | cut).cumsum(axis=0).cumsum(axis=1).cumsum(axis=2)
-    interior = _interior(mesh, inside, solid, axis)
-    return Voxels(solid, filled, _cover(solid | cut), _probes(mesh, interior))
+    return {
+        "solid": np.packbits(solid),
+        "occupied": np.packbits(solid | cut),
+        "cover": _cover(solid | cut),
+        "probes": _probes(mesh, _interior(mesh, inside, solid, axis)),
+    }
 
 
 def _box_voxels(mesh: Mesh) -> Voxels:

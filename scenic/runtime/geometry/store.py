@@ -1,0 +1,115 @@
+"""What is dear to compute, kept on disk from one run to the next: arrays by the content that they follow from.
+
+The store only saves time: where it cannot be read or written, things are computed. Files hold arrays alone (nothing
+is ever unpickled), appear whole or not at all, so that any number of processes may share a store, and the ones used
+longest ago go first when it grows beyond `MOST_BYTES`.
+
+Two environment variables govern it: ``SCENIC_CACHE=off`` turns it off; ``SCENIC_CACHE_DIR`` names its folder, by default
+``scenic`` in ``XDG_CACHE_HOME`` or ``~/.cache``.
+"""
+
+import contextlib
+import hashlib
+import os
+import tempfile
+import zipfile
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any, Final, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+Arrays: TypeAlias = Mapping[str, npt.NDArray[Any]]
+
+MOST_BYTES: Final = 256 << 20
+"""Size that the store may grow to."""
+
+_KEPT: Final = 0.75
+"""Part of the size that is left after a clearance."""
+
+
+def kept(kind: str, content: Sequence[npt.NDArray[Any]], compute: Callable[[], Arrays]) -> Arrays:
+    """``compute()``, or what an earlier run got from it.
+
+    Args:
+        kind: a name and a version of what is computed; a new version whenever the result changes.
+        content: all that it is computed from.
+        compute: returns named arrays, none of them of objects.
+
+    """
+    folder = _folder()
+    if folder is None:
+        return compute()
+    path = folder / f"{_key(kind, content)}.npz"
+    found = _read(path)
+    if found is None:
+        found = compute()
+        _write(path, found)
+    return found
+
+
+def _folder() -> Path | None:
+    if os.environ.get("SCENIC_CACHE", "").lower() in ("off", "0", "no", "false"):
+        return None
+    chosen = os.environ.get("SCENIC_CACHE_DIR")
+    if chosen:
+        return Path(chosen)
+    base = os.environ.get("XDG_CACHE_HOME")
+    try:
+        return Path(base) / "scenic" if base else Path.home() / ".cache" / "scenic"
+    except RuntimeError:  # there is no home
+        return None
+
+
+def _key(kind: str, content: Sequence[npt.NDArray[Any]]) -> str:
+    digest = hashlib.sha256(kind.encode())
+    for array in content:
+        digest.update(f"\0{array.dtype.str}{array.shape}\0".encode())
+        digest.update(array.tobytes())
+    return digest.hexdigest()
+
+
+def _read(path: Path) -> Arrays | None:
+    try:
+        with path.open("rb") as stream, np.load(stream, allow_pickle=False) as arrays:
+            found = {name: arrays[name] for name in arrays.files}
+    except (OSError, ValueError, EOFError, KeyError, zipfile.BadZipFile):
+        # Not there, or no file of ours: what is computed takes its place.
+        return None
+    with contextlib.suppress(OSError):
+        os.utime(path)
+    return found
+
+
+def _write(path: Path, arrays: Arrays) -> None:
+    contents: dict[str, Any] = dict(arrays)  # NumPy's types take no others for keywords
+    with contextlib.suppress(OSError):
+        path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+        with tempfile.NamedTemporaryFile(dir=path.parent, prefix=".", suffix=".part", delete=False) as part:
+            try:
+                np.savez(part, allow_pickle=False, **contents)
+                part.close()
+                os.replace(part.name, path)
+            except BaseException:
+                os.unlink(part.name)
+                raise
+        _clear(path.parent)
+
+
+def _clear(folder: Path) -> None:
+    """Remove the files used longest ago if there are too many bytes."""
+    files = []
+    for path in folder.glob("*.npz"):
+        with contextlib.suppress(OSError):  # another process may have removed it
+            status = path.stat()
+            files.append((status.st_mtime_ns, status.st_size, path))
+    total = sum(size for _, size, _ in files)
+    if total <= MOST_BYTES:
+        return
+    for _, size, path in sorted(files):
+        if total <= _KEPT * MOST_BYTES:
+            return
+        with contextlib.suppress(OSError):
+            path.unlink()
+        total -= size

@@ -1,0 +1,144 @@
+import multiprocessing
+import os
+import pickle
+
+import numpy as np
+import pytest
+
+from scenic.runtime.geometry import store
+from scenic.runtime.geometry.mesh import Mesh
+from scenic.runtime.geometry.store import kept
+from scenic.runtime.geometry.voxels import voxels
+
+from .samples import bumpy, table
+
+CONTENT = (np.arange(4.0),)
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    monkeypatch.setenv("SCENIC_CACHE", "")
+    monkeypatch.setenv("SCENIC_CACHE_DIR", str(tmp_path / "store"))
+    return tmp_path / "store"
+
+
+class Counted:
+    """A computation that counts how often it is made."""
+
+    def __init__(self, size: int = 3) -> None:
+        self.calls = 0
+        self.size = size
+
+    def __call__(self):
+        self.calls += 1
+        return {"a": np.arange(self.size), "b": np.array(0.5)}
+
+
+def test_what_is_kept_is_not_computed_again(folder):
+    compute = Counted()
+    for _ in range(3):
+        found = kept("x 1", CONTENT, compute)
+        np.testing.assert_array_equal(found["a"], [0, 1, 2])
+        assert float(found["b"]) == 0.5
+    assert compute.calls == 1
+    for kind, content in (("x 2", CONTENT), ("x 1", (np.arange(5.0),)), ("x 1", (np.arange(4),))):
+        kept(kind, content, compute)
+    assert compute.calls == 4
+    assert len(list(folder.iterdir())) == 4
+
+
+def test_the_store_can_be_turned_off(folder, monkeypatch):
+    monkeypatch.setenv("SCENIC_CACHE", "off")
+    compute = Counted()
+    kept("x 1", CONTENT, compute)
+    kept("x 1", CONTENT, compute)
+    assert compute.calls == 2
+    assert not folder.exists()
+
+
+def test_the_folder_follows_the_environment(tmp_path, monkeypatch):
+    monkeypatch.setenv("SCENIC_CACHE", "on")
+    monkeypatch.delenv("SCENIC_CACHE_DIR", raising=False)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    kept("x 1", CONTENT, Counted())
+    assert len(list((tmp_path / "scenic").iterdir())) == 1
+
+
+@pytest.mark.parametrize("damage", [b"", b"PK\x03\x04 not a zip", pickle.dumps({"a": 1})])
+def test_damaged_files_are_made_anew(folder, damage):
+    compute = Counted()
+    kept("x 1", CONTENT, compute)
+    (path,) = folder.iterdir()
+    path.write_bytes(damage)
+    np.testing.assert_array_equal(kept("x 1", CONTENT, compute)["a"], [0, 1, 2])
+    assert compute.calls == 2
+    kept("x 1", CONTENT, compute)
+    assert compute.calls == 2
+
+
+def test_objects_are_never_unpickled(folder):
+    kept("x 1", CONTENT, Counted())
+    (path,) = folder.iterdir()
+    np.savez(path, a=np.array([{"evil": True}], dtype=object))
+    compute = Counted()
+    np.testing.assert_array_equal(kept("x 1", CONTENT, compute)["a"], [0, 1, 2])
+    assert compute.calls == 1
+
+
+def test_a_store_that_cannot_be_written_does_no_harm(tmp_path, monkeypatch):
+    monkeypatch.setenv("SCENIC_CACHE", "")
+    (tmp_path / "file").write_text("in the way")
+    monkeypatch.setenv("SCENIC_CACHE_DIR", str(tmp_path / "file"))
+    np.testing.assert_array_equal(kept("x 1", CONTENT, Counted())["a"], [0, 1, 2])
+
+
+def test_the_oldest_go_first(folder, monkeypatch):
+    monkeypatch.setattr(store, "MOST_BYTES", 50_000)
+    compute = Counted(1000)  # some 8.5 kB each
+    for number in range(5):
+        kept(f"x {number}", CONTENT, compute)
+        for path in folder.iterdir():
+            status = path.stat()
+            os.utime(path, ns=(status.st_atime_ns, status.st_mtime_ns - 10**9))
+    kept("x 0", CONTENT, compute)  # used again, so not the oldest
+    for number in range(5, 8):
+        kept(f"x {number}", CONTENT, compute)
+    assert compute.calls == 8
+    assert sum(path.stat().st_size for path in folder.iterdir()) <= 50_000
+    kept("x 0", CONTENT, compute)
+    assert compute.calls == 8
+    kept("x 1", CONTENT, compute)
+    assert compute.calls == 9
+
+
+def _use(folder: str, rounds: int) -> bool:
+    os.environ.update(SCENIC_CACHE="", SCENIC_CACHE_DIR=folder)
+    store.MOST_BYTES = 60_000
+    rng = np.random.default_rng(os.getpid())
+    for number in rng.integers(0, 12, rounds).tolist():
+        found = kept(f"x {number}", CONTENT, lambda number=number: {"a": np.full(1000, number)})
+        if not (found["a"] == number).all() or len(found["a"]) != 1000:
+            return False
+    return True
+
+
+def test_processes_share_a_store(folder):
+    with multiprocessing.get_context("spawn").Pool(3) as pool:
+        assert all(pool.starmap(_use, [(str(folder), 150)] * 3))
+    assert not list(folder.glob(".*"))
+
+
+def test_meshes_are_the_same_with_a_store(folder, monkeypatch):
+    def facts(mesh: Mesh):
+        known, hull = voxels(mesh), mesh.hull
+        return [known.solid, known.filled, known.cover, known.probes, hull.vertices, hull.planes, hull.volume]
+
+    for mesh in (table(), bumpy(2)):
+        first, again = facts(Mesh(mesh.vertices, mesh.faces)), facts(Mesh(mesh.vertices, mesh.faces))
+        monkeypatch.setenv("SCENIC_CACHE", "off")
+        without = facts(Mesh(mesh.vertices, mesh.faces))
+        monkeypatch.setenv("SCENIC_CACHE", "")
+        for one, two, three in zip(first, again, without, strict=True):
+            np.testing.assert_array_equal(one, two)
+            np.testing.assert_array_equal(one, three)
+    assert len(list(folder.iterdir())) == 4
