@@ -101,3 +101,27 @@ def test_the_solver_keeps_ends_that_are_open_or_closed() -> None:
     assert verdict(make("less", x, 0)) == [["0"]]
     assert verdict(make("greater", make("absolute", make("subtract", x, 0.5)), 0.5)) == [["0"]]
     assert verdict(make("greater or equal", make("absolute", make("subtract", x, 0.5)), 0.5)) == []
+
+
+@pytest.mark.parametrize(
+    ("region", "require", "lost", "share"),
+    [
+        ("CircularRegion((0, 0), 10)", "q.x > 6", 0.2, 0.1423),
+        ("CircularRegion((0, 0), 10)", "q.y < -8", 0.6, 0.0520),
+        ("SpheroidRegion((20, 20, 20))", "q.z > 9", 0.4, 0.00725),
+        ("SpheroidRegion((20, 20, 20))", "q.x < -9", 0.4, 0.00725),
+    ],
+)
+def test_draws_from_regions_are_narrowed(region: str, require: str, lost: float, share: float) -> None:
+    """A point so far from the centre needs a draw of the radius beyond some number; no more may be left out than that."""
+    domain = scenario(f"q = new Point in {region}\nrequire {require}\nparam q = q\n").domain
+    assert share <= domain.volume <= 1 - lost + 1e-6
+
+
+def test_draws_from_boxes_are_narrowed_to_what_is_asked() -> None:
+    text = "q = new Point in BoxRegion((4, 2, 6), position=(1, 1, 1))\nrequire q.x > 2\nrequire q.z < -1\nparam q = q\n"
+    assert scenario(text).domain.volume == pytest.approx(1 / 4 * 1 / 6, rel=1e-6)
+    flat = (
+        "q = new Point in RectangularRegion((1, 1), 0, 4, 2)\nrequire q.x > 2\nrequire q.y < 1\nparam q = q\n"
+    )
+    assert scenario(flat).domain.volume == pytest.approx(1 / 4 * 1 / 2, rel=1e-6)
