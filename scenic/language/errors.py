@@ -228,6 +228,10 @@ class DivergenceError(Exception):
     """A replayed simulation goes another way than the one that was recorded."""
 
 
+class StuckBehaviorError(Exception):
+    """Code of a program has run for too long without taking an action or waiting."""
+
+
 class StuckBehaviorWarning(UserWarning):
     """Code of a program has run for long without taking an action or waiting."""
 

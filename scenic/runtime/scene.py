@@ -11,7 +11,7 @@ from scenic.graph.node import Node
 from scenic.runtime.dumping import program_of
 from scenic.runtime.dynamics.declarations import Copier
 from scenic.runtime.objects import Object
-from scenic.runtime.program import Program
+from scenic.runtime.program import Program, Requirement
 from scenic.runtime.regions.base import Workspace
 from scenic.runtime.samples import Sample
 from scenic.runtime.sampling.engine import Accepted
@@ -59,6 +59,15 @@ class Scene:
     def program(self) -> Program:
         """What the scene is a sample of."""
         return self._program
+
+    def enforces(self, requirement: Requirement) -> bool:
+        """Whether a requirement of the program is among those that the scene has to meet: soft ones may not be."""
+        if requirement.probability == 1:
+            return True
+        soft = [item for item in self._program.requirements if item.probability < 1 and not _always(item)]
+        if requirement not in soft:
+            return True
+        return self.accepted.is_active(soft.index(requirement), requirement.probability)
 
     def within(self, copies: Copier) -> "Scene":
         """The same scene over other copies of its values, as a simulation changes them."""
@@ -116,3 +125,8 @@ class Scene:
 
     def __repr__(self) -> str:
         return f"<Scene {self.k} of seed {self.seed}: {len(self.objects)} objects>"
+
+
+def _always(requirement: Requirement) -> bool:
+    """Whether a requirement needs no check, since it holds in every scene."""
+    return requirement.condition.is_constant and bool(requirement.condition.value)

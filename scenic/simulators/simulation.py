@@ -6,15 +6,25 @@ from contextlib import ExitStack
 from typing import Any
 
 from scenic.graph.kinds import Kind
-from scenic.language.errors import InternalError, InvalidScenarioError, Located
+from scenic.language.diagnostics import Diagnostic
+from scenic.language.errors import (
+    GuardViolation,
+    InternalError,
+    InvalidScenarioError,
+    Located,
+    RejectSimulationException,
+    annotate,
+)
 from scenic.runtime.dynamics.copies import Copies
 from scenic.runtime.dynamics.run import Run
 from scenic.runtime.properties import normalised
 from scenic.runtime.randomness import preserved, restore, seed_globals, states
+from scenic.runtime.samples import PRELUDE
 from scenic.runtime.scene import Scene
 from scenic.runtime.values import describe, kind_of
 from scenic.simulators.replays import Replay, Tape, fresh_key
 from scenic.simulators.results import SimulationResult, TerminationType
+from scenic.simulators.watching import Watch
 
 __all__ = ["Simulation"]
 
@@ -39,6 +49,8 @@ class Simulation(ABC):
         verbosity: what to print, 3 for actions.
         key: decides all random draws; drawn from Python's ``random`` if ``None``.
         robustness: whether to compute by how much requirements hold.
+        stuck_after: seconds that the program's code may run in one step before `StuckBehaviorWarning` names its line.
+        stuck_is_error: raise `StuckBehaviorError` then.
         deferred: do not run now: the caller calls `begin`, then `advanceOnce` until it returns false.
 
     Attributes:
@@ -68,6 +80,8 @@ class Simulation(ABC):
         verbosity: int = 0,
         key: bytes | None = None,
         robustness: bool = False,
+        stuck_after: float = 10.0,
+        stuck_is_error: bool = False,
         deferred: bool = False,
     ) -> None:
         self.result: SimulationResult | None = None
@@ -112,6 +126,7 @@ class Simulation(ABC):
         )
         self._tape.draws = self._run.draws
         self._isolated = _Isolated(self._run)
+        self._watch = Watch(stuck_after, self._where_now, is_error=stuck_is_error)
         self._loop = self._whole()
         if not deferred:
             self.runToEnd()
@@ -145,8 +160,14 @@ class Simulation(ABC):
             self._check_objects()
             self.updateObjects(first=True)
             yield True
-            for _ in run.steps(self._max_steps):
+            steps = run.steps(self._max_steps)
+            while True:
+                with self._watch:
+                    going = next(steps, self) is not self
+                if not going:
+                    break
                 yield True
+                self.advance()
             run.finish()
             assert run.ending is not None
             self._restore()
@@ -168,6 +189,11 @@ class Simulation(ABC):
                 self._restore()
             self._destroy_once()
 
+    def _where_now(self, frame: Any) -> str:
+        """The place of the program's code that a frame runs."""
+        place = self._run.context.locator(frame)
+        return "its code" if place is None else f"line {place.line}"
+
     def _destroy_once(self) -> None:
         if not self._destroyed:
             self._destroyed = True
@@ -175,13 +201,27 @@ class Simulation(ABC):
 
     def _say_where(self, error: Exception) -> None:
         """Give an exception of the program its place."""
-        place = None if error.__traceback__ is None else self._run.context.place_of(error.__traceback__)
-        if place is None:
-            return
+        traceback = error.__traceback__
+        place = None if traceback is None else self._run.context.place_of(traceback)
+        filename = None
+        while traceback is not None:
+            if PRELUDE in traceback.tb_frame.f_globals:
+                filename = traceback.tb_frame.f_code.co_filename
+            traceback = traceback.tb_next
         if isinstance(error, Located):
             error.span = error.span or place
-        elif not getattr(error, "__notes__", None):
-            error.add_note(f"in the program, line {place.line}")
+            error.filename = error.filename or filename
+        elif place is not None and not isinstance(error, RejectSimulationException | GuardViolation):
+            found = Diagnostic(
+                "SC400",
+                f"{type(error).__name__}: {error}",
+                place,
+                filename=filename,
+                help="the program raised this exception during a simulation",
+            )
+            annotate(
+                error, found, f"{filename}:{place.line}: raised at step {self.currentTime} of a simulation"
+            )
 
     def _restore(self) -> None:
         """Put the scene's own objects in the place of the copies that the simulation has changed."""

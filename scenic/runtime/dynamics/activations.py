@@ -134,7 +134,7 @@ class Activation:
     def _check(self, guard: Guard, violation: type[GuardViolation]) -> None:
         own = (self.instance, self.agent) if self.instance._kind == "behavior" else (self.instance,)
         try:
-            with self.run.condition():
+            with self.run.guard():
                 holds = bool(guard(*own))
         except RejectionException:
             holds = False

@@ -52,7 +52,7 @@ class Invocable:
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
         context = current.get()
-        if context is not None and context.evaluating:
+        if context is not None and (context.evaluating or getattr(context, "guarding", False)):
             raise InvalidScenarioError(
                 f"a {self._kind} cannot be created in a condition",
                 span=here(),

@@ -22,6 +22,7 @@ __all__ = ["Ending", "Run", "RunContext", "Simulated"]
 class Simulated(Protocol):
     """What a run needs of the simulation that it is part of (`scenic.simulators.simulation.Simulation`)."""
 
+    scene: Any
     name: str
     timestep: float
     currentTime: int
@@ -47,9 +48,6 @@ class Simulated(Protocol):
     def act(self, actions: Mapping[Any, tuple[Any, ...]]) -> None:
         """Log and execute the actions of a step."""
 
-    def advance(self) -> None:
-        """One step of the simulator, after which properties are read back."""
-
 
 class Ending:
     """Why a simulation ends: a member of ``TerminationType`` by name, and a text."""
@@ -67,6 +65,8 @@ class RunContext(Context):
     def __init__(self, run: "Run", locate: Locator, name: Namer, *, mode_2d: bool) -> None:
         super().__init__(locate=locate, name=name, generator=run.draws, mode_2d=mode_2d)  # type: ignore[arg-type] # it has `random`
         self.run = run
+        self.guarding = False
+        """Whether a guard, or the condition of an interrupt or ``until``, is being evaluated."""
 
     @property
     def present(self) -> Sequence[Any]:
@@ -159,7 +159,7 @@ class Run:
 
     @contextmanager
     def condition(self) -> Iterator[None]:
-        """A condition is evaluated within this."""
+        """The condition of a requirement is evaluated within this, which draws and creates nothing."""
         context = self.context
         before, context.evaluating = context.evaluating, True
         try:
@@ -167,10 +167,20 @@ class Run:
         finally:
             context.evaluating = before
 
+    @contextmanager
+    def guard(self) -> Iterator[None]:
+        """A guard is evaluated within this, which creates nothing."""
+        context = self.context
+        before, context.guarding = context.guarding, True
+        try:
+            yield
+        finally:
+            context.guarding = before
+
     def holds(self, condition: Callable[[], Any]) -> bool:
         """Whether a condition of an interrupt holds; one that reads a variable that is not set yet does not."""
         context = self.context
-        before, context.evaluating = context.evaluating, True
+        before, context.guarding = context.guarding, True
         try:
             return bool(condition())
         except (AttributeError, NameError) as error:
@@ -180,7 +190,7 @@ class Run:
                 raise
             return False
         finally:
-            context.evaluating = before
+            context.guarding = before
 
     def activation(self, target: ModularScenario, parent: ScenarioActivation) -> ScenarioActivation:
         """A scenario, ready to be started by another one."""
@@ -236,6 +246,9 @@ class Run:
         top.objects = list(self.simulation.objects)
         for number, obj in enumerate(top.objects):
             self._numbers[id(obj)] = number
+            if isinstance(obj.behavior, type):
+                # A random choice among classes of behaviors.
+                obj.__dict__["behavior"] = obj.behavior()
         top.agents = [obj for obj in top.objects if obj.behavior is not None]
         if program.top is not None:
             top.instance = copies.value(program.top)
@@ -245,12 +258,9 @@ class Run:
             top._invariants = [copies.value(guard) for guard in definition.invariants]
         top.check_all()
         for requirement in program.requirements:
-            if requirement.formula is not None and self._is_active(requirement):
+            if requirement.formula is not None and self.simulation.scene.enforces(requirement):
                 top.require(requirement.formula.within(copies))
         top.go()
-
-    def _is_active(self, requirement: Any) -> bool:
-        return bool(requirement.probability == 1)
 
     def end(self, reason: str) -> None:
         """A compose block asks for the end of the simulation."""
@@ -261,7 +271,7 @@ class Run:
             self.ending = Ending(kind, reason)
 
     def steps(self, max_steps: int | None) -> Iterator[None]:
-        """The steps of the simulation; at its end ``ending`` says why. Yields before each step of the simulator."""
+        """The steps of the simulation; at its end ``ending`` says why. Yields where the simulator is to advance."""
         simulation, top = self.simulation, self.top
         while True:
             # 1. Scenarios
@@ -285,10 +295,9 @@ class Run:
             actions = self._behaviors()
             if actions is None:
                 return
-            # 7. to 9. Actions, the simulator's step, reading back
+            # 7. Actions; whoever runs this then lets the simulator advance and reads back
             simulation.act(actions)
             yield
-            simulation.advance()
 
     def _record(self, step: int) -> None:
         records = self.simulation.records

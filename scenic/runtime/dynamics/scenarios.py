@@ -150,7 +150,7 @@ class ScenarioActivation:
 
     def _check(self, guard: Guard, violation: type[GuardViolation]) -> None:
         try:
-            with self.run.within(self), self.run.condition():
+            with self.run.within(self), self.run.guard():
                 holds = bool(guard(self.instance))
         except RejectionException:
             holds = False

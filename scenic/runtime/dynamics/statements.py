@@ -57,7 +57,7 @@ def _stop_test(owner: Running, limit: Any, unit: str | None) -> Callable[[], boo
     if unit == "until":
 
         def holds() -> bool:
-            with run.condition():
+            with run.guard():
                 return bool(limit())
 
         return holds

@@ -76,6 +76,18 @@ class Accepted:
     lane: int
     again: Callable[[], Batch]
 
+    def is_active(self, place: int, probability: float) -> bool:
+        """Whether a soft requirement, number ``place`` among those that are checked, had to hold in the scene."""
+        seeds = np.array([seed_word(self.task.seed)], dtype=np.uint64)
+        keys = scene_keys(seeds, np.array([self.task.k], dtype=np.int64))
+        where = np.array([_soft_address(place)], dtype=np.uint64)
+        return bool(Counter(keys).uniforms(where)[0, 0] < probability)
+
+
+def _soft_address(place: int) -> int:
+    """The address of the draw that decides whether a soft requirement has to hold."""
+    return address("soft requirement", place)
+
 
 class CandidateError(Exception):
     """An error in an attempt that no requirement rejects.
@@ -124,7 +136,7 @@ class Engine:
         self._soft = [index for index, check in enumerate(plan.checks) if check.probability < 1]
         self._chances = np.array([plan.checks[index].probability for index in self._soft])
         self._soft_addresses = np.array(
-            [address("soft requirement", place) for place in range(len(self._soft))], dtype=np.uint64
+            [_soft_address(place) for place in range(len(self._soft))], dtype=np.uint64
         )
 
     def scenes(

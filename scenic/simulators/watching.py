@@ -1,0 +1,69 @@
+"""Notices code of a program that runs on and on without waiting, and names its line."""
+
+import signal
+import sys
+import threading
+import warnings
+from collections.abc import Callable
+from types import FrameType
+from typing import Any
+
+from scenic.language.errors import StuckBehaviorError, StuckBehaviorWarning
+
+__all__ = ["Watch"]
+
+
+class Watch:
+    """Within this the program's code runs for one step.
+
+    In the main thread of a system with interval timers a signal interrupts the code; elsewhere a thread only tells of it.
+
+    Args:
+        seconds: how long it may take.
+        place: what line a frame runs, in words.
+        is_error: raise `StuckBehaviorError` instead of warning; only where a signal can interrupt the code.
+
+    """
+
+    def __init__(self, seconds: float, place: Callable[[FrameType], str], *, is_error: bool) -> None:
+        self._seconds = seconds
+        self._place = place
+        self._is_error = is_error
+        self._before: Any = None
+        self._timer: threading.Timer | None = None
+
+    def __enter__(self) -> None:
+        if not self._seconds:
+            return
+        main = threading.current_thread() is threading.main_thread()
+        if main and hasattr(signal, "setitimer") and signal.getitimer(signal.ITIMER_REAL)[0] == 0:
+            self._before = signal.signal(signal.SIGALRM, self._alarm)
+            signal.setitimer(signal.ITIMER_REAL, self._seconds)
+        elif not main:
+            self._timer = threading.Timer(self._seconds, self._tell, (threading.get_ident(),))
+            self._timer.daemon = True
+            self._timer.start()
+
+    def __exit__(self, *_details: object) -> None:
+        if self._timer is not None:
+            self._timer.cancel()
+            self._timer = None
+        if self._before is not None:
+            signal.setitimer(signal.ITIMER_REAL, 0)
+            signal.signal(signal.SIGALRM, self._before)
+            self._before = None
+
+    def _message(self, frame: FrameType | None) -> str:
+        where = "the program" if frame is None else self._place(frame)
+        return (
+            f"{where} has run for {self._seconds:g} s within one step of the simulation; "
+            "is there a loop without `take` or `wait`?"
+        )
+
+    def _alarm(self, _number: int, frame: FrameType | None) -> None:
+        if self._is_error:
+            raise StuckBehaviorError(self._message(frame))
+        warnings.warn(self._message(frame), StuckBehaviorWarning, stacklevel=2)
+
+    def _tell(self, thread: int) -> None:
+        warnings.warn(self._message(sys._current_frames().get(thread)), StuckBehaviorWarning, stacklevel=1)
