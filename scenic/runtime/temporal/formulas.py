@@ -83,25 +83,25 @@ def atoms(formula: Formula) -> list[Atom]:
 # Negation normal form: ("atom", index, wanted), (and/or, parts), ("next", weak, part), (until/release, left, right)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class _Literal:
     index: int
     wanted: bool
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class _Junction:
     conjunction: bool
     parts: "tuple[_Normal, ...]"
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class _Next:
     weak: bool
     part: "_Normal"
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class _Until:
     """``held until goal``; ``weak`` for its dual: the goal holds up to and including the state where ``held`` does."""
 
@@ -113,26 +113,45 @@ class _Until:
 _Normal: TypeAlias = "_Literal | _Junction | _Next | _Until"
 
 
-def _normal(formula: Formula, wanted: bool) -> _Normal:
-    """The formula, or its negation, with negations at atoms only."""
-    if isinstance(formula, Atom):
-        return _Literal(formula.index, wanted)
-    match formula.operator, formula.operands:
-        case "not", (operand,):
-            return _normal(operand, not wanted)
-        case "implies", (premise, conclusion):
-            return _Junction(not wanted, (_normal(premise, not wanted), _normal(conclusion, wanted)))
-        case ("and" | "or") as operator, operands:
-            return _Junction((operator == "and") is wanted, tuple(_normal(each, wanted) for each in operands))
-        case "next", (operand,):
-            return _Next(not wanted, _normal(operand, wanted))
-        case "eventually", (operand,):
-            return _Until(not wanted, None, _normal(operand, wanted))
-        case "always", (operand,):
-            return _Until(wanted, None, _normal(operand, wanted))
-        case "until", (held, goal):
-            return _Until(not wanted, _normal(held, wanted), _normal(goal, wanted))
-    raise AssertionError(formula)
+class _Pool:
+    """Makes normal forms, one object for each: so they are compared and hashed by identity."""
+
+    def __init__(self) -> None:
+        self._made: dict[tuple[object, ...], _Normal] = {}
+
+    def _one(self, made: _Normal, *key: object) -> _Normal:
+        return self._made.setdefault((type(made), *key), made)
+
+    def normal(self, formula: Formula, wanted: bool) -> _Normal:
+        """The formula, or its negation, with negations at atoms only."""
+        if isinstance(formula, Atom):
+            return self._one(_Literal(formula.index, wanted), formula.index, wanted)
+        match formula.operator, formula.operands:
+            case "not", (operand,):
+                return self.normal(operand, not wanted)
+            case "implies", (premise, conclusion):
+                return self._junction(
+                    not wanted, (self.normal(premise, not wanted), self.normal(conclusion, wanted))
+                )
+            case ("and" | "or") as operator, operands:
+                parts = tuple(self.normal(each, wanted) for each in operands)
+                return self._junction((operator == "and") is wanted, parts)
+            case "next", (operand,):
+                part = self.normal(operand, wanted)
+                return self._one(_Next(not wanted, part), not wanted, part)
+            case "eventually", (operand,):
+                return self._until(not wanted, None, self.normal(operand, wanted))
+            case "always", (operand,):
+                return self._until(wanted, None, self.normal(operand, wanted))
+            case "until", (held, goal):
+                return self._until(not wanted, self.normal(held, wanted), self.normal(goal, wanted))
+        raise AssertionError(formula)
+
+    def _junction(self, conjunction: bool, parts: tuple[_Normal, ...]) -> _Normal:
+        return self._one(_Junction(conjunction, parts), conjunction, parts)
+
+    def _until(self, weak: bool, held: "_Normal | None", goal: _Normal) -> _Normal:
+        return self._one(_Until(weak, held, goal), weak, held, goal)
 
 
 _Obligation: TypeAlias = tuple[bool, _Normal]
@@ -184,7 +203,7 @@ class Monitor:
     __slots__ = ("_left", "_start", "verdict")
 
     def __init__(self, formula: Formula) -> None:
-        self._start: _Normal | None = _normal(formula, True)
+        self._start: _Normal | None = _Pool().normal(formula, True)
         self._left: _Clauses = _FALSE
         self.verdict: Verdict | None = None
         """The verdict on the states so far; ``None`` before the first."""

@@ -1,0 +1,162 @@
+"""Monitors of temporal formulas, against a literal evaluator and against the package `rv-ltl`; and robustness."""
+
+import itertools
+import math
+import random
+from typing import Any
+
+import pytest
+import rv_ltl
+
+from fuzz.traces import Formula as Tree
+from fuzz.traces import verdict
+from scenic.runtime.temporal.formulas import Atom, Formula, Monitor, Operation, Verdict, is_temporal
+from scenic.runtime.temporal.robustness import robustness
+
+ATOMS = "abc"
+WORDS = ("not", "and", "or", "implies", "next", "always", "eventually", "until")
+UNARY = frozenset({"not", "next", "always", "eventually"})
+PACKAGE: dict[str, Any] = {
+    "not": rv_ltl.Not,
+    "and": rv_ltl.And,
+    "or": rv_ltl.Or,
+    "implies": rv_ltl.Implies,
+    "next": rv_ltl.Next,
+    "always": rv_ltl.Always,
+    "eventually": rv_ltl.Eventually,
+    "until": rv_ltl.Until,
+}
+
+
+def random_tree(rng: random.Random, depth: int) -> Tree:
+    if depth == 0 or rng.random() < 0.2:
+        return rng.choice(ATOMS)
+    word = rng.choice(WORDS)
+    return (word, *(random_tree(rng, depth - 1) for _ in range(1 if word in UNARY else 2)))
+
+
+def formula(tree: Tree) -> Formula:
+    if isinstance(tree, str):
+        return Atom(ATOMS.index(tree))
+    assert isinstance(tree, tuple)
+    return Operation(tree[0], tuple(map(formula, tree[1:])))
+
+
+def of_package(tree: Tree, trace: list[frozenset[str]]) -> bool:
+    atoms = {atom: rv_ltl.Atomic(identifier=atom) for atom in ATOMS}
+
+    def proposition(part: Tree) -> Any:
+        return PACKAGE[part[0]](*map(proposition, part[1:])) if isinstance(part, tuple) else atoms[str(part)]
+
+    monitor = proposition(tree).create_monitor()
+    for state in trace:
+        monitor.update({atom: atom in state for atom in ATOMS})
+    return bool(monitor.evaluate().value > 2)
+
+
+def pairs(count: int, seed: int) -> Any:
+    rng = random.Random(seed)
+    for _ in range(count):
+        tree = random_tree(rng, rng.randrange(1, 5))
+        yield tree, [frozenset(a for a in ATOMS if rng.random() < 0.6) for _ in range(rng.randrange(1, 7))]
+
+
+def follow(tree: Tree, trace: list[frozenset[str]]) -> list[Verdict]:
+    monitor = Monitor(formula(tree))
+    return [monitor.add(lambda index, state=state: ATOMS[index] in state) for state in trace]  # type: ignore[misc]
+
+
+def test_verdicts_are_those_of_the_literal_evaluator() -> None:
+    for tree, trace in pairs(20_000, 1):
+        verdicts = follow(tree, trace)
+        assert verdicts[-1].name == verdict(tree, trace).name, (tree, trace)
+        values = [[1.0 if atom in state else -1.0 for atom in ATOMS] for state in trace]
+        value = robustness(formula(tree), values)
+        assert (value > 0) is bool(verdicts[-1]), (tree, trace)
+
+
+@pytest.mark.slow
+def test_truth_is_that_of_the_package() -> None:
+    for tree, trace in pairs(20_000, 2):
+        assert bool(follow(tree, trace)[-1]) is of_package(tree, trace), (tree, trace)
+
+
+def test_truth_is_that_of_the_package_on_some() -> None:
+    for tree, trace in pairs(1_000, 3):
+        assert bool(follow(tree, trace)[-1]) is of_package(tree, trace), (tree, trace)
+
+
+def test_certain_verdicts_stay() -> None:
+    for tree, trace in pairs(2_000, 4):
+        verdicts = follow(tree, trace)
+        for before, after in itertools.pairwise(verdicts):
+            assert not before.is_certain or before is after
+
+
+def test_what_is_left_does_not_grow() -> None:
+    a, b, c = Atom(0), Atom(1), Atom(2)
+    inner = Operation("until", (Operation("eventually", (a,)), Operation("always", (b,))))
+    hard = Operation("always", (Operation("or", (inner, Operation("next", (Operation("next", (c,)),)))),))
+    monitor = Monitor(hard)
+    rng = random.Random(5)
+    sizes = []
+    for _ in range(400):
+        state = [rng.random() < 0.7 for _ in range(3)]
+        monitor.add(lambda index, state=state: state[index])  # type: ignore[misc]
+        sizes.append(sum(len(clause) for clause in monitor._left))
+    assert max(sizes[200:]) <= max(sizes[:200])
+
+
+def test_atoms_outside_temporal_operators_are_read_once() -> None:
+    asked: list[int] = []
+
+    def evaluate(index: int) -> bool:
+        asked.append(index)
+        return True
+
+    monitor = Monitor(Operation("and", (Atom(0), Operation("always", (Atom(1),)))))
+    for _ in range(3):
+        monitor.add(evaluate)
+    assert asked == [0, 1, 1, 1]
+
+
+def test_an_exception_counts_only_where_nothing_else_decides() -> None:
+    def evaluate(index: int) -> bool:
+        if index == 0:
+            raise ZeroDivisionError
+        return index == 1
+
+    for tree, decided in (
+        (Operation("or", (Atom(0), Atom(1))), Verdict.TRUE),
+        (Operation("and", (Atom(0), Atom(2))), Verdict.FALSE),
+        (Operation("implies", (Atom(2), Atom(0))), Verdict.TRUE),
+        (Operation("until", (Atom(0), Atom(1))), Verdict.TRUE),
+    ):
+        assert Monitor(tree).add(evaluate) is decided
+    with pytest.raises(ZeroDivisionError):
+        Monitor(Operation("or", (Atom(0), Atom(2)))).add(evaluate)
+
+
+def test_operations_are_checked() -> None:
+    with pytest.raises(ValueError, match="unknown operator"):
+        Operation("sometimes", (Atom(0),))
+    with pytest.raises(ValueError, match="takes 2 operands"):
+        Operation("until", (Atom(0),))
+    assert not is_temporal(Operation("implies", (Atom(0), Atom(1))))
+    assert is_temporal(Operation("not", (Operation("next", (Atom(0),)),)))
+
+
+def test_robustness_of_each_operator() -> None:
+    trace = [[1.0, -2.0], [3.0, -1.0], [-0.5, 4.0]]
+    a, b = Atom(0), Atom(1)
+    expected = {
+        "always": -0.5,
+        "eventually": 3.0,
+        "next": 3.0,
+        "not": -1.0,
+    }
+    for operator, value in expected.items():
+        assert robustness(Operation(operator, (a,)), trace) == value
+    assert robustness(Operation("until", (a, b)), trace) == 1.0
+    assert robustness(Operation("implies", (a, b)), trace) == -1.0
+    assert robustness(Operation("next", (a,)), trace[:1]) == -math.inf

@@ -1,0 +1,457 @@
+"""Simulations as the Python API shows them: replays, soft requirements, records in files, faults, interleaving."""
+
+import json
+import random
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import scenic
+from scenic.language.errors import (
+    DivergenceError,
+    InvalidScenarioError,
+    PreconditionViolation,
+    SerializationError,
+    SpecifierError,
+    StuckBehaviorError,
+    StuckBehaviorWarning,
+    annotation,
+)
+from scenic.runtime.context import current
+from scenic.runtime.values import Vector
+from scenic.simulators.actions import Action
+from scenic.simulators.dummy import DummySimulation, DummySimulator
+from scenic.simulators.results import TerminationType
+from scenic.simulators.simulation import Simulation
+
+DRAWING = """
+behavior B():
+    while True:
+        take Range(0, 1), DiscreteRange(0, 1000)
+ego = new Object with behavior B
+other = new Object at (5, 0), with behavior B
+"""
+
+
+def scene_of(text: str, *, seed: int = 0) -> Any:
+    return scenic.scenarioFromString(text).sample(1, seed=seed)[0]
+
+
+def simulate(text: str, steps: int = 5, **options: Any) -> Simulation:
+    done = DummySimulator(drift=options.pop("drift", 0)).simulate(scene_of(text), maxSteps=steps, **options)
+    assert done is not None
+    return done
+
+
+def taken(simulation: Simulation, number: int = 0) -> list[Any]:
+    assert simulation.result is not None
+    return [step[simulation.objects[number]] for step in simulation.result.actions]
+
+
+# Draws
+
+
+def test_a_key_decides_all_draws() -> None:
+    first, again, other = (simulate(DRAWING, key=key) for key in (b"1", b"1", b"2"))
+    assert taken(first) == taken(again) != taken(other)
+    assert taken(first, 0) != taken(first, 1)
+
+
+def test_pythons_seed_decides_simulations_without_a_key() -> None:
+    random.seed(3)
+    first, second = simulate(DRAWING), simulate(DRAWING)
+    random.seed(3)
+    assert taken(first) == taken(simulate(DRAWING)) != taken(second)
+
+
+def test_an_agent_that_draws_more_changes_nothing_for_others() -> None:
+    more = DRAWING.replace(
+        "other = new Object", "extra = new Object at (9, 0), with behavior B\nother = new Object"
+    )
+    first, second = simulate(DRAWING, key=b"1"), simulate(more, key=b"1")
+    assert taken(first, 0) == taken(second, 0)
+
+
+def test_global_generators_are_the_simulations_own() -> None:
+    text = "import random\nbehavior B():\n    while True:\n        take random.random()\nego = new Object with behavior B\n"
+    random.seed(1)
+    state = random.getstate()
+    first = simulate(text, key=b"1")
+    assert random.getstate() == state
+    assert taken(first) == taken(simulate(text, key=b"1"))
+
+
+# Replays
+
+
+def test_simulations_are_data() -> None:
+    scenario = scenic.scenarioFromString(DRAWING)
+    scene, _ = scenario.generate(seed=1)
+    simulator = DummySimulator(drift=1)
+    first = simulator.simulate(scene, maxSteps=4, enableDivergenceCheck=True)
+    assert first is not None
+    data = scenario.simulationToBytes(first)
+    again = scenario.simulationFromBytes(data, simulator, maxSteps=6, enableDivergenceCheck=True)
+    assert taken(again)[:4] == taken(first)
+    with pytest.raises(DivergenceError, match="step 1: position of object 0"):
+        scenario.simulationFromBytes(data, DummySimulator(drift=2), maxSteps=4, enableDivergenceCheck=True)
+    tolerant = {"enableDivergenceCheck": True, "divergenceTolerance": 100}
+    scenario.simulationFromBytes(data, DummySimulator(drift=2), maxSteps=4, **tolerant)
+    going_on = {"enableDivergenceCheck": True, "continueAfterDivergence": True}
+    scenario.simulationFromBytes(data, DummySimulator(drift=2), maxSteps=4, **going_on)
+
+
+@pytest.mark.parametrize("cut", [0, 3, 10, -1, -9])
+def test_damaged_data_is_refused(cut: int) -> None:
+    scenario = scenic.scenarioFromString(DRAWING)
+    scene, _ = scenario.generate(seed=1)
+    simulator = DummySimulator()
+    done = simulator.simulate(scene, maxSteps=2)
+    data = scenario.simulationToBytes(done)
+    with pytest.raises(SerializationError):
+        scenario.simulationFromBytes(data[:cut], simulator, maxSteps=2)
+
+
+# What a simulation may not touch
+
+
+def test_a_scene_is_untouched() -> None:
+    scene = scene_of(DRAWING)
+    before = [tuple(item.position) for item in scene.objects]
+    done = DummySimulator(drift=1).simulate(scene, maxSteps=3)
+    assert done is not None
+    assert [tuple(item.position) for item in scene.objects] == before
+    assert done.objects[0] is scene.objects[0]
+    assert done.scene is scene
+    assert done.result is not None
+    assert tuple(done.result.finalState[0]) == (0, 3, 0)
+    assert list(done.result.actions[0]) == list(scene.objects)
+
+
+def test_simulations_interleave() -> None:
+    text = "count = 0\nbehavior B():\n    global count\n    while True:\n        count += 1\n        take count\nego = new Object with behavior B\n"
+    scene = scene_of(text)
+    runs = [
+        DummySimulation(scene, maxSteps=3, name="x", timestep=1, deferred=True, key=b"1") for _ in range(2)
+    ]
+    for run in runs:
+        run.begin()
+    going = list(runs)
+    while going:
+        going = [run for run in going if run.advanceOnce()]
+    assert [taken(run) for run in runs] == [[(1,), (2,), (3,)]] * 2
+
+
+def test_nothing_survives_a_failure() -> None:
+    text = "behavior B():\n    take 1\n    raise ValueError('oops')\nego = new Object with behavior B\n"
+    with pytest.raises(ValueError, match="oops") as caught:
+        simulate(text)
+    found = annotation(caught.value)
+    assert found is not None
+    assert found.span is not None
+    assert found.span.line == 3
+    assert current.get() is None
+    assert taken(simulate(DRAWING, 2)) != []
+    scenic.scenarioFromString("ego = new Object\nnew Object at (5, 5)").sample(1)
+
+
+# Requirements
+
+
+def test_soft_requirements_count_only_where_they_were_active() -> None:
+    text = "ego = new Object at (Range(0, 1), 0)\nrequire[0.5] ego.x > 0.5\n"
+    scenario = scenic.scenarioFromString(text)
+    scenes = scenario.sample(40, seed=3)
+    low = [scene for scene in scenes if scene.egoObject.x <= 0.5]
+    assert 3 < len(low) < 20
+    requirement = scenario.requirements[0]
+    for scene in scenes:
+        assert DummySimulator().simulate(scene, maxSteps=1) is not None
+        assert scene.egoObject.x > 0.5 or not scene.enforces(requirement)
+    assert any(scene.enforces(requirement) for scene in scenes)
+
+
+def test_requirements_have_verdicts_and_robustness() -> None:
+    text = (
+        "ego = new Object\nrequire always ego.position.y < 10\nrequire eventually ego.position.y > 2 as far\n"
+    )
+    done = simulate(text, 5, drift=1, robustness=True)
+    assert done.result is not None
+    first, second = done.result.requirements
+    assert (first.line, first.verdict.name) == (2, "PRESUMABLY_TRUE")
+    assert (second.label, second.verdict.name) == ("far", "TRUE")
+    assert first.robustness > 0 < second.robustness
+
+
+def test_violated_guards_reject_or_are_raised() -> None:
+    text = "behavior B():\n    precondition: False\n    take 1\nego = new Object with behavior B\n"
+    scene = scene_of(text)
+    assert DummySimulator().simulate(scene, maxSteps=1) is None
+    with pytest.raises(PreconditionViolation, match="line 2"):
+        DummySimulator().simulate(scene, maxSteps=1, raiseGuardViolations=True)
+
+
+# Steps
+
+
+def test_no_steps_at_all() -> None:
+    done = simulate("behavior B():\n    take 1\nego = new Object with behavior B\n", 0)
+    assert done.result is not None
+    assert done.result.actions == ()
+    assert len(done.result.trajectory) == 1
+    assert done.result.terminationType is TerminationType.timeLimit
+
+
+SUB = """
+scenario Main():
+    setup:
+        ego = new Object with foo 1, with bar 2
+        record (ego.foo, ego.bar) as both
+    compose:
+        wait
+        do Sub() for 2 steps
+        wait
+scenario Sub():
+    setup:
+{setup}
+"""
+
+
+def with_sub(setup: str, steps: int = 6, **options: Any) -> Simulation | None:
+    text = SUB.format(setup="\n".join(f"        {line}" for line in setup.splitlines()))
+    return DummySimulator(**options).simulate(scene_of(text), maxSteps=steps)
+
+
+def test_all_overrides_are_reverted() -> None:
+    done = with_sub("override ego with foo 5\noverride ego with bar 6\noverride ego with foo 7")
+    assert done is not None
+    assert [value for _, value in done.records["both"]] == [(1, 2), (7, 6), (7, 6), (1, 2), (1, 2)]
+
+
+@pytest.mark.parametrize(
+    ("setup", "match"),
+    [("override ego with speed 3", "dynamic"), ("override ego with fooo 3", "no property 'fooo'")],
+)
+def test_what_cannot_be_overridden(setup: str, match: str) -> None:
+    with pytest.raises(SpecifierError, match=match):
+        with_sub(setup)
+
+
+def test_ends_and_records_of_invoked_scenarios_are_theirs() -> None:
+    done = with_sub("record simulation().currentTime as t\nterminate when simulation().currentTime == 2")
+    assert done is not None
+    assert done.records["t"] == [(1, 1)]
+    assert done.result is not None
+    assert done.result.terminationReason == "finished compose block"
+    done = with_sub("terminate simulation when simulation().currentTime == 2 as two")
+    assert done is not None
+    assert done.result is not None
+    assert done.result.terminationReason == "two"
+
+
+def test_a_monitor_of_an_invoked_scenario_ends_that_scenario() -> None:
+    text = (
+        "monitor M():\n    wait\n    terminate\n" + SUB.format(setup="        require monitor M()").lstrip()
+    )
+    done = DummySimulator().simulate(scene_of(text), maxSteps=9)
+    assert done is not None
+    assert done.result is not None
+    assert done.result.terminationType is TerminationType.scenarioComplete
+
+
+def test_an_interrupted_scenario_goes_on() -> None:
+    text = """
+scenario Main():
+    setup:
+        ego = new Object
+    compose:
+        try:
+            do Long()
+        interrupt when simulation().currentTime == 1:
+            do Short()
+        wait
+scenario Long():
+    setup:
+        record simulation().currentTime as long
+    compose:
+        wait
+        wait
+        wait
+scenario Short():
+    setup:
+        record simulation().currentTime as short
+    compose:
+        wait
+        wait
+"""
+    done = DummySimulator().simulate(scene_of(text), maxSteps=9)
+    assert done is not None
+    assert done.records["short"] == [(1, 1), (2, 2)]
+    assert [step for step, _ in done.records["long"]] == [0, 1, 2, 3, 4]
+
+
+# Records
+
+
+def test_periods_and_delays_select_steps() -> None:
+    done = simulate("ego = new Object\nrecord simulation().currentTime every 2 steps after 3 steps as t\n", 8)
+    assert done.records["t"] == [(4, 4), (6, 6), (8, 8)]
+    text = "ego = new Object\nrecord simulation().currentTime every 1 seconds after 0.5 seconds as t\n"
+    assert simulate(text, 8, timestep=0.25).records["t"] == [(4, 4), (8, 8)]
+
+
+def recording(folder: Path, target: str, value: str = "simulation().currentTime", end: str = "") -> str:
+    return f"param recordFolder = {str(folder)!r}\nego = new Object\nrecord {value} to {target!r}\n{end}"
+
+
+def test_series_are_written(tmp_path: Path) -> None:
+    simulate(recording(tmp_path, "deep/{simulation}.jsonl"), 2, name="run", timestep=0.5)
+    rows = [json.loads(line) for line in (tmp_path / "deep" / "run.1.jsonl").read_text().splitlines()]
+    assert rows == [{"step": step, "time": step / 2, "value": step} for step in range(3)]
+    simulate(recording(tmp_path, "{simulation}.npz", "ego.position"), 2)
+    found = np.load(tmp_path / "1.npz")
+    assert found["values"].shape == (3, 3)
+
+
+def test_values_are_written(tmp_path: Path) -> None:
+    simulate(recording(tmp_path, "{step}.npy", "[1, 2]"), 2)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["0.npy", "1.npy", "2.npy"]
+    image = "[[0, 128, 255], [1, 2, 3]]"
+    simulate(recording(tmp_path / "images", "{time}.png", image), 1)
+    assert sorted(path.name for path in (tmp_path / "images").iterdir()) == ["0.png", "1.png"]
+
+
+@pytest.mark.parametrize("target", ["{step}.npy", "{simulation}.jsonl"])
+@pytest.mark.parametrize(
+    "end",
+    ["require always simulation().currentTime < 3\n", "require eventually simulation().currentTime > 30\n"],
+)
+def test_nothing_is_left_of_a_rejected_simulation(tmp_path: Path, target: str, end: str) -> None:
+    end = end.replace("simulation().currentTime", "ego.position.y")
+    scene = scene_of(recording(tmp_path, target, end=end))
+    assert DummySimulator(drift=1).simulate(scene, maxSteps=5) is None
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_disk_that_is_full_leaves_no_half_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from scenic.runtime.dynamics import recorders
+
+    def full(*_: Any) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(recorders.os, "fsync", full)
+    with pytest.raises(OSError, match="No space left"):
+        simulate(recording(tmp_path, "{step}.npy", "[1, 2]"), 2)
+    assert list(tmp_path.iterdir()) == []
+
+
+# Simulators
+
+
+class Move(Action):
+    def __init__(self, dx: float) -> None:
+        self.dx = dx
+
+    def canBeTakenBy(self, agent: Any) -> bool:
+        return bool(agent.movable)
+
+    def applyTo(self, agent: Any, simulation: Any) -> None:
+        simulation.places[agent] += self.dx
+
+
+class Sliding(Simulation):
+    """A simulation as others write them."""
+
+    def __init__(self, scene: Any, *, broken: str = "", **options: Any) -> None:
+        self.places: dict[Any, float] = {}
+        self.broken = broken
+        self.destroyed = 0
+        super().__init__(scene, **options)
+
+    def setup(self) -> None:
+        super().setup()
+        assert set(self.places) == set(self.objects)
+
+    def createObjectInSimulator(self, obj: Any) -> None:
+        self.places[obj] = obj.position.x
+
+    def step(self) -> None:
+        if self.broken == "dies" and self.currentTime == 2:
+            raise ConnectionError("the simulator has died")
+
+    def getProperties(self, obj: Any, properties: Any) -> dict[str, Any]:
+        values = {name: getattr(obj, name) for name in properties}
+        values["position"] = Vector(self.places[obj], 0, 0)
+        if self.broken == "missing":
+            del values["yaw"]
+        if self.broken == "type":
+            values["position"] = "here"
+        return values
+
+    def destroy(self) -> None:
+        self.destroyed += 1
+
+
+MOVING = """
+from tests.simulators.test_simulations import Move
+behavior B():
+    while True:
+        take Move(2)
+ego = new Object with behavior B, with movable True
+"""
+
+
+def slide(**options: Any) -> Sliding:
+    return Sliding(scene_of(MOVING), maxSteps=4, name="x", timestep=1, **options)
+
+
+def test_actions_are_applied_and_read_back() -> None:
+    done = slide()
+    assert done.result is not None
+    assert [state[0].x for state in done.result.trajectory] == [0, 2, 4, 6, 8]
+    assert done.destroyed == 1
+
+
+@pytest.mark.parametrize(("broken", "match"), [("missing", "other properties"), ("type", "type str")])
+def test_wrong_properties_are_refused(broken: str, match: str) -> None:
+    with pytest.raises(RuntimeError, match=match):
+        slide(broken=broken)
+
+
+def test_a_simulator_that_dies() -> None:
+    with pytest.raises(ConnectionError):
+        slide(broken="dies")
+    assert slide().result is not None
+
+
+def test_actions_that_cannot_be_taken() -> None:
+    text = "behavior B():\n    take 3\nego = new Object with behavior B\n"
+    with pytest.raises(InvalidScenarioError, match="cannot take these actions"):
+        Sliding(scene_of(text), maxSteps=4, name="x", timestep=1)
+
+
+def test_a_destroyed_simulator_is_of_no_use() -> None:
+    simulator = DummySimulator()
+    simulator.destroy()
+    with pytest.raises(RuntimeError, match="destroyed"):
+        simulator.simulate(scene_of("ego = new Object"), maxSteps=1)
+
+
+def test_the_simulator_of_a_program() -> None:
+    text = "from scenic.core.simulators import DummySimulator\nparam drift = 2\nsimulator DummySimulator(drift=globalParameters.drift)\nego = new Object\n"
+    scenario = scenic.scenarioFromString(text)
+    assert scenario.getSimulator().drift == 2
+    with pytest.raises(RuntimeError, match="no `simulator` statement"):
+        scenic.scenarioFromString("ego = new Object").getSimulator()
+
+
+SPINNING = "behavior B():\n    take 1\n    i = 0\n    while i < 4_000_000:\n        i += 1\nego = new Object with behavior B\n"
+
+
+def test_code_that_spins_is_named() -> None:
+    with pytest.warns(StuckBehaviorWarning, match=r"line [45] has run for 0.05 s"):
+        simulate(SPINNING, 2, stuck_after=0.05)
+    with pytest.raises(StuckBehaviorError, match=r"line [45] has run"):
+        simulate(SPINNING.replace("4_000_000", "10**12"), 2, stuck_after=0.05, stuck_is_error=True)
