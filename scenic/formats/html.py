@@ -14,9 +14,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from scenic.formats.instances import Gallery, Instance, Surface
+from scenic.formats.instances import Array, Gallery, Instance, Surface
 from scenic.formats.json_lines import plain
-from scenic.formats.poses import euler_angles
+from scenic.formats.poses import euler_angles, rotation_matrix
+from scenic.formats.regions import outlines, view_outline
 from scenic.formats.scenes import Scene
 from scenic.language.properties import properties_of
 
@@ -41,6 +42,7 @@ class Page:
                 "attempts": scene.attempts,
                 "params": {str(name): _brief(value) for name, value in scene.params.items()},
                 "objects": [_object(instance) for instance in self._gallery.add(scene)],
+                "regions": [_points(line) for line in outlines(scene.workspace)],
             }
         )
 
@@ -93,12 +95,35 @@ def _object(instance: Instance) -> dict[str, Any]:
         "euler": euler_angles(instance.quaternion),
         "size": instance.size,
         "color": instance.color,
+        "ego": instance.is_ego,
+        "view": _view(instance),
         "more": {
             name: _brief(value)
             for name, value in instance.thing.properties.items()
             if name not in builtin and not name.startswith("_")
         },
     }
+
+
+def _points(line: Array) -> list[list[float]]:
+    """A line as lists of numbers, to a tenth of a millimetre."""
+    return [[round(value, 4) for value in point] for point in line.tolist()]
+
+
+def _view(instance: Instance) -> list[list[list[float]]] | None:
+    """Lines that show what an object has in view: of the ego, and of others that ask for it."""
+    thing = instance.thing
+    if not (instance.is_ego or thing.properties.get("showVisibleRegion", False)):
+        return None
+    angles, distance = thing.properties.get("viewAngles"), thing.properties.get("visibleDistance")
+    if not isinstance(angles, tuple | list) or not isinstance(distance, int | float):
+        return None
+    offset = thing.properties.get("cameraOffset", (0.0, 0.0, 0.0))
+    turn = rotation_matrix(instance.quaternion)
+    camera = np.array(instance.position) + turn @ np.array([float(value) for value in offset])  # type: ignore[attr-defined] # three numbers
+    horizontal, vertical = min(float(angles[0]), 2 * np.pi), min(float(angles[1]), np.pi)
+    lines = view_outline(horizontal, vertical, float(distance))
+    return [_points(camera + line @ turn.T) for line in lines]
 
 
 def _brief(value: object) -> str:

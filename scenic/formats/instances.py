@@ -4,6 +4,7 @@ The meshes are shared by all objects and scenes that use them. Their corners car
 look round and edges stay sharp.
 """
 
+from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass
 
@@ -28,6 +29,9 @@ PALETTE: tuple[Triple, ...] = (
     (0.38, 0.68, 0.71),
 )
 """Colours of objects that have none of their own: one for each class, in order of appearance."""
+
+_SHADES = (1.0, 0.72, 1.12, 0.86, 0.6)
+"""How bright those of one class are in turn, so that neighbours can be told apart."""
 
 CREASE = np.cos(np.radians(35))
 """Faces that meet at a smaller angle are shaded as one smooth surface."""
@@ -98,13 +102,17 @@ class Gallery:
         """What is drawn of a scene: all but objects with ``render`` false and those of no size."""
         instances = []
         names = scene.names
+        shades: Counter[str] = Counter()
         for thing in scene.objects:
             class_name = type(thing).__name__
             size = (float(thing.width), float(thing.length), float(thing.height))
             if not thing.properties.get("render", True) or min(size) <= 0:
                 continue
             x, y, z = (float(value) for value in thing.position)
-            default = self._colors.setdefault(class_name, PALETTE[len(self._colors) % len(PALETTE)])
+            base = self._colors.setdefault(class_name, PALETTE[len(self._colors) % len(PALETTE)])
+            shade = _SHADES[shades[class_name] % len(_SHADES)]
+            shades[class_name] += thing.color is None
+            default = (base[0] * shade, base[1] * shade, base[2] * shade)
             instances.append(
                 Instance(
                     surface=self._number(thing.shape.mesh, size),

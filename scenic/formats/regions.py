@@ -54,6 +54,38 @@ def outlines(region: Any) -> list[Array]:
             return []
 
 
+def view_outline(horizontal: float, vertical: float, distance: float) -> list[Array]:
+    """Lines ``(k, 3)`` that show a view from the origin, ahead to +Y: arcs of its outer border, and its edges.
+
+    Args:
+        horizontal: view angle, radians, up to 2π.
+        vertical: view angle, radians, up to π.
+        distance: how far it reaches, metres.
+
+    """
+
+    def place(azimuth: Array, altitude: Array) -> Array:
+        level = np.cos(altitude)
+        directions = [-np.sin(azimuth) * level, np.cos(azimuth) * level, np.sin(altitude)]
+        return distance * np.stack(np.broadcast_arrays(*directions), axis=-1)
+
+    across = np.linspace(-horizontal / 2, horizontal / 2, _SIDES // 2 + 1)
+    upward = np.linspace(-vertical / 2, vertical / 2, _SIDES // 4 + 1)
+    around, upright = horizontal > 2 * np.pi - 0.02, vertical > np.pi - 0.02
+    lines = [place(across, np.array(0.0))]
+    if not upright:
+        lines += [place(across, np.array(side * vertical / 2)) for side in (-1, 1)]
+    if around:
+        lines += [place(np.array(turn * np.pi / 2), upward) for turn in range(4)]
+    else:
+        lines += [place(np.array(side * horizontal / 2), upward) for side in (-1, 1)]
+    if not around:
+        tops = (0.0,) if upright else (-0.5, 0.5)
+        corners = [(side * horizontal / 2, top * vertical) for side in (-1, 1) for top in tops]
+        lines += [np.stack([np.zeros(3), place(np.array(a), np.array(b))]) for a, b in corners]
+    return lines
+
+
 def bounds(region: Any) -> tuple[Array, Array] | None:
     """The lower and upper corner of the box around a fixed region; ``None`` where it has none or is not known."""
     lines = outlines(region)

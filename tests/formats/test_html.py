@@ -7,6 +7,10 @@ from typing import Any
 import numpy as np
 
 from scenic.formats.html import page
+from scenic.formats.regions import bounds, outlines, view_outline
+from scenic.runtime.geometry.visibility.views import Views
+from scenic.runtime.regions.planar import CircularRegion, PolygonalRegion, RectangularRegion
+from scenic.runtime.regions.volumes import BoxRegion, SpheroidRegion
 from tests.formats.stand_ins import BALL, Chair, Object, Scene
 
 
@@ -77,3 +81,40 @@ def test_no_text_of_a_scene_becomes_markup() -> None:
     outline = Outline(text)
     assert len(outline.scripts) == 2
     assert json.loads(outline.scripts[0])["scenes"][0]["objects"][0]["label"] == evil
+
+
+def test_the_ego_its_view_and_the_workspace_are_on_the_page() -> None:
+    ego = Object(
+        position=(1, 0, 0), others={"viewAngles": (1.0, 0.5), "visibleDistance": 5, "cameraOffset": (0, 1, 0)}
+    )
+    other = Object(others={"viewAngles": (1.0, 0.5), "visibleDistance": 5})
+    scene = Scene([ego, other], egoObject=ego, workspace=RectangularRegion((0, 0, 2), 0, 4, 6))
+    (found,) = data_of(page([scene], "one"))["scenes"]
+    assert [thing["ego"] for thing in found["objects"]] == [True, False]
+    assert found["objects"][1]["view"] is None
+    points = np.concatenate([np.array(line) for line in found["objects"][0]["view"]])
+    assert np.linalg.norm(points - [1, 1, 0], axis=1).max() < 5.001
+    assert np.ptp(np.array(found["regions"][0]), axis=0).tolist() == [4, 6, 0]
+
+
+def test_lines_of_a_view_are_on_its_border() -> None:
+    for angles in ((1.0, 0.6), (6.28, 1.0), (2.0, 3.14), (6.28, 3.14)):
+        points = np.concatenate(view_outline(*angles, 3.0))
+        assert Views.fixed((0, 0, 0), angles=angles, distance=3).contain(points).all()
+        assert (np.linalg.norm(points, axis=1) > 2.999).sum() > 30
+
+
+def test_outlines_span_the_regions_they_show() -> None:
+    turned = RectangularRegion((1, 2, 3), np.pi / 2, 4, 6)
+    for region, low, high in (
+        (CircularRegion((1, 2, 3), 2), (-1, 0, 3), (3, 4, 3)),
+        (turned, (-2, 0, 3), (4, 4, 3)),
+        (PolygonalRegion([(0, 0), (4, 0), (0, 3)], z=1), (0, 0, 1), (4, 3, 1)),
+        (BoxRegion((2, 4, 6), position=(1, 1, 1)), (0, -1, -2), (2, 3, 4)),
+        (SpheroidRegion((2, 4, 6)), (-1, -2, -3), (1, 2, 3)),
+    ):
+        found = bounds(region)
+        assert found is not None
+        assert np.allclose(found, (low, high))
+    assert outlines(None) == []
+    assert bounds(None) is None

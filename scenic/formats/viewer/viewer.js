@@ -50,9 +50,9 @@
     ]);
   }
 
-  function orthographic(half, near, far) {
+  function orthographic(half, near, far, aspect = 1) {
     return new Float32Array([
-      1 / half, 0, 0, 0, 0, 1 / half, 0, 0, 0, 0, 2 / (near - far), 0, 0, 0, (far + near) / (near - far), 1,
+      1 / (half * aspect), 0, 0, 0, 0, 1 / half, 0, 0, 0, 0, 2 / (near - far), 0, 0, 0, (far + near) / (near - far), 1,
     ]);
   }
 
@@ -211,12 +211,11 @@
     return { array, count: indices.length };
   }
 
-  const meshes = data.meshes.map((item) =>
-    mesh(
-      new Float32Array(bytes(item.points).buffer),
-      new Int16Array(bytes(item.normals).buffer),
-      new Uint32Array(bytes(item.indices).buffer),
-    ));
+  const meshes = data.meshes.map((item) => {
+    const points = new Float32Array(bytes(item.points).buffer);
+    const indices = new Uint32Array(bytes(item.indices).buffer);
+    return { ...mesh(points, new Int16Array(bytes(item.normals).buffer), indices), points, indices };
+  });
   const square = mesh(
     new Float32Array([-0.5, -0.5, 0, 0.5, -0.5, 0, 0.5, 0.5, 0, -0.5, 0.5, 0]), null, new Uint32Array([0, 1, 2, 0, 2, 3]));
   const cubeEdges = mesh(
@@ -226,6 +225,16 @@
   function draw(item, mode = gl.TRIANGLES) {
     gl.bindVertexArray(item.array);
     gl.drawElements(mode, item.count, gl.UNSIGNED_INT, 0);
+  }
+
+  /** Line segments between following points of each line, for `draw(item, gl.LINES)`; nothing if there are none. */
+  function segments(lines) {
+    const points = [];
+    for (const line of lines) {
+      for (let i = 1; i < line.length; i++) points.push(...line[i - 1], ...line[i]);
+    }
+    if (!points.length) return null;
+    return mesh(new Float32Array(points), null, Uint32Array.from({ length: points.length / 3 }, (_, i) => i));
   }
 
   // ---- Scenes ---------------------------------------------------------------------------------------------------
@@ -257,6 +266,7 @@
     scene.radius = Math.max(Math.hypot(...sub(high, low)) / 2, 1e-3);
     scene.low = low;
     scene.high = high;
+    scene.regionPoints = scene.regions.flat();
   }
   // One ground and one grid for all scenes, so that stepping through them does not make them jump.
   const reach = Math.max(...data.scenes.map((scene) => scene.radius));
@@ -268,7 +278,14 @@
 
   // ---- What is shown --------------------------------------------------------------------------------------------
 
-  const state = { scene: 0, near: -1, chosen: -1, grid: true, playing: 0, dark: false };
+  const state = {
+    scene: 0, near: -1, chosen: -1, playing: 0, dark: false, flat: false, measuring: false, measured: [],
+    layers: { grid: true, regions: true, views: false, headings: false, labels: false },
+  };
+  /** Objects not shown, by their place in the list and their name, so that they stay hidden from scene to scene. */
+  const hidden = new Set();
+  const keyOf = (thing, index) => `${index} ${thing.label}`;
+  const isHidden = (index) => hidden.has(keyOf(current().objects[index], index));
   const view = { target: [0, 0, 0], distance: 10, azimuth: (-35 * Math.PI) / 180, elevation: (33 * Math.PI) / 180 };
   const FOV = (38 * Math.PI) / 180;
   const current = () => data.scenes[state.scene];
@@ -302,9 +319,18 @@
     changed();
   }
 
+  const cornersOf = (scene) => scene.objects.flatMap((thing) => thing.corners);
+
+  /** Shows the workspace, and the objects of all scenes. */
   function wholeScene() {
-    const points = data.scenes.flatMap((scene) => scene.objects.flatMap((thing) => thing.corners));
+    const points = data.scenes.flatMap(cornersOf).concat(state.layers.regions ? data.scenes[0].regionPoints : []);
     frame(points.length ? points : [[-1, -1, -1], [1, 1, 1]]);
+  }
+
+  /** Shows the objects of this scene that are not hidden, from where the camera looks now. */
+  function refit() {
+    const points = current().objects.flatMap((thing, index) => (isHidden(index) ? [] : thing.corners));
+    if (points.length) frame(points);
   }
 
   // ---- Drawing --------------------------------------------------------------------------------------------------
@@ -354,10 +380,11 @@
     gl.uniformMatrix4fv(plain.places.camera, false, sunCamera);
     gl.enable(gl.POLYGON_OFFSET_FILL);
     gl.polygonOffset(1.5, 2);
-    for (const thing of scene.objects) {
+    scene.objects.forEach((thing, index) => {
+      if (isHidden(index)) return;
       gl.uniformMatrix4fv(plain.places.model, false, thing.model);
       draw(meshes[thing.mesh]);
-    }
+    });
     gl.disable(gl.POLYGON_OFFSET_FILL);
     shadowsOf = state.scene;
   }
@@ -367,8 +394,15 @@
     const middle = dot(sub(scene.middle, eye()), ahead());
     const span = scene.radius + 6 * reach;
     const far = Math.max(middle + span, view.distance * 2);
-    const near = Math.max(Math.min(middle - scene.radius * 1.2, view.distance * 0.9), far / 5000);
     const aspect = canvas.width / canvas.height;
+    if (state.flat) {
+      const half = view.distance * Math.tan(FOV / 2);
+      return product(orthographic(half, middle - span, far + span, aspect), lookAt(eye(), ahead(), upward()));
+    }
+    // The ground below the camera may be nearer than every object: it must not be cut.
+    const height = Math.abs(eye()[2] - groundHeight);
+    const nearest = Math.min(middle - scene.radius * 1.2, view.distance * 0.9, Math.max(height * 0.5, reach * 1e-3));
+    const near = Math.max(nearest, far / 50000);
     return product(perspective(FOV, aspect, near, far), lookAt(eye(), ahead(), upward()));
   }
 
@@ -414,7 +448,8 @@
     gl.uniform3fv(solid.places.eye, eye());
     lightUniforms(solid.places);
     const glow = (index) => (index === state.chosen ? 1 : index === state.near ? 0.5 : 0);
-    scene.objects.forEach((thing, index) => { if (thing.light[3] >= 1) drawObject(thing, glow(index)); });
+    const shown = scene.objects.map((thing, index) => ({ thing, index })).filter(({ index }) => !isHidden(index));
+    for (const { thing, index } of shown) if (thing.light[3] >= 1) drawObject(thing, glow(index));
 
     gl.enable(gl.BLEND);
     gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
@@ -424,7 +459,7 @@
     gl.uniform3f(groundProgram.places.middle, scene.middle[0], scene.middle[1], groundHeight);
     gl.uniform1f(groundProgram.places.extent, 5 * reach);
     gl.uniform1f(groundProgram.places.spacing, spacing);
-    gl.uniform1f(groundProgram.places.lines, state.grid ? 1 : 0);
+    gl.uniform1f(groundProgram.places.lines, state.layers.grid ? 1 : 0);
     gl.uniform3fv(groundProgram.places.ground, state.dark ? [0.035, 0.04, 0.05] : [0.6, 0.62, 0.65]);
     gl.uniform3fv(groundProgram.places.line, state.dark ? [0.13, 0.15, 0.18] : [0.26, 0.29, 0.33]);
     if (eye()[2] > groundHeight) draw(square); // from below, the ground would only hide things
@@ -432,15 +467,22 @@
     // Transparent objects, the farthest first.
     gl.useProgram(solid.made);
     gl.depthMask(false);
-    scene.objects.map((thing, index) => ({ thing, index, depth: dot(sub(thing.position, eye()), ahead()) }))
+    shown.map(({ thing, index }) => ({ thing, index, depth: dot(sub(thing.position, eye()), ahead()) }))
       .filter(({ thing }) => thing.light[3] < 1)
       .sort((a, b) => b.depth - a.depth)
       .forEach(({ thing, index }) => drawObject(thing, glow(index)));
     gl.depthMask(true);
 
-    if (state.chosen >= 0) {
-      gl.useProgram(plain.made);
-      gl.uniformMatrix4fv(plain.places.camera, false, camera);
+    gl.useProgram(plain.made);
+    gl.uniformMatrix4fv(plain.places.camera, false, camera);
+    drawLines(scene);
+    const ego = scene.objects.findIndex((thing) => thing.ego);
+    if (ego >= 0 && !isHidden(ego)) {
+      gl.uniformMatrix4fv(plain.places.model, false, scene.objects[ego].model);
+      gl.uniform4f(plain.places.color, 0.86, 0.58, 0.05, 0.9);
+      draw(cubeEdges, gl.LINES);
+    }
+    if (state.chosen >= 0 && !isHidden(state.chosen)) {
       gl.uniformMatrix4fv(plain.places.model, false, scene.objects[state.chosen].model);
       gl.uniform4fv(plain.places.color, state.dark ? [0.45, 0.66, 1, 0.9] : [0.12, 0.4, 0.8, 0.8]);
       draw(cubeEdges, gl.LINES);
@@ -448,6 +490,117 @@
     gl.disable(gl.BLEND);
     gl.bindVertexArray(null);
     drawCompass();
+    drawLabels(camera);
+  }
+
+  const IDENTITY = new Float32Array([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]);
+
+  /** The lines of the layers that are on, made when they are first needed. */
+  function drawLines(scene) {
+    const shown = scene.objects.filter((thing, index) => !isHidden(index));
+    scene.lines ??= {
+      regions: segments(scene.regions),
+      views: segments(shown.flatMap((thing) => thing.view ?? [])),
+      headings: segments(shown.flatMap(headingOf)),
+    };
+    gl.uniformMatrix4fv(plain.places.model, false, IDENTITY);
+    for (const [layer, color] of [
+      ["regions", [0.13, 0.55, 0.42, 0.9]], ["views", [0.62, 0.3, 0.75, 0.75]], ["headings", [0.85, 0.25, 0.2, 0.95]],
+    ]) {
+      if (state.layers[layer] && scene.lines[layer]) {
+        gl.uniform4fv(plain.places.color, color);
+        draw(scene.lines[layer], gl.LINES);
+      }
+    }
+    if (state.measured.length === 2) {
+      const line = segments([state.measured]);
+      gl.disable(gl.DEPTH_TEST);
+      gl.uniform4f(plain.places.color, 0.9, 0.2, 0.1, 1);
+      draw(line, gl.LINES);
+      gl.enable(gl.DEPTH_TEST);
+      gl.deleteVertexArray(line.array);
+    }
+  }
+
+  /** An arrow along an object's heading, above it. */
+  function headingOf(thing) {
+    const [right, front, top] = rotation(thing.quaternion);
+    const base = add(thing.position, times(top, thing.size[2] / 2 + reach * 0.004));
+    const length = thing.size[1] / 2 + Math.max(thing.size[1] * 0.4, reach * 0.02);
+    const tip = add(base, times(front, length));
+    const wing = (side) => add(tip, add(times(front, -0.25 * length), times(right, side * 0.13 * length)));
+    return [[base, tip], [wing(-1), tip, wing(1)]];
+  }
+
+  /** Where a point is on the canvas, in its pixels; nothing if it is behind the camera. */
+  function project(camera, point) {
+    const at = (row) => camera[row] * point[0] + camera[4 + row] * point[1] + camera[8 + row] * point[2] + camera[12 + row];
+    if (at(3) <= 0) return null;
+    return [(0.5 + at(0) / at(3) / 2) * canvas.clientWidth, (0.5 - at(1) / at(3) / 2) * canvas.clientHeight];
+  }
+
+  function drawLabels(camera) {
+    const marks = [];
+    const put = (text, point) => {
+      const place = project(camera, point);
+      if (!place) return;
+      const mark = element("span", text);
+      mark.style.left = `${place[0]}px`;
+      mark.style.top = `${place[1]}px`;
+      marks.push(mark);
+    };
+    if (state.layers.labels) {
+      current().objects.forEach((thing, index) => {
+        if (isHidden(index) || index >= 400) return;
+        const top = Math.max(...thing.corners.map((corner) => corner[2]));
+        put((thing.ego ? "★ " : "") + thing.label, [thing.position[0], thing.position[1], top]);
+      });
+    }
+    if (state.measured.length === 2) {
+      const [from, to] = state.measured;
+      put(`${number(Math.hypot(...sub(to, from)))} m`, times(add(from, to), 0.5));
+    }
+    if (marks.length || byId("labels").childElementCount) byId("labels").replaceChildren(...marks);
+  }
+
+  /** The point of an object, or of the ground, that is seen at a place of the canvas; nothing if there is none. */
+  function pointAt(x, y) {
+    const t = Math.tan(FOV / 2);
+    const [u, v] = [(2 * x) / canvas.clientWidth - 1, 1 - (2 * y) / canvas.clientHeight];
+    const aspect = canvas.width / canvas.height;
+    const offset = add(times(rightward(), u * t * aspect), times(upward(), v * t));
+    const start = state.flat ? add(eye(), times(offset, view.distance)) : eye();
+    const way = state.flat ? ahead() : add(ahead(), offset);
+    const index = pick(x, y);
+    if (index >= 0) {
+      const thing = current().objects[index];
+      const inverse = rotation(thing.quaternion).map((axis, k) => times(axis, 1 / thing.size[k]));
+      const local = (vector) => inverse.map((axis) => dot(axis, vector));
+      const far = firstHit(meshes[thing.mesh], local(sub(start, thing.position)), local(way));
+      if (Number.isFinite(far)) return add(start, times(way, far));
+    }
+    const far = (groundHeight - start[2]) / way[2];
+    return far > 0 && Number.isFinite(far) ? add(start, times(way, far)) : null;
+  }
+
+  /** How far along a ray a mesh is first met (Moeller and Trumbore). */
+  function firstHit({ points, indices }, start, way) {
+    const corner = (k) => [points[3 * indices[k]], points[3 * indices[k] + 1], points[3 * indices[k] + 2]];
+    let best = Infinity;
+    for (let k = 0; k < indices.length; k += 3) {
+      const a = corner(k);
+      const [ab, ac] = [sub(corner(k + 1), a), sub(corner(k + 2), a)];
+      const p = cross(way, ac);
+      const determinant = dot(ab, p);
+      if (Math.abs(determinant) < 1e-14) continue;
+      const offset = sub(start, a);
+      const u = dot(offset, p) / determinant;
+      const q = cross(offset, ab);
+      const v = dot(way, q) / determinant;
+      const far = dot(ac, q) / determinant;
+      if (u >= 0 && v >= 0 && u + v <= 1 && far > 0 && far < best) best = far;
+    }
+    return best;
   }
 
   /** The index of the object at a place of the canvas, -1 for none. */
@@ -467,7 +620,7 @@
       pickOf = "";
     }
     const camera = viewCamera();
-    const key = [state.scene, ...camera].join();
+    const key = [state.scene, ...hidden, ...camera].join();
     if (key !== pickOf) {
       pickOf = key;
       gl.viewport(0, 0, width, height);
@@ -476,6 +629,7 @@
       gl.useProgram(plain.made);
       gl.uniformMatrix4fv(plain.places.camera, false, camera);
       current().objects.forEach((thing, index) => {
+        if (isHidden(index)) return;
         const code = index + 1;
         gl.uniformMatrix4fv(plain.places.model, false, thing.model);
         gl.uniform4f(plain.places.color, (code & 255) / 255, ((code >> 8) & 255) / 255, (code >> 16) / 255, 1);
@@ -517,7 +671,7 @@
       const row = element("li", "", { tabIndex: 0 });
       const swatch = element("i", "");
       swatch.style.background = css(thing.color);
-      row.append(swatch, element("span", thing.label), element("small", thing.class === thing.label ? "" : thing.class));
+      row.append(swatch, element("span", (thing.ego ? "★ " : "") + thing.label), element("small", thing.class === thing.label ? "" : thing.class));
       row.addEventListener("pointerenter", () => { state.near = k; mark(); });
       row.addEventListener("pointerleave", () => { state.near = -1; mark(); });
       row.addEventListener("click", () => choose(state.chosen === k ? -1 : k));
@@ -527,6 +681,8 @@
     }));
     list.scrollTop = scrolled;
     choose(state.chosen);
+    state.measured = [];
+    history.replaceState(null, "", `#k=${scene.k}`);
   }
 
   /** Shows in the list which object is near the pointer and which is selected. */
@@ -534,6 +690,7 @@
     [...byId("objects").children].forEach((row, k) => {
       row.classList.toggle("near", k === state.near);
       row.classList.toggle("chosen", k === state.chosen);
+      row.classList.toggle("hidden", isHidden(k));
     });
     changed();
   }
@@ -542,7 +699,7 @@
     state.chosen = index;
     const details = byId("details");
     details.hidden = index < 0;
-    byId("focus").disabled = index < 0;
+    for (const name of ["focus", "hide", "isolate"]) byId(name).disabled = index < 0;
     if (index >= 0) {
       const thing = current().objects[index];
       const table = element("dl", "");
@@ -594,15 +751,61 @@
     byId("play").setAttribute("aria-label", state.playing ? "Pause" : "Play");
   }
 
+  /** Straight from above and without perspective, as on a map. */
   function fromAbove() {
     view.azimuth = 0;
-    view.elevation = Math.PI / 2 - 1e-3;
+    view.elevation = Math.PI / 2;
+    state.flat = true;
     wholeScene();
+  }
+
+  function changeHidden(change) {
+    change();
+    for (const scene of data.scenes) scene.lines = null;
+    shadowsOf = -1;
+    mark();
+  }
+
+  const hideChosen = () => {
+    if (state.chosen < 0) return;
+    const key = keyOf(current().objects[state.chosen], state.chosen);
+    changeHidden(() => { if (!hidden.delete(key)) hidden.add(key); });
+  };
+  const isolate = () => {
+    if (state.chosen < 0) return;
+    changeHidden(() => current().objects.forEach((thing, index) => {
+      if (index === state.chosen) hidden.delete(keyOf(thing, index));
+      else hidden.add(keyOf(thing, index));
+    }));
+  };
+  const reveal = () => changeHidden(() => hidden.clear());
+
+  function setMeasuring(on) {
+    state.measuring = on;
+    state.measured = [];
+    byId("measure").setAttribute("aria-pressed", String(on));
+    changed();
+  }
+
+  function setLayer(name, on) {
+    state.layers[name] = on;
+    document.querySelector(`[data-layer="${name}"]`).checked = on;
+    changed();
+  }
+
+  function savePng() {
+    render(); // what is drawn can be read only before the browser shows it
+    canvas.toBlob((blob) => {
+      const link = element("a", "", { href: URL.createObjectURL(blob), download: `scene-${current().k}.png` });
+      link.click();
+      URL.revokeObjectURL(link.href);
+    });
   }
 
   function fromTheSide() {
     view.azimuth = (-35 * Math.PI) / 180;
     view.elevation = (33 * Math.PI) / 180;
+    state.flat = false;
     wholeScene();
   }
 
@@ -619,6 +822,15 @@
   byId("whole").addEventListener("click", fromTheSide);
   byId("above").addEventListener("click", fromAbove);
   byId("focus").addEventListener("click", focus);
+  byId("refit").addEventListener("click", refit);
+  byId("hide").addEventListener("click", hideChosen);
+  byId("isolate").addEventListener("click", isolate);
+  byId("reveal").addEventListener("click", reveal);
+  byId("measure").addEventListener("click", () => setMeasuring(!state.measuring));
+  byId("export").addEventListener("click", savePng);
+  for (const box of document.querySelectorAll("[data-layer]")) {
+    box.addEventListener("change", () => setLayer(box.dataset.layer, box.checked));
+  }
 
   document.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
@@ -628,10 +840,12 @@
       PageUp: () => show(state.scene - 10), PageDown: () => show(state.scene + 10),
       Home: () => show(0), End: () => show(data.scenes.length - 1),
       " ": () => play(!state.playing), 0: fromTheSide, 5: fromAbove, f: focus,
-      g: () => { state.grid = !state.grid; changed(); }, t: () => setTheme(!state.dark), Escape: () => choose(-1),
+      g: () => setLayer("grid", !state.layers.grid), l: () => setLayer("labels", !state.layers.labels),
+      r: refit, h: hideChosen, i: isolate, u: reveal, m: () => setMeasuring(!state.measuring), p: savePng,
+      t: () => setTheme(!state.dark), Escape: () => (state.measuring ? setMeasuring(false) : choose(-1)),
     };
     const action = actions[event.key];
-    if (!action || (typing && (event.key === " " || event.target.tagName === "INPUT"))) return;
+    if (!action || (typing && (event.key === " " || event.target.type === "range"))) return;
     event.preventDefault();
     action();
   });
@@ -642,6 +856,7 @@
   let travelled = 0;
 
   function turn(dx, dy) {
+    state.flat = false;
     view.azimuth += dx * 0.008;
     view.elevation = Math.max(-1.55, Math.min(Math.PI / 2 - 1e-3, view.elevation + dy * 0.008));
     changed();
@@ -701,6 +916,12 @@
     const pointer = pointers.get(event.pointerId);
     pointers.delete(event.pointerId);
     if (event.type === "pointerup" && pointer && travelled < 5 && pointer.button === 0) {
+      if (state.measuring) {
+        const point = pointAt(event.offsetX, event.offsetY);
+        if (point) state.measured = [...state.measured.slice(state.measured.length % 2 ? 0 : 2), point];
+        changed();
+        return;
+      }
       const index = pick(event.offsetX, event.offsetY);
       choose(index === state.chosen ? -1 : index);
     }
@@ -731,6 +952,11 @@
   new ResizeObserver(changed).observe(canvas);
 
   setTheme(window.matchMedia?.("(prefers-color-scheme: dark)").matches ?? false);
-  show(0);
+  const byNumber = () => {
+    const asked = /^#k=(\d+)$/.exec(location.hash);
+    return asked ? data.scenes.findIndex((scene) => String(scene.k) === asked[1]) : -1;
+  };
+  window.addEventListener("hashchange", () => { if (byNumber() >= 0) show(byNumber()); });
+  show(Math.max(byNumber(), 0));
   wholeScene();
 })();
