@@ -9,7 +9,6 @@ import pytest
 from scipy import stats
 
 import scenic
-from scenic.language.errors import SamplingError
 from tests.runtime.programs import FALSE_ALARM, draws, fingerprint, scenario
 
 ROOT = Path(__file__).parents[2]
@@ -53,7 +52,7 @@ def test_a_rare_fault_that_nothing_rejects(written: str) -> None:
     found = set()
     for lanes in LANES:
         before = []
-        with pytest.raises(SamplingError, match="KeyError: 'rare'"):
+        with pytest.raises(KeyError, match="rare"):
             before.extend(
                 fingerprint(scene)
                 for scene in scenario(text.replace("0.05", "0.5")).stream(400, seed=5, lanes=lanes)
@@ -72,7 +71,7 @@ def test_a_fault_is_that_of_the_first_scene_that_has_one() -> None:
         try:
             for _ in scenario(text).stream(n, seed=11, first=first, lanes=lanes):
                 count += 1
-        except SamplingError:
+        except KeyError:
             return count, True
         return count, False
 
