@@ -82,39 +82,6 @@ def test_unavailable_names_are_refused_when_a_module_might_have_brought_them(
     refused(f"from names import *\nclass A({name}): pass\n", filename=str(tmp_path / "main.scenic"))
 
 
-SETTING = "disc = CircularRegion((0, 0), 3)\nego = new Object\nx = 0\n"
-WHEN_RUN = [
-    "«ego.boundingBox»",
-    "«ego.inradius»",
-    "«ego.planarInradius»",
-    "«disc.intersect(disc)»",
-    "«disc.union(disc)»",
-    "«disc.difference(disc)»",
-    "«disc.intersects(disc)»",
-    "«disc.containsRegion(disc)»",
-    "«disc.AABB»",
-    "«ego intersects disc»",
-    "«disc intersects ego»",
-    "«PolygonalRegion([(0, 0), (1, 0), (0, 1)]).boundary»",
-    "«PolygonalRegion([(0, 0), (1, 0), (0, 1)], orientation=3)»",
-    "«BoxRegion((1, 2, 3), orientation=3)»",
-    "new Object «in ego.occupiedSpace»",
-    "new Object at (0, 0, 9), «on BoxRegion((9, 9, 1))»",
-]
-"""Refused while the program runs; each is the end of a program."""
-
-
-@pytest.mark.parametrize("use", WHEN_RUN)
-def test_what_is_refused_when_the_program_runs(use: str) -> None:
-    statement = use if use.startswith("new ") else f"x = {use}"
-    text, (line, _, _) = marked(SETTING + statement)
-    error = refused(text)
-    assert isinstance(error, UnsupportedError)
-    assert error.span is not None
-    assert error.span.line == line
-    assert "not supported yet" in str(error)
-
-
 def parts() -> Iterator[tuple[str, str]]:
     """Attributes and methods that the declarations promise, used on instances and values."""
     from scenic.language.properties import CLASSES, attributes_of, properties_of

@@ -33,11 +33,7 @@ def outlines(region: Any) -> list[Array]:
             turn = rotation_matrix((0.0, 0.0, np.sin(rectangle.heading / 2), np.cos(rectangle.heading / 2)))
             return [np.array(list(rectangle.position), dtype=float) + offset @ turn.T]
         case PolygonalRegion() as polygonal:
-            rings = [
-                ring
-                for part in getattr(polygonal.polygons.polygon, "geoms", [polygonal.polygons.polygon])
-                for ring in (part.exterior, *part.interiors)
-            ]
+            rings = [ring for part in polygonal.polygons.geoms for ring in (part.exterior, *part.interiors)]
             return [_at_height(np.array(ring.coords)[:, :2], polygonal.z) for ring in rings]
         case PlacedVolume() as volume:
             rotation = volume.rotation

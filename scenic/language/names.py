@@ -202,17 +202,16 @@ _ALL = (
     # Regions
     _region("everywhere", "All of space."),
     _region("nowhere", "The empty region."),
-    _region("PointSetRegion(name, points)", "A finite set of points.", available=False),
-    _region("GridRegion(name, grid, Ax, Ay, Bx, By)", "The free cells of a grid.", available=False),
-    _region("PolylineRegion(points)", "A sequence of line segments in the plane.", available=False),
-    _region("PathRegion(points)", "A sequence of line segments in space.", available=False),
+    _region("PointSetRegion(name, points)", "A finite set of points."),
+    _region("GridRegion(name, grid, Ax, Ay, Bx, By)", "The free cells of a grid."),
+    _region("PolylineRegion(points)", "A sequence of line segments in the plane."),
+    _region("PathRegion(points)", "A sequence of line segments in space."),
     _region("PolygonalRegion(points, z=0)", "A polygon in a horizontal plane."),
-    _region("PolygonalFootprintRegion(polygon)", "All points above and below a polygon.", available=False),
+    _region("PolygonalFootprintRegion(polygon)", "All points above and below a polygon."),
     _region("CircularRegion(center, radius)", "A disc in a horizontal plane."),
     _region(
         "SectorRegion(center, radius, heading, angle)",
         "A sector of a disc in a horizontal plane.",
-        available=False,
         angles=("heading", "angle"),
     ),
     _region(
@@ -223,12 +222,10 @@ _ALL = (
     _region(
         "MeshVolumeRegion(mesh, dimensions=None, position=None, rotation=None)",
         "The inside of a closed mesh.",
-        available=False,
     ),
     _region(
         "MeshSurfaceRegion(mesh, dimensions=None, position=None, rotation=None)",
         "The surface of a mesh.",
-        available=False,
     ),
     _region("BoxRegion(dimensions=(1, 1, 1), position=None, rotation=None)", "A solid cuboid."),
     _region("SpheroidRegion(dimensions=(2, 2, 2), position=None, rotation=None)", "A solid spheroid."),

@@ -240,10 +240,23 @@ class PolyhedronVectorField(VectorField):
         return self.defaultHeading
 
 
+class RegionField(VectorField):
+    """The orientations that the points of a region have by themselves: along a line, across a surface."""
+
+    def __init__(self, region: Any) -> None:
+        self.region = region
+        super().__init__(f"orientation of {region!r}", region.own_orientation)
+
+    def __getitem__(self, position: Any) -> Any:
+        place = to_vector(position, f"field {self.name!r}")
+        return (
+            defer(self.__getitem__, place) if isinstance(place, Lazy) else self.region.own_orientation(place)
+        )
+
+
 def _polygon(cell: Any) -> Any:
     """A shapely polygon: the cell itself, or that of a polygonal region."""
-    polygons = getattr(cell, "polygons", None)
-    return cell if polygons is None else getattr(polygons, "polygon", polygons)
+    return getattr(cell, "polygons", cell)
 
 
 def is_field(value: Any) -> bool:
@@ -383,6 +396,7 @@ __all__ = [
     "PiecewiseVectorField",
     "PolygonalVectorField",
     "PolyhedronVectorField",
+    "RegionField",
     "VectorField",
     "field_of",
     "frame_at",

@@ -16,8 +16,18 @@ from scenic.runtime.dynamics.run import RunContext
 from scenic.runtime.mutators import Mutator
 from scenic.runtime.objects import Object, OrientedPoint, Point
 from scenic.runtime.program import Program
+from scenic.runtime.regions import algebra as algebra  # gives regions their algebra
 from scenic.runtime.regions.base import Workspace, everywhere, nowhere, unsupported
-from scenic.runtime.regions.planar import CircularRegion, PolygonalRegion, RectangularRegion
+from scenic.runtime.regions.lines import PathRegion, PolylineRegion
+from scenic.runtime.regions.meshes import MeshSurfaceRegion, MeshVolumeRegion
+from scenic.runtime.regions.planar import (
+    CircularRegion,
+    PolygonalFootprintRegion,
+    PolygonalRegion,
+    RectangularRegion,
+    SectorRegion,
+)
+from scenic.runtime.regions.scattered import GridRegion, PointSetRegion
 from scenic.runtime.regions.volumes import BoxRegion, SpheroidRegion
 from scenic.runtime.values import Orientation, Vector
 
@@ -76,6 +86,14 @@ _NAMES: Mapping[str, Any] = MappingProxyType(
         "CircularRegion": CircularRegion,
         "PolygonalRegion": PolygonalRegion,
         "RectangularRegion": RectangularRegion,
+        "SectorRegion": SectorRegion,
+        "PolygonalFootprintRegion": PolygonalFootprintRegion,
+        "PolylineRegion": PolylineRegion,
+        "PathRegion": PathRegion,
+        "PointSetRegion": PointSetRegion,
+        "GridRegion": GridRegion,
+        "MeshVolumeRegion": MeshVolumeRegion,
+        "MeshSurfaceRegion": MeshSurfaceRegion,
         "BoxRegion": BoxRegion,
         "SpheroidRegion": SpheroidRegion,
         "RejectionException": errors.RejectionException,
@@ -91,14 +109,6 @@ _NAMES: Mapping[str, Any] = MappingProxyType(
 )
 
 _UNSUPPORTED = (
-    "GridRegion",
-    "MeshSurfaceRegion",
-    "MeshVolumeRegion",
-    "PathRegion",
-    "PointSetRegion",
-    "PolygonalFootprintRegion",
-    "PolylineRegion",
-    "SectorRegion",
     "TimeSeries",
     "VerifaiDiscreteRange",
     "VerifaiOptions",

@@ -15,9 +15,9 @@ from scenic.language.errors import InvalidScenarioError
 from scenic.runtime.context import here
 from scenic.runtime.mutators import OrientationMutator, PositionMutator
 from scenic.runtime.properties import Property, PropertyDefinition, combine
-from scenic.runtime.regions.base import unsupported
-from scenic.runtime.regions.bodies import OccupiedSpace, SideSurface
+from scenic.runtime.regions.bodies import OccupiedSpace, SideSurface, bounding_corners, inradius
 from scenic.runtime.regions.views import ViewRegion
+from scenic.runtime.regions.volumes import BoxRegion
 from scenic.runtime.shapes import BoxShape
 from scenic.runtime.sight import sees
 from scenic.runtime.values import Orientation, operate, to_orientation, to_scalar, to_vector, vector
@@ -283,6 +283,29 @@ class Object(OrientedPoint):
         """The eight corners of the bounding box in this object's frame, as global points."""
         return tuple(self._place(x, y, z) for z in (1, -1) for x, y in ((1, 1), (-1, 1), (-1, -1), (1, -1)))
 
+    @property
+    def boundingBox(self) -> BoxRegion:
+        """The box along the global axes around the space that it fills."""
+        lower, upper = bounding_corners(self)
+        middle = operate("divide", operate("add", lower, upper), 2)
+        return BoxRegion(dimensions=operate("subtract", upper, lower), position=middle)
+
+    @property
+    def inradius(self) -> Any:
+        """The radius of a ball about the position within which everything is inside, in metres."""
+        return inradius(self)
+
+    @property
+    def planarInradius(self) -> Any:
+        """The radius of a disc about the position within which everything is inside seen from above, in metres."""
+        if isinstance(self.shape, BoxShape):
+            return operate("minimum", self.hw, self.hl)
+        return inradius(self)
+
+    def distanceTo(self, point: Any) -> Any:
+        """Distance from the space that it fills to a point; 0 inside."""
+        return self.occupiedSpace.distanceTo(point)
+
     def containsPoint(self, point: Any) -> Any:
         """Whether the shape holds a point."""
         return self.occupiedSpace.containsPoint(point)
@@ -315,13 +338,6 @@ class Object(OrientedPoint):
 
 def _corner(x: float, y: float, z: float) -> property:
     return property(lambda self: self._placed(x, y, z))
-
-
-def _refused(name: str) -> property:
-    def refuse(_self: Any) -> Any:
-        raise unsupported(f"`{name}`")
-
-    return property(refuse)
 
 
 def _surface(side: str) -> property:
@@ -358,8 +374,6 @@ for _name, _place in SIDES.items():
     setattr(Object, _name, _corner(*_place))
 for _name in ("top", "bottom", "left", "right", "front", "back"):
     setattr(Object, f"{_name}Surface", _surface(_name))
-for _name in ("boundingBox", "inradius", "planarInradius"):
-    setattr(Object, _name, _refused(_name))
 
 
 def oriented_point(position: Any, orientation: Any) -> OrientedPoint:

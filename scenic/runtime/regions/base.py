@@ -5,6 +5,7 @@ once, over columns of those parameters; from that come the answers to programs (
 requirement nodes that the sampler tests in batches, and the points that specifiers draw.
 """
 
+import random
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from copy import copy
@@ -15,11 +16,11 @@ from numpy.typing import NDArray
 
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import Call, Operation, always
-from scenic.language.errors import InvalidScenarioError, ScenicTypeError, UnsupportedError
+from scenic.language.errors import InvalidScenarioError, RejectionException, ScenicTypeError, UnsupportedError
 from scenic.runtime.context import here
 from scenic.runtime.geometry.collision import Body, Poses
 from scenic.runtime.regions.knowledge import Containment, containment_bounds, containment_inverse, payload_box
-from scenic.runtime.values import apply, is_random, random_key, to_scalar, to_vector, uniform, vector
+from scenic.runtime.values import apply, as_node, is_random, random_key, to_scalar, to_vector, uniform, vector
 
 Points = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -44,6 +45,10 @@ class Region(ABC):
     """Whether `draw_points` may find no point."""
     has_orientation: bool = False
     """Whether every point has a preferred orientation."""
+    orientation: Any = None
+    """The vector field of the preferred orientations, where there is one."""
+    algebra: ClassVar[Any] = None
+    """What combines regions: `scenic.runtime.regions.algebra`, which knows all kinds of them, puts itself here."""
 
     def __init__(self, *parameters: Any, name: str | None = None) -> None:
         self.parameters: tuple[Any, ...] = parameters
@@ -104,8 +109,12 @@ class Region(ABC):
 
     def orientation_at(self, point: Any) -> Any:
         """The preferred orientation at a point of the region; ``None`` if the region has none."""
-        if not self.has_orientation:
-            return None
+        if self.orientation is not None:
+            return self.orientation[point]
+        return self.own_orientation(point) if self.has_orientation else None
+
+    def own_orientation(self, point: Any) -> Any:
+        """The orientation that a point of the region has by itself (`orientations`)."""
         return apply(_ORIENTATION, to_vector(point), *self.parameters, payload=self)
 
     def random_parts(self) -> list[Any]:
@@ -162,29 +171,80 @@ class Region(ABC):
         return self.distance_from(point)
 
     def intersects(self, other: Any) -> Any:
-        """Whether the region shares a point with another or with an object: not built yet."""
-        raise unsupported(f"`intersects` of a {type(self).__name__}")
+        """Whether the region shares a point with another, or with an object."""
+        return self.algebra.intersects(self, other)
 
     def containsRegion(self, other: Any, tolerance: float = 0) -> Any:
-        """Whether the region holds another: not built yet."""
-        raise unsupported("`containsRegion`")
+        """Whether the region holds another, up to ``tolerance`` metres; of fixed regions."""
+        return self.algebra.contains_region(self, other, tolerance)
 
-    def intersect(self, other: Any) -> Any:
-        """The points that lie in both regions: not built yet."""
-        raise unsupported("the intersection of regions")
+    def intersect(self, other: Any) -> "Region":
+        """The points that lie in both regions."""
+        result: Region = self.algebra.intersection(self, other)
+        return result
 
-    def union(self, other: Any) -> Any:
-        """The points that lie in either region: not built yet."""
-        raise unsupported("the union of regions")
+    def union(self, other: Any) -> "Region":
+        """The points that lie in either region."""
+        result: Region = self.algebra.union(self, other)
+        return result
 
-    def difference(self, other: Any) -> Any:
-        """The points that do not lie in the other region: not built yet."""
-        raise unsupported("the difference of regions")
+    def difference(self, other: Any) -> "Region":
+        """The points that do not lie in the other region."""
+        result: Region = self.algebra.difference(self, other)
+        return result
+
+    # What is known of a fixed region
+
+    def fixed_columns(self, what: str) -> list[Column]:
+        """The columns of the parameters; raises `ScenicTypeError` where they are random."""
+        if self.is_random:
+            raise ScenicTypeError(f"{what} of a region with random parameters is not known", span=here())
+        return [as_node(value).payload.column for value in self.parameters]
 
     @property
-    def AABB(self) -> Any:
-        """The bounding box along the global axes: not built yet."""
-        raise unsupported("`AABB`")
+    def AABB(self) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
+        """The corners of the bounding box along the global axes; raises ``TypeError`` where there is none."""
+        lower, upper = self.box(*self.fixed_columns("the bounding box"))
+        if not (np.isfinite(lower).all() and np.isfinite(upper).all()):
+            raise ScenicTypeError(f"a {type(self).__name__} has no bounding box", span=here())
+        first, last = lower[0].tolist(), upper[0].tolist()
+        return (first[0], first[1], first[2]), (last[0], last[1], last[2])
+
+    @property
+    def dimensionality(self) -> float:
+        """0 for points to 3 for volumes."""
+        return self.dimension
+
+    @property
+    def size(self) -> float | None:
+        """The measure of the region: count, metres, square or cubic metres; ``None`` where it is not known."""
+        size = float(self.sizes(*self.fixed_columns("the size"))[0])
+        return None if np.isnan(size) else size
+
+    def uniformPointInner(self) -> Any:
+        """A uniform point, drawn now with Python's generator."""
+        columns = self.fixed_columns("a point")
+        for _ in range(_TRIES):
+            numbers = np.array([[random.random()] for _ in range(self.draws)]).reshape(self.draws, 1)
+            keys = np.array([random.getrandbits(64)], dtype=np.uint64)
+            points, known = self.draw_points(numbers, keys, *columns)
+            if known is None or known.all():
+                x, y, z = points[0].tolist()
+                return vector(x, y, z)
+        raise RejectionException(f"no point was found in {self!r}")
+
+    @staticmethod
+    def uniformPointIn(region: "Region", tag: Any = None) -> Any:  # noqa: ARG004 - of the established call
+        """A uniform random point of a region."""
+        return region.uniform_placement()[0]
+
+    def projectVector(self, point: Any, onDirection: Any) -> Any:
+        """The point of the region where a point lands along a direction."""
+        return self.project(point, onDirection)[0]
+
+    def orient(self, point: Any) -> Any:
+        """The point with the preferred orientation there; the point itself where there is none."""
+        return point
 
     def __contains__(self, item: Any) -> Any:
         return self.containsObject(item) if hasattr(item, "occupiedSpace") else self.containsPoint(item)
@@ -361,6 +421,9 @@ class Nowhere(Region):
         raise InvalidScenarioError("no point can be drawn from the empty region", span=here())
 
 
+_TRIES = 10_000
+"""Draws of a point before a region counts as empty."""
+
 everywhere = Everywhere(name="everywhere")
 nowhere = Nowhere(name="nowhere")
 
@@ -377,7 +440,7 @@ class Workspace(Region):
             raise InvalidScenarioError("the workspace's region must be fixed", span=here())
         super().__init__(*region.parameters, name=name)
         self.region = region
-        self.has_orientation = region.has_orientation
+        self.has_orientation, self.orientation = region.has_orientation, region.orientation
         self.dimension = region.dimension
         self.draws, self.may_find_none = region.draws, region.may_find_none
 

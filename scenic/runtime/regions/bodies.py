@@ -8,12 +8,10 @@ import numpy as np
 
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import Call, Operation, always
-from scenic.language.errors import ScenicTypeError
-from scenic.runtime.context import here
-from scenic.runtime.geometry import containment, projection, surface
+from scenic.runtime.geometry import body_points, containment, projection, surface
 from scenic.runtime.geometry.collision import Body, collide
 from scenic.runtime.regions.base import Mask, Points, Region, body_of, body_operands, unsupported
-from scenic.runtime.values import Random, apply, to_vector, uniform
+from scenic.runtime.values import Random, apply, to_vector, uniform, vector
 
 Side = tuple[int, int]
 """Axis of the world (0 to 2) and sign."""
@@ -32,9 +30,13 @@ SIDES: Mapping[str, Side | None] = MappingProxyType(
 
 
 class OccupiedSpace(Region):
-    """The space that an object fills."""
+    """The space that an object fills: the solid of a mesh, of some size, turned and moved.
+
+    The parameters are the operands of `body_of`.
+    """
 
     dimension: float = 3
+    may_find_none = True
 
     def __init__(self, thing: Any) -> None:
         super().__init__(*body_operands(thing), name="occupied space")
@@ -45,14 +47,85 @@ class OccupiedSpace(Region):
     def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
         return containment.in_body(body, body_of(*columns), lanes)
 
-    def uniform_placement(self) -> tuple[Any, Any]:
-        raise unsupported("drawing points inside an object")
+    def draw_points(self, uniforms: Column, keys: Column, *columns: Column) -> tuple[Points, Mask | None]:
+        return body_points.draw(body_of(*columns), uniforms, keys)
+
+    def distances(self, points: Points, *columns: Column) -> Column:
+        return body_points.distances(body_of(*columns), points)
+
+    def gaps(self, points: Points, *columns: Column) -> Column:
+        return body_points.distances_from_box(body_of(*columns), points)
+
+    def box(self, *columns: Column) -> tuple[Points, Points]:
+        return body_points.bounds(body_of(*columns))
+
+    def sizes(self, *columns: Column) -> Column:
+        return body_points.volumes(body_of(*columns))
+
+    def project(self, point: Any, direction: Any) -> tuple[Any, Any]:
+        """A point inside stays; any other lands on the surface, by default upwards or downwards."""
+        way = vector(0, 0, 1) if direction is None else to_vector(direction, "`onDirection`")
+        place = to_vector(point)
+        landed = apply(_LANDING_OR_INSIDE, place, way, *self.parameters)
+        return landed, self.orientation_at(landed)
+
+    def body(self) -> Body:
+        """The solid of a region without random parameters."""
+        return body_of(*self.fixed_columns("the solid"))
 
     def intersects(self, other: Any) -> Any:
-        """Whether another object's space shares a point with this one."""
+        """Whether another object's space, or a region, shares a point with this one."""
         if hasattr(other, "occupiedSpace"):
             return apply(_INTERSECT, *self.parameters, *body_operands(other))
-        raise unsupported("`intersects` between an object and a region")
+        return super().intersects(other)
+
+
+def _landing_or_inside(call: Call, point: Column, direction: Column, *columns: Column) -> Column:
+    body = body_of(*columns)
+    lanes = _rows(point, direction, *columns)
+    _, landed = projection.project(body, None, 0.0, point, direction, lanes)
+    faces, _ = projection.project(body, None, 0.0, point, direction, lanes)
+    inside = np.broadcast_to(containment.contains_points(body, point), lanes)
+    call.reject((faces < 0) & ~inside)
+    return np.where(inside[:, np.newaxis], point, landed)
+
+
+_LANDING_OR_INSIDE = Operation(
+    "landing in a volume",
+    always(Kind.VECTOR),
+    _landing_or_inside,
+    "Where a point lands in a volume; rejected where it misses.",
+    rejects=True,
+)
+
+
+def _corner_of_box(call: Call, *columns: Column) -> Column:
+    return body_points.bounds(body_of(*columns))[call.payload]
+
+
+_BOX_CORNER = Operation(
+    "corner of a bounding box",
+    always(Kind.VECTOR),
+    _corner_of_box,
+    "The lower or upper corner of a body's box.",
+)
+_INRADIUS = Operation(
+    "inradius",
+    always(Kind.SCALAR),
+    lambda _call, *columns: body_points.inradii(body_of(*columns)),
+    "The radius of a ball about the position that a body holds.",
+)
+
+
+def bounding_corners(thing: Any) -> tuple[Any, Any]:
+    """The lower and upper corner of the box along the global axes around an object."""
+    operands = body_operands(thing)
+    return apply(_BOX_CORNER, *operands, payload=0), apply(_BOX_CORNER, *operands, payload=1)
+
+
+def inradius(thing: Any) -> Any:
+    """The radius of a ball about the position of an object that it holds; 0 where the position is outside."""
+    return apply(_INRADIUS, *body_operands(thing))
 
 
 def _intersect(
@@ -89,6 +162,7 @@ class SideSurface(Region):
 
     dimension: float = 2
     has_orientation = True
+    may_find_none = True
 
     def __init__(self, thing: Any, side: str) -> None:
         thresholds = thing.sideComponentThresholds
@@ -118,7 +192,28 @@ class SideSurface(Region):
         return landed, apply(_FACE_ORIENTATION, face, *self.parameters)
 
     def contains_points(self, points: Points, *columns: Column) -> Mask:
-        raise ScenicTypeError("containment in a surface is not supported", span=here())
+        body = body_of(*columns)
+        return projection.near_surface(body, self.side, self.threshold, points, max(len(points), len(body)))
+
+    def draw_points(self, uniforms: Column, keys: Column, *columns: Column) -> tuple[Points, Mask | None]:
+        body = body_of(*columns)
+        faces = surface.draw_faces(body, self.side, self.threshold, uniforms[0], uniforms.shape[1])
+        return surface.face_points(body, np.maximum(faces, 0), uniforms[1], uniforms[2]), faces >= 0
+
+    def distances(self, points: Points, *columns: Column) -> Column:
+        return body_points.distances_to_surface(body_of(*columns), points, self.side, self.threshold)
+
+    def orientations(self, points: Points, *columns: Column) -> Column:
+        body = body_of(*columns)
+        return surface.face_orientations(
+            body, body_points.nearest_faces(body, points, self.side, self.threshold)
+        )
+
+    def box(self, *columns: Column) -> tuple[Points, Points]:
+        return body_points.bounds(body_of(*columns))
+
+    def sizes(self, *columns: Column) -> Column:
+        return body_points.areas(body_of(*columns), self.side, self.threshold)
 
     def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
         return np.zeros(lanes, dtype=np.bool_)

@@ -13,7 +13,7 @@ import numpy as np
 from scenic.graph.bounds import Bounds, outward
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import Call, Operation, always
-from scenic.language.errors import ScenicTypeError, ScenicValueError
+from scenic.language.errors import InvalidScenarioError, ScenicTypeError, ScenicValueError
 from scenic.runtime.context import here
 from scenic.runtime.geometry import containment
 from scenic.runtime.geometry.collision import Body
@@ -44,7 +44,34 @@ class PlanarRegion(Region):
 
     @property
     def footprint(self) -> Region:
-        return self
+        return Footprint(self)
+
+    def polygons_now(self) -> Any:
+        """The polygon of the region with fixed parameters, shapely's."""
+        raise unsupported(f"the polygon of a {type(self).__name__}")
+
+    @property
+    def polygons(self) -> Any:
+        """The region as a shapely ``MultiPolygon``; raises ``TypeError`` where its parameters are random."""
+        import shapely
+
+        self.fixed_columns("the polygon")
+        found = self.polygons_now()
+        return found if found.geom_type == "MultiPolygon" else shapely.MultiPolygon([found])
+
+    @property
+    def area(self) -> float:
+        """Square metres."""
+        return float(self.sizes(*self.fixed_columns("the area"))[0])
+
+    @property
+    def boundary(self) -> Any:
+        """The outline, as a line."""
+        return self.algebra.boundary(self)
+
+    def buffer(self, distance: float) -> "PolygonalRegion":
+        """The region of all points within ``distance`` metres (shrunk where negative)."""
+        return PolygonalRegion(polygon=self.polygons.buffer(distance), z=float(self.height))
 
     @abstractmethod
     def beside(self, points: Points, *columns: Column) -> Column:
@@ -64,7 +91,8 @@ class PlanarRegion(Region):
         """Vertically onto the plane; a point beside the region lands nowhere."""
         target = to_vector(point)
         landed = vector(target.x, target.y, self.height)
-        return apply(_LAND, landed, *self.parameters, payload=self), None
+        place = apply(_LAND, landed, *self.parameters, payload=self)
+        return place, self.orientation_at(place)
 
 
 def _land(call: Call, points: Points, *columns: Column) -> Column:
@@ -149,6 +177,12 @@ class CircularRegion(PlanarRegion):
     def heights(self, *columns: Column) -> Column:
         return columns[0][:, 2]
 
+    def polygons_now(self) -> Any:
+        import shapely
+
+        disc = shapely.Point(self.center.x, self.center.y)
+        return disc.buffer(self.radius, quad_segs=self.resolution)
+
     def box(self, *columns: Column) -> tuple[Points, Points]:
         center, radius = columns
         reach = radius[:, np.newaxis] * np.array([1.0, 1.0, 0.0])
@@ -222,6 +256,13 @@ class RectangularRegion(PlanarRegion):
     def heights(self, *columns: Column) -> Column:
         return columns[0][:, 2]
 
+    def polygons_now(self) -> Any:
+        import shapely
+
+        box = shapely.box(-self.width / 2, -self.length / 2, self.width / 2, self.length / 2)
+        cos, sin = math.cos(self.heading), math.sin(self.heading)
+        return shapely.affinity.affine_transform(box, [cos, -sin, sin, cos, self.position.x, self.position.y])
+
     def box(self, *columns: Column) -> tuple[Points, Points]:
         position, heading, width, length = columns
         cos, sin = np.abs(np.cos(heading)), np.abs(np.sin(heading))
@@ -282,16 +323,17 @@ class PolygonalRegion(PlanarRegion):
         orientation: Any = None,
         *,
         name: str | None = None,
+        additionalDeps: Sequence[Any] = (),
     ) -> None:
         if is_random(points) or is_random(z):
             raise ScenicTypeError("`PolygonalRegion` needs fixed points", span=here())
-        if orientation is not None:
-            raise unsupported("`PolygonalRegion` with a vector field")
+        self.orientation = orientation
+        self.has_orientation = orientation is not None
         try:
             if polygon is None:
-                self.polygons = Polygons.of_points([tuple(to_vector(point))[:2] for point in points])
+                self.outline = Polygons.of_points([tuple(to_vector(point))[:2] for point in points])
             else:
-                self.polygons = Polygons(polygon)
+                self.outline = Polygons(polygon)
         except ValueError as error:
             raise ScenicValueError(f"`PolygonalRegion`: {error}", span=here()) from error
         self.z = float(z)
@@ -301,50 +343,224 @@ class PolygonalRegion(PlanarRegion):
     def height(self) -> Any:
         return self.z
 
-    @property
-    def area(self) -> float:
-        """Square metres."""
-        return self.polygons.area
+    def polygons_now(self) -> Any:
+        return self.outline.polygon
 
     @property
-    def boundary(self) -> Any:
-        """The outline, as a line: not built yet."""
-        raise unsupported("`boundary`")
-
-    def buffer(self, distance: float) -> "PolygonalRegion":
-        """The region of all points within ``distance`` metres (shrunk where negative)."""
-        return PolygonalRegion(polygon=self.polygons.polygon.buffer(distance), z=self.z)
+    def points(self) -> tuple[tuple[float, float, float], ...]:
+        """The vertices of the outlines, without holes."""
+        parts = getattr(self.outline.polygon, "geoms", [self.outline.polygon])
+        return tuple((x, y, self.z) for part in parts for x, y, *_ in part.exterior.coords)
 
     @staticmethod
     def unionAll(regions: Iterable["PolygonalRegion"], buf: float = 0) -> "PolygonalRegion":
         """The union of regions, each grown by ``buf`` metres."""
         members = list(regions)
-        if not members or not all(isinstance(member, PolygonalRegion) for member in members):
+        if not members or not all(isinstance(member, PlanarRegion) for member in members):
             raise ScenicTypeError("`unionAll` takes at least one polygonal region", span=here())
-        merged = Polygons.union([member.polygons for member in members], buf)
-        return PolygonalRegion(polygon=merged.polygon, z=members[0].z)
+        merged = Polygons.union([Polygons(member.polygons) for member in members], buf)
+        return PolygonalRegion(polygon=merged.polygon, z=float(members[0].height))
 
     def contains_points(self, points: Points, *columns: Column) -> Mask:
-        return self.polygons.contains(points[:, 0], points[:, 1])
+        return self.outline.contains(points[:, 0], points[:, 1])
 
     def beside(self, points: Points, *columns: Column) -> Column:
-        return self.polygons.distances(points[:, 0], points[:, 1])
+        return self.outline.distances(points[:, 0], points[:, 1])
 
     def heights(self, *columns: Column) -> Column:
         return np.full(1, self.z)
 
     def draw_points(self, uniforms: Column, keys: Column, *columns: Column) -> tuple[Points, Mask | None]:
         points = np.empty((uniforms.shape[1], 3))
-        points[:, :2] = self.polygons.sample(*uniforms)
+        points[:, :2] = self.outline.sample(*uniforms)
         points[:, 2] = self.z
         return points, None
 
     def box(self, *columns: Column) -> tuple[Points, Points]:
-        x, y, last_x, last_y = self.polygons.polygon.bounds
+        x, y, last_x, last_y = self.outline.polygon.bounds
         return np.array([[x, y, self.z]]), np.array([[last_x, last_y, self.z]])
 
     def sizes(self, *columns: Column) -> Column:
-        return np.full(1, self.area)
+        return np.full(1, self.outline.area)
 
     def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
-        return containment.in_polygons(body, self.polygons, lanes)
+        return containment.in_polygons(body, self.outline, lanes)
+
+
+class SectorRegion(PlanarRegion):
+    """A sector of a disc.
+
+    Args:
+        center: of the disc; points are drawn at its z.
+        radius: metres.
+        heading: of the middle of the sector, radians.
+        angle: how wide it is, radians.
+        resolution: vertices per quadrant of the polygon that must hold the outline of an object.
+
+    """
+
+    parameter_names = ("center", "radius", "heading", "angle")
+    draws = 2
+
+    def __init__(
+        self,
+        center: Any,
+        radius: Any,
+        heading: Any,
+        angle: Any,
+        resolution: int = 32,
+        *,
+        name: str | None = None,
+    ) -> None:
+        self.center = to_vector(center, "`SectorRegion` center")
+        self.radius = _positive(radius, "`SectorRegion` radius")
+        self.heading = to_heading(heading, "`SectorRegion` heading")
+        self.angle = _positive(angle, "`SectorRegion` angle")
+        self.resolution = resolution
+        super().__init__(self.center, self.radius, self.heading, self.angle, name=name)
+
+    @property
+    def height(self) -> Any:
+        return self.center.z
+
+    def draw_points(self, uniforms: Column, keys: Column, *columns: Column) -> tuple[Points, Mask | None]:
+        center, radius, heading, angle = columns
+        reach = radius * np.sqrt(uniforms[0])
+        way = heading + (uniforms[1] - 0.5) * np.minimum(angle, 2 * math.pi)
+        offset = np.stack([-reach * np.sin(way), reach * np.cos(way), np.zeros_like(reach)], axis=-1)
+        return center + offset, None
+
+    def heights(self, *columns: Column) -> Column:
+        return columns[0][:, 2]
+
+    def box(self, *columns: Column) -> tuple[Points, Points]:
+        center, radius, heading, angle = columns
+        # The centre, both ends of the arc, and where the arc crosses a direction of the axes.
+        half = np.minimum(angle / 2, math.pi)
+        ways = [heading - half, heading + half]
+        for quarter in range(4):
+            way = np.full_like(heading, quarter * math.pi / 2)
+            off = np.remainder(way - heading + math.pi, 2 * math.pi) - math.pi
+            ways.append(np.where(np.abs(off) <= half, way, heading + half))
+        lanes = max(map(len, columns))
+        points = np.zeros((lanes, 7, 3))
+        for number, way in enumerate(ways):
+            points[:, number, 0], points[:, number, 1] = -radius * np.sin(way), radius * np.cos(way)
+        return center + points.min(axis=1), center + points.max(axis=1)
+
+    def sizes(self, *columns: Column) -> Column:
+        return np.asarray(np.minimum(columns[3], 2 * math.pi) / 2 * columns[1] ** 2)
+
+    def _polar(self, points: Points, center: Column, heading: Column) -> tuple[Column, Column]:
+        """Distance from the centre, and angle from the middle of the sector, at most pi."""
+        dx, dy = points[:, 0] - center[:, 0], points[:, 1] - center[:, 1]
+        turned = np.arctan2(-dx, dy) - heading
+        return np.hypot(dx, dy), np.abs(np.remainder(turned + math.pi, 2 * math.pi) - math.pi)
+
+    def contains_points(self, points: Points, *columns: Column) -> Mask:
+        center, radius, heading, angle = columns
+        reach, turned = self._polar(points, center, heading)
+        return np.asarray((reach <= radius) & ((turned <= angle / 2) | (reach == 0)))
+
+    def beside(self, points: Points, *columns: Column) -> Column:
+        center, radius, heading, angle = columns
+        reach, turned = self._polar(points, center, heading)
+        # Beside the sector the nearest point lies on one of its two straight edges.
+        away = np.maximum(turned - angle / 2, 0)
+        along = np.clip(reach * np.cos(away), 0, radius)
+        edge = np.hypot(reach * np.cos(away) - along, reach * np.sin(away))
+        return np.asarray(np.where(away > 0, edge, np.maximum(reach - radius, 0)))
+
+    def polygons_now(self) -> Any:
+        return self._polygon(tuple(self.center), self.radius, self.heading, self.angle)
+
+    def _polygon(self, center: Sequence[float], radius: float, heading: float, angle: float) -> Any:
+        import shapely
+
+        if angle >= 2 * math.pi:
+            return shapely.Point(center[0], center[1]).buffer(radius, quad_segs=self.resolution)
+        count = max(2, math.ceil(angle / (math.pi / 2) * self.resolution) + 1)
+        ways = heading + np.linspace(-angle / 2, angle / 2, count)
+        arc = np.column_stack([center[0] - radius * np.sin(ways), center[1] + radius * np.cos(ways)])
+        return shapely.Polygon([(center[0], center[1]), *arc.tolist()])
+
+    def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
+        center, radius, heading, angle = columns
+        if all(len(column) == 1 for column in columns):
+            polygon = self._polygon(center[0].tolist(), float(radius[0]), float(heading[0]), float(angle[0]))
+            return (
+                containment.in_polygons(body, Polygons(polygon), lanes)
+                if polygon.area > 0
+                else np.zeros(lanes, np.bool_)
+            )
+        result = np.zeros(lanes, dtype=np.bool_)
+        for lane in range(lanes):
+            mine = [column if len(column) == 1 else column[[lane]] for column in columns]
+            part = body if len(body) == 1 else body.take(np.array([lane]))
+            result[lane] = self.contains_bodies(part, 1, *mine)[0]
+        return result
+
+
+class Footprint(Region):
+    """All points above and below a region of the plane."""
+
+    dimension: float = 3
+
+    def __init__(self, region: PlanarRegion, *, name: str | None = None) -> None:
+        super().__init__(*region.parameters, name=name)
+        self.region = region
+
+    def sampled(self, sample: Any) -> Region:
+        """The footprint of one sample."""
+        region = self.region.sampled(sample)
+        return self if region is self.region else Footprint(region, name=self.name)  # type: ignore[arg-type]
+
+    def contains_points(self, points: Points, *columns: Column) -> Mask:
+        return self.region.contains_points(points, *columns)
+
+    def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
+        return self.region.contains_bodies(body, lanes, *columns)
+
+    def distances(self, points: Points, *columns: Column) -> Column:
+        return self.region.beside(points, *columns)
+
+    def gaps(self, points: Points, *columns: Column) -> Column:
+        return self.region.gaps(points, *columns)
+
+    def box(self, *columns: Column) -> tuple[Points, Points]:
+        return self.region.container_box(*columns)
+
+    def sizes(self, *columns: Column) -> Column:
+        return np.full(1, np.inf)
+
+    def uniform_placement(self) -> tuple[Any, Any]:
+        raise InvalidScenarioError(
+            "no point can be drawn from a footprint, which is not bounded",
+            span=here(),
+            help="draw from the region itself, or intersect the footprint with a bounded region",
+        )
+
+    @property
+    def polygons(self) -> Any:
+        """The region seen from above, as a shapely ``MultiPolygon``."""
+        return self.region.polygons
+
+    def buffer(self, distance: float) -> "Footprint":
+        """The footprint of all points within ``distance`` metres."""
+        return Footprint(self.region.buffer(distance))
+
+    def __repr__(self) -> str:
+        return self.name or f"the footprint of {self.region!r}"
+
+
+class PolygonalFootprintRegion(Footprint):
+    """All points above and below a polygon.
+
+    Args:
+        polygon: a shapely polygon or multipolygon, or a polygonal region.
+
+    """
+
+    def __init__(self, polygon: Any, name: str | None = None) -> None:
+        region = polygon if isinstance(polygon, PlanarRegion) else PolygonalRegion(polygon=polygon)
+        super().__init__(region, name=name)

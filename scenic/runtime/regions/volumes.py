@@ -14,7 +14,7 @@ from scenic.language.errors import ScenicValueError
 from scenic.runtime.context import here
 from scenic.runtime.geometry import containment
 from scenic.runtime.geometry.collision import Body
-from scenic.runtime.regions.base import Mask, Points, Region, unsupported
+from scenic.runtime.regions.base import Mask, Points, Region
 from scenic.runtime.values import (
     Orientation,
     apply,
@@ -52,8 +52,9 @@ class PlacedVolume(Region):
         name: str | None = None,
     ) -> None:
         what = f"`{type(self).__name__}`"
-        if orientation is not None:
-            raise unsupported(f"{what} with a vector field")
+        self.orientation = orientation
+        self.has_orientation = orientation is not None
+        self.onDirection = onDirection
         sizes = list(to_vector(dimensions, f"{what} dimensions"))
         if any(is_number(size) and not size > 0 for size in sizes):
             raise ScenicValueError(f"{what} needs three positive dimensions, not {dimensions!r}", span=here())
@@ -63,7 +64,33 @@ class PlacedVolume(Region):
         super().__init__(self.dimensions, self.position, self.rotation, name=name)
 
     def project(self, point: Any, direction: Any) -> tuple[Any, Any]:
-        raise unsupported(f"placing things `on` a {type(self).__name__}")
+        way = self.onDirection if direction is None else direction
+        landed: Any = self.algebra.volume_of(self).project(point, way)[0]
+        return landed, self.orientation_at(landed)
+
+    def getSurfaceRegion(self) -> Region:
+        """The surface of the volume."""
+        surface: Region = self.algebra.volume_of(self).getSurfaceRegion()
+        return surface
+
+    def getVolumeRegion(self) -> Region:
+        """The volume itself."""
+        return self
+
+    @property
+    def mesh(self) -> Any:
+        """The mesh in the world, trimesh's; of a region without random parameters."""
+        return self.algebra.volume_of(self).mesh
+
+    @property
+    def boundingPolygon(self) -> Any:
+        """The region seen from above."""
+        return self.algebra.outline_from_above(self)
+
+    @property
+    def isConvex(self) -> bool:
+        """Boxes and ellipsoids are convex."""
+        return True
 
     @abstractmethod
     def unit_points(self, uniforms: Column) -> Points:
@@ -84,7 +111,8 @@ class PlacedVolume(Region):
         )
         if not isinstance(self.rotation, Orientation) or self.rotation != Orientation():
             offset = operate("rotate", self.rotation, offset)
-        return operate("add", self.position, offset), None
+        point = operate("add", self.position, offset)
+        return point, self.orientation_at(point)
 
 
 def _local(points: Points, dimensions: Column, position: Column, rotation: Column) -> Points:

@@ -1,0 +1,93 @@
+"""Chains of line segments: points by length, and nearest points, over arrays."""
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Final, Self
+
+import numpy as np
+
+from scenic.graph import quaternions
+from scenic.runtime.geometry.poses import Floats, Indices
+
+CHUNK: Final = 1 << 20
+"""Pairs of points and segments looked at together."""
+
+
+@dataclass(frozen=True, eq=False)
+class Segments:
+    """Segments from ``starts`` to ``ends``, each ``(k, 3)``; none has length 0."""
+
+    starts: Floats
+    ends: Floats
+
+    @classmethod
+    def of_chains(cls, chains: Sequence[Sequence[Sequence[float]]]) -> Self:
+        """The segments between the vertices of chains; raises ``ValueError`` if there is none."""
+        pairs = [(a, b) for chain in chains for a, b in itertools.pairwise(chain) if tuple(a) != tuple(b)]
+        if not pairs:
+            raise ValueError("a line needs at least two different points")
+        ends = np.array(pairs, dtype=np.float64)
+        if not np.isfinite(ends).all():
+            raise ValueError("a coordinate is not a finite number")
+        return cls(np.ascontiguousarray(ends[:, 0]), np.ascontiguousarray(ends[:, 1]))
+
+    @cached_property
+    def _sums(self) -> Floats:
+        """Length of the line up to the end of each segment."""
+        along = self.ends - self.starts
+        return np.cumsum(np.sqrt((along * along).sum(axis=1)))
+
+    @property
+    def length(self) -> float:
+        """Metres."""
+        return float(self._sums[-1])
+
+    @cached_property
+    def lower(self) -> Floats:
+        """The lower corner ``(3,)`` of the bounding box."""
+        return np.asarray(np.minimum(self.starts, self.ends).min(axis=0))
+
+    @cached_property
+    def upper(self) -> Floats:
+        """The upper corner ``(3,)`` of the bounding box."""
+        return np.asarray(np.maximum(self.starts, self.ends).max(axis=0))
+
+    @cached_property
+    def frames(self) -> Floats:
+        """Orientations ``(k, 4)`` that look along the segments, without roll."""
+        x, y, z = (self.ends - self.starts).T
+        yaw, pitch = np.arctan2(-x, y), np.arctan2(z, np.hypot(x, y))
+        return quaternions.from_euler(yaw, pitch, np.zeros_like(yaw))
+
+    def at(self, ways: Floats) -> Floats:
+        """The points ``(n, 3)`` at lengths ``(n,)`` along the line."""
+        sums = self._sums
+        chosen = np.minimum(np.searchsorted(sums, ways, side="left"), len(sums) - 1)
+        before = np.where(chosen > 0, sums[chosen - 1], 0.0)
+        part = np.clip((ways - before) / (sums[chosen] - before), 0, 1)[:, np.newaxis]
+        return np.asarray(self.starts[chosen] * (1 - part) + self.ends[chosen] * part)
+
+    def nearest(self, points: Floats) -> tuple[Floats, Indices, Floats]:
+        """For points ``(n, 3)``: distance ``(n,)``, segment ``(n,)`` and place ``(n, 3)`` of the nearest point of the line."""
+        distance = np.empty(len(points))
+        segment = np.empty(len(points), dtype=np.intp)
+        place = np.empty((len(points), 3))
+        along = self.ends - self.starts
+        squares = (along * along).sum(axis=1)
+        step = max(1, CHUNK // len(self.starts))
+        for first in range(0, len(points), step):
+            part = slice(first, first + step)
+            offset = points[part, np.newaxis, :] - self.starts
+            share = np.clip((offset * along).sum(axis=2) / squares, 0, 1)
+            gap = offset - share[..., np.newaxis] * along
+            distances = np.sqrt((gap * gap).sum(axis=2))
+            best = distances.argmin(axis=1)
+            rows = np.arange(len(best))
+            distance[part], segment[part] = distances[rows, best], best
+            place[part] = self.starts[best] + share[rows, best, np.newaxis] * along[best]
+        return distance, segment, place
+
+
+__all__ = ["Segments"]

@@ -1,0 +1,451 @@
+"""What regions have in common: intersection, union, difference, and whether they meet (section 9.4 of the specification).
+
+Fixed regions are combined in closed form where there is one: polygons and lines of the plane by shapely, solids by
+manifold3d. Everything else, and everything random, becomes a composite region.
+"""
+
+import itertools
+from typing import Any
+
+import numpy as np
+
+from scenic.graph.kinds import Kind
+from scenic.graph.operation import Operation, always
+from scenic.language.errors import InvalidScenarioError, ScenicTypeError
+from scenic.runtime.context import here
+from scenic.runtime.fields import PiecewiseVectorField, RegionField
+from scenic.runtime.geometry import booleans, primitives
+from scenic.runtime.geometry.bodies import Body
+from scenic.runtime.geometry.collision import collide
+from scenic.runtime.geometry.mesh import Mesh
+from scenic.runtime.geometry.poses import Poses
+from scenic.runtime.geometry.prisms import prism, shadow, slice_at
+from scenic.runtime.opaque import evaluated, later
+from scenic.runtime.regions.base import Everywhere, Nowhere, Region, Workspace, nowhere
+from scenic.runtime.regions.bodies import OccupiedSpace
+from scenic.runtime.regions.choice import as_region
+from scenic.runtime.regions.composite import DifferenceRegion, IntersectionRegion, UnionRegion
+from scenic.runtime.regions.lines import LineRegion, PathRegion, PolylineRegion
+from scenic.runtime.regions.meshes import MeshSurfaceRegion, MeshVolumeRegion, solid_in_world
+from scenic.runtime.regions.planar import Footprint, PlanarRegion, PolygonalFootprintRegion, PolygonalRegion
+from scenic.runtime.regions.scattered import PointSetRegion
+from scenic.runtime.regions.volumes import BoxRegion, PlacedVolume
+from scenic.runtime.values import as_value, describe
+
+
+def _operand(value: Any, what: str) -> Region:
+    """A region to combine: an object means the space that it fills."""
+    space = getattr(value, "occupiedSpace", None)
+    region = as_region(value if space is None else space)
+    if region is None:
+        raise ScenicTypeError(f"{what}: expected a region, not {describe(value)}", span=here())
+    while isinstance(region, Workspace):
+        region = region.region
+    return region
+
+
+# Fixed regions in terms of other libraries
+
+
+def _solid(region: Region) -> Mesh | None:
+    """A fixed volume as a mesh of the world; ``None`` for other regions."""
+    if isinstance(region, OccupiedSpace):
+        return solid_in_world(region.fixed_columns("the solid"))
+    if isinstance(region, PlacedVolume):
+        dimensions, position, rotation = region.fixed_columns("the solid")
+        unit = primitives.box() if isinstance(region, BoxRegion) else primitives.spheroid()
+        return Mesh(Poses(position, rotation, dimensions).to_world(unit.vertices[np.newaxis])[0], unit.faces)
+    return None
+
+
+def _flat(region: Region) -> tuple[Any, float | None] | None:
+    """A fixed region of the plane as a shapely geometry with its height; no height means all heights."""
+    if isinstance(region, PlanarRegion):
+        return region.polygons, float(region.height)
+    if isinstance(region, Footprint):
+        return region.polygons, None
+    if isinstance(region, PolylineRegion):
+        return region.lineString, 0.0
+    return None
+
+
+def _region_of(geometry: Any, height: float | None, orientation: Any) -> Region:
+    """The region of a shapely geometry: of its parts of the highest dimension."""
+    import shapely
+
+    leaves: list[Any] = []
+    for part in getattr(geometry, "geoms", [geometry]):
+        leaves += [leaf for leaf in getattr(part, "geoms", [part]) if not leaf.is_empty]
+    areas = [part for part in leaves if part.geom_type == "Polygon" and part.area > 0]
+    if areas:
+        polygon = shapely.MultiPolygon(areas) if len(areas) > 1 else areas[0]
+        if height is None:
+            return PolygonalFootprintRegion(polygon)
+        return PolygonalRegion(polygon=polygon, z=height, orientation=orientation)
+    lines = [part for part in leaves if part.geom_type in ("LineString", "LinearRing") and part.length > 0]
+    if lines and height is not None:
+        line = shapely.MultiLineString(lines) if len(lines) > 1 else lines[0]
+        if height == 0:
+            return PolylineRegion(polyline=line, orientation=True if orientation is None else orientation)
+        return PathRegion(polylines=[[(x, y, height) for x, y, *_ in part.coords] for part in lines])
+    points = [(part.x, part.y, height) for part in leaves if part.geom_type == "Point"]
+    if points and height is not None:
+        return PointSetRegion("points", points, orientation=orientation)
+    return nowhere
+
+
+def _field(*regions: Region) -> Any:
+    """The preferred orientation of what is left of regions: that of the first one with any."""
+    found = (region.orientation for region in regions if region.orientation is not None)
+    return next((field for field in found if not isinstance(field, RegionField)), None)
+
+
+def _prism_about(solid: Mesh, polygon: Any) -> Mesh | None:
+    """The part of a footprint that can meet a solid, as a prism somewhat higher than it."""
+    low, high = float(solid.bounds[0][2]), float(solid.bounds[1][2])
+    return prism(polygon, low - 1, high + 1)
+
+
+def _volume(mesh: Mesh | None, orientation: Any = None) -> Region:
+    if mesh is None or not mesh.volume > 0:
+        return nowhere
+    return MeshVolumeRegion(mesh, centerMesh=False, orientation=orientation)
+
+
+# The operations
+
+
+def intersection(first: Any, second: Any) -> Region:
+    """The points that lie in both regions."""
+    a, b = _operand(first, "`intersect`"), _operand(second, "`intersect`")
+    if isinstance(a, Everywhere) or isinstance(b, Nowhere):
+        return b
+    if isinstance(b, Everywhere) or isinstance(a, Nowhere):
+        return a
+    if not (a.is_random or b.is_random):
+        for one, two in ((a, b), (b, a)):
+            if isinstance(one, PointSetRegion):
+                kept = [point for point in one.points if _holds(two, point)]
+                return PointSetRegion(one.name, kept, orientation=_field(a, b)) if kept else nowhere
+        exact = _exact_intersection(a, b)
+        if exact is not None:
+            return exact
+    return IntersectionRegion([a, b])
+
+
+def _exact_intersection(a: Region, b: Region) -> Region | None:
+    flat_a, flat_b = _flat(a), _flat(b)
+    if flat_a is not None and flat_b is not None:
+        (one, height_a), (two, height_b) = flat_a, flat_b
+        if height_a is not None and height_b is not None and height_a != height_b:
+            return nowhere
+        height = height_b if height_a is None else height_a
+        return _region_of(one.intersection(two), height, _field(a, b))
+    solid_a, solid_b = _solid(a), _solid(b)
+    if solid_a is not None and solid_b is not None:
+        return _volume(booleans.intersection([solid_a, solid_b]), _field(a, b))
+    for solid, flat, line in ((solid_a, flat_b, b), (solid_b, flat_a, a)):
+        if solid is None:
+            continue
+        if flat is not None and not isinstance(line, LineRegion):
+            polygon, height = flat
+            if height is None:
+                column = _prism_about(solid, polygon)
+                return (
+                    nowhere
+                    if column is None
+                    else _volume(booleans.intersection([solid, column]), _field(a, b))
+                )
+            return _region_of(slice_at(solid, height).intersection(polygon), height, _field(a, b))
+        if isinstance(line, LineRegion):
+            return _line_inside(line, solid)
+    return None
+
+
+def _line_inside(line: LineRegion, solid: Mesh) -> Region:
+    """The pieces of a line inside a solid: it is cut wherever it meets the surface."""
+    pieces = []
+    for start, end in zip(line.pieces.starts, line.pieces.ends, strict=True):
+        cuts = [0.0, *sorted(_crossings(start, end, solid)), 1.0]
+        for low, high in itertools.pairwise(cuts):
+            if high - low > 1e-12 and _inside(solid, start + (low + high) / 2 * (end - start)):
+                pieces.append([(start + part * (end - start)).tolist() for part in (low, high)])
+    if not pieces:
+        return nowhere
+    if isinstance(line, PolylineRegion):
+        import shapely
+
+        return PolylineRegion(
+            polyline=shapely.MultiLineString([[point[:2] for point in piece] for piece in pieces])
+        )
+    return PathRegion(polylines=pieces)
+
+
+def _crossings(start: Any, end: Any, solid: Mesh) -> list[float]:
+    """Where a segment meets the faces of a solid, as parts of its length (Moeller and Trumbore, 1997)."""
+    along = end - start
+    a, b, c = (solid.triangles[:, corner] for corner in range(3))
+    ab, ac = b - a, c - a
+    across = np.cross(along, ac)
+    determinant = (ab * across).sum(axis=1)
+    crosses = np.abs(determinant) > 1e-14
+    inverse = 1 / np.where(crosses, determinant, 1.0)
+    offset = start - a
+    u = (offset * across).sum(axis=1) * inverse
+    turned = np.cross(offset, ab)
+    v = (turned @ along) * inverse
+    part = (ac * turned).sum(axis=1) * inverse
+    hit = crosses & (u >= -1e-9) & (v >= -1e-9) & (u + v <= 1 + 1e-9) & (part >= 0) & (part <= 1)
+    return [float(value) for value in part[hit]]
+
+
+def _inside(solid: Mesh, point: Any) -> bool:
+    from scenic.runtime.geometry.containment import contains_points
+
+    unit, centre, extents = solid.normalized()
+    body = Body((unit,), None, Poses.fixed(centre, size=extents))
+    return bool(contains_points(body, np.asarray(point, dtype=np.float64).reshape(1, 3))[0])
+
+
+def _holds(region: Region, point: Any) -> bool:
+    columns = region.fixed_columns("containment")
+    return bool(region.contains_points(np.asarray(point, dtype=np.float64).reshape(1, 3), *columns)[0])
+
+
+def union(first: Any, second: Any) -> Region:
+    """The points that lie in either region."""
+    a, b = _operand(first, "`union`"), _operand(second, "`union`")
+    if isinstance(a, Everywhere) or isinstance(b, Nowhere):
+        return a
+    if isinstance(b, Everywhere) or isinstance(a, Nowhere):
+        return b
+    if not (a.is_random or b.is_random):
+        flat_a, flat_b = _flat(a), _flat(b)
+        if flat_a is not None and flat_b is not None and flat_a[1] == flat_b[1]:
+            areal = not (isinstance(a, LineRegion) and isinstance(b, LineRegion))
+            if areal:
+                field = None
+                if a.has_orientation or b.has_orientation:
+                    field = PiecewiseVectorField("union", [a, b])
+                return _region_of(flat_a[0].union(flat_b[0]), flat_a[1], field)
+        solid_a, solid_b = _solid(a), _solid(b)
+        if solid_a is not None and solid_b is not None:
+            return _volume(booleans.union([solid_a, solid_b]))
+    members = [
+        member
+        for region in (a, b)
+        for member in (region.members if isinstance(region, UnionRegion) else [region])
+    ]
+    return UnionRegion(members)
+
+
+def difference(first: Any, second: Any) -> Region:
+    """The points of the first region that do not lie in the second."""
+    a, b = _operand(first, "`difference`"), _operand(second, "`difference`")
+    if isinstance(b, Everywhere) or isinstance(a, Nowhere):
+        return nowhere
+    if isinstance(b, Nowhere):
+        return a
+    if not (a.is_random or b.is_random):
+        if isinstance(a, PointSetRegion):
+            kept = [point for point in a.points if not _holds(b, point)]
+            return PointSetRegion(a.name, kept, orientation=a.orientation) if kept else nowhere
+        flat_a, flat_b = _flat(a), _flat(b)
+        if flat_a is not None and flat_b is not None:
+            if flat_a[1] is not None and flat_b[1] is not None and flat_a[1] != flat_b[1]:
+                return a
+            if flat_a[1] is not None or flat_b[1] is None:
+                return _region_of(flat_a[0].difference(flat_b[0]), flat_a[1], _field(a))
+        solid_a, solid_b = _solid(a), _solid(b)
+        if solid_a is not None and solid_b is None and flat_b is not None and flat_b[1] is None:
+            solid_b = _prism_about(solid_a, flat_b[0])
+        if solid_a is not None and solid_b is not None:
+            return _volume(booleans.difference(solid_a, [solid_b]), _field(a))
+    return DifferenceRegion([a, b])
+
+
+def intersects(first: Any, second: Any) -> Any:
+    """Whether two regions or objects share a point; random where one of them is."""
+    a, b = _operand(first, "`intersects`"), _operand(second, "`intersects`")
+    if isinstance(a, Nowhere) or isinstance(b, Nowhere):
+        return False
+    if isinstance(a, Everywhere) or isinstance(b, Everywhere):
+        return True
+    if a.is_random or b.is_random:
+        return as_value(later(_MEET, _meet, (a, b)))
+    return _meet(a, b)
+
+
+def _meet(a: Region, b: Region) -> bool:
+    """Whether two fixed regions share a point."""
+    for one, two in ((a, b), (b, a)):
+        if isinstance(one, PointSetRegion):
+            return any(_holds(two, point) for point in one.points)
+        if isinstance(one, UnionRegion):
+            return any(_meet(member, two) for member in one.members)
+    flat_a, flat_b = _flat(a), _flat(b)
+    if flat_a is not None and flat_b is not None:
+        same = flat_a[1] is None or flat_b[1] is None or flat_a[1] == flat_b[1]
+        return same and bool(flat_a[0].intersects(flat_b[0]))
+    solid_a, solid_b = _solid(a), _solid(b)
+    if solid_a is not None and solid_b is not None:
+        return _solids_meet(solid_a, solid_b)
+    for solid, flat, other in ((solid_a, flat_b, b), (solid_b, flat_a, a)):
+        if solid is None:
+            continue
+        if isinstance(other, LineRegion):
+            ends = zip(other.pieces.starts, other.pieces.ends, strict=True)
+            return any(_inside(solid, start) or bool(_crossings(start, end, solid)) for start, end in ends)
+        if flat is not None:
+            polygon, height = flat
+            if height is None:
+                column = _prism_about(solid, polygon)
+                return column is not None and _solids_meet(solid, column)
+            return bool(slice_at(solid, height).intersects(polygon))
+    for line, other in ((a, b), (b, a)):
+        if isinstance(line, PathRegion) and isinstance(other, Footprint):
+            import shapely
+
+            return any(
+                other.polygons.intersects(shapely.LineString([p[:2] for p in chain])) for chain in line.chains
+            )
+    for line, other in ((a, b), (b, a)):
+        if isinstance(line, PathRegion) and isinstance(other, PlanarRegion):
+            return _crosses_plane(line, other)
+        if isinstance(line, MeshSurfaceRegion):
+            shell = solid_in_world(line.fixed_columns("the surface"))
+            if isinstance(other, Footprint):
+                return bool(other.polygons.intersects(shadow(shell)))
+            if isinstance(other, MeshSurfaceRegion):
+                return _edges_cross(shell, solid_in_world(other.fixed_columns("the surface")))
+            solid = _solid(other)
+            if solid is not None:
+                return any(_inside(solid, vertex) for vertex in shell.vertices) or _edges_cross(shell, solid)
+    raise NotImplementedError(f"whether {a!r} and {b!r} intersect is not known for regions of these kinds")
+
+
+def _crosses_plane(line: LineRegion, region: PlanarRegion) -> bool:
+    """Whether a line in space meets a region of the plane."""
+    import shapely
+
+    height, polygon = float(region.height), region.polygons
+    for start, end in zip(line.pieces.starts, line.pieces.ends, strict=True):
+        if start[2] == end[2]:
+            if start[2] == height and polygon.intersects(shapely.LineString([start[:2], end[:2]])):
+                return True
+        elif min(start[2], end[2]) <= height <= max(start[2], end[2]):
+            point = start + (height - start[2]) / (end[2] - start[2]) * (end - start)
+            if polygon.intersects(shapely.Point(point[:2])):
+                return True
+    return False
+
+
+def _edges_cross(one: Mesh, two: Mesh) -> bool:
+    """Whether an edge of one of two meshes meets a face of the other."""
+    for edges_of, faces_of in ((one, two), (two, one)):
+        pairs = np.sort(edges_of.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+        for first, second in np.unique(pairs, axis=0).tolist():
+            if _crossings(edges_of.vertices[first], edges_of.vertices[second], faces_of):
+                return True
+    return False
+
+
+def _solids_meet(one: Mesh, two: Mesh) -> bool:
+    bodies = []
+    for solid in (one, two):
+        unit, centre, extents = solid.normalized()
+        bodies.append(Body((unit,), None, Poses.fixed(centre, size=extents)))
+    return not bool(collide(bodies, np.array([[0, 1]]), lanes=1).free[0])
+
+
+_MEET = Operation(
+    "regions meet",
+    always(Kind.BOOLEAN),
+    lambda call, *columns: np.array([bool(item) for item in evaluated(call, columns)]),
+    "Whether two regions, some with random parameters, share a point.",
+    pure=False,
+    faults=True,
+    rejects=True,
+)
+
+
+def contains_region(first: Any, second: Any, tolerance: float = 0) -> bool:
+    """Whether a fixed region holds another; raises ``NotImplementedError`` where that is not known."""
+    a, b = _operand(first, "`containsRegion`"), _operand(second, "`containsRegion`")
+    if isinstance(a, Everywhere) or isinstance(b, Nowhere):
+        return True
+    if isinstance(b, Everywhere) or isinstance(a, Nowhere):
+        return False
+    if isinstance(b, PointSetRegion):
+        return all(_holds(a, point) for point in b.points)
+    flat_a, flat_b = _flat(a), _flat(b)
+    if flat_a is not None and flat_b is not None:
+        if flat_a[1] is not None and flat_a[1] != flat_b[1]:
+            return False
+        return bool(flat_a[0].buffer(tolerance + 1e-9).covers(flat_b[0]))
+    solid_a, solid_b = _solid(a), _solid(b)
+    if solid_a is not None and solid_b is not None:
+        rest = booleans.difference(solid_b, [solid_a])
+        return rest is None or rest.volume <= 1e-9 * solid_b.volume
+    if flat_a is not None and flat_a[1] is None and solid_b is not None:
+        return bool(flat_a[0].buffer(tolerance + 1e-9).covers(shadow(solid_b)))
+    if a.dimension < b.dimension:
+        return False
+    if solid_a is not None and isinstance(b, LineRegion):
+        inside = _line_inside(b, solid_a)
+        return isinstance(inside, LineRegion) and inside.length >= b.length * (1 - 1e-9) - tolerance
+    raise NotImplementedError(f"whether {a!r} holds {b!r} is not known for regions of these kinds")
+
+
+def boundary(region: PlanarRegion) -> PolylineRegion:
+    """The outline of a region of the plane."""
+    return PolylineRegion(polyline=region.polygons.boundary)
+
+
+def outline_from_above(region: Region) -> PolygonalRegion:
+    """A volume seen from above, at height 0."""
+    solid = _solid(region)
+    if solid is None:
+        raise InvalidScenarioError(f"{region!r} has no outline from above", span=here())
+    return PolygonalRegion(polygon=shadow(solid))
+
+
+def volume_of(region: PlacedVolume) -> MeshVolumeRegion:
+    """A box or ellipsoid as the volume of a mesh, with the same parameters."""
+    unit = primitives.box() if isinstance(region, BoxRegion) else primitives.spheroid()
+    return MeshVolumeRegion(
+        unit,
+        region.dimensions,
+        region.position,
+        region.rotation,
+        orientation=region.orientation,
+        onDirection=region.onDirection,
+    )
+
+
+class _Algebra:
+    """The operations above, where `Region` finds them."""
+
+    intersection = staticmethod(intersection)
+    union = staticmethod(union)
+    difference = staticmethod(difference)
+    intersects = staticmethod(intersects)
+    contains_region = staticmethod(contains_region)
+    boundary = staticmethod(boundary)
+    volume_of = staticmethod(volume_of)
+    outline_from_above = staticmethod(outline_from_above)
+
+
+Region.algebra = _Algebra
+
+
+__all__ = [
+    "boundary",
+    "contains_region",
+    "difference",
+    "intersection",
+    "intersects",
+    "outline_from_above",
+    "union",
+    "volume_of",
+]

@@ -1,0 +1,300 @@
+"""Regions made of others: what lies in all of them, in any, or in one and not in another (section 9.4 of the specification).
+
+These are the general forms, for members of any kind with parameters of any kind; what has a closed form is found by
+`scenic.runtime.regions.algebra`. A point is drawn from a member until one lies in the region.
+"""
+
+from abc import abstractmethod
+from collections.abc import Iterator, Sequence
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from scenic.graph.draws import mix, open_unit
+from scenic.graph.kinds import Column
+from scenic.language.errors import InvalidScenarioError, ScenicTypeError
+from scenic.runtime.context import here
+from scenic.runtime.geometry.collision import Body
+from scenic.runtime.regions.base import Mask, Points, Region
+from scenic.runtime.regions.planar import PlanarRegion
+from scenic.runtime.values import operate
+
+TRIES: Final = 2_000
+"""Draws of one point before a region counts as empty in a lane."""
+
+LEVEL: Final = 1e-6
+"""Metres within which a point counts as being at the height of a region of the plane."""
+
+
+class Composite(Region):
+    """A region made of members."""
+
+    draws = 1
+    may_find_none = True
+
+    def __init__(self, members: Sequence[Region], name: str | None = None) -> None:
+        super().__init__(*(value for member in members for value in member.parameters), name=name)
+        self.members = tuple(members)
+        self.has_orientation, self.orientation = False, None
+
+    def _parts(self, columns: Sequence[Column]) -> Iterator[tuple[Region, Sequence[Column]]]:
+        first = 0
+        for member in self.members:
+            count = len(member.parameters)
+            yield member, columns[first : first + count]
+            first += count
+
+    def sampled(self, sample: Any) -> Region:
+        """The region of one sample, in closed form where it has one."""
+        return self.combined([member.sampled(sample) for member in self.members]) if self.is_random else self
+
+    @abstractmethod
+    def combined(self, members: Sequence[Region]) -> Region:
+        """The same combination of other members."""
+
+    def _exactly(self, points: Points, columns: Sequence[Column]) -> list[Mask]:
+        """For each member, which points lie in it; of regions of the plane also at its height."""
+        return [exactly_contains(member, points, mine) for member, mine in self._parts(columns)]
+
+    @abstractmethod
+    def _accept(self, points: Points, inside: Sequence[Mask], chosen: NDArray[np.intp], dice: Column) -> Mask:
+        """Which draws from members ``chosen`` are kept."""
+
+    @abstractmethod
+    def _sources(self, columns: Sequence[Column]) -> tuple[list[int], NDArray[np.float64]]:
+        """The members to draw from, with weights ``(members, n | 1)``."""
+
+    def draw_points(self, uniforms: Column, keys: Column, *columns: Column) -> tuple[Points, Mask | None]:
+        lanes = uniforms.shape[1]
+        sources, weights = self._sources(columns)
+        sums = np.cumsum(np.broadcast_to(weights, (len(sources), lanes)), axis=0)
+        points = np.zeros((lanes, 3))
+        found = np.zeros(lanes, dtype=np.bool_)
+        words = np.broadcast_to(np.asarray(keys, dtype=np.uint64), lanes)
+        parts = list(self._parts(columns))
+        for attempt in range(TRIES):
+            missing = np.flatnonzero(~found)
+            if not len(missing):
+                break
+            own = mix(words[missing] ^ np.uint64(attempt + 1))
+            choice = uniforms[0, missing] if attempt == 0 else open_unit(mix(own))
+            total = sums[:, missing]
+            chosen = (choice * total[-1] >= total).sum(axis=0).clip(0, len(sources) - 1)
+            drawn = np.zeros((len(missing), 3))
+            known = np.zeros(len(missing), dtype=np.bool_)
+            for number, source in enumerate(sources):
+                mine = np.flatnonzero(chosen == number)
+                if not len(mine):
+                    continue
+                member, all_columns = parts[source]
+                some = [column if len(column) == 1 else column[missing[mine]] for column in all_columns]
+                fresh = (
+                    np.stack(
+                        [open_unit(mix(own[mine] + np.uint64(17 + axis))) for axis in range(member.draws)]
+                    )
+                    if member.draws
+                    else np.empty((0, len(mine)))
+                )
+                drawn[mine], present = member.draw_points(fresh, mix(own[mine] + np.uint64(3)), *some)
+                known[mine] = True if present is None else present
+            rows = [column if len(column) == 1 else column[missing] for column in columns]
+            kept = known & self._accept(
+                drawn, self._exactly(drawn, rows), chosen, open_unit(mix(own + np.uint64(5)))
+            )
+            points[missing[kept]] = drawn[kept]
+            found[missing[kept]] = True
+        return points, found
+
+    def uniform_placement(self) -> tuple[Any, Any]:
+        if not any(np.isfinite(member.dimension) and member.dimension >= 0 for member in self.members):
+            raise InvalidScenarioError("no point can be drawn from an unbounded region", span=here())
+        return super().uniform_placement()
+
+    def orientation_at(self, point: Any) -> Any:
+        for member in self.members:
+            if member.has_orientation:
+                return member.orientation_at(point) if self.has_orientation else None
+        return None
+
+
+def _all(masks: Sequence[Mask]) -> Mask:
+    return np.asarray(np.logical_and.reduce(masks), dtype=np.bool_)
+
+
+def _any(masks: Sequence[Mask]) -> Mask:
+    return np.asarray(np.logical_or.reduce(masks), dtype=np.bool_)
+
+
+def exactly_contains(region: Region, points: Points, columns: Sequence[Column]) -> Mask:
+    """Which points lie in a region, with their heights where it lies in a plane."""
+    inside = region.contains_points(points, *columns)
+    if isinstance(region, PlanarRegion):
+        inside = inside & (np.abs(points[:, 2] - region.heights(*columns)) <= LEVEL)
+    return np.broadcast_to(inside, len(points))
+
+
+class IntersectionRegion(Composite):
+    """The points that lie in all members."""
+
+    def __init__(self, members: Sequence[Region], name: str | None = None) -> None:
+        super().__init__(members, name)
+        self.dimension = min(member.dimension for member in members)
+        oriented = next((member for member in members if member.has_orientation), None)
+        if oriented is not None:
+            self.has_orientation, self.orientation = True, oriented.orientation
+
+    def combined(self, members: Sequence[Region]) -> Region:
+        result = members[0]
+        for member in members[1:]:
+            result = result.intersect(member)
+        return result
+
+    def _sources(self, columns: Sequence[Column]) -> tuple[list[int], NDArray[np.float64]]:
+        bounded = [
+            number
+            for number, (member, mine) in enumerate(self._parts(columns))
+            if member.dimension == self.dimension and np.isfinite(member.box(*mine)[0]).all()
+        ]
+        if not bounded:
+            bounded = [
+                number
+                for number, (member, mine) in enumerate(self._parts(columns))
+                if np.isfinite(member.box(*mine)[0]).all()
+            ][:1]
+        if not bounded:
+            raise ScenicTypeError("no point can be drawn from an intersection of unbounded regions")
+        return bounded[:1], np.ones((1, 1))
+
+    def _accept(self, points: Points, inside: Sequence[Mask], chosen: NDArray[np.intp], dice: Column) -> Mask:
+        return _all(inside)
+
+    def contains_points(self, points: Points, *columns: Column) -> Mask:
+        return _all([member.contains_points(points, *mine) for member, mine in self._parts(columns)])
+
+    def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
+        return _all([member.contains_bodies(body, lanes, *mine) for member, mine in self._parts(columns)])
+
+    @property
+    def footprint(self) -> Region:
+        return IntersectionRegion([member.footprint for member in self.members])
+
+    def gaps(self, points: Points, *columns: Column) -> NDArray[np.float64]:
+        return np.asarray(
+            np.maximum.reduce([member.gaps(points, *mine) for member, mine in self._parts(columns)])
+        )
+
+    def box(self, *columns: Column) -> tuple[Points, Points]:
+        boxes = [member.box(*mine) for member, mine in self._parts(columns)]
+        lower, upper = (
+            np.maximum.reduce([low for low, _ in boxes]),
+            np.minimum.reduce([high for _, high in boxes]),
+        )
+        return np.minimum(lower, upper), upper
+
+
+class UnionRegion(Composite):
+    """The points that lie in any member."""
+
+    def __init__(self, members: Sequence[Region], name: str | None = None) -> None:
+        super().__init__(members, name)
+        self.dimension = max(member.dimension for member in members)
+
+    def combined(self, members: Sequence[Region]) -> Region:
+        result = members[0]
+        for member in members[1:]:
+            result = result.union(member)
+        return result
+
+    def _sources(self, columns: Sequence[Column]) -> tuple[list[int], NDArray[np.float64]]:
+        chosen, weights = [], []
+        for number, (member, mine) in enumerate(self._parts(columns)):
+            if member.dimension == self.dimension:
+                size = member.sizes(*mine)
+                if not np.isfinite(size).all():
+                    raise ScenicTypeError(
+                        f"the size of {member!r} is not known: no point of a union with it can be drawn"
+                    )
+                chosen.append(number)
+                weights.append(size)
+        lanes = max(map(len, weights))
+        return chosen, np.stack([np.broadcast_to(weight, lanes) for weight in weights])
+
+    def _accept(self, points: Points, inside: Sequence[Mask], chosen: NDArray[np.intp], dice: Column) -> Mask:
+        # A point in several members is drawn once for each of them.
+        mine = [
+            mask
+            for mask, member in zip(inside, self.members, strict=True)
+            if member.dimension == self.dimension
+        ]
+        return np.asarray(dice * np.sum(mine, axis=0) <= 1)
+
+    def contains_points(self, points: Points, *columns: Column) -> Mask:
+        return _any([member.contains_points(points, *mine) for member, mine in self._parts(columns)])
+
+    def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
+        """Where one member holds the whole body; a body that only several hold together is not found to be inside."""
+        return _any([member.contains_bodies(body, lanes, *mine) for member, mine in self._parts(columns)])
+
+    @property
+    def footprint(self) -> Region:
+        return UnionRegion([member.footprint for member in self.members])
+
+    def distances(self, points: Points, *columns: Column) -> NDArray[np.float64]:
+        return np.asarray(
+            np.minimum.reduce([member.distances(points, *mine) for member, mine in self._parts(columns)])
+        )
+
+    def box(self, *columns: Column) -> tuple[Points, Points]:
+        boxes = [member.box(*mine) for member, mine in self._parts(columns)]
+        return np.minimum.reduce([low for low, _ in boxes]), np.maximum.reduce([high for _, high in boxes])
+
+
+class DifferenceRegion(Composite):
+    """The points of the first member that do not lie in the second."""
+
+    def __init__(self, members: Sequence[Region], name: str | None = None) -> None:
+        super().__init__(members, name)
+        self.dimension = members[0].dimension
+        self.has_orientation, self.orientation = members[0].has_orientation, members[0].orientation
+
+    def combined(self, members: Sequence[Region]) -> Region:
+        return members[0].difference(members[1])
+
+    def _sources(self, columns: Sequence[Column]) -> tuple[list[int], NDArray[np.float64]]:
+        return [0], np.ones((1, 1))
+
+    def _accept(self, points: Points, inside: Sequence[Mask], chosen: NDArray[np.intp], dice: Column) -> Mask:
+        return np.asarray(~inside[1])
+
+    def contains_points(self, points: Points, *columns: Column) -> Mask:
+        first, second = (member.contains_points(points, *mine) for member, mine in self._parts(columns))
+        return np.asarray(first & ~second)
+
+    def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
+        (first, mine), _ = self._parts(columns)
+        return first.contains_bodies(body, lanes, *mine)
+
+    def containsObject(self, thing: Any) -> Any:
+        """Whether the first member holds the whole of an object, and the second touches it nowhere."""
+        first, second = self.members
+        held = first.containsObject(thing)
+        if held is False:
+            return False
+        return operate("and", held, operate("not", second.intersects(thing.occupiedSpace)))
+
+    @property
+    def footprint(self) -> Region:
+        first, second = (member.footprint for member in self.members)
+        return DifferenceRegion([first, second])
+
+    def gaps(self, points: Points, *columns: Column) -> NDArray[np.float64]:
+        (first, mine), _ = self._parts(columns)
+        return first.gaps(points, *mine)
+
+    def box(self, *columns: Column) -> tuple[Points, Points]:
+        (first, mine), _ = self._parts(columns)
+        return first.box(*mine)
+
+
+__all__ = ["Composite", "DifferenceRegion", "IntersectionRegion", "UnionRegion", "exactly_contains"]

@@ -1,0 +1,250 @@
+"""Lines: in the plane, and in space (section 9.2 of the specification)."""
+
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from scenic.graph.kinds import Column
+from scenic.language.errors import ScenicTypeError, ScenicValueError
+from scenic.runtime.context import here
+from scenic.runtime.fields import RegionField, VectorField
+from scenic.runtime.geometry.collision import Body
+from scenic.runtime.geometry.segments import Segments
+from scenic.runtime.objects import OrientedPoint, oriented_point
+from scenic.runtime.regions.base import Mask, Points, Region
+from scenic.runtime.values import Orientation, Vector, is_random, to_vector
+
+TOUCH: Final = 1e-6
+"""Metres within which a point counts as lying on a line of the plane."""
+
+
+class LineRegion(Region):
+    """Fixed line segments, drawn from by length."""
+
+    dimension: float = 1
+    draws = 1
+
+    def __init__(self, segments: Segments, tolerance: float, orientation: Any, name: str | None) -> None:
+        super().__init__(name=name)
+        self.tolerance = tolerance
+        self.pieces = segments
+        if orientation is True:
+            self.orientation: VectorField | None = RegionField(self)
+        else:
+            self.orientation = orientation
+        self.has_orientation = self.orientation is not None
+
+    def draw_points(self, uniforms: Column, keys: Column, *columns: Column) -> tuple[Points, Mask | None]:
+        return self.pieces.at(uniforms[0] * self.pieces.length), None
+
+    def contains_points(self, points: Points, *columns: Column) -> Mask:
+        return np.asarray(self.distances(points) <= self.tolerance)
+
+    def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
+        return np.zeros(lanes, dtype=np.bool_)
+
+    def distances(self, points: Points, *columns: Column) -> NDArray[np.float64]:
+        return self.pieces.nearest(points)[0]
+
+    def orientations(self, points: Points, *columns: Column) -> Column:
+        return self.pieces.frames[self.pieces.nearest(points)[1]]
+
+    def box(self, *columns: Column) -> tuple[Points, Points]:
+        return self.pieces.lower[np.newaxis], self.pieces.upper[np.newaxis]
+
+    def sizes(self, *columns: Column) -> NDArray[np.float64]:
+        return np.full(1, self.pieces.length)
+
+    def nearestSegmentTo(self, point: Any) -> tuple[Vector, Vector]:
+        """The ends of the segment nearest to a point."""
+        index = int(self.pieces.nearest(np.array([tuple(to_vector(point))]))[1][0])
+        return Vector.of(self.pieces.starts[index].tolist()), Vector.of(self.pieces.ends[index].tolist())
+
+    @property
+    def length(self) -> float:
+        """Metres."""
+        return self.pieces.length
+
+
+def _fixed_points(points: Iterable[Any], what: str) -> list[tuple[float, float, float]]:
+    listed = list(points)
+    if is_random(listed):
+        raise ScenicTypeError(f"{what} needs fixed points", span=here())
+    return [tuple(to_vector(point, what)) for point in listed]
+
+
+class PathRegion(LineRegion):
+    """Line segments in space.
+
+    Args:
+        points: the vertices of one chain; or
+        polylines: the vertices of several.
+        tolerance: metres within which a point counts as lying on the path.
+        orientation: a vector field; ``True`` is the direction of the segments (yaw and pitch), ``None`` no orientation.
+
+    """
+
+    def __init__(
+        self,
+        points: Sequence[Any] | None = None,
+        polylines: Sequence[Sequence[Any]] | None = None,
+        tolerance: float = 1e-8,
+        orientation: Any = True,
+        name: str | None = None,
+    ) -> None:
+        if (points is None) == (polylines is None):
+            raise ScenicValueError("`PathRegion` takes either points or polylines", span=here())
+        chains = [points] if points is not None else list(polylines or ())
+        vertices = [_fixed_points(chain, "`PathRegion`") for chain in chains]
+        self.chains = tuple(tuple(chain) for chain in vertices)
+        try:
+            segments = Segments.of_chains(vertices)
+        except ValueError as error:
+            raise ScenicValueError(f"`PathRegion`: {error}", span=here()) from error
+        super().__init__(segments, tolerance, orientation, name)
+
+
+class PolylineRegion(LineRegion):
+    """A chain of line segments in the plane, or several.
+
+    Args:
+        points: the vertices of one chain; or
+        polyline: a shapely line string, or several.
+        orientation: a vector field; ``True`` is the direction of the segments, ``None`` no orientation.
+
+    """
+
+    def __init__(
+        self,
+        points: Sequence[Any] | None = None,
+        polyline: Any = None,
+        orientation: Any = True,
+        name: str | None = None,
+    ) -> None:
+        import shapely
+
+        if (points is None) == (polyline is None):
+            raise ScenicValueError("`PolylineRegion` takes either points or a polyline", span=here())
+        if points is not None:
+            vertices = _fixed_points(points, "`PolylineRegion`")
+            if any(z != 0 for _, _, z in vertices):
+                import warnings
+
+                warnings.warn(
+                    "`PolylineRegion` lies in the plane: the z of its points is dropped", stacklevel=2
+                )
+            if len(vertices) < 2:
+                raise ScenicValueError("`PolylineRegion` needs at least two points", span=here())
+            chains = [[(x, y, 0.0) for x, y, _ in vertices]]
+            self.lineString: Any = shapely.LineString([(x, y) for x, y, _ in vertices])
+        else:
+            parts = [part for part in getattr(polyline, "geoms", [polyline]) if not part.is_empty]
+            if not parts or any(part.geom_type not in ("LineString", "LinearRing") for part in parts):
+                raise ScenicValueError("`PolylineRegion` needs a line string that is not empty", span=here())
+            chains = [[(x, y, 0.0) for x, y, *_ in part.coords] for part in parts]
+            self.lineString = polyline
+        self.chains = tuple(tuple(chain) for chain in chains)
+        try:
+            pieces = Segments.of_chains(chains)
+        except ValueError as error:
+            raise ScenicValueError(f"`PolylineRegion`: {error}", span=here()) from error
+        super().__init__(pieces, TOUCH, orientation, name)
+
+    @property
+    def points(self) -> tuple[tuple[float, float, float], ...]:
+        """The vertices."""
+        return tuple(point for chain in self.chains for point in chain)
+
+    @property
+    def segments(self) -> list[tuple[Vector, Vector]]:
+        """The ends of each segment."""
+        ends = zip(self.pieces.starts.tolist(), self.pieces.ends.tolist(), strict=True)
+        return [(Vector.of(start), Vector.of(end)) for start, end in ends]
+
+    def _end(self, point: Any, segment: int) -> OrientedPoint:
+        place = Vector.of(point)
+        if isinstance(self.orientation, VectorField) and not isinstance(self.orientation, RegionField):
+            return oriented_point(place, self.orientation[place])
+        return oriented_point(place, Orientation.of(self.pieces.frames[segment].tolist()))
+
+    @property
+    def start(self) -> OrientedPoint:
+        """The first point, with the direction there."""
+        return self._end(self.pieces.starts[0].tolist(), 0)
+
+    @property
+    def end(self) -> OrientedPoint:
+        """The last point, with the direction there."""
+        return self._end(self.pieces.ends[-1].tolist(), len(self.pieces.starts) - 1)
+
+    def signedDistanceTo(self, point: Any) -> float:
+        """Distance from a point to the line, negative on the right of it (metres)."""
+        place = np.array([tuple(to_vector(point))])
+        place[:, 2] = 0
+        distance, index, _ = self.pieces.nearest(place)
+        start, end = self.pieces.starts[index[0]], self.pieces.ends[index[0]]
+        along, across = end - start, place[0] - start
+        side = along[0] * across[1] - along[1] * across[0]
+        return float(distance[0]) if side >= 0 else -float(distance[0])
+
+    def pointAlongBy(self, distance: float, normalized: bool = False) -> Vector:
+        """The point at a distance along the line (a share of its length if ``normalized``); from its end if negative."""
+        way = distance * self.length if normalized else distance
+        way = self.length + way if way < 0 else way
+        return Vector.of(self.pieces.at(np.array([way]))[0].tolist())
+
+    def project(self, point: Any, *direction: Any) -> Any:
+        """The point of the line nearest to ``point``."""
+        if direction:
+            return super().project(point, *direction)
+        place = np.array([tuple(to_vector(point))])
+        place[:, 2] = 0
+        return Vector.of(self.pieces.nearest(place)[2][0].tolist())
+
+    def equallySpacedPoints(self, num: int) -> list[Vector]:
+        """So many points from start to end, equally far apart along the line."""
+        return [self.pointAlongBy(part, normalized=True) for part in np.linspace(0, 1, num).tolist()]
+
+    def pointsSeparatedBy(self, distance: float) -> list[Vector]:
+        """Points from the start on, so many metres apart along the line."""
+        return [self.pointAlongBy(way) for way in np.arange(0, self.length, distance).tolist()]
+
+    def defaultOrientation(self, point: Any) -> float:
+        """The heading of the segment nearest to a point."""
+        start, end = self.nearestSegmentTo(point)
+        heading: float = start.azimuthTo(end)
+        return heading
+
+    @staticmethod
+    def unionAll(regions: Iterable["PolylineRegion"]) -> "PolylineRegion":
+        """The union of lines."""
+        import shapely
+
+        merged = shapely.union_all([region.lineString for region in regions])
+        return PolylineRegion(polyline=merged)
+
+    def __add__(self, other: Any) -> "PolylineRegion":
+        if not isinstance(other, PolylineRegion):
+            return NotImplemented
+        import shapely
+
+        parts = [
+            part
+            for region in (self, other)
+            for part in getattr(region.lineString, "geoms", [region.lineString])
+        ]
+        return PolylineRegion(polyline=shapely.MultiLineString(parts))
+
+    def __getitem__(self, index: int) -> Vector:
+        return Vector.of(self.points[index])
+
+    def __len__(self) -> int:
+        return len(self.points)
+
+    def __iter__(self) -> Iterator[Vector]:
+        return map(Vector.of, self.points)
+
+
+__all__ = ["LineRegion", "PathRegion", "PolylineRegion"]

@@ -1,0 +1,243 @@
+"""Regions made of meshes: the inside of a closed one, and the surface of any (sections 9.2 and 9.3 of the specification)."""
+
+from pathlib import Path
+from typing import Any, Self
+
+import numpy as np
+
+from scenic.graph.kinds import Column
+from scenic.language.errors import ScenicTypeError, ScenicValueError
+from scenic.runtime.context import here
+from scenic.runtime.fields import RegionField
+from scenic.runtime.geometry.loading import load_mesh
+from scenic.runtime.geometry.mesh import Mesh
+from scenic.runtime.geometry.solids import proper_volume
+from scenic.runtime.regions.base import Region, body_of
+from scenic.runtime.regions.bodies import OccupiedSpace, SideSurface
+from scenic.runtime.shapes import Shape, ShapeSource
+from scenic.runtime.values import Orientation, is_number, operate, to_orientation, to_vector, vector
+
+
+class _Placement:
+    """What a mesh and its placement come to: the operands of `body_of`."""
+
+    def __init__(
+        self,
+        mesh: Mesh,
+        dimensions: Any,
+        position: Any,
+        rotation: Any,
+        centered: bool,
+        what: str,
+        *,
+        flat: bool,
+    ) -> None:
+        unit, centre, extents = mesh.normalized()
+        if dimensions is None:
+            self.dimensions = vector(*extents.tolist())
+        else:
+            self.dimensions = to_vector(dimensions, f"{what} dimensions")
+        for size in self.dimensions:
+            if is_number(size) and not (size >= 0 if flat else size > 0):
+                raise ScenicValueError(f"{what} needs positive dimensions, not {dimensions!r}", span=here())
+        self.position = vector(0, 0, 0) if position is None else to_vector(position, f"{what} position")
+        self.rotation = Orientation() if rotation is None else to_orientation(rotation, f"{what} rotation")
+        middle = self.position
+        if not centered and (centre != 0).any():
+            factors = np.divide(centre, extents, out=np.zeros(3), where=extents > 0).tolist()
+            offset = vector(
+                *(
+                    operate("multiply", part, size)
+                    for part, size in zip(factors, self.dimensions, strict=True)
+                )
+            )
+            middle = operate("add", middle, operate("rotate", self.rotation, offset))
+        shape = Shape(unit, tuple(extents.tolist()), ShapeSource("mesh"))
+        self.operands = (middle, self.rotation, self.dimensions, shape)
+
+
+def _mesh(mesh: Any, what: str) -> Mesh:
+    if isinstance(mesh, Mesh):
+        return mesh
+    try:
+        return Mesh(mesh.vertices, mesh.faces)
+    except AttributeError:
+        raise ScenicTypeError(
+            f"{what} needs a mesh, not {mesh!r}",
+            span=here(),
+            help="pass a `trimesh.Trimesh`, or use `fromFile`",
+        ) from None
+
+
+class MeshVolumeRegion(OccupiedSpace):
+    """The inside of a closed mesh: centred, scaled to dimensions, turned and moved.
+
+    Args:
+        mesh: a `trimesh.Trimesh`, or anything with vertices and faces.
+        dimensions: extents; those of the mesh by default.
+        position, rotation: where it is.
+        orientation: a vector field, or ``None``.
+        tolerance: accepted for compatibility; containment is exact.
+        centerMesh: whether the mesh is moved so that its bounding box is about the origin first.
+        onDirection: the direction in which things land on it.
+
+    Raises:
+        ValueError: if the mesh bounds no volume, or a dimension is not positive.
+
+    """
+
+    draws = 3
+
+    def __init__(
+        self,
+        mesh: Any,
+        dimensions: Any = None,
+        position: Any = None,
+        rotation: Any = None,
+        orientation: Any = None,
+        tolerance: float = 1e-6,
+        centerMesh: bool = True,
+        onDirection: Any = None,
+        name: str | None = None,
+        **_established: Any,
+    ) -> None:
+        what = f"`{type(self).__name__}`"
+        self.source = proper_volume(_mesh(mesh, what), unify=False)
+        self._finish(self.source, dimensions, position, rotation, centerMesh, name)
+        self.orientation = orientation
+        self.has_orientation = orientation is not None
+        self.tolerance = tolerance
+        self.onDirection = onDirection
+
+    def _finish(
+        self, mesh: Mesh, dimensions: Any, position: Any, rotation: Any, centered: bool, name: str | None
+    ) -> None:
+        what = f"`{type(self).__name__}`"
+        placed = _Placement(mesh, dimensions, position, rotation, centered, what, flat=False)
+        Region.__init__(self, *placed.operands, name=name)
+        self.dimensions, self.position, self.rotation = placed.dimensions, placed.position, placed.rotation
+
+    @classmethod
+    def fromFile(cls, path: Any, unify: bool = True, **options: Any) -> Self:
+        """The region of a mesh file; further arguments are those of the class."""
+        if not isinstance(path, str | Path):
+            raise ScenicTypeError(f"{cls.__name__}.fromFile needs a fixed path, not {path!r}", span=here())
+        return cls(load_mesh(path, unify=unify), **options)
+
+    def project(self, point: Any, direction: Any) -> tuple[Any, Any]:
+        return super().project(point, self.onDirection if direction is None else direction)
+
+    def getSurfaceRegion(self) -> "MeshSurfaceRegion":
+        """The surface of the volume."""
+        return MeshSurfaceRegion.of_operands(self.parameters)
+
+    def getVolumeRegion(self) -> "MeshVolumeRegion":
+        """The volume itself."""
+        return self
+
+    @property
+    def mesh(self) -> Any:
+        """The mesh in the world, trimesh's; of a region without random parameters."""
+        return world_mesh(self)
+
+    @property
+    def boundingPolygon(self) -> Any:
+        """The region seen from above."""
+        return self.algebra.outline_from_above(self)
+
+    @property
+    def isConvex(self) -> bool:
+        """Whether the volume is convex."""
+        shape: Shape = self.parameters[3]
+        return shape.mesh.is_convex
+
+
+class MeshSurfaceRegion(SideSurface):
+    """The surface of a mesh: centred, scaled to dimensions, turned and moved.
+
+    The arguments are those of `MeshVolumeRegion`; the mesh need not be closed. ``orientation=True`` gives points the orientation
+    whose local Z is the normal of the face, and whose yaw is as near to North as possible.
+    """
+
+    def __init__(
+        self,
+        mesh: Any,
+        dimensions: Any = None,
+        position: Any = None,
+        rotation: Any = None,
+        orientation: Any = True,
+        tolerance: float = 1e-6,
+        centerMesh: bool = True,
+        onDirection: Any = None,
+        name: str | None = None,
+        **_established: Any,
+    ) -> None:
+        what = f"`{type(self).__name__}`"
+        placed = _Placement(_mesh(mesh, what), dimensions, position, rotation, centerMesh, what, flat=True)
+        self._finish(placed.operands, orientation, name)
+        self.dimensions, self.position, self.rotation = placed.dimensions, placed.position, placed.rotation
+        self.tolerance = tolerance
+        self.onDirection = onDirection
+
+    @classmethod
+    def of_operands(cls, operands: tuple[Any, ...], orientation: Any = True) -> Self:
+        """The surface of a body given by the operands of `body_of`."""
+        self = cls.__new__(cls)
+        self._finish(operands, orientation, None)
+        self.position, self.rotation, self.dimensions = operands[:3]
+        self.tolerance, self.onDirection = 1e-6, None
+        return self
+
+    def _finish(self, operands: tuple[Any, ...], orientation: Any, name: str | None) -> None:
+        Region.__init__(self, *operands, name=name)
+        self.side, self.threshold = None, 0.0
+        self.orientation = RegionField(self) if orientation is True else orientation
+        self.has_orientation = self.orientation is not None
+
+    @classmethod
+    def fromFile(cls, path: Any, unify: bool = True, **options: Any) -> Self:
+        """The region of a mesh file; further arguments are those of the class."""
+        return cls(load_mesh(path, unify=unify, volume=False), **options)
+
+    def uniform_placement(self) -> tuple[Any, Any]:
+        point, normal = super().uniform_placement()
+        if self.orientation is None:
+            return point, None
+        return point, normal if isinstance(self.orientation, RegionField) else self.orientation[point]
+
+    def project(self, point: Any, direction: Any) -> tuple[Any, Any]:
+        landed, normal = super().project(point, self.onDirection if direction is None else direction)
+        return landed, normal if isinstance(self.orientation, RegionField) else self.orientation_at(landed)
+
+    def getVolumeRegion(self) -> MeshVolumeRegion:
+        """The volume that the surface bounds; raises ``ValueError`` where it bounds none."""
+        position, rotation, dimensions, shape = self.parameters
+        return MeshVolumeRegion(shape.mesh, dimensions, position, rotation)
+
+    def getSurfaceRegion(self) -> "MeshSurfaceRegion":
+        """The surface itself."""
+        return self
+
+    @property
+    def mesh(self) -> Any:
+        """The mesh in the world, trimesh's; of a region without random parameters."""
+        return world_mesh(self)
+
+
+def solid_in_world(operands: list[Column]) -> Mesh:
+    """The mesh of a body in its one placement, in the world."""
+    body = body_of(*operands)
+    unit = body.meshes[0 if body.choice is None else int(body.choice[0])]
+    vertices = body.poses.to_world(unit.vertices[np.newaxis])[0]
+    return Mesh(vertices, unit.faces)
+
+
+def world_mesh(region: Region) -> Any:
+    """The mesh of a region of a body in the world, as a `trimesh.Trimesh`."""
+    import trimesh
+
+    mesh = solid_in_world(region.fixed_columns("the mesh"))
+    return trimesh.Trimesh(np.array(mesh.vertices), np.array(mesh.faces), process=False)
+
+
+__all__ = ["MeshSurfaceRegion", "MeshVolumeRegion", "solid_in_world", "world_mesh"]
