@@ -19,15 +19,10 @@ from scenic.runtime.names import Unsupported, builtin_names
 from scenic.runtime.program import Program
 from tests.runtime.programs import marked
 
-USES = {
-    "operator minimum distance": "ego = new Object\nx = «minimum distance to ego»",
-}
-"""Each unavailable feature at work; the quotation marks are round the place to be named."""
-
 
 def test_every_unavailable_feature_is_covered() -> None:
     named = {f"name {name}" for name, entry in NAMES.items() if not entry.available}
-    assert set(refused_features()) == USES.keys() | named
+    assert set(refused_features()) == named
 
 
 def refused(text: str, *, filename: str = "<string>") -> Located:
@@ -35,16 +30,6 @@ def refused(text: str, *, filename: str = "<string>") -> Located:
         scenic.scenarioFromString(text, filename=filename).sample(1, seed=0)
     assert caught.value.code == "SC900", caught.value
     return caught.value
-
-
-@pytest.mark.parametrize("feature", list(USES))
-def test_unavailable_features_are_refused_at_their_place(feature: str) -> None:
-    text, place = marked(USES[feature])
-    error = refused(text)
-    span = error.span
-    assert span is not None
-    assert (span.line, span.column, span.end_column) == place
-    assert error.help
 
 
 UNAVAILABLE = [name for name, entry in NAMES.items() if not entry.available]

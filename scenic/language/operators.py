@@ -182,7 +182,6 @@ _ALL = (
             "minimum distance to end from start",
         ),
         "The smallest distance between the spaces that two objects occupy; 0 if they touch.",
-        available=False,
     ),
     Operator(
         "distance past",

@@ -15,6 +15,7 @@ from scenic.runtime.fields import field_of, frame_at, is_field, relative_to
 from scenic.runtime.lazy import defer, is_lazy
 from scenic.runtime.objects import SIDES, Object, OrientedPoint, oriented_point
 from scenic.runtime.regions.base import Region
+from scenic.runtime.regions.bodies import gap_between
 from scenic.runtime.regions.choice import as_region
 from scenic.runtime.regions.views import part_of
 from scenic.runtime.sight import sees
@@ -132,6 +133,14 @@ def _distance(ego: Ego, origin: Any, target: Any) -> Any:
     return operate("distance", to_vector(start, "`distance`"), to_vector(end, "`distance`"))
 
 
+def _minimum_distance(ego: Ego, origin: Any, target: Any) -> Any:
+    first, second = (ego() if operand is None else operand for operand in (origin, target))
+    for operand in (first, second):
+        if not is_kind(operand, Object):
+            raise wrong_type("an object", operand, "`minimum distance`")
+    return gap_between(first, second)
+
+
 def _distance_past(ego: Ego, target: Any, reference: Any) -> Any:
     point = ego() if reference is None else reference
     if not is_kind(point, OrientedPoint):
@@ -209,6 +218,7 @@ OPERATORS: Mapping[str, Callable[..., Any]] = MappingProxyType(
         "relative heading": _relative_heading,
         "apparent heading": _apparent_heading,
         "distance": _distance,
+        "minimum distance": _minimum_distance,
         "distance past": _distance_past,
         "angle": _angle,
         "altitude": _altitude,

@@ -7,9 +7,10 @@ import numpy as np
 from scenic.graph.draws import mix, open_unit
 from scenic.runtime.geometry import containment, inside
 from scenic.runtime.geometry.bodies import Body
+from scenic.runtime.geometry.distance import to_surface
 from scenic.runtime.geometry.mesh import Mesh
+from scenic.runtime.geometry.nearest import nearest_on_triangles
 from scenic.runtime.geometry.poses import Booleans, Floats, Indices, Poses
-from scenic.runtime.geometry.projection import distance_to_triangles
 from scenic.runtime.geometry.surface import Side, side_contains
 
 CHUNK: Final = 1 << 18
@@ -46,12 +47,6 @@ def draw(body: Body, uniforms: Floats, keys: Floats) -> tuple[Floats, Booleans]:
     return points, found
 
 
-def distances(body: Body, points: Floats) -> Floats:
-    """Distances ``(n,)`` of points ``(n | 1, 3)`` from solids; 0 inside."""
-    outside = distances_to_surface(body, points, None, 0.0)
-    return np.where(containment.contains_points(body, points), 0.0, outside)
-
-
 def distances_to_surface(body: Body, points: Floats, side: Side, threshold: float) -> Floats:
     """Distances ``(n,)`` of points ``(n | 1, 3)`` from the faces of a side; infinite where it has none."""
     return _nearest(body, points, side, threshold)[0]
@@ -64,6 +59,9 @@ def nearest_faces(body: Body, points: Floats, side: Side, threshold: float) -> I
 
 def _nearest(body: Body, points: Floats, side: Side, threshold: float) -> tuple[Floats, Indices]:
     lanes = max(len(body), len(points))
+    if side is None:
+        found = to_surface(body, points, lanes)
+        return found.distance, found.number
     distance, face = np.empty(lanes), np.zeros(lanes, dtype=np.intp)
     for mesh, chosen in body.by_mesh(lanes):
         count = len(mesh.faces)
@@ -74,9 +72,9 @@ def _nearest(body: Body, points: Floats, side: Side, threshold: float) -> tuple[
             start = np.broadcast_to(points, (lanes, 3))[part]
             corners = np.broadcast_to(poses.to_world(mesh.triangles[np.newaxis]), (len(part), count, 3, 3))
             flat = corners.reshape(-1, 3, 3)
-            all_distances = distance_to_triangles(
-                np.repeat(start, count, axis=0), flat[:, 0], flat[:, 1], flat[:, 2]
-            )
+            targets = np.repeat(start, count, axis=0)
+            gap = targets - nearest_on_triangles(targets, flat[:, 0], flat[:, 1], flat[:, 2])
+            all_distances = np.sqrt((gap * gap).sum(axis=1))
             if side is not None:
                 entries = (
                     np.repeat(np.arange(len(part)), count) if len(poses) > 1 else np.zeros(len(flat), np.intp)

@@ -8,7 +8,7 @@ import numpy as np
 
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import Call, Operation, always
-from scenic.runtime.geometry import body_points, containment, projection, surface
+from scenic.runtime.geometry import body_points, containment, distance, projection, surface
 from scenic.runtime.geometry.collision import Body, collide
 from scenic.runtime.regions.base import Mask, Points, Region, body_of, body_operands, unsupported
 from scenic.runtime.values import Random, apply, to_vector, uniform, vector
@@ -51,7 +51,8 @@ class OccupiedSpace(Region):
         return body_points.draw(body_of(*columns), uniforms, keys)
 
     def distances(self, points: Points, *columns: Column) -> Column:
-        return body_points.distances(body_of(*columns), points)
+        body = body_of(*columns)
+        return distance.to_solid(body, points, max(len(points), len(body)))
 
     def gaps(self, points: Points, *columns: Column) -> Column:
         return body_points.distances_from_box(body_of(*columns), points)
@@ -115,6 +116,19 @@ _INRADIUS = Operation(
     lambda _call, *columns: body_points.inradii(body_of(*columns)),
     "The radius of a ball about the position that a body holds.",
 )
+
+
+_GAP = Operation(
+    "distance of bodies",
+    always(Kind.SCALAR),
+    lambda call, *columns: distance.between(body_of(*columns[:4]), body_of(*columns[4:]), call.lanes),
+    "The least distance between points of two bodies; 0 where they touch.",
+)
+
+
+def gap_between(first: Any, second: Any) -> Any:
+    """The least distance between points of two objects, in metres."""
+    return apply(_GAP, *body_operands(first), *body_operands(second))
 
 
 def bounding_corners(thing: Any) -> tuple[Any, Any]:
