@@ -7,6 +7,11 @@ from collections.abc import Mapping
 from enum import Enum, auto
 from typing import Final, NamedTuple
 
+from scenic.compiler import syntax
+from scenic.compiler.phrases import SCENIC_FORMS
+from scenic.compiler.precedence import Ladder, Slot, Word
+from scenic.compiler.syntax import STATEMENT_FORMS
+
 __all__ = ["CLOSERS", "FIXED", "NAMES_WITHOUT", "OPENERS", "ROWS", "Piece", "Shape"]
 
 
@@ -46,9 +51,15 @@ _TEXTS: Final = (
 )  # fmt: skip
 _BYTES: Final = ("b''", "b'a'", 'rb"\\d"', "B'''t'''")
 
-_NEVER_EXPRESSIONS: Final = frozenset({"visible", "follow"})
+_NEVER_EXPRESSIONS: Final = frozenset(
+    form.words[0]
+    for form in SCENIC_FORMS
+    if form.ladder is Ladder.ORDINARY and isinstance(form.parts[0], Word) and isinstance(form.parts[1], Slot)
+)
 """As expressions these can be read as operators of a longer text than what was meant."""
-_BLOCK_WORDS: Final = frozenset({"precondition", "invariant", "setup", "compose"})
+_BLOCK_WORDS: Final = frozenset(
+    form.start for form in STATEMENT_FORMS if form.is_soft and form.row[1:2] == (syntax.Word(":"),)
+)
 
 NAMES_WITHOUT: Final[Mapping[str, frozenset[str]]] = {
     "NAME": frozenset(),

@@ -6,6 +6,8 @@ from typing import Final
 from scenic.compiler.actions import Problem
 from scenic.compiler.generated import HARD_KEYWORDS, INFIX_KINDS, OPERATORS, SOFT_KEYWORDS
 from scenic.compiler.mistakes import Situation, Trials, explain, header_without_colon, unfinished_header
+from scenic.compiler.phrases import TEMPORAL_FORMS
+from scenic.compiler.precedence import Fixity
 from scenic.compiler.tokens import (
     DEDENT,
     ENDMARKER,
@@ -61,7 +63,9 @@ _SHOWN: Final = {"a target": "a variable"}
 
 _DOTS: Final = frozenset({OPERATORS["."], OPERATORS["..."]})
 
-_TEMPORAL_STARTS: Final = frozenset(SOFT_KEYWORDS[word] for word in ("always", "eventually", "next"))
+_TEMPORAL_STARTS: Final = frozenset(
+    SOFT_KEYWORDS[form.words[0]] for form in TEMPORAL_FORMS if form.fixity is Fixity.PREFIX
+)
 
 _MANY: Final = 5
 """So many possibilities are named."""

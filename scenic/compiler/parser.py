@@ -15,8 +15,6 @@ from typing import Final, TypeAlias
 
 from scenic.compiler.actions import Actions, Problem
 from scenic.compiler.actions.common import Place
-from scenic.compiler.careful import lex_carefully
-from scenic.compiler.closing_words import closed_operands, in_parentheses
 from scenic.compiler.garbage import no_garbage_collection
 from scenic.compiler.generated import WORDS, build_parser
 from scenic.compiler.lexer import lex
@@ -84,6 +82,10 @@ def parse_tokens(tokens: Tokens, known: Known = lambda _tokens: {}) -> Parsed:
     parsed = _fast(tokens, known)
     if parsed is not None:
         return parsed
+    # A text without mistakes does not wait for all that reads another one.
+    from scenic.compiler.careful import lex_carefully
+    from scenic.compiler.closing_words import closed_operands, in_parentheses
+
     # Statements that are wrong because an operator took a closing word from another are read once more without that.
     operands = closed_operands(tokens)
     if operands:

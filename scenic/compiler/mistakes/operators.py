@@ -5,7 +5,7 @@ from typing import Final
 from scenic.compiler.actions import Problem
 from scenic.compiler.mistakes.situation import Situation, insertion
 from scenic.compiler.phrases import PREFIX_STARTS, TEMPORAL_FORMS
-from scenic.compiler.precedence import Fixity
+from scenic.compiler.precedence import FORMS, LADDERS, Fixity, Ladder, Slot
 
 __all__ = [
     "after_degrees",
@@ -17,7 +17,15 @@ __all__ = [
     "temporal_operand",
 ]
 
-_TIGHT_OPERATORS: Final = frozenset(["+", "-", "*", "/", "//", "%", "@", "**", "~", "<<", ">>", "at"])
+_TIGHT_OPERATORS: Final = frozenset(
+    form.words[-1]
+    for form in FORMS
+    if form.ladder is Ladder.ORDINARY
+    and isinstance(form.parts[-1], Slot)
+    and form.parts[-1].level > LADDERS[Ladder.ORDINARY]["prefix"]
+    and form.node in ("BinOp", "UnaryOp", "Operation")
+)
+"""The operators whose last operand cannot be a prefix operator of Scenic."""
 
 _LOOSER: Final = frozenset(
     [
