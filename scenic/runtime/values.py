@@ -535,6 +535,8 @@ def attribute(value: Random, name: str) -> Any:
     if node.operation is TABLE["select"]:
         index, *options = node.operands
         return _select(index, [_attribute_of_option(option, name) for option in options])
+    if node.kind.is_number and hasattr(0.0 if node.kind is Kind.SCALAR else 0, name):
+        return apply(_GETATTR, value, name)
     if node.kind.is_number or node.kind in (Kind.VECTOR, Kind.ORIENTATION):
         raise AttributeError(f"a random {node.kind.value} has no attribute {name!r}")
     return apply(_GETATTR, value, name)
