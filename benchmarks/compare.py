@@ -27,8 +27,14 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 HERE = Path(__file__).parent
-PROGRAMS = ("room_with_toys", "chairs_at_table", "overtaking")
-REFERENCE_SCENES = {"room_with_toys": 1, "chairs_at_table": 3, "overtaking": 8}
+PROGRAMS = ("room_with_toys", "chairs_at_table", "overtaking", "hidden", "hollow")
+REFERENCE_SCENES = {
+    "room_with_toys": 1,
+    "chairs_at_table": 3,
+    "overtaking": 8,
+    "hidden": 10,
+    "hollow": 30,
+}
 OUR_SCENES = 200
 SECONDS = 600
 """Longer than this no process runs."""
