@@ -36,6 +36,7 @@ from scenic.runtime.values import (
     vector,
     wrong_type,
 )
+from scenic.runtime.visibility import sees_in_plane
 
 
 def _degrees(_ego: Ego, value: Any) -> Any:
@@ -180,7 +181,8 @@ def _can_see(_ego: Ego, viewer: Any, target: Any) -> Any:
             span=here(),
             help="use it in a requirement: `require ego can see x`",
         )
-    return sees(viewer, target, context.present)
+    look = sees_in_plane if context.mode_2d else sees
+    return look(viewer, target, context.present)
 
 
 def _part_in_view(ego: Ego, region: Any, viewer: Any, *, seen: bool) -> Region:

@@ -14,7 +14,7 @@ from typing import Any
 from scenic.graph.operations import TABLE
 from scenic.language.errors import InvalidScenarioError, ScenicTypeError
 from scenic.language.spans import Span
-from scenic.runtime.context import here
+from scenic.runtime.context import current, here
 from scenic.runtime.fields import field_of, frame_at, is_field
 from scenic.runtime.lazy import Lazy, defer, reads_of, resolve
 from scenic.runtime.objects import Object, OrientedPoint, Point
@@ -317,6 +317,8 @@ def visible(ego: Ego, viewer: Any, workspace: Region, *, wanted: bool = True) ->
     observer = ego() if viewer is None else viewer
     if not is_kind(observer, Point):
         raise wrong_type("a point or an object", observer, f"`{name} from`")
+    context = current.get()
+    mode_2d = context is not None and context.mode_2d
 
     def evaluate(instance: Any) -> Mapping[str, Any]:
         container = instance.regionContainedIn
@@ -324,7 +326,7 @@ def visible(ego: Ego, viewer: Any, workspace: Region, *, wanted: bool = True) ->
         while isinstance(region, Workspace):
             region = region.region
         if wanted:
-            return {"position": place_near(observer, region, instance)}
+            return {"position": place_near(observer, region, instance, mode_2d=mode_2d)}
         if isinstance(region, Everywhere):
             raise InvalidScenarioError(
                 "`not visible` needs to know where the object may be",

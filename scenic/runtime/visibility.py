@@ -1,5 +1,6 @@
 """What an object sees in 2D mode (section 5.5 of the specification): whether its view touches another's outline."""
 
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -8,27 +9,45 @@ from scenic.graph import quaternions
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import Call, Operation, always
 from scenic.runtime.regions.base import body_operands
-from scenic.runtime.values import apply, operate, to_scalar, to_vector
+from scenic.runtime.sight import camera_of, is_body, sees, view_operands
+from scenic.runtime.values import apply, is_random, per_option, to_scalar, to_vector
 
 FULL_ANGLE = 2 * np.pi - 0.017
 """View angles from here on count as all around (section 11.2)."""
 
 
-def sees_in_plane(observer: Any, target: Any) -> Any:
-    """Whether the bounding polygon of ``target`` meets the disc or sector that ``observer`` sees."""
-    offset = operate("rotate", observer.orientation, to_vector(observer.cameraOffset))
-    camera = operate("add", observer.position, offset)
-    position, orientation, size, _ = body_operands(target)
-    return apply(
-        _SEES,
-        camera,
-        to_scalar(observer.heading),
-        to_scalar(observer.viewAngle),
-        to_scalar(observer.visibleDistance),
-        position,
-        orientation,
-        size,
-    )
+def sees_in_plane(observer: Any, target: Any, occluders: Iterable[Any] = ()) -> Any:
+    """Whether the disc or sector that an observer sees meets the bounding polygon of an object, or holds a point.
+
+    Where something may hide others, which in 2D mode has to be asked for, rays decide as in space.
+    """
+    everything = tuple(occluders)
+
+    def seen(viewer: Any, thing: Any) -> Any:
+        hiding = [item for item in everything if item is not viewer and item is not thing and _may_hide(item)]
+        if hiding:
+            return sees(viewer, thing, hiding)
+        camera, *_ = camera_of(viewer)
+        _, _, angle, _, distance, *_ = view_operands(viewer)
+        heading = to_scalar(viewer.heading) if hasattr(type(viewer), "toHeading") else 0.0
+        if not is_body(thing):
+            return apply(_SEES_POINT, camera, heading, angle, distance, to_vector(thing, "`can see`"))
+        position, orientation, size, _ = body_operands(thing)
+        return apply(_SEES, camera, heading, angle, distance, position, orientation, size)
+
+    return per_option(observer, lambda viewer: per_option(target, lambda thing: seen(viewer, thing)))
+
+
+def _may_hide(thing: Any) -> bool:
+    return is_random(thing.occluding) or bool(thing.occluding)
+
+
+def _sees_point(
+    _call: Call, camera: Column, heading: Column, angle: Column, distance: Column, point: Column
+) -> Column:
+    offset = (point - camera)[:, np.newaxis, :2]
+    here = (offset == 0).all(axis=(1, 2))
+    return np.asarray(_within(offset, heading, angle, distance)[:, 0] | here)
 
 
 def _sees(
@@ -100,4 +119,7 @@ def _crosses(starts: Column, ends: Column, direction: Column, distance: Column) 
     return np.asarray(hit & (across != 0))
 
 
+_SEES_POINT = Operation(
+    "sees point in plane", always(Kind.BOOLEAN), _sees_point, "Whether a 2D view holds a point."
+)
 _SEES = Operation("sees in plane", always(Kind.BOOLEAN), _sees, "Whether a 2D view touches an outline.")

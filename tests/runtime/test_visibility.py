@@ -98,3 +98,40 @@ def test_whether_an_object_must_be_seen_may_be_random() -> None:
         other = scene.objects[1]
         kept[other.requireVisible].append(other.position.y)
     assert max(kept[True]) <= 10.5 < max(kept[False])
+
+
+PLANE = """
+workspace = Workspace(RectangularRegion((0, 0), 0, 30, 30))
+ego = new Object at (2, 1), facing 30 deg, with viewAngle 80 deg, with visibleDistance 9
+spot = new OrientedPoint in workspace, facing 200 deg, with viewAngle 60 deg, with visibleDistance 12
+near = new Object visible, with requireVisible False
+far = new Object not visible, with requireVisible False
+other = new Object visible from spot, with requireVisible False, with allowCollisions True
+require ego can see (1, 5)
+require not (ego can see spot)
+param spot = spot.position
+"""
+
+
+def test_visibility_in_2d_mode_is_planar() -> None:
+    view = sector(2, 1, math.radians(30), math.radians(80), 9)
+    for scene in scenic.scenarioFromString(PLANE, mode2D=True).sample(60, seed=2):
+        _, near, far, other = scene.objects
+        x, y, _ = scene.params["spot"]
+        assert view.buffer(1e-3).intersects(rectangle(near.position.x, near.position.y, 0, 1, 1))
+        assert not view.buffer(-1e-3).intersects(rectangle(far.position.x, far.position.y, 0, 1, 1))
+        assert not view.buffer(-1e-3).contains(shapely.Point(x, y))
+        from_spot = sector(x, y, math.radians(200), math.radians(60), 12).buffer(1e-3)
+        assert from_spot.intersects(rectangle(other.position.x, other.position.y, 0, 1, 1))
+
+
+def test_what_occludes_in_2d_mode_hides() -> None:
+    text = (
+        "ego = new Object with requireVisible False\n"
+        "wall = new Object at (0, 4), with width 8, with length 0.5, with height 8, with occluding {}, with requireVisible False\n"
+        "box = new Object at (0, Range(8, 9)), with requireVisible False\n"
+        "require ego can see box\n"
+    )
+    scenic.scenarioFromString(text.format(False), mode2D=True).sample(3, seed=1)
+    with pytest.raises(scenic.RejectionException):
+        scenic.scenarioFromString(text.format(True), mode2D=True).generate(maxIterations=50)

@@ -24,6 +24,7 @@ from scenic.runtime.geometry.visibility.regions import (
 )
 from scenic.runtime.geometry.visibility.views import CORNERS, Views
 from scenic.runtime.regions.base import Everywhere, Mask, Points, Region, Workspace
+from scenic.runtime.regions.planar import CircularRegion
 from scenic.runtime.sight import view_operands
 from scenic.runtime.values import operate, to_scalar, vector
 
@@ -222,10 +223,14 @@ def _rows(columns: Sequence[Column], lanes: Column) -> list[Column]:
     return [column if len(column) == 1 else column[lanes] for column in columns]
 
 
-def place_near(observer: Any, container: Region, thing: Any) -> Any:
-    """A uniform point of a container, as far as an observer may see a thing there."""
-    if container.dimension < 2:
+def place_near(observer: Any, container: Region, thing: Any, *, mode_2d: bool) -> Any:
+    """A uniform point of a container, as far as an observer may see a thing there; in 2D mode, of the plane."""
+    if container.dimension < 2 or (mode_2d and container.dimension == 2):
         return container.uniform_placement()[0]
+    if mode_2d:
+        camera, *_, distance = view_operands(observer)[:VIEW_PARAMETERS]
+        reach = operate("add", distance, operate("norm", vector(thing.width, thing.length, 0)))
+        return CircularRegion(camera, reach).uniform_placement()[0]
     return NearView(container, observer, thing).uniform_placement()[0]
 
 

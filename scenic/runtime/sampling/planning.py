@@ -182,9 +182,7 @@ def _visibility(program: Program, ego: Object | None, *, mode_2d: bool) -> list[
     """What has to be seen by whom, and what must not be (section 10.1)."""
 
     def seen(observer: Any, target: Any) -> Node:
-        if mode_2d:
-            return truth(sees_in_plane(observer, target))
-        return truth(sees(observer, target, program.objects))
+        return truth((sees_in_plane if mode_2d else sees)(observer, target, program.objects))
 
     checks: list[Check] = []
     for item, sighting in program.sightings:
