@@ -429,7 +429,9 @@ class _Prelude:
     def require(self, condition: object, **_: object) -> None:
         self.required = condition
 
-    def condition(self, traced: object, concrete: Callable[..., bool], values: Sequence[bool]) -> Kept:
+    def condition(
+        self, traced: object, concrete: Callable[..., bool], values: Sequence[bool], *_margin: object
+    ) -> Kept:
         del traced  # It builds nodes for the same value.
         return Kept(concrete, values)
 

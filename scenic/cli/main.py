@@ -25,6 +25,7 @@ _COMMANDS: Final[Mapping[str, tuple[str, str, str]]] = MappingProxyType(
     {
         "check": ("scenic.cli.check", "check", "Report what is wrong with programs, without running them."),
         "sample": ("scenic.cli.sample", "sample", "Sample scenes from a program."),
+        "simulate": ("scenic.cli.simulate", "simulate", "Simulate scenes of a program."),
         "ast": ("scenic.cli.syntax_tree", "syntax_tree", "Show the syntax tree of a program."),
         "python": ("scenic.cli.python_code", "python_code", "Show the Python code that a program becomes."),
         "explain": ("scenic.cli.explain", "explain", "Explain a diagnostic by its code."),

@@ -163,6 +163,7 @@ CODES: Final = MappingProxyType(
         # Found while sampling.
         "SC500": "no scene found",
         "SC501": "a requirement or property failed while sampling",
+        "SC503": "a simulator failed",
         # Files, options, parameters.
         "SC600": "file cannot be read",
         "SC601": "file cannot be written",

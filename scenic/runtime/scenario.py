@@ -267,6 +267,11 @@ class Scenario:
         """The scene that `Scene.save` has written; raises `SerializationError` as `sceneFromBytes` does."""
         return self.sceneFromBytes(Path(path).read_bytes())
 
+    @property
+    def has_simulator(self) -> bool:
+        """Whether the program says which simulator runs it."""
+        return self._program.simulator is not None
+
     def getSimulator(self) -> Any:
         """What the program's ``simulator`` statement says; raises ``RuntimeError`` if it has none."""
         if self._program.simulator is None:

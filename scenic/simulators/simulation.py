@@ -51,6 +51,7 @@ class Simulation(ABC):
         robustness: whether to compute by how much requirements hold.
         stuck_after: seconds that the program's code may run in one step before `StuckBehaviorWarning` names its line.
         stuck_is_error: raise `StuckBehaviorError` then.
+        keep_poses: keep position and orientation of every object at every step in `poses`.
         deferred: do not run now: the caller calls `begin`, then `advanceOnce` until it returns false.
 
     Attributes:
@@ -82,6 +83,7 @@ class Simulation(ABC):
         robustness: bool = False,
         stuck_after: float = 10.0,
         stuck_is_error: bool = False,
+        keep_poses: bool = False,
         deferred: bool = False,
     ) -> None:
         self.result: SimulationResult | None = None
@@ -89,6 +91,7 @@ class Simulation(ABC):
         self.objects: list[Any] = []
         self.agents: list[Any] = []
         self.trajectory: list[Any] = []
+        self.poses: list[tuple[tuple[Any, Any], ...]] | None = [] if keep_poses else None
         self.actionSequence: list[dict[Any, Any]] = []
         self.records: dict[str, Any] = {}
         self.currentTime = 0
@@ -308,6 +311,8 @@ class Simulation(ABC):
     def recordCurrentState(self) -> None:
         """Append the state to the trajectory."""
         self.trajectory.append(self.currentState())
+        if self.poses is not None:
+            self.poses.append(tuple((obj.position, obj.orientation) for obj in self.objects))
 
     def check_actions(self, agent: Any, actions: tuple[Any, ...]) -> None:
         """Raise `InvalidScenarioError` for actions that cannot be taken together."""

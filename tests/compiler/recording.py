@@ -124,7 +124,7 @@ class Recorder:
         self._note("require")
         self.required.append((bool(condition), probability, name))
 
-    def condition(self, symbolic: Any, concrete: Any, captured: Sequence[Any]) -> Any:
+    def condition(self, symbolic: Any, concrete: Any, captured: Sequence[Any], margin: Any = None) -> Any:
         self._note("condition")
         value = concrete(*captured)
         self.readings.append((value if symbolic is None else symbolic(*captured), value))

@@ -42,6 +42,7 @@ _COMPARISONS: Final[dict[type[ast.cmpop], str]] = {
     ast.Gt: ">",
     ast.GtE: ">=",
 }
+_INEQUALITIES: Final = (ast.Lt, ast.LtE, ast.Gt, ast.GtE)
 
 
 class Conditions:
@@ -94,7 +95,16 @@ class Conditions:
             )
         except _OpaqueError:
             traced = start_of(ast.Constant(None), node)
-        return prelude_call("condition", [traced, *self.kept(node)], node)
+        return prelude_call("condition", [traced, *self.kept(node), *self._margin(node)], node)
+
+    def _margin(self, node: ast.expr) -> list[ast.expr]:
+        """For an inequality, a function of the same names that gives by how much it holds."""
+        if not isinstance(node, ast.Compare) or not all(type(item) in _INEQUALITIES for item in node.ops):
+            return []
+        symbols = tuple_([constant(_COMPARISONS[type(item)], node) for item in node.ops], node)
+        operands = tuple_([self._captured(part) for part in (node.left, *node.comparators)], node)
+        value = prelude_call("margin", [symbols, operands], node)
+        return [lambda_([(part.id, part) for part in self._parameters(node)], value, node)]
 
     def kept(self, node: ast.expr) -> list[ast.expr]:
         """An expression to be evaluated later: a function of the names in it, and their values now.

@@ -146,6 +146,15 @@ class Dynamics:
         """Whether a block ended by ``return``."""
         return outcome is not None and outcome.way == "return"
 
+    def margin(self, symbols: Sequence[str], operands: Sequence[Any]) -> float | None:
+        """By how much ``a < b <= c`` holds, the least of its parts; ``None`` unless all are numbers."""
+        if not all(is_number(operand) for operand in operands):
+            return None
+        return min(
+            float(right - left if symbol.startswith("<") else left - right)
+            for symbol, left, right in zip(symbols, operands, operands[1:], strict=False)
+        )
+
     # Statements that do not
 
     def override(self, target: Any, *specifiers: Any) -> None:

@@ -1,0 +1,308 @@
+"""``scenic simulate``: simulations of a program, their trajectories, and what became of its requirements."""
+
+import json
+import secrets
+import sys
+from collections.abc import Generator, Mapping
+from contextlib import closing
+from pathlib import Path
+from typing import Any, Final
+
+import click
+
+from scenic.cli import workers
+from scenic.cli.output import CLEAN, FINDINGS, show_diagnostics
+from scenic.cli.sample import NOT_ALL, _ended_by_signals, _parameters, _progress, _seconds
+from scenic.language.diagnostics import Diagnostic
+
+__all__ = ["simulate"]
+
+_FIRST_LINE: Final = 1 << 24
+"""The longest first line of a file of ours that is looked at."""
+
+
+class _Work:
+    """What makes simulations by their numbers; each process loads the program for itself."""
+
+    def __init__(
+        self,
+        loading: Mapping[str, Any],
+        simulator: str | None,
+        running: Mapping[str, Any],
+        folder: Path | None,
+        whole: bool,
+    ) -> None:
+        self._loading = loading
+        self._simulator = simulator
+        self._running = running
+        self._folder = folder
+        self._whole = whole
+        self._made: Any = None
+
+    def __getstate__(self) -> dict[str, Any]:
+        # Not what cannot go to a process that starts afresh.
+        return {**self.__dict__, "_made": None}
+
+    def load(self) -> tuple[Any, Any]:
+        """The scenario and the simulator; raises what is wrong with either."""
+        if self._made is None:
+            from scenic.pipeline import load
+            from scenic.simulators.batch import choose_simulator
+
+            scenario = load(**self._loading)
+            self._made = scenario, choose_simulator(self._simulator, scenario)
+        made: tuple[Any, Any] = self._made
+        return made
+
+    def file(self, k: int) -> Path | None:
+        """Where simulation ``k`` is kept."""
+        return None if self._folder is None else self._folder / f"simulation-{k:04d}.jsonl"
+
+    def known(self, k: int) -> dict[str, Any] | None:
+        """What an earlier run has kept of simulation ``k``, if that was of the same program, seed and settings."""
+        path = self.file(k)
+        if path is None or self._whole:
+            return None
+        try:
+            with path.open(encoding="utf-8") as stream:
+                found = json.loads(stream.readline(_FIRST_LINE))
+        except (OSError, ValueError):
+            return None
+        if not isinstance(found, dict) or found.get("settings") != self.settings():
+            return None
+        return found
+
+    def settings(self) -> dict[str, Any]:
+        """What a simulation depends on beside its number."""
+        scenario, simulator = self.load()
+        running = {name: value for name, value in self._running.items() if name != "stuck_after"}
+        return {"program": scenario.digest, "simulator": type(simulator).__name__, **running}
+
+    def __call__(self, k: int) -> dict[str, Any]:
+        """Make simulation ``k`` and its file; says what came of it. Raises nothing but interruptions."""
+        try:
+            return self._one(k)
+        except Exception as error:  # noqa: BLE001 - it is reported, and the other simulations go on
+            from scenic.pipeline import diagnose
+
+            found = diagnose(error)
+            message = f"{type(error).__name__}: {error}"
+            return {"k": k, "error": found or Diagnostic("SC503", message, help="the simulator raised this")}
+
+    def _one(self, k: int) -> dict[str, Any]:
+        from scenic.formats.files import write
+        from scenic.formats.trajectories import course_document, step_documents
+        from scenic.simulators.batch import simulate_number
+
+        scenario, simulator = self.load()
+        numbered = simulate_number(scenario, simulator, k=k, stuck_is_error=True, **self._running)
+        if numbered.simulation is None:
+            what = f"rejected ({numbered.tries} tried)" if numbered.has_scene else "no scene found"
+            return {"k": k, "missing": what}
+        about = {
+            **course_document(numbered.simulation, k=k, tries=numbered.tries),
+            "settings": self.settings(),
+        }
+        path = self.file(k)
+        steps = list(step_documents(numbered.simulation)) if path is not None or self._whole else []
+        if path is not None:
+            lines = (
+                json.dumps(row, allow_nan=False, separators=(",", ":")) + "\n" for row in (about, *steps)
+            )
+            write(path, "".join(lines).encode())
+        return {"k": k, "about": about, "steps": steps if self._whole else []}
+
+
+@click.command()
+@click.argument("file", metavar="FILE")
+@click.option(
+    "-n",
+    "count",
+    metavar="N",
+    type=click.IntRange(min=1),
+    default=1,
+    help="How many simulations.  [default: 1]",
+)
+@click.option(
+    "--first",
+    metavar="K",
+    type=click.IntRange(min=0),
+    default=0,
+    help="Number of the first one.  [default: 0]",
+)
+@click.option(
+    "--seed",
+    metavar="S",
+    type=int,
+    help="Simulations of one seed are always the same. Without it, one is drawn and shown.",
+)
+@click.option(
+    "--simulator",
+    metavar="NAME",
+    help="kinematic, dummy, or MODULE:CLASS.  [default: the program's, else kinematic]",
+)
+@click.option(
+    "--time",
+    "max_steps",
+    metavar="STEPS",
+    type=click.IntRange(min=0),
+    default=100,
+    help="Steps of a simulation at most.  [default: 100]",
+)
+@click.option(
+    "--timestep",
+    metavar="T",
+    type=float,
+    callback=_seconds,
+    help="Seconds in a step.  [default: the simulator's]",
+)
+@click.option(
+    "--tries",
+    metavar="M",
+    type=click.IntRange(min=1),
+    default=20,
+    help="Simulate a scene so often before giving it up as rejected.  [default: 20]",
+)
+@click.option(
+    "--step-limit",
+    metavar="T",
+    type=float,
+    callback=_seconds,
+    default=10.0,
+    help="Seconds that the program may run within one step.  [default: 10]",
+)
+@click.option(
+    "-p",
+    "--param",
+    "parameters",
+    metavar="NAME=VALUE",
+    multiple=True,
+    callback=_parameters,
+    help="A value for a global parameter. Repeatable.",
+)
+@click.option("--scenario", metavar="NAME", help="Which scenario of the file, where it defines several.")
+@click.option("--model", metavar="MODULE", help="A world model to use in place of the program's.")
+@click.option("--2d", "mode_2d", is_flag=True, help="Use the 2D compatibility mode.")
+@click.option(
+    "-j", "jobs", metavar="J", type=click.IntRange(min=1), default=1, help="Processes.  [default: 1]"
+)
+@click.option(
+    "-o",
+    "--output",
+    metavar="DIR",
+    type=click.Path(path_type=Path),
+    help="Keep the trajectories in this folder; those that are there already are not made again.",
+)
+@click.option(
+    "--view",
+    metavar="PAGE.html",
+    type=click.Path(path_type=Path),
+    help="Make a page that plays the simulations.",
+)
+def simulate(
+    file: str,
+    count: int,
+    first: int,
+    seed: int | None,
+    simulator: str | None,
+    max_steps: int,
+    timestep: float | None,
+    tries: int,
+    step_limit: float,
+    parameters: Mapping[str, Any],
+    scenario: str | None,
+    model: str | None,
+    mode_2d: bool,
+    jobs: int,
+    output: Path | None,
+    view: Path | None,
+) -> int:
+    """Simulate scenes of a program.
+
+    Simulation K of a seed is always the same, whatever the number of processes. Files are complete or absent, so that a run
+    that was ended can be called again and goes on.
+
+    Exit codes: 0 success, 1 the program has errors, 2 wrong usage, 3 some simulations were rejected (the others are
+    there), 130 interrupted.
+    """
+    from scenic.formats.files import check_writable, write
+
+    if view is not None:
+        check_writable(view)
+    if output is not None:
+        output.mkdir(parents=True, exist_ok=True)
+    if seed is None:
+        seed = secrets.randbits(32)
+        sys.stderr.write(f"seed {seed} (the same simulations again: --seed {seed})\n")
+    loading = {
+        "path": Path(file),
+        "params": parameters,
+        "model": model,
+        "scenario": scenario,
+        "mode2D": mode_2d,
+    }
+    running = {
+        "seed": seed,
+        "maxSteps": max_steps,
+        "timestep": timestep,
+        "tries": tries,
+        "stuck_after": step_limit,
+    }
+    work = _Work(loading, simulator, running, output, view is not None)
+    work.load()
+    numbers = range(first, first + count)
+    found: dict[int, dict[str, Any]] = {
+        k: {"k": k, "about": about, "steps": []} for k in numbers if (about := work.known(k)) is not None
+    }
+    missing = [k for k in numbers if k not in found]
+    with (
+        _ended_by_signals(),
+        _progress(len(missing), shown=not sys.stdout.isatty()) as advance,
+        closing(_rows(work, missing, jobs)) as rows,
+    ):
+        for row in rows:
+            found[row["k"]] = row
+            advance()
+    code = CLEAN
+    for k in numbers:
+        code = max(code, _show(found[k]))
+    if view is not None:
+        from scenic.formats.course_page import course_page
+
+        made = [(found[k]["about"], found[k]["steps"]) for k in numbers if "about" in found[k]]
+        if made:
+            write(view, course_page(Path(file).name, made).encode())
+    failed = any("error" in row for row in found.values())
+    return FINDINGS if failed else code
+
+
+def _rows(work: _Work, numbers: list[int], jobs: int) -> Generator[dict[str, Any], None, None]:
+    if jobs == 1 or len(numbers) < 2:
+        yield from map(work, numbers)
+        return
+    for _, row in workers.run(work, numbers, jobs=jobs, lost=_lost):
+        yield row
+
+
+def _lost(k: int, code: int) -> dict[str, Any]:
+    return {"k": k, "error": Diagnostic("SC503", f"the process of simulation {k} died (exit code {code})")}
+
+
+def _show(row: Mapping[str, Any]) -> int:
+    """Print what came of a simulation; the exit code that it asks for."""
+    k = row["k"]
+    if "error" in row:
+        sys.stderr.write(f"simulation {k} failed:\n")
+        show_diagnostics([row["error"]])
+        return FINDINGS
+    if "missing" in row:
+        print(f"simulation {k}: {row['missing']}")
+        return NOT_ALL
+    about = row["about"]
+    print(f"simulation {k}: {about['steps']} steps, {about['reason']}")
+    for item in about["requirements"]:
+        verdict = "not evaluated" if item["verdict"] is None else item["verdict"].lower().replace("_", " ")
+        margin = item["robustness"]
+        by = f", robustness {margin:.4g}" if isinstance(margin, float) else ""
+        print(f"  {item['label']}: {verdict}{by}")
+    return CLEAN

@@ -1,0 +1,174 @@
+"""``scenic simulate`` as a user runs it."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.cli.commands import run_here
+from tests.processes import interruptible
+
+ROOT = Path(__file__).parents[2]
+MOVING = """
+from scenic.simulators.kinematic import SetVelocity
+behavior Go():
+    while True:
+        take SetVelocity((0, Range(0, 3)))
+ego = new Object at (Range(-3, 3), 0), with behavior Go
+other = new Object at (Range(5, 9), 3), facing 30 deg
+require always (distance from ego to other) > 1 as apart
+record ego.position.y as y
+"""
+REJECTED = "ego = new Object\nrequire eventually ego.position.y > 2\n"
+RAISING = """
+behavior B():
+    take 1
+    if ego.x > 0:
+        raise ValueError('oops')
+ego = new Object at (Range(-1, 1), 0), with behavior B
+"""
+SPINNING = "behavior B():\n    while True:\n        pass\n    take 1\nego = new Object with behavior B\n"
+SLOW = """
+import time
+behavior B():
+    while True:
+        time.sleep(0.05)
+        wait
+ego = new Object with behavior B
+"""
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    programs = {
+        "moving": MOVING,
+        "rejected": REJECTED,
+        "raising": RAISING,
+        "spinning": SPINNING,
+        "slow": SLOW,
+    }
+    for name, text in programs.items():
+        (tmp_path / f"{name}.scenic").write_text(text)
+    return tmp_path
+
+
+def run(folder: Path, *arguments: object) -> "subprocess.CompletedProcess[str]":
+    return run_here(["simulate", *arguments], folder=folder, variables={"NO_COLOR": "1", "COLUMNS": "100"})
+
+
+def rows(file: Path) -> list[dict[str, Any]]:
+    return [json.loads(line) for line in file.read_text().splitlines()]
+
+
+def test_trajectories_records_and_verdicts(folder: Path) -> None:
+    result = run(
+        folder, "moving.scenic", "-n", 2, "--seed", 3, "--time", 5, "-o", "out", "--view", "page.html"
+    )
+    assert result.returncode == 0, result.stderr
+    assert "simulation 1: 5 steps, reached time limit (5 steps)" in result.stdout
+    about, *steps = rows(folder / "out" / "simulation-0001.jsonl")
+    assert (about["format"], about["k"], about["steps"], about["timestep"]) == (
+        "scenic-simulation",
+        1,
+        5,
+        0.1,
+    )
+    assert [item["name"] for item in about["objects"]] == ["ego", "other"]
+    # What the file says of the requirement follows from the places in it.
+    distances = [sum((a - b) ** 2 for a, b in zip(*step["positions"], strict=True)) ** 0.5 for step in steps]
+    assert len(distances) == 6
+    assert about["requirements"][0]["robustness"] == pytest.approx(min(distances) - 1)
+    assert [y for _, y in about["records"]["y"]] == [step["positions"][0][1] for step in steps]
+    assert steps[0]["actions"].keys() == {"0"}
+    assert "<script>" in (folder / "page.html").read_text()
+
+
+def test_a_run_goes_on_where_it_ended(folder: Path) -> None:
+    first = run(folder, "moving.scenic", "-n", 3, "--seed", 3, "--time", 4, "-o", "out")
+    times = {path: path.stat().st_mtime_ns for path in (folder / "out").iterdir()}
+    kept = {path: path.read_text() for path in times}
+    (folder / "out" / "simulation-0001.jsonl").unlink()
+    (folder / "out" / "simulation-0002.jsonl").write_text('{"format": "scen')
+    second = run(folder, "moving.scenic", "-n", 3, "--seed", 3, "--time", 4, "-o", "out")
+    assert second.stdout == first.stdout
+    assert {path: path.read_text() for path in kept} == kept
+    untouched = folder / "out" / "simulation-0000.jsonl"
+    assert untouched.stat().st_mtime_ns == times[untouched]
+    run(folder, "moving.scenic", "-n", 1, "--seed", 4, "--time", 4, "-o", "out")
+    assert untouched.read_text() != kept[untouched]
+
+
+def test_rejected_simulations(folder: Path) -> None:
+    result = run(folder, "rejected.scenic", "--seed", 3, "--time", 4, "--tries", 2)
+    assert result.returncode == 3
+    assert "simulation 0: rejected (2 tried)" in result.stdout
+
+
+def test_one_that_fails_leaves_the_others(folder: Path) -> None:
+    result = run(
+        folder, "raising.scenic", "-n", 8, "--seed", 3, "--time", 4, "--simulator", "dummy", "-o", "out"
+    )
+    assert result.returncode == 1
+    assert "error[SC400]: ValueError: oops\n --> raising.scenic:5:9" in result.stderr
+    made = len(list((folder / "out").iterdir()))
+    assert 0 < made < 8
+    assert result.stdout.count("reached time limit") == made
+
+
+def test_code_that_spins_is_named(folder: Path) -> None:
+    result = run(folder, "spinning.scenic", "--seed", 3, "--step-limit", 0.1)
+    assert result.returncode == 1
+    assert "has run for 0.1 s within one step" in result.stderr
+    assert "spinning.scenic:" in result.stderr
+
+
+@pytest.mark.parametrize(
+    "arguments", [["--simulator", "nothing"], ["--simulator", "json:missing"], ["--time", "-1"]]
+)
+def test_wrong_usage(folder: Path, arguments: list[str]) -> None:
+    assert run(folder, "moving.scenic", *arguments).returncode == 2
+
+
+@pytest.mark.slow
+def test_results_do_not_depend_on_processes(folder: Path) -> None:
+    for jobs in (1, 2):
+        result = run(
+            folder, "moving.scenic", "-n", 4, "--seed", 3, "--time", 4, "-o", f"out{jobs}", "-j", jobs
+        )
+        assert result.returncode == 0, result.stderr
+    one, two = (
+        {path.name: path.read_text() for path in (folder / f"out{jobs}").iterdir()} for jobs in (1, 2)
+    )
+    assert one == two
+    assert len(one) == 4
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGKILL])
+def test_files_are_complete_or_absent(folder: Path, number: int) -> None:
+    arguments = ["simulate", "slow.scenic", "-n", "50", "--seed", "3", "--time", "5", "-o", "out"]
+    process = subprocess.Popen(
+        [sys.executable, "-m", "scenic.cli.main", *arguments],
+        cwd=folder,
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        preexec_fn=interruptible,
+    )
+    end = time.monotonic() + 60
+    while time.monotonic() < end and not (folder / "out" / "simulation-0001.jsonl").exists():
+        time.sleep(0.05)
+    process.send_signal(number)
+    code = process.wait(30)
+    assert code == (130 if number == signal.SIGINT else -signal.SIGKILL)
+    files = sorted((folder / "out").glob("simulation-*.jsonl"))
+    assert 2 <= len(files) < 50
+    for file in files:
+        about, *steps = rows(file)
+        assert len(steps) == about["steps"] + 1

@@ -1,0 +1,87 @@
+"""The kinematic simulator, against closed solutions."""
+
+import math
+from typing import Any
+
+import pytest
+
+import scenic
+from scenic.language.errors import InvalidScenarioError, SimulationCreationError
+from scenic.simulators.kinematic import DRAG, GRAVITY, KinematicSimulator
+
+HEAD = "from scenic.simulators.kinematic import *\n"
+
+
+def run(text: str, steps: int, timestep: float = 0.1) -> Any:
+    scene = scenic.scenarioFromString(HEAD + text).sample(1, seed=0)[0]
+    done = KinematicSimulator().simulate(scene, maxSteps=steps, timestep=timestep, keep_poses=True)
+    assert done is not None
+    return done
+
+
+def driven(action: str, properties: str, steps: int = 20, timestep: float = 0.1) -> Any:
+    text = f"behavior B():\n    take {action}\n    while True:\n        wait\nego = new Object with behavior B, {properties}\n"
+    return run(text, steps, timestep)
+
+
+def last(done: Any) -> tuple[Any, Any]:
+    position, orientation = done.poses[-1][0]
+    return position, orientation
+
+
+@pytest.mark.parametrize("timestep", [0.1, 0.5])
+def test_points_fall_as_parabolas(timestep: float) -> None:
+    steps = round(2 / timestep)
+    done = driven("SetVelocity((1, 0, 5)), SetAcceleration((0, 2, -9.81))", "with speed 0", steps, timestep)
+    x, y, z = last(done)[0]
+    assert (x, y, z) == pytest.approx((2, 4, 10 - 9.81 * 2))
+
+
+@pytest.mark.parametrize("timestep", [0.1, 0.5])
+def test_two_wheels_turn_on_a_circle(timestep: float) -> None:
+    properties = "with dynamics 'differential', with width 0.5, facing 90 deg"
+    done = driven("SetWheelSpeeds(1, 1.5)", properties, round(3 / timestep), timestep)
+    radius, angle = 1.25, 3.0
+    position, orientation = last(done)
+    # To the left of one who looks along -X lies -Y.
+    assert tuple(position) == pytest.approx((-radius * math.sin(angle), -radius * (1 - math.cos(angle)), 0))
+    assert math.cos(orientation.yaw - math.pi / 2 - angle) == pytest.approx(1)
+
+
+def test_bicycles_steer_by_their_base_and_brake_to_a_stop() -> None:
+    done = driven("SetSteering(0.3)", "with dynamics 'bicycle', with length 5, with speed 3", 100, 0.05)
+    radius = 0.6 * 5 / math.tan(0.3)
+    center = (-radius, 0)
+    for poses in done.poses:
+        assert math.dist(center, tuple(poses[0][0])[:2]) == pytest.approx(radius)
+    done = driven("SetThrottle(-2)", "with dynamics 'bicycle', with speed 3", 100, 0.05)
+    assert last(done)[0].y == pytest.approx(9 / 4, abs=0.01)
+
+
+def test_quadrotors_hover_and_have_a_final_speed() -> None:
+    done = driven("Fly()", "with dynamics 'quadrotor', at (0, 0, 5)", 50)
+    assert tuple(last(done)[0]) == pytest.approx((0, 0, 5))
+    done = driven("Fly(thrust=0)", "with dynamics 'quadrotor', at (0, 0, 500)", 600)
+    places = [poses[0][0].z for poses in done.poses]
+    assert (places[-1] - places[-2]) / 0.1 == pytest.approx(-GRAVITY / DRAG, rel=1e-4)
+    done = driven("Fly(roll=0.2)", "with dynamics 'quadrotor'", 10)
+    assert last(done)[0].x > 0.1
+
+
+def test_turned_frames_are_kept() -> None:
+    done = driven("SetVelocity((1, 0, 0))", "with parentOrientation (0.4, 0.2, 0.1), facing 0.3", 3)
+    first = done.poses[0][0][1]
+    assert last(done)[1].approxEq(first, 1e-9)
+
+
+def test_objects_without_actions_keep_their_velocity() -> None:
+    done = run("ego = new Object with velocity (1, 2, 0)\nother = new Object at (9, 9)\n", 10)
+    assert tuple(done.poses[-1][0][0]) == pytest.approx((1, 2, 0))
+    assert tuple(done.poses[-1][1][0]) == (9, 9, 0)
+
+
+def test_commands_of_another_model_are_refused() -> None:
+    with pytest.raises(InvalidScenarioError, match="cannot take these actions"):
+        driven("SetSteering(0.1)", "with dynamics 'point'")
+    with pytest.raises(SimulationCreationError, match="unknown dynamics 'jet'"):
+        driven("SetVelocity((1, 1))", "with dynamics 'jet'")
