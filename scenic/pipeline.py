@@ -53,7 +53,7 @@ def load(
     """The scenario of a file.
 
     Args:
-        path: a ``.scenic`` file.
+        path: a ``.scenic`` file; ``-`` reads the program from standard input.
         params: values for global parameters, which win over the program's own.
         model: a world model to use in place of the program's.
         scenario: which scenario of the file, where it defines several.
@@ -67,9 +67,9 @@ def load(
 
     """
     file = Path(path)
-    source = read_source(file)
+    source = Source(sys.stdin.read(), "<stdin>") if str(path) == "-" else read_source(file)
     return _scenario(
-        source.text, str(file), params or {}, model, scenario, mode2D, prune=prune, strict_params=True
+        source.text, source.filename, params or {}, model, scenario, mode2D, prune=prune, strict_params=True
     )
 
 

@@ -5,6 +5,7 @@ does not wait for what other commands need.
 """
 
 import os
+import shlex
 import sys
 import traceback
 from collections.abc import Mapping
@@ -14,6 +15,7 @@ from typing import Final
 
 import click
 
+from scenic.cli.established import GLOBAL, translated
 from scenic.cli.output import FINDINGS, INTERNAL, INTERRUPTED, exit_code, show_diagnostics
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.errors import Located, ParseCompileError
@@ -94,6 +96,8 @@ def _show_version(ctx: click.Context, _parameter: click.Parameter, wanted: bool)
 def scenic() -> None:
     """Check, compile and sample Scenic programs.
 
+    Before a command, ``--full-backtrace`` (``-b``) shows all calls of an exception, and ``--pdb`` opens Python's debugger at it.
+
     Exit codes: 0 success, 1 the program has errors, 2 wrong usage (an unknown option,
     a file that cannot be read), 3 only some of the scenes were found, 70 an internal error, 130 interrupted.
     """
@@ -109,9 +113,25 @@ def main() -> None:
 
 
 def _run() -> int:
+    arguments = sys.argv[1:]
+    wanted = [item for item in arguments if item in GLOBAL]
+    if arguments[:1] not in ([name] for name in _COMMANDS):
+        meant = translated(arguments, list(_COMMANDS))
+        if meant is not None:
+            sys.stderr.write(f"here this is written: scenic {shlex.join([*wanted, *meant])}\n")
+            arguments = meant
+        else:
+            arguments = [item for item in arguments if item not in GLOBAL]
+    return _guarded(
+        arguments, backtrace=bool({"-b", "--full-backtrace"} & set(wanted)), debug="--pdb" in wanted
+    )
+
+
+def _guarded(arguments: list[str], *, backtrace: bool, debug: bool) -> int:
+    """Run a command; ``backtrace`` shows all of an exception's calls, ``debug`` opens Python's debugger where it came up."""
     try:
         try:
-            result = scenic.main(prog_name="scenic", standalone_mode=False)
+            result = scenic.main(arguments, prog_name="scenic", standalone_mode=False)
             code = result if isinstance(result, int) else 0
         except click.ClickException as error:
             error.show()
@@ -122,6 +142,12 @@ def _run() -> int:
             raise
         except Exception as error:  # noqa: BLE001 - whatever escapes a command is reported here
             code = _report(error)
+            if backtrace:
+                traceback.print_exception(error)
+            if debug:
+                import pdb  # only where it is asked for
+
+                pdb.post_mortem(error.__traceback__)
         sys.stdout.flush()
         sys.stderr.flush()
     except BrokenPipeError:

@@ -25,6 +25,8 @@ _STATEMENTS: Final = tuple(
 NOTED: Final = (scenic.Operation, scenic.Specifier, scenic.Temporal, *_STATEMENTS)
 """The nodes that a feature can belong to, beside names."""
 
+_INSTEAD: Final = "draw with `Range`, `DiscreteRange`, `Uniform` or `Options`: values then come from this program, not from a sampler"
+"""What to do without the only thing that is refused: external samplers."""
 _NAMES: Final = frozenset(name.name for name in NAMES.values() if not name.available)
 
 
@@ -70,7 +72,7 @@ def _class_without_new(node: scenic.Operation, resolution: Resolution) -> ast.Na
 
 
 def _refusal(feature: str, node: ast.AST, context: Context) -> Diagnostic:
-    return context.error("SC900", f"{feature} is not supported in this version", node, "leave it out for now")
+    return context.error("SC900", f"{feature} is not supported in this version", node, _INSTEAD)
 
 
 def _refused(node: Any) -> str | None:

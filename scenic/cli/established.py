@@ -1,0 +1,104 @@
+"""The established command line, ``scenic [options] FILE.scenic [options]``: read, and said in the words of this one.
+
+It names no command: whoever has a habit of it, or a script, gets what was meant, and one line that says how it is written here.
+"""
+
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
+from typing import Final
+
+from scenic.compiler.loader import SUFFIXES
+
+_FLAGS: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType(
+    {
+        "--2d": ("--2d",),
+        "--no-pruning": ("--no-prune",),
+        "--show-params": (),
+        "--show-records": (),
+        "--axes": (),
+        "--pdb-on-reject": (),
+    }
+)
+"""Options without a value, and what they are here; those without a counterpart change nothing that is written."""
+
+_VALUES: Final[Mapping[str, str | None]] = MappingProxyType(
+    {
+        "-s": "--seed",
+        "--seed": "--seed",
+        "-m": "--model",
+        "--model": "--model",
+        "--scenario": "--scenario",
+        "--count": "-n",
+        "--gather-stats": "-n",
+        "-v": None,
+        "--verbosity": None,
+        "-d": None,
+        "--delay": None,
+        "-z": None,
+        "--zoom": None,
+        "--max-sims-per-scene": None,
+    }
+)
+"""Options with a value, and what they are here; ``None`` where there is no counterpart."""
+
+_SHOWS: Final[Mapping[str, str]] = MappingProxyType(
+    {"--dump-scenic-ast": "ast", "--dump-ast": "ast", "--dump-python": "python"}
+)
+"""Options that show what a program is compiled to, and the commands that do so here."""
+
+GLOBAL: Final = ("-b", "--full-backtrace", "--pdb")
+"""Options of the command line itself, wherever they stand."""
+
+
+def translated(arguments: Sequence[str], commands: Sequence[str]) -> list[str] | None:
+    """The arguments in the words of this command line; ``None`` where they are its own, or mean nothing to the other.
+
+    ``commands`` are the names of this one's commands.
+    """
+    if not any(item.endswith(SUFFIXES) for item in arguments) or any(
+        item in commands for item in arguments[:1]
+    ):
+        return None
+    rest = list(arguments)
+    files: list[str] = []
+    options: list[str] = []
+    command = "sample"
+    simulate, steps = False, None
+    while rest:
+        item = rest.pop(0)
+        name, joined, value = item.partition("=")
+        if joined and name in (*_VALUES, "--time", "--param"):
+            rest.insert(0, value)
+            item = name
+        if item in ("-S", "--simulate"):
+            simulate = True
+        elif item == "--time" and rest:
+            steps = rest.pop(0)
+        elif item in ("-p", "--param") and len(rest) > 1:
+            options += ["-p", f"{rest.pop(0)}={rest.pop(0)}"]
+        elif item in _FLAGS:
+            options += _FLAGS[item]
+        elif item in _SHOWS:
+            command = _SHOWS[item]
+        elif item in _VALUES and rest:
+            given, ours = rest.pop(0), _VALUES[item]
+            if ours is not None:
+                options += [ours, given.lstrip("-") if item == "--gather-stats" else given]
+        elif item in GLOBAL:
+            continue
+        elif item.startswith("-"):
+            return None
+        else:
+            files.append(item)
+    if len(files) != 1:
+        return None
+    if command != "sample":
+        return [command, *files]
+    if simulate:
+        if "simulate" not in commands:
+            return None
+        return ["simulate", *files, *options, *(() if steps is None else ("--steps", steps))]
+    return ["sample", *files, *options]
+
+
+__all__ = ["GLOBAL", "translated"]

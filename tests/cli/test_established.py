@@ -1,0 +1,31 @@
+"""The established command line is understood, and said in our words."""
+
+import pytest
+
+from scenic.cli.established import translated
+
+COMMANDS = ["check", "sample", "ast", "python", "simulate"]
+
+
+@pytest.mark.parametrize(
+    ("theirs", "ours"),
+    [
+        ("x.scenic", "sample x.scenic"),
+        ("--2d x.scenic", "sample x.scenic --2d"),
+        ("-s 3 x.scenic --count 5", "sample x.scenic --seed 3 -n 5"),
+        ("x.sc -p time 12 --param a b", "sample x.sc -p time=12 -p a=b"),
+        ("x.scenic -m world --scenario Main -v 2", "sample x.scenic --model world --scenario Main"),
+        ("x.scenic --gather-stats -20 --no-pruning", "sample x.scenic -n 20 --no-prune"),
+        ("--pdb -b x.scenic --show-params -z 2 -d 0.5", "sample x.scenic"),
+        ("--dump-ast x.scenic", "ast x.scenic"),
+        ("x.scenic --dump-python", "python x.scenic"),
+        ("-S x.scenic --time 100 --count=2", "simulate x.scenic -n 2 --steps 100"),
+        ("check x.scenic", None),
+        ("x.scenic y.scenic", None),
+        ("x.scenic --unknown", None),
+        ("--version", None),
+    ],
+)
+def test_options_are_translated(theirs: str, ours: str | None) -> None:
+    found = translated(theirs.split(), COMMANDS)
+    assert found == (None if ours is None else ours.split())
