@@ -6,6 +6,7 @@ import re
 import secrets
 import signal
 import sys
+import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
@@ -16,6 +17,9 @@ import click
 
 from scenic.cli import sinks
 from scenic.cli.output import CLEAN, has_colours
+from scenic.formats.files import OutputError
+from scenic.formats.growing import GrowingFile
+from scenic.language.errors import Located
 
 __all__ = ["NOT_ALL", "parameter_value", "sample"]
 
@@ -100,6 +104,33 @@ def _outlook(_context: click.Context, _option: click.Parameter, given: str | Non
     "-n", "count", metavar="N", type=click.IntRange(min=1), default=1, help="How many scenes.  [default: 1]"
 )
 @click.option(
+    "--first",
+    metavar="K",
+    type=click.IntRange(min=0),
+    default=0,
+    help="Number of the first scene; -n scenes from there on.  [default: 0]",
+)
+@click.option(
+    "-j",
+    "--jobs",
+    metavar="J",
+    type=click.IntRange(min=1),
+    default=1,
+    help="Make JSON Lines in so many processes. The scenes and their order are the same.  [default: 1]",
+)
+@click.option(
+    "--resume",
+    is_flag=True,
+    help="Go on with the JSON Lines of a run that was ended: OUT.part, or OUT with fewer scenes.",
+)
+@click.option(
+    "--properties",
+    type=click.Choice(["all", "changed"]),
+    default="all",
+    show_default=True,
+    help="Which properties of objects JSON Lines tell: all, or those that the program gives.",
+)
+@click.option(
     "--seed",
     metavar="S",
     type=int,
@@ -168,6 +199,10 @@ def _outlook(_context: click.Context, _option: click.Parameter, given: str | Non
 def sample(
     file: str,
     count: int,
+    first: int,
+    jobs: int,
+    resume: bool,
+    properties: str,
     seed: int | None,
     parameters: Mapping[str, Any],
     scenario: str | None,
@@ -193,13 +228,18 @@ def sample(
     """
     path = Path(file)
     chosen: list[sinks.Sink] = []
+    target: Path | None = None
     # All of them are checked before anything is sampled.
     if camera is not None:
         if output is None:
             raise click.UsageError("--camera needs a folder for its images: -o FOLDER")
         chosen.append(sinks.labelled(Path(output), camera, image_size))
     elif output is not None or (view is None and png is None):
-        chosen.append(sinks.scene_file(Path(output or "-"), count))
+        named = Path(output or "-")
+        if sinks.is_lines(named):
+            target = named
+        else:
+            chosen.append(sinks.scene_file(named, count))
     if view is not None:
         chosen.append(sinks.page(Path(view), path.name))
     if png is not None:
@@ -208,28 +248,53 @@ def sample(
                 Path(png), path.stem, count, image_size, {**outlook, "workspace": frame == "workspace"}
             )
         )
+    if chosen and (jobs > 1 or resume):
+        raise click.UsageError("-j and --resume are for JSON Lines alone, without images, pages and 3D files")
+    if resume and target in (None, sinks.STANDARD_OUTPUT):
+        raise click.UsageError("--resume needs the file to go on with: -o OUT.jsonl")
+    grown = None if target in (None, sinks.STANDARD_OUTPUT) else GrowingFile(target, resume=resume)
+    deadline = None if time_limit is None else time.monotonic() + time_limit
 
     # These bring in NumPy and the geometry libraries.
+    from scenic.cli import batches
+    from scenic.formats.json_lines import SceneLines
     from scenic.pipeline import load
     from scenic.runtime.sampling.report import Exhausted
 
-    loaded = load(path, params=parameters, model=model, scenario=scenario, mode2D=mode_2d, prune=not no_prune)
+    with _limited(time_limit, path):
+        loaded = load(
+            path, params=parameters, model=model, scenario=scenario, mode2D=mode_2d, prune=not no_prune
+        )
+    done = 0
+    if grown is not None and resume:
+        seed, done = batches.continued(grown, loaded.digest, seed, first, count)
     if seed is None:
         seed = secrets.randbits(32)
         sys.stderr.write(f"seed {seed} (the same scenes again: --seed {seed})\n")
-    results = loaded.stream(count, seed=seed, max_attempts=max_attempts, time_limit=time_limit)
-    missing = []
-    to_terminal = output in (None, "-") and view is None and png is None and sys.stdout.isatty()
+    lines = SceneLines((path.name, loaded.digest), changed=properties == "changed")
+    job = batches.Job(seed, first + done, first + count, max_attempts, deadline)
+    missing: list[Exhausted] = []
+    to_terminal = target == sinks.STANDARD_OUTPUT and sys.stdout.isatty()
     with _ended_by_signals(), ExitStack() as stack:
         takers = [stack.enter_context(sink) for sink in chosen]
+        put = _to_output if grown is None else stack.enter_context(grown).write
         advance = stack.enter_context(_progress(count, shown=not to_terminal))
-        for result in results:
-            if isinstance(result, Exhausted):
-                missing.append(result)
-            else:
-                for take in takers:
-                    take(result)
-            advance()
+        advance(done, 0)
+        if jobs > 1 and count - done > 1:
+            for made in batches.in_processes(loaded, lines, job, jobs):
+                put(made.lines)
+                missing.extend(made.missing)
+                advance(made.job.last - made.job.first, made.attempts)
+        else:
+            for result in batches.results_of(loaded, job):
+                if isinstance(result, Exhausted):
+                    missing.append(result)
+                else:
+                    for take in takers:
+                        take(result)
+                    if target is not None:
+                        put(lines.line(result).encode("ascii") + b"\n")
+                advance(1, result.attempts)
     if missing:
         from rich.console import Console
 
@@ -242,20 +307,83 @@ def sample(
     return CLEAN
 
 
+def _to_output(lines: bytes) -> None:
+    try:
+        sys.stdout.write(lines.decode("ascii"))
+        sys.stdout.flush()
+    except BrokenPipeError:
+        raise
+    except OSError as error:
+        reason = (error.strerror or str(error)).lower()
+        raise OutputError(f"cannot write to the standard output: {reason}") from error
+
+
 @contextmanager
-def _progress(count: int, *, shown: bool) -> Iterator[Callable[[], None]]:
-    """A progress bar on the error stream if that is a terminal."""
+def _limited(seconds: float | None, path: Path) -> Iterator[None]:
+    """Ends the running of a program that takes longer than the time limit, where the system can."""
+    if seconds is None or not hasattr(signal, "setitimer"):
+        yield
+        return
+
+    def end(_number: int, _frame: FrameType | None) -> None:
+        raise TimeLimitError(
+            f"'{path}' was still being run when the time limit of {seconds:g} s was over",
+            help="give it more time, or look for a loop without end at the top of the program",
+        )
+
+    try:
+        before = signal.signal(signal.SIGALRM, end)
+    except ValueError:  # not in the main thread
+        yield
+        return
+    signal.setitimer(signal.ITIMER_REAL, seconds)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+
+
+class TimeLimitError(Located):
+    """A program that runs longer than the time limit."""
+
+    code = "SC608"
+
+
+@contextmanager
+def _progress(count: int, *, shown: bool) -> Iterator[Callable[[int, int], None]]:
+    """A progress bar on the error stream if that is a terminal: scenes, rate, acceptance, time left.
+
+    The function it gives takes how many more scenes are done, and the candidates they took.
+    """
     if not (shown and sys.stderr.isatty()):
-        yield lambda: None
+        yield lambda _scenes, _attempts: None
         return
     from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
-    columns = (TextColumn("sampling"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+    columns = (
+        TextColumn("sampling"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TextColumn("{task.fields[rate]}"),
+        TimeRemainingColumn(),
+    )
     console = Console(file=sys.stderr, no_color=not has_colours(sys.stderr))
+    begun = time.monotonic()
+    made = tried = 0
     with Progress(*columns, console=console, transient=True, redirect_stdout=False) as progress:
-        task = progress.add_task("sampling", total=count)
-        yield lambda: progress.advance(task)
+        task = progress.add_task("sampling", total=count, rate="")
+
+        def advance(scenes: int, attempts: int) -> None:
+            nonlocal made, tried
+            if attempts:
+                made, tried = made + scenes, tried + attempts
+            seconds = max(time.monotonic() - begun, 1e-6)
+            rate = f"{made / seconds:.3g}/s, {made / tried:.2g} accepted" if tried else ""
+            progress.update(task, advance=scenes, rate=rate)
+
+        yield advance
 
 
 @contextmanager

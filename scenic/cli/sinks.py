@@ -3,13 +3,12 @@
 A sink's files are complete when its context ends well; when it ends with an error, Ctrl-C included, those begun are absent.
 """
 
-import sys
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
 from typing import Any
 
-from scenic.formats.files import check_folder, check_writable, numbered, write, writing
+from scenic.formats.files import check_folder, check_writable, numbered, write
 from scenic.formats.scenes import Scene
 from scenic.language.errors import Located
 
@@ -23,6 +22,8 @@ _OTHER_FORMATS = {
     ".jpg": "images are made with --png, as PNG",
     ".html": "a page to look at the scenes is made with --view",
     ".htm": "a page to look at the scenes is made with --view",
+    ".csv": "scenes are written as JSON Lines: a name that ends in .jsonl",
+    ".json": "scenes are written as JSON Lines: a name that ends in .jsonl",
     ".gltf": "write the binary form of it: a name that ends in .glb",
     ".obj": "3D files are written as .glb",
     ".stl": "3D files are written as .glb",
@@ -36,21 +37,22 @@ class OutputChoiceError(Located):
     code = "SC604"
 
 
-def scene_file(path: Path, count: int) -> Sink:
-    """JSON Lines, to a file or for ``-`` to standard output; or a ``.glb`` file for each scene, by the name's ending.
+def is_lines(path: Path) -> bool:
+    """Whether scenes are written to a file as JSON Lines, by its name's ending.
 
-    Raises ``OutputError`` or ``OutputChoiceError`` at once if that cannot be.
+    Raises ``OutputChoiceError`` for endings of formats that scenes are not written as.
     """
-    if path == STANDARD_OUTPUT:
-        return _lines_to_output()
     suffix = path.suffix.lower()
-    if suffix in _OTHER_FORMATS:
+    if path != STANDARD_OUTPUT and suffix in _OTHER_FORMATS:
         raise OutputChoiceError(f"scenes are not written as '{suffix}' files", help=_OTHER_FORMATS[suffix])
+    return suffix != ".glb"
+
+
+def scene_file(path: Path, count: int) -> Sink:
+    """A ``.glb`` file for each scene; raises ``OutputError`` or ``OutputChoiceError`` at once if that cannot be."""
     check_writable(path)
-    if suffix == ".glb":
-        _check_numbered(path, count)
-        return _glb_files(path, count)
-    return _lines_to_file(path)
+    _check_numbered(path, count)
+    return _glb_files(path, count)
 
 
 def page(path: Path, title: str) -> Sink:
@@ -115,29 +117,6 @@ def images(
 def _check_numbered(path: Path, count: int) -> None:
     if path.parent.exists():
         check_writable(numbered(path, count - 1, count))
-
-
-@contextmanager
-def _lines_to_output() -> Iterator[Take]:
-    from scenic.formats.json_lines import scene_line
-
-    def take(scene: Scene) -> None:
-        sys.stdout.write(scene_line(scene) + "\n")
-        sys.stdout.flush()
-
-    yield take
-
-
-@contextmanager
-def _lines_to_file(path: Path) -> Iterator[Take]:
-    from scenic.formats.json_lines import scene_line
-
-    with writing(path) as stream:
-
-        def take(scene: Scene) -> None:
-            stream.write(scene_line(scene).encode("ascii") + b"\n")
-
-        yield take
 
 
 @contextmanager

@@ -25,41 +25,75 @@ _ADDRESS = re.compile(r" at 0x[0-9a-fA-F]+")
 
 def scene_line(scene: Scene) -> str:
     """The scene as one line of JSON, without the line's end; equal scenes give equal text."""
-    return json.dumps(scene_document(scene), allow_nan=False, separators=(",", ":"))
+    return SceneLines().line(scene)
 
 
 def scene_document(scene: Scene) -> dict[str, Any]:
     """The scene as plain data that JSON can hold."""
-    numbers = {id(thing): index for index, thing in enumerate(scene.objects)}
-    names = scene.names
-    return {
-        "format": FORMAT,
-        "version": VERSION,
-        "seed": scene.seed,
-        "k": scene.k,
-        "attempts": scene.attempts,
-        "params": {str(name): plain(value, numbers) for name, value in scene.params.items()},
-        "ego": None if scene.egoObject is None else numbers[id(scene.egoObject)],
-        "objects": [_object(thing, names.get(thing), numbers) for thing in scene.objects],
-    }
+    document: dict[str, Any] = json.loads(scene_line(scene))
+    return document
 
 
-def _object(thing: SceneObject, name: str | None, numbers: Mapping[int, int]) -> dict[str, Any]:
-    quaternion = quaternion_of(thing)
-    return {
-        "class": type(thing).__name__,
-        "name": name,
-        "position": [number(value) for value in thing.position],
-        "quaternion": [number(value) for value in quaternion],
-        "euler": [number(value) for value in euler_angles(quaternion)],
-        "size": [number(value) for value in (thing.width, thing.length, thing.height)],
-        "shape": plain(thing.shape.source.as_dict(), numbers),
-        "properties": {
-            key: plain(value, numbers)
-            for key, value in sorted(thing.properties.items())
-            if key not in TOLD_ELSEWHERE
-        },
-    }
+class SceneLines:
+    """Lines of the scenes of one program. What is the same in all of them is put into words once.
+
+    Args:
+        program: the name of the program's file and the digest of its text and options; told in every line.
+        changed: whether to tell only properties that the program gives, not those at the defaults of the language.
+
+    """
+
+    def __init__(self, program: tuple[str, str] | None = None, *, changed: bool = False) -> None:
+        self._changed = changed
+        self._head = {"format": FORMAT, "version": VERSION}
+        if program is not None:
+            self._head["program"], self._head["digest"] = program
+        self._fixed: dict[tuple[int, str], tuple[object, str]] = {}
+
+    def line(self, scene: Scene) -> str:
+        """The scene as one line of JSON, without the line's end."""
+        numbers = {id(thing): index for index, thing in enumerate(scene.objects)}
+        names = scene.names
+        head = self._head | {
+            "seed": scene.seed,
+            "k": scene.k,
+            "attempts": scene.attempts,
+            "params": {str(name): plain(value, numbers) for name, value in scene.params.items()},
+            "ego": None if scene.egoObject is None else numbers[id(scene.egoObject)],
+        }
+        objects = ",".join(self._object(scene, thing, names.get(thing), numbers) for thing in scene.objects)
+        return f'{_text_of(head)[:-1]},"objects":[{objects}]}}'
+
+    def _object(self, scene: Scene, thing: SceneObject, name: str | None, numbers: Mapping[int, int]) -> str:
+        quaternion = quaternion_of(thing)
+        head = {
+            "class": type(thing).__name__,
+            "name": name,
+            "position": [number(value) for value in thing.position],
+            "quaternion": [number(value) for value in quaternion],
+            "euler": [number(value) for value in euler_angles(quaternion)],
+            "size": [number(value) for value in (thing.width, thing.length, thing.height)],
+            "shape": plain(thing.shape.source.as_dict(), numbers),
+        }
+        origin = scene.origin(thing)
+        properties = []
+        for key in origin.given if self._changed else origin.names:
+            if key in TOLD_ELSEWHERE:
+                continue
+            known = self._fixed.get((id(origin), key))
+            if known is not None:
+                properties.append(known[1])
+                continue
+            text = f"{_text_of(key)}:{_text_of(plain(getattr(thing, key), numbers))}"
+            properties.append(text)
+            if key in origin.fixed:
+                # The origin is kept, so that its identity stays its own.
+                self._fixed[id(origin), key] = origin, text
+        return f'{_text_of(head)[:-1]},"properties":{{{",".join(properties)}}}}}'
+
+
+def _text_of(data: Any) -> str:
+    return json.dumps(data, allow_nan=False, separators=(",", ":"))
 
 
 def number(value: float) -> float | dict[str, str]:

@@ -78,8 +78,27 @@ class SceneObject(Protocol):
     def properties(self) -> Mapping[str, object]: ...
 
 
+class Origin(Protocol):
+    """What an object is in all scenes of its program."""
+
+    @property
+    def names(self) -> Sequence[str]:
+        """All its properties, sorted."""
+
+    @property
+    def given(self) -> Sequence[str]:
+        """Those that the program gives, sorted; the others are at the defaults of the language."""
+
+    @property
+    def fixed(self) -> frozenset[str]:
+        """Those that are the same in every scene."""
+
+
 class Scene(Protocol):
     """A sampled scene."""
+
+    def origin(self, thing: Any) -> Origin:
+        """What an object of the scene is in all scenes."""
 
     @property
     def seed(self) -> int: ...

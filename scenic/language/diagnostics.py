@@ -173,6 +173,9 @@ CODES: Final = MappingProxyType(
         "SC605": "scenario cannot be chosen",
         "SC606": "bad configuration",
         "SC607": "saved scene cannot be used",
+        "SC608": "time limit over before sampling",
+        "SC609": "run cannot be resumed",
+        "SC610": "sampling process died",
         # Found by analysis.
         "SC700": "requirements contradict each other",
         "SC701": "requirement always holds",

@@ -54,6 +54,8 @@ class Resolution:
     """Whose value of a property the others read: its modifier if it has one, else its owner."""
     names: tuple[str, ...]
     """All properties, those of the class first."""
+    given: tuple[str, ...]
+    """Those that the program gives, by a specifier or in a class of its own."""
 
     def provider(self, name: str, reader: Specifier) -> Step:
         """Who provides a property that ``reader`` reads."""
@@ -111,6 +113,7 @@ def build(cls: type[Point], specifiers: Sequence[Specifier], *, mode_2d: bool = 
         evaluate(step)
     values.pop(MEMO, None)
     values["_names"] = resolution.names
+    values["_given"] = resolution.given
     if issubclass(cls, Object) and mode_2d:
         position = values["position"]
         values["position"] = normalised("position", (position.x, position.y, 0))
@@ -192,6 +195,11 @@ def resolve(
         tuple(steps.values()),
         {name: steps[specifier] for name, specifier in {**claims, **modifiers}.items()},
         tuple(dict.fromkeys([*cls.scenic_properties, *claims])),
+        tuple(
+            name
+            for name, specifier in {**claims, **modifiers}.items()
+            if specifier in numbers or not properties[name].definitions[0].is_builtin
+        ),
     )
 
 

@@ -4,17 +4,39 @@ import sys
 import tempfile
 from collections.abc import Callable, Mapping
 from copy import copy
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TextIO
 
 from scenic.graph.node import Node
 from scenic.runtime.dumping import program_of
 from scenic.runtime.dynamics.declarations import Copier
-from scenic.runtime.objects import Object
+from scenic.runtime.objects import Object, Point
 from scenic.runtime.program import Program, Requirement
 from scenic.runtime.regions.base import Workspace
-from scenic.runtime.samples import Sample
+from scenic.runtime.samples import Sample, dependencies
 from scenic.runtime.sampling.engine import Accepted
+
+
+@dataclass(frozen=True, slots=True)
+class Origin:
+    """What an object is in all scenes of its program.
+
+    ``names`` are its properties, ``given`` those that the program gives, ``fixed`` those that are the same in every scene.
+    """
+
+    names: tuple[str, ...]
+    given: tuple[str, ...]
+    fixed: frozenset[str]
+
+    @classmethod
+    def of(cls, instance: Point) -> "Origin":
+        """That of an instance of the program."""
+        values = instance.__dict__
+        names = tuple(sorted(values.get("_names", instance.scenic_properties)))
+        mutable = bool(dependencies([values.get("mutationScale")])) or values.get("mutationScale") != 0
+        fixed = () if mutable else (name for name in names if not dependencies([values.get(name)]))
+        return cls(names, tuple(sorted(values.get("_given", names))), frozenset(fixed))
 
 
 class Scene:
@@ -107,6 +129,15 @@ class Scene:
             for item in self.objects
             if (name := self._names.get(id(item.__dict__.get("_source")))) is not None
         }
+
+    def origin(self, thing: Any) -> Origin:
+        """What an object of the scene is in all scenes of the program."""
+        source = thing.__dict__.get("_source", thing)
+        known = source.__dict__.get("_origin")
+        if known is None:
+            known = source.__dict__["_origin"] = Origin.of(source)
+        origin: Origin = known
+        return origin
 
     def save(self, path: str | Path) -> None:
         """Write the scene to a file, from which `Scenario.replay` takes it up again; the file is complete or absent."""

@@ -1,0 +1,181 @@
+"""``scenic sample -j``: JSON Lines of many scenes, made by several processes, in order and the same whatever their number.
+
+A worker gets a run of scene numbers and answers with their lines; which worker makes which run changes nothing, since a scene
+is a function of the seed and its number. A worker that dies is replaced, and its run is made again.
+"""
+
+import json
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Any, Final
+
+from scenic.cli import workers
+from scenic.formats.growing import GrowingFile
+from scenic.formats.json_lines import SceneLines
+from scenic.language.errors import Located
+from scenic.runtime.sampling.report import Exhausted
+from scenic.runtime.scenario import Scenario
+from scenic.runtime.scene import Scene
+
+_RUNS: Final = 16
+"""Runs for each worker, about, so that all end at nearly the same time."""
+
+_LONGEST: Final = 256
+"""Scenes of a run, at most: what an interruption may lose."""
+
+_TRIES: Final = 3
+
+
+class ResumeError(Located):
+    """Lines that a run cannot go on with."""
+
+    code = "SC609"
+
+
+class WorkerDiedError(Located):
+    """A process that sampled died again and again."""
+
+    code = "SC610"
+
+
+@dataclass(frozen=True, slots=True)
+class Job:
+    """What to sample: scenes ``first`` to ``last`` (exclusive) of a seed, within limits.
+
+    ``deadline`` is a time of `time.monotonic`.
+    """
+
+    seed: int
+    first: int
+    last: int
+    max_attempts: int | None
+    deadline: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class Made:
+    """What came of a job: lines, scenes not found, and whether it has to be made by the parent, to show an error."""
+
+    job: Job
+    lines: bytes
+    missing: tuple[Exhausted, ...]
+    attempts: int = 0
+    failed: bool = False
+    died: int | None = None
+
+
+def results_of(scenario: Scenario, job: Job) -> Iterator[Scene | Exhausted]:
+    """The scenes of a job, or why one was not found."""
+    limit = None if job.deadline is None else max(1e-3, job.deadline - time.monotonic())
+    return scenario.stream(
+        job.last - job.first,
+        seed=job.seed,
+        first=job.first,
+        max_attempts=job.max_attempts,
+        time_limit=limit,
+    )
+
+
+def continued(
+    grown: GrowingFile, digest: str, seed: int | None, first: int, count: int
+) -> tuple[int | None, int]:
+    """The seed of the run that is resumed, and how many of its scenes are done.
+
+    Raises `ResumeError` where the lines are of another program, of other options or of another run.
+    """
+    kept = grown.kept()
+    if not kept:
+        return seed, 0
+    try:
+        head, last = (json.loads(line) for line in (kept[0], kept[-1]))
+        made, begun, reached = (head["digest"], int(head["seed"])), int(head["k"]), int(last["k"])
+        same = made == (last["digest"], int(last["seed"]))
+    except (ValueError, KeyError, TypeError) as error:
+        raise ResumeError(f"'{grown.path}' does not hold scenes of an earlier run ({error})") from error
+    if made[0] != digest:
+        raise ResumeError(
+            f"'{grown.path}' holds scenes of another program, or of the same with other options",
+            help="the program has changed since: sample to a new file",
+        )
+    if not same or (seed is not None and seed != made[1]) or not first <= begun or reached >= first + count:
+        raise ResumeError(
+            f"'{grown.path}' holds scenes {begun} to {reached} of seed {made[1]}, which this run does not make",
+            help="give the same --seed, --first and -n as before, or a larger -n",
+        )
+    return made[1], reached + 1 - first
+
+
+def _make(scenario: Scenario, lines: SceneLines, job: Job) -> Made:
+    text, missing, attempts = bytearray(), [], 0
+    try:
+        for result in results_of(scenario, job):
+            attempts += result.attempts
+            if isinstance(result, Exhausted):
+                missing.append(result)
+            else:
+                text += lines.line(result).encode("ascii") + b"\n"
+    except Exception:  # noqa: BLE001 - the parent makes the job again, and shows the error with its place
+        return Made(job, b"", (), failed=True)
+    return Made(job, bytes(text), tuple(missing), attempts)
+
+
+def in_processes(scenario: Scenario, lines: SceneLines, job: Job, jobs: int) -> Iterator[Made]:
+    """What comes of a job, in order, in pieces that several processes make.
+
+    Raises `WorkerDiedError` where processes keep dying, and whatever sampling raises.
+    """
+    yield from _ordered(scenario, lines, _split(job, jobs), jobs, tries=_TRIES)
+
+
+def _split(job: Job, jobs: int) -> list[Job]:
+    count = job.last - job.first
+    size = max(1, min(_LONGEST, -(-count // (jobs * _RUNS))))
+    return [
+        Job(job.seed, first, min(first + size, job.last), job.max_attempts, job.deadline)
+        for first in range(job.first, job.last, size)
+    ]
+
+
+def _ordered(
+    scenario: Scenario, lines: SceneLines, pieces: Sequence[Job], jobs: int, *, tries: int
+) -> Iterator[Made]:
+    waiting: dict[int, Made] = {}
+    upcoming = 0
+    found: Any = workers.run(
+        partial(_make, scenario, lines),
+        pieces,
+        jobs=jobs,
+        lost=lambda piece, code: Made(piece, b"", (), died=code),
+    )
+    for index, made in found:
+        waiting[index] = made
+        while upcoming in waiting:
+            ready = waiting.pop(upcoming)
+            upcoming += 1
+            if ready.died is not None:
+                ready = _again(scenario, lines, ready, tries)
+            if ready.failed:
+                # Raises what the worker met, here where it can be shown with its place, after what comes before.
+                for result in results_of(scenario, ready.job):
+                    if not isinstance(result, Exhausted):
+                        yield Made(ready.job, lines.line(result).encode("ascii") + b"\n", ())
+            yield ready
+
+
+def _again(scenario: Scenario, lines: SceneLines, made: Made, tries: int) -> Made:
+    """A piece whose worker died, made by another one."""
+    code = made.died
+    for _ in range(tries):
+        function = partial(_make, scenario, lines)
+        ((_, again),) = workers.run(
+            function, [made.job], jobs=1, lost=lambda piece, code: Made(piece, b"", (), died=code)
+        )
+        if again.died is None:
+            return again
+        code = again.died
+    raise WorkerDiedError(
+        f"the process that samples scene {made.job.first} dies, with exit code {code}",
+        help="it may lack memory: sample with fewer processes (-j 1), or try that scene alone (--first)",
+    )

@@ -1,0 +1,88 @@
+"""A file of lines that grows, and can be taken up again after whatever ended its run.
+
+While it grows it has the name of the file with ``.part`` after it, and holds whole lines but for, at most, the last one of
+a run that was killed. It gets its own name when it is complete. A run that is ended in an orderly way (Ctrl-C, an error)
+gives it its name too, with the lines that there are, unless that would replace an older file.
+"""
+
+import contextlib
+import os
+from pathlib import Path
+from types import TracebackType
+from typing import BinaryIO, Self
+
+from scenic.formats.files import OutputError, check_writable
+
+
+class GrowingFile:
+    """The file at ``path``, open for more lines.
+
+    Args:
+        path: the file.
+        resume: whether to go on after the lines of an earlier run.
+
+    Raises ``OutputError`` if it cannot be made or written.
+
+    """
+
+    def __init__(self, path: Path, *, resume: bool = False) -> None:
+        check_writable(path)
+        self.path = path.resolve()
+        self.part = self.path.with_name(f"{self.path.name}.part")
+        self._replaces = self.path.exists() and not resume
+        self._stream: BinaryIO | None = None
+        self._resume = resume
+        self._lines = 0
+
+    def kept(self) -> list[bytes]:
+        """The whole lines of the earlier run that is resumed; a torn last line is left out."""
+        if not self._resume:
+            return []
+        earlier = self.part if self.part.exists() else self.path
+        try:
+            data = earlier.read_bytes()
+        except FileNotFoundError:
+            return []
+        except OSError as error:
+            raise _refusal(self.path, error) from error
+        return data[: data.rfind(b"\n") + 1].splitlines(keepends=True)
+
+    def __enter__(self) -> Self:
+        kept = self.kept()
+        try:
+            if self._resume and not self.part.exists() and self.path.exists():
+                os.replace(self.path, self.part)
+            self._stream = self.part.open("r+b" if self._resume and self.part.exists() else "wb")
+            self._stream.truncate(sum(map(len, kept)))
+            self._stream.seek(0, os.SEEK_END)
+        except OSError as error:
+            raise _refusal(self.path, error) from error
+        self._lines = len(kept)
+        return self
+
+    def write(self, lines: bytes) -> None:
+        """Add whole lines; they are in the file when this returns, whatever happens to the process."""
+        assert self._stream is not None
+        try:
+            self._stream.write(lines)
+            self._stream.flush()
+        except OSError as error:
+            raise _refusal(self.path, error) from error
+        self._lines += lines.count(b"\n")
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, place: TracebackType | None
+    ) -> None:
+        assert self._stream is not None
+        with contextlib.suppress(OSError):
+            os.fsync(self._stream.fileno())
+        with contextlib.suppress(OSError):
+            self._stream.close()
+        if self._lines == 0 and kind is not None:
+            self.part.unlink(missing_ok=True)
+        elif kind is None or not self._replaces:
+            os.replace(self.part, self.path)
+
+
+def _refusal(path: Path, error: OSError) -> OutputError:
+    return OutputError(f"cannot write '{path}': {(error.strerror or str(error)).lower()}")
