@@ -49,7 +49,9 @@ def run(
 
     def start() -> tuple[Connection, BaseProcess]:
         ours, theirs = context.Pipe()
-        process = context.Process(target=_work, args=(function, theirs), daemon=True)
+        # A forked process has our end of the pipe too, and would wait for itself to read once we are gone.
+        inherited = ours if method == "fork" else None
+        process = context.Process(target=_work, args=(function, theirs, inherited), daemon=True)
         with _no_interruption():
             process.start()
         theirs.close()
@@ -90,8 +92,10 @@ def run(
             process.join()
 
 
-def _work(function: Callable[[Any], Any], connection: Connection) -> None:
+def _work(function: Callable[[Any], Any], connection: Connection, inherited: Connection | None) -> None:
     """What a process does: answers until there is nothing left to do, or its parent has gone."""
+    if inherited is not None:
+        inherited.close()
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent ends us
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
     if hasattr(signal, "pthread_sigmask"):

@@ -84,7 +84,7 @@ class SceneLines:
             if known is not None:
                 properties.append(known[1])
                 continue
-            text = f"{_text_of(key)}:{_text_of(plain(getattr(thing, key), numbers))}"
+            text = f"{_text_of(key)}:{_text_of(plain(origin.read(thing, key), numbers))}"
             properties.append(text)
             if key in origin.fixed:
                 # The origin is kept, so that its identity stays its own.

@@ -93,6 +93,9 @@ class Origin(Protocol):
     def fixed(self) -> frozenset[str]:
         """Those that are the same in every scene."""
 
+    def read(self, thing: Any, name: str) -> object:
+        """The value of a property of the object in one scene."""
+
 
 class Scene(Protocol):
     """A sampled scene."""

@@ -38,6 +38,10 @@ class Origin:
         fixed = () if mutable else (name for name in names if not dependencies([values.get(name)]))
         return cls(names, tuple(sorted(values.get("_given", names))), frozenset(fixed))
 
+    def read(self, thing: Any, name: str) -> Any:
+        """The value of a property in one scene."""
+        return getattr(thing, name)
+
 
 class Scene:
     """Concrete objects and parameters. Values are taken from the sample when they are first looked at.

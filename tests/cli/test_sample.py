@@ -31,6 +31,7 @@ class Stub:
 
     def __init__(self) -> None:
         self.options: dict[str, Any] = {}
+        self.digest = "0123"
         self.missing: set[int] = set()
         self.reason = "attempts"
         self.sampled = 0
@@ -80,8 +81,11 @@ def test_options_reach_the_pipeline(stub: Stub) -> None:
         "--seed -3 -p a=5 -p b=x=y --param c= --scenario Main --model m.n --2d --no-prune --max-attempts 7"
     )
     run(*given.split(), "--time-limit", "2.5")
+    # The limit covers loading the program too.
+    assert 1.5 < stub.options.pop("time_limit") <= 2.5
     assert stub.options == {
         "path": Path("room.scenic"),
+        "first": 0,
         "seed": -3,
         "params": {"a": 5, "b": "x=y", "c": ""},
         "scenario": "Main",
@@ -89,7 +93,6 @@ def test_options_reach_the_pipeline(stub: Stub) -> None:
         "mode2D": True,
         "prune": False,
         "max_attempts": 7,
-        "time_limit": 2.5,
     }
 
 
@@ -245,17 +248,29 @@ def raise_interrupt() -> None:
 
 
 @pytest.mark.parametrize("interrupt", [raise_interrupt, lambda: os.kill(os.getpid(), signal.SIGTERM)])
-def test_an_interrupted_run_leaves_no_part_of_a_file(
-    stub: Stub, tmp_path: Path, interrupt: Callable[[], None]
+@pytest.mark.parametrize("is_new", [False, True])
+def test_an_interrupted_run_keeps_its_whole_lines(
+    stub: Stub, tmp_path: Path, interrupt: Callable[[], None], is_new: bool
 ) -> None:
     before = signal.getsignal(signal.SIGTERM)
-    (tmp_path / "out.jsonl").write_text("old")
+    if not is_new:
+        (tmp_path / "out.jsonl").write_text("old")
     stub.interrupt_at, stub.interrupt = 2, interrupt
     result = run("-n", 5, "-o", tmp_path / "out.jsonl", "--view", tmp_path / "page.html")
     assert isinstance(result.exception, click.Abort | SystemExit)
-    assert os.listdir(tmp_path) == ["out.jsonl"]
-    assert (tmp_path / "out.jsonl").read_text() == "old"
+    kept = tmp_path / ("out.jsonl" if is_new else "out.jsonl.part")
+    assert [row["k"] for row in lines(kept.read_text())] == [0, 1]
+    if not is_new:
+        # What was there before is replaced only by a run that is complete.
+        assert (tmp_path / "out.jsonl").read_text() == "old"
+    assert len(os.listdir(tmp_path)) == 2 - is_new
     assert signal.getsignal(signal.SIGTERM) is before
+
+
+def test_an_interrupt_before_the_first_scene_leaves_nothing(stub: Stub, tmp_path: Path) -> None:
+    stub.interrupt_at, stub.interrupt = 0, raise_interrupt
+    run("-n", 5, "-o", tmp_path / "out.jsonl")
+    assert os.listdir(tmp_path) == []
 
 
 def test_what_was_streamed_before_an_interrupt_stays(stub: Stub) -> None:

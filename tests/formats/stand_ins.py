@@ -88,6 +88,18 @@ class Chair(Object):
     pass
 
 
+class Origin:
+    """All properties of a stand-in, none of them known to be the same in other scenes."""
+
+    fixed: frozenset[str] = frozenset()
+
+    def __init__(self, thing: Object) -> None:
+        self.names = self.given = tuple(sorted(thing.properties))
+
+    def read(self, thing: Object, name: str) -> object:
+        return thing.properties[name]
+
+
 @dataclass(eq=False)
 class Scene:
     objects: list[Object]
@@ -98,3 +110,6 @@ class Scene:
     egoObject: Object | None = None
     names: Mapping[Object, str] = field(default_factory=dict)
     workspace: object = None
+
+    def origin(self, thing: Object) -> Origin:
+        return Origin(thing)

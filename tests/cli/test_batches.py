@@ -1,0 +1,157 @@
+"""JSON Lines by several processes, and runs that are taken up again: always the same bytes."""
+
+import json
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+PROGRAM = """
+workspace = Workspace(RectangularRegion((0, 0, 0), 0, 30, 30))
+for _ in range(6):
+    new Object in workspace, facing Range(0, 360) deg, with width 2, with foo Range(0, 1)
+"""
+COUNT = 600
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    made = tmp_path_factory.mktemp("batches")
+    (made / "room.scenic").write_text(PROGRAM)
+    (made / "whole.jsonl").write_bytes(b"")
+    result = run(made, "-o", "whole.jsonl")
+    assert result.returncode == 0, result.stderr
+    return made
+
+
+def command(*arguments: object) -> list[str]:
+    given = ["sample", "room.scenic", "-n", str(COUNT), "--seed", "5", *map(str, arguments)]
+    return [sys.executable, "-m", "scenic.cli.main", *given]
+
+
+def run(folder: Path, *arguments: object) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        command(*arguments), cwd=folder, capture_output=True, text=True, check=False, timeout=120
+    )
+
+
+def whole(folder: Path) -> bytes:
+    return (folder / "whole.jsonl").read_bytes()
+
+
+@pytest.mark.slow
+def test_any_number_of_processes_makes_the_same_lines(folder: Path) -> None:
+    for jobs in (2, 3):
+        assert run(folder, "-j", jobs, "-o", f"{jobs}.jsonl").returncode == 0
+        assert (folder / f"{jobs}.jsonl").read_bytes() == whole(folder)
+    part = run(folder, "-j", 2, "--first", 590, "-o", "-")
+    assert part.stdout.encode().splitlines()[:10] == whole(folder).splitlines()[590:]
+
+
+@pytest.mark.slow
+def test_a_killed_run_goes_on_to_the_same_bytes(folder: Path) -> None:
+    rng = random.Random(8)
+    target = folder / "killed.jsonl"
+    part = folder / "killed.jsonl.part"
+    kills = 0
+    for _ in range(12):
+        with subprocess.Popen(
+            command("-j", 2, "-o", target.name, "--resume"),
+            cwd=folder,
+            stderr=subprocess.DEVNULL,
+            start_new_session=True,
+        ) as process:
+            deadline = time.monotonic() + 60
+            size = part.stat().st_size if part.exists() else 0
+            while process.poll() is None and time.monotonic() < deadline:
+                if part.exists() and part.stat().st_size > size:
+                    break
+                time.sleep(0.002)
+            time.sleep(rng.random() * 0.02)
+            if process.poll() is None:
+                kills += 1
+                process.send_signal(signal.SIGKILL)
+        if target.exists():
+            break
+    assert kills > 0
+    assert run(folder, "-o", target.name, "--resume").returncode == 0
+    assert target.read_bytes() == whole(folder)
+    assert not part.exists()
+
+
+def test_a_torn_line_is_made_again(folder: Path) -> None:
+    rows = whole(folder).splitlines(keepends=True)
+    target = folder / "torn.jsonl"
+    (folder / "torn.jsonl.part").write_bytes(b"".join(rows[:590]) + rows[590][:100])
+    assert run(folder, "-o", target.name, "--resume").returncode == 0
+    assert target.read_bytes() == whole(folder)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "change", "words"),
+    [
+        (["--seed", 6], {}, "of seed 5, which this run does not make"),
+        (["-n", 3], {}, "scenes 0 to 3"),
+        ([], {"digest": "other"}, "another program"),
+        ([], {"seed": "none"}, "does not hold scenes"),
+    ],
+)
+def test_other_lines_are_not_gone_on_with(
+    folder: Path, arguments: list[object], change: dict[str, object], words: str
+) -> None:
+    rows = [json.loads(row) for row in whole(folder).splitlines()[:4]]
+    target = folder / "other.jsonl"
+    content = "".join(json.dumps(row | change) + "\n" for row in rows)
+    target.write_text(content)
+    result = run(folder, *arguments, "-o", target.name, "--resume")
+    assert result.returncode != 0
+    assert "SC609" in result.stderr
+    assert words in " ".join(result.stderr.split())
+    assert target.read_text() == content
+
+
+def test_what_the_program_gives_can_be_told_alone(folder: Path) -> None:
+    shown = run(folder, "-n", 2, "--properties", "changed")
+    everything = [json.loads(row) for row in whole(folder).splitlines()[:2]]
+    for line, full in zip(shown.stdout.splitlines(), everything, strict=True):
+        for thing, other in zip(json.loads(line)["objects"], full["objects"], strict=True):
+            assert set(thing["properties"]) == {"foo", "yaw", "pitch", "roll"}
+            assert thing["properties"].items() <= other["properties"].items()
+            assert len(other["properties"]) > 20
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="the system has no full device")
+def test_a_full_output_is_told(folder: Path) -> None:
+    with Path("/dev/full").open("wb") as full:
+        result = subprocess.run(
+            command(), cwd=folder, stdout=full, stderr=subprocess.PIPE, text=True, check=False
+        )
+    assert result.returncode == 2
+    assert "SC601" in result.stderr
+    assert "no space left" in result.stderr
+
+
+@pytest.mark.slow
+def test_no_worker_outlives_a_killed_parent(folder: Path) -> None:
+    with subprocess.Popen(
+        command("-n", 10**6, "-j", 2, "-o", "orphans.jsonl"),
+        cwd=folder,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,
+    ) as process:
+        deadline = time.monotonic() + 60
+        while not (folder / "orphans.jsonl.part").exists() and time.monotonic() < deadline:
+            time.sleep(0.01)
+        process.send_signal(signal.SIGKILL)
+    while time.monotonic() < deadline:
+        try:
+            os.killpg(process.pid, 0)  # the group lives as long as one of its processes
+        except ProcessLookupError:
+            return
+        time.sleep(0.05)
+    raise AssertionError("a worker lives on")
