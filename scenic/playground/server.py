@@ -150,6 +150,10 @@ class Playground:
         path = parts.path.lstrip("/")
         if path in _FILES and not is_socket:
             return _response((_static() / path).read_bytes(), _FILES[path], _POLICY)
+        # The name of a scene is a secret of its own: its frame, which shows what a program made, never learns the token.
+        kind, _, name = path.partition("/")
+        if kind == "scene" and name in self._pages and not is_socket:
+            return _response(self._pages[name].encode(), "text/html", _POLICY_OF_SCENES)
         given = parse_qs(parts.query).get("token", [""])[0]
         if not secrets.compare_digest(given.encode(), self._token.encode()):
             return _plain(
@@ -163,9 +167,6 @@ class Playground:
             )
         if path == "":
             return _response(self._page().encode(), "text/html", _POLICY)
-        kind, _, name = path.partition("/")
-        if kind == "scene" and name in self._pages:
-            return _response(self._pages[name].encode(), "text/html", _POLICY_OF_SCENES)
         return _plain(http.HTTPStatus.NOT_FOUND, "there is nothing here")
 
     def _page(self) -> str:

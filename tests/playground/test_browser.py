@@ -23,7 +23,7 @@ pytestmark = [
 ]
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def page(playground: Callable[..., Any]) -> Iterator[webdriver.Chrome]:
     options = webdriver.ChromeOptions()
     options.binary_location = str(BROWSER)
@@ -76,13 +76,18 @@ def squiggles(page: webdriver.Chrome) -> list[Any]:
     return page.find_elements(By.CSS_SELECTOR, "#editor .squiggly-error")
 
 
-def sampled(page: webdriver.Chrome) -> str:
-    """Press the button, and wait for other scenes than before; their name."""
-    before = page.execute_script("return document.body.dataset.scene")
+def sample(page: webdriver.Chrome) -> None:
+    """Press the button, and wait until other scenes than before are drawn."""
+    before = page.execute_script("return document.body.dataset.scene ?? null")
     page.find_element(By.ID, "sample").click()
-    found = until(lambda: page.execute_script("return document.body.dataset.scene") not in (before, None))
-    assert found
-    return str(page.execute_script("return document.body.dataset.scene"))
+    until(lambda: page.execute_script("return document.body.dataset.scene ?? null") != before)
+    name = page.execute_script("return document.body.dataset.scene")
+    page.switch_to.frame("scene")
+    try:
+        until(lambda: page.execute_script("return location.pathname").endswith(name))
+        until(lambda: page.find_element(By.ID, "facts").text)
+    finally:
+        page.switch_to.default_content()
 
 
 def picture(page: webdriver.Chrome) -> bytes:
@@ -94,7 +99,8 @@ def picture(page: webdriver.Chrome) -> bytes:
     return last
 
 
-def test_a_mistake_is_underlined_and_repaired(page: webdriver.Chrome) -> None:
+def check_repair(page: webdriver.Chrome) -> None:
+    """A mistake is underlined as it is typed; the repair that is offered takes the line away."""
     until(lambda: "require" in program(page))
     assert not squiggles(page)
     page.find_element(By.CSS_SELECTOR, "#editor .view-lines").click()
@@ -104,7 +110,6 @@ def test_a_mistake_is_underlined_and_repaired(page: webdriver.Chrome) -> None:
     until(lambda: squiggles(page))
     for _ in range(len(" of chair") + 1):
         press(page, Keys.ARROW_LEFT)
-    until(lambda: "lef of" in program(page))
     press(page, ".", control=True)
     until(lambda: page.find_elements(By.CSS_SELECTOR, ".action-widget .action"))
     press(page, Keys.ENTER)
@@ -112,22 +117,23 @@ def test_a_mistake_is_underlined_and_repaired(page: webdriver.Chrome) -> None:
     until(lambda: not squiggles(page))
 
 
-def test_scenes_are_drawn_and_turned(page: webdriver.Chrome) -> None:
+def check_scenes(page: webdriver.Chrome) -> None:
+    """Scenes come when the button is pressed, differ, and can be turned."""
     empty = picture(page)
-    sampled(page)
+    sample(page)
     first = picture(page)
     assert first != empty
     frame = page.find_element(By.ID, "scene")
-    ActionChains(page).move_to_element_with_offset(frame, 0, -150).click_and_hold().move_by_offset(
-        120, 30
-    ).release().perform()
+    drag = ActionChains(page).move_to_element_with_offset(frame, 0, -150).click_and_hold()
+    drag.move_by_offset(120, 30).release().perform()
     turned = picture(page)
     assert turned != first
-    sampled(page)
+    sample(page)
     assert picture(page) != turned
 
 
-def test_what_is_wrong_is_shown(page: webdriver.Chrome) -> None:
+def check_trouble(page: webdriver.Chrome) -> None:
+    """What the program's fault is, is said where the scene would be."""
     page.find_element(By.CSS_SELECTOR, "#editor .view-lines").click()
     press(page, "a", control=True)
     press(page, "x = 1 / 0")
@@ -138,5 +144,9 @@ def test_what_is_wrong_is_shown(page: webdriver.Chrome) -> None:
     assert page.find_element(By.ID, "status").text == "no scene"
 
 
-def test_the_page_reports_no_errors(page: webdriver.Chrome) -> None:
-    assert [each for each in page.get_log("browser") if each["level"] == "SEVERE"] == []
+def test_one_session(page: webdriver.Chrome) -> None:
+    # One test, since a browser is dear: what comes later begins where the steps before ended.
+    check_repair(page)
+    check_scenes(page)
+    check_trouble(page)
+    assert [each["message"] for each in page.get_log("browser") if each["level"] == "SEVERE"] == []

@@ -2,6 +2,7 @@
 
 import http.client
 import json
+import sys
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -79,7 +80,7 @@ def test_nothing_else_is_served(address: str) -> None:
 def test_scenes(address: str) -> None:
     found = sample(address, EGO, seed=7, count=2)
     assert found["seed"] == 7
-    status, page, headers = fetch(address, f"/scene/{found['scene']}?token={place(address)[1]}")
+    status, page, headers = fetch(address, f"/scene/{found['scene']}")
     assert status == 200
     assert '"seed":"7"' in page
     assert headers["Content-Security-Policy"].startswith("sandbox allow-scripts; default-src 'none'")
@@ -88,6 +89,11 @@ def test_scenes(address: str) -> None:
 def test_what_is_wrong_is_said(address: str) -> None:
     assert "SC110" in sample(address, "ego = new Object at\n")["trouble"]
     assert "ZeroDivisionError" in sample(address, "x = 1 / 0\n")["trouble"]
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there are no such limits on Windows")
+def test_memory_is_limited(address: str) -> None:
+    assert "MemoryError" in sample(address, "x = bytearray(1 << 36)\n")["trouble"]
 
 
 @pytest.mark.parametrize("message", ["", "[]", "{}", '{"text": 3}', '{"text": "", "count": "x"}', "\ud7ff"])

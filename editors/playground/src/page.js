@@ -58,7 +58,7 @@ function sample() {
     byId("trouble").textContent = trouble ?? "";
     status.textContent = trouble ? "no scene" : `seed ${seed}`;
     if (scene) {
-      byId("scene").src = `scene/${scene}?token=${config.token}`;
+      byId("scene").src = `scene/${scene}`;
       document.body.dataset.scene = scene;
     }
     socket.close();
