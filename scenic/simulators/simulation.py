@@ -17,7 +17,6 @@ from scenic.language.errors import (
 )
 from scenic.runtime.dynamics.copies import Copies
 from scenic.runtime.dynamics.run import Run
-from scenic.runtime.properties import normalised
 from scenic.runtime.randomness import preserved, restore, seed_globals, states
 from scenic.runtime.samples import PRELUDE
 from scenic.runtime.scene import Scene
@@ -399,11 +398,6 @@ class Simulation(ABC):
             adopted = self._adopted.setdefault((id(obj), name), kind)
             if adopted is kind:
                 return value
-        if wanted is Kind.VECTOR and not kind.is_number and kind is not Kind.ORIENTATION:
-            try:
-                return normalised(name, value)
-            except TypeError:
-                pass
         raise RuntimeError(
             f"simulator gave property {name!r} of {obj!r} a value of type {type(value).__name__}, "
             f"where the type is {type(old).__name__}"

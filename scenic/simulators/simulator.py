@@ -55,8 +55,6 @@ class Simulator(ABC):
         """
         if getattr(self, "_destroyed", False):
             raise RuntimeError("the simulator has been destroyed")
-        if maxIterations <= 0:
-            raise ValueError("maxIterations must be at least 1")
         for iteration in range(1, maxIterations + 1):
             try:
                 return self._runSingleSimulation(
