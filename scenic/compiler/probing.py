@@ -6,6 +6,7 @@ where this has a mistake, the line alone.
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import cache
 from typing import Any, Final
 
 from scenic.compiler.actions import Actions
@@ -54,7 +55,12 @@ class Wanted:
         """The words with which what a label stands for may begin, none if it cannot stand here."""
         if label not in self.labels:
             return frozenset()
-        return frozenset().union(*(first_words((rule,)) for rule in _LABELLED.get(label, ())))
+        return _beginnings(label)
+
+
+@cache
+def _beginnings(label: str) -> frozenset[str]:
+    return frozenset().union(*(first_words((rule,)) for rule in _LABELLED.get(label, ())))
 
 
 def wanted_at(text: str, line: int, column: int) -> Wanted | None:

@@ -1,6 +1,7 @@
 """What a word of a program means: keywords, operators, specifiers, properties, names of the language and of the program."""
 
 import ast
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final
 
@@ -34,11 +35,13 @@ class Hover:
     span: Span
 
 
-def hover(snapshot: Snapshot, line: int, column: int, project: Project | None = None) -> Hover | None:
+def hover(
+    snapshot: Snapshot, line: int, column: int, project_of: Callable[[], Project] | None = None
+) -> Hover | None:
     """Explain the word at a place: ``line`` from 1, ``column`` in characters from 0.
 
     ``None`` where there is nothing to explain: in strings and comments. Names that the program defines are explained by
-    ``project``, which must know the document.
+    the project, which must know the document; it is only asked for where there is such a name.
     """
     tokens = snapshot.tokens
     index = snapshot.token_at(line, column)
@@ -47,8 +50,9 @@ def hover(snapshot: Snapshot, line: int, column: int, project: Project | None = 
     span = snapshot.span_of_token(index)
     node = snapshot.path_to(line, span.column)[-1]
     markdown = _explain(tokens.texts[index], tokens.kinds[index], node)
-    if project is not None and (markdown is None or isinstance(node, ast.Name | ast.Attribute)):
-        markdown = _defined(project, snapshot, span) or markdown
+    is_name = isinstance(node, ast.Name | ast.Attribute)
+    if project_of is not None and (is_name or (markdown is None and tokens.kinds[index] >= NAME)):
+        markdown = _defined(project_of(), snapshot, span) or markdown
     if markdown is None and isinstance(node, ast.Name):
         markdown = descriptions.of_python(node.id)
     return None if markdown is None else Hover(markdown, span)

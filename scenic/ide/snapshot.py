@@ -11,7 +11,7 @@ from scenic.compiler.compile import Warned
 from scenic.compiler.generated import WORDS
 from scenic.compiler.incremental import Revision, revise
 from scenic.compiler.parser import DEEPEST, ParseResult, recursion_limit
-from scenic.compiler.resolver import resolve
+from scenic.compiler.resolver import bind
 from scenic.compiler.scopes import Resolution, Scope
 from scenic.compiler.surroundings import SurroundingsOf
 from scenic.compiler.tokens import NAME, Tokens
@@ -196,7 +196,7 @@ class Snapshot:
 
     def _resolve(self) -> Resolution:
         with recursion_limit(DEEPEST):
-            return resolve(self.tree, self.source)
+            return bind(self.tree)
 
 
 def _placed(node: ast.AST) -> Iterator[ast.AST]:

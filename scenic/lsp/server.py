@@ -4,6 +4,7 @@ What an answer says is worked out by the handlers (`scenic.lsp.handlers`). It ru
 it is shown, unless the user asks for that.
 """
 
+import gc
 import os
 import sys
 import threading
@@ -24,6 +25,8 @@ from scenic.lsp.wire import Message, Reader, Writer
 
 __all__ = ["Server", "serve"]
 
+_GARBAGE: Final = 50_000
+"""So many new objects are made before garbage is looked for among them."""
 _CANCEL: Final = "$/cancelRequest"
 _CANCEL_PROGRESS: Final = "window/workDoneProgress/cancel"
 
@@ -266,6 +269,8 @@ class Server:
 
 def serve() -> int:
     """Serve one client over standard input and output until it says to exit, or goes away; returns the exit code."""
+    # What is kept of documents is large and lives long: looking for garbage in it more often finds nothing.
+    gc.set_threshold(_GARBAGE, 20, 20)
     with os.fdopen(os.dup(sys.stdout.fileno()), "wb") as output, redirect_stdout(sys.stderr):
         # Whatever else is printed must not get between the messages.
         code = Server(sys.stdin.buffer, output).run()

@@ -212,7 +212,10 @@ class Session:
                 continue
             filename = each.snapshot.filename
             if each.version is not None and self._in_project.get(filename) is not each:
-                self.project.open(filename, each.snapshot.text, tree=each.snapshot.tree)
+                snapshot = each.snapshot
+                known = snapshot.resolution if each.is_program else None
+                tree = snapshot.tree if each.is_program else None
+                self.project.open(filename, snapshot.text, tree=tree, resolution=known)
                 self._in_project[filename] = each
         return self.project
 

@@ -15,7 +15,7 @@ from typing import Any, Final
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.loader import SUFFIXES
-from scenic.compiler.scopes import Binding
+from scenic.compiler.scopes import Binding, Resolution
 from scenic.language.errors import ScenicError
 from scenic.language.source import Source, read_source
 from scenic.project.modules import Module, read_module
@@ -116,15 +116,25 @@ class Project:
 
     # Texts
 
-    def open(self, filename: str, text: str, *, tree: ast.Module | None = None) -> Module:
-        """Take the text of a file from an editor, until `close`; ``tree`` is its tree, if it is parsed already."""
+    def open(
+        self,
+        filename: str,
+        text: str,
+        *,
+        tree: ast.Module | None = None,
+        resolution: Resolution | None = None,
+    ) -> Module:
+        """Take the text of a file from an editor, until `close`.
+
+        ``tree`` is its tree, and ``resolution`` what its names are bound to, if that is known already.
+        """
         filename = os.path.abspath(filename)
         source = Source(text, filename)
         known = self._opened.get(filename)
         if known is None and filename in self._entries:
             known = self._entries[filename].module
         if known is None or known.source.text != source.text:
-            known = read_module(source, tree=tree)
+            known = read_module(source, tree=tree, resolution=resolution)
             self._forget()
         self._opened[filename] = known
         return known

@@ -197,10 +197,12 @@ class Module:
         )
 
 
-def read_module(source: Source, *, tree: ast.Module | None = None) -> Module:
+def read_module(
+    source: Source, *, tree: ast.Module | None = None, resolution: Resolution | None = None
+) -> Module:
     """Parse and bind a module; the ending of the filename tells the language. Never raises.
 
-    ``tree`` is the tree of the text where that is already known.
+    ``tree`` is the tree of the text, and ``resolution`` what its names are bound to, where that is already known.
     """
     is_scenic = not source.filename.endswith((".py", ".pyi"))
     broken = False
@@ -211,7 +213,7 @@ def read_module(source: Source, *, tree: ast.Module | None = None) -> Module:
                 tree = parsed.tree
             elif tree is None:
                 tree = _python(source)
-            resolution = bind(tree)
+            resolution = bind(tree) if resolution is None else resolution
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         tree, broken = _EMPTY, True
         resolution = bind(tree)

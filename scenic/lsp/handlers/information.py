@@ -49,7 +49,7 @@ def markup(session: Session, text: str, *path: str) -> Json:
 
 def _hover(session: Session, params: Any) -> Json:
     document, line, column = place_of(session, params)
-    found = hover(document.snapshot, line, column, session.project_with(document))
+    found = hover(document.snapshot, line, column, lambda: session.project_with(document))
     if found is None:
         return None
     return {

@@ -1,0 +1,163 @@
+"""What an editor waits for, measured over the wire: one edit at a time, to the answer.
+
+    python -m benchmarks.language_server [--edits N] [--memory]
+
+Times are in milliseconds: the 95th percentile of what passes on the clock, and the processor time of the server for each.
+"""
+
+import argparse
+import os
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+
+from tests.lsp.client import FULL, Client
+
+BLOCK = '''
+class Chair{i}(Object):
+    """Chair number {i}."""
+    width: Range(0.4, 0.6)
+    length: 0.5
+    shape: BoxShape()
+
+behavior Walk{i}(speed=1, distance=10):
+    """Walk on."""
+    travelled = 0
+    while travelled < distance:
+        take SetSpeed(speed)
+        travelled = travelled + speed
+
+x{i} = Range(1, {i} + 2)
+table{i} = new Chair{i} at (x{i}, {i} * 10, 0), facing 30 deg, with behavior Walk{i}(2)
+for k in range(3):
+    new Chair{i} left of table{i} by 1 + k, with height 1.5
+require distance from table{i} to (0, 0, 0) > 1
+
+def f{i}(a, b=1):
+    return a + b * {i} if a > b else [c for c in range(a) if c % 2]
+'''
+HEAD = "class SetSpeed:\n    def __init__(self, s):\n        self.s = s\n\nego = new Object\n"
+
+
+def program(lines: int) -> str:
+    count = lines // BLOCK.count("\n")
+    return HEAD + "".join(BLOCK.replace("{i}", str(index)) for index in range(count))
+
+
+def processor(client: Client) -> float:
+    """Seconds of processor time that the server has used."""
+    fields = Path(f"/proc/{client.process.pid}/stat").read_text().rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+def memory(client: Client) -> int:
+    """Kilobytes that the server holds."""
+    status = Path(f"/proc/{client.process.pid}/status").read_text()
+    return int(status.partition("VmRSS:")[2].split()[0])
+
+
+def measured(client: Client, edits: int, what: Callable[[int], float]) -> str:
+    before = processor(client)
+    waits = sorted(what(index) for index in range(edits))
+    used = (processor(client) - before) / edits
+    return f"p95 {1000 * waits[int(0.95 * edits)]:7.1f}   processor {1000 * used:7.1f}"
+
+
+def session(lines: int, edits: int, folder: Path) -> None:
+    text = program(lines)
+    uri = (folder / f"program{lines}.scenic").as_uri()
+    began = time.perf_counter()
+    client = Client(cwd=folder, program=("-P", "-m", "scenic.cli.main", "lsp"))
+    client.start(FULL)
+    client.open(uri, text)
+    client.published(uri, version=1)
+    print(f"{lines} lines")
+    print(
+        f"  start to first diagnostics       {1000 * (time.perf_counter() - began):7.1f}   processor {1000 * processor(client):7.1f}"
+    )
+    rows = text.split("\n")
+    line = next(
+        number for number, row in enumerate(rows) if row.startswith("table") and number > len(rows) // 2
+    )
+    place = {"textDocument": {"uri": uri}, "position": {"line": line, "character": 12}}
+
+    def edit(new: str) -> int:
+        return client.change(uri, ((line, 0), (line, 0), new))
+
+    def diagnostics(_index: int) -> float:
+        start = time.perf_counter()
+        client.published(uri, version=edit("q"))
+        return time.perf_counter() - start
+
+    def answer(method: str, *, settled: bool) -> Callable[[int], float]:
+        def wait(_index: int) -> float:
+            version = edit("q")
+            if settled:
+                client.published(uri, version=version)
+            else:
+                time.sleep(0.03)  # The check has begun.
+            start = time.perf_counter()
+            client.request(method, place)
+            waited = time.perf_counter() - start
+            if not settled:
+                client.published(uri, version=version)
+            return waited
+
+        return wait
+
+    print(f"  diagnostics after a keystroke    {measured(client, edits, diagnostics)}")
+    for name, method, settled in (
+        ("completion", "textDocument/completion", True),
+        ("hover", "textDocument/hover", True),
+        ("hover while a check runs", "textDocument/hover", False),
+        ("symbols", "textDocument/documentSymbol", True),
+        ("semantic tokens", "textDocument/semanticTokens/full", True),
+    ):
+        print(f"  {name:32} {measured(client, edits, answer(method, settled=settled))}   (with the check)")
+    client.end()
+
+
+def growth(edits: int, folder: Path) -> None:
+    """Memory after many edits of one document."""
+    client = Client(cwd=folder, program=("-P", "-m", "scenic.cli.main", "lsp"))
+    client.start(FULL)
+    uri = (folder / "grown.scenic").as_uri()
+    client.open(uri, program(500))
+    early = 0
+    for count in range(1, edits + 1):
+        line = count % 400
+        new = client.change(uri, ((line, 0), (line, 1 - count % 2), "" if count % 2 == 0 else "z"))
+        if count % 50 == 0:
+            client.published(uri, version=new)
+            client.request(
+                "textDocument/hover",
+                {"textDocument": {"uri": uri}, "position": {"line": line, "character": 3}},
+            )
+        if count == 100:
+            early = memory(client)
+    late = memory(client)
+    print(f"memory after 100 edits {early} kB, after {edits} {late} kB: {late / early:.2f} times")
+    client.end()
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--edits", type=int, default=40)
+    parser.add_argument(
+        "--memory", action="store_true", help="measure how memory grows over 10,000 edits instead"
+    )
+    options = parser.parse_args()
+    with tempfile.TemporaryDirectory() as folder:
+        if options.memory:
+            growth(10_000, Path(folder))
+        else:
+            for lines in (500, 5000):
+                session(lines, options.edits, Path(folder))
+
+
+if __name__ == "__main__":
+    main()
