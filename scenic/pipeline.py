@@ -229,6 +229,7 @@ def _scenario(
             names=_names(module, state.ego),
             mode_2d=mode_2d,
             digest=program_digest(text, options),
+            view=show_page,
         )
     except RejectionException as error:
         place = locate(error.__traceback__) if error.__traceback__ is not None else None
@@ -261,6 +262,19 @@ def _scenario(
         pruning = contract(scenario.outline.graph, conditions(scenario))
         scenario.restrict(pruning.domain, impossible=[item.label for item in pruning.impossible])
     return scenario
+
+
+def show_page(scene: Any) -> Path:
+    """Write a page that shows a scene to a temporary file, open it in a browser, and return the file."""
+    import tempfile
+    import webbrowser
+
+    from scenic.formats.html import page
+
+    file = Path(tempfile.mkdtemp(prefix="scenic-")) / "scene.html"
+    file.write_text(page([scene], "scene"), encoding="utf-8")
+    webbrowser.open(file.as_uri())
+    return file
 
 
 def _run_chosen(module: ModuleType, state: Module, chosen: str | None) -> ModularScenario | None:

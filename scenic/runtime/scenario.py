@@ -2,7 +2,7 @@
 
 import random
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -47,10 +47,12 @@ class Scenario:
         names: Mapping[int, str],
         mode_2d: bool = False,
         digest: str = "",
+        view: Callable[[Scene], Any] | None = None,
     ) -> None:
         self.filename = filename
         self.digest = digest
         """What a saved scene remembers of the program."""
+        self._view = view
         self._condition: tuple[Mapping[int, float], Mapping[int, int]] = ({}, {})
         self.workspace = workspace or Workspace(everywhere)
         self.egoObject = ego
@@ -240,6 +242,9 @@ class Scenario:
         annotate(cause, found.diagnostic(), f"{found} (attempt {error.attempt} at scene {error.k})")
         return cause
 
+    def resetExternalSampler(self) -> None:
+        """Nothing to do: there are no external samplers."""
+
     # Scenes as data
 
     def sceneToBytes(self, scene: Scene, allowPickle: bool = False) -> bytes:
@@ -334,6 +339,7 @@ class Scenario:
             self._names,
             self.digest,
             self.sceneToBytes,
+            self._view,
         )
 
 

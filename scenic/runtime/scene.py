@@ -62,6 +62,7 @@ class Scene:
         names: Mapping[int, str],
         digest: str,
         keep: Callable[["Scene"], bytes],
+        view: Callable[["Scene"], Any] | None = None,
     ) -> None:
         self.seed = accepted.task.seed
         self.k = accepted.task.k
@@ -70,6 +71,7 @@ class Scene:
         self.accepted = accepted
         self.digest = digest
         self._keep = keep
+        self._view = view
         self._program = program
         self._ego = ego
         self._names = names
@@ -142,6 +144,21 @@ class Scene:
             known = source.__dict__["_origin"] = Origin.of(source)
         origin: Origin = known
         return origin
+
+    def show(self, axes: bool = True) -> Any:
+        """Show the scene in a browser, as a page in which it can be turned; returns the file of the page.
+
+        ``axes`` is accepted for compatibility.
+        """
+        return None if self._view is None else self._view(self)
+
+    def show3D(self, axes: bool = True) -> Any:
+        """The same as `show`."""
+        return self.show(axes)
+
+    def show2D(self, zoom: Any = None, block: bool = True) -> Any:
+        """The same as `show`; the arguments are accepted for compatibility."""
+        return self.show()
 
     def save(self, path: str | Path) -> None:
         """Write the scene to a file, from which `Scenario.replay` takes it up again; the file is complete or absent."""

@@ -118,3 +118,15 @@ def test_exceptions_of_the_program_keep_their_type_and_tell_the_place() -> None:
     with pytest.raises(KeyError) as caught:
         scenario("x = 1\ny = {}[x]\n")
     assert "<string>:2:5" in caught.value.__notes__[0]
+
+
+def test_a_scene_is_shown_as_a_page(monkeypatch: pytest.MonkeyPatch) -> None:
+    import webbrowser
+
+    opened: list[str] = []
+    monkeypatch.setattr(webbrowser, "open", opened.append)
+    (scene,) = scenario(PROGRAM).sample(1, seed=0)
+    for show in (scene.show, scene.show2D, scene.show3D):
+        file = show()
+        assert "<html" in file.read_text().lower()
+        assert opened[-1] == file.as_uri()
