@@ -262,7 +262,7 @@ def simulate(
     ):
         for row in rows:
             found[row["k"]] = row
-            advance()
+            advance(1, 1)
     code = CLEAN
     for k in numbers:
         code = max(code, _show(found[k]))
