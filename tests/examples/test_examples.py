@@ -18,7 +18,13 @@ from tests.examples.solids import MESHES, Thing, boxes_overlap, by_name, overlap
 
 ROOT = Path(__file__).parents[2]
 EXAMPLES = ROOT / "examples"
-PROGRAMS = sorted(EXAMPLES.glob("*.scenic")) + sorted((ROOT / "benchmarks").glob("*.scenic"))
+PROGRAMS = [
+    path
+    for folder in (EXAMPLES, ROOT / "benchmarks")
+    for path in sorted(folder.glob("*.scenic"))
+    # A mesh that a program makes itself is in no file from which it could be made again.
+    if "import trimesh" not in path.read_text()
+]
 GAP = 5e-5
 """Half of the contact tolerance: objects on a surface float this high."""
 
