@@ -67,6 +67,10 @@ class Context:
             return self.objects
         return [self.sample.value(item) for item in self.objects]
 
+    def settled(self, function: Callable[..., Any]) -> Callable[..., Any]:
+        """A function of the program over the values of what is running."""
+        return function
+
     @property
     def is_symbolic(self) -> bool:
         """Whether distributions stand for values to be drawn later."""

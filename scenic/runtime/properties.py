@@ -12,7 +12,7 @@ from typing import Any
 
 from scenic.language.errors import InvalidScenarioError, ScenicValueError
 from scenic.language.spans import Span
-from scenic.runtime.context import here
+from scenic.runtime.context import current, here
 from scenic.runtime.regions.base import Region
 from scenic.runtime.shapes import Shape
 from scenic.runtime.values import (
@@ -43,6 +43,11 @@ class PropertyDefinition:
     span: Span | None = None
     is_builtin: bool = False
 
+    def compute(self, instance: Any) -> Any:
+        """The value for one instance, by the program's names as they are in what is running."""
+        context = None if self.is_builtin else current.get()
+        return (self.value if context is None else context.settled(self.value))(instance)
+
 
 @dataclass(frozen=True, slots=True)
 class Property:
@@ -63,8 +68,8 @@ class Property:
     def default(self, instance: Any) -> Any:
         """The default for one instance; additive properties give all definitions, most derived first."""
         if self.additive:
-            return tuple(definition.value(instance) for definition in self.definitions)
-        return self.definitions[0].value(instance)
+            return tuple(definition.compute(instance) for definition in self.definitions)
+        return self.definitions[0].compute(instance)
 
 
 def combine(chain: Sequence[Mapping[str, PropertyDefinition]]) -> dict[str, Property]:

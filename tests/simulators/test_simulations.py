@@ -157,6 +157,32 @@ def test_nothing_survives_a_failure() -> None:
     scenic.scenarioFromString("ego = new Object\nnew Object at (5, 5)").sample(1)
 
 
+def test_defaults_of_classes_read_the_values_of_the_scene() -> None:
+    text = """
+size = Range(3, 4)
+class C:
+    foo: size
+    width: size + 1
+behavior B():
+    take self.foo, self.width, size
+scenario Main():
+    setup:
+        ego = new Object
+    compose:
+        do Sub()
+scenario Sub():
+    setup:
+        new C at (9, 0), with behavior B
+    compose:
+        wait
+"""
+    done = DummySimulator().simulate(scene_of(text), maxSteps=2)
+    assert done is not None
+    [(foo, width, size)] = taken(done, 1)
+    assert 3 < foo == size
+    assert width == size + 1
+
+
 # Requirements
 
 

@@ -73,6 +73,11 @@ class RunContext(Context):
         """The objects of the simulation as they are now."""
         return tuple(self.run.simulation.objects)
 
+    def settled(self, function: Callable[..., Any]) -> Callable[..., Any]:
+        """A function of the program over the values of the simulation."""
+        own: Callable[..., Any] = self.run.copies.value(function)
+        return own
+
 
 class Run:
     """The running program.
