@@ -169,7 +169,7 @@ def test_batches_do_not_matter(batch):
     bodies = crowd(8, 5, lanes)
     pairs = [(i, j) for i, j in itertools.combinations(range(8), 2) if i % 4 or j % 4]
     whole = collide(bodies, pairs, lanes, exhaustive=True)
-    for start in range(0, lanes, batch):
+    for start in range(0, min(lanes, 60 * batch), batch):
         part = slice(start, min(start + batch, lanes))
         some = [body.take(np.arange(part.start, part.stop)) for body in bodies]
         found = collide(some, pairs, part.stop - part.start, exhaustive=True)

@@ -134,16 +134,16 @@ def test_a_body_around_one_part_of_another():
 
 def test_steps_agree_with_the_exact_test():
     """What cells prove is what faces and parity say."""
-    proved, count = 0, 300
+    proved, count, pairs = 0, 270, PAIRS[::2]
     zeros = np.zeros(count, dtype=np.intp)
-    for first, second in PAIRS:
+    for first, second in pairs:
         a, b = random_poses(count, 7, spread=0.8), random_poses(count, 8, spread=0.8)
         solids = Solids([SHAPES[first](), SHAPES[second]()])
         together, left = solids.prove(zeros, a, zeros + 1, b)
         exact = solids.touch(zeros, a, zeros + 1, b)
         np.testing.assert_array_equal(together[~left], exact[~left])
         proved += int((~left).sum())
-    assert proved > 0.7 * count * len(PAIRS)
+    assert proved > 0.7 * count * len(pairs)
 
 
 def test_cells_are_made_once_they_pay():
