@@ -270,7 +270,9 @@ class _CarefulLexer(Lexer):
         marker = _CONFLICT.match(text, self.line_start)
         if marker is not None:
             return self.conflict(marker)
-        if self.fields or end == len(text):
+        if end == len(text) or (
+            self.fields and (len(self.fields[-1].string.quote) > 1 or text[end] in ")]}")
+        ):
             return None
         column = measure(text[self.line_start : end])[0]
         self.columns[self.line] = column

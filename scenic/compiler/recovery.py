@@ -260,7 +260,7 @@ class Recovery:
         while start > 0 and kinds[start - 1] not in (NEWLINE, INDENT, DEDENT) and position - start < 4:
             start -= 1
         words = self.tokens.texts[start : position - 1]
-        if not words or len(words[0]) < 2 or words[1:] not in ([], ["when"]):
+        if not words or len(words) > 2 or (words[1:] and not "when".startswith(words[1])):
             return None
         return start if any(word.startswith(words[0]) for word in _CLAUSE_WORDS) else None
 

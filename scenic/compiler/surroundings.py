@@ -63,6 +63,9 @@ class Surroundings(Protocol):
     def attribute(self, node: ast.Attribute) -> Foreign | None:
         """What ``m.name`` means, where ``m`` is an imported module; ``None`` if that is not known."""
 
+    def is_missing(self, alias: ast.alias) -> bool:
+        """Whether nothing is known that an import of a name could mean."""
+
     def sets_ego(self, statement: ast.Import | ast.ImportFrom | scenic.Model) -> bool:
         """Whether an import may bring an ego along."""
 

@@ -91,6 +91,13 @@ class Imports:
             self.found(statement), alias.name, importer=self._source.filename, level=statement.level
         )
 
+    def is_missing(self, alias: ast.alias) -> bool:
+        """Whether there is no such module, or the module is not known to have such a name."""
+        statement = self._statements.get(alias)
+        if statement is None:
+            return self._project.find(alias.name, importer=self._source.filename).is_missing
+        return self.member(alias) is None
+
     def attribute(self, node: ast.Attribute) -> Exported | Found | None:
         """What ``m.name`` means, where ``m`` is a module that the program imports."""
         home = self._module(node.value)
@@ -236,9 +243,9 @@ class Imports:
             home = self._module(node.value)
             if home is None or home.is_missing or home.kind is ModuleKind.NAMESPACE:
                 continue
-            if node.attr.startswith("__") or self.attribute(node) is not None:
-                continue
             exports = self._project.exports_of(home)
+            if node.attr in exports.names or node.attr.startswith("__") or self.attribute(node) is not None:
+                continue
             if not exports.complete or self._is_guarded(node) or self._is_stored(node):
                 continue
             whole = self._source.span(node)

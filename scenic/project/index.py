@@ -111,6 +111,7 @@ class Project:
         self._entries: dict[str, _Entry] = {}
         self._opened: dict[str, Module] = {}
         self._exports: dict[str, Exports] = {}
+        self._compiled: dict[str, Exports] = {}
         self.derived: dict[object, Any] = {}
         """What others compute from the modules; emptied when any of them changes."""
 
@@ -223,7 +224,10 @@ class Project:
         if found.kind is ModuleKind.NAMESPACE:
             return _NOTHING
         if found.kind is ModuleKind.COMPILED:
-            return _compiled(found)
+            known = self._compiled.get(found.name)
+            if known is None:
+                known = self._compiled[found.name] = _compiled(found)
+            return known
         if found.is_missing:
             return _unknown(found.name, "it is not found")
         module = self.found_module(found)

@@ -74,6 +74,9 @@ class _Surroundings:
         found = self._imports.attribute(node)
         return _foreign(self._project, found) if isinstance(found, Exported) else None
 
+    def is_missing(self, alias: ast.alias) -> bool:
+        return self._imports.is_missing(alias)
+
     def sets_ego(self, statement: ast.Import | ast.ImportFrom | scenic.Model) -> bool:
         return any(self._may_set_ego(found) for found in self._imports.modules(statement))
 

@@ -15,10 +15,14 @@ class StatementActions(DefinitionActions, ExpressionActions):
 
     def _no_guards(self, body: Iterable[Any], message: str, help: str) -> None:
         """Report statements that read like guards; where they stand, they would be annotations."""
+        beginning = True
         for statement in body:
             word = _guard_word(statement)
             if word is None:
+                beginning = beginning and self._may_precede_guards(statement)
                 continue
+            if beginning and statement.value is None and "stand before" in message:
+                continue  # What stands before it is a guard that is being typed.
             if statement.value is None:
                 self._report(place_of(statement), message.format(word), help=help, code="SC132")
             else:
@@ -28,6 +32,20 @@ class StatementActions(DefinitionActions, ExpressionActions):
                     help="use `==` to compare two values",
                     code="SC122",
                 )
+
+    def _may_precede_guards(self, statement: ast.stmt) -> bool:
+        """Whether a statement is documentation, or the beginning of a guard that is being typed."""
+        match statement:
+            case ast.Expr(value=ast.Constant(value=str())):
+                return True
+            case ast.Expr(value=ast.Name(id=word)):
+                pass
+            case tree.ErrorStatement():
+                line = self._tokens.text.split("\n")[statement.lineno - 1]
+                word = line.encode()[statement.col_offset :].decode(errors="ignore").partition(":")[0].strip()
+            case _:
+                return False
+        return any(guard.startswith(word) for guard in tree.GUARDS)
 
     def no_later_guard(self, body: Iterable[ast.stmt]) -> bool:
         """Report guards among the statements of a behavior; there they would be annotations."""

@@ -70,6 +70,7 @@ NOTED: Final = frozenset(
         scenic.BehaviorDef,
         scenic.Model,
         scenic.MonitorDef,
+        scenic.ScenarioDef,
         *(cls for cls, _ in _NODE_RULES),
     }.union(declarations.NOTED, names.NOTED, placement.NOTED, support.NOTED)
 )

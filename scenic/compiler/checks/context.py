@@ -9,7 +9,7 @@ from scenic.compiler import tree as scenic
 from scenic.compiler.checks.blocks import Block, blocks, position
 from scenic.compiler.checks.classes import Classes
 from scenic.compiler.checks.places import header_span, word_span
-from scenic.compiler.scopes import Binding, BindingKind, Resolution, Scope, ScopeKind
+from scenic.compiler.scopes import PROVIDED, Binding, BindingKind, Resolution, Scope, ScopeKind
 from scenic.compiler.surroundings import Foreign, Surroundings
 from scenic.language.diagnostics import Diagnostic, Edit, Fix, Label, Severity
 from scenic.language.source import Source
@@ -217,6 +217,17 @@ class Context:
             for cls in (ast.Return, ast.Yield, ast.YieldFrom)
             for node, scope in self.nodes(cls)
             if cls is not ast.Return or node.value is not None
+        )
+
+    @cached_property
+    def unresolved(self) -> frozenset[str]:
+        """The names that are read and mean nothing that is known."""
+        return frozenset(
+            reference.node.id
+            for reference in self.resolution.references.values()
+            if reference.binding is None
+            and reference.node.id not in PROVIDED
+            and reference.node.id not in self.brought
         )
 
     @cached_property

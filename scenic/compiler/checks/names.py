@@ -11,12 +11,12 @@ from scenic.compiler.checks.arguments import kind_of
 from scenic.compiler.checks.blocks import position
 from scenic.compiler.checks.context import Context
 from scenic.compiler.checks.places import word_span
-from scenic.compiler.checks.unfinished import begun_word, text_before, unfinished
-from scenic.compiler.scopes import Binding, Reference, ScopeKind
+from scenic.compiler.checks.unfinished import alone_names, begun_word, text_before, unfinished
+from scenic.compiler.scopes import Binding, BindingKind, Reference, ScopeKind
 from scenic.language.diagnostics import Diagnostic, Label
 from scenic.language.names import CONVERSIONS, NAMES, TRACKED, NameKind
 from scenic.language.properties import CLASSES
-from scenic.language.spelling import nearest
+from scenic.language.spelling import distance, nearest
 
 __all__ = ["NOTED", "check_names", "check_reserved"]
 
@@ -55,6 +55,9 @@ def check_names(context: Context, provided: Collection[str]) -> Iterator[Diagnos
     if resolution.wildcard:
         return
     skipped: set[str] | None = None
+    alone: set[ast.Name] = set()
+    being_typed: set[str] = set()
+    importing = False
     suggestions: dict[str, str | None] = {}
     elsewhere: dict[str, Binding] | None = None
     for reference in resolution.references.values():
@@ -68,8 +71,14 @@ def check_names(context: Context, provided: Collection[str]) -> Iterator[Diagnos
             continue
         if skipped is None:
             skipped = _skipped_words(context)
+            alone = alone_names(context)
+            words = {each.id for each in alone}
+            importing = any(_is_import(word) for word in words) or _is_import_broken(context)
+            being_typed = words | _last_words(context) | _missing_imports(context)
             elsewhere = _bound_somewhere(context)
         if name in skipped:
+            continue
+        if node not in alone and (importing or any(_may_become(word, name) for word in being_typed)):
             continue
         if context.broken:
             # Its binding may be among what is broken: once is enough.
@@ -126,6 +135,47 @@ def _skipped_words(context: Context) -> set[str]:
         for line in range(span.line, span.end_line + 1):
             words.update(re.findall(r"\w+", context.source.line(line)))
     return words
+
+
+def _last_words(context: Context) -> set[str]:
+    """The last word of each line that could not be parsed: it may be the beginning of a name that the line will bind."""
+    words: set[str] = set()
+    for node, _ in context.nodes(scenic.ErrorStatement):
+        found = re.search(r"[^\W\d]\w*$", context.source.line(node.lineno).rstrip())
+        if found is not None:
+            words.add(found[0])
+    return words
+
+
+def _may_become(word: str, name: str) -> bool:
+    """Whether a word that binds nothing, where something should be bound, was meant to bind a name."""
+    return name.startswith(word) or (len(word) > 2 and distance(word, name, limit=2) <= 2)
+
+
+def _is_import(word: str) -> bool:
+    """Whether a word is the beginning of an import."""
+    return any(keyword.startswith(word) for keyword in ("import", "from"))
+
+
+def _is_import_broken(context: Context) -> bool:
+    """Whether an import could not be parsed, which may bind anything."""
+    lines = (context.source.line(node.lineno).split() for node, _ in context.nodes(scenic.ErrorStatement))
+    return any(words and words[0] in ("import", "from") for words in lines)
+
+
+def _missing_imports(context: Context) -> set[str]:
+    """Names that are imported from where they are not, and not used: they may be the beginnings of others."""
+    return {
+        binding.name
+        for binding in context.resolution.module.bindings.values()
+        if binding.kinds <= {BindingKind.MODULE, BindingKind.IMPORTED}
+        and binding not in context.loads
+        and all(
+            isinstance(site, ast.alias)
+            and (context.surroundings is None or context.surroundings.is_missing(site))
+            for site in binding.sites
+        )
+    }
 
 
 def _bound_somewhere(context: Context) -> dict[str, Binding]:

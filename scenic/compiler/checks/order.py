@@ -10,6 +10,7 @@ from scenic.compiler import tree as scenic
 from scenic.compiler.checks.blocks import in_compose, position
 from scenic.compiler.checks.context import Context
 from scenic.compiler.checks.places import word_span
+from scenic.compiler.checks.unfinished import alone_names
 from scenic.compiler.scopes import PROVIDED, Scope, ScopeKind
 from scenic.language.diagnostics import Diagnostic, Label
 from scenic.language.operators import EGO, OPERATORS
@@ -86,8 +87,8 @@ def _names(context: Context, starts: list[tuple[int, int]]) -> Iterator[Diagnost
 
 def _ego(context: Context, starts: list[tuple[int, int]]) -> Iterator[Diagnostic]:
     """SC209: a use of the ego, said or implied, before the first assignment to it."""
-    if context.resolution.reflective:
-        return
+    if context.resolution.reflective or any("ego".startswith(name.id) for name in alone_names(context)):
+        return  # It may be set in ways that the text does not show, or be about to be.
     brings = (lambda _: True) if context.surroundings is None else context.surroundings.sets_ego
     if any(brings(node) for node, _ in context.nodes(scenic.Model)):
         return

@@ -168,8 +168,9 @@ def _cycle(node: scenic.New, properties: Mapping[str, Property], context: Contex
             return _needs(providers[name]) if providers[name] is not None else ()
         return properties[name].needs if name in properties else ()
 
-    # The defaults of the built-in classes need one another in no circle.
-    own = () if context.classes.is_built_in(properties) else properties
+    # The defaults of the built-in classes need one another in no circle; those of other modules are checked there.
+    elsewhere = context.classes.is_built_in(properties) or context.foreign(node.cls) is not None
+    own = () if elsewhere else properties
     cycle = _find_cycle([*(name for name in providers if needed(name)), *own], needed)
     if cycle is None:
         return

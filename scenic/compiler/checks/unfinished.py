@@ -14,7 +14,7 @@ from scenic.language.operators import OPERATORS
 from scenic.language.specifiers import SPECIFIERS
 from scenic.language.statements import STATEMENTS
 
-__all__ = ["begun_word", "text_before", "unfinished"]
+__all__ = ["alone_names", "begun_word", "text_before", "unfinished"]
 
 _ENDS: Final = ("", ",", ")", "]", "}", ";", ":", "#")
 """What may follow where something is missing: the end of the line, or one of these."""
@@ -71,16 +71,16 @@ def unfinished(context: Context, node: ast.Name) -> Diagnostic | None:
     if rest[:1] not in _ENDS:
         return None
     form = _following().get((_word_before(context, node), node.id))
-    if form is None and not text_before(context, node) and node in _alone(context):
+    if form is None and not text_before(context, node) and node in alone_names(context):
         form = _beginnings().get(node.id)
     if form is None:
         return None
     return context.error("SC110", f"something is missing after `{node.id}`", node, f"the form is `{form}`")
 
 
-def _alone(context: Context) -> set[ast.expr]:
-    """The expressions that are whole statements."""
-    return {node.value for node, _ in context.nodes(ast.Expr)}
+def alone_names(context: Context) -> set[ast.Name]:
+    """The names that are whole statements, as all are that have just begun to be typed."""
+    return {node.value for node, _ in context.nodes(ast.Expr) if isinstance(node.value, ast.Name)}
 
 
 def begun_word(context: Context, node: ast.Name) -> str | None:

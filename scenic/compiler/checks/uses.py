@@ -15,6 +15,7 @@ from scenic.compiler.scopes import Binding, BindingKind, Scope, ScopeKind
 from scenic.language.diagnostics import Diagnostic, Edit, Fix, Label
 from scenic.language.names import NAMES, NameKind
 from scenic.language.spans import Span
+from scenic.language.spelling import is_slip
 
 __all__ = ["check_uses"]
 
@@ -73,6 +74,8 @@ def _unused(binding: Binding, scope: Scope, context: Context) -> Iterator[Diagno
     # What is assigned to the word of a guard was meant to be compared, as the parser says.
     if binding.name.startswith("_") or binding.name in scenic.GUARDS:
         return
+    if any(is_slip(name, binding.name) for name in context.unresolved):
+        return  # It is that name that is wrong.
     if binding.kinds <= {BindingKind.MODULE, BindingKind.IMPORTED}:
         yield from _unused_import(binding, scope, context)
     elif (

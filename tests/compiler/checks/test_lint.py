@@ -130,6 +130,31 @@ def test_errors_of_other_kinds(text: str, expected: list[tuple[str, int, int]]) 
     assert [(item.code, item.span.line, item.span.column) for item in found if item.span] == expected
 
 
+@pytest.mark.parametrize(
+    ("text", "line"),
+    [
+        ("leng\nego = new Object with width length\n", 1),
+        ("impo\nego = new Object with width math.pi\n", 1),
+        ("import \nego = new Object with width math.pi\n", 1),
+        ("from math import s\nego = new Object with width sin(1)\n", 0),
+        ("eg\nnew Object left of ego\n", 1),
+        ("def are\nego = new Object with width area(1)\n", 1),
+        (
+            "behavior B():\n    precon\n    invariant: self.x > 1\n    wait\nego = new Object with behavior B\n",
+            2,
+        ),
+        (
+            "behavior B():\n    precondition: \n    invariant: True\n    wait\nego = new Object with behavior B\n",
+            2,
+        ),
+        ("ego = new Object\nx = f'{ego.pos\nfor i in [1]:\n    y = f'{i}'\n", 2),
+    ],
+)
+def test_what_is_half_typed_accuses_no_other_line(text: str, line: int) -> None:
+    found = [item for item in check_text(text, filename="f") if item.severity is Severity.ERROR]
+    assert {item.span.line for item in found if item.span} <= {line}
+
+
 def test_a_monitor_is_not_required_as_a_condition() -> None:
     text = "monitor M():\n    wait\nrequire M()\nego = new Object\n"
     [found] = [item for item in check_text(text, filename="f") if item.code == "SC114"]
