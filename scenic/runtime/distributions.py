@@ -6,7 +6,7 @@ Names are the language's. Each gives a random value while a scenario is compiled
 import itertools
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
+from typing import Any, Final
 
 from scenic.graph.construction import apply as apply_node
 from scenic.graph.kinds import Kind
@@ -25,6 +25,9 @@ from scenic.runtime.values import (
     is_random,
     to_scalar,
 )
+
+_MOST_EXACT: Final = 2**61
+"""Whole numbers of smaller size than this fit the integers of columns."""
 
 
 def draw(operation: str, *operands: Any, payload: Any = None) -> Any:
@@ -84,7 +87,7 @@ def TruncatedNormal(mean: Any, stdDev: Any, low: Any, high: Any) -> Any:
 def DiscreteRange(low: Any, high: Any, weights: Sequence[float] | None = None) -> Any:
     """An integer between two ends (included), uniform, or with a weight for each."""
     if weights is None:
-        return draw("discrete range", to_scalar(low, "`DiscreteRange`"), to_scalar(high, "`DiscreteRange`"))
+        return draw("discrete range", _end(low), _end(high))
     ends = []
     for end in (low, high):
         if is_random(end) or not is_number(end) or int(end) != end:
@@ -104,6 +107,15 @@ def DiscreteRange(low: Any, high: Any, weights: Sequence[float] | None = None) -
     if not any(fixed):
         raise _nothing("DiscreteRange")
     return draw("weighted integer", payload=(ends[0], _cumulative(fixed)))
+
+
+def _end(value: Any) -> Any:
+    """An end of a range of integers. Whole numbers stay whole: above 2**53 some of them are no floats."""
+    if isinstance(value, int) and abs(value) < _MOST_EXACT:
+        return int(value)
+    if isinstance(value, Random) and value.node.kind is Kind.INTEGER:
+        return value
+    return to_scalar(value, "`DiscreteRange`")
 
 
 def Uniform(*options: Any) -> Any:

@@ -200,6 +200,12 @@ def frequencies(values: list[object], expected: dict[object, float]) -> float:
         ("x = Discrete({1: 3, 2: 0, 3: 1})", {1: 3 / 4, 3: 1 / 4}),
         ("x = DiscreteRange(2, 4, (1, 0, 3))", {2: 1 / 4, 4: 3 / 4}),
         ("x = DiscreteRange(-2.5, 1.5)", {-2: 1 / 4, -1: 1 / 4, 0: 1 / 4, 1: 1 / 4}),
+        ("x = DiscreteRange(2**53, 2**53 + 2)", {2**53: 1 / 3, 2**53 + 1: 1 / 3, 2**53 + 2: 1 / 3}),
+        ("x = DiscreteRange(-(2**60) - 1, -(2**60))", {-(2**60) - 1: 1 / 2, -(2**60): 1 / 2}),
+        (
+            "n = DiscreteRange(2**53, 2**53 + 1)\nx = DiscreteRange(n, n + 1) - 2**53",
+            {0: 1 / 4, 1: 1 / 2, 2: 1 / 4},
+        ),
         ("x = Uniform(1, Uniform(2, 3))", {1: 1 / 2, 2: 1 / 4, 3: 1 / 4}),
         ("x = filter(lambda v: v > 1, Uniform([1, 2, 3], [4]))[0]", {2: 1 / 2, 4: 1 / 2}),
     ],
