@@ -119,10 +119,17 @@ class Engine:
     Args:
         plan: what to sample.
         conditioned: the draws of lanes, with those fixed that are to be the same in all scenes.
+        grouped: whether alike nodes are evaluated together; changes speed, never a scene.
 
     """
 
-    def __init__(self, plan: Plan, conditioned: Callable[[Counter], Source] = lambda source: source) -> None:
+    def __init__(
+        self,
+        plan: Plan,
+        conditioned: Callable[[Counter], Source] = lambda source: source,
+        *,
+        grouped: bool = True,
+    ) -> None:
         self.plan = plan
         self._conditioned = conditioned
         self.candidates = 0
@@ -130,7 +137,7 @@ class Engine:
         self.passed = 0
         """Candidates that met every requirement."""
         self._pace = Pace(max(64, min(DEFAULT_LANES, BATCH_BYTES // max(1, plan.lane_bytes))))
-        self._scheduler = Scheduler(plan.graph)
+        self._scheduler = Scheduler(plan.graph, grouped=grouped)
         self._single = Scheduler(plan.graph, grouped=False)
         self._stages = Stages(plan.checks, self._scheduler)
         self._soft = [index for index, check in enumerate(plan.checks) if check.probability < 1]
