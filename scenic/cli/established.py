@@ -82,7 +82,9 @@ def translated(arguments: Sequence[str], commands: Sequence[str]) -> list[str] |
             command = _SHOWS[item]
         elif item in _VALUES and rest:
             given, ours = rest.pop(0), _VALUES[item]
-            if ours is not None:
+            if item == "--max-sims-per-scene" and {"-S", "--simulate"} & set(arguments):
+                options += ["--tries", given]
+            elif ours is not None:
                 options += [ours, given.lstrip("-") if item == "--gather-stats" else given]
         elif item in GLOBAL:
             continue
@@ -97,7 +99,8 @@ def translated(arguments: Sequence[str], commands: Sequence[str]) -> list[str] |
     if simulate:
         if "simulate" not in commands:
             return None
-        return ["simulate", *files, *options, *(() if steps is None else ("--steps", steps))]
+        options = [item for item in options if item != "--no-prune"]  # simulations know no such option
+        return ["simulate", *files, *options, *(() if steps is None else ("--time", steps))]
     return ["sample", *files, *options]
 
 
