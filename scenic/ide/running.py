@@ -8,7 +8,7 @@ import time
 from collections.abc import Callable
 from typing import Final
 
-__all__ = ["RunError", "sample_page"]
+__all__ = ["RunError", "sample_page", "simulation_page"]
 
 TIME_LIMIT: Final = 20.0
 """Seconds in which scenes must be found."""
@@ -36,12 +36,37 @@ def sample_page(
     ``text`` is the program as it stands in the editor, ``filename`` where it belongs: modules are found beside it.
     ``go_on`` is called now and then, and may raise to give up. Raises `RunError` if there is no scene to show.
     """
+    command = ["preview", "--filename", filename, "--seed", str(seed), "-n", str(count)]
+    command += ["--time-limit", str(TIME_LIMIT), *_chosen(scenario)]
+    return _run(command, text, os.path.dirname(filename), None, go_on)
+
+
+def simulation_page(
+    filename: str,
+    *,
+    scenario: str | None = None,
+    seed: int = 0,
+    steps: int = 100,
+    go_on: Callable[[], None] = lambda: None,
+) -> str:
+    """A page that plays a simulation of the program in a file. **Runs the program**, as it stands on the disk.
+
+    The rest is as for `sample_page`.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        view = os.path.join(folder, "simulation.html")
+        command = ["simulate", filename, "--view", view, "--seed", str(seed), "--time", str(steps)]
+        return _run([*command, *_chosen(scenario)], "", os.path.dirname(filename), view, go_on)
+
+
+def _chosen(scenario: str | None) -> list[str]:
+    return [] if scenario is None else ["--scenario", scenario]
+
+
+def _run(arguments: list[str], text: str, folder: str, view: str | None, go_on: Callable[[], None]) -> str:
+    """The page that a command writes, to standard output or to the file ``view``."""
     # -P: a module in the present folder must not take the place of one of ours.
-    command = [sys.executable, "-P", "-m", "scenic.cli.main", "preview", "--filename", filename]
-    command += ["--seed", str(seed), "-n", str(count), "--time-limit", str(TIME_LIMIT)]
-    if scenario is not None:
-        command += ["--scenario", scenario]
-    folder = os.path.dirname(filename)
+    command = [sys.executable, "-P", "-m", "scenic.cli.main", *arguments]
     with (
         tempfile.TemporaryFile() as given,
         tempfile.TemporaryFile() as page,
@@ -63,11 +88,13 @@ def sample_page(
             if process.poll() is None:
                 process.kill()
                 process.wait()
-        if code != 0:
+        if code == 0 and view is not None and os.path.exists(view):
+            with open(view, "rb") as stream:
+                return stream.read(_LARGEST).decode()
+        if code != 0 or view is not None:
             said.seek(0)
-            raise RunError(
-                said.read(_LARGEST).decode(errors="replace").strip() or f"the program ended with code {code}"
-            )
+            reason = said.read(_LARGEST).decode(errors="replace").strip()
+            raise RunError(reason or f"the program ended with code {code}")
         page.seek(0)
         return page.read(_LARGEST).decode()
 

@@ -6,13 +6,16 @@ from scenic.ide.semantic_tokens import MODIFIERS, TYPES
 from scenic.lsp.convert import Json
 from scenic.lsp.session import Client
 
-__all__ = ["FIX_ALL", "SAMPLE", "WATCHED", "capabilities", "registrations"]
+__all__ = ["FIX_ALL", "SAMPLE", "SIMULATE", "WATCHED", "capabilities", "registrations"]
 
 FIX_ALL: Final = "source.fixAll.scenic"
 """The kind of the action that makes all repairs of a document, which editors can make when they save it."""
 
 SAMPLE: Final = "scenic.sample"
 """The command that runs a program; its arguments are the document's address and maybe an object with options."""
+
+SIMULATE: Final = "scenic.simulate"
+"""The command that simulates a program, with the same arguments; it takes the program as it was saved."""
 
 WATCHED: Final = ("**/*.scenic", "**/*.sc", "**/*.py", "**/pyproject.toml")
 """The files whose changes on the disk matter."""
@@ -72,7 +75,7 @@ def capabilities(client: Client) -> Json:
             "range": True,
         },
         "inlayHintProvider": {"resolveProvider": True},
-        "executeCommandProvider": {"commands": [SAMPLE], "workDoneProgress": True},
+        "executeCommandProvider": {"commands": [SAMPLE, SIMULATE], "workDoneProgress": True},
         "diagnosticProvider": {
             "identifier": "scenic",
             "interFileDependencies": True,

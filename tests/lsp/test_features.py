@@ -121,7 +121,7 @@ def test_what_is_offered(project: Project) -> None:
         "change": 2,
         "save": {"includeText": False},
     }
-    assert project.offered["executeCommandProvider"]["commands"] == ["scenic.sample"]
+    assert project.offered["executeCommandProvider"]["commands"] == ["scenic.sample", "scenic.simulate"]
 
 
 # Information
@@ -497,10 +497,16 @@ def test_colors(project: Project) -> None:
 
 
 def test_lenses(project: Project) -> None:
-    (lens,) = project.ask("codeLens")
-    resolved = project.client.request("codeLens/resolve", lens)
-    assert resolved["command"]["title"] == "Sample a scene of Main"
-    assert resolved["command"]["arguments"] == [project.main, {"scenario": "Main"}]
+    lenses = project.ask("codeLens")
+    for lens, title, command in zip(
+        lenses,
+        ("Sample a scene of Main", "Simulate Main"),
+        ("scenic.sample", "scenic.simulate"),
+        strict=True,
+    ):
+        arguments = [project.main, {"scenario": "Main"}]
+        assert lens["command"] == {"title": title, "command": command, "arguments": arguments}
+        assert project.client.request("codeLens/resolve", lens)["command"] == lens["command"]
 
 
 # Formatting
@@ -556,6 +562,13 @@ def test_sampling(tmp_path: Path) -> None:
     trusting.send("$/cancelRequest", {"id": number})
     with pytest.raises(Refused, match="cancelled"):
         trusting.answer(number)
+    moving = "behavior B():\n    wait\nego = new Object with behavior B\n"
+    trusting.change(uri, moving)
+    simulate = {**command, "command": "scenic.simulate"}
+    with pytest.raises(Refused, match="save"):
+        trusting.request("workspace/executeCommand", simulate)
+    (tmp_path / "room.scenic").write_text(moving)
+    assert trusting.request("workspace/executeCommand", simulate).lower().startswith("<!doctype html>")
     assert trusting.leave() == 0
     trusting.end()
 

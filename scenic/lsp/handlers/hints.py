@@ -7,7 +7,7 @@ from scenic.ide.inlay_hints import HintKind, hints
 from scenic.ide.lenses import lenses
 from scenic.ide.links import links
 from scenic.lsp import reading
-from scenic.lsp.capabilities import SAMPLE
+from scenic.lsp.capabilities import SAMPLE, SIMULATE
 from scenic.lsp.convert import Json
 from scenic.lsp.session import Session
 from scenic.lsp.uris import to_uri
@@ -50,14 +50,13 @@ def _resolve_hint(_session: Session, params: Any) -> Json:
 
 def _lenses(session: Session, params: Any) -> Json:
     document = session.document(reading.uri_of(params))
-    return [
-        {
-            "range": document.lines.to_range(lens.span),
-            "command": _command(document.uri, lens.scenario),
-            "data": {"uri": document.uri, "scenario": lens.scenario},
-        }
-        for lens in lenses(document.snapshot)
-    ]
+    found = []
+    for lens in lenses(document.snapshot):
+        for simulates in (False, True) if lens.simulates else (False,):
+            data = {"uri": document.uri, "scenario": lens.scenario, "simulates": simulates}
+            command = _command(document.uri, lens.scenario, simulates=simulates)
+            found.append({"range": document.lines.to_range(lens.span), "command": command, "data": data})
+    return found
 
 
 def _resolve_lens(_session: Session, params: Any) -> Json:
@@ -65,13 +64,17 @@ def _resolve_lens(_session: Session, params: Any) -> Json:
     if not isinstance(uri, str):
         return params
     scenario = reading.lookup(params, "data", "scenario")
-    return {**params, "command": _command(uri, scenario if isinstance(scenario, str) else None)}
+    simulates = reading.flag(params, "data", "simulates")
+    command = _command(uri, scenario if isinstance(scenario, str) else None, simulates=simulates)
+    return {**params, "command": command}
 
 
-def _command(uri: str, scenario: str | None) -> Json:
-    title = "Sample a scene" if scenario is None else f"Sample a scene of {scenario}"
+def _command(uri: str, scenario: str | None, *, simulates: bool) -> Json:
+    title = "Simulate" if simulates else "Sample a scene"
+    if scenario is not None:
+        title += f" {scenario}" if simulates else f" of {scenario}"
     options = {} if scenario is None else {"scenario": scenario}
-    return {"title": title, "command": SAMPLE, "arguments": [uri, options]}
+    return {"title": title, "command": SIMULATE if simulates else SAMPLE, "arguments": [uri, options]}
 
 
 def _links(session: Session, params: Any) -> Json:

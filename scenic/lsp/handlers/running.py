@@ -4,9 +4,11 @@ import threading
 from collections.abc import Callable
 from typing import Any, Final
 
-from scenic.ide.running import RunError, sample_page
+from scenic.ide.running import RunError, sample_page, simulation_page
+from scenic.language.errors import ScenicError
+from scenic.language.source import read_source
 from scenic.lsp import reading
-from scenic.lsp.capabilities import SAMPLE
+from scenic.lsp.capabilities import SAMPLE, SIMULATE
 from scenic.lsp.convert import Json
 from scenic.lsp.documents import Document
 from scenic.lsp.errors import ErrorCode, ProtocolError
@@ -25,31 +27,44 @@ _REFUSED: Final = (
 
 def _execute(session: Session, params: Any) -> Deferred:
     command = reading.text(params, "command")
-    if command != SAMPLE:
+    if command not in (SAMPLE, SIMULATE):
         raise ProtocolError(ErrorCode.INVALID_PARAMS, f"there is no command {command}")
     first = reading.lookup(params, "arguments", 0)
     uri = first if isinstance(first, str) else reading.text(first, "uri")
     options = reading.lookup(params, "arguments", 1)
     document = session.document(uri)
-    progress = Progress(session, reading.lookup(params, "workDoneToken"), "Sampling a scene")
+    simulates = command == SIMULATE
+    if simulates and not _is_saved(document):
+        raise ProtocolError(ErrorCode.REQUEST_FAILED, "save the program first: its file is what is simulated")
+    title = "Simulating" if simulates else "Sampling a scene"
+    progress = Progress(session, reading.lookup(params, "workDoneToken"), title)
     allowed = _permission(session, document)
 
     def work(go_on: Callable[[], None]) -> Json:
         allowed(go_on)
-        scenario, seed = reading.lookup(options, "scenario"), reading.lookup(options, "seed")
+        name, seed = reading.lookup(options, "scenario"), reading.lookup(options, "seed")
+        scenario = name if isinstance(name, str) else None
+        seed = seed if isinstance(seed, int) else 0
+        snapshot = document.snapshot
         with progress:
             try:
+                if simulates:
+                    return simulation_page(snapshot.filename, scenario=scenario, seed=seed, go_on=go_on)
                 return sample_page(
-                    document.snapshot.text,
-                    document.snapshot.filename,
-                    scenario=scenario if isinstance(scenario, str) else None,
-                    seed=seed if isinstance(seed, int) else 0,
-                    go_on=go_on,
+                    snapshot.text, snapshot.filename, scenario=scenario, seed=seed, go_on=go_on
                 )
             except RunError as error:
                 raise ProtocolError(ErrorCode.REQUEST_FAILED, str(error)) from None
 
     return Deferred(work, own_thread=True)
+
+
+def _is_saved(document: Document) -> bool:
+    """Whether the file of a document holds its present text."""
+    try:
+        return read_source(document.snapshot.filename).text == document.snapshot.text
+    except ScenicError:
+        return False
 
 
 def _permission(session: Session, document: Document) -> Callable[[Callable[[], None]], None]:
