@@ -86,7 +86,7 @@ def scenarioFromFile(
     Parameters that the program does not use are accepted, and appear among the parameters of its scenes.
     """
     source = read_source(Path(path))
-    return _scenario(source.text, str(path), params or {}, model, scenario, mode2D)
+    return _scenario(source.text, str(path), params or {}, model, scenario, mode2D, prune=_pruning_wanted())
 
 
 def scenarioFromString(
@@ -99,7 +99,12 @@ def scenarioFromString(
     mode2D: bool = False,
 ) -> Scenario:
     """The scenario of a program given as text."""
-    return _scenario(text, filename, params or {}, model, scenario, mode2D)
+    return _scenario(text, filename, params or {}, model, scenario, mode2D, prune=_pruning_wanted())
+
+
+def _pruning_wanted() -> bool:
+    """Scripts switch pruning off by ``scenic.syntax.translator.usePruning = False``."""
+    return bool(getattr(sys.modules.get("scenic.syntax.translator"), "usePruning", True))
 
 
 def deep_check(path: str | Path) -> tuple[Diagnostic, ...]:

@@ -61,3 +61,12 @@ def test_the_version_is_that_of_the_distribution() -> None:
     from importlib.metadata import version
 
     assert scenic.__version__ == version("scenic-lang")
+
+
+def test_pruning_can_be_switched_off_as_before(monkeypatch: pytest.MonkeyPatch) -> None:
+    import scenic.syntax.translator
+
+    text = "x = Range(0, 1)\nrequire x > 0.9\nparam x = x"
+    assert not scenic.scenarioFromString(text).domain.is_whole
+    monkeypatch.setattr(scenic.syntax.translator, "usePruning", False, raising=False)
+    assert scenic.scenarioFromString(text).domain.is_whole
