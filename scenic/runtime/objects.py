@@ -133,9 +133,13 @@ class Point:
         """The position."""
         return self.position
 
-    def canSee(self, other: Any, occludingObjects: Any = ()) -> Any:
-        """Whether it sees a vector, a point or an object past some objects."""
-        return sees(self, other, occludingObjects)
+    def canSee(self, other: Any, occludingObjects: Any = (), *, certain: bool = False) -> Any:
+        """Whether it sees a vector, a point or an object past some objects.
+
+        Rays may miss what shows between them. With ``certain`` they are not used: an object counts as seen if that is
+        proved, however little of it shows.
+        """
+        return sees(self, other, occludingObjects, certain=certain)
 
     @property
     def visibleRegion(self) -> Any:

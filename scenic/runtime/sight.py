@@ -18,6 +18,7 @@ from scenic.runtime.context import here
 from scenic.runtime.geometry.visibility.bodies import sees_bodies
 from scenic.runtime.geometry.visibility.obstacles import Occluder
 from scenic.runtime.geometry.visibility.points import sees_points
+from scenic.runtime.geometry.visibility.proving import Proof, prove
 from scenic.runtime.geometry.visibility.views import Views
 from scenic.runtime.regions.base import body_of, body_operands
 from scenic.runtime.values import (
@@ -36,18 +37,19 @@ VIEW_OPERANDS: Final = 9
 """How many values describe an observer."""
 
 
-def sees(observer: Any, target: Any, occluders: Iterable[Any]) -> Any:
+def sees(observer: Any, target: Any, occluders: Iterable[Any], *, certain: bool = False) -> Any:
     """Whether an observer sees a vector, a point or an object past others: true or false, or a random truth value.
 
-    The observer and the target hide nothing, even if they are among the occluders.
+    The observer and the target hide nothing, even if they are among the occluders. With ``certain``, no rays are sampled:
+    an object is seen if that is proved by dividing the directions in which it lies.
     """
     everything = tuple(occluders)
     return per_option(
-        observer, lambda viewer: per_option(target, lambda thing: _sees(viewer, thing, everything))
+        observer, lambda viewer: per_option(target, lambda thing: _sees(viewer, thing, everything, certain))
     )
 
 
-def _sees(observer: Any, target: Any, occluders: Sequence[Any]) -> Any:
+def _sees(observer: Any, target: Any, occluders: Sequence[Any], certain: bool) -> Any:
     operands = list(view_operands(observer))
     is_object = is_body(target)
     operands += body_operands(target) if is_object else [to_vector(target, "`can see`")]
@@ -56,7 +58,7 @@ def _sees(observer: Any, target: Any, occluders: Sequence[Any]) -> Any:
             hides = thing.occluding
             if isinstance(hides, Random) or hides:
                 operands += [*body_operands(thing), hides]
-    return apply(SEES, *operands, payload=is_object)
+    return apply(SEES, *operands, payload=(is_object, certain))
 
 
 def is_body(value: Any) -> bool:
@@ -142,13 +144,16 @@ def _stacked(first: Column, second: Column) -> Column:
 
 def _seen(call: Call, *columns: Column) -> Column:
     views, rest = views_of(columns[:VIEW_OPERANDS]), columns[VIEW_OPERANDS:]
-    width = 4 if call.payload else 1
+    is_object, certain = call.payload
+    width = 4 if is_object else 1
     occluders = [
         Occluder(body_of(*rest[at : at + 4]), np.asarray(rest[at + 4], dtype=np.bool_))
         for at in range(width, len(rest), 5)
     ]
     lanes = max(len(column) for column in columns)
-    if call.payload:
+    if is_object and certain:
+        return np.asarray(prove(views, body_of(*rest[:4]), occluders, lanes) == Proof.SEEN)
+    if is_object:
         return sees_bodies(views, body_of(*rest[:4]), occluders, lanes)
     return sees_points(views, rest[0], occluders, lanes)
 

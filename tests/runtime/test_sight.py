@@ -184,6 +184,18 @@ def test_objects_answer_what_they_see() -> None:
     assert scene.params == {"alone": True, "hidden": False, "point": False}
 
 
+def test_certain_answers_find_what_is_between_rays() -> None:
+    text = (
+        "ego = new Object with viewRayCount (1800, 900), with width 0.1, with length 0.1\n"
+        "left = new Object at (-2.0007, 5, 0), with width 4, with length 0.1, with height 4\n"
+        "right = new Object at (2.0007, 5, 0), with width 4, with length 0.1, with height 4\n"
+        "box = new Object at (Range(0.79, 0.81), 10, 0), with width 2\n"
+        "param rays = ego.canSee(box, [left, right]), proved = ego.canSee(box, [left, right], certain=True)\n"
+    )
+    for scene in scenic.scenarioFromString(text).sample(3, seed=1):
+        assert scene.params == {"rays": False, "proved": True}
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     [
