@@ -271,6 +271,8 @@ def serve() -> int:
     """Serve one client over standard input and output until it says to exit, or goes away; returns the exit code."""
     # What is kept of documents is large and lives long: looking for garbage in it more often finds nothing.
     gc.set_threshold(_GARBAGE, 5, 5)
+    # A request does not wait long for a check that runs beside it.
+    sys.setswitchinterval(0.001)
     with os.fdopen(os.dup(sys.stdout.fileno()), "wb") as output, redirect_stdout(sys.stderr):
         # Whatever else is printed must not get between the messages.
         code = Server(sys.stdin.buffer, output).run()
