@@ -17,6 +17,7 @@ from scenic.compiler.check import check_text
 from scenic.compiler.parser import ParseResult, parse
 from scenic.language.diagnostics import Diagnostic, Edit, Fix
 from scenic.language.spans import Span
+from scenic.lsp.convert import Lines
 
 PROGRAM = """\
 first = 1
@@ -177,7 +178,7 @@ def test_wrong_columns_are_noticed(monkeypatch: pytest.MonkeyPatch):
     right = tools.to_diagnostic
     # As if each character took one unit.
     monkeypatch.setattr(
-        tools, "to_diagnostic", lambda item, source, uri, _: right(item, source, uri, "utf-32")
+        tools, "to_diagnostic", lambda item, lines, uri: right(item, Lines(lines.source, "utf-32"), uri)
     )
     with pytest.raises(Violation, match="comes back from utf-"):
         tools.places_survive_conversion(Case(WRONG, thorough=True))
