@@ -8,10 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scenic.graph.batch import Batch
+from scenic.graph.kinds import Column, Kind
 from scenic.graph.node import Node
 from scenic.graph.operation import FAULT, OK, REJECTED
 from scenic.language.spans import Span
 from scenic.runtime.geometry.collision import Body, Collider, collide
+from scenic.runtime.geometry.crowd import Crowd
 from scenic.runtime.regions.base import body_of
 
 Mask = NDArray[np.bool_]
@@ -152,13 +154,44 @@ class ObjectNodes:
         return replace(
             body,
             allow=batch.column(self.allow_collisions),
-            is_fixed=all(node.is_constant for node in self.all),
+            is_fixed=self.is_fixed,
         )
+
+    @property
+    def is_fixed(self) -> bool:
+        """Whether the object is the same in every scene."""
+        return all(node.is_constant for node in self.all)
+
+    @property
+    def has_one_shape(self) -> bool:
+        """Whether its shape is the same in every scene, and whether it may collide a plain truth value."""
+        return self.shape.is_constant and self.allow_collisions.kind is Kind.BOOLEAN
 
     @property
     def all(self) -> tuple[Node, ...]:
         """Every node, in the order of `body_operands`, then whether collisions are allowed."""
         return self.position, self.orientation, self.size, self.shape, self.allow_collisions
+
+
+def _crowd(batch: Batch, objects: Sequence[ObjectNodes]) -> Crowd:
+    """Objects of fixed shapes as stacked columns, without a body for each."""
+    count = len(objects)
+    number = {
+        mesh: index for index, mesh in enumerate(dict.fromkeys(item.shape.value.mesh for item in objects))
+    }
+    position, orientation, size, allow = (
+        _rows(batch.stack([getattr(item, name) for item in objects]), count)
+        for name in ("position", "orientation", "size", "allow_collisions")
+    )
+    meshes = np.array([number[item.shape.value.mesh] for item in objects], dtype=np.intp)
+    return Crowd.stacked(count, tuple(number), position, orientation, size, meshes, allow)
+
+
+def _rows(columns: Column, count: int) -> Column:
+    """Columns (members or 1, lanes or 1, ...) as rows one member after the other; what is the same everywhere as one."""
+    if columns.shape[0] == 1 and columns.shape[1] > 1:
+        columns = np.broadcast_to(columns, (count, *columns.shape[1:]))
+    return columns.reshape(-1, *columns.shape[2:])
 
 
 @dataclass(slots=True)
@@ -181,10 +214,15 @@ class CollisionCheck:
         return [node for item in self.objects for node in item.all]
 
     def test(self, batch: Batch) -> Verdict:
-        bodies = [item.body(batch) for item in self.objects]
         if self._collider is None:
-            self._collider = Collider(bodies, self.pairs)
-        return Verdict(self._collider.test(bodies, len(batch)).free)
+            self._collider = Collider([item.body(batch) for item in self.objects], self.pairs)
+        moving = [item for item in self.objects if not item.is_fixed]
+        cast: Sequence[Body] | Crowd
+        if moving and all(item.has_one_shape for item in moving):
+            cast = _crowd(batch, moving)
+        else:
+            cast = [item.body(batch) for item in self.objects]
+        return Verdict(self._collider.test(cast, len(batch)).free)
 
     def parts(self, batch: Batch) -> Sequence[Part]:
         bodies = [item.body(batch) for item in self.objects]
