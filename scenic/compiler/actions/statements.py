@@ -42,7 +42,8 @@ class StatementActions(DefinitionActions, ExpressionActions):
                 pass
             case tree.ErrorStatement():
                 line = self._tokens.text.split("\n")[statement.lineno - 1]
-                word = line.encode()[statement.col_offset :].decode(errors="ignore").partition(":")[0].strip()
+                written = line.encode("utf-8", "surrogatepass")[statement.col_offset :].decode(errors="ignore")
+                word = written.partition(":")[0].strip()
             case _:
                 return False
         return any(guard.startswith(word) for guard in tree.GUARDS)

@@ -65,12 +65,12 @@ class Conditions:
 
     def condition(self, node: ast.expr) -> ast.expr:
         """The argument of the prelude's ``require``."""
-        if _assigns(node):
-            # What one leaf assigns another may read: they stay together.
-            return self._leaf(node)
         return self._split(node)
 
     def _split(self, node: ast.expr) -> ast.expr:
+        if _assigns(node) and not _is_temporal(node):
+            # What one leaf assigns another may read: they stay together, as far as time allows.
+            return self._leaf(node)
         match node:
             case ast.BoolOp(op=ast.And(), values=values):
                 return prelude_call("conjunction", [self._split(value) for value in values], node)
@@ -165,6 +165,11 @@ def _unwritten_ego(node: ast.expr) -> list[ast.Name]:
 def _assigns(node: ast.expr) -> bool:
     """Whether there is an assignment expression in a condition."""
     return any(isinstance(part, ast.NamedExpr) for part in walk(node))
+
+
+def _is_temporal(node: ast.expr) -> bool:
+    """Whether a condition is about more than one state."""
+    return any(isinstance(part, scenic.Temporal) and part.operator != "implies" for part in walk(node))
 
 
 def _in_order(node: ast.expr) -> Iterator[ast.Name]:

@@ -10,8 +10,8 @@ def f(a, b=later, *args):
     return path
 later = 3
 [i for i in later if i]
-index
-#^^^^ SC202
+print(index)
+#     ^^^^^ SC202
 class C:
     inner = 3
     width: inner

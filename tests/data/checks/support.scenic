@@ -1,7 +1,6 @@
 field = 3
 print(field at (1, 2))
 new Object visible from field, with width 3
-#          ^^^^^^^^^^^^^^^^^^ SC900 the specifier `visible`
 new Object following field for 3
 mutate
 record field as x
@@ -28,4 +27,3 @@ scenario S():
         do S()
 def f(a):
     return a can see field
-    #      ^^^^^^^^^^^^^^^ SC900
