@@ -353,8 +353,8 @@ FAULTS: Final = (
         (
             Change(
                 _LOWERING,
-                "    def function_definition(self, node: Any) -> Any:\n        return self._kept(node, self._copy(node))",
-                "    def function_definition(self, node: Any) -> Any:\n        return self._kept(node, self._copy(node, decorator_list=[]))",
+                "        with self.blocks.inside(False):\n            lowered = self.copy(node)\n        return self._kept(node, lowered)",
+                "        with self.blocks.inside(False):\n            lowered = self.copy(node, decorator_list=[])\n        return self._kept(node, lowered)",
             ),
         ),
     ),

@@ -42,7 +42,9 @@ class StatementActions(DefinitionActions, ExpressionActions):
                 pass
             case tree.ErrorStatement():
                 line = self._tokens.text.split("\n")[statement.lineno - 1]
-                written = line.encode("utf-8", "surrogatepass")[statement.col_offset :].decode(errors="ignore")
+                written = line.encode("utf-8", "surrogatepass")[statement.col_offset :].decode(
+                    errors="ignore"
+                )
                 word = written.partition(":")[0].strip()
             case _:
                 return False

@@ -240,7 +240,8 @@ def _no_class(context: Context, name: ast.Name) -> Iterator[Diagnostic]:
         return
     if provided is not None and provided in _BUILTINS and provided not in NAMES:
         meant = nearest(provided, _classes_in_reach(context.resolution.references[name], context))
-        yield context.error(
+        # A warning: running the program raises the `TypeError` that scripts may expect.
+        yield context.warning(
             "SC203",
             f"`{provided}` is a name of Python, not a class of objects",
             name,
