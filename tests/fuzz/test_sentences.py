@@ -8,6 +8,7 @@ from fuzz.derivations import AlternativeId
 from fuzz.grammar import Limits, Program, derivations, from_grammar, programs
 from fuzz.terminals import CLOSERS, OPENERS, Shape
 from scenic.compiler.parser import parse
+from scenic.language.keywords import SOFT_KEYWORDS
 
 QUICK = settings(
     max_examples=25, deadline=None, database=None, derandomize=True, suppress_health_check=list(HealthCheck)
