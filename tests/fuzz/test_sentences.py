@@ -84,7 +84,7 @@ def test_the_number_of_expansions_is_bounded():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("word", "most"), [("until", 90), ("interrupt", 90), ("@", 40)])
+@pytest.mark.parametrize(("word", "most"), [("until", 90), ("interrupt", 90), ("@", 90)])
 def test_shrinking_ends_in_small_programs(word: str, most: int):
     found = find(
         programs(),
