@@ -114,14 +114,16 @@ class Point:
         # Reached only for what is not stored yet: a property of a sampled instance, or a vector's attribute.
         stored = object.__getattribute__(self, "__dict__")
         source = stored.get("_source")
+        if source is not None and name in source.__dict__:
+            value = stored[name] = stored["_sample"].value(source.__dict__[name])
+            return value
         whole = stored if source is None else source.__dict__
         if "_implied" in whole and name not in whole and name in type(self).scenic_properties:
             _fill(self if source is None else source, name)
             if source is None:
                 return stored[name]
-        if source is not None and name in source.__dict__:
-            value = stored["_sample"].value(source.__dict__[name])
-            stored[name] = value
+        if source is not None and name in source.__dict__:  # a property that was implied
+            value = stored[name] = stored["_sample"].value(source.__dict__[name])
             return value
         if not name.startswith("_") and (source is not None or "position" in stored) and name != "position":
             position = self.position

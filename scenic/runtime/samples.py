@@ -194,6 +194,8 @@ class Sample:
         """
         if value is None or isinstance(value, _PLAIN):
             return value
+        if isinstance(value, Random) and value.node.kind.is_number:
+            return self._lookup(value.node)  # equal numbers are as good as the same one
         key = id(value)
         if key not in self._memo:
             self._memo[key] = (value, self._sampled(value))
