@@ -235,6 +235,7 @@ def _scenario(
             mode_2d=mode_2d,
             digest=program_digest(text, options),
             view=show_page,
+            recipe=(_anew, (text, filename, dict(params), model, chosen, mode_2d, prune, strict_params)),
         )
     except RejectionException as error:
         place = locate(error.__traceback__) if error.__traceback__ is not None else None
@@ -280,6 +281,20 @@ def show_page(scene: Any) -> Path:
     file.write_text(page([scene], "scene"), encoding="utf-8")
     webbrowser.open(file.as_uri())
     return file
+
+
+def _anew(
+    text: str,
+    filename: str,
+    params: Mapping[str, Any],
+    model: str | None,
+    chosen: str | None,
+    mode_2d: bool,
+    prune: bool,
+    strict: bool,
+) -> Scenario:
+    """A scenario compiled once more, after it was pickled."""
+    return _scenario(text, filename, params, model, chosen, mode_2d, prune=prune, strict_params=strict)
 
 
 def _run_chosen(module: ModuleType, state: Module, chosen: str | None) -> ModularScenario | None:

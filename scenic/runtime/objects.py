@@ -7,6 +7,7 @@ sample when it is first read: most values of most scenes are never looked at.
 
 import math
 from collections.abc import Callable, Mapping
+from copy import deepcopy
 from types import MappingProxyType
 from typing import Any, ClassVar, Self
 
@@ -130,6 +131,21 @@ class Point:
             if hasattr(type(position), name):
                 return getattr(position, name)
         raise AttributeError(f"{type(self).__name__} has no property or attribute {name!r}")
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """A sampled instance is pickled as its values; its class by the first base that others can import."""
+        cls = type(self)
+        known = next(base for base in cls.__mro__ if base.__module__ == Point.__module__)
+        values = {name: value for name, value in self.properties.items() if name not in _NOT_KEPT}
+        return _restored, (known, cls.__name__, values)
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Any:
+        made = memo[id(self)] = type(self)._make({})
+        made.__dict__.update({name: deepcopy(value, memo) for name, value in self.properties.items()})
+        return made
+
+    def __copy__(self) -> Any:
+        return type(self)._make(dict(self.properties))
 
     def toVector(self) -> Any:
         """The position."""
@@ -340,6 +356,16 @@ class Object(OrientedPoint):
 
     def _side(self, name: str) -> Any:
         return SideSurface(self, name)
+
+
+_NOT_KEPT = frozenset({"behavior", "mutator", "sensors", "observations", "lastActions"})
+"""Properties that belong to the program rather than to a pickled object."""
+
+
+def _restored(base: type[Point], name: str, values: Mapping[str, Any]) -> Any:
+    """An instance from its pickled values, of a class of its own if the program's cannot be imported."""
+    cls: type[Any] = base if base.__name__ == name else type(name, (base,), {})
+    return cls._make({**dict.fromkeys(_NOT_KEPT & cls.scenic_properties.keys()), **values})
 
 
 def _corner(x: float, y: float, z: float) -> property:

@@ -48,7 +48,9 @@ class Scenario:
         mode_2d: bool = False,
         digest: str = "",
         view: Callable[[Scene], Any] | None = None,
+        recipe: tuple[Any, ...] | None = None,
     ) -> None:
+        self._recipe = recipe
         self.filename = filename
         self.digest = digest
         """What a saved scene remembers of the program."""
@@ -252,6 +254,18 @@ class Scenario:
         numbers, words = draws_of(scene.accepted)
         return SavedScene(scene.digest, scene.accepted.task, scene.attempts, numbers, words).to_bytes()
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """A scenario is pickled as its program, and compiled anew by whoever unpickles it."""
+        if self._recipe is None:
+            raise TypeError("a scenario that was made by hand cannot be pickled")
+        return self._recipe
+
+    def __deepcopy__(self, _memo: Any) -> "Scenario":
+        return self  # scenes do not depend on what has been sampled before
+
+    def __copy__(self) -> "Scenario":
+        return self
+
     def sceneFromBytes(self, data: bytes, verify: bool = True, allowPickle: bool = False) -> Scene:
         """The scene in the data of `sceneToBytes`, exactly as it was.
 
@@ -339,6 +353,7 @@ class Scenario:
             self._names,
             self.digest,
             self.sceneToBytes,
+            self,
             self._view,
         )
 

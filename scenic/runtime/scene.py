@@ -3,7 +3,6 @@
 import sys
 import tempfile
 from collections.abc import Callable, Mapping
-from copy import copy
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TextIO
@@ -62,6 +61,7 @@ class Scene:
         names: Mapping[int, str],
         digest: str,
         keep: Callable[["Scene"], bytes],
+        scenario: Any = None,
         view: Callable[["Scene"], Any] | None = None,
     ) -> None:
         self.seed = accepted.task.seed
@@ -71,6 +71,7 @@ class Scene:
         self.accepted = accepted
         self.digest = digest
         self._keep = keep
+        self._scenario = scenario
         self._view = view
         self._program = program
         self._ego = ego
@@ -99,7 +100,7 @@ class Scene:
 
     def within(self, copies: Copier) -> "Scene":
         """The same scene over other copies of its values, as a simulation changes them."""
-        scene = copy(self)
+        scene = self.__copy__()
         scene._sample = copies
         scene._objects = scene._params = None
         return scene
@@ -160,6 +161,22 @@ class Scene:
         """The same as `show`; the arguments are accepted for compatibility."""
         return self.show()
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """A scene is pickled as its scenario and its draws."""
+        return _taken_up, (self._scenario, self._keep(self))
+
+    def __copy__(self) -> "Scene":
+        scene = object.__new__(type(self))
+        scene.__dict__.update(self.__dict__)
+        return scene
+
+    def __deepcopy__(self, _memo: Any) -> "Scene":
+        """The same scene with objects of its own."""
+        scene = self.__copy__()
+        scene._sample = Sample(scene.lookup, scene._program.names)
+        scene._objects = scene._params = None
+        return scene
+
     def save(self, path: str | Path) -> None:
         """Write the scene to a file, from which `Scenario.replay` takes it up again; the file is complete or absent."""
         target = Path(path)
@@ -182,3 +199,9 @@ class Scene:
 def _always(requirement: Requirement) -> bool:
     """Whether a requirement needs no check, since it holds in every scene."""
     return requirement.condition.is_constant and bool(requirement.condition.value)
+
+
+def _taken_up(scenario: Any, data: bytes) -> Scene:
+    """The scene of its draws, with objects of its own."""
+    scene: Scene = scenario.sceneFromBytes(data)
+    return scene

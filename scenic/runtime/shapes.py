@@ -39,6 +39,9 @@ class ShapeSource:
     parameters: Mapping[str, Any] = field(default_factory=dict)
     initial_rotation: Triple | None = None
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return ShapeSource, (self.kind, self.path, dict(self.parameters), self.initial_rotation)
+
     def as_dict(self) -> dict[str, Any]:
         """The same as plain data for JSON; entries that say nothing are left out."""
         result: dict[str, Any] = {"kind": self.kind}

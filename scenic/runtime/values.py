@@ -223,6 +223,15 @@ class Vector(VectorMethods, Hooks):
     def __array__(self, dtype: Any = None, copy: Any = None) -> Any:
         return np.array(self._row, dtype=dtype)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Vector, self._row
+
+    def __deepcopy__(self, _memo: Any) -> Self:
+        return self  # nothing of it can change
+
+    def __copy__(self) -> Self:
+        return self
+
 
 class Orientation(OrientationMethods, Hooks):
     """A definite orientation: a unit quaternion. Made by `fromEuler` or `fromQuaternion`, or from SciPy's ``Rotation``."""

@@ -1,0 +1,78 @@
+"""Values, objects, scenes and scenarios can be pickled, copied and sent to other processes."""
+
+import copy
+import multiprocessing
+import pickle
+from typing import Any
+
+import pytest
+
+from runtime.programs import scenario
+
+PROGRAM = (
+    "class Car:\n    width: 2\n    speedy: Range(0, 1)\n"
+    "ego = new Car at (Range(0, 1), 2, 3), facing Range(0, 1)\n"
+    "other = new Object at (9, 9), with shape CylinderShape()\n"
+    "r = CircularRegion((1, 2, 3), Range(1, 2))\nparam r = r, x = [Range(0, 1), {'a': ego.position}]\n"
+)
+
+
+def whole() -> Any:
+    return scenario(PROGRAM).sample(1, seed=4)[0]
+
+
+COPIES = [lambda value: pickle.loads(pickle.dumps(value)), copy.copy, copy.deepcopy]
+
+
+@pytest.mark.parametrize("again", COPIES)
+def test_values_are_equal_again(again: Any) -> None:
+    scene = whole()
+    car, other = scene.objects
+    assert again(car.position) == car.position
+    assert again(car.orientation) == car.orientation
+    assert again(scene.params["r"]).center == (1, 2, 3)
+    assert again(scene.params["r"]).radius == scene.params["r"].radius
+    assert (again(other.shape).mesh.vertices == other.shape.mesh.vertices).all()
+    assert again(other.shape).source.as_dict() == {"kind": "cylinder", "sections": 24}
+
+
+@pytest.mark.parametrize("again", COPIES)
+def test_objects_keep_their_properties(again: Any) -> None:
+    car = whole().egoObject
+    same = again(car)
+    assert type(same).__name__ == "Car"
+    for name in ("position", "yaw", "width", "speedy", "velocity", "visibleDistance"):
+        assert getattr(same, name) == getattr(car, name), name
+    assert same.corners == car.corners
+
+
+@pytest.mark.parametrize("again", COPIES)
+def test_scenes_are_the_same_scenes(again: Any) -> None:
+    scene = whole()
+    same = again(scene)
+    assert (same.seed, same.k, same.attempts) == (scene.seed, scene.k, scene.attempts)
+    assert [item.position for item in same.objects] == [item.position for item in scene.objects]
+    assert same.params["x"] == scene.params["x"]
+
+
+def test_a_deep_copy_has_objects_of_its_own() -> None:
+    scene = whole()
+    same = copy.deepcopy(scene)
+    assert same.egoObject is not scene.egoObject
+
+
+def test_a_scenario_is_compiled_anew() -> None:
+    program = scenario(PROGRAM)
+    again = pickle.loads(pickle.dumps(program))
+    one, other = (item.sample(3, seed=2) for item in (program, again))
+    assert [item.egoObject.position for item in one] == [item.egoObject.position for item in other]
+
+
+def first_position(number: int) -> Any:
+    return scenario(PROGRAM).sample(1, seed=number)[0].egoObject.position
+
+
+@pytest.mark.slow
+def test_a_pool_returns_positions() -> None:
+    with multiprocessing.get_context("spawn").Pool(1) as pool:
+        assert pool.map_async(first_position, [4]).get(timeout=60) == [whole().egoObject.position]
