@@ -25,6 +25,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from scenic.compiler.parser import ParseResult, parse
+    from scenic.formats.reading import read_scenes
     from scenic.language.errors import (
         InvalidScenarioError,
         ParseCompileError,
@@ -56,6 +57,7 @@ _HOMES = MappingProxyType(
         "RGBSensor": "scenic.runtime.sensors",
         "SSSensor": "scenic.runtime.sensors",
         "load": "scenic.pipeline",
+        "read_scenes": "scenic.formats.reading",
         "scenarioFromFile": "scenic.pipeline",
         "scenarioFromString": "scenic.pipeline",
         "Scenario": "scenic.runtime.scenario",
@@ -81,6 +83,7 @@ __all__ = [
     "SpecifierError",
     "load",
     "parse",
+    "read_scenes",
     "scenarioFromFile",
     "scenarioFromString",
     "setDebuggingOptions",

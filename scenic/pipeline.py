@@ -237,6 +237,14 @@ def _scenario(
             view=show_page,
             recipe=(_anew, (text, filename, dict(params), model, chosen, mode_2d, prune, strict_params)),
         )
+    except SystemExit as error:
+        place = locate(error.__traceback__) if error.__traceback__ is not None else None
+        raise InvalidScenarioError(
+            f"the program ended itself (`sys.exit`, with {error.code!r}) before it described a scenario",
+            span=None if place is None else place.span,
+            filename=filename if place is None else place.filename,
+            help="raise an exception that says what is wrong instead",
+        ) from error
     except RejectionException as error:
         place = locate(error.__traceback__) if error.__traceback__ is not None else None
         raise InvalidScenarioError(

@@ -1,0 +1,119 @@
+"""Scenes read back from JSON Lines (``docs/scene-format.md``), as plain data with names."""
+
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from scenic.formats.json_lines import FORMAT, VERSION
+from scenic.language.errors import Located, MissingFileError
+
+Triple = tuple[float, float, float]
+
+
+class SceneFileError(Located):
+    """A file that does not hold scenes."""
+
+    code = "SC607"
+
+
+@dataclass(frozen=True, slots=True)
+class ReadObject:
+    """An object of a scene that was read.
+
+    Attributes:
+        kind: the name of its class.
+        name: the program's variable that holds it, or ``None``.
+        position: metres.
+        quaternion: x, y, z, w.
+        euler: yaw, pitch, roll in radians.
+        size: width, length, height in metres.
+        shape: what its mesh is, as data.
+        properties: its other properties; a reference to another object is ``{"$object": number}``.
+
+    """
+
+    kind: str
+    name: str | None
+    position: Triple
+    quaternion: tuple[float, float, float, float]
+    euler: Triple
+    size: Triple
+    shape: Mapping[str, Any]
+    properties: Mapping[str, Any]
+
+
+@dataclass(frozen=True, slots=True)
+class ReadScene:
+    """A scene that was read: of which program, seed and number, with its parameters and objects (the ego first)."""
+
+    seed: int
+    k: int
+    attempts: int
+    params: Mapping[str, Any]
+    objects: tuple[ReadObject, ...]
+    ego: ReadObject | None
+    program: str | None = None
+    digest: str | None = None
+
+
+def read_scenes(path: str | Path) -> Iterator[ReadScene]:
+    """The scenes of a file that ``scenic sample -o FILE.jsonl`` has written, one after the other.
+
+    Raises:
+        MissingFileError: if the file cannot be read.
+        SceneFileError: at a line that holds no scene.
+
+    """
+    try:
+        with Path(path).open(encoding="utf-8") as lines:
+            for number, line in enumerate(lines, start=1):
+                try:
+                    yield _scene(json.loads(line, object_hook=_number))
+                except (ValueError, KeyError, TypeError, IndexError) as error:
+                    raise SceneFileError(
+                        f"line {number} of '{path}' holds no scene ({error})",
+                        help="read files that `scenic sample` has written as JSON Lines",
+                    ) from error
+    except OSError as error:
+        raise MissingFileError(f"cannot read '{path}': {(error.strerror or str(error)).lower()}") from error
+
+
+def _number(data: dict[str, Any]) -> Any:
+    """Numbers that JSON has no word for."""
+    return float(data["$float"]) if data.keys() == {"$float"} else data
+
+
+def _scene(data: Any) -> ReadScene:
+    if data["format"] != FORMAT or data["version"] != VERSION:
+        raise ValueError(f"format {data['format']!r}, version {data['version']!r}")
+    objects = tuple(
+        ReadObject(
+            item["class"],
+            item["name"],
+            _numbers(item["position"], 3),
+            _numbers(item["quaternion"], 4),
+            _numbers(item["euler"], 3),
+            _numbers(item["size"], 3),
+            item["shape"],
+            item["properties"],
+        )
+        for item in data["objects"]
+    )
+    return ReadScene(
+        int(data["seed"]),
+        int(data["k"]),
+        int(data["attempts"]),
+        data["params"],
+        objects,
+        None if data["ego"] is None else objects[data["ego"]],
+        data.get("program"),
+        data.get("digest"),
+    )
+
+
+def _numbers(values: Any, count: int) -> Any:
+    if len(values) != count:
+        raise ValueError(f"{count} numbers are needed, not {len(values)}")
+    return tuple(float(value) for value in values)
