@@ -9,7 +9,7 @@ So no draw depends on which others there are, in which order they are asked for,
 import hashlib
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import Any, Final, Protocol, Self
+from typing import Final, Protocol, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -160,36 +160,4 @@ class Points:
         for row, name in enumerate(addresses.tolist()):
             if name in self._words:
                 result[row] = self._words[name]
-        return result
-
-
-class Recorded:
-    """A source that remembers what it was asked for, to keep a scene as data.
-
-    Args:
-        source: where the numbers come from.
-
-    """
-
-    def __init__(self, source: Source) -> None:
-        self._source = source
-        self.numbers: dict[int, Any] = {}
-        """The numbers drawn, by address: columns ``(n,)``."""
-        self.keys: dict[int, Any] = {}
-        """The words drawn, by address."""
-
-    def __len__(self) -> int:
-        return len(self._source)
-
-    def take(self, lanes: NDArray[np.intp]) -> "Recorded":
-        return Recorded(self._source.take(lanes))
-
-    def uniforms(self, addresses: Words) -> Floats:
-        result = self._source.uniforms(addresses)
-        self.numbers.update(zip(addresses.tolist(), result, strict=True))
-        return result
-
-    def words(self, addresses: Words) -> Words:
-        result = self._source.words(addresses)
-        self.keys.update(zip(addresses.tolist(), result, strict=True))
         return result
