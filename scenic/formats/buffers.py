@@ -1,16 +1,16 @@
-"""What the pixels of an image see first."""
+"""What rays through the pixels of an image meet first."""
 
 from dataclasses import dataclass
-from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 from scenic.formats.camera import Camera
 from scenic.formats.instances import Array
+from scenic.formats.stage import GROUND, SKY, Stage
 from scenic.runtime.geometry.embree import RayScene, Singles
 
-_Index: TypeAlias = slice | npt.NDArray[np.intp]
+Groups = npt.NDArray[np.int32]
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,14 +25,56 @@ class Buffer:
 
     """
 
-    triangle: npt.NDArray[np.int32]
+    triangle: Groups
     nearness: Singles
     second: Singles
     third: Singles
 
 
+@dataclass(frozen=True, slots=True)
+class Seen:
+    """What some rays meet first: objects, ground or sky; an entry for each ray.
+
+    Attributes:
+        directions: of the rays, ``(n, 3)``.
+        triangle: -1 where it is none of an object, ``(n,)``.
+        nearness: one over the lengths of the direction to it; 0 for the sky.
+        second: weight of the triangle's second corner.
+        third: weight of its third corner.
+        group: number of the surface (`Stage.face_group`), or `GROUND` or `SKY`.
+
+    """
+
+    directions: Singles
+    triangle: Groups
+    nearness: Singles
+    second: Singles
+    third: Singles
+    group: Groups
+
+    def take(self, index: npt.NDArray[np.intp]) -> "Seen":
+        """Some of the entries."""
+        return Seen(
+            self.directions[index],
+            self.triangle[index],
+            self.nearness[index],
+            self.second[index],
+            self.third[index],
+            self.group[index],
+        )
+
+
 class Lens:
-    """Rays through an image of a size, from an eye given relative to the middle of the scene."""
+    """Rays through an image of a size.
+
+    Attributes:
+        width: columns of pixels.
+        height: rows of pixels.
+        eye: where the rays start, relative to the middle of the scene, ``(3,)``.
+        ahead: unit vector along the camera's axis, ``(3,)``.
+        pixel: angle between two pixels in the middle of the image, radians.
+
+    """
 
     def __init__(self, camera: Camera, center: Array, size: tuple[int, int]) -> None:
         self.width, self.height = size
@@ -40,7 +82,7 @@ class Lens:
         self.pixel = 2 * camera.tangents[1] / self.height
         self._across = camera.right * camera.tangents[0]
         self._upward = camera.up * camera.tangents[1]
-        self._ahead = camera.ahead
+        self.ahead = camera.ahead.astype(np.float32)
 
     def directions(self, x: npt.NDArray[np.float32], y: npt.NDArray[np.float32]) -> Singles:
         """Directions ``(..., 3)``, 1 long along the camera's axis, through places in pixels; x and y broadcast."""
@@ -48,73 +90,70 @@ class Lens:
         up = (1 - 2 * y / np.float32(self.height)).astype(np.float32)
         result = np.empty((*np.broadcast_shapes(x.shape, y.shape), 3), np.float32)
         for axis in range(3):
-            sideways = np.float32(self._across[axis]) * right + np.float32(self._ahead[axis])
+            sideways = np.float32(self._across[axis]) * right + self.ahead[axis]
             np.add(sideways, np.float32(self._upward[axis]) * up, out=result[..., axis])
         return result
 
     def through(self, pixels: npt.NDArray[np.intp]) -> Singles:
         """Directions ``(n, 3)`` through the middles of pixels, numbered row by row."""
-        x = (pixels % self.width).astype(np.float32) + np.float32(0.5)
-        y = (pixels // self.width).astype(np.float32) + np.float32(0.5)
-        return self.directions(x, y)
+        row, column = np.divmod(pixels, self.width)
+        return self.directions(
+            column.astype(np.float32) + np.float32(0.5), row.astype(np.float32) + np.float32(0.5)
+        )
 
-    def cast(
-        self, rays: RayScene, directions: Singles
-    ) -> tuple[npt.NDArray[np.int32], Singles, Singles, Singles]:
-        """What rays of directions ``(n, 3)`` see, the four values of a `Buffer`, ``(n,)`` each."""
-        hits = rays.first_hits(np.broadcast_to(self.eye, directions.shape), directions)
-        return hits.triangle, np.float32(1) / hits.distance, hits.second, hits.third
+    def through_all(self, step: int) -> Singles:
+        """Directions ``(rows, columns, 3)`` through the middles of every ``step``-th pixel of every such row."""
+        x = np.arange(0, self.width, step, dtype=np.float32) + np.float32(0.5)
+        y = np.arange(0, self.height, step, dtype=np.float32) + np.float32(0.5)
+        return self.directions(x, y[:, None])
 
 
-def seen(lens: Lens, rays: RayScene, *, exact: bool) -> Buffer:
-    """What each pixel sees through its middle.
+def seen(lens: Lens, rays: RayScene) -> Buffer:
+    """What each pixel sees through its middle."""
+    directions = lens.through_all(1)
+    hits = rays.first_hits(_repeated(lens.eye, directions.size // 3), directions.reshape(-1, 3))
+    parts = (hits.triangle, np.float32(1) / hits.distance, hits.second, hits.third)
+    return Buffer(*(part.reshape(lens.height, lens.width) for part in parts))  # type: ignore[arg-type] # in that order
 
-    Unless it must be exact, rays go through every other pixel of every other row; where all those around a pixel see one
-    triangle, so does it, and its nearness, which is linear on a plane, is their mean. What is thinner than two pixels
-    may then have gaps.
-    """
-    step = 1 if exact else 2
-    x = np.arange(0, lens.width, step, dtype=np.float32) + np.float32(0.5)
-    y = np.arange(0, lens.height, step, dtype=np.float32) + np.float32(0.5)
-    directions = lens.directions(x, y[:, None])
-    shape = directions.shape[:2]
-    triangle, nearness, second, third = lens.cast(rays, directions.reshape(-1, 3))
-    first = Buffer(
-        triangle.reshape(shape), nearness.reshape(shape), second.reshape(shape), third.reshape(shape)
+
+def look(stage: Stage, eye: Singles, directions: Singles) -> Seen:
+    """What rays from an eye ``(3,)`` or eyes ``(n, 3)`` meet first in directions ``(n, 3)``."""
+    hits = stage.rays.first_hits(_repeated(eye, len(directions)), directions)
+    return grounded(
+        stage, eye, directions, hits.triangle, np.float32(1) / hits.distance, hits.second, hits.third
     )
-    if exact:
-        return first
-    size = (lens.height, lens.width)
-    result = Buffer(
-        np.full(size, -2, np.int32),
-        np.zeros(size, np.float32),
-        np.zeros(size, np.float32),
-        np.zeros(size, np.float32),
-    )
-    _put(result, (slice(None, None, 2), slice(None, None, 2)), first)
-    _fill(result, (slice(1, -1, 2), slice(None, None, 2)), 0)
-    _fill(result, (slice(None), slice(1, -1, 2)), 1)
-    left = np.flatnonzero(result.triangle.reshape(-1) == -2)
-    row, column = np.divmod(left, lens.width)
-    _put(result, (row, column), Buffer(*lens.cast(rays, lens.through(left))))
-    return result
 
 
-def _put(into: Buffer, where: tuple[_Index, _Index], values: Buffer) -> None:
-    into.triangle[where] = values.triangle
-    into.nearness[where] = values.nearness
-    into.second[where] = values.second
-    into.third[where] = values.third
+def grounded(
+    stage: Stage,
+    eye: Singles,
+    directions: Singles,
+    triangle: Groups,
+    nearness: Singles,
+    second: Singles,
+    third: Singles,
+) -> Seen:
+    """The same of what is known of objects: rays that meet none and fall end on the ground."""
+    group = stage.group_of(triangle)
+    fall = np.float32(stage.ground) - eye[..., 2]
+    below = falls(stage, eye, directions) & (triangle < 0)
+    group[below] = GROUND
+    drop = fall if eye.ndim == 1 else fall[below]
+    nearness[below] = directions[below, 2] / drop
+    return Seen(directions, triangle, nearness, second, third, group)
 
 
-def _fill(into: Buffer, where: tuple[slice, slice], axis: int) -> None:
-    """Give pixels between two others along an axis what both of those see, if it is the same."""
-    rows, columns = where
-    if axis == 0:
-        before, after = (slice(0, -2, 2), columns), (slice(2, None, 2), columns)
-    else:
-        before, after = (rows, slice(0, -2, 2)), (rows, slice(2, None, 2))
-    a, b = into.triangle[before], into.triangle[after]
-    into.triangle[where] = np.where((a == b) & (a != -2), a, np.int32(-2))
-    for plane in (into.nearness, into.second, into.third):
-        plane[where] = np.float32(0.5) * (plane[before] + plane[after])
+def falls(stage: Stage, eye: Singles, directions: Singles) -> npt.NDArray[np.bool_]:
+    """Whether rays reach the ground if nothing else stops them, ``(n,)``."""
+    return np.asarray((directions[:, 2] < -1e-6) & (eye[..., 2] > stage.ground))
+
+
+def first_groups(stage: Stage, eye: Singles, directions: Singles) -> Groups:
+    """The surfaces alone that rays from one eye meet first."""
+    group = stage.group_of(stage.rays.first_triangles(eye, directions))
+    group[(group == SKY) & falls(stage, eye, directions)] = GROUND
+    return group
+
+
+def _repeated(eye: Singles, count: int) -> Singles:
+    return np.broadcast_to(eye, (count, 3))

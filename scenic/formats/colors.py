@@ -27,3 +27,8 @@ def encoded(light: npt.NDArray[Any]) -> npt.NDArray[np.uint8]:
     index += np.float32(0.5)
     result: npt.NDArray[np.uint8] = table[index.astype(np.uint16)]
     return result
+
+
+def decoded(srgb: npt.NDArray[np.uint8]) -> npt.NDArray[np.float32]:
+    """8-bit sRGB as linear light."""
+    return linear(np.arange(256) / 255)[srgb]

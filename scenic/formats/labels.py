@@ -112,7 +112,7 @@ def observe(scene: Scene, viewpoint: Viewpoint, *, gallery: Gallery | None = Non
     instances = [item for item in gallery.add(scene) if item.thing is not viewpoint.owner]
     stage = Stage(gallery.surfaces, instances)
     lens = Lens(viewpoint.camera, stage.center, viewpoint.size)
-    buffer = seen(lens, stage.rays, exact=True)
+    buffer = seen(lens, stage.rays)
     numbers = np.array([index[id(item.thing)] for item in instances] + [-1], dtype=np.int32)
     owner = np.append(stage.owner, np.int32(len(instances)))
     objects = numbers[owner[buffer.triangle]]

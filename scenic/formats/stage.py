@@ -40,13 +40,13 @@ class Stage:
         reach: the scene's diagonal, metres.
         ground: height of the ground, relative to the center.
         owner: index of the instance of each triangle, ``(t,)``.
-        normals: unit normals of the triangles, ``(t, 3)``.
-        smooth: whether the normals at the corners of a triangle differ, ``(t,)``.
+        normals: unit normals of the triangles, ``(t + 1, 3)``; the last is that of the ground.
+        smooth: whether the normals at the corners of a triangle differ, ``(t + 1,)``.
         sunny: linear colour that the sun gives each corner, ``(t, 3, 3)``: triangle, corner, colour.
         shady: linear colour that the open sky gives each corner, likewise.
         flat: the three components of both at the first corner, ``(6, t + 1)``; 0 in the entry for no triangle.
         alphas: opacity of each instance, ``(n,)``.
-        face_group: a number for each instance and rough direction of its faces, ``(t,)``, at least 1.
+        rays: the triangles, to cast rays at.
 
     """
 
@@ -55,33 +55,38 @@ class Stage:
         self.center = (points.min(axis=0) + points.max(axis=0)) / 2
         self.reach = float(np.linalg.norm(np.ptp(points, axis=0))) or 1.0
         self.ground = float(ground_height(points) - self.center[2])
-        triangles, normals, owners = [np.zeros((0, 3, 3))], [np.zeros((0, 3, 3))], [np.zeros(0, np.int32)]
+        triangles, normals, owners = [], [], []
         for index, instance in enumerate(instances):
             surface = surfaces[instance.surface]
             matrix = instance.matrix()
             world = surface.vertices @ matrix[:3, :3].T + (matrix[:3, 3] - self.center)
             turned = surface.normals / instance.size @ rotation_matrix(instance.quaternion).T
-            turned /= np.linalg.norm(turned, axis=1, keepdims=True)
-            triangles.append(world[surface.faces])
-            normals.append(turned[surface.faces])
+            turned /= np.sqrt(np.einsum("ij,ij->i", turned, turned))[:, None]
+            triangles.append(world.astype(np.float32)[surface.faces])
+            normals.append(turned.astype(np.float32)[surface.faces])
             owners.append(np.full(len(surface.faces), index, np.int32))
-        self.triangles = np.concatenate(triangles).astype(np.float32)
-        corner_normals = np.concatenate(normals)
-        self.owner = np.concatenate(owners)
+        self.owner = np.concatenate([*owners, np.zeros(0, np.int32)])
+        corner_normals = np.concatenate([*normals, np.zeros((0, 3, 3), np.float32)])
         rgba = np.array([instance.color for instance in instances]).reshape(-1, 4)
         self.alphas = rgba[:, 3].astype(np.float32)
-        mean = corner_normals.sum(axis=1)
-        self.normals = mean / np.maximum(np.linalg.norm(mean, axis=1, keepdims=True), 1e-9)
-        self.smooth = np.abs(corner_normals - self.normals[:, None]).max(axis=(1, 2), initial=0) > 1e-3
-        albedo = linear(rgba[:, :3]).astype(np.float64)[self.owner][:, None]
+        mean = corner_normals[:, 0] + corner_normals[:, 1] + corner_normals[:, 2]
+        mean /= np.maximum(np.sqrt(np.einsum("ij,ij->i", mean, mean)), np.float32(1e-9))[:, None]
+        self.normals = np.concatenate([mean, np.array([[0, 0, 1]], np.float32)])
+        away = np.abs(corner_normals - mean[:, None]) > np.float32(1e-3)
+        self.smooth = np.append(away.reshape(-1, 9).any(axis=1), False)
+        albedo = linear(rgba[:, :3])[self.owner]
         self.sunny, self.shady = _light_on(corner_normals, albedo)
         # Flat triangles are most of the pixels; entries of one array after the other are quick to take.
         flat = np.concatenate([self.sunny[:, 0], self.shady[:, 0]], axis=1).T
         self.flat = np.concatenate([flat, np.zeros((6, 1), np.float32)], axis=1)
-        rough = np.round(self.normals * 2).astype(np.int64) + 2
+        rough = np.rint(mean * np.float32(2)).astype(np.int32) + 2
         code = (rough[:, 0] * 5 + rough[:, 1]) * 5 + rough[:, 2]
-        self.face_group = (self.owner.astype(np.int64) * 125 + code + 1).astype(np.int32)
-        self.rays = RayScene(self.triangles)
+        self._groups = np.append(self.owner * 125 + code + 1, np.int32(SKY))
+        self.rays = RayScene(np.concatenate([*triangles, np.zeros((0, 3, 3), np.float32)]))
+
+    def group_of(self, triangle: npt.NDArray[np.int32]) -> npt.NDArray[np.int32]:
+        """A number for the object and the rough direction of triangles, at least 1; `SKY` for -1."""
+        return np.take(self._groups, triangle)
 
     def sunlit(self, places: Singles, normals: Singles, pattern: npt.NDArray[np.int64], rays: int) -> Singles:
         """The part of the sun seen from places ``(n, 3)``, by so many rays each; 0 where it is behind the surface.
@@ -115,18 +120,20 @@ class Stage:
 
 
 def ground_light(albedo: Singles, sun: Singles, sky: Singles) -> Singles:
-    """Linear colours ``(n, 3)`` of ground of a colour, in so much of the sun's light and of the sky's, ``(n,)``."""
-    sunny = (_SUN_COLOR * _SUN[2]).astype(np.float32)
-    result: Singles = albedo * (sun[:, None] * sunny + sky[:, None] * _SKY_COLOR.astype(np.float32))
+    """Linear colours ``(3, n)`` of ground of a colour, in so much of the sun's light and of the sky's, ``(n,)``."""
+    sunny, shady = (_SUN_COLOR * _SUN[2]).astype(np.float32), _SKY_COLOR.astype(np.float32)
+    result: Singles = albedo * (sunny[:, None] * sun + shady[:, None] * sky)
     return result
 
 
-def _light_on(normals: Array, albedo: Array) -> tuple[Singles, Singles]:
-    facing = np.maximum(normals @ _SUN, 0.0)[..., None]
-    upward = normals[..., 2:3] * 0.5 + 0.5
-    sunny = albedo * facing * _SUN_COLOR
-    shady = albedo * (upward * _SKY_COLOR + (1 - upward) * _BOUNCE_COLOR)
-    return sunny.astype(np.float32), shady.astype(np.float32)
+def _light_on(normals: Singles, albedo: Singles) -> tuple[Singles, Singles]:
+    """Colours that sun and sky give the corners of triangles ``(t, 3, 3)`` of colours ``(t, 3)``."""
+    facing = np.maximum(normals @ _SUN.astype(np.float32), 0)
+    upward = normals[..., 2] * np.float32(0.5) + np.float32(0.5)
+    sun, sky, bounce = (color.astype(np.float32) for color in (_SUN_COLOR, _SKY_COLOR, _BOUNCE_COLOR))
+    sunny = (albedo * sun)[:, None] * facing[..., None]
+    shady = albedo[:, None] * (bounce + upward[..., None] * (sky - bounce))
+    return sunny, shady
 
 
 def _sun_directions() -> Singles:

@@ -5,11 +5,13 @@ import numpy as np
 import PIL.Image
 import pytest
 
+from scenic.formats.buffers import Lens, seen
 from scenic.formats.camera import corners, framing, ground_height
 from scenic.formats.instances import picture
 from scenic.formats.png import MissingLibraryError, png
-from scenic.formats.render import render
-from tests.formats.stand_ins import BALL, Object, Scene
+from scenic.formats.render import paint, render
+from scenic.formats.stage import Stage
+from tests.formats.stand_ins import BALL, Object, Scene, Turn
 
 SMALL = (96, 72)
 RED, GREEN = (0.9, 0.1, 0.1), (0.1, 0.8, 0.1)
@@ -56,6 +58,60 @@ def test_what_is_transparent_is_seen_through() -> None:
     opaque = pixels(Object(width=3, height=3, color=(0.1, 0.1, 0.9), length=0.1), behind)
     glass = pixels(Object(width=3, height=3, color=(0.1, 0.1, 0.9, 0.2), length=0.1), behind)
     assert glass[..., 0].sum() > opaque[..., 0].sum()
+
+
+def from_one_place(*scenes: list[Object]) -> list[np.ndarray]:
+    """Images of scenes through the camera that is best for the first one."""
+    drawn = picture([Scene(objects) for objects in scenes])
+    camera = framing(corners(drawn.scenes[0]), 4 / 3)
+    return [render(drawn, number, SMALL, camera=camera).astype(int) for number in range(len(scenes))]
+
+
+def test_the_ground_behind_glass_is_that_beside_it() -> None:
+    post = Object(position=(0, 9, 0.5), width=20, color=GREEN)
+    panes = [Object(position=(0, 0, 3), width=12, height=6, length=0.01, color=(*RED, a)) for a in (1, 0.001)]
+    opaque, glass, bare = from_one_place(*([post, pane] for pane in panes), [post])
+    behind = opaque[..., 0] > 1.5 * opaque[..., 1]
+    same = np.abs(glass - bare).max(axis=-1) <= 6
+    assert behind.mean() > 0.1
+    # The pane casts a shadow all the same.
+    assert same[behind].mean() > 0.5
+
+
+def test_pixels_without_rays_of_their_own_show_what_those_would() -> None:
+    """The same image with what every pixel sees given beforehand."""
+    rng = np.random.default_rng(4)
+    things = [
+        Object(
+            position=tuple(rng.uniform(-4, 4, 3)),
+            orientation=Turn.by(*rng.uniform(-1, 1, 3)),
+            color=tuple(rng.uniform(0, 1, 3)),
+            **({"shape": BALL} if number % 2 else {}),
+        )
+        for number in range(12)
+    ]
+    drawn = picture([Scene(things)])
+    for size in ((96, 72), (97, 73), (2, 3), (1, 1)):
+        camera = framing(corners(drawn.scenes[0]), size[0] / size[1])
+        stage = Stage(drawn.surfaces, drawn.scenes[0])
+        lens = Lens(camera, stage.center, size)
+        rays, given = paint(stage, lens).astype(int), paint(stage, lens, seen(lens, stage.rays)).astype(int)
+        assert rays.shape == (size[1], size[0], 3)
+        away = np.abs(rays - given).max(axis=-1)
+        assert (away > 8).mean() <= 0.01
+
+
+def test_a_post_thinner_than_two_pixels_has_no_gaps_where_all_pixels_are_known() -> None:
+    post, wide = Object(height=8, width=0.05, length=0.05, color=RED), Object(width=12)
+    drawn = picture([Scene([post, wide])])
+    stage = Stage(drawn.surfaces, drawn.scenes[0])
+    lens = Lens(framing(corners(drawn.scenes[0]), 4 / 3), stage.center, (320, 240))
+    known = seen(lens, stage.rays)
+    shown = stage.owner[known.triangle] == 0
+    image = paint(stage, lens, known).astype(int)
+    red = image[..., 0] > image[..., 2] + 12
+    assert (shown & (known.triangle >= 0)).sum() > 40
+    assert red[shown & (known.triangle >= 0)].mean() > 0.95
 
 
 def test_images_are_deterministic() -> None:
