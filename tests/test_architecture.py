@@ -43,10 +43,12 @@ ONLY_IN = {
     "websockets": {"playground"},
     "click": {"cli"},
     "rich": {"cli"},
+    "mujoco": {"simulators"},
 }
 """Libraries that only some layers may know."""
 
 HEAVY = {"scipy", "trimesh", "z3", "embreex", "shapely", "manifold3d", "PIL", "networkx"}
+HEAVY |= {"mujoco", "pyarrow", "imageio_ffmpeg"}
 """Libraries that may not be imported when a module is."""
 
 

@@ -139,7 +139,7 @@ class _Work:
 @click.option(
     "--simulator",
     metavar="NAME",
-    help="kinematic, dummy, or MODULE:CLASS.  [default: the program's, else kinematic]",
+    help="kinematic, mujoco, dummy, or MODULE:CLASS.  [default: the program's, else kinematic]",
 )
 @click.option(
     "--time",

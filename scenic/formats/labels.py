@@ -105,8 +105,13 @@ class Observation:
         return np.asarray(self.objects == label.index)
 
 
-def observe(scene: Scene, viewpoint: Viewpoint, *, gallery: Gallery | None = None) -> Observation:
-    """What a camera sees of a scene; a gallery shares what is known of meshes between scenes."""
+def observe(
+    scene: Scene, viewpoint: Viewpoint, *, gallery: Gallery | None = None, labelled: bool = True
+) -> Observation:
+    """What a camera sees of a scene; a gallery shares what is known of meshes between scenes.
+
+    Labels cost more than the images, and may be left out.
+    """
     gallery = Gallery() if gallery is None else gallery
     index = {id(thing): number for number, thing in enumerate(scene.objects)}
     instances = [item for item in gallery.add(scene) if item.thing is not viewpoint.owner]
@@ -119,7 +124,7 @@ def observe(scene: Scene, viewpoint: Viewpoint, *, gallery: Gallery | None = Non
     with np.errstate(divide="ignore"):
         depth = (np.float32(1) / buffer.nearness).astype(np.float32)
     rgb = paint(stage, lens, buffer) if "rgb" in viewpoint.outputs else None
-    labels = _labels(scene, viewpoint, instances, index, objects, depth)
+    labels = _labels(scene, viewpoint, instances, index, objects, depth) if labelled else ()
     return Observation(viewpoint, rgb, depth, objects, labels)
 
 

@@ -80,7 +80,7 @@ def viewpoint(scene: Scene, name: str, size: tuple[int, int] | None) -> Viewpoin
     sensors = _sensors(scene)
     if name in sensors:
         owner, sensor = sensors[name]
-        return _of_sensor(name, owner, sensor, size)
+        return sensor_viewpoint(name, owner, sensor, size)
     objects = {label: thing for thing, label in scene.names.items()}
     if scene.egoObject is not None:
         objects.setdefault("ego", scene.egoObject)
@@ -104,9 +104,10 @@ def _sensors(scene: Scene) -> dict[str, tuple[SceneObject, CameraSensor]]:
     return found
 
 
-def _of_sensor(
-    name: str, owner: SceneObject, sensor: CameraSensor, size: tuple[int, int] | None
+def sensor_viewpoint(
+    name: str, owner: SceneObject, sensor: CameraSensor, size: tuple[int, int] | None = None
 ) -> Viewpoint:
+    """The camera that is a sensor of an object; ``size`` in pixels instead of its own."""
     mounted = sensor.offset
     if mounted is None:
         mounted = _triple(owner.properties.get("visionSensorOffset", (0.0, owner.length / 2, 0.0)))

@@ -164,6 +164,8 @@ CODES: Final = MappingProxyType(
         "SC500": "no scene found",
         "SC501": "a requirement or property failed while sampling",
         "SC503": "a simulator failed",
+        "SC504": "scene cannot be set up in the simulator",
+        "SC505": "simulation cannot go on",
         # Files, options, parameters.
         "SC600": "file cannot be read",
         "SC601": "file cannot be written",

@@ -220,8 +220,16 @@ class InvariantViolation(GuardViolation):
     violationType = "invariant"
 
 
-class SimulationCreationError(Exception):
+class SimulationCreationError(Located):
     """The scene cannot be set up in the simulator."""
+
+    code = "SC504"
+
+
+class SimulationError(Located):
+    """The simulator cannot go on."""
+
+    code = "SC505"
 
 
 class DivergenceError(Exception):

@@ -109,7 +109,15 @@ def _combine(name: str, definitions: Sequence[PropertyDefinition]) -> Property:
 # Values as they are stored
 
 _VECTORS = frozenset(
-    {"position", "velocity", "cameraOffset", "positionStdDev", "orientationStdDev", "baseOffset"}
+    {
+        "position",
+        "velocity",
+        "angularVelocity",
+        "cameraOffset",
+        "positionStdDev",
+        "orientationStdDev",
+        "baseOffset",
+    }
 )
 _SCALARS = frozenset(
     {

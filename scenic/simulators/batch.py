@@ -31,7 +31,7 @@ class Numbered:
 
 
 def choose_simulator(name: str | None, scenario: Scenario) -> Simulator:
-    """The simulator of a name: ``kinematic``, ``dummy`` or ``MODULE:CLASS``; by default the program's own, or ``kinematic``.
+    """The simulator of a name: ``kinematic``, ``mujoco``, ``dummy`` or ``MODULE:CLASS``; by default the program's own, or ``kinematic``.
 
     Raises `SimulatorChoiceError`.
     """
@@ -42,13 +42,14 @@ def choose_simulator(name: str | None, scenario: Scenario) -> Simulator:
         name = "kinematic"
     places = {
         "kinematic": "scenic.simulators.kinematic:KinematicSimulator",
+        "mujoco": "scenic.simulators.mujoco:MujocoSimulator",
         "dummy": "scenic.simulators.dummy:DummySimulator",
     }
     module, colon, cls = places.get(name, name).partition(":")
     if not colon:
         raise SimulatorChoiceError(
             f"there is no simulator {name!r}",
-            help="use kinematic, dummy, or MODULE:CLASS for one of your own",
+            help="use kinematic, mujoco, dummy, or MODULE:CLASS for one of your own",
         )
     try:
         simulator: Simulator = getattr(import_module(module), cls)()

@@ -1,7 +1,8 @@
 """A simulator without forces: agents move as their model says, and pass through each other.
 
 The model of an object is its property ``dynamics``: ``"point"`` (the default), ``"differential"``, ``"bicycle"`` or
-``"quadrotor"``. Objects that no action ever reaches keep the velocity with which they were created. All objects of a model
+``"quadrotor"``; ``"free"`` and ``"guided"``, which other simulators tell apart, are points here, and ``"static"`` is one that
+never moves. Objects that no action ever reaches keep the velocity with which they were created. All objects of a model
 are advanced at once, as columns; the formulas are closed solutions where velocity and turning rate are constant in a step.
 
 Headings follow the language: yaw 0 looks along +Y, angles are in radians, counterclockwise seen from above.
@@ -9,15 +10,26 @@ Headings follow the language: yaw 0 looks along +Y, angles are in radians, count
 
 import math
 from collections.abc import Mapping
-from typing import Any, ClassVar, Final
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from scenic.language.errors import SimulationCreationError
 from scenic.runtime.scene import Scene
-from scenic.runtime.values import Orientation, Vector, to_scalar, to_vector
-from scenic.simulators.actions import Action
+from scenic.runtime.values import Orientation, Vector
+from scenic.simulators.cameras import Cameras
+from scenic.simulators.commands import (
+    DRAG,
+    GRAVITY,
+    Fly,
+    SetAcceleration,
+    SetSteering,
+    SetThrottle,
+    SetVelocity,
+    SetWheelSpeeds,
+    model_of,
+)
 from scenic.simulators.simulation import Simulation
 from scenic.simulators.simulator import Simulator
 
@@ -35,133 +47,8 @@ __all__ = [
 Floats = NDArray[np.float64]
 
 MODELS: Final = ("point", "differential", "bicycle", "quadrotor")
-GRAVITY: Final = 9.81
-"""Metres per second squared."""
-
-DRAG: Final = 0.3
-"""Of a quadrotor: acceleration against its velocity, per second."""
-
-
-class _Command(Action):
-    """An action for agents of some models."""
-
-    models: ClassVar[tuple[str, ...]] = MODELS
-
-    def canBeTakenBy(self, agent: Any) -> bool:
-        """Whether the agent's model understands the command."""
-        return model_of(agent) in self.models
-
-    def applyTo(self, agent: Any, simulation: Any) -> None:
-        """Give the command; it stays in force until the next one."""
-        for column, value in self.commands().items():
-            simulation.command(agent, column, value)
-
-    def commands(self) -> Mapping[str, float]:
-        """Values by column."""
-        raise NotImplementedError
-
-
-class SetVelocity(_Command):
-    """Move with this velocity (metres per second, global frame)."""
-
-    models = ("point",)
-
-    def __init__(self, velocity: Any) -> None:
-        self.velocity = to_vector(velocity, "SetVelocity")
-
-    def commands(self) -> Mapping[str, float]:
-        x, y, z = self.velocity
-        return {"vx": x, "vy": y, "vz": z, "ax": 0.0, "ay": 0.0, "az": 0.0}
-
-    def __repr__(self) -> str:
-        return f"SetVelocity({self.velocity})"
-
-
-class SetAcceleration(_Command):
-    """Accelerate so (metres per second squared, global frame)."""
-
-    models = ("point",)
-
-    def __init__(self, acceleration: Any) -> None:
-        self.acceleration = to_vector(acceleration, "SetAcceleration")
-
-    def commands(self) -> Mapping[str, float]:
-        x, y, z = self.acceleration
-        return {"ax": x, "ay": y, "az": z}
-
-    def __repr__(self) -> str:
-        return f"SetAcceleration({self.acceleration})"
-
-
-class SetWheelSpeeds(_Command):
-    """Speeds of the left and the right wheel (metres per second), whose distance is the object's width."""
-
-    models = ("differential",)
-
-    def __init__(self, left: float, right: float) -> None:
-        self.left = to_scalar(left, "SetWheelSpeeds")
-        self.right = to_scalar(right, "SetWheelSpeeds")
-
-    def commands(self) -> Mapping[str, float]:
-        return {"left": self.left, "right": self.right}
-
-    def __repr__(self) -> str:
-        return f"SetWheelSpeeds({self.left:g}, {self.right:g})"
-
-
-class SetThrottle(_Command):
-    """Acceleration along the heading (metres per second squared, negative to brake; no vehicle brakes into reverse)."""
-
-    models = ("bicycle",)
-
-    def __init__(self, acceleration: float) -> None:
-        self.acceleration = to_scalar(acceleration, "SetThrottle")
-
-    def commands(self) -> Mapping[str, float]:
-        return {"throttle": self.acceleration}
-
-    def __repr__(self) -> str:
-        return f"SetThrottle({self.acceleration:g})"
-
-
-class SetSteering(_Command):
-    """Angle of the front wheels (radians, positive to the left), clipped to 0.6."""
-
-    models = ("bicycle",)
-
-    def __init__(self, angle: float) -> None:
-        self.angle = to_scalar(angle, "SetSteering")
-
-    def commands(self) -> Mapping[str, float]:
-        return {"steering": max(-0.6, min(0.6, self.angle))}
-
-    def __repr__(self) -> str:
-        return f"SetSteering({self.angle:g})"
-
-
-class Fly(_Command):
-    """Thrust along the quadrotor's own up (metres per second squared; gravity is 9.81), attitude, rate of turning.
-
-    Pitch and roll are radians, ``turn`` is radians per second.
-    """
-
-    models = ("quadrotor",)
-
-    def __init__(self, thrust: float = GRAVITY, pitch: float = 0, roll: float = 0, turn: float = 0) -> None:
-        self.thrust, self.pitch, self.roll, self.turn = (
-            to_scalar(value, "Fly") for value in (thrust, pitch, roll, turn)
-        )
-
-    def commands(self) -> Mapping[str, float]:
-        return {"thrust": self.thrust, "pitch": self.pitch, "roll": self.roll, "turn": self.turn}
-
-    def __repr__(self) -> str:
-        return f"Fly({self.thrust:g}, {self.pitch:g}, {self.roll:g}, {self.turn:g})"
-
-
-def model_of(obj: Any) -> str:
-    """The model of an object."""
-    return str(getattr(obj, "dynamics", "point"))
+_POINTS: Final = ("free", "guided", "static")
+"""Models that are points here."""
 
 
 class _Group:
@@ -192,15 +79,14 @@ class KinematicSimulation(Simulation):
 
     def __init__(self, scene: Scene, **options: Any) -> None:
         self._groups = {model: _Group() for model in MODELS}
+        self._cameras = Cameras()
         super().__init__(scene, **options)
 
     def createObjectInSimulator(self, obj: Any) -> None:
         """Take the object's pose and velocity over."""
-        model = model_of(obj)
-        if model not in self._groups:
-            raise SimulationCreationError(f"unknown dynamics {model!r}; one of {', '.join(MODELS)}")
+        group = self._group(obj)
         yaw, pitch, roll = obj.orientation.eulerAngles
-        (x, y, z), (vx, vy, vz) = obj.position, obj.velocity
+        (x, y, z), (vx, vy, vz) = obj.position, (0, 0, 0) if model_of(obj) == "static" else obj.velocity
         speed = vy * math.cos(yaw) - vx * math.sin(yaw)
         state = {
             "x": x,
@@ -213,7 +99,7 @@ class KinematicSimulation(Simulation):
             "pitch": pitch,
             "roll": roll,
         }
-        self._groups[model].add(
+        group.add(
             obj,
             {
                 **state,
@@ -226,10 +112,26 @@ class KinematicSimulation(Simulation):
             },
         )
 
-    def command(self, agent: Any, column: str, value: float) -> None:
-        """Set a command, or a part of the state, of an agent."""
-        group = self._groups[model_of(agent)]
-        group[column][group.rows[id(agent)]] = value
+    def command(self, agent: Any, values: Mapping[str, float]) -> None:
+        """Set commands, or parts of the state, of an agent."""
+        group = self._group(agent)
+        for column, value in values.items():
+            group[column][group.rows[id(agent)]] = value
+
+    def _group(self, obj: Any) -> _Group:
+        model = model_of(obj)
+        if model in _POINTS:
+            return self._groups["point"]
+        if model not in self._groups:
+            raise SimulationCreationError(
+                f"unknown dynamics {model!r}", help=f"use one of {', '.join((*MODELS, *_POINTS))}"
+            )
+        return self._groups[model]
+
+    def sense(self) -> None:
+        """Let cameras see."""
+        self._cameras.deliver(self)
+        super().sense()
 
     def step(self) -> None:
         """Advance all objects."""
@@ -239,7 +141,7 @@ class KinematicSimulation(Simulation):
 
     def getProperties(self, obj: Any, properties: Any) -> Mapping[str, Any]:
         """Read the object's row."""
-        group = self._groups[model_of(obj)]
+        group = self._group(obj)
         row = group.rows[id(obj)]
         x, y, z, vx, vy, vz, yaw, pitch, roll, _, rate, *_ = (float(group[name][row]) for name in _STATE)
         stored = obj.__dict__

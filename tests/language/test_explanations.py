@@ -12,6 +12,7 @@ from scenic.language.explanations import Explanation, explanation
 from scenic.pipeline import deep_check, diagnose, scenarioFromString
 from scenic.project.index import Project
 from scenic.project.surroundings import surroundings_in
+from scenic.simulators.kinematic import KinematicSimulator
 
 PAGES = sorted(
     file.name.removesuffix(".md")
@@ -59,7 +60,9 @@ def observed(page: Explanation, text: str, folder: Path) -> list[Diagnostic]:
         file.write_text(text)
         return list(deep_check(file))
     try:
-        scenarioFromString(text).generate(maxIterations=20)
+        scene, _ = scenarioFromString(text).generate(maxIterations=20)
+        if page.code == "SC504":
+            KinematicSimulator().simulate(scene, maxSteps=1)
     except Exception as error:  # noqa: BLE001 - whatever it is, it is what the user would see
         found = diagnose(error)
         assert found is not None

@@ -7,7 +7,8 @@ import pytest
 
 import scenic
 from scenic.language.errors import InvalidScenarioError, SimulationCreationError
-from scenic.simulators.kinematic import DRAG, GRAVITY, KinematicSimulator
+from scenic.simulators.commands import DRAG, GRAVITY
+from scenic.simulators.kinematic import KinematicSimulator
 
 HEAD = "from scenic.simulators.kinematic import *\n"
 
@@ -78,6 +79,29 @@ def test_objects_without_actions_keep_their_velocity() -> None:
     done = run("ego = new Object with velocity (1, 2, 0)\nother = new Object at (9, 9)\n", 10)
     assert tuple(done.poses[-1][0][0]) == pytest.approx((1, 2, 0))
     assert tuple(done.poses[-1][1][0]) == (9, 9, 0)
+
+
+def test_models_of_other_simulators_are_points_here() -> None:
+    done = run(
+        "ego = new Object with dynamics 'static', with speed 3\nnew Object at (9, 9), with dynamics 'free', with speed 3\n",
+        10,
+    )
+    assert tuple(done.poses[-1][0][0]) == (0, 0, 0)
+    assert tuple(done.poses[-1][1][0]) == pytest.approx((9, 12, 0))
+    with pytest.raises(InvalidScenarioError, match="cannot take these actions"):
+        driven("SetVelocity((1, 1))", "with dynamics 'static'")
+
+
+def test_cameras_see_what_moves() -> None:
+    text = """
+from scenic import SSSensor
+ego = new Object with sensors {'parts': SSSensor(width=32, height=24)}
+new Object at (0, 5, 0), with speed 10
+record ego.observations['parts'] as parts
+"""
+    sizes = [(image["instance"] == 2).sum() for _, image in run(text, 5).records["parts"]]
+    assert sizes == sorted(sizes, reverse=True)
+    assert sizes[-1] < 0.5 * sizes[0]
 
 
 def test_commands_of_another_model_are_refused() -> None:

@@ -1,0 +1,66 @@
+"""What the cameras of objects see while a simulation runs, with rays: no display, the same everywhere."""
+
+from collections.abc import Collection, Iterator, Mapping
+from typing import Any
+
+import numpy as np
+
+from scenic.formats.instances import Gallery
+from scenic.formats.labels import observe
+from scenic.formats.sensors import sensor_viewpoint
+from scenic.runtime.sensors import CameraSensor, Sensor
+
+__all__ = ["Cameras", "carried"]
+
+
+class Cameras:
+    """Gives the cameras of a simulation their images, as `docs/cameras.md` describes them."""
+
+    def __init__(self) -> None:
+        self._gallery = Gallery()
+        self._classes: dict[str, int] = {}
+
+    def deliver(self, simulation: Any, *, leave: Collection[tuple[str, ...]] = ()) -> None:
+        """Let every camera see the objects as they are now, but those whose outputs are among ``leave``."""
+        now: _Now | None = None
+        for obj, name, sensor in carried(simulation.objects):
+            if sensor.outputs not in leave:
+                now = now or _Now(simulation)
+                sensor.deliver(self._image(now, obj, name, sensor))
+
+    def _image(self, now: "_Now", owner: Any, name: str, sensor: CameraSensor) -> Any:
+        """The image of one camera; a dictionary of images for one that gives several."""
+        seen = observe(now, sensor_viewpoint(name, owner, sensor), gallery=self._gallery, labelled=False)
+        instance = (seen.objects + 1).astype(np.uint16)
+        images = {"rgb": seen.rgb, "depth": seen.depth, "instance": instance}
+        if "semantic" in sensor.outputs:
+            kinds = [type(obj).__name__ for obj in now.objects]
+            numbers = [self._classes.setdefault(kind, len(self._classes) + 1) for kind in kinds]
+            images["semantic"] = np.array([0, *numbers], dtype=np.uint16)[instance]
+        wanted = {output: images[output] for output in sensor.outputs}
+        return wanted if len(wanted) != 1 else next(iter(wanted.values()))
+
+
+def carried(objects: Any) -> Iterator[tuple[Any, str, CameraSensor]]:
+    """The cameras of objects that wait for images: owner, name and camera."""
+    for obj in objects:
+        for name, sensor in obj.sensors.items():
+            if isinstance(sensor, CameraSensor) and type(sensor).getObservation is Sensor.getObservation:
+                yield obj, str(name), sensor
+
+
+class _Now:
+    """The objects of a simulation as a scene to be drawn."""
+
+    def __init__(self, simulation: Any) -> None:
+        scene = simulation.scene
+        self.objects = tuple(simulation.objects)
+        self.names: Mapping[Any, str] = scene.names
+        self.egoObject = scene.egoObject
+        self.workspace = scene.workspace
+        self.seed, self.k, self.attempts = scene.seed, scene.k, scene.attempts
+        self.params: Mapping[str, object] = {}
+
+    def origin(self, thing: Any) -> Any:
+        """What an object is in all scenes; nobody asks while images are made."""
+        raise KeyError(thing)

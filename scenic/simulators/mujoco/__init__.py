@@ -1,0 +1,21 @@
+"""Simulations in MuJoCo: rigid bodies with mass, contacts and friction; robots on wheels, grippers, quadrotors.
+
+A program takes the names from here (``from scenic.simulators.mujoco import *``), or says ``model scenic.simulators.mujoco.model``.
+"""
+
+from scenic.simulators.commands import Fly, SetAcceleration, SetVelocity, SetWheelSpeeds
+from scenic.simulators.mujoco.actions import ApplyForce, Grasp, Release
+from scenic.simulators.mujoco.simulation import MujocoSimulation
+from scenic.simulators.mujoco.simulator import MujocoSimulator
+
+__all__ = [
+    "ApplyForce",
+    "Fly",
+    "Grasp",
+    "MujocoSimulation",
+    "MujocoSimulator",
+    "Release",
+    "SetAcceleration",
+    "SetVelocity",
+    "SetWheelSpeeds",
+]

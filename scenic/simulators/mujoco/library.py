@@ -1,0 +1,45 @@
+"""The MuJoCo library, which is optional: imported when a simulation is made."""
+
+import os
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from scenic.language.errors import UnsupportedError
+
+__all__ = ["library", "quietly"]
+
+
+def library() -> Any:
+    """The module ``mujoco``; raises `UnsupportedError` without it. It has no types, hence `Any`."""
+    if sys.platform == "linux" and not os.environ.get("DISPLAY"):
+        # The library reads this when it is imported; its own choice would need a window.
+        os.environ.setdefault("MUJOCO_GL", "egl")
+    try:
+        import mujoco  # optional, and slow to import
+    except ImportError as error:
+        raise UnsupportedError(
+            "the MuJoCo simulator needs the package mujoco-core",
+            help="install scenic-lang[mujoco], or simulate with --simulator kinematic",
+        ) from error
+    return mujoco
+
+
+@contextmanager
+def quietly() -> Iterator[None]:
+    """Within this the library's warnings are neither printed nor written to its log file in the working directory.
+
+    What they warn of is counted in ``MjData.warning``, which is read after each step.
+    """
+    mujoco = library()
+    before = mujoco.get_mju_user_warning()
+    mujoco.set_mju_user_warning(_ignore)
+    try:
+        yield
+    finally:
+        mujoco.set_mju_user_warning(before)
+
+
+def _ignore(_message: str) -> None:
+    pass

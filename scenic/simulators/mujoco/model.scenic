@@ -1,0 +1,45 @@
+"""World model of the MuJoCo simulator: kinds of bodies, and the actions that they take."""
+
+from scenic.simulators.mujoco import *
+
+simulator MujocoSimulator()
+
+class Body:
+    """A rigid body; kilograms if `mass` is given, else kilograms per cubic metre."""
+    dynamics: 'free'
+    mass: None
+    density: 1000
+    friction: 1
+    collides: True
+
+class Fixture:
+    """A part of the world that cannot be moved: floors, walls, tables."""
+    dynamics: 'static'
+    friction: 1
+    collides: True
+
+class Robot(Body):
+    """Drives on two wheels, whose speeds `SetWheelSpeeds` sets."""
+    dynamics: 'differential'
+    width: 0.35
+    length: 0.35
+    height: 0.12
+    wheelRadius: 0.04
+    density: 300
+
+class Gripper(Body):
+    """A hand that moves as `SetVelocity` says, and holds what it touches from `Grasp` to `Release`."""
+    dynamics: 'guided'
+    width: 0.08
+    length: 0.08
+    height: 0.1
+    reach: 0.02
+    holding[dynamic]: False
+
+class Quadrotor(Body):
+    """Flies as `Fly` says."""
+    dynamics: 'quadrotor'
+    width: 0.4
+    length: 0.4
+    height: 0.1
+    mass: 1
