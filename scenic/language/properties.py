@@ -346,7 +346,7 @@ _OBJECT = BuiltinClass(
         ),
         _P("angularSpeed", "scalar", "0", "Angular speed at the start of a simulation.", dynamic=True),
         _P("behavior", "behavior or None", "None", "What it does during a simulation."),
-        _P("lastActions", "tuple of actions", "()", "The actions that it took in the previous step."),
+        _P("lastActions", "tuple of actions", "()", "The actions that it took last; none while it decides."),
         _P("sensors", "dictionary of sensors", "{}", "Its sensors by name."),
         _P("observations", "dictionary", "{}", "The latest observation of each sensor.", final=True),
     ),

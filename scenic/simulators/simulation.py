@@ -329,8 +329,6 @@ class Simulation(ABC):
             for agent, taken in actions.items():
                 print(f"      Agent {agent!r} takes action(s) {taken!r}")  # noqa: T201 - asked for by the user
         self.executeActions(actions)
-        for agent, taken in actions.items():
-            agent.__dict__["lastActions"] = tuple(taken)
 
     def advance(self) -> None:
         """One step of the simulator, after which properties are read back."""

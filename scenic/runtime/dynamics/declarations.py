@@ -7,7 +7,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
-from scenic.language.errors import InvalidScenarioError
 from scenic.language.spans import Span
 from scenic.runtime.temporal.formulas import Atom, Formula, Operation
 
@@ -147,9 +146,3 @@ class Declared:
         for record in self.records:
             parts += [*record.value.random_parts(), record.to]
         return parts
-
-    def limit_to(self, limit: tuple[float, str], span: Span | None) -> None:
-        """Set the time limit."""
-        if self.limit is not None:
-            raise InvalidScenarioError("the scenario has a time limit already", span=span)
-        self.limit = limit

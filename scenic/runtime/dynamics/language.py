@@ -191,7 +191,7 @@ class Dynamics:
             raise ScenicTypeError(
                 f"`terminate after`: expected a fixed number of {unit}, not {describe(value)}", span=here()
             )
-        self._declared.limit_to((value, unit), here())
+        self._declared.limit = (value, unit)  # the last one counts
 
     def record(
         self,

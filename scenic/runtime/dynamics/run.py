@@ -324,6 +324,9 @@ class Run:
                     recording.finish()
 
     def _monitors(self) -> None:
+        """Resume all monitors; only then stop scenarios, so that every monitor sees the step whatever the others ask for."""
+        reasons: dict[ScenarioActivation, str] = {}
+        end: str | None = None
         for scenario in list(self.scenarios):
             for monitor in list(scenario.monitors):
                 with self.within(scenario):
@@ -332,12 +335,17 @@ class Run:
                     if monitor in scenario.monitors:
                         scenario.monitors.remove(monitor)
                 elif isinstance(output, Termination):
+                    # Of several requests the last one gives the reason.
                     if output.simulation:
-                        self._remember("terminatedByMonitor", output.reason)
+                        end = output.reason
                     else:
-                        scenario.stop(output.reason)
-                        if scenario is self.top:
-                            self._remember("terminatedByMonitor", output.reason)
+                        reasons[scenario] = output.reason
+        if end is not None:
+            self._remember("terminatedByMonitor", end)
+        for scenario, reason in reasons.items():
+            scenario.stop(reason)
+            if scenario is self.top:
+                self._remember("terminatedByMonitor", reason)
 
     def _end_conditions(self) -> None:
         for scenario in self.scenarios:
@@ -358,6 +366,8 @@ class Run:
             actions = self._turn(agent)
             if actions is None:
                 return None
+            # Agents that decide later may look at it.
+            agent.__dict__["lastActions"] = tuple(actions)
             chosen[id(agent)] = actions
         # In the order of the agents, whatever the schedule was.
         return {agent: chosen[id(agent)] for agent in simulation.agents if id(agent) in chosen}
