@@ -21,7 +21,7 @@ from scenic.formats.files import OutputError
 from scenic.formats.growing import GrowingFile
 from scenic.language.errors import Located
 
-__all__ = ["NOT_ALL", "parameter_value", "sample"]
+__all__ = ["NOT_ALL", "image_size_option", "outlook_option", "parameter_value", "sample"]
 
 NOT_ALL: Final = 3
 """Exit code: some scenes were not found within the limits."""
@@ -69,9 +69,10 @@ def _seconds(_context: click.Context, _option: click.Parameter, given: float | N
     return given
 
 
-def _image_size(
+def image_size_option(
     _context: click.Context, _option: click.Parameter, given: str | None
 ) -> tuple[int, int] | None:
+    """Columns and rows of an image."""
     if given is None:
         return None
     match = re.fullmatch(r"(\d{1,5})[xX](\d{1,5})", given)
@@ -82,7 +83,10 @@ def _image_size(
     return int(match[1]), int(match[2])
 
 
-def _outlook(_context: click.Context, _option: click.Parameter, given: str | None) -> Mapping[str, float]:
+def outlook_option(
+    _context: click.Context, _option: click.Parameter, given: str | None
+) -> Mapping[str, float]:
+    """Azimuth and elevation of a camera, as an `Outlook` takes them."""
     if given is None:
         return {}
     if given == "above":
@@ -162,7 +166,7 @@ def _outlook(_context: click.Context, _option: click.Parameter, given: str | Non
     "-o",
     "--output",
     metavar="OUT",
-    help="JSON Lines to this file, or a 3D file for each scene if OUT ends in .glb; - is standard output, which is "
+    help="JSON Lines to this file, or a 3D file for each scene if OUT ends in .glb or .obj; - is standard output, which is "
     "the default without --view and --png.",
 )
 @click.option(
@@ -179,14 +183,14 @@ def _outlook(_context: click.Context, _option: click.Parameter, given: str | Non
 @click.option(
     "--image-size",
     metavar="WxH",
-    callback=_image_size,
+    callback=image_size_option,
     help="Columns and rows of the images.  [default: 960x720; a sensor's own]",
 )
 @click.option(
     "--look-from",
     "outlook",
     metavar="AZ,EL",
-    callback=_outlook,
+    callback=outlook_option,
     help="Where --png looks from: degrees east of south and above the horizon, or 'above'.  [default: -35,33]",
 )
 @click.option(

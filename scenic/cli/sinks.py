@@ -25,10 +25,13 @@ _OTHER_FORMATS = {
     ".csv": "scenes are written as JSON Lines: a name that ends in .jsonl",
     ".json": "scenes are written as JSON Lines: a name that ends in .jsonl",
     ".gltf": "write the binary form of it: a name that ends in .glb",
-    ".obj": "3D files are written as .glb",
-    ".stl": "3D files are written as .glb",
-    ".ply": "3D files are written as .glb",
+    ".stl": "3D files are written as .glb or .obj",
+    ".ply": "3D files are written as .glb or .obj",
 }
+
+
+_SOLID = frozenset({".glb", ".obj"})
+"""Endings of 3D files."""
 
 
 class OutputChoiceError(Located):
@@ -45,14 +48,14 @@ def is_lines(path: Path) -> bool:
     suffix = path.suffix.lower()
     if path != STANDARD_OUTPUT and suffix in _OTHER_FORMATS:
         raise OutputChoiceError(f"scenes are not written as '{suffix}' files", help=_OTHER_FORMATS[suffix])
-    return suffix != ".glb"
+    return suffix not in _SOLID
 
 
 def scene_file(path: Path, count: int) -> Sink:
-    """A ``.glb`` file for each scene; raises ``OutputError`` or ``OutputChoiceError`` at once if that cannot be."""
+    """A ``.glb`` or ``.obj`` file for each scene, by the name's ending; raises ``OutputError`` at once if that cannot be."""
     check_writable(path)
     _check_numbered(path, count)
-    return _glb_files(path, count)
+    return (_obj_files if path.suffix.lower() == ".obj" else _glb_files)(path, count)
 
 
 def page(path: Path, title: str) -> Sink:
@@ -69,7 +72,7 @@ def labelled(folder: Path, camera: str, size: tuple[int, int] | None) -> Sink:
     from scenic.formats.png import require_pillow
 
     require_pillow()
-    if folder == STANDARD_OUTPUT or folder.suffix.lower() in {*_OTHER_FORMATS, ".glb", ".jsonl"}:
+    if folder == STANDARD_OUTPUT or folder.suffix.lower() in {*_OTHER_FORMATS, *_SOLID, ".jsonl"}:
         raise OutputChoiceError(
             f"labelled images cannot be written to '{folder}'", help="give a folder: --camera front -o images"
         )
@@ -125,6 +128,20 @@ def _glb_files(path: Path, count: int) -> Iterator[Take]:
 
     def take(scene: Scene) -> None:
         write(numbered(path, scene.k, count), glb(scene))
+
+    yield take
+
+
+@contextmanager
+def _obj_files(path: Path, count: int) -> Iterator[Take]:
+    from scenic.formats.obj import obj
+
+    def take(scene: Scene) -> None:
+        file = numbered(path, scene.k, count)
+        library = file.with_suffix(".mtl")
+        content, materials = obj(scene, library.name)
+        write(library, materials)
+        write(file, content)
 
     yield take
 

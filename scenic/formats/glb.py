@@ -11,7 +11,7 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
-from scenic.formats.instances import Instance, Surface, picture
+from scenic.formats.instances import Instance, Surface, distinct_labels, picture
 from scenic.formats.poses import Four
 from scenic.formats.scenes import Scene
 
@@ -31,14 +31,14 @@ def glb(scene: Scene) -> bytes:
     meshes: dict[tuple[int, Four], int] = {}
     mesh_list: list[dict[str, Any]] = []
     nodes: list[dict[str, Any]] = []
-    names: set[str] = set()
+    names = distinct_labels(drawn.scenes[0])
     for index, instance in enumerate(drawn.scenes[0]):
         key = (instance.surface, instance.color)
         if key not in meshes:
             meshes[key] = len(mesh_list)
             material = materials.setdefault(instance.color, len(materials))
             mesh_list.append({"primitives": [{**primitives[instance.surface], "material": material}]})
-        nodes.append(_node(instance, index, meshes[key], names))
+        nodes.append(_node(instance, index, meshes[key], names[index]))
     root = {
         "name": "scene",
         # A quarter turn about X: Z up becomes Y up, and north (Y) becomes -Z, which is ahead in glTF.
@@ -63,13 +63,8 @@ def glb(scene: Scene) -> bytes:
     return _container(json.dumps(document, separators=(",", ":")).encode(), bytes(buffers.data))
 
 
-def _node(instance: Instance, index: int, mesh: int, names: set[str]) -> dict[str, Any]:
-    """The node of an object, under a name that no other has."""
-    name, count = instance.label, 1
-    while name in names:
-        count += 1
-        name = f"{instance.label} {count}"
-    names.add(name)
+def _node(instance: Instance, index: int, mesh: int, name: str) -> dict[str, Any]:
+    """The node of an object."""
     return {
         "name": name,
         "mesh": mesh,

@@ -142,6 +142,18 @@ def picture(scenes: Iterable[Scene]) -> Picture:
     return Picture(gallery.surfaces, drawn)
 
 
+def distinct_labels(instances: Iterable[Instance]) -> list[str]:
+    """A name for each instance that no other has: its label, with a number from the second use on."""
+    names: dict[str, None] = {}
+    for instance in instances:
+        name, count = instance.label, 1
+        while name in names:
+            count += 1
+            name = f"{instance.label} {count}"
+        names[name] = None
+    return list(names)
+
+
 def _color(thing: SceneObject, default: Triple) -> Four:
     if thing.color is None:
         return (*default, 1.0)

@@ -15,7 +15,9 @@ def quaternion_of(thing: SceneObject) -> Four:
     """The global orientation as a quaternion ``(x, y, z, w)``, of the two signs that with ``w >= 0``."""
     rotation = thing.orientation
     x, y, z, w = (float(value) for value in (rotation.x, rotation.y, rotation.z, rotation.w))
-    return (-x, -y, -z, -w) if w < 0 else (x, y, z, w)
+    sign = -1.0 if w < 0 else 1.0
+    # No negative zeros, which would come back as positive ones.
+    return sign * x + 0.0, sign * y + 0.0, sign * z + 0.0, sign * w + 0.0
 
 
 def rotation_matrix(quaternion: Four) -> npt.NDArray[np.float64]:

@@ -1,7 +1,7 @@
 """Scenes read back from JSON Lines (``docs/scene-format.md``), as plain data with names."""
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -68,16 +68,29 @@ def read_scenes(path: str | Path) -> Iterator[ReadScene]:
     """
     try:
         with Path(path).open(encoding="utf-8") as lines:
-            for number, line in enumerate(lines, start=1):
-                try:
-                    yield _scene(json.loads(line, object_hook=_number))
-                except (ValueError, KeyError, TypeError, IndexError) as error:
-                    raise SceneFileError(
-                        f"line {number} of '{path}' holds no scene ({error})",
-                        help="read files that `scenic sample` has written as JSON Lines",
-                    ) from error
+            yield from scenes_of(lines, str(path))
     except OSError as error:
         raise MissingFileError(f"cannot read '{path}': {(error.strerror or str(error)).lower()}") from error
+
+
+def scenes_of(lines: Iterable[str], name: str) -> Iterator[ReadScene]:
+    """The scenes of lines of text; ``name`` is where they come from. Raises ``SceneFileError`` at a line that holds none."""
+    number = 0
+    try:
+        for number, line in enumerate(lines, start=1):
+            try:
+                yield _scene(json.loads(line, object_hook=_number))
+            except (ValueError, KeyError, TypeError, IndexError, AttributeError, RecursionError) as error:
+                raise _no_scene(number, name, error) from error
+    except UnicodeDecodeError as error:
+        raise _no_scene(number + 1, name, error) from error
+
+
+def _no_scene(number: int, name: str, error: Exception) -> SceneFileError:
+    return SceneFileError(
+        f"line {number} of '{name}' holds no scene ({error})",
+        help="read files that `scenic sample` has written as JSON Lines",
+    )
 
 
 def _number(data: dict[str, Any]) -> Any:

@@ -210,7 +210,7 @@ def test_outputs_are_checked_before_sampling(stub: Stub, tmp_path: Path, option:
 
 
 @pytest.mark.parametrize(
-    ("name", "help"), [("a.png", "--png"), ("a.html", "--view"), ("a.gltf", ".glb"), ("a.OBJ", ".glb")]
+    ("name", "help"), [("a.png", "--png"), ("a.html", "--view"), ("a.gltf", ".glb"), ("a.STL", ".glb")]
 )
 def test_other_formats_are_refused(stub: Stub, tmp_path: Path, name: str, help: str) -> None:
     result = run("-o", tmp_path / name)

@@ -1,0 +1,125 @@
+"""``scenic view``: a page, 3D files or images of scenes that `scenic sample` has written as JSON Lines."""
+
+import sys
+from collections.abc import Iterator, Mapping
+from contextlib import ExitStack
+from itertools import chain, islice
+from pathlib import Path
+from typing import Final
+
+import click
+
+from scenic.cli import sinks
+from scenic.cli.output import CLEAN
+from scenic.cli.sample import image_size_option, outlook_option
+from scenic.formats.reading import ReadScene, SceneFileError, read_scenes, scenes_of
+
+__all__ = ["view"]
+
+_STANDARD_INPUT: Final = "-"
+_PAGES: Final = frozenset({".html", ".htm"})
+
+
+@click.command()
+@click.argument("file", metavar="SCENES.jsonl")
+@click.option(
+    "-o",
+    "--output",
+    "outputs",
+    metavar="OUT",
+    multiple=True,
+    help="What to make, by its ending: one page of all scenes (.html), or a file for each scene: .glb, .obj or .png; "
+    "any other name is a folder for images. Repeatable.  [default: a page beside SCENES.jsonl]",
+)
+@click.option(
+    "--first",
+    metavar="K",
+    type=click.IntRange(min=0),
+    default=0,
+    help="Leave out scenes with k less than this.",
+)
+@click.option("-n", "count", metavar="N", type=click.IntRange(min=1), help="At most so many.  [default: all]")
+@click.option(
+    "--image-size",
+    metavar="WxH",
+    callback=image_size_option,
+    help="Columns and rows of the images.  [default: 960x720]",
+)
+@click.option(
+    "--look-from",
+    "outlook",
+    metavar="AZ,EL",
+    callback=outlook_option,
+    help="Where images look from: degrees east of south and above the horizon, or 'above'.  [default: -35,33]",
+)
+def view(
+    file: str,
+    outputs: tuple[str, ...],
+    first: int,
+    count: int | None,
+    image_size: tuple[int, int] | None,
+    outlook: Mapping[str, float],
+) -> int:
+    """Show scenes that `scenic sample -o SCENES.jsonl` has saved; - reads them from standard input.
+
+    The program is not run. Meshes of files are read again; a form that cannot be had any more is shown as its box.
+
+    Exit codes: 0 success, 2 a file cannot be read or written or holds no scenes.
+    """
+    source = Path(file)
+    if not outputs:
+        if file == _STANDARD_INPUT:
+            raise click.UsageError("scenes from standard input need a name for what is made: -o scenes.html")
+        outputs = (str(source.with_suffix(".html")),)
+    scenes = _chosen(file, first, count)
+    head = list(islice(scenes, 2))
+    if not head:
+        raise SceneFileError(
+            f"no scene to show in '{file}'"
+            + (f" from k = {first} on" if first else "; it holds none" if count is None else ""),
+            help="make some: scenic sample PROGRAM.scenic -n 10 -o scenes.jsonl",
+        )
+    title = "scenes" if file == _STANDARD_INPUT else source.name
+    # One scene has the very name, of several each has its number.
+    chosen = [_sink(Path(name), title, len(head), image_size, outlook) for name in outputs]
+
+    # These bring in NumPy and the geometry libraries.
+    from scenic.formats.revival import Revival
+
+    revival = Revival()
+    numbers: dict[int, int] = {}
+    with ExitStack() as stack:
+        takers = [stack.enter_context(sink) for sink in chosen]
+        for read in chain(head, scenes):
+            if numbers.setdefault(read.k, read.seed) != read.seed:
+                raise SceneFileError(
+                    f"'{file}' holds several scenes of number {read.k}, of seeds {numbers[read.k]} and {read.seed}",
+                    help="show the scenes of one seed at a time",
+                )
+            scene = revival.revive(read)
+            for take in takers:
+                take(scene)
+    for reason in dict.fromkeys(revival.substituted.values()):
+        sys.stderr.write(f"warning: {reason}: boxes stand for what has this form\n")
+    return CLEAN
+
+
+def _chosen(file: str, first: int, count: int | None) -> Iterator[ReadScene]:
+    read = scenes_of(sys.stdin, "standard input") if file == _STANDARD_INPUT else read_scenes(file)
+    return islice((scene for scene in read if scene.k >= first), count)
+
+
+def _sink(
+    path: Path, title: str, count: int, image_size: tuple[int, int] | None, outlook: Mapping[str, float]
+) -> sinks.Sink:
+    suffix = path.suffix.lower()
+    if suffix in _PAGES:
+        return sinks.page(path, title)
+    if suffix in {".png", ""}:
+        return sinks.images(path, Path(title).stem, count, image_size, outlook)
+    if sinks.is_lines(path):
+        raise sinks.OutputChoiceError(
+            f"saved scenes are not shown as '{suffix}' files",
+            help="give a name that ends in .html, .glb, .obj or .png",
+        )
+    return sinks.scene_file(path, count)
