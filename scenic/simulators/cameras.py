@@ -10,7 +10,7 @@ from scenic.formats.labels import observe
 from scenic.formats.sensors import sensor_viewpoint
 from scenic.runtime.sensors import CameraSensor, Sensor
 
-__all__ = ["Cameras", "carried"]
+__all__ = ["Cameras", "Present", "carried"]
 
 
 class Cameras:
@@ -22,13 +22,13 @@ class Cameras:
 
     def deliver(self, simulation: Any, *, leave: Collection[tuple[str, ...]] = ()) -> None:
         """Let every camera see the objects as they are now, but those whose outputs are among ``leave``."""
-        now: _Now | None = None
+        now: Present | None = None
         for obj, name, sensor in carried(simulation.objects):
             if sensor.outputs not in leave:
-                now = now or _Now(simulation)
+                now = now or Present(simulation)
                 sensor.deliver(self._image(now, obj, name, sensor))
 
-    def _image(self, now: "_Now", owner: Any, name: str, sensor: CameraSensor) -> Any:
+    def _image(self, now: "Present", owner: Any, name: str, sensor: CameraSensor) -> Any:
         """The image of one camera; a dictionary of images for one that gives several."""
         seen = observe(now, sensor_viewpoint(name, owner, sensor), gallery=self._gallery, labelled=False)
         instance = (seen.objects + 1).astype(np.uint16)
@@ -49,7 +49,7 @@ def carried(objects: Any) -> Iterator[tuple[Any, str, CameraSensor]]:
                 yield obj, str(name), sensor
 
 
-class _Now:
+class Present:
     """The objects of a simulation as a scene to be drawn."""
 
     def __init__(self, simulation: Any) -> None:

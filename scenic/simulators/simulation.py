@@ -1,7 +1,7 @@
 """One simulation: the part of the interface that a simulator fills in, and what joins it to the running program."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Generator, Mapping, Sequence
 from contextlib import ExitStack
 from typing import Any
 
@@ -151,7 +151,31 @@ class Simulation(ABC):
         with self._isolated:
             return next(self._loop, None) is not None
 
-    def _whole(self) -> Iterator[bool]:
+    def take(self, agent: Any, actions: Sequence[Any]) -> None:
+        """Let an agent take actions from outside in the present step, on top of what its behavior has done.
+
+        For simulations that are advanced step by step, before `advanceOnce`.
+
+        Raises:
+            InvalidScenarioError: the agent cannot take these actions in one step.
+
+        """
+        if not actions:
+            return
+        with self._isolated:
+            self.check_actions(agent, tuple(actions))
+            done = self.actionSequence[-1]
+            done[agent] = (*done.get(agent, ()), *actions)
+            self.executeActions({agent: tuple(actions)})
+            agent.__dict__["lastActions"] = done[agent]
+
+    def cancel(self) -> None:
+        """Give up a simulation that is advanced step by step: there is no result, and no file of its records remains."""
+        with self._isolated:
+            self._loop.close()
+        self._destroy_once()
+
+    def _whole(self) -> Generator[bool, None, None]:
         """The simulation from its set-up to its end, a step at a time."""
         run = self._run
         ended = False
