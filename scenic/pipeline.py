@@ -33,6 +33,7 @@ from scenic.runtime.objects import Object, Point
 from scenic.runtime.prelude import Loader
 from scenic.runtime.program import Module, Program
 from scenic.runtime.randomness import preserved, seed_globals
+from scenic.runtime.regions.base import Everywhere, Nowhere, Region, Workspace
 from scenic.runtime.saving import program_digest
 from scenic.runtime.scenario import Scenario
 from scenic.runtime.values import is_random
@@ -232,6 +233,7 @@ def _scenario(
             ego=state.ego,
             workspace=state.workspace,
             names=_names(module, state.ego),
+            regions=_regions(module),
             mode_2d=mode_2d,
             digest=program_digest(text, options),
             view=show_page,
@@ -386,6 +388,17 @@ def _names(module: ModuleType, ego: Object | None) -> dict[int, str]:
     if ego is not None:
         names.setdefault(id(ego), "ego")
     return names
+
+
+def _regions(module: ModuleType) -> dict[str, Region]:
+    """Variables of the module that hold regions with bounds; the workspace is known as such."""
+    return {
+        name: value
+        for name, value in vars(module).items()
+        if isinstance(value, Region)
+        and not isinstance(value, Workspace | Everywhere | Nowhere)
+        and not name.startswith("_")
+    }
 
 
 __all__ = [

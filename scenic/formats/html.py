@@ -29,6 +29,8 @@ class Page:
         self._title = title
         self._gallery = Gallery()
         self._scenes: list[dict[str, Any]] = []
+        # Most regions are the same in all scenes: their lines are on the page once.
+        self._outlines: dict[str, int] = {}
 
     def __len__(self) -> int:
         return len(self._scenes)
@@ -42,14 +44,32 @@ class Page:
                 "attempts": scene.attempts,
                 "params": {str(name): _brief(value) for name, value in scene.params.items()},
                 "objects": [_object(instance) for instance in self._gallery.add(scene)],
-                "regions": [_points(line) for line in outlines(scene.workspace)],
+                "workspace": self._outline(scene.workspace),
+                "regions": self._regions(scene),
             }
         )
+
+    def _regions(self, scene: Scene) -> dict[str, int]:
+        """Numbers of the lines of named regions; those without lines, and the workspace, are left out."""
+        workspace = getattr(scene.workspace, "region", scene.workspace)
+        # Scenes that were read from a file have no regions.
+        named = getattr(scene, "regions", {}).items()
+        numbers = {name: self._outline(region) for name, region in named if region is not workspace}
+        return {name: number for name, number in numbers.items() if number is not None}
+
+    def _outline(self, region: object) -> int | None:
+        """The number of a region's lines on the page; ``None`` if it has none."""
+        lines = [_points(line) for line in outlines(region)]
+        if not lines:
+            return None
+        text = json.dumps(lines, allow_nan=False, separators=(",", ":"))
+        return self._outlines.setdefault(text, len(self._outlines))
 
     def text(self) -> str:
         """The text of the page, which needs at least one scene."""
         data = {"meshes": [_mesh(surface) for surface in self._gallery.surfaces], "scenes": self._scenes}
         text = json.dumps(data, allow_nan=False, separators=(",", ":"))
+        text = f'{text[:-1]},"outlines":[{",".join(self._outlines)}]}}'
         parts = {
             "title": markup.escape(self._title),
             "style": _asset("page.css"),

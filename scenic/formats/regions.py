@@ -1,53 +1,239 @@
 """Regions as lines to be drawn, and the box around them."""
 
-from itertools import product
-from typing import Any
+from collections.abc import Callable, Sequence
+from itertools import pairwise, product
+from typing import Any, Final
 
 import numpy as np
+import numpy.typing as npt
 
 from scenic.formats.instances import Array
 from scenic.formats.poses import rotation_matrix
-from scenic.runtime.regions.planar import CircularRegion, PolygonalRegion, RectangularRegion
-from scenic.runtime.regions.volumes import BoxRegion, PlacedVolume
+from scenic.graph.kinds import Column
+from scenic.runtime.geometry.mesh import Mesh
+from scenic.runtime.regions.base import Everywhere, Nowhere, Region, Workspace
+from scenic.runtime.regions.bodies import OccupiedSpace, SideSurface
+from scenic.runtime.regions.composite import (
+    Composite,
+    DifferenceRegion,
+    IntersectionRegion,
+    UnionRegion,
+    exactly_contains,
+)
+from scenic.runtime.regions.lines import LineRegion
+from scenic.runtime.regions.meshes import solid_in_world
+from scenic.runtime.regions.planar import CircularRegion, Footprint, PlanarRegion, RectangularRegion
+from scenic.runtime.regions.scattered import PointSetRegion
+from scenic.runtime.regions.views import ViewRegion
+from scenic.runtime.regions.volumes import BoxRegion, SpheroidRegion
+
+Keep = Callable[[Array], npt.NDArray[np.bool_]]
 
 _CORNERS = np.array(list(product((-0.5, 0.5), repeat=3)))
 _EDGES = [(a, a | bit) for a in range(8) for bit in (1, 2, 4) if not a & bit]
 _SIDES = 72
+_CREASE: Final = np.cos(np.radians(25))
+"""Edges at which the faces of a mesh turn by more are drawn."""
+_SLACK: Final = 1e-9
+"""By how much a normal may miss what it has to reach, for rounding."""
+_ROUND: Final = 0.5
+"""Sections show a mesh of whose edges so large a part lies in curved faces."""
+_MOST_EDGES: Final = 3000
+_MOST_POINTS: Final = 1000
+_CLOUD: Final = 300
+"""So many points stand for a region of which nothing but its points is known."""
+_STEPS: Final = 400
+"""The diagonal of what is cut is so many times as long as the places that are tested."""
+_HATCHES: Final = 24
 
 
 def outlines(region: Any) -> list[Array]:
-    """Lines ``(k, 3)`` that show where a fixed region is; none for a region of another kind.
+    """Lines ``(k, 3)`` that show where a fixed region is; none for what is no region, or has no bounds.
 
-    Args:
-        region: a region, or a workspace.
-
+    Regions made of others are drawn as those parts of the others' lines that bound them; in the plane they are hatched, since
+    a volume cuts them along lines that no member has. Of what is only known by its points (voxels, and kinds that are
+    not known here), some points are shown.
     """
-    match getattr(region, "region", region):
-        case CircularRegion() as disc:
-            center = np.array(list(disc.center), dtype=float)
-            return [center + disc.radius * _ring()]
-        case RectangularRegion() as rectangle:
-            corners = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]]) / 2
+    while isinstance(region, Workspace):
+        region = region.region
+    if not isinstance(region, Region) or region.is_random or isinstance(region, Everywhere | Nowhere):
+        return []
+    columns = region.fixed_columns("the outline")
+    match region:
+        case CircularRegion():
+            return [columns[0] + columns[1][:, np.newaxis] * _ring()]
+        case RectangularRegion():
             offset = np.zeros((5, 3))
-            offset[:, :2] = corners * [rectangle.width, rectangle.length]
-            turn = rotation_matrix((0.0, 0.0, np.sin(rectangle.heading / 2), np.cos(rectangle.heading / 2)))
-            return [np.array(list(rectangle.position), dtype=float) + offset @ turn.T]
-        case PolygonalRegion() as polygonal:
-            rings = [ring for part in polygonal.polygons.geoms for ring in (part.exterior, *part.interiors)]
-            return [_at_height(np.array(ring.coords)[:, :2], polygonal.z) for ring in rings]
-        case PlacedVolume() as volume:
-            rotation = volume.rotation
-            quaternion = (rotation.x, rotation.y, rotation.z, rotation.w)
-            matrix = rotation_matrix(quaternion) * np.array(list(volume.dimensions))
-            middle = np.array(list(volume.position), dtype=float)
-            if isinstance(volume, BoxRegion):
-                lines = [_CORNERS[list(edge)] for edge in _EDGES]
-            else:
-                ring = _ring() / 2
-                lines = [ring, ring[:, [0, 2, 1]], ring[:, [2, 0, 1]]]
-            return [middle + line @ matrix.T for line in lines]
+            offset[:, :2] = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]]) / 2
+            offset *= [region.width, region.length, 0]
+            half = region.heading / 2
+            turn = rotation_matrix((0.0, 0.0, np.sin(half), np.cos(half)))
+            return [np.array(list(region.position), dtype=float) + offset @ turn.T]
+        case PlanarRegion():
+            return _rings(region.polygons, _height(region))
+        case Footprint():
+            return _rings(region.polygons, 0.0)
+        case LineRegion():
+            return _chained(np.stack([region.pieces.starts, region.pieces.ends], axis=1))
+        case PointSetRegion():
+            return _crosses(region.points)
+        case BoxRegion() | SpheroidRegion():
+            size, middle, turn = columns
+            frame = rotation_matrix(tuple(turn[0].tolist())) * size[0]
+            ring = _ring() / 2
+            rings = [ring, ring[:, [0, 2, 1]], ring[:, [2, 0, 1]]]
+            lines = [_CORNERS[list(edge)] for edge in _EDGES] if isinstance(region, BoxRegion) else rings
+            return [middle + line @ frame.T for line in lines]
+        case SideSurface():
+            return _mesh_lines(solid_in_world(columns), region.side, region.threshold)
+        case OccupiedSpace():
+            return _mesh_lines(solid_in_world(columns), None, 0.0)
+        case ViewRegion():
+            camera, orientation, horizontal, vertical, distance = columns
+            frame = rotation_matrix(tuple(orientation[0].tolist()))
+            angles = min(float(horizontal[0]), 2 * np.pi), min(float(vertical[0]), np.pi)
+            return [camera + line @ frame.T for line in view_outline(*angles, float(distance[0]))]
+        case UnionRegion():
+            return [line for member in region.members for line in outlines(member)]
+        case IntersectionRegion() | DifferenceRegion():
+            return _composed(region)
         case _:
-            return []
+            return _cloud(region, columns)
+
+
+def _composed(region: Composite) -> list[Array]:
+    """Those parts of the members' lines that bound an intersection or a difference; hatches where it is in a plane."""
+    members = [(member, member.fixed_columns("the outline")) for member in region.members]
+
+    def within(number: int, points: Array) -> npt.NDArray[np.bool_]:
+        return np.asarray(exactly_contains(members[number][0], points, members[number][1]))
+
+    lines = []
+    for number, member in enumerate(region.members):
+        others = [other for other in range(len(members)) if other != number]
+        # The border of what is taken away bounds the rest where it is in the first member.
+        inside = isinstance(region, IntersectionRegion) or number > 0
+        lines += _cut(
+            outlines(member),
+            lambda points, others=others, inside=inside: np.logical_and.reduce(  # type: ignore[misc] # of the loop
+                [within(other, points) == inside for other in others]
+            ),
+        )
+    flat = next((member for member in region.members if isinstance(member, PlanarRegion)), None)
+    box = bounds(flat)
+    if flat is None or box is None or region.dimension != 2:
+        return lines
+    own = region.fixed_columns("the outline")
+    (lower, upper), height = box, _height(flat)
+    hatches = [
+        np.array([[lower[0], y, height], [upper[0], y, height]])
+        for y in np.linspace(lower[1], upper[1], _HATCHES + 2)[1:-1]
+    ]
+    return lines + _cut(hatches, lambda points: np.asarray(exactly_contains(region, points, own)))
+
+
+def _cut(lines: Sequence[Array], keep: Keep) -> list[Array]:
+    """The parts of lines that are to be kept, told at short steps along them."""
+    if not lines:
+        return []
+    points = np.concatenate(lines)
+    step = max(float(np.linalg.norm(np.ptp(points, axis=0))) / _STEPS, 1e-9)
+    result = []
+    for line in lines:
+        length = np.linalg.norm(np.diff(line, axis=0), axis=1)
+        counts = np.maximum(np.ceil(length / step).astype(int), 1)
+        parts = [
+            np.linspace(a, b, n, endpoint=False) for (a, b), n in zip(pairwise(line), counts, strict=True)
+        ]
+        fine = np.concatenate([*parts, line[-1:]])
+        kept = keep((fine[:-1] + fine[1:]) / 2)
+        edges = np.flatnonzero(np.diff(np.concatenate([[False], kept, [False]]).astype(int)))
+        result += [fine[start : end + 1] for start, end in edges.reshape(-1, 2).tolist()]
+    return result
+
+
+def _height(region: PlanarRegion) -> float:
+    return float(np.asarray(region.heights(*region.fixed_columns("the height"))).reshape(-1)[0])
+
+
+def _rings(polygons: Any, z: float) -> list[Array]:
+    """The borders of shapely polygons at a height."""
+    rings = [ring for part in polygons.geoms for ring in (part.exterior, *part.interiors)]
+    return [_at_height(np.array(ring.coords)[:, :2], z) for ring in rings]
+
+
+def _chained(segments: Array) -> list[Array]:
+    """Segments ``(n, 2, 3)`` as lines, joined where one begins at the end of the one before."""
+    breaks = np.flatnonzero((segments[1:, 0] != segments[:-1, 1]).any(axis=1)) + 1
+    return [np.concatenate([part[:, 0], part[-1:, 1]]) for part in np.split(segments, breaks) if len(part)]
+
+
+def _crosses(points: Array) -> list[Array]:
+    """Three short lines through each of the points, or through some of very many."""
+    points = points[:: -(-len(points) // _MOST_POINTS)]
+    spread = float(np.linalg.norm(np.ptp(points, axis=0)))
+    half = max(spread / max(len(points), 9) ** 0.5 * 0.08, spread * 0.003) or 0.1
+    return [point + half * np.outer([-1, 1], axis) for point in points for axis in np.eye(3)]
+
+
+def _cloud(region: Region, columns: Sequence[Column]) -> list[Array]:
+    """Some points of a region; none of one without bounds, or without points."""
+    lower, upper = region.box(*columns)
+    if not (np.isfinite(lower).all() and np.isfinite(upper).all()):
+        return []
+    rng = np.random.default_rng(0)
+    numbers = rng.uniform(size=(region.draws, _CLOUD))
+    points, found = region.draw_points(numbers, rng.integers(1 << 63, size=_CLOUD, dtype=np.uint64), *columns)
+    points = np.broadcast_to(points, (_CLOUD, 3))
+    return _crosses(points if found is None else points[found]) if found is None or found.any() else []
+
+
+def _mesh_lines(mesh: Mesh, side: tuple[int, int] | None, threshold: float) -> list[Array]:
+    """Edges of a mesh, or of its faces that look to a side; and sections of what is round."""
+    vertices, faces = np.asarray(mesh.vertices), np.asarray(mesh.faces)
+    corners = vertices[faces]
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-30)
+    if side is not None:
+        chosen = normal[:, side[0]] * side[1] >= threshold - _SLACK
+        faces, normal = faces[chosen], normal[chosen]
+    if not len(faces):
+        return []
+    pairs = np.sort(faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+    edges, number, count = np.unique(pairs, axis=0, return_inverse=True, return_counts=True)
+    total = np.zeros((len(edges), 3))
+    np.add.at(total, number, np.repeat(normal, 3, axis=0))
+    # Two unit normals that enclose an angle a add up to a vector of length 2 cos(a / 2).
+    squared = (total**2).sum(axis=1)
+    sharp = (count != 2) | (squared < 2 + 2 * _CREASE)
+    curved = ~sharp & (squared < 4 - 1e-6)
+    shown = vertices[edges[sharp]]
+    if len(shown) > _MOST_EDGES:
+        length = np.linalg.norm(shown[:, 1] - shown[:, 0], axis=1)
+        shown = shown[np.sort(np.argsort(-length, kind="stable")[:_MOST_EDGES])]
+    lines = list(shown)
+    if curved.mean() > _ROUND:
+        for axis in range(3):
+            lines += _section(vertices[faces], axis)
+    return lines
+
+
+def _section(corners: Array, axis: int) -> list[Array]:
+    """Where triangles ``(n, 3, 3)`` cross the plane through the middle of their box across an axis."""
+    values = corners[..., axis]
+    # A little off the middle, where no vertices of symmetric meshes lie.
+    height = values - (values.min() + (values.max() - values.min()) * 0.5000012345)
+    ends = []
+    crossing = (height.min(axis=1) < 0) & (height.max(axis=1) > 0)
+    corners, height = corners[crossing], height[crossing]
+    for a, b in ((0, 1), (1, 2), (2, 0)):
+        part = height[:, a] / np.where(height[:, a] == height[:, b], 1, height[:, a] - height[:, b])
+        place = corners[:, a] + part[:, np.newaxis] * (corners[:, b] - corners[:, a])
+        place[(height[:, a] > 0) == (height[:, b] > 0)] = np.nan
+        ends.append(place)
+    places = np.stack(ends, axis=1)
+    met = ~np.isnan(places[..., 0])
+    return list(places[met].reshape(-1, 2, 3)) if len(places) else []
 
 
 def view_outline(horizontal: float, vertical: float, distance: float) -> list[Array]:
@@ -83,12 +269,11 @@ def view_outline(horizontal: float, vertical: float, distance: float) -> list[Ar
 
 
 def bounds(region: Any) -> tuple[Array, Array] | None:
-    """The lower and upper corner of the box around a fixed region; ``None`` where it has none or is not known."""
-    lines = outlines(region)
-    if not lines:
+    """The lower and upper corner ``(3,)`` of the box around a fixed region; ``None`` where it has none or is not known."""
+    if not isinstance(region, Region) or region.is_random:
         return None
-    points = np.concatenate(lines)
-    return points.min(axis=0), points.max(axis=0)
+    lower, upper = (corner.reshape(-1, 3)[0] for corner in region.box(*region.fixed_columns("the box")))
+    return (lower.copy(), upper.copy()) if np.isfinite([lower, upper]).all() else None
 
 
 def _ring() -> Array:

@@ -12,7 +12,7 @@ from scenic.graph.node import Graph
 from scenic.language.errors import Located, RejectionException, SamplingError, SerializationError, annotate
 from scenic.runtime.objects import Object
 from scenic.runtime.program import Program
-from scenic.runtime.regions.base import Workspace, everywhere
+from scenic.runtime.regions.base import Region, Workspace, everywhere
 from scenic.runtime.samples import dependencies
 from scenic.runtime.sampling.engine import Accepted, CandidateError, Engine, Task
 from scenic.runtime.sampling.foresight import SEED_BITS, Foreseen
@@ -49,6 +49,7 @@ class Scenario:
         digest: str = "",
         view: Callable[[Scene], Any] | None = None,
         recipe: tuple[Any, ...] | None = None,
+        regions: Mapping[str, Region] | None = None,
     ) -> None:
         self._recipe = recipe
         self.filename = filename
@@ -61,6 +62,16 @@ class Scenario:
         self.outline: Outline = outline(program, ego, self.workspace, mode_2d=mode_2d)
         self._program = program
         self._names = names
+        # What nothing in the scenes depends on is not drawn, and has no value there.
+        self._regions = {
+            name: region
+            for name, region in (regions or {}).items()
+            if all(
+                node in self.outline.graph.index
+                for node in Graph(dependencies([region])).nodes
+                if node.is_drawn
+            )
+        }
         self._engine = Engine(self.outline.plan())
         self._foreseen = Foreseen()
         self._impossible: tuple[str, ...] = ()
@@ -355,6 +366,7 @@ class Scenario:
             self.sceneToBytes,
             self,
             self._view,
+            self._regions,
         )
 
 

@@ -12,7 +12,7 @@ from scenic.runtime.dumping import program_of
 from scenic.runtime.dynamics.declarations import Copier
 from scenic.runtime.objects import Object, Point
 from scenic.runtime.program import Program, Requirement
-from scenic.runtime.regions.base import Workspace
+from scenic.runtime.regions.base import Region, Workspace
 from scenic.runtime.samples import Sample, dependencies
 from scenic.runtime.sampling.engine import Accepted
 
@@ -63,6 +63,7 @@ class Scene:
         keep: Callable[["Scene"], bytes],
         scenario: Any = None,
         view: Callable[["Scene"], Any] | None = None,
+        regions: Mapping[str, Region] | None = None,
     ) -> None:
         self.seed = accepted.task.seed
         self.k = accepted.task.k
@@ -76,6 +77,7 @@ class Scene:
         self._program = program
         self._ego = ego
         self._names = names
+        self._regions = regions or {}
         self._sample: Copier = Sample(self.lookup, program.names)
         self._objects: tuple[Any, ...] | None = None
         self._params: dict[str, Any] | None = None
@@ -136,6 +138,11 @@ class Scene:
             for item in self.objects
             if (name := self._names.get(id(item.__dict__.get("_source")))) is not None
         }
+
+    @property
+    def regions(self) -> dict[str, Region]:
+        """The regions that variables of the program hold, by name, as they are in this scene."""
+        return {name: self._sample.value(region) for name, region in self._regions.items()}
 
     def origin(self, thing: Any) -> Origin:
         """What an object of the scene is in all scenes of the program."""

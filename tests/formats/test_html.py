@@ -94,7 +94,8 @@ def test_the_ego_its_view_and_the_workspace_are_on_the_page() -> None:
     assert found["objects"][1]["view"] is None
     points = np.concatenate([np.array(line) for line in found["objects"][0]["view"]])
     assert np.linalg.norm(points - [1, 1, 0], axis=1).max() < 5.001
-    assert np.ptp(np.array(found["regions"][0]), axis=0).tolist() == [4, 6, 0]
+    outline = data_of(page([scene], "one"))["outlines"][found["workspace"]]
+    assert np.ptp(np.array(outline[0]), axis=0).tolist() == [4, 6, 0]
 
 
 def test_lines_of_a_view_are_on_its_border() -> None:
@@ -116,5 +117,7 @@ def test_outlines_span_the_regions_they_show() -> None:
         found = bounds(region)
         assert found is not None
         assert np.allclose(found, (low, high))
+        points = np.concatenate(outlines(region))
+        assert np.allclose((points.min(axis=0), points.max(axis=0)), (low, high), atol=0.01)
     assert outlines(None) == []
     assert bounds(None) is None

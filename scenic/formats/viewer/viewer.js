@@ -266,10 +266,28 @@
     scene.radius = Math.max(Math.hypot(...sub(high, low)) / 2, 1e-3);
     scene.low = low;
     scene.high = high;
-    scene.regionPoints = scene.regions.flat();
+    scene.border = scene.workspace === null ? [] : data.outlines[scene.workspace];
+    scene.width = Math.max(5 * scene.radius,
+      ...scene.border.flat().map((point) => 1.5 * Math.hypot(point[0] - scene.middle[0], point[1] - scene.middle[1])));
+  }
+  // Each region keeps its colour from scene to scene.
+  const regionNames = [...new Set(data.scenes.flatMap((scene) => Object.keys(scene.regions)))];
+  const HUES = [205, 330, 45, 165, 275, 15, 120, 240, 75, 300];
+  const regionColor = (name, dark) => {
+    const place = regionNames.indexOf(name);
+    return hsl(HUES[place % HUES.length], 0.75, (dark ? 0.65 : 0.42) + 0.06 * (Math.floor(place / HUES.length) % 3));
+  };
+  function hsl(hue, saturation, lightness) {
+    const a = saturation * Math.min(lightness, 1 - lightness);
+    const part = (n) => {
+      const k = (n + hue / 30) % 12;
+      return lightness - a * Math.max(-1, Math.min(k - 3, 9 - k, 1));
+    };
+    return [part(0), part(8), part(4)];
   }
   // One ground and one grid for all scenes, so that stepping through them does not make them jump.
   const reach = Math.max(...data.scenes.map((scene) => scene.radius));
+  const groundWidth = Math.max(...data.scenes.map((scene) => scene.width));
   const lowest = Math.min(...data.scenes.map((scene) => scene.low[2]));
   const groundHeight = lowest < 0 || lowest > 8 * reach ? lowest : 0;
   const power = 10 ** Math.floor(Math.log10(reach / 6));
@@ -280,8 +298,10 @@
 
   const state = {
     scene: 0, near: -1, chosen: -1, playing: 0, dark: false, flat: false, measuring: false, measured: [],
-    layers: { grid: true, regions: true, views: false, headings: false, labels: false },
+    layers: { grid: true, workspace: true, regions: true, views: false, headings: false, labels: false },
   };
+  /** Regions not shown. Those of a whole road network would only hide each other. */
+  const hiddenRegions = new Set(regionNames.slice(12));
   /** Objects not shown, by their place in the list and their name, so that they stay hidden from scene to scene. */
   const hidden = new Set();
   const keyOf = (thing, index) => `${index} ${thing.label}`;
@@ -323,7 +343,7 @@
 
   /** Shows the workspace, and the objects of all scenes. */
   function wholeScene() {
-    const points = data.scenes.flatMap(cornersOf).concat(state.layers.regions ? data.scenes[0].regionPoints : []);
+    const points = data.scenes.flatMap(cornersOf).concat(state.layers.workspace ? data.scenes[0].border.flat() : []);
     frame(points.length ? points : [[-1, -1, -1], [1, 1, 1]]);
   }
 
@@ -392,7 +412,7 @@
   function viewCamera() {
     const scene = current();
     const middle = dot(sub(scene.middle, eye()), ahead());
-    const span = scene.radius + 6 * reach;
+    const span = scene.radius + 1.2 * groundWidth + reach;
     const far = Math.max(middle + span, view.distance * 2);
     const aspect = canvas.width / canvas.height;
     if (state.flat) {
@@ -457,12 +477,16 @@
     gl.uniformMatrix4fv(groundProgram.places.camera, false, camera);
     lightUniforms(groundProgram.places);
     gl.uniform3f(groundProgram.places.middle, scene.middle[0], scene.middle[1], groundHeight);
-    gl.uniform1f(groundProgram.places.extent, 5 * reach);
+    gl.uniform1f(groundProgram.places.extent, groundWidth);
     gl.uniform1f(groundProgram.places.spacing, spacing);
     gl.uniform1f(groundProgram.places.lines, state.layers.grid ? 1 : 0);
     gl.uniform3fv(groundProgram.places.ground, state.dark ? [0.035, 0.04, 0.05] : [0.6, 0.62, 0.65]);
     gl.uniform3fv(groundProgram.places.line, state.dark ? [0.13, 0.15, 0.18] : [0.26, 0.29, 0.33]);
+    // A little behind where it is, so that it does not hide lines that lie on it.
+    gl.enable(gl.POLYGON_OFFSET_FILL);
+    gl.polygonOffset(1, 2);
     if (eye()[2] > groundHeight) draw(square); // from below, the ground would only hide things
+    gl.disable(gl.POLYGON_OFFSET_FILL);
 
     // Transparent objects, the farthest first.
     gl.useProgram(solid.made);
@@ -499,18 +523,27 @@
   function drawLines(scene) {
     const shown = scene.objects.filter((thing, index) => !isHidden(index));
     scene.lines ??= {
-      regions: segments(scene.regions),
       views: segments(shown.flatMap((thing) => thing.view ?? [])),
       headings: segments(shown.flatMap(headingOf)),
     };
+    const layers = [
+      ["workspace", outline(scene.workspace), [0.13, 0.55, 0.42]],
+      ...Object.entries(scene.regions).filter(([name]) => !hiddenRegions.has(name))
+        .map(([name, number]) => ["regions", outline(number), regionColor(name, state.dark)]),
+      ["views", scene.lines.views, [0.62, 0.3, 0.75]],
+      ["headings", scene.lines.headings, [0.85, 0.25, 0.2]],
+    ];
     gl.uniformMatrix4fv(plain.places.model, false, IDENTITY);
-    for (const [layer, color] of [
-      ["regions", [0.13, 0.55, 0.42, 0.9]], ["views", [0.62, 0.3, 0.75, 0.75]], ["headings", [0.85, 0.25, 0.2, 0.95]],
-    ]) {
-      if (state.layers[layer] && scene.lines[layer]) {
-        gl.uniform4fv(plain.places.color, color);
-        draw(scene.lines[layer], gl.LINES);
+    // Faintly through what is before them, fully where nothing is.
+    for (const [test, alpha] of [[false, 0.25], [true, 0.9]]) {
+      if (!test) gl.disable(gl.DEPTH_TEST);
+      for (const [layer, lines, color] of layers) {
+        if (state.layers[layer] && lines) {
+          gl.uniform4f(plain.places.color, ...color, alpha);
+          draw(lines, gl.LINES);
+        }
       }
+      gl.enable(gl.DEPTH_TEST);
     }
     if (state.measured.length === 2) {
       const line = segments([state.measured]);
@@ -521,6 +554,14 @@
       gl.deleteVertexArray(line.array);
     }
   }
+
+  /** The lines of a region by their number on the page; nothing without a number. */
+  function outline(number) {
+    if (number === null) return null;
+    outlineLines[number] ??= segments(data.outlines[number]);
+    return outlineLines[number];
+  }
+  const outlineLines = [];
 
   /** An arrow along an object's heading, above it. */
   function headingOf(thing) {
@@ -740,6 +781,7 @@
   function setTheme(dark) {
     state.dark = dark;
     document.documentElement.dataset.theme = dark ? "dark" : "light";
+    listRegions();
     changed();
   }
 
@@ -790,7 +832,23 @@
   function setLayer(name, on) {
     state.layers[name] = on;
     document.querySelector(`[data-layer="${name}"]`).checked = on;
+    byId("regions").hidden = !state.layers.regions;
     changed();
+  }
+
+  /** A box to tick for each region, in its colour. */
+  function listRegions() {
+    byId("regions").replaceChildren(...regionNames.map((name) => {
+      const box = element("input", "", { type: "checkbox", checked: !hiddenRegions.has(name) });
+      const row = element("label", "");
+      box.style.accentColor = css(regionColor(name, state.dark));
+      box.addEventListener("change", () => {
+        if (box.checked) hiddenRegions.delete(name); else hiddenRegions.add(name);
+        changed();
+      });
+      row.append(box, name);
+      return row;
+    }));
   }
 
   function savePng() {

@@ -1,0 +1,113 @@
+"""Lines of regions of all kinds lie on them, and the page tells them apart."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+import scenic
+from scenic.formats.html import page
+from scenic.formats.regions import bounds, outlines
+from tests.formats.test_html import data_of
+
+PROGRAM = """
+import trimesh
+workspace = Workspace(RectangularRegion((0, 0, 0), 0, 60, 40))
+disc = CircularRegion((-20, 10, 0), 5)
+sector = SectorRegion((-8, 8, 1), 6, 30 deg, 70 deg)
+rectangle = RectangularRegion((5, 10, 2), 20 deg, 6, 8)
+polygon = PolygonalRegion([(12, 6), (20, 6), (20, 14), (16, 10), (12, 14)])
+line = PolylineRegion([(-25, -5), (-20, 0), (-15, -5), (-10, 0)])
+path = PathRegion([(-5, -5, 0), (0, 0, 3), (5, -5, 0)])
+dots = PointSetRegion("dots", [(8 + i, -4 + j, 0) for i in range(5) for j in range(4)])
+grid = GridRegion("grid", [[0, 1, 0], [0, 0, 1]], 2, 2, 16, -5)
+box = BoxRegion(dimensions=(4, 5, 6), position=(-24, -14, 3), rotation=Orientation.fromEuler(0.4, 0.1, 0))
+ball = SpheroidRegion(dimensions=(6, 6, 4), position=(-14, -14, 2))
+ring = MeshVolumeRegion(trimesh.creation.annulus(2, 3, 2), position=(-5, -14, 1))
+shell = MeshSurfaceRegion(trimesh.creation.icosphere(radius=3), position=(4, -14, 3))
+both = rectangle.union(disc)
+cut = ball.difference(BoxRegion(dimensions=(4, 4, 9), position=(-12, -14, 2)))
+common = box.intersect(SpheroidRegion(dimensions=(5, 5, 5), position=(-24, -14, 5)))
+ego = new Object at (22, -14, 0.5), facing 40 deg, with viewAngles (60 deg, 30 deg), with visibleDistance 9
+other = new Object at (Range(10, 14), -14, 1), with width 2, with length 3, with height 2
+top = other.topSurface
+space = other.occupiedSpace
+sight = ego.visibleRegion
+seen = visible RectangularRegion((20, -8, 0.5), 0, 12, 12)
+unseen = not visible RectangularRegion((20, -8, 0.5), 0, 12, 12)
+chosen = Uniform(disc, sector)
+footprint = polygon.footprint
+unused = CircularRegion((Range(-5, 5), 16, 0), 2)
+nothing = nowhere
+_private = disc
+"""
+OTHERS = {"workspace", "ego", "other", "unused", "nothing", "_private", "chosen"}
+SHOWN = sorted({line.split(" = ")[0] for line in PROGRAM.splitlines() if " = " in line} - OTHERS)
+
+
+@pytest.fixture(scope="module")
+def scenes():
+    return scenic.scenarioFromString(PROGRAM).sample(2, seed=3)
+
+
+def dense(lines):
+    """Points along lines."""
+    parts = [np.linspace(a, b, 9) for line in lines for a, b in pairwise(np.asarray(line))]
+    return np.concatenate(parts)
+
+
+@pytest.mark.parametrize("name", SHOWN)
+def test_lines_lie_on_their_region(scenes, name):
+    region = scenes[0].regions[name]
+    points = dense(outlines(region))
+    columns = region.fixed_columns("the test")
+    assert len(points) > 4
+    box = bounds(region)
+    size = 1.0 if box is None else float(np.linalg.norm(box[1] - box[0]))
+    if name in ("dots", "grid"):
+        points = points[4::9]  # the middles of the crosses
+    if box is not None:
+        assert (points >= box[0] - 0.02 * size).all()
+        assert (points <= box[1] + 0.02 * size).all()
+        span = np.ptp(points, axis=0)
+        assert (span >= 0.8 * (box[1] - box[0]) - 1e-9).all() or name in (
+            "sight",
+            "seen",
+            "unseen",
+            "common",
+            "top",
+        )
+    if name in (
+        "disc",
+        "sector",
+        "rectangle",
+        "polygon",
+        "line",
+        "path",
+        "box",
+        "ball",
+        "ring",
+        "top",
+        "space",
+        "footprint",
+    ):
+        assert region.distances(points, *columns).max() < 0.01
+
+
+def test_the_page_holds_each_region_once_with_its_name(scenes):
+    data = data_of(page(scenes, "regions"))
+    first, second = data["scenes"]
+    assert set(first["regions"]) == set(SHOWN) == set(second["regions"])
+    assert first["regions"]["disc"] == second["regions"]["disc"]
+    assert first["regions"]["top"] != second["regions"]["top"]
+    assert first["workspace"] == second["workspace"]
+    # `top` and `space` move with their object; a footprint has the lines of its polygon.
+    assert len(data["outlines"]) == len(SHOWN) + 1 + 2 - 1
+
+
+def test_a_region_that_nothing_needs_has_no_place(scenes):
+    assert "unused" not in scenes[0].regions
+    used = PROGRAM + "\nnew Object in unused, with allowCollisions True"
+    (scene,) = scenic.scenarioFromString(used).sample(1, seed=3)
+    center = scene.regions["unused"].center
+    assert np.hypot(*(np.array(list(scene.objects[-1].position)) - list(center))[:2]) <= 2
