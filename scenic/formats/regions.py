@@ -9,7 +9,6 @@ import numpy.typing as npt
 
 from scenic.formats.instances import Array
 from scenic.formats.poses import rotation_matrix
-from scenic.graph.kinds import Column
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.regions.base import Everywhere, Nowhere, Region, Workspace
 from scenic.runtime.regions.bodies import OccupiedSpace, SideSurface
@@ -176,7 +175,7 @@ def _crosses(points: Array) -> list[Array]:
     return [point + half * np.outer([-1, 1], axis) for point in points for axis in np.eye(3)]
 
 
-def _cloud(region: Region, columns: Sequence[Column]) -> list[Array]:
+def _cloud(region: Region, columns: Sequence[Array]) -> list[Array]:
     """Some points of a region; none of one without bounds, or without points."""
     lower, upper = region.box(*columns)
     if not (np.isfinite(lower).all() and np.isfinite(upper).all()):
