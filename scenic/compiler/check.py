@@ -10,6 +10,7 @@ from types import MappingProxyType
 from scenic.compiler.compile import Checked, Warned, check_parsed, compile_text
 from scenic.compiler.ignores import apply_ignores
 from scenic.compiler.parser import ParseResult
+from scenic.compiler.scopes import Resolution
 from scenic.compiler.surroundings import SurroundingsOf
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.source import Source
@@ -34,15 +35,23 @@ def check_again(
     parsed: ParseResult,
     source: Source,
     *,
+    resolution: Resolution | None = None,
     surroundings_of: SurroundingsOf | None = None,
     warned: Warned = MappingProxyType({}),
     go_on: Callable[[], None] = lambda: None,
 ) -> Checked:
     """The same for a program that is parsed already, and of which an earlier version may have been checked.
 
-    See `scenic.compiler.compile.check_parsed` for ``warned`` and ``go_on``.
+    See `scenic.compiler.compile.check_parsed` for the rest.
     """
-    checked = check_parsed(parsed, source, surroundings_of=surroundings_of, warned=warned, go_on=go_on)
+    checked = check_parsed(
+        parsed,
+        source,
+        resolution=resolution,
+        surroundings_of=surroundings_of,
+        warned=warned,
+        go_on=go_on,
+    )
     found = in_order(checked.diagnostics, filename=source.filename)
     kept = apply_ignores(source.text, found, filename=source.filename)
     return Checked(in_order(kept, filename=source.filename), checked.warned)

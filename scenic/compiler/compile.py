@@ -98,16 +98,17 @@ def check_parsed(
     parsed: ParseResult,
     source: Source,
     *,
+    resolution: Resolution | None = None,
     surroundings_of: SurroundingsOf | None = None,
     warned: Warned = MappingProxyType({}),
     go_on: Callable[[], None] = lambda: None,
 ) -> Checked:
     """All that `compile_text` says of a program when it is ``thorough``, without making code of what has not changed.
 
-    ``warned`` is that of an earlier check of the program. ``go_on`` is called between steps, and may raise to stop.
+    ``resolution`` are its names, if they are bound already, ``warned`` is that of an earlier check of it. ``go_on`` is called between steps, and may raise to stop.
     """
-    found, resolution = _checked(parsed, source, True, surroundings_of, go_on)
-    if resolution is None:
+    found, names = _checked(parsed, source, True, surroundings_of, go_on, resolution)
+    if names is None:
         return Checked(found, warned)
     go_on()
     blocks = _blocks(parsed.tree, source)
@@ -115,12 +116,12 @@ def check_parsed(
     if warned and len(fresh) * 2 < len(blocks) and not _is_one_piece(parsed.tree):
         statements = [each for block in fresh for each in block.statements]
         part = ast.Module(body=statements, type_ignores=[])
-        error, noted = _complaints(part, resolution, source)
+        error, noted = _complaints(part, names, source)
         if error is None:
             known = {block.text: warned[block.text] for block in blocks if block.text in warned}
             return _with_warnings(found, source, blocks, {**_by_block(fresh, noted), **known})
     # Python stops at the first error, whichever it takes for that: all must be there.
-    error, noted = _complaints(parsed.tree, resolution, source)
+    error, noted = _complaints(parsed.tree, names, source)
     if error is not None:
         warnings_found = [_python_warning(line, message, source) for line, message in noted]
         return Checked((*found, error, *warnings_found), MappingProxyType({}))
@@ -191,15 +192,16 @@ def _checked(
     thorough: bool,
     surroundings_of: SurroundingsOf | None,
     go_on: Callable[[], None] = lambda: None,
+    bound: Resolution | None = None,
 ) -> tuple[tuple[Diagnostic, ...], Resolution | None]:
     """What is wrong with a parsed program; its names, if it has no errors."""
     found = list(parsed.diagnostics)
     try:
         with recursion_limit(DEEPEST):
             go_on()
-            resolution, surroundings = resolve_within(parsed.tree, source, surroundings_of)
+            resolution, context = resolve_within(parsed.tree, source, surroundings_of, bound, go_on)
             go_on()
-            hints = lint(parsed.tree, source, resolution, surroundings) if thorough else ()
+            hints = lint(context, go_on) if thorough else ()
     except RecursionError:
         return (*found, _too_deep(source)), None
     found = list(dict.fromkeys([*found, *resolution.diagnostics, *hints]))

@@ -66,8 +66,9 @@ def revise(text: str, before: Revision | None = None, *, filename: str = "<strin
             parsed = parse_tokens(tokens)
         else:
             change = _difference(before.lines, lines)
-            tokens = _lexed(text, lines, before, change) or lex(text, WORDS)
-            parsed = parse_tokens(tokens, lambda read: _known(read, before.parsed, change))
+            splice = _lexed(text, lines, before, change)
+            tokens = lex(text, WORDS) if splice is None else splice.tokens
+            parsed = parse_tokens(tokens, lambda read: _known(read, before.parsed, change, splice))
     return Revision(lines, tokens, parsed, result_of(parsed, filename))
 
 
@@ -85,12 +86,26 @@ def _difference(before: Sequence[str], after: Sequence[str]) -> _Change:
 # Tokens
 
 
-def _lexed(text: str, lines: Sequence[str], before: Revision, change: _Change) -> Tokens | None:
+@dataclass(frozen=True, slots=True)
+class _Splice:
+    """Tokens of which those before ``begin`` are as they were, and so are those that began at ``end``.
+
+    ``old`` are the tokens before; ``moved`` is by how many tokens the latter are further back.
+    """
+
+    tokens: Tokens
+    old: Tokens
+    begin: int
+    end: int
+    moved: int
+
+
+def _lexed(text: str, lines: Sequence[str], before: Revision, change: _Change) -> _Splice | None:
     """The tokens of a text, those of unchanged lines taken over; ``None`` if lexical mistakes are in the way."""
     old = before.tokens
     if old.diagnostics:
         return None
-    starts = _starts(old)
+    starts = _starts(old, before.parsed)
     start_lines = [old.lines[index] for index in starts]
     # The statement before the change may go on with what has changed.
     head = bisect_left(start_lines, change.first + 1) - 1
@@ -119,7 +134,7 @@ def _lexed(text: str, lines: Sequence[str], before: Revision, change: _Change) -
     down, shift = first_line - 1, change.shift
     if text and not text.endswith("\n"):
         text += "\n"
-    return Tokens(
+    tokens = Tokens(
         text,
         old.kinds[:begin] + fresh.kinds + old.kinds[end:],
         old.texts[:begin] + fresh.texts + old.texts[end:],
@@ -135,15 +150,18 @@ def _lexed(text: str, lines: Sequence[str], before: Revision, change: _Change) -
             if line + shift >= end_line and line > change.before - change.last
         ],
     )
+    return _Splice(tokens, old, begin, end, begin + len(fresh.kinds) - end)
 
 
-def _starts(tokens: Tokens) -> list[int]:
+def _starts(tokens: Tokens, parsed: Parsed) -> list[int]:
     """The tokens with which statements of the top level begin."""
-    kinds = tokens.kinds
+    kinds, columns = tokens.kinds, tokens.columns
+    # Where these tokens were parsed, the statements are known already.
+    candidates = sorted(parsed.statements) if parsed.tokens is tokens else range(len(kinds))
     return [
         index
-        for index, column in enumerate(tokens.columns)
-        if column == 0
+        for index in candidates
+        if columns[index] == 0
         and kinds[index] not in _LAYOUT
         and (index == 0 or kinds[index - 1] in (NEWLINE, DEDENT))
     ]
@@ -156,12 +174,21 @@ def _moved(lines: list[int], by: int) -> list[int]:
 # Statements
 
 
-def _known(tokens: Tokens, before: Parsed, change: _Change) -> Statements:
+def _known(tokens: Tokens, before: Parsed, change: _Change, splice: _Splice | None) -> Statements:
     """The statements of the version before that stand in these tokens too: by their first token."""
     old = before.tokens
     wrong = _wrong_lines(before)
+    if splice is not None and not (splice.tokens is tokens and splice.old is old and not wrong):
+        splice = None
     found: dict[int, tuple[list[ast.stmt], int]] = {}
     for start, (statements, stop) in before.statements.items():
+        if splice is not None and (stop <= splice.begin or start >= splice.end):
+            # There is no need to compare tokens that have been taken over.
+            moved = splice.moved if start >= splice.end else 0
+            if start >= splice.end and change.shift:
+                statements = [_shifted(each, change.shift) for each in statements]
+            found[start + moved] = (statements, stop + moved)
+            continue
         line, last_line = old.lines[start], old.end_lines[stop - 1]
         if old.kinds[stop - 1] == DEDENT:
             # It stands where the next statement begins.

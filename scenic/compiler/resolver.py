@@ -6,27 +6,34 @@ running the program. It uses an explicit stack, so that no depth of nesting is t
 
 import ast
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import replace
+from itertools import islice
 from types import MappingProxyType
 from typing import Any, Final, NamedTuple
 
 from scenic.compiler import tree as scenic
-from scenic.compiler.checks import NOTED, check
+from scenic.compiler.checks import NOTED, Context, check
 from scenic.compiler.garbage import no_garbage_collection
-from scenic.compiler.scopes import PROVIDED, Binding, BindingKind, Reference, Resolution, Scope, ScopeKind
-from scenic.compiler.surroundings import Surroundings, SurroundingsOf
+from scenic.compiler.scopes import (
+    PROVIDED,
+    REFLECTION,
+    Binding,
+    BindingKind,
+    Reference,
+    Resolution,
+    Scope,
+    ScopeKind,
+    Stretch,
+)
+from scenic.compiler.surroundings import SurroundingsOf
 from scenic.compiler.traversal import FIELDS, parts, walk
 from scenic.language.names import RESERVED, TRACKED
 from scenic.language.source import Source
 from scenic.language.spelling import nearest
 
-__all__ = ["bind", "resolve", "resolve_within"]
+__all__ = ["bind", "bind_again", "resolve", "resolve_within"]
 
-_REFLECTION: Final = frozenset({"exec", "globals", "vars"})
-"""Builtins with which programs may bind names in ways that the text does not show."""
-
-_READING: Final = frozenset({"dir", "eval", "locals"})
-"""Builtins with which programs may read names in ways that the text does not show."""
+_STRETCH: Final = 16
+"""So many statements of the top level are bound together, where the next version of a text may take them over."""
 
 
 def resolve(tree: ast.Module, source: Source) -> Resolution:
@@ -38,36 +45,84 @@ def resolve(tree: ast.Module, source: Source) -> Resolution:
 
 
 def resolve_within(
-    tree: ast.Module, source: Source, surroundings_of: SurroundingsOf | None
-) -> tuple[Resolution, Surroundings | None]:
-    """The same, with what ``surroundings_of`` finds out about the imports, which is also returned."""
+    tree: ast.Module,
+    source: Source,
+    surroundings_of: SurroundingsOf | None,
+    resolution: Resolution | None = None,
+    go_on: Callable[[], None] = lambda: None,
+) -> tuple[Resolution, Context]:
+    """The same, with what ``surroundings_of`` finds out about the imports; also returns what further checks need.
+
+    ``resolution`` are the names of the tree, if they are bound already. ``go_on`` is called now and then, and may raise
+    to stop.
+    """
     with no_garbage_collection():
-        collector = _Collector(tree)
-        collector.walk()
-        resolution = collector.finish()
-        surroundings = None
+        bound = bind(tree) if resolution is None else resolution
+        wildcard, surroundings = bound.wildcard, None
         if surroundings_of is not None:
-            surroundings = surroundings_of(tree, source, resolution)
-            resolution.module.wildcard = resolution.rebinding or not surroundings.complete
-        if any(_brings_names(source.line(node.lineno)) for node in collector.broken()):
-            resolution.module.wildcard = True
-        diagnostics = check(
-            tree,
-            source,
-            resolution,
-            reserved=collector.reserved,
-            provided=PROVIDED,
-            surroundings=surroundings,
-        )
-    return replace(resolution, diagnostics=diagnostics), surroundings
+            surroundings = surroundings_of(tree, source, bound)
+            wildcard = bound.rebinding or not surroundings.complete
+        if any(_brings_names(source.line(node.lineno)) for node, _ in bound.nodes(scenic.ErrorStatement)):
+            wildcard = True
+        known = bound.with_findings((), wildcard=wildcard)
+        go_on()
+        context = Context(tree, source, known, surroundings)
+        diagnostics = check(context, provided=PROVIDED, go_on=go_on)
+    return known.with_findings(diagnostics, wildcard=wildcard), context
 
 
 def bind(tree: ast.Module) -> Resolution:
     """Bind every name of a module, of Scenic or of Python, without any check: ``diagnostics`` stays empty."""
     with no_garbage_collection():
-        collector = _Collector(tree)
-        collector.walk()
-        return collector.finish()
+        module = _module_scope()
+        return Resolution(tree, module, [_bound(tree.body, module)])
+
+
+def bind_again(tree: ast.Module, before: Resolution | None) -> Resolution:
+    """The same for the next version of a module: of statements that are still there, everything is known already.
+
+    Of the first version, there is none before it.
+    """
+    with no_garbage_collection():
+        if before is None:
+            module = _module_scope()
+            return Resolution(tree, module, _in_stretches(tree.body, module))
+        old, body = before.stretches, tree.body
+        first = begin = 0
+        while first < len(old) and _stands(old[first], body, begin):
+            begin += len(old[first].statements)
+            first += 1
+        last, end = len(old), len(body)
+        while last > first and end - len(old[last - 1].statements) >= begin:
+            size = len(old[last - 1].statements)
+            if not _stands(old[last - 1], body, end - size):
+                break
+            end -= size
+            last -= 1
+        middle = _in_stretches(body[begin:end], before.module)
+        return Resolution(tree, before.module, [*old[:first], *middle, *old[last:]])
+
+
+def _stands(stretch: Stretch, body: list[ast.stmt], begin: int) -> bool:
+    """Whether the statements of a stretch are these very ones."""
+    own = stretch.statements
+    return len(body) - begin >= len(own) and all(
+        one is other for one, other in zip(own, islice(body, begin, begin + len(own)), strict=True)
+    )
+
+
+def _in_stretches(body: list[ast.stmt], module: Scope) -> list[Stretch]:
+    return [_bound(body[index : index + _STRETCH], module) for index in range(0, len(body), _STRETCH)]
+
+
+def _module_scope() -> Scope:
+    return Scope(ScopeKind.MODULE, "<module>", ast.Module(body=[], type_ignores=[]), None)
+
+
+def _bound(statements: list[ast.stmt], module: Scope) -> Stretch:
+    collector = _Collector(statements, module)
+    collector.walk()
+    return collector.finish()
 
 
 def _brings_names(line: str) -> bool:
@@ -91,27 +146,26 @@ _Task = tuple[ast.AST, Scope]
 
 
 class _Collector:
-    """Walks the tree once and notes scopes, bindings and uses of names."""
+    """Walks some statements once and notes scopes, bindings and uses of names."""
 
-    def __init__(self, tree: ast.Module) -> None:
-        self._tree = tree
-        self._module = Scope(ScopeKind.MODULE, "<module>", tree, None)
-        self._scopes: dict[ast.AST, Scope] = {tree: self._module}
+    def __init__(self, statements: list[ast.stmt], module: Scope) -> None:
+        self._statements = statements
+        self._module = module
+        self._scopes: dict[ast.AST, Scope] = {}
         self._events: list[_Event] = []
         self._uses: list[tuple[ast.Name, Scope]] = []
         self._nonlocals: dict[ast.AST, Scope] = {}
         self._plain_targets: set[ast.AST] = set()
         self._nodes: dict[type[ast.AST], list[tuple[Any, Scope]]] = {cls: [] for cls in NOTED}
         self._pending: list[tuple[Scope, list[Any]]] = []
-        self.tolerated: set[ast.AST] = set()
+        self._wildcard = False
+        self._tolerated: set[ast.AST] = set()
         """Names read where a ``NameError`` is caught."""
-        self.reserved: list[tuple[str, ast.AST]] = []
-        """Bindings of names that the program must not bind."""
 
     def walk(self) -> None:
         """Visit every node once, scope by scope. Most nodes belong to the scope of what they are part of."""
         pending = self._pending
-        pending.append((self._module, list(self._tree.body)))
+        pending.append((self._module, list(self._statements)))
         handlers, fields, noted, uses = _HANDLERS, FIELDS, self._nodes, self._uses
         while pending:
             scope, stack = pending.pop()
@@ -144,59 +198,74 @@ class _Collector:
                     elif part is not None:
                         stack.append(part)
 
-    def broken(self) -> list[Any]:
-        """The statements that could not be parsed."""
-        return [node for node, _ in self._nodes.get(scenic.ErrorStatement, ())]
-
-    def finish(self) -> Resolution:
-        bound = {(event.scope, event.name) for event in self._events}
+    def finish(self) -> Stretch:
+        """What has been noted, put together."""
+        inner = {(event.scope, event.name) for event in self._events}
+        bound: dict[str, list[tuple[BindingKind, ast.AST]]] = {}
+        reserved: list[tuple[str, ast.AST]] = []
         for event in self._events:
             if event.name in RESERVED:
-                self.reserved.append((event.name, event.site))
+                reserved.append((event.name, event.site))
+            elif event.scope is self._module:
+                bound.setdefault(event.name, []).append((event.kind, event.site))
             else:
-                self._bind(event, bound)
+                self._bind(event, inner, bound)
         references: dict[ast.AST, Reference] = {}
-        reflective = rebinding = False
         meanings: dict[tuple[Scope, str], Binding | None] = {}
+        free: set[str] = set()
+        module = self._module
         for node, scope in self._uses:
             name = node.id
+            if scope is module:
+                references[node] = Reference(node, scope, None)
+                free.add(name)
+                continue
             key = (scope, name)
             if key in meanings:
                 binding = meanings[key]
             else:
                 binding = meanings[key] = scope.lookup(name)
+                if binding is None:
+                    free.add(name)
             references[node] = Reference(node, scope, binding)
-            if binding is None and (name in _REFLECTION or name in _READING):
-                reflective = True
-                if name in _REFLECTION:
-                    rebinding = self._module.wildcard = True
-        return Resolution(
-            self._module,
-            self._scopes,
+        return Stretch(
+            tuple(self._statements),
+            bound,
             references,
+            self._scopes,
             self._nonlocals,
             self._nodes,
-            self.tolerated,
-            reflective,
-            rebinding,
+            self._tolerated,
+            reserved,
+            frozenset(free & REFLECTION),
+            self._wildcard,
         )
 
-    def _bind(self, event: _Event, bound: set[tuple[Scope, str]]) -> None:
+    def _bind(
+        self,
+        event: _Event,
+        inner: set[tuple[Scope, str]],
+        bound: dict[str, list[tuple[BindingKind, ast.AST]]],
+    ) -> None:
+        """Bind a name in a scope within the module, or in the one that its declarations name."""
         scope = event.scope
         if event.name in scope.global_names:
-            scope = self._module
-        elif event.name in scope.nonlocal_names:
+            bound.setdefault(event.name, []).append((event.kind, event.site))
+            return
+        if event.name in scope.nonlocal_names:
             scope = next(
                 (
                     outer
                     for outer in scope.ancestors()
                     if event.name not in outer.nonlocal_names
                     and outer.kind not in (ScopeKind.CLASS, ScopeKind.MODULE)
-                    and (outer, event.name) in bound
+                    and (outer, event.name) in inner
                 ),
                 scope,
             )
-        binding = scope.bindings.setdefault(event.name, Binding(event.name, scope))
+        binding = scope.bindings.get(event.name)
+        if binding is None:
+            binding = scope.bindings[event.name] = Binding(event.name, scope)
         binding.sites.append(event.site)
         binding.kinds.add(event.kind)
 
@@ -340,21 +409,23 @@ class _Collector:
     def import_from(self, node: ast.ImportFrom, scope: Scope) -> Iterable[_Task]:
         for alias in node.names:
             if alias.name == "*":
-                self._module.wildcard = True
+                self._wildcard = True
             else:
                 self._note(scope, alias.asname or alias.name, BindingKind.IMPORTED, alias)
         return ()
 
     def model(self, _node: scenic.Model, _scope: Scope) -> Iterable[_Task]:
-        self._module.wildcard = True
+        self._wildcard = True
         return ()
 
     def global_declaration(self, node: ast.Global, scope: Scope) -> Iterable[_Task]:
-        scope.global_names.update(node.names)
+        if scope is not self._module:
+            scope.global_names.update(node.names)
         return ()
 
     def nonlocal_declaration(self, node: ast.Nonlocal, scope: Scope) -> Iterable[_Task]:
-        scope.nonlocal_names.update(node.names)
+        if scope is not self._module:
+            scope.nonlocal_names.update(node.names)
         self._nonlocals[node] = scope
         return ()
 
@@ -371,7 +442,7 @@ class _Collector:
     def attempt(self, node: Any, scope: Scope) -> Iterable[_Task]:
         if any(_catches_name_errors(handler) for handler in node.handlers):
             for statement in node.body:
-                self.tolerated.update(part for part in walk(statement) if isinstance(part, ast.Name))
+                self._tolerated.update(part for part in walk(statement) if isinstance(part, ast.Name))
         return [(child, scope) for child in parts(node)]
 
 

@@ -5,15 +5,29 @@ A scope is built once by `scenic.compiler.resolver` and only read afterwards. No
 
 import ast
 import builtins
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from copy import copy
 from dataclasses import dataclass, field
 from enum import StrEnum
-from typing import Any, Final
+from functools import cached_property
+from typing import Any, Final, TypeVar
 
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.names import NAMES, TRACKED
 
-__all__ = ["PROVIDED", "Binding", "BindingKind", "Reference", "Resolution", "Scope", "ScopeKind"]
+__all__ = [
+    "PROVIDED",
+    "REFLECTION",
+    "Binding",
+    "BindingKind",
+    "Reference",
+    "Resolution",
+    "Scope",
+    "ScopeKind",
+    "Stretch",
+]
+
+_T = TypeVar("_T")
 
 _MODULE_ATTRIBUTES: Final = frozenset(
     {
@@ -85,7 +99,8 @@ class Binding:
 class Scope:
     """A stretch of the program in which names are bound.
 
-    ``wildcard`` marks scopes into which names come that the text does not show (``from m import *``, ``model m``).
+    The scope of a module holds no bindings itself: it stays the same from one version of a text to the next, and what is
+    bound at the top level is in `Resolution.names`.
     """
 
     kind: ScopeKind
@@ -95,7 +110,6 @@ class Scope:
     bindings: dict[str, Binding] = field(default_factory=dict, repr=False)
     global_names: set[str] = field(default_factory=set)
     nonlocal_names: set[str] = field(default_factory=set)
-    wildcard: bool = False
 
     def ancestors(self) -> Iterator["Scope"]:
         """The scope itself and those around it, innermost first."""
@@ -104,35 +118,22 @@ class Scope:
             yield scope
             scope = scope.parent
 
-    @property
-    def module(self) -> "Scope":
-        """The scope of the whole module."""
-        *_, module = self.ancestors()
-        return module
-
     def lookup(self, name: str) -> Binding | None:
-        """What a read of ``name`` in this scope means; ``None`` if the text binds it nowhere in reach.
+        """What a read of ``name`` in this scope means; ``None`` if no scope within the module binds it in reach.
 
         As in Python, the names of a class body are out of reach of the functions in it.
         """
         transparent = True
-        for scope in self.ancestors():
+        scope: Scope | None = self
+        while scope is not None:
             if name in scope.global_names:
-                return self.module.bindings.get(name)
-            reachable = scope.kind is not ScopeKind.CLASS or transparent
+                return None
+            reachable = transparent or scope.kind is not ScopeKind.CLASS
             if reachable and name in scope.bindings and name not in scope.nonlocal_names:
                 return scope.bindings[name]
             transparent = transparent and scope.kind is ScopeKind.TYPE_PARAMETERS
+            scope = scope.parent
         return None
-
-    def names_in_reach(self) -> set[str]:
-        """All names that a read in this scope can mean, for suggestions."""
-        return {
-            name
-            for scope in self.ancestors()
-            if scope is self or scope.kind is not ScopeKind.CLASS
-            for name in scope.bindings
-        }
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -144,36 +145,213 @@ class Reference:
     binding: Binding | None
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, eq=False)
+class Stretch:
+    """Successive statements of the top level, and all that can be said of their names without what stands around them.
+
+    ``bound`` gives the nodes that bind each name of the module, and how. ``references`` to names of the module have no
+    binding here. ``nodes``, ``scopes``, ``nonlocals`` and ``tolerated`` are as in `Resolution`; ``reserved`` are the
+    places that bind a name which must not be bound, ``reflecting`` the names read here that could mean builtins by
+    which programs read or bind names. ``wildcard`` tells whether names come in that the text does not show.
+    """
+
+    statements: tuple[ast.stmt, ...]
+    bound: Mapping[str, Sequence[tuple[BindingKind, ast.AST]]]
+    references: Mapping[ast.AST, Reference]
+    scopes: Mapping[ast.AST, Scope]
+    nonlocals: Mapping[ast.AST, Scope]
+    nodes: Mapping[type[ast.AST], list[tuple[Any, Scope]]]
+    tolerated: Collection[ast.AST]
+    reserved: Sequence[tuple[str, ast.AST]]
+    reflecting: frozenset[str]
+    wildcard: bool
+
+    @cached_property
+    def sites(self) -> Mapping[ast.AST, Binding | str]:
+        """By the nodes that bind something: the binding, of what belongs to the module only the name."""
+        found: dict[ast.AST, Binding | str] = {
+            site: binding
+            for scope in self.scopes.values()
+            for binding in scope.bindings.values()
+            for site in binding.sites
+        }
+        found.update((site, name) for name, sites in self.bound.items() for _, site in sites)
+        return found
+
+
+REBINDING: Final = frozenset({"exec", "globals", "vars"})
+"""Builtins with which programs may bind names in ways that the text does not show."""
+
+REFLECTION: Final = REBINDING | {"dir", "eval", "locals"}
+"""Builtins with which programs may read names in ways that the text does not show."""
+
+
 class Resolution:
     """Every scope, binding and reference of a module.
 
-    ``scopes`` gives the scope that a node opens, ``references`` what a name means, ``nonlocals`` the scope in which a
-    ``nonlocal`` statement stands. Names bound by other nodes than
-    ``ast.Name`` (functions, parameters, imports, captures) are found through `Binding.sites`.
+    It is put together from what is known of stretches of the module, when that is first asked for: a question about a
+    single node is answered without looking at all the others.
 
-    ``nodes`` lists the nodes of the classes that the checks look for, each with the scope in which it stands, in no
-    particular order. ``tolerated`` are the names read where a missing name is provided for. ``reflective`` tells
-    whether the program may read and bind names in ways that the text does not show (``globals()``, ``exec``), and
-    ``rebinding`` whether it may bind them so.
+    ``module`` is the scope of the whole module and ``names`` what is bound in it. ``wildcard`` tells whether names may
+    exist that the text does not show, ``reflective`` whether the program may read and bind names in ways that the text
+    does not show (``globals()``, ``exec``), and ``rebinding`` whether it may bind them so.
     """
 
-    module: Scope
-    scopes: Mapping[ast.AST, Scope]
-    references: Mapping[ast.AST, Reference]
-    nonlocals: Mapping[ast.AST, Scope]
-    nodes: Mapping[type[ast.AST], Sequence[tuple[Any, Scope]]]
-    tolerated: Collection[ast.AST] = frozenset()
-    reflective: bool = False
-    rebinding: bool = False
-    diagnostics: tuple[Diagnostic, ...] = ()
+    def __init__(self, tree: ast.Module, module: Scope, stretches: Sequence[Stretch]) -> None:
+        self.module: Final = module
+        self.stretches: Final = tuple(stretches)
+        self.diagnostics: tuple[Diagnostic, ...] = ()
+        self.names: Final[Mapping[str, Binding]] = self._names()
+        reflecting = frozenset().union(*(each.reflecting for each in stretches)).difference(self.names)
+        self.reflective: Final = bool(reflecting)
+        self.rebinding: Final = not reflecting.isdisjoint(REBINDING)
+        self.wildcard: bool = self.rebinding or any(each.wildcard for each in stretches)
+        self._tree = tree
+        self._merged: dict[str, Any] = {}
+        self._more: Mapping[ast.AST, Reference] = {}
 
-    def binding(self, name: ast.Name) -> Binding | None:
-        """What a name of the program means, as far as the text says."""
-        reference = self.references.get(name)
-        return None if reference is None else reference.binding
+    def _names(self) -> dict[str, Binding]:
+        names: dict[str, Binding] = {}
+        for stretch in self.stretches:
+            for name, sites in stretch.bound.items():
+                binding = names.get(name)
+                if binding is None:
+                    binding = names[name] = Binding(name, self.module)
+                for kind, site in sites:
+                    binding.sites.append(site)
+                    binding.kinds.add(kind)
+        return names
+
+    def with_findings(self, diagnostics: tuple[Diagnostic, ...], *, wildcard: bool) -> "Resolution":
+        """The same names, with what was found out about them."""
+        new = copy(self)
+        new.diagnostics = diagnostics
+        new.wildcard = wildcard
+        return new
+
+    def with_references(self, more: Mapping[ast.AST, Reference]) -> "Resolution":
+        """The same names, with some more nodes that mean one of them."""
+        new = copy(self)
+        new._more = {**self._more, **more}
+        new._merged = {key: value for key, value in self._merged.items() if key != "references"}
+        return new
+
+    # All of them
 
     @property
-    def wildcard(self) -> bool:
-        """Whether names may exist that the text does not show."""
-        return self.module.wildcard
+    def references(self) -> Mapping[ast.AST, Reference]:
+        """What each name means, in no particular order.
+
+        Names bound by other nodes than ``ast.Name`` (functions, parameters, imports, captures) are found through
+        `Binding.sites`.
+        """
+        return self._once("references", self._references)
+
+    def _references(self) -> dict[ast.AST, Reference]:
+        found: dict[ast.AST, Reference] = dict(self._more)
+        names = self.names
+        for stretch in self.stretches:
+            found.update(stretch.references)
+            for node, reference in stretch.references.items():
+                if reference.binding is None and reference.node.id in names:
+                    found[node] = Reference(reference.node, reference.scope, names[reference.node.id])
+        return found
+
+    @property
+    def scopes(self) -> Mapping[ast.AST, Scope]:
+        """The scope that a node opens."""
+        return self._once("scopes", lambda: self._joined({self._tree: self.module}, "scopes"))
+
+    @property
+    def nonlocals(self) -> Mapping[ast.AST, Scope]:
+        """The scope in which a ``nonlocal`` statement stands."""
+        return self._once("nonlocals", lambda: self._joined({}, "nonlocals"))
+
+    @property
+    def tolerated(self) -> Collection[ast.AST]:
+        """The names read where a missing name is provided for."""
+        return self._once(
+            "tolerated", lambda: frozenset().union(*(each.tolerated for each in self.stretches))
+        )
+
+    @property
+    def reserved(self) -> Sequence[tuple[str, ast.AST]]:
+        """The places where the program binds a name that it must not bind."""
+        return [item for each in self.stretches for item in each.reserved]
+
+    def nodes(self, cls: type[ast.AST]) -> Sequence[tuple[Any, Scope]]:
+        """The nodes of one of the classes that the checks look for, each with the scope in which it stands, unordered."""
+        if len(self.stretches) == 1:
+            return self.stretches[0].nodes.get(cls, ())
+        key = f"nodes {cls.__name__}"
+        return self._once(key, lambda: [item for each in self.stretches for item in each.nodes.get(cls, ())])
+
+    def _joined(self, found: dict[ast.AST, Scope], name: str) -> dict[ast.AST, Scope]:
+        for stretch in self.stretches:
+            found.update(getattr(stretch, name))
+        return found
+
+    def _once(self, key: str, make: Callable[[], _T]) -> _T:
+        # Two threads that ask at the same time both make it, which does no harm.
+        if key not in self._merged:
+            self._merged[key] = make()
+        found: _T = self._merged[key]
+        return found
+
+    def sites(self) -> Iterator[tuple[ast.AST, Binding]]:
+        """Every node that binds a name, with what it binds; in no particular order."""
+        for stretch in self.stretches:
+            for site, found in stretch.sites.items():
+                yield site, self.names[found] if isinstance(found, str) else found
+
+    # One of them
+
+    def reference(self, node: ast.AST | None) -> Reference | None:
+        """Where a name of the program stands and what it means; ``None`` for all other nodes."""
+        known: Mapping[ast.AST, Reference] | None = self._merged.get("references")
+        if known is not None:
+            return known.get(node)  # type: ignore[arg-type]
+        for references in (self._more, *(each.references for each in self.stretches)):
+            found = references.get(node)  # type: ignore[arg-type]
+            if found is not None:
+                binding = found.binding or self.names.get(found.node.id)
+                return found if binding is found.binding else Reference(found.node, found.scope, binding)
+        return None
+
+    def binding(self, name: ast.AST) -> Binding | None:
+        """What a name of the program means, as far as the text says."""
+        reference = self.reference(name)
+        return None if reference is None else reference.binding
+
+    def binding_at(self, site: ast.AST) -> Binding | None:
+        """The binding that a node (a name, definition, parameter or alias) belongs to."""
+        for stretch in self.stretches:
+            found = stretch.sites.get(site)
+            if found is not None:
+                return self.names[found] if isinstance(found, str) else found
+        return None
+
+    def scope(self, node: ast.AST) -> Scope | None:
+        """The scope that a node opens."""
+        if "scopes" in self._merged:
+            return self.scopes.get(node)
+        if node is self._tree:
+            return self.module
+        return next((each.scopes[node] for each in self.stretches if node in each.scopes), None)
+
+    def lookup(self, name: str, scope: Scope) -> Binding | None:
+        """What a read of ``name`` in a scope means; ``None`` if the text binds it nowhere in reach."""
+        return scope.lookup(name) or self.names.get(name)
+
+    def bindings(self, scope: Scope) -> Mapping[str, Binding]:
+        """What is bound in a scope."""
+        return self.names if scope.kind is ScopeKind.MODULE else scope.bindings
+
+    def names_in_reach(self, scope: Scope) -> set[str]:
+        """All names that a read in a scope can mean, for suggestions."""
+        return {
+            name
+            for outer in scope.ancestors()
+            if outer is scope or outer.kind is not ScopeKind.CLASS
+            for name in self.bindings(outer)
+        }

@@ -364,7 +364,7 @@ def _names(
     for outer in scope.ancestors():
         if outer is not scope and outer.kind is ScopeKind.CLASS:
             continue
-        for name, binding in outer.bindings.items():
+        for name, binding in snapshot.resolution.bindings(outer).items():
             if name not in seen:
                 seen.add(name)
                 local = outer.kind is not ScopeKind.MODULE
@@ -461,7 +461,7 @@ def _symbol_named(
     project: Project, module: Module, snapshot: Snapshot | None, name: str, place: Iterable[str]
 ) -> Symbol | None:
     """What a name means at a place."""
-    binding: Binding | None = module.resolution.module.bindings.get(name)
+    binding: Binding | None = module.resolution.names.get(name)
     numbers = [int(part) for part in place if part.isdigit()]
     if snapshot is not None and snapshot.filename == module.filename and len(numbers) == 2:
         inner = snapshot.scope_at(numbers[0], numbers[1]).lookup(name)

@@ -1,7 +1,6 @@
 """What an expression would mean at a place of a document, though it does not stand there as a whole yet."""
 
 import ast
-from collections import ChainMap
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -53,10 +52,8 @@ def expression(
         return None
     scope = snapshot.scope_at(line, column)
     found: dict[ast.AST, Reference] = {
-        node: Reference(node, scope, scope.lookup(node.id))
+        node: Reference(node, scope, snapshot.resolution.lookup(node.id, scope))
         for node in ast.walk(statement)
         if isinstance(node, ast.Name)
     }
-    resolution = module.resolution
-    bound = replace(resolution, references=ChainMap(found, dict(resolution.references)))
-    return replace(module, resolution=bound), statement.value
+    return replace(module, resolution=module.resolution.with_references(found)), statement.value

@@ -132,7 +132,7 @@ def _around(module: Module, span: Span) -> Symbol:
             start, end = (node.lineno, node.col_offset), (node.end_lineno or 0, node.end_col_offset or 0)
             if start <= place < end:
                 inner = node
-    binding = None if inner is None else module.binding_of.get(inner)
+    binding = None if inner is None else module.resolution.binding_at(inner)
     if binding is not None:
         return symbol_of_binding(module, binding)
     name = module.filename.replace("\\", "/").rpartition("/")[2]

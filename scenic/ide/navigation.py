@@ -72,7 +72,7 @@ def declarations(project: Project, snapshot: Snapshot, line: int, column: int) -
     if module is None or found is None:
         return ()
     if isinstance(found.node, ast.Name):
-        reference = module.resolution.references.get(found.node)
+        reference = module.resolution.reference(found.node)
         binding = None if reference is None else reference.binding
         if binding is not None:
             symbol = symbol_of_binding(module, binding)
@@ -198,7 +198,8 @@ def rename(
     symbol = symbol_of(project, module, found)
     assert symbol is not None
     binding = symbol.binding
-    if name != found.name and binding is not None and name in binding.scope.bindings:
+    names = (symbol.module or module).resolution
+    if name != found.name and binding is not None and name in names.bindings(binding.scope):
         raise RenameError(f"there is a `{name}` already in the same scope")
     places = references(project, symbol) if symbol.filename is not None else ()
     # A place that names it differently (`import a as b`) keeps its own name.

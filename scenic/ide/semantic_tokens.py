@@ -258,7 +258,7 @@ def _of_import(
         if text == "import" and isinstance(node, ast.ImportFrom):
             in_module = False
         elif tokens.kinds[index] >= NAME:
-            binding = resolution.module.bindings.get(text)
+            binding = resolution.names.get(text)
             known = (
                 None
                 if binding is None

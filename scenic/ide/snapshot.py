@@ -11,7 +11,7 @@ from scenic.compiler.compile import Warned
 from scenic.compiler.generated import WORDS
 from scenic.compiler.incremental import Revision, revise
 from scenic.compiler.parser import DEEPEST, ParseResult, recursion_limit
-from scenic.compiler.resolver import bind
+from scenic.compiler.resolver import bind_again
 from scenic.compiler.scopes import Resolution, Scope
 from scenic.compiler.surroundings import SurroundingsOf
 from scenic.compiler.tokens import NAME, Tokens
@@ -39,6 +39,7 @@ class Snapshot:
     def __init__(self, text: str, filename: str, *, before: "Snapshot | None" = None) -> None:
         self.source = Source(text, filename)
         self._before = None if before is None else before._latest()
+        self._before_names = None if before is None else before._latest_names()
         self._warned: Warned = {} if before is None else before._warned
         self._lock = threading.Lock()
         self._making: dict[str, threading.RLock] = {}
@@ -155,10 +156,10 @@ class Snapshot:
 
     def scope_at(self, line: int, column: int) -> Scope:
         """The innermost scope at a place."""
-        scopes = self.resolution.scopes
-        found = self.resolution.module
+        resolution = self.resolution
+        found = resolution.module
         for node in self.path_to(line, column):
-            found = scopes.get(node, found)
+            found = resolution.scope(node) or found
         return found
 
     # How things are made
@@ -179,7 +180,12 @@ class Snapshot:
     ) -> tuple[Diagnostic, ...]:
         """What the static check finds. Compiles only what no version before has been found right in."""
         checked = check_again(
-            self.parsed, self.source, surroundings_of=surroundings_of, warned=self._warned, go_on=go_on
+            self.parsed,
+            self.source,
+            resolution=self.resolution,
+            surroundings_of=surroundings_of,
+            warned=self._warned,
+            go_on=go_on,
         )
         self._warned = checked.warned
         return checked.diagnostics
@@ -189,14 +195,22 @@ class Snapshot:
         revision: Revision | None = self._known.get("revision", self._before)
         return revision
 
+    def _latest_names(self) -> Resolution | None:
+        """The names, if they have been bound; otherwise those of the version before."""
+        resolution: Resolution | None = self._known.get("resolution", self._before_names)
+        return resolution
+
     def _revise(self) -> Revision:
         revision = revise(self.source.text, self._before, filename=self.filename)
         self._before = None
         return revision
 
     def _resolve(self) -> Resolution:
+        tree = self.tree
         with recursion_limit(DEEPEST):
-            return bind(self.tree)
+            resolution = bind_again(tree, self._before_names)
+        self._before_names = None
+        return resolution
 
 
 def _placed(node: ast.AST) -> Iterator[ast.AST]:

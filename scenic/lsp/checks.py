@@ -129,7 +129,7 @@ class Checks:
                 return
             session.loop.put(lambda: self._finish(job, document, found, problems))
 
-        job = Job(work)
+        job = Job(work, session.loop)
         self._running[uri] = job
         session.checker.put(job)
 

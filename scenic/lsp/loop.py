@@ -15,6 +15,8 @@ __all__ = ["Job", "Loop", "Timer", "Worker"]
 Action: TypeAlias = Callable[[], None]
 
 _NEVER: Final = 3600.0
+_COURTESY: Final = 0.05
+"""So many seconds work beside the loop waits for it at a time."""
 _PATIENCE: Final = 0.1
 """So many seconds a timer that is due waits for actions; then it is its turn, however many there are."""
 
@@ -46,6 +48,7 @@ class Loop:
         self._timers: list[tuple[float, int, Timer]] = []
         self._count = count()
         self._stopped = False
+        self._waiting = threading.Event()
 
     def put(self, action: Action) -> None:
         """Have an action done after those that are waiting; from any thread."""
@@ -57,6 +60,10 @@ class Loop:
         heapq.heappush(self._timers, (time.monotonic() + delay, next(self._count), timer))
         return timer
 
+    def give_way(self) -> None:
+        """Wait until the loop has nothing to do, though not for long; for work beside it, which shares one processor."""
+        self._waiting.wait(_COURTESY)
+
     def stop(self) -> None:
         """End after the present action; in the loop's own thread only."""
         self._stopped = True
@@ -67,20 +74,30 @@ class Loop:
             wait = self._timers[0][0] - time.monotonic() if self._timers else _NEVER
             if wait > -_PATIENCE:
                 # What is waiting comes before timers: a change that has arrived is seen before a check begins.
-                try:
-                    self._actions.get(timeout=max(0.0, wait))()
+                action = self._next(max(0.0, wait))
+                if action is not None:
+                    action()
                     continue
-                except queue.Empty:
-                    pass
             if self._timers and self._timers[0][0] <= time.monotonic():
                 heapq.heappop(self._timers)[2].run()
+
+    def _next(self, patience: float) -> Action | None:
+        """The next action; ``None`` if there is none for so many seconds."""
+        self._waiting.set()
+        try:
+            return self._actions.get(timeout=patience)
+        except queue.Empty:
+            return None
+        finally:
+            self._waiting.clear()
 
 
 class Job:
     """Work beside the loop. ``work`` is given the job, to ask it now and then whether to go on."""
 
-    def __init__(self, work: Callable[["Job"], None]) -> None:
+    def __init__(self, work: Callable[["Job"], None], loop: Loop) -> None:
         self._work = work
+        self._loop = loop
         self._cancelled = threading.Event()
 
     def cancel(self) -> None:
@@ -93,7 +110,8 @@ class Job:
         return self._cancelled.is_set()
 
     def go_on(self) -> None:
-        """Raise `Cancelled` if the result is not wanted any more."""
+        """Let the loop go first; raise `Cancelled` if the result is not wanted any more."""
+        self._loop.give_way()
         if self._cancelled.is_set():
             raise Cancelled
 

@@ -17,6 +17,7 @@ from scenic.ide.snapshot import Cancelled
 from scenic.lsp import parent, reading
 from scenic.lsp.checks import Checks
 from scenic.lsp.errors import ErrorCode, ProtocolError
+from scenic.lsp.garbage import Garbage
 from scenic.lsp.handlers import notification_handler, request_handler
 from scenic.lsp.handlers.lifecycle import initialize
 from scenic.lsp.loop import Job, Loop, Worker
@@ -25,8 +26,6 @@ from scenic.lsp.wire import Message, Reader, Writer
 
 __all__ = ["Server", "serve"]
 
-_GARBAGE: Final = 50_000
-"""So many new objects are made before garbage is looked for among them."""
 _CANCEL: Final = "$/cancelRequest"
 _CANCEL_PROGRESS: Final = "window/workDoneProgress/cancel"
 
@@ -48,6 +47,7 @@ class Server:
         self._loop = Loop()
         self._session = Session(self._loop, self._writer)
         self._session.checks = Checks(self._session)
+        self._garbage = Garbage(self._loop)
         self._worker = Worker("requests")
         self._stage = _Stage.NEW
         self._code = 0
@@ -91,6 +91,7 @@ class Server:
         self._loop.stop()
 
     def _receive(self, message: Message | list[Any]) -> None:
+        self._garbage.touched()
         if isinstance(message, list):
             wrong = ProtocolError(
                 ErrorCode.INVALID_REQUEST, "batches of messages are not part of the protocol"
@@ -203,7 +204,7 @@ class Server:
             else:
                 self._loop.put(lambda: self._finish(name, job, result))
 
-        job = Job(work)
+        job = Job(work, self._loop)
         self._working[name] = (job, deferred.document)
         if isinstance(token, int | str):
             self._tokens[token] = name
@@ -269,10 +270,11 @@ class Server:
 
 def serve() -> int:
     """Serve one client over standard input and output until it says to exit, or goes away; returns the exit code."""
-    # What is kept of documents is large and lives long: looking for garbage in it more often finds nothing.
-    gc.set_threshold(_GARBAGE, 5, 5)
     # A request does not wait long for a check that runs beside it.
     sys.setswitchinterval(0.001)
+    # What is kept of documents is large, lives long and has few cycles: see `Garbage`.
+    gc.freeze()
+    gc.disable()
     with os.fdopen(os.dup(sys.stdout.fileno()), "wb") as output, redirect_stdout(sys.stderr):
         # Whatever else is printed must not get between the messages.
         code = Server(sys.stdin.buffer, output).run()

@@ -165,7 +165,7 @@ def _own(module: Module, symbol: Symbol, node: ast.ClassDef) -> list[Member]:
                     symbol=place,
                 )
             )
-    scope = module.resolution.scopes.get(node)
+    scope = module.resolution.scope(node)
     for binding in () if scope is None else scope.bindings.values():
         inner = symbol_of_binding(module, binding)
         kind = SymbolKind.METHOD if inner.kind is SymbolKind.METHOD else SymbolKind.ATTRIBUTE
@@ -241,7 +241,7 @@ def _meaning(project: Project, module: Module, node: ast.expr, depth: int) -> Sy
 
 
 def _of_name(project: Project, module: Module, node: ast.Name) -> Symbol | None:
-    reference = module.resolution.references.get(node)
+    reference = module.resolution.reference(node)
     binding = None if reference is None else reference.binding
     if binding is not None:
         exported = project.own(module, binding)
@@ -260,7 +260,7 @@ def module_behind(project: Project, module: Module, node: ast.expr) -> Found | N
         node = node.value
     if not isinstance(node, ast.Name):
         return None
-    reference = module.resolution.references.get(node)
+    reference = module.resolution.reference(node)
     binding = None if reference is None else reference.binding
     if binding is None:
         exported = project.exports(module).names.get(node.id)
@@ -300,7 +300,7 @@ def _class_of(project: Project, module: Module, node: ast.expr, depth: int) -> S
 
 
 def _class_of_name(project: Project, module: Module, node: ast.Name, depth: int) -> Symbol | None:
-    reference = module.resolution.references.get(node)
+    reference = module.resolution.reference(node)
     if reference is None:
         return None
     binding = reference.binding
@@ -344,5 +344,5 @@ def _class_of_self(module: Module, scope: Scope, name: str) -> Symbol | None:
         first = [*args.posonlyargs, *args.args][:1] if args is not None else []
         if not first or first[0].arg != name:
             return None
-    binding = module.binding_of.get(owner.node)
+    binding = module.resolution.binding_at(owner.node)
     return None if binding is None else symbol_of_binding(module, binding)

@@ -52,16 +52,16 @@ class Imports:
     @cached_property
     def _froms(self) -> tuple[ast.ImportFrom, ...]:
         return tuple(
-            node for node, _ in self._resolution.nodes.get(ast.ImportFrom, ()) if node.module != "__future__"
+            node for node, _ in self._resolution.nodes(ast.ImportFrom) if node.module != "__future__"
         )
 
     @cached_property
     def _models(self) -> tuple[scenic.Model, ...]:
-        return tuple(node for node, _ in self._resolution.nodes.get(scenic.Model, ()))
+        return tuple(node for node, _ in self._resolution.nodes(scenic.Model))
 
     @cached_property
     def _plain(self) -> tuple[ast.Import, ...]:
-        return tuple(node for node, _ in self._resolution.nodes.get(ast.Import, ()))
+        return tuple(node for node, _ in self._resolution.nodes(ast.Import))
 
     @cached_property
     def _statements(self) -> dict[ast.alias, ast.ImportFrom]:
@@ -225,12 +225,12 @@ class Imports:
     def _attribute_findings(self) -> Iterator[Diagnostic]:
         imported = {
             binding.name
-            for binding in self._resolution.module.bindings.values()
+            for binding in self._resolution.names.values()
             if all(isinstance(site, ast.alias) for site in binding.sites)
         }
         if not imported:
             return
-        for node, _ in self._resolution.nodes.get(ast.Attribute, ()):
+        for node, _ in self._resolution.nodes(ast.Attribute):
             base = node.value
             while isinstance(base, ast.Attribute):
                 base = base.value
@@ -257,7 +257,7 @@ class Imports:
         """Whether the program gives a module such an attribute somewhere."""
         return any(
             other.attr == node.attr and not isinstance(other.ctx, ast.Load)
-            for other, _ in self._resolution.nodes.get(ast.Attribute, ())
+            for other, _ in self._resolution.nodes(ast.Attribute)
         )
 
     def _without(

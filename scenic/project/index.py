@@ -272,7 +272,7 @@ class Project:
             module.sets_ego
             or any(self._gather(other, gathering).sets_ego for other in self._imported(module))
         )
-        own = module.resolution.module.bindings
+        own = module.resolution.names
         names.update((name, Exported(name, module, binding)) for name, binding in own.items())
         if module.is_dynamic:
             reason = "parts of it cannot be parsed" if module.broken else "it binds names while it runs"
@@ -364,12 +364,12 @@ class Project:
 def _imports(module: Module) -> Iterator[tuple[int, str]]:
     """Each module that a module imports: the dots before its name, and the name."""
     nodes = module.resolution.nodes
-    for node, _ in nodes.get(ast.Import, ()):
+    for node, _ in nodes(ast.Import):
         for alias in node.names:
             yield 0, alias.name
-    for node, _ in nodes.get(ast.ImportFrom, ()):
+    for node, _ in nodes(ast.ImportFrom):
         yield node.level, node.module or ""
-    for node, _ in nodes.get(scenic.Model, ()):
+    for node, _ in nodes(scenic.Model):
         yield 0, node.name
 
 

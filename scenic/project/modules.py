@@ -11,7 +11,7 @@ from scenic.compiler import tree as scenic
 from scenic.compiler.checks.places import word_span
 from scenic.compiler.parser import DEEPEST, parse, recursion_limit
 from scenic.compiler.resolver import bind
-from scenic.compiler.scopes import Binding, Resolution, Scope, ScopeKind
+from scenic.compiler.scopes import Resolution, Scope, ScopeKind
 from scenic.compiler.traversal import walk
 from scenic.language.source import Source
 from scenic.language.spans import Span
@@ -19,19 +19,6 @@ from scenic.language.spans import Span
 __all__ = ["Module", "read_module"]
 
 _T = TypeVar("_T")
-
-_WITH_WORDS: Final = (
-    ast.Attribute,
-    ast.Global,
-    ast.Import,
-    ast.ImportFrom,
-    ast.Nonlocal,
-    ast.keyword,
-    scenic.Model,
-    scenic.PropertyDef,
-    scenic.Specifier,
-)
-"""Nodes that hold names as plain texts."""
 
 _EMPTY: Final = ast.Module(body=[], type_ignores=[])
 
@@ -53,20 +40,12 @@ class Module:
         return self.source.filename
 
     @cached_property
-    def binding_of(self) -> dict[ast.AST, Binding]:
-        """The binding that each binding node (name, definition, parameter, alias) belongs to."""
-        scopes = {self.resolution.module, *self.resolution.scopes.values()}
-        return {
-            site: binding for scope in scopes for binding in scope.bindings.values() for site in binding.sites
-        }
-
-    @cached_property
     def import_of(self) -> dict[ast.alias, ast.Import | ast.ImportFrom]:
         """The statement that each alias stands in."""
         return {
             alias: node
             for cls in (ast.Import, ast.ImportFrom)
-            for node, _ in self.resolution.nodes.get(cls, ())
+            for node, _ in self.resolution.nodes(cls)
             for alias in node.names
         }
 
@@ -74,9 +53,9 @@ class Module:
     def assignment_of(self) -> dict[ast.AST, ast.Assign | ast.AnnAssign]:
         """The assignment of which each name is a whole target."""
         found: dict[ast.AST, ast.Assign | ast.AnnAssign] = {}
-        for node, _ in self.resolution.nodes.get(ast.Assign, ()):
+        for node, _ in self.resolution.nodes(ast.Assign):
             found.update((target, node) for target in node.targets if isinstance(target, ast.Name))
-        for node, _ in self.resolution.nodes.get(ast.AnnAssign, ()):
+        for node, _ in self.resolution.nodes(ast.AnnAssign):
             if isinstance(node.target, ast.Name):
                 found[node.target] = node
         return found
@@ -86,7 +65,7 @@ class Module:
         """The values that are assigned to the ego."""
         return tuple(
             node.value
-            for node, _ in self.resolution.nodes.get(ast.Assign, ())
+            for node, _ in self.resolution.nodes(ast.Assign)
             if any(isinstance(target, ast.Name) and target.id == "ego" for target in node.targets)
         )
 
@@ -111,11 +90,6 @@ class Module:
         return " ".join(lines)
 
     @cached_property
-    def inner_nodes(self) -> tuple[ast.AST, ...]:
-        """The nodes with names in them that are no nodes of their own, in no particular order."""
-        return tuple(node for node in walk(self.tree) if isinstance(node, _WITH_WORDS))
-
-    @cached_property
     def owner_of_specifier(self) -> dict[ast.AST, scenic.New | scenic.Override]:
         """What each specifier belongs to."""
         return {
@@ -135,6 +109,10 @@ class Module:
             for keyword in node.keywords
         }
 
+    def knows(self, name: str) -> bool:
+        """Whether what is computed under a name is there already."""
+        return name in self._derived
+
     def derived(self, name: str, compute: Callable[[], _T]) -> _T:
         """What is computed from the module once, when it is first asked for, under a name."""
         known = self._derived.get(name)
@@ -147,18 +125,14 @@ class Module:
     def stars(self) -> tuple[ast.ImportFrom | scenic.Model, ...]:
         """The statements that bring names that the text does not show, in order."""
         nodes = self.resolution.nodes
-        found: list[Any] = [node for node, _ in nodes.get(scenic.Model, ())]
-        found += [
-            node
-            for node, _ in nodes.get(ast.ImportFrom, ())
-            if any(alias.name == "*" for alias in node.names)
-        ]
+        found: list[Any] = [node for node, _ in nodes(scenic.Model)]
+        found += [node for node, _ in nodes(ast.ImportFrom) if any(alias.name == "*" for alias in node.names)]
         return tuple(sorted(found, key=lambda node: (node.lineno, node.col_offset)))
 
     @cached_property
     def public(self) -> frozenset[str] | None:
         """What ``__all__`` lists; ``None`` without it, or if it is not a plain list of strings."""
-        binding = self.resolution.module.bindings.get("__all__")
+        binding = self.resolution.names.get("__all__")
         if binding is None:
             return None
         names: set[str] = set()
@@ -181,8 +155,7 @@ class Module:
     @cached_property
     def is_dynamic(self) -> bool:
         """Whether it may have names that its text does not show, apart from those that star imports bring."""
-        module = self.resolution.module
-        if self.broken or "__getattr__" in module.bindings:
+        if self.broken or "__getattr__" in self.resolution.names:
             return True
         return self.resolution.rebinding
 
@@ -217,7 +190,7 @@ def read_module(
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         tree, broken = _EMPTY, True
         resolution = bind(tree)
-    broken = broken or bool(resolution.nodes.get(scenic.ErrorStatement))
+    broken = broken or bool(resolution.nodes(scenic.ErrorStatement))
     return Module(source, tree, resolution, is_scenic, broken)
 
 

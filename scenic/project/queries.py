@@ -2,13 +2,14 @@
 
 import ast
 from bisect import bisect_right
-from collections.abc import Iterator, Sequence
+from collections.abc import Container, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Final
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.context import DEFINITIONS
-from scenic.compiler.scopes import BindingKind, Scope
+from scenic.compiler.scopes import Binding, BindingKind, Scope
+from scenic.compiler.traversal import walk
 from scenic.language.spans import Span
 from scenic.project.classes import class_of_symbol, meaning
 from scenic.project.index import Exported, Project
@@ -29,6 +30,20 @@ __all__ = [
     "symbol_at",
     "symbol_of",
 ]
+
+
+_WITH_WORDS: Final = (
+    ast.Attribute,
+    ast.Global,
+    ast.Import,
+    ast.ImportFrom,
+    ast.Nonlocal,
+    ast.keyword,
+    scenic.Model,
+    scenic.PropertyDef,
+    scenic.Specifier,
+)
+"""Nodes that hold names as plain texts."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,27 +72,39 @@ class Place:
 
 def occurrences(module: Module) -> Sequence[Occurrence]:
     """All words of a module that name something, in order of place."""
-    return module.derived(
-        "occurrences", lambda: tuple(sorted(_occurrences(module), key=lambda each: each.span))
-    )
-
-
-def _occurrences(module: Module) -> Iterator[Occurrence]:
     resolution = module.resolution
-    for reference in resolution.references.values():
-        node = reference.node
-        yield Occurrence(node.id, module.source.span(node), not isinstance(node.ctx, ast.Load), node)
-    for site, binding in module.binding_of.items():
+
+    def find() -> tuple[Occurrence, ...]:
+        return _in_order(_occurrences(module, module.tree, resolution.references, dict(resolution.sites())))
+
+    return module.derived("occurrences", find)
+
+
+def _in_order(found: Iterator[Occurrence]) -> tuple[Occurrence, ...]:
+    return tuple(sorted(found, key=lambda each: each.span))
+
+
+def _occurrences(
+    module: Module, part: ast.AST, references: Container[ast.AST], bindings: Mapping[ast.AST, Binding]
+) -> Iterator[Occurrence]:
+    """The words of a part of a module that name something."""
+    for node in walk(part):
+        if isinstance(node, ast.Name):
+            if node in references:
+                defines = not isinstance(node.ctx, ast.Load)
+                yield Occurrence(node.id, module.source.span(node), defines, node)
+            continue
+        binding = bindings.get(node)
         # Of behaviors and properties, `self` is bound without a word.
-        unsaid = binding.kinds == {BindingKind.SELF}
-        if not unsaid and not isinstance(site, ast.Name | ast.alias):
-            yield Occurrence(binding.name, module.word_span(site, binding.name), True, site)
-    for inner in module.inner_nodes:
-        yield from _words(inner, module)
+        if binding is not None and binding.kinds != {BindingKind.SELF} and not isinstance(node, ast.alias):
+            yield Occurrence(binding.name, module.word_span(node, binding.name), True, node)
+        yield from _words(node, module)
 
 
 def _words(node: Any, module: Module) -> Iterator[Occurrence]:
     """The names in a node that are no nodes of their own."""
+    if not isinstance(node, _WITH_WORDS):
+        return
     match node:
         case ast.Attribute():
             yield Occurrence(node.attr, module.attribute_span(node), not isinstance(node.ctx, ast.Load), node)
@@ -131,12 +158,27 @@ def _dotted(node: ast.AST, name: str, module: Module, start: str | None = None) 
 
 def occurrence_at(module: Module, line: int, column: int) -> Occurrence | None:
     """The word at a place (``line`` from 1, ``column`` in characters from 0), also just after its end."""
-    every = occurrences(module)
+    if module.knows("occurrences"):
+        every = occurrences(module)
+    else:
+        # One word is wanted, perhaps while someone types: the statement around it is all that needs to be looked at.
+        resolution = module.resolution
+        parts = [each for each in module.tree.body if _first_line(each) <= line <= (each.end_lineno or line)]
+        nodes = [node for part in parts for node in walk(part)]
+        bindings = {node: found for node in nodes if (found := resolution.binding_at(node)) is not None}
+        names = {node for node in nodes if resolution.reference(node) is not None}
+        around = ast.Module(body=parts, type_ignores=[])
+        every = _in_order(_occurrences(module, around, names, bindings))
     index = bisect_right(every, (line, column), key=lambda each: (each.span.line, each.span.column)) - 1
     if index < 0:
         return None
     span = every[index].span
     return every[index] if span.line == line and column <= span.end_column else None
+
+
+def _first_line(node: ast.stmt) -> int:
+    decorators: list[ast.expr] = getattr(node, "decorator_list", None) or []
+    return min([node.lineno, *(each.lineno for each in decorators)])
 
 
 def symbol_at(project: Project, filename: str, line: int, column: int) -> Symbol | None:
@@ -173,7 +215,7 @@ def symbol_of(project: Project, module: Module, occurrence: Occurrence) -> Symbo
         case ast.alias():
             return _alias(project, module, node, occurrence)
         case ast.Global() | ast.Nonlocal():
-            binding = module.resolution.module.bindings.get(occurrence.name)
+            binding = module.resolution.names.get(occurrence.name)
             return (
                 None
                 if binding is None
@@ -183,7 +225,7 @@ def symbol_of(project: Project, module: Module, occurrence: Occurrence) -> Symbo
 
 
 def _bound(project: Project, module: Module, node: ast.AST) -> Symbol | None:
-    binding = module.binding_of.get(node)
+    binding = module.resolution.binding_at(node)
     return None if binding is None else symbol_of_exported(project, Exported(binding.name, module, binding))
 
 
@@ -222,9 +264,9 @@ def _property(project: Project, module: Module, node: scenic.Specifier) -> Symbo
 
 
 def _own_property(project: Project, module: Module, node: scenic.PropertyDef) -> Symbol | None:
-    scope = module.resolution.scopes.get(node)
+    scope = module.resolution.scope(node)
     owner = None if scope is None else scope.parent
-    binding = None if owner is None else module.binding_of.get(owner.node)
+    binding = None if owner is None else module.resolution.binding_at(owner.node)
     known = None if binding is None else class_of_symbol(project, symbol_of_binding(module, binding))
     member = None if known is None else known.member(node.name)
     return None if member is None else member.symbol
@@ -240,7 +282,7 @@ def _keyword(project: Project, module: Module, node: ast.keyword) -> Symbol | No
         callee = None if initial is None else initial.symbol
     if callee is None or callee.module is None or not isinstance(callee.node, DEFINITIONS):
         return None
-    scope: Scope | None = callee.module.resolution.scopes.get(callee.node)
+    scope: Scope | None = callee.module.resolution.scope(callee.node)
     binding = None if scope is None else scope.bindings.get(node.arg or "")
     return None if binding is None else symbol_of_binding(callee.module, binding)
 

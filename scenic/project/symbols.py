@@ -172,7 +172,7 @@ def _statement_span(module: Module, node: ast.AST) -> Span:
 
 def symbols_of(module: Module) -> tuple[Symbol, ...]:
     """What a module binds at its top level, in order of place."""
-    bindings = module.resolution.module.bindings.values()
+    bindings = module.resolution.names.values()
     return tuple(
         sorted(
             (symbol_of_binding(module, binding) for binding in bindings),

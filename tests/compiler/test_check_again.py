@@ -1,11 +1,14 @@
 """Checking a program after a change says the same as checking it afresh."""
 
+import ast
 import random
 
 import pytest
 
 from scenic.compiler.check import check_again, check_text
 from scenic.compiler.incremental import revise
+from scenic.compiler.resolver import bind, bind_again
+from scenic.compiler.scopes import Binding, Reference
 from scenic.language.source import Source
 from tests.compiler.test_incremental import TEXTS, edited
 
@@ -23,13 +26,48 @@ def g(): return x is 'b'
 def test_the_same_after_random_edits(seed: int) -> None:
     chance = random.Random(seed)
     text = chance.choice([*TEXTS, WARNED])
-    revision, warned = revise(text, filename="f"), {}
+    revision, warned, names = revise(text, filename="f"), {}, None
     for _ in range(10):
-        checked = check_again(revision.result, Source(text, "f"), warned=warned)
+        names = bind_again(revision.result.tree, names)
+        checked = check_again(revision.result, Source(text, "f"), resolution=names, warned=warned)
         assert checked.diagnostics == check_text(text, filename="f")
         warned = checked.warned
         text = Source(edited(text, chance), "").text
         revision = revise(text, revision, filename="f")
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_names_of_unchanged_statements_stay_bound(seed: int) -> None:
+    chance = random.Random(seed)
+    lines = [f"x{index} = x{index - 1} if {index} else 0" for index in range(1, 200)]
+    lines[50:50] = ["def f(a):", "    global x3", "    x3 = a", "    return [a for a in x5]"]
+    revision = revise("\n".join(lines), filename="f")
+    names = bind_again(revision.result.tree, None)
+    for _ in range(20):
+        before = names
+        index = chance.randrange(len(lines))
+        lines[index] = chance.choice(["x3 = eval", "pass", "y = x9", "def f(): return x3", "x9 = exec"])
+        revision = revise("\n".join(lines), revision, filename="f")
+        names = bind_again(revision.result.tree, before)
+        fresh = bind(revision.result.tree)
+        assert len({*names.stretches} & {*before.stretches}) >= len(names.stretches) - 2
+        for one, other in ((names.reference, fresh.reference), (names.binding_at, fresh.binding_at)):
+            for node in ast.walk(revision.result.tree):
+                assert _meaning(one(node)) == _meaning(other(node))
+        assert {**names.references}.keys() == {**fresh.references}.keys()
+        assert (names.reflective, names.rebinding, names.wildcard) == (
+            fresh.reflective,
+            fresh.rebinding,
+            fresh.wildcard,
+        )
+
+
+def _meaning(found: Reference | Binding | None) -> object:
+    """What two bindings of the same tree have in common if they are the same."""
+    binding = found.binding if isinstance(found, Reference) else found
+    if binding is None:
+        return found is None
+    return binding.name, binding.scope.kind, binding.scope.name, {*binding.sites}, binding.kinds
 
 
 @pytest.mark.parametrize(

@@ -123,7 +123,7 @@ def test_annotations_bind_names_unless_in_parentheses() -> None:
 
 def test_kinds_of_bindings() -> None:
     text = "import a\nfrom b import c\ndef f(): pass\nclass C: pass\nbehavior B():\n    wait\nx = 1\nx: int\n"
-    kinds = {name: binding.kinds for name, binding in resolved(text).module.bindings.items()}
+    kinds = {name: binding.kinds for name, binding in resolved(text).names.items()}
     assert kinds == {
         "a": {BindingKind.MODULE},
         "c": {BindingKind.IMPORTED},

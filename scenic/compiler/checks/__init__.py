@@ -7,7 +7,7 @@ that no rule has to walk it again.
 
 import ast
 from collections import Counter
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
 from typing import Final
 
 from scenic.compiler import tree as scenic
@@ -32,12 +32,9 @@ from scenic.compiler.checks import (
 )
 from scenic.compiler.checks.context import Context, NodeRule, ProgramRule
 from scenic.compiler.garbage import no_garbage_collection
-from scenic.compiler.scopes import Resolution
-from scenic.compiler.surroundings import Surroundings
 from scenic.language.diagnostics import Diagnostic
-from scenic.language.source import Source
 
-__all__ = ["NOTED", "check", "lint"]
+__all__ = ["NOTED", "Context", "check", "lint"]
 
 _NODE_RULES: Final[tuple[tuple[type[ast.AST], NodeRule], ...]] = tuple(
     rule
@@ -78,46 +75,44 @@ NOTED: Final = frozenset(
 
 
 def check(
-    tree: ast.Module,
-    source: Source,
-    resolution: Resolution,
-    *,
-    reserved: Iterable[tuple[str, ast.AST]],
-    provided: Collection[str],
-    surroundings: Surroundings | None = None,
+    context: Context, *, provided: Collection[str], go_on: Callable[[], None] = lambda: None
 ) -> tuple[Diagnostic, ...]:
-    """What no program may contain, ordered by place.
+    """What no program may contain, ordered by place. ``provided`` are the names in scope that nothing binds.
 
-    ``reserved`` are the places where the program binds a name that it must not bind, ``provided`` the names in scope
-    that nothing binds, ``surroundings`` what is known about its imports.
+    ``go_on`` is called now and then, and may raise to stop.
     """
-    context = Context(tree, source, resolution, surroundings)
 
     def findings() -> Iterator[Diagnostic]:
-        yield from names.check_reserved(context, reserved)
+        yield from names.check_reserved(context, context.resolution.reserved)
         yield from names.check_names(context, provided)
+        go_on()
         misplaced = dict(placement.check_placement(context))
         yield from filter(None, misplaced.values())
+        go_on()
         yield from support.check_support(context, misplaced)
+        go_on()
         yield from declarations.check_declarations(context)
 
     return tuple(_capped(sorted(findings(), key=_order)))
 
 
-def lint(
-    tree: ast.Module, source: Source, resolution: Resolution, surroundings: Surroundings | None = None
-) -> tuple[Diagnostic, ...]:
-    """What a program may contain but hardly means, and what is bound to fail when it is reached; ordered by place."""
-    context = Context(tree, source, resolution, surroundings)
+def lint(context: Context, go_on: Callable[[], None] = lambda: None) -> tuple[Diagnostic, ...]:
+    """What a program may contain but hardly means, and what is bound to fail when it is reached; ordered by place.
+
+    ``go_on`` is called now and then, and may raise to stop.
+    """
+    surroundings = context.surroundings
 
     def findings() -> Iterator[Diagnostic]:
         for cls, rule in _NODE_RULES:
-            for node, scope in resolution.nodes.get(cls, ()):
+            go_on()
+            for node, scope in context.nodes(cls):
                 yield from rule(node, scope, context)
         wrong = () if surroundings is None else tuple(surroundings.findings())
         yield from wrong
         places = {item.span for item in wrong}
         for program_rule in _PROGRAM_RULES:
+            go_on()
             # A name that cannot be imported is not unused as well.
             yield from (item for item in program_rule(context) if item.span not in places)
 

@@ -5,10 +5,11 @@ from collections.abc import Iterator
 from typing import Any, Final, NamedTuple
 
 from scenic.compiler import tree as scenic
-from scenic.compiler.checks.context import Context, NodeRule
+from scenic.compiler.checks.context import Context, Definition, NodeRule
 from scenic.compiler.checks.places import word_span
 from scenic.compiler.checks.provided import PROVIDED_PARAMETERS
 from scenic.compiler.scopes import Scope, ScopeKind
+from scenic.compiler.surroundings import Foreign
 from scenic.language.diagnostics import Diagnostic, Label
 from scenic.language.names import NAMES
 from scenic.language.spelling import nearest
@@ -58,9 +59,9 @@ def _call(node: ast.Call, _scope: Scope, context: Context) -> Iterator[Diagnosti
         if foreign.definition is not None:
             args = foreign.parameters or _parameters(foreign.definition)
             if args is not None:
-                labels = context.defined(foreign.name, foreign.definition, foreign)
                 title = f"the {kind_of(foreign.definition)} `{foreign.name}`"
-                yield from _arguments(node, _Callee(foreign.name, title, args, labels), context)
+                found = _Callee(foreign.name, title, args, foreign.definition, foreign)
+                yield from _arguments(node, found, context)
         return
     callee = _known(node, context)
     if callee is not None:
@@ -73,7 +74,8 @@ class _Callee(NamedTuple):
     name: str
     title: str
     args: ast.arguments
-    labels: tuple[Label, ...]
+    definition: Definition | None = None
+    foreign: Foreign | None = None
     skip: int = 0
 
     @property
@@ -84,6 +86,10 @@ class _Callee(NamedTuple):
     def signature(self) -> str:
         return f"`{self.name}({', '.join(self.required)})`"
 
+    def labels(self, context: Context) -> tuple[Label, ...]:
+        """Where it is defined, if the language does not define it."""
+        return () if self.definition is None else context.defined(self.name, self.definition, self.foreign)
+
 
 def _known(node: ast.Call, context: Context) -> _Callee | None:
     """What a call certainly calls, if that is defined in the program or by the language."""
@@ -92,7 +98,7 @@ def _known(node: ast.Call, context: Context) -> _Callee | None:
         args = PROVIDED_PARAMETERS.get(provided)
         if args is None:
             return None
-        return _Callee(provided, f"the {NAMES[provided].kind} `{provided}`", args, ())
+        return _Callee(provided, f"the {NAMES[provided].kind} `{provided}`", args)
     definition: Any = context.definition(node.func)
     skip = 0
     if definition is None:
@@ -102,11 +108,11 @@ def _known(node: ast.Call, context: Context) -> _Callee | None:
     if args is None:
         return None
     title = f"the {'method' if skip else kind_of(definition)} `{definition.name}`"
-    return _Callee(definition.name, title, args, context.defined(definition.name, definition, None), skip)
+    return _Callee(definition.name, title, args, definition, None, skip)
 
 
 def _arguments(node: ast.Call, callee: _Callee, context: Context) -> Iterator[Diagnostic]:
-    _, title, args, labels, skip = callee
+    title, args, skip = callee.title, callee.args, callee.skip
     positional = [*args.posonlyargs, *args.args][skip:]
     by_name = {arg.arg for arg in (*args.args[max(0, skip - len(args.posonlyargs)) :], *args.kwonlyargs)}
     spread = any(isinstance(argument, ast.Starred) for argument in node.args)
@@ -119,7 +125,7 @@ def _arguments(node: ast.Call, callee: _Callee, context: Context) -> Iterator[Di
             f"{title} takes {_count(count)}, and {given} {'is' if given == 1 else 'are'} given",
             node.args[count],
             "leave out the rest, or give it by name" if args.kwonlyargs else "leave out the rest",
-            labels=labels,
+            labels=callee.labels(context),
         )
         return
     filled = {arg.arg for arg in positional[: 0 if spread else len(node.args)]}
@@ -127,25 +133,26 @@ def _arguments(node: ast.Call, callee: _Callee, context: Context) -> Iterator[Di
     for keyword in node.keywords:
         if keyword.arg is None:
             continue
-        place = word_span(context.source, keyword, keyword.arg)
         if keyword.arg in filled and keyword.arg in by_name:
             wrong = True
+            place = word_span(context.source, keyword, keyword.arg)
             yield context.error(
                 "SC211",
                 f"{title} is given `{keyword.arg}` twice, by position and by name",
                 place,
                 "keep one of them",
-                labels=labels,
+                labels=callee.labels(context),
             )
         elif keyword.arg not in by_name and args.kwarg is None:
             wrong = True
+            place = word_span(context.source, keyword, keyword.arg)
             suggestion = nearest(keyword.arg, by_name - filled - {other.arg for other in node.keywords})
             yield context.error(
                 "SC211",
                 f"{title} has no parameter `{keyword.arg}`",
                 place,
                 f"did you mean `{suggestion}`?" if suggestion else f"it takes {_listed(sorted(by_name))}",
-                labels=labels,
+                labels=callee.labels(context),
                 fix=context.renaming(place, keyword.arg, suggestion) if suggestion else None,
             )
     if wrong or spread or spread_names:
@@ -158,7 +165,7 @@ def _arguments(node: ast.Call, callee: _Callee, context: Context) -> Iterator[Di
             f"{title} needs {_listed(missing)}",
             node,
             f"give {'it' if len(missing) == 1 else 'them'}: {callee.signature}",
-            labels=labels,
+            labels=callee.labels(context),
         )
 
 
@@ -166,7 +173,7 @@ def _own_method(function: ast.expr, context: Context) -> Any:
     """The method that ``self.name`` can only mean, in a method of a class without bases that the text does not show."""
     if not (isinstance(function, ast.Attribute) and isinstance(function.value, ast.Name)):
         return None
-    binding = context.resolution.binding(function.value)
+    binding = context.binding(function.value)
     if binding is None or binding.scope.parent is None or binding.scope.parent.kind is not ScopeKind.CLASS:
         return None
     method = binding.scope.node

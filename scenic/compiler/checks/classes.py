@@ -1,15 +1,16 @@
 """The properties of the classes that a program uses, as far as its text tells."""
 
 import ast
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from types import MappingProxyType
+from typing import Protocol
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.surroundings import Foreign, Property
 from scenic.compiler.traversal import walk
 from scenic.language.properties import CLASSES, properties_of
 
-__all__ = ["BUILT_IN", "Classes", "own_property"]
+__all__ = ["BUILT_IN", "Classes", "find_cycle", "own_property"]
 
 
 BUILT_IN: Mapping[str, Mapping[str, Property]] = MappingProxyType(
@@ -22,33 +23,36 @@ BUILT_IN: Mapping[str, Mapping[str, Property]] = MappingProxyType(
 )
 
 
+class Meanings(Protocol):
+    """What expressions that name something mean."""
+
+    def definition(self, name: ast.expr) -> ast.AST | None:
+        """The one definition that an expression can mean."""
+
+    def provided(self, name: ast.expr) -> str | None:
+        """The name of what the language provides."""
+
+    def foreign(self, name: ast.expr) -> Foreign | None:
+        """What another module defines."""
+
+
 class Classes:
-    """The properties of built-in classes and of those that the module defines.
+    """The properties of built-in classes and of those that the module defines."""
 
-    ``definition`` gives the one definition that an expression can mean, ``provided`` the name of what the language
-    provides, ``foreign`` what another module defines.
-    """
-
-    def __init__(
-        self,
-        definition: Callable[[ast.expr], ast.AST | None],
-        provided: Callable[[ast.expr], str | None],
-        foreign: Callable[[ast.expr], Foreign | None],
-    ) -> None:
-        self._definition = definition
-        self._provided = provided
-        self._foreign = foreign
+    def __init__(self, meanings: Meanings) -> None:
+        self._meanings = meanings
         self._known: dict[ast.AST, Mapping[str, Property] | None] = {}
+        self._circular: dict[int, bool] = {}
 
     def properties(self, name: ast.expr) -> Mapping[str, Property] | None:
         """All properties of the class that an expression names; ``None`` if they cannot be known."""
-        provided = self._provided(name)
+        provided = self._meanings.provided(name)
         if provided is not None:
             return BUILT_IN.get(provided)
-        foreign = self._foreign(name)
+        foreign = self._meanings.foreign(name)
         if foreign is not None:
             return foreign.properties
-        definition = self._definition(name)
+        definition = self._meanings.definition(name)
         return None if definition is None else self.of(definition)
 
     def of(self, definition: ast.AST) -> Mapping[str, Property] | None:
@@ -66,9 +70,12 @@ class Classes:
             found.update(properties)
         return found
 
-    def is_built_in(self, properties: Mapping[str, Property]) -> bool:
-        """Whether these are the properties of a class of the language, whose defaults need no checking."""
-        return any(properties is built_in for built_in in BUILT_IN.values())
+    def is_circular(self, properties: Mapping[str, Property]) -> bool:
+        """Whether the defaults of a class need one another in a circle."""
+        known = self._circular.get(id(properties))
+        if known is None:
+            known = self._circular[id(properties)] = _is_circular(properties)
+        return known
 
     def _defined(self, node: ast.ClassDef) -> Mapping[str, Property] | None:
         if node not in self._known:
@@ -90,3 +97,37 @@ def own_property(item: scenic.PropertyDef) -> Property:
         if isinstance(part, ast.Attribute) and isinstance(part.value, ast.Name) and part.value.id == "self"
     ]
     return Property(tuple(dict.fromkeys(needs)), "final" in item.attributes)
+
+
+def _is_circular(properties: Mapping[str, Property]) -> bool:
+    built_in = BUILT_IN["Object"]
+    if not any(item.needs and item != built_in.get(name) for name, item in properties.items()):
+        return False  # Those of the language are in no circle.
+    return (
+        find_cycle(list(properties), lambda name: properties[name].needs if name in properties else ())
+        is not None
+    )
+
+
+def find_cycle(names: list[str], needed: Callable[[str], tuple[str, ...]]) -> list[str] | None:
+    """The properties of one cycle, in order; ``None`` if there is none."""
+    done: set[str] = set()
+    for start in names:
+        path: list[str] = []
+        stack: list[tuple[str, Iterator[str]]] = []
+        if start not in done:
+            path.append(start)
+            stack.append((start, iter(needed(start))))
+        while stack:
+            name, rest = stack[-1]
+            following = next(rest, None)
+            if following is None:
+                stack.pop()
+                path.pop()
+                done.add(name)
+            elif following in path:
+                return path[path.index(following) :]
+            elif following not in done:
+                path.append(following)
+                stack.append((following, iter(needed(following))))
+    return None

@@ -1,9 +1,10 @@
 """What every rule is given: the program, what its names mean, and the making of diagnostics."""
 
 import ast
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from functools import cached_property
 from typing import Any, Final
+from weakref import proxy
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.blocks import Block, blocks, position
@@ -52,6 +53,9 @@ class Context:
         self.source = source
         self.resolution = resolution
         self.surroundings = surroundings
+        self.references: Final = resolution.references
+        self.brought: Final[Collection[str]] = () if surroundings is None else surroundings.names
+        """The names that star imports and the model are known to bring."""
 
     # What the program is
 
@@ -63,22 +67,23 @@ class Context:
     @cached_property
     def classes(self) -> Classes:
         """The properties of the classes that the program uses."""
-        return Classes(self.definition, self.provided, self.foreign)
+        # Without a reference back all of this is gone as soon as the check is done.
+        return Classes(proxy(self))
 
     @cached_property
     def broken(self) -> bool:
         """Whether parts could not be parsed: then nothing can be said to be missing or unused."""
         return bool(self.nodes(scenic.ErrorStatement))
 
-    def nodes(self, cls: type[ast.AST]) -> list[tuple[Any, Scope]]:
+    def nodes(self, cls: type[ast.AST]) -> Sequence[tuple[Any, Scope]]:
         """All nodes of a class, with their scopes."""
-        return list(self.resolution.nodes.get(cls, ()))
+        return self.resolution.nodes(cls)
 
     @cached_property
     def loads(self) -> Mapping[Binding, list[ast.Name]]:
         """Where the value of each binding is read."""
         found: dict[Binding, list[ast.Name]] = {}
-        for reference in self.resolution.references.values():
+        for reference in self.references.values():
             if reference.binding is not None and isinstance(reference.node.ctx, ast.Load):
                 found.setdefault(reference.binding, []).append(reference.node)
         return found
@@ -92,11 +97,16 @@ class Context:
         models = [node for node, _ in self.nodes(scenic.Model)]
         return max(map(position, (*stars, *models)), default=(0, 0))
 
+    def binding(self, name: ast.Name) -> Binding | None:
+        """What a name of the program means, as far as the text says."""
+        reference = self.references.get(name)
+        return None if reference is None else reference.binding
+
     def definition(self, name: ast.expr | None) -> Definition | None:
         """The one definition that an expression can only mean; ``None`` if there may be others, or decorators."""
         if not isinstance(name, ast.Name) or self.resolution.reflective:
             return None
-        binding = self.resolution.binding(name)
+        binding = self.binding(name)
         if binding is None or len(binding.sites) != 1:
             return None
         [site] = binding.sites
@@ -110,18 +120,13 @@ class Context:
             return True
         return not self.resolution.wildcard and name not in self.brought
 
-    @cached_property
-    def brought(self) -> Collection[str]:
-        """The names that star imports and the model are known to bring."""
-        return () if self.surroundings is None else self.surroundings.names
-
     def foreign(self, name: ast.expr | None) -> Foreign | None:
         """What an expression means, if that is something that another module certainly defines."""
         if self.surroundings is None or self.resolution.reflective:
             return None
         if isinstance(name, ast.Attribute):
             return self.surroundings.attribute(name)
-        reference = self.resolution.references.get(name) if isinstance(name, ast.Name) else None
+        reference = self.references.get(name) if isinstance(name, ast.Name) else None
         if reference is None:
             return None
         binding = reference.binding
@@ -139,7 +144,7 @@ class Context:
         """The name that an expression is, if it means what the language provides under that name."""
         if not isinstance(name, ast.Name) or self.resolution.wildcard:
             return None
-        reference = self.resolution.references.get(name)
+        reference = self.references.get(name)
         own = reference is not None and reference.binding is None and name.id not in self.brought
         return name.id if own else None
 
@@ -153,7 +158,7 @@ class Context:
 
     def constant(self, name: ast.Name) -> ast.expr | None:
         """The literal that is certainly the value of a name: a number, text or collection assigned just once."""
-        binding = self.resolution.binding(name)
+        binding = self.binding(name)
         if binding is None or len(binding.sites) != 1 or self.resolution.reflective:
             return None
         value = self.assigned.get(binding.sites[0])
@@ -224,7 +229,7 @@ class Context:
         """The names that are read and mean nothing that is known."""
         return frozenset(
             reference.node.id
-            for reference in self.resolution.references.values()
+            for reference in self.references.values()
             if reference.binding is None
             and reference.node.id not in PROVIDED
             and reference.node.id not in self.brought
@@ -234,7 +239,7 @@ class Context:
     def mentions(self) -> Mapping[str, list[tuple[int, int]]]:
         """Where each name is read or written, in order."""
         found: dict[str, list[tuple[int, int]]] = {}
-        for reference in self.resolution.references.values():
+        for reference in self.references.values():
             found.setdefault(reference.node.id, []).append(position(reference.node))
         for places in found.values():
             places.sort()

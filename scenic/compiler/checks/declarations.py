@@ -64,10 +64,14 @@ def _property(context: Context, node: scenic.PropertyDef) -> Iterator[Diagnostic
                 word_span(context.source, node, attribute),
                 "use `additive`, `dynamic` or `final`",
             )
+    scope = context.resolution.scopes.get(node)
+    own = None if scope is None else scope.bindings.get("self")
+    if own is None or own not in context.loads:
+        return
     read = {id(part.value) for part in walk(node.value) if isinstance(part, ast.Attribute)}
     for part in walk(node.value):
         if isinstance(part, ast.Name) and part.id == "self" and id(part) not in read:
-            binding = context.resolution.binding(part)
+            binding = context.binding(part)
             if binding is not None and binding.scope.kind is ScopeKind.PROPERTY:
                 yield context.error(
                     "SC200",

@@ -80,7 +80,7 @@ def _changed(context: Context) -> dict[ast.AST, ast.AST]:
     found: dict[ast.AST, ast.AST] = {}
 
     def note(target: Any, place: ast.AST) -> None:
-        binding = context.resolution.binding(target) if isinstance(target, ast.Name) else None
+        binding = context.binding(target) if isinstance(target, ast.Name) else None
         if binding is not None and len(binding.sites) == 1:
             found.setdefault(binding.sites[0], place)
 

@@ -2,6 +2,7 @@
 
 import ast
 from collections.abc import Iterator
+from typing import Final
 
 from scenic.compiler.checks.context import Context
 from scenic.language.diagnostics import Diagnostic, Edit, Fix, Severity
@@ -10,10 +11,15 @@ from scenic.language.spans import Span
 __all__ = ["check_instances", "missing_new"]
 
 
+_HOLDING: Final = frozenset({ast.Assign, ast.Expr})
+
+
 def check_instances(context: Context) -> Iterator[Diagnostic]:
     """SC111: ``ego = Car``, and a class that is a whole statement."""
     for block in context.blocks:
         for statement in block.statements:
+            if statement.__class__ not in _HOLDING:
+                continue
             match statement:
                 case ast.Assign(targets=[*_, ast.Name(id="ego")], value=ast.Name() as cls):
                     severity = Severity.ERROR

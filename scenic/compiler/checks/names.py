@@ -60,7 +60,7 @@ def check_names(context: Context, provided: Collection[str]) -> Iterator[Diagnos
     importing = False
     suggestions: dict[str, str | None] = {}
     elsewhere: dict[str, Binding] | None = None
-    for reference in resolution.references.values():
+    for reference in context.references.values():
         if reference.binding is not None:
             continue
         node = reference.node
@@ -99,7 +99,7 @@ def check_names(context: Context, provided: Collection[str]) -> Iterator[Diagnos
             yield _out_of_reach(context, reference, elsewhere[name])
             continue
         if name not in suggestions and len(suggestions) < MOST_SUGGESTIONS:
-            own = reference.scope.names_in_reach().union(context.brought)
+            own = resolution.names_in_reach(reference.scope).union(context.brought)
             suggestions[name] = (
                 begun_word(context, node)
                 or nearest(name, own | {word for word in provided if word[0] != "_"})
@@ -167,7 +167,7 @@ def _missing_imports(context: Context) -> set[str]:
     """Names that are imported from where they are not, and not used: they may be the beginnings of others."""
     return {
         binding.name
-        for binding in context.resolution.module.bindings.values()
+        for binding in context.resolution.names.values()
         if binding.kinds <= {BindingKind.MODULE, BindingKind.IMPORTED}
         and binding not in context.loads
         and all(
@@ -181,7 +181,7 @@ def _missing_imports(context: Context) -> set[str]:
 def _bound_somewhere(context: Context) -> dict[str, Binding]:
     """The first binding of each name in any scope but the module's."""
     found: dict[str, Binding] = {}
-    for scope in context.resolution.scopes.values():
+    for scope in sorted(context.resolution.scopes.values(), key=lambda each: position(each.node)):
         if scope.kind not in (ScopeKind.MODULE, ScopeKind.PROPERTY):
             for name, binding in scope.bindings.items():
                 found.setdefault(name, binding)
@@ -239,7 +239,7 @@ def _no_class(context: Context, name: ast.Name) -> Iterator[Diagnostic]:
         yield context.error("SC203", what, name, f"leave out `new`: write `{NAMES[provided].signature}`")
         return
     if provided is not None and provided in _BUILTINS and provided not in NAMES:
-        meant = nearest(provided, _classes_in_reach(context.resolution.references[name], context))
+        meant = nearest(provided, _classes_in_reach(context.references[name], context))
         # A warning: running the program raises the `TypeError` that scripts may expect.
         yield context.warning(
             "SC203",
@@ -273,7 +273,7 @@ def _classes_in_reach(reference: Reference, context: Context) -> set[str]:
         | {
             binding.name
             for scope in reference.scope.ancestors()
-            for binding in scope.bindings.values()
+            for binding in context.resolution.bindings(scope).values()
             if any(isinstance(site, ast.ClassDef) for site in binding.sites)
         }
     )

@@ -27,6 +27,17 @@ _DEFERRED: Final[tuple[type[ast.AST], ...]] = (
 """Statements whose expressions are evaluated later."""
 
 
+_OPERATORS: Final = frozenset(
+    name for name, each in OPERATORS.items() if any(operand.default == EGO for operand in each.operands)
+)
+_SPECIFIERS: Final = frozenset(
+    name
+    for name, each in SPECIFIERS.items()
+    if each.reads_ego or any(operand.default == EGO for operand in each.operands)
+)
+"""Those that may be about the ego without naming it."""
+
+
 def check_order(context: Context) -> Iterator[Diagnostic]:
     """SC204 and SC209."""
     if context.broken:
@@ -48,21 +59,28 @@ def _names(context: Context, starts: list[tuple[int, int]]) -> Iterator[Diagnost
     module = resolution.module
     body = context.tree.body
     first: dict[str, int] = {}
-    reported: set[str] = set()
-    for binding in module.bindings.values():
+    last_lines: dict[str, int] = {}
+    for binding in resolution.names.values():
         if binding.name not in PROVIDED and binding.name not in context.brought:
-            first[binding.name] = min(_statement(starts, site) for site in binding.sites)
-    for reference in resolution.references.values():
-        node = reference.node
+            site = min(binding.sites, key=position) if len(binding.sites) > 1 else binding.sites[0]
+            index = first[binding.name] = _statement(starts, site)
+            last_lines[binding.name] = getattr(body[index], "end_lineno", None) or 0
+    early = [
+        reference.node
+        for reference in context.references.values()
+        if reference.scope is module
+        and reference.node.lineno <= last_lines.get(reference.node.id, -1)
+        and isinstance(reference.node.ctx, ast.Load)
+    ]
+    reported: set[str] = set()
+    for node in sorted(early, key=position):
         name = node.id
-        if reference.scope is not module or name not in first or name in reported:
-            continue
-        if not isinstance(node.ctx, ast.Load) or node in resolution.tolerated:
+        if name in reported or node in resolution.tolerated:
             continue
         here = _statement(starts, node)
         if here < 0 or here > first[name] or isinstance(body[here], _DEFERRED):
             continue
-        binding = module.bindings[name]
+        binding = resolution.names[name]
         if here == first[name]:
             # `x = x + 1`: the value is computed first.
             statement = body[here]
@@ -72,7 +90,7 @@ def _names(context: Context, starts: list[tuple[int, int]]) -> Iterator[Diagnost
                 if _statement(starts, site) == here
             ):
                 continue
-        if reference.binding is not binding:
+        if context.binding(node) is not binding:
             continue
         reported.add(name)
         site = min(binding.sites, key=position)
@@ -95,7 +113,7 @@ def _ego(context: Context, starts: list[tuple[int, int]]) -> Iterator[Diagnostic
     module = context.resolution.module
     assignments = [
         (reference.node, reference.scope)
-        for reference in context.resolution.references.values()
+        for reference in context.references.values()
         if reference.node.id == "ego" and not isinstance(reference.node.ctx, ast.Load)
     ]
     end = len(context.tree.body)
@@ -172,17 +190,18 @@ def _in_scenario(scope: Scope) -> bool:
 
 def _uses(context: Context) -> Iterator[tuple[ast.AST, Scope]]:
     """Everything that reads the ego, and the scope in which it stands."""
-    for reference in context.resolution.references.values():
+    for reference in context.references.values():
         node = reference.node
         if node.id == "ego" and isinstance(node.ctx, ast.Load) and node not in context.resolution.tolerated:
             yield node, reference.scope
     for node, scope in context.nodes(scenic.Operation):
-        if node.operator in OPERATORS and _implied(node, OPERATORS[node.operator].operands):
+        if node.operator in _OPERATORS and _implied(node, OPERATORS[node.operator].operands):
             yield node, scope
     for node, scope in context.nodes(scenic.Specifier):
-        declared = SPECIFIERS.get(node.specifier)
-        if declared is not None and (declared.reads_ego or _implied(node, declared.operands)):
-            yield node, scope
+        if node.specifier in _SPECIFIERS:
+            declared = SPECIFIERS[node.specifier]
+            if declared.reads_ego or _implied(node, declared.operands):
+                yield node, scope
 
 
 def _implied(node: Any, declared: Any) -> bool:

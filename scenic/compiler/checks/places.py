@@ -1,7 +1,6 @@
 """Places of words that have no node of their own in the tree."""
 
 import ast
-import re
 
 from scenic.language.source import Source
 from scenic.language.spans import Span
@@ -17,10 +16,25 @@ def word_span(source: Source, node: ast.AST, word: str) -> Span:
         text = lines[line - 1]
         start = whole.column if line == whole.line else 0
         end = whole.end_column if line == whole.end_line else len(text)
-        found = re.compile(rf"(?<!\w){re.escape(word)}(?!\w)").search(text, start, end)
-        if found is not None:
-            return Span(line, found.start(), line, found.end())
+        found = _whole_word(text, word, start, end)
+        if found >= 0:
+            return Span(line, found, line, found + len(word))
     return header_span(source, node)
+
+
+def _whole_word(text: str, word: str, start: int, end: int) -> int:
+    """Where a word stands in a stretch of a line, with no letter, digit or underscore beside it; -1 if nowhere."""
+    found = text.find(word, start, end)
+    while found >= 0:
+        after = found + len(word)
+        if not (found and _in_word(text[found - 1])) and not (after < end and _in_word(text[after])):
+            return found
+        found = text.find(word, found + 1, end)
+    return -1
+
+
+def _in_word(character: str) -> bool:
+    return character.isalnum() or character == "_"
 
 
 def header_span(source: Source, node: ast.AST) -> Span:

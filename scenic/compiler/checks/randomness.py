@@ -46,7 +46,7 @@ def _is_random(value: ast.AST | None, context: Context, depth: int = 0) -> bool:
 
 def _assigned(name: ast.Name, context: Context) -> ast.expr | None:
     """The value of a name that is bound just once in the module."""
-    binding = context.resolution.binding(name)
+    binding = context.binding(name)
     if binding is None or len(binding.sites) != 1 or context.resolution.reflective:
         return None
     if binding.scope is not context.resolution.module or binding.name in context.brought:

@@ -5,6 +5,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any, Final
 
 from scenic.compiler import tree as scenic
+from scenic.compiler.checks.classes import find_cycle
 from scenic.compiler.checks.context import Context, NodeRule
 from scenic.compiler.checks.places import word_span
 from scenic.compiler.scopes import Scope
@@ -168,10 +169,10 @@ def _cycle(node: scenic.New, properties: Mapping[str, Property], context: Contex
             return _needs(providers[name]) if providers[name] is not None else ()
         return properties[name].needs if name in properties else ()
 
-    # The defaults of the built-in classes need one another in no circle; those of other modules are checked there.
-    elsewhere = context.classes.is_built_in(properties) or context.foreign(node.cls) is not None
-    own = () if elsewhere else properties
-    cycle = _find_cycle([*(name for name in providers if needed(name)), *own], needed)
+    # Where the defaults need one another in no circle, there can only be one through what the specifiers give. Those of
+    # other modules are checked there.
+    own = properties if context.classes.is_circular(properties) and context.foreign(node.cls) is None else ()
+    cycle = find_cycle([*(name for name in providers if needed(name)), *own], needed)
     if cycle is None:
         return
     places = [providers[name] for name in cycle if providers.get(name) is not None]
@@ -185,30 +186,6 @@ def _cycle(node: scenic.New, properties: Mapping[str, Property], context: Contex
         "give one of them a value that needs none of the others, for example with `with`",
         labels=tuple(context.label(other, "takes part in it") for other in others),
     )
-
-
-def _find_cycle(names: list[str], needed: Any) -> list[str] | None:
-    """The properties of one cycle, in order; ``None`` if there is none."""
-    done: set[str] = set()
-    for start in names:
-        path: list[str] = []
-        stack: list[tuple[str, Iterator[str]]] = []
-        if start not in done:
-            path.append(start)
-            stack.append((start, iter(needed(start))))
-        while stack:
-            name, rest = stack[-1]
-            following = next(rest, None)
-            if following is None:
-                stack.pop()
-                path.pop()
-                done.add(name)
-            elif following in path:
-                return path[path.index(following) :]
-            elif following not in done:
-                path.append(following)
-                stack.append((following, iter(needed(following))))
-    return None
 
 
 RULES: Final[dict[type[ast.AST], NodeRule]] = {scenic.New: _new, scenic.Override: _override}

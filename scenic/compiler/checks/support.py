@@ -8,7 +8,7 @@ from scenic.compiler import tree as scenic
 from scenic.compiler.checks.blocks import in_compose, position
 from scenic.compiler.checks.context import Context
 from scenic.compiler.checks.instances import missing_new
-from scenic.compiler.scopes import BindingKind, Resolution, Scope, ScopeKind
+from scenic.compiler.scopes import BindingKind, Scope, ScopeKind
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.keywords import TEMPORAL_OPERATORS
 from scenic.language.names import NAMES
@@ -30,6 +30,16 @@ _INSTEAD: Final = "draw with `Range`, `DiscreteRange`, `Uniform` or `Options`: v
 _NAMES: Final = frozenset(name.name for name in NAMES.values() if not name.available)
 
 
+def _checked() -> frozenset[type[ast.AST]]:
+    """Of these, those of which there is any that may have to be refused."""
+    tables = ((scenic.Specifier, SPECIFIERS), (scenic.Temporal, TEMPORAL_OPERATORS))
+    found = {cls for cls, table in tables if not all(each.available for each in table.values())}
+    return frozenset({scenic.Operation, *_STATEMENTS, *found})
+
+
+_CHECKED: Final = _checked()
+
+
 def check_support(context: Context, misplaced: Container[ast.AST]) -> Iterator[Diagnostic]:
     """SC900: every use of a feature that is declared but not available, but for statements that are misplaced anyway.
 
@@ -38,9 +48,11 @@ def check_support(context: Context, misplaced: Container[ast.AST]) -> Iterator[D
     resolution = context.resolution
     gaps = [node for node, _ in context.nodes(scenic.ErrorStatement)]
     for cls in NOTED:
+        if cls not in _CHECKED:
+            continue
         for node, scope in context.nodes(cls):
             if cls is scenic.Operation:
-                forgotten = _class_without_new(node, resolution)
+                forgotten = _class_without_new(node, context)
                 if forgotten is not None:
                     if not _carried(node, scope):
                         yield missing_new(forgotten, context, f"new {forgotten.id} at ...")
@@ -53,18 +65,18 @@ def check_support(context: Context, misplaced: Container[ast.AST]) -> Iterator[D
                 and not any(_within(node, gap) for gap in gaps)
             ):
                 yield _refusal(feature, node, context)
-    if not resolution.wildcard:
-        for reference in resolution.references.values():
+    if _NAMES and not resolution.wildcard:
+        for reference in context.references.values():
             name = reference.node
             if name.id in _NAMES and reference.binding is None and not _carried(name, reference.scope):
                 yield _refusal(f"`{name.id}`", name, context)
 
 
-def _class_without_new(node: scenic.Operation, resolution: Resolution) -> ast.Name | None:
+def _class_without_new(node: scenic.Operation, context: Context) -> ast.Name | None:
     """The class in ``C at position``, which reads as the operator but can only be meant as a specifier."""
     match node:
         case scenic.Operation(operator="at", operands=[ast.Name(id=name) as cls, *_]):
-            reference = resolution.references.get(cls)
+            reference = context.references.get(cls)
             binding = None if reference is None else reference.binding
             is_class = name in CLASSES if binding is None else binding.kinds == {BindingKind.CLASS}
             return cls if is_class else None

@@ -43,13 +43,13 @@ _HIDING: Final = frozenset(
 
 def check_uses(context: Context) -> Iterator[Diagnostic]:
     """SC205 to SC208."""
-    scopes = {context.resolution.module, *context.resolution.scopes.values()}
     certain = not (context.resolution.reflective or context.broken)
-    for scope in scopes:
-        for binding in scope.bindings.values():
+    loads = context.loads
+    for scope in context.resolution.scopes.values():
+        for binding in context.resolution.bindings(scope).values():
             if binding.name in NAMES:
                 yield from _hidden(binding, context)
-            if certain and binding not in context.loads:
+            if certain and binding not in loads:
                 yield from _unused(binding, scope, context)
     if certain:
         yield from _replaced(context)
@@ -129,7 +129,7 @@ def _is_library(context: Context) -> bool:
         or any(scope is module for _, scope in context.nodes(scenic.New))
         or any(
             reference.node.id == "ego" and not isinstance(reference.node.ctx, ast.Load)
-            for reference in context.resolution.references.values()
+            for reference in context.references.values()
         )
     )
 
@@ -172,7 +172,7 @@ def _removal(statement: Any, site: ast.alias, span: Span, context: Context) -> E
 
 def _exported(context: Context) -> set[str]:
     """The names in ``__all__``."""
-    binding = context.resolution.module.bindings.get("__all__")
+    binding = context.resolution.names.get("__all__")
     if binding is None:
         return set()
     return {
