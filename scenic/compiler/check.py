@@ -8,6 +8,7 @@ from dataclasses import replace
 from types import MappingProxyType
 
 from scenic.compiler.compile import Checked, Warned, check_parsed, compile_text
+from scenic.compiler.garbage import no_garbage_collection
 from scenic.compiler.ignores import apply_ignores
 from scenic.compiler.parser import ParseResult
 from scenic.compiler.scopes import Resolution
@@ -26,6 +27,12 @@ def check_text(
     Without what comments of the program silence, and with what is wrong with these comments. ``surroundings_of`` finds
     out about the modules that the program imports (`scenic.project.surroundings`); without it, nothing is known of them.
     """
+    # Nearly all that is made of a text is gone when this returns: only then it is time to look for garbage.
+    with no_garbage_collection():
+        return _found(text, filename, surroundings_of)
+
+
+def _found(text: str, filename: str, surroundings_of: SurroundingsOf | None) -> tuple[Diagnostic, ...]:
     compiled = compile_text(text, filename=filename, thorough=True, surroundings_of=surroundings_of)
     found = in_order(compiled.diagnostics, filename=filename)
     return in_order(apply_ignores(text, found, filename=filename), filename=filename)
