@@ -4,7 +4,8 @@ A lane is one point of the cube. What nodes hold in a lane depends on that lane 
 nodes are evaluated together (`scenic.graph.schedule`).
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -67,7 +68,7 @@ class Batch:
         self._schedule: Schedule = scheduler.start
         self._groups: dict[Slot, _Group] = {}
         self._boxes: NDArray[np.intp] | None = None
-        self._rows: dict[Node, tuple[int, list[Any]]] = {}
+        self._values: dict[Node, list[Any]] = {}
 
     def __len__(self) -> int:
         return len(self.rows)
@@ -90,6 +91,7 @@ class Batch:
             self._boxes = self._boxes[chosen]
         self._kept.append(chosen)
         self._generation += 1
+        self._values.clear()
 
     def settle(self, nodes: Sequence[Node]) -> None:
         """Evaluate ``nodes`` and drop all other columns: the batch is finished but for being read."""
@@ -97,7 +99,6 @@ class Batch:
         wanted = {self._schedule.places[node].slot for node in nodes if not node.is_constant}
         self._groups = {slot: self._group(slot) for slot in sorted(wanted)}
         self._kept = []
-        self._rows = {}
         self._generation = 0
         for group in self._groups.values():
             group.generation = 0
@@ -149,12 +150,18 @@ class Batch:
         return self._operand(gather)[0]
 
     def value(self, node: Node, lane: int = 0) -> Any:
-        """The Python value of ``node`` in one lane."""
-        known = self._rows.get(node)
-        if known is None or known[0] != self._generation:
-            known = self._rows[node] = self._generation, self.column(node).tolist()
-        rows = known[1]
-        return self._codec.decode(node.kind, rows[lane if len(rows) > 1 else 0])
+        """The Python value of ``node`` in one lane; the same object whenever it is asked for."""
+        return self._read(lane, node)
+
+    def reader(self, lane: int) -> Callable[[Node], Any]:
+        """`value` in one lane."""
+        return partial(self._read, lane)
+
+    def _read(self, lane: int, node: Node) -> Any:
+        values = self._values.get(node)
+        if values is None:
+            values = self._values[node] = self._codec.decode(node.kind, self.column(node))
+        return values[lane if len(values) > 1 else 0]
 
     def _place(self, node: Node) -> Place:
         place = self._schedule.places.get(node)
@@ -296,15 +303,12 @@ class Batch:
         rejected = np.zeros(lanes, dtype=np.bool_)
         error: Exception | None = None
         blank = _blank(step.kind)
-        plain = [column.tolist() for column in columns]
+        plain = [decode(kind, column) for kind, column in zip(call.kinds, columns, strict=True)]
         for lane in range(lanes):
             if bad is not None and bad[lane] != OK:
                 rows.append(blank)
                 continue
-            values = [
-                decode(kind, items[lane if len(items) > 1 else 0])
-                for kind, items in zip(call.kinds, plain, strict=True)
-            ]
+            values = [items[lane if len(items) > 1 else 0] for items in plain]
             try:
                 rows.append(encode(step.kind, function(*values)))
             except self._rejections:

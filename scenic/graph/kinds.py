@@ -62,13 +62,13 @@ def join(*kinds: Kind) -> Kind:
 
 
 class Codec(Protocol):
-    """Turns rows of columns into the Python values that a program sees, and back.
+    """Turns columns into the Python values that a program sees, and back.
 
     The graph knows no vector class; the runtime passes its codec in.
     """
 
-    def decode(self, kind: Kind, row: Any) -> Any:
-        """The Python value of one lane, from its row as plain Python numbers (an item of ``column.tolist()``)."""
+    def decode(self, kind: Kind, column: Column) -> list[Any]:
+        """The Python values of a column, lane by lane."""
 
     def encode(self, kind: Kind, value: Any) -> Any:
         """The row for a Python value; raises ``TypeError`` when it does not fit the kind."""

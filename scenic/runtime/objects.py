@@ -113,11 +113,13 @@ class Point:
 
     def __getattr__(self, name: str) -> Any:
         # Reached only for what is not stored yet: a property of a sampled instance, or a vector's attribute.
-        stored = object.__getattribute__(self, "__dict__")
+        stored = self.__dict__
         source = stored.get("_source")
-        if source is not None and name in source.__dict__:
-            value = stored[name] = stored["_sample"].value(source.__dict__[name])
-            return value
+        if source is not None:
+            values = source.__dict__
+            if name in values:
+                value = stored[name] = stored["_sample"].value(values[name])
+                return value
         whole = stored if source is None else source.__dict__
         if "_implied" in whole and name not in whole and name in type(self).scenic_properties:
             _fill(self if source is None else source, name)

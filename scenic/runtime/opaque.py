@@ -6,6 +6,7 @@ concrete values too; analysis sees nothing of it.
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from types import MappingProxyType
 from typing import Any
 
@@ -80,8 +81,10 @@ def evaluated(call: Call, columns: Sequence[Column]) -> list[Any]:
             absent |= status != OK
     error: Exception | None = None
     sample_before = None if code.context is None else code.context.sample
-    rows = {node: column.tolist() for node, column in zip(code.operands, columns, strict=True)}
-    seeds = rows[code.operands[0]]
+    values = {
+        node: CODEC.decode(node.kind, column) for node, column in zip(code.operands, columns, strict=True)
+    }
+    seeds = values[code.operands[0]]
     context = code.context
     was_evaluating = context is not None and context.evaluating
     token = current.set(context)
@@ -90,7 +93,7 @@ def evaluated(call: Call, columns: Sequence[Column]) -> list[Any]:
             context.evaluating = True
         with preserved():
             for lane in np.flatnonzero(~absent).tolist():
-                sample = Sample(_row(rows, lane), code.names)
+                sample = Sample(partial(_value, values, lane), code.names)
                 if context is not None:
                     context.sample = sample
                 seed_globals(seeds[lane])
@@ -114,14 +117,10 @@ def evaluated(call: Call, columns: Sequence[Column]) -> list[Any]:
     return results
 
 
-def _row(rows: Mapping[Node, list[Any]], lane: int) -> Callable[[Node], Any]:
-    """The value of each node in one lane."""
-
-    def lookup(node: Node) -> Any:
-        values = rows[node]
-        return CODEC.decode(node.kind, values[lane if len(values) > 1 else 0])
-
-    return lookup
+def _value(values: Mapping[Node, list[Any]], lane: int, node: Node) -> Any:
+    """The value of a node in one lane."""
+    found = values[node]
+    return found[lane if len(found) > 1 else 0]
 
 
 CALL = Operation(

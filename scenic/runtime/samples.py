@@ -29,6 +29,7 @@ class Globals:
         self._values: dict[tuple[int, str], Any] = {}
         self._fixed: dict[int, tuple[FunctionType, bool]] = {}
         self._methods: dict[type, tuple[tuple[str, FunctionType], ...]] = {}
+        self._placements: dict[int, tuple[Point, dict[str, float]]] = {}
 
     def of(self, function: FunctionType) -> list[tuple[str, Any]]:
         """Global names of the program that a function of the program, or code nested in it, may read."""
@@ -80,8 +81,18 @@ class Globals:
             self._methods[cls] = tuple(found.items())
         return self._methods[cls]
 
+    def placement(self, instance: Point) -> dict[str, float]:
+        """What of the numbers that are asked of every object is the same in all samples."""
+        known = self._placements.get(id(instance))
+        if known is None:
+            values = ((name, instance.__dict__.get(name)) for name in _PLACEMENT)
+            fixed = {name: value for name, value in values if isinstance(value, int | float)}
+            known = self._placements[id(instance)] = (instance, fixed)
+        return known[1]
+
 
 _BUILT_IN = frozenset({object, Point, OrientedPoint, Object})
+_PLACEMENT = ("yaw", "pitch", "roll", "heading", "width", "length", "height")
 
 
 def dependencies(values: Iterable[Any], names: Globals | None = None) -> list[Node]:
@@ -192,19 +203,17 @@ class Sample:
 
         One value gives one object, however often it is asked for, so that identity survives sampling.
         """
+        if isinstance(value, Random):
+            drawn = self._lookup(value.node)  # one object, too
+            return self.value(drawn) if value.node.kind.is_boxed else drawn
         if value is None or isinstance(value, _PLAIN):
             return value
-        if isinstance(value, Random) and value.node.kind.is_number:
-            return self._lookup(value.node)  # equal numbers are as good as the same one
-        key = id(value)
-        if key not in self._memo:
-            self._memo[key] = (value, self._sampled(value))
-        return self._memo[key][1]
+        known = self._memo.get(id(value))
+        if known is None:
+            known = self._memo[id(value)] = (value, self._sampled(value))
+        return known[1]
 
     def _sampled(self, value: Any) -> Any:
-        if isinstance(value, Random):
-            drawn = self._lookup(value.node)
-            return self.value(drawn) if value.node.kind.is_boxed else drawn
         if isinstance(value, Point):
             return self._instance(value)
         if isinstance(value, tuple):
@@ -230,8 +239,10 @@ class Sample:
         if "_source" in instance.__dict__:
             return instance
         copy = object.__new__(type(instance))
-        copy.__dict__["_source"] = instance
-        copy.__dict__["_sample"] = self
+        stored = copy.__dict__
+        stored["_source"] = instance
+        stored["_sample"] = self
+        stored.update(self._names.placement(instance))
         # Methods may lead back to the instance, which must find its entry then.
         self._memo[id(instance)] = (instance, copy)
         for name, method in self._names.methods(type(instance)):

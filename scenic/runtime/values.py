@@ -15,7 +15,7 @@ import numpy as np
 from scenic.graph import construction
 from scenic.graph.batch import Batch
 from scenic.graph.draws import Counter
-from scenic.graph.kinds import Kind
+from scenic.graph.kinds import Column, Kind
 from scenic.graph.node import Graph, Node, axis, constant, key
 from scenic.graph.operation import Call, Operation, always, by_lane
 from scenic.graph.operations import TABLE
@@ -186,10 +186,10 @@ class Vector(VectorMethods, Hooks):
         return cls.of((float(x), float(y), float(z)))
 
     @classmethod
-    def of(cls, row: Any) -> Self:
+    def of(cls, row: Iterable[float]) -> Self:
         """The vector of three floats."""
         self = object.__new__(cls)
-        self._row = (row[0], row[1], row[2])
+        self._row = tuple(row)  # type: ignore[assignment]
         return self
 
     @property
@@ -243,10 +243,10 @@ class Orientation(OrientationMethods, Hooks):
         self._row = (0.0, 0.0, 0.0, 1.0) if rotation is None else tuple(rotation.as_quat().tolist())
 
     @classmethod
-    def of(cls, row: Any) -> Self:
+    def of(cls, row: Iterable[float]) -> Self:
         """The orientation of a unit quaternion x, y, z, w."""
         self = object.__new__(cls)
-        self._row = (row[0], row[1], row[2], row[3])
+        self._row = tuple(row)  # type: ignore[assignment]
         return self
 
     @staticmethod
@@ -372,15 +372,17 @@ def is_orientation(value: Any) -> bool:
 
 
 class ValueCodec:
-    """Rows of columns as the values above; see `scenic.graph.kinds.Codec`."""
+    """Columns as the values above; see `scenic.graph.kinds.Codec`."""
 
-    def decode(self, kind: Kind, row: Any) -> Any:
-        """The value of one lane."""
-        if kind is Kind.VECTOR:
-            return Vector.of(row)
-        if kind is Kind.ORIENTATION:
-            return Orientation.of(row)
-        return row
+    def decode(self, kind: Kind, column: Column) -> list[Any]:
+        """The values of a column, lane by lane."""
+        if not kind.trailing:
+            return column.tolist()  # type: ignore[no-any-return]
+        cls = Vector if kind is Kind.VECTOR else Orientation
+        values = [object.__new__(cls) for _ in column]
+        for value, row in zip(values, zip(*column.T.tolist(), strict=True), strict=True):
+            value._row = row
+        return values
 
     def encode(self, kind: Kind, value: Any) -> Any:
         """The row of a value; raises ``TypeError`` where it is of another kind."""
@@ -513,7 +515,7 @@ def evaluate(operation: Operation, nodes: Sequence[Node], payload: Any) -> Any:
         raise InvalidScenarioError(
             f"this {operation.name} can never be drawn", span=here(), help="it rejects every sample"
         )
-    return CODEC.decode(kind, column[:1].tolist()[0])
+    return CODEC.decode(kind, column[:1])[0]
 
 
 def fixed_batch(nodes: Iterable[Node]) -> Batch:

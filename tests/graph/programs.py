@@ -31,10 +31,10 @@ class Triple(tuple):
 class PlainCodec:
     """Vectors are `Triple`, orientations tuples of four, everything else what it is."""
 
-    def decode(self, kind, row):
-        if kind is Kind.VECTOR:
-            return Triple(row)
-        return tuple(row) if kind is Kind.ORIENTATION else row
+    def decode(self, kind, column):
+        if kind.trailing:
+            return [Triple(row) if kind is Kind.VECTOR else tuple(row) for row in column.tolist()]
+        return column.tolist()
 
     def encode(self, kind, value):
         if kind.is_number and not isinstance(value, bool | int | float):

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from scenic.graph.bounds import Bounds
-from scenic.graph.kinds import Column, Kind, join
+from scenic.graph.kinds import Column, Kind, boxed, join
 from scenic.graph.node import Node
 from scenic.graph.operation import OK, Call
 
@@ -39,11 +39,10 @@ def choose(call: Call, masks: Sequence[Column], columns: Sequence[Column], *, fi
         if call.codec is None:
             raise ValueError("a choice among values of different kinds needs a codec")
         status = call.operands[position]
-        for lane in np.flatnonzero(mask):
-            if status is None or status[lane] == OK:
-                row = column[lane if len(column) > 1 else 0]
-                row = row if option.is_boxed else row.tolist()
-                result[lane] = call.codec.encode(kind, call.codec.decode(option, row))
+        lanes = np.flatnonzero(mask if status is None else mask & (status == OK))
+        rows = column[:1] if len(column) == 1 and len(lanes) else column[lanes]
+        values = [call.codec.encode(kind, value) for value in call.codec.decode(option, rows)]
+        result[lanes] = boxed(values) if kind.is_boxed else np.asarray(values).reshape(-1, *kind.trailing)
     return result
 
 

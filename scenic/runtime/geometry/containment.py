@@ -17,7 +17,7 @@ from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.narrowphase import Solids
 from scenic.runtime.geometry.polygons import TOLERANCE, Polygons
 from scenic.runtime.geometry.poses import Booleans, Floats, Indices, Poses
-from scenic.runtime.geometry.ragged import rows
+from scenic.runtime.geometry.ragged import distinct, rows
 
 _CHUNK: Final = 1 << 19
 """Combinations of entry, corner and edge looked at together."""
@@ -262,7 +262,7 @@ def _find_extreme_corners(mesh: Mesh) -> Floats:
     steps = (-1, 0, 1)
     directions = np.array([(x, y, z) for x in steps for y in steps for z in steps if (x, y, z) != (0, 0, 0)])
     highest = [int(np.argmax((mesh.vertices * direction).sum(axis=1))) for direction in directions]
-    corners: Floats = mesh.vertices[np.unique(highest)]
+    corners: Floats = mesh.vertices[distinct(np.array(highest))]
     return corners
 
 

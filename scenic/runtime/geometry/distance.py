@@ -12,6 +12,7 @@ from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.narrowphase import meshes_intersect
 from scenic.runtime.geometry.nearest import Found, nearest_of, nearest_on_triangles
 from scenic.runtime.geometry.poses import Booleans, Floats, Indices, Poses
+from scenic.runtime.geometry.ragged import first_of_each
 from scenic.runtime.geometry.vectors import cross, dot
 
 _FRONT: Final = 1 << 14
@@ -187,7 +188,7 @@ class _Gaps:
 def _least_of_each(entry: Indices, gap: Floats) -> Indices:
     """Which pair of each entry has the least gap."""
     order = np.lexsort((gap, entry))
-    return order[np.unique(entry[order], return_index=True)[1]]
+    return order[first_of_each(entry[order])]
 
 
 def squared_distances(a: list[Floats], b: list[Floats]) -> Floats:

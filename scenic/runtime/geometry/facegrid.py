@@ -8,7 +8,7 @@ import numpy as np
 from scenic.runtime.geometry.cells import PADDING, cell_of, touched_cells
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.poses import Floats, Indices
-from scenic.runtime.geometry.ragged import expand, group_starts, pieces
+from scenic.runtime.geometry.ragged import distinct, expand, group_starts, pieces
 
 _CHUNK: Final = 1 << 19
 """Pairs of query and cell or face looked at together."""
@@ -101,7 +101,7 @@ class FaceGrid:
         touched = np.zeros(self.resolution**3, dtype=np.bool_)
         for _, cell in touched_cells(triangles, self.resolution):
             touched[cell] = True
-        return np.unique(self.faces[np.repeat(touched, np.diff(self.starts))])
+        return distinct(self.faces[np.repeat(touched, np.diff(self.starts))])
 
     def _faces_in(self, query: Indices, cell: Indices) -> tuple[Indices, Indices]:
         counts = self.starts[cell + 1] - self.starts[cell]
@@ -112,8 +112,8 @@ class FaceGrid:
         for part in pieces(counts, _CHUNK):
             owner, index = expand(counts[part])
             faces = self.faces[self.starts[cell[part]][owner] + index]
-            keys.append(np.unique(query[part][owner] * count + faces))
-        unique = np.unique(np.concatenate(keys))
+            keys.append(distinct(query[part][owner] * count + faces))
+        unique = distinct(np.concatenate(keys))
         return unique // count, unique % count
 
 

@@ -11,6 +11,7 @@ import numpy.typing as npt
 from scenic.language.errors import MeshError
 from scenic.runtime.geometry import topology
 from scenic.runtime.geometry.poses import Floats, Indices
+from scenic.runtime.geometry.ragged import distinct, first_of_each
 from scenic.runtime.geometry.store import Arrays, kept
 
 _MOST_HEIGHTS: Final = 1 << 21
@@ -141,7 +142,7 @@ class Mesh:
         if self._is_its_hull:
             planes = np.concatenate([self.normals, self._offsets[:, None]], axis=1)[self.areas > 0]
             planes = np.unique(np.round(planes, 12), axis=0)
-            used = np.unique(self.faces)
+            used = distinct(self.faces)
             return Hull(_read_only(self.vertices[used]), _read_only(planes), self.volume)
         found = kept("hull 1", (self.vertices,), self._computed_hull)
         return Hull(_read_only(found["vertices"]), _read_only(found["planes"]), float(found["volume"]))
@@ -196,7 +197,7 @@ class Mesh:
         if len(self.vertices) * len(self.faces) > _MOST_HEIGHTS or not self.is_volume:
             return False
         slack = 1e-12 * float(self.extents.max())
-        x, y, z = self.vertices[np.unique(self.faces)].T
+        x, y, z = self.vertices[distinct(self.faces)].T
         return all(
             bool((a * x + b * y + c * z + d).max() <= slack)
             for (a, b, c), d in zip(self.normals.tolist(), self._offsets.tolist(), strict=True)
@@ -219,8 +220,7 @@ class Mesh:
     def component_vertices(self) -> Floats:
         """One vertex of each connected surface of the mesh, ``(c, 3)``."""
         components = topology.face_components(self.faces, len(self.vertices))
-        _, first = np.unique(components, return_index=True)
-        return _read_only(self.vertices[self.faces[first, 0]])
+        return _read_only(self.vertices[self.faces[first_of_each(components), 0]])
 
     def moved(self, matrix: npt.ArrayLike) -> "Mesh":
         """The mesh with the vertices turned by a rotation matrix ``(3, 3)``."""

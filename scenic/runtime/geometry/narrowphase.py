@@ -6,6 +6,7 @@ solid wholly inside the other. What a step says of an entry depends on that entr
 never says anything else than the exact test.
 """
 
+import time
 from collections.abc import Sequence
 from functools import cached_property
 from typing import Final
@@ -19,25 +20,32 @@ from scenic.runtime.geometry.inside import contains_points
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.poses import Booleans, Floats, Indices, Poses
 from scenic.runtime.geometry.proofs import ProofTable
-from scenic.runtime.geometry.ragged import expand, rows
+from scenic.runtime.geometry.ragged import distinct, expand, rows
+from scenic.runtime.geometry.voxels import seconds_to_make
 
 _STAGES: Final = (slice(3), slice(3, 16), None, slice(16, 64), slice(64, None))
 """Probing points looked at one group after the other; ``None`` is the proof that solids are apart."""
 
 _CHUNK: Final = 1 << 17
 """Combinations of entry and probing point looked at together."""
-
-_WORTH_PROVING: Final = 256
-"""Exact tests after which the cells of the meshes are made: making them costs about as much."""
+_TRIED: Final = 16
+"""Exact tests made together before it is asked again whether proofs pay."""
 
 
 class Solids:
-    """Several closed unit meshes, made ready for comparing them; entries name them by their numbers."""
+    """Several closed unit meshes, made ready for comparing them; entries name them by their numbers.
 
-    def __init__(self, meshes: Sequence[Mesh]) -> None:
+    Args:
+        meshes: the meshes.
+        patience: seconds that exact tests may take until the cells are made; by default as long as making them takes.
+
+    """
+
+    def __init__(self, meshes: Sequence[Mesh], *, patience: float | None = None) -> None:
         self.meshes: Final = tuple(meshes)
         self.are_boxes: Final = np.array([mesh.is_box for mesh in meshes])
-        self._tested = 0
+        self._spent = 0.0
+        self._patience = patience
 
     @cached_property
     def _surfaces(self) -> Surfaces:
@@ -46,6 +54,13 @@ class Solids:
     @cached_property
     def _proofs(self) -> ProofTable:
         return ProofTable(self.meshes)
+
+    @property
+    def _can_prove(self) -> bool:
+        """Whether the cells pay, as far as can be told: exact tests have taken as long as making them does."""
+        if self._patience is None:
+            self._patience = sum(seconds_to_make(mesh) for mesh in self.meshes)
+        return self._spent >= self._patience
 
     @cached_property
     def _parts(self) -> tuple[Indices, Indices, Floats]:
@@ -81,10 +96,10 @@ class Solids:
     ) -> tuple[Booleans, Booleans]:
         """Which entries are proved to share a point ``(n,)``, and which remain open ``(n,)``; at least one entry.
 
-        The cells that it takes are made once enough entries have come up: until then all remain open.
+        The cells that it takes are made once exact tests have taken as long: until then all remain open.
         """
         count = len(first)
-        if self._tested + count < _WORTH_PROVING:
+        if not self._can_prove:
             return np.zeros(count, dtype=np.bool_), np.ones(count, dtype=np.bool_)
         forth, back = relative_map(first_poses, second_poses), relative_map(second_poses, first_poses)
         together = np.zeros(count, dtype=np.bool_)
@@ -110,8 +125,31 @@ class Solids:
         return result
 
     def touch(self, first: Indices, first_poses: Poses, second: Indices, second_poses: Poses) -> Booleans:
-        """The same as `intersect` by the exact test alone, for at least one entry."""
-        self._tested += len(first)
+        """The same as `intersect` for at least one entry of which `prove` says nothing, by the exact test.
+
+        Should proofs come to pay on the way, they are tried on what is left.
+        """
+        if self._can_prove:
+            return self._touch(first, first_poses, second, second_poses)
+        result = np.zeros(len(first), dtype=np.bool_)
+        left = np.arange(len(first))
+        while len(left) and not self._can_prove:
+            part, left = left[:_TRIED], left[_TRIED:]
+            begun = time.thread_time()
+            result[part] = self._touch(
+                first[part], first_poses.take(part), second[part], second_poses.take(part)
+            )
+            self._spent += time.thread_time() - begun
+        if len(left):
+            a, b = first_poses.take(left), second_poses.take(left)
+            result[left], open_ = self.prove(first[left], a, second[left], b)
+            which = np.flatnonzero(open_)
+            if len(which):
+                part = left[which]
+                result[part] = self._touch(first[part], a.take(which), second[part], b.take(which))
+        return result
+
+    def _touch(self, first: Indices, first_poses: Poses, second: Indices, second_poses: Poses) -> Booleans:
         forth, back = relative_map(first_poses, second_poses), relative_map(second_poses, first_poses)
         touching = self._surfaces.touch(first, second, forth, back)
         apart = np.flatnonzero(~touching)
@@ -147,7 +185,7 @@ class Solids:
         points = np.stack([column[which] for column in images], axis=1)
         result = np.zeros(len(inner), dtype=np.bool_)
         numbers = outer[entry[which]]
-        for number in np.unique(numbers).tolist():
+        for number in distinct(numbers).tolist():
             members = np.flatnonzero(numbers == number)
             inside = contains_points(self.meshes[number], points[members])
             result[entry[which[members[inside]]]] = True

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from scenic.runtime.geometry.facetree import FaceTree, face_tree, tree_of
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.poses import Floats, Indices
-from scenic.runtime.geometry.ragged import expand
+from scenic.runtime.geometry.ragged import expand, first_of_each
 from scenic.runtime.geometry.vectors import cross, dot, length
 
 _FRONT: Final = 1 << 15
@@ -128,10 +128,9 @@ class Nearest:
         gap = points[query] - offered
         distance = dot(gap, gap)
         order = np.lexsort((face, distance, query))
-        query, first = np.unique(query[order], return_index=True)
-        chosen = order[first]
-        better = distance[chosen] < squared[query]
-        query, chosen = query[better], chosen[better]
+        chosen = order[first_of_each(query[order])]
+        chosen = chosen[distance[chosen] < squared[query[chosen]]]
+        query = query[chosen]
         squared[query] = distance[chosen]
         nearest[query] = offered[chosen]
         number[query] = face[chosen]

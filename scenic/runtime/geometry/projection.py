@@ -13,7 +13,7 @@ from scenic.runtime.geometry.facegrid import face_grid
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.nearest import nearest_on_triangles
 from scenic.runtime.geometry.poses import Booleans, Floats, Indices, Poses
-from scenic.runtime.geometry.ragged import rows
+from scenic.runtime.geometry.ragged import first_of_each, rows
 from scenic.runtime.geometry.surface import Side, face_normals, side_contains
 from scenic.runtime.geometry.vectors import cross, dot, length
 
@@ -123,8 +123,8 @@ def _faces_near(
             place = local[entry] * size[entry]
             distance = length(place - nearest_on_triangles(place, *corners))
             within = np.flatnonzero(distance <= TOLERANCE)
-            first = np.unique(entry[within], return_index=True)
-            result[first[0]] = face[within][first[1]]
+            first = within[first_of_each(entry[within])]
+            result[entry[first]] = face[first]
     return result
 
 
@@ -155,8 +155,8 @@ def _nearest_hits(
         belongs = side_contains(mesh, taken, side, threshold, entry, face)
         entry, face, distance = entry[belongs], face[belongs], distance[belongs]
         order = np.lexsort((face, np.abs(distance), entry))
-        first, where = np.unique(entry[order], return_index=True)
-        faces[first], travel[first] = face[order][where], distance[order][where]
+        first = order[first_of_each(entry[order])]
+        faces[entry[first]], travel[entry[first]] = face[first], distance[first]
     return faces, travel
 
 

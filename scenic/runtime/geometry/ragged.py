@@ -14,6 +14,26 @@ def expand(counts: Indices) -> tuple[Indices, Indices]:
     return owner, offset
 
 
+def first_of_each(keys: Indices) -> Indices:
+    """Where each key comes up first, in the order of the keys."""
+    # NumPy's `unique` does it, too, at the price of importing a quarter of NumPy when it is first called.
+    order = np.argsort(keys, kind="stable")
+    return order[_changes(keys[order])]
+
+
+def distinct(numbers: Indices) -> Indices:
+    """The different ones of integers of any shape, ascending."""
+    ordered = np.sort(numbers, axis=None)
+    return ordered[_changes(ordered)]
+
+
+def _changes(ordered: Indices) -> Indices:
+    """Where another number than the one before begins."""
+    result = np.ones(len(ordered), dtype=np.bool_)
+    np.not_equal(ordered[1:], ordered[:-1], out=result[1:])
+    return np.flatnonzero(result)
+
+
 def group_starts(keys: Indices, groups: int) -> Indices:
     """Where each of the groups 0, 1, ... begins in ascending ``keys``, and the end: ``(groups + 1,)``."""
     return np.searchsorted(keys, np.arange(groups + 1))

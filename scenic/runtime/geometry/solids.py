@@ -9,6 +9,7 @@ from scenic.runtime.geometry import booleans, topology
 from scenic.runtime.geometry.inside import contains_points
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.poses import Floats, Indices
+from scenic.runtime.geometry.ragged import distinct
 
 _MERGE_TOLERANCE: Final = 1e-8
 """Part of the largest extent within which vertices are taken for one if the surface is open otherwise."""
@@ -81,8 +82,8 @@ def _bodies(vertices: Floats, faces: Indices) -> _Bodies:
     groups = np.split(faces[order], np.flatnonzero(np.diff(components[order])) + 1)
     parts = []
     for group in groups:
-        used, renumbered = np.unique(group, return_inverse=True)
-        parts.append(Mesh(vertices[used], renumbered.reshape(group.shape)))
+        used = distinct(group)
+        parts.append(Mesh(vertices[used], np.searchsorted(used, group)))
     return _Bodies(parts)
 
 

@@ -49,6 +49,12 @@ def kept(kind: str, content: Sequence[npt.NDArray[Any]], compute: Callable[[], A
     return found
 
 
+def is_kept(kind: str, content: Sequence[npt.NDArray[Any]]) -> bool:
+    """Whether an earlier run left what `kept` would otherwise compute."""
+    folder = _folder()
+    return folder is not None and (folder / f"{_key(kind, content)}.npz").exists()
+
+
 def _folder() -> Path | None:
     if os.environ.get("SCENIC_CACHE", "").lower() in ("off", "0", "no", "false"):
         return None

@@ -16,7 +16,7 @@ from scenic.graph import quaternions
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.poses import Booleans, Floats, Indices, Poses
-from scenic.runtime.geometry.ragged import rows
+from scenic.runtime.geometry.ragged import distinct, rows
 
 Side: TypeAlias = tuple[int, int] | None
 """Axis of the world (0 to 2) and sign, or ``None`` for the whole surface."""
@@ -87,7 +87,7 @@ def _chosen_faces(
     # Rounding may carry the target to the very end; the last block with an area is meant.
     blocks = np.minimum(blocks, int(np.searchsorted(areas, areas[-1], side="left")))
     result = np.empty(len(uniforms), dtype=np.intp)
-    for block in np.unique(blocks):
+    for block in distinct(blocks):
         members = np.flatnonzero(blocks == block)
         start = int(block) * _BLOCK
         faces = slice(start, min(start + _BLOCK, len(mesh.faces)))

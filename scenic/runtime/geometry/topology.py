@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from scenic.runtime.geometry.poses import Floats, Indices
+from scenic.runtime.geometry.ragged import distinct, first_of_each
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,8 +57,8 @@ def face_components(faces: Indices, count: int) -> Indices:
         while (label[label] != label).any():
             label = label[label]
         edges = edges[label[edges[:, 0]] != label[edges[:, 1]]]
-    _, components = np.unique(label[faces[:, 0]], return_inverse=True)
-    return components.astype(np.intp)
+    roots = label[faces[:, 0]]
+    return np.searchsorted(distinct(roots), roots)
 
 
 def merge_vertices(vertices: Floats, faces: Indices, *, tolerance: float = 0.0) -> tuple[Floats, Indices]:
@@ -72,8 +73,9 @@ def merge_vertices(vertices: Floats, faces: Indices, *, tolerance: float = 0.0) 
     points = vertices[kept] + 0.0  # turns -0.0 into 0.0, so that the two are equal
     group = _close_groups(points, tolerance) if tolerance > 0 else _equal_groups(points)
     # Groups in the order of their first vertices in the file.
-    _, first, group = np.unique(group, return_index=True, return_inverse=True)
+    first = first_of_each(group)
     rank = np.argsort(np.argsort(first))
+    group = np.searchsorted(distinct(group), group)
     target = np.zeros(len(vertices), dtype=np.intp)
     target[kept] = rank[group]
     merged = target[faces]

@@ -22,6 +22,7 @@ from scenic.graph.kinds import Codec
 from scenic.graph.node import Graph, Node
 from scenic.graph.schedule import Scheduler
 from scenic.language.errors import RejectionException
+from scenic.runtime.geometry.ragged import first_of_each
 from scenic.runtime.sampling.checks import Check, Verdict
 from scenic.runtime.sampling.pace import Pace
 from scenic.runtime.sampling.report import Exhausted, RejectionReport, RejectionRow
@@ -216,7 +217,7 @@ class Engine:
         for scene, made in zip(active, counts, strict=True):
             scene.attempts += made
         rows = batch.rows
-        _, first = np.unique(owner[rows], return_index=True)
+        first = first_of_each(owner[rows])
         failed = failures[rows]
         self.candidates += len(owner)
         passed = int((failed < 0).sum())

@@ -15,6 +15,7 @@ from scenic.language.errors import InvalidScenarioError
 from scenic.language.spans import Span
 from scenic.runtime.conditions import connect, truth
 from scenic.runtime.geometry.collision import collide
+from scenic.runtime.geometry.ragged import distinct
 from scenic.runtime.objects import Object
 from scenic.runtime.program import Program, Requirement
 from scenic.runtime.regions.base import Everywhere, Workspace, body_operands
@@ -255,7 +256,7 @@ def _check_fixed(program: Program, nodes: Sequence[ObjectNodes], pairs: NDArray[
     """Refuse a program in which two fixed objects collide."""
     if not len(pairs):
         return
-    members = np.unique(pairs)
+    members = distinct(pairs)
     chosen = [nodes[member] for member in members.tolist()]
     batch = fixed_batch(node for item in chosen for node in item.all)
     bodies = [item.body(batch) for item in chosen]

@@ -138,7 +138,7 @@ def test_steps_agree_with_the_exact_test():
     zeros = np.zeros(count, dtype=np.intp)
     for first, second in pairs:
         a, b = random_poses(count, 7, spread=0.8), random_poses(count, 8, spread=0.8)
-        solids = Solids([SHAPES[first](), SHAPES[second]()])
+        solids = Solids([SHAPES[first](), SHAPES[second]()], patience=0)
         together, left = solids.prove(zeros, a, zeros + 1, b)
         exact = solids.touch(zeros, a, zeros + 1, b)
         np.testing.assert_array_equal(together[~left], exact[~left])
@@ -147,7 +147,7 @@ def test_steps_agree_with_the_exact_test():
 
 
 def test_cells_are_made_once_they_pay():
-    solids = Solids([table(), primitives.cone()])
+    solids = Solids([table(), primitives.cone()], patience=1e-9)
     a, b = random_poses(200, 17, spread=0.6), random_poses(200, 18, spread=0.6)
     zeros = np.zeros(200, dtype=np.intp)
     assert solids.prove(zeros, a, zeros + 1, b)[1].all()
@@ -158,7 +158,7 @@ def test_cells_are_made_once_they_pay():
 
 def test_mixed_meshes_at_once():
     names = list(SHAPES)
-    solids = Solids([SHAPES[name]() for name in names])
+    solids = Solids([SHAPES[name]() for name in names], patience=0)
     rng = np.random.default_rng(19)
     first, second = rng.integers(0, len(names), (2, 400))
     a, b = random_poses(400, 20, spread=0.7), random_poses(400, 21, spread=0.7)
@@ -178,7 +178,8 @@ def test_batches_do_not_matter(batch, same_size):
     a = random_poses(count, 9, spread=0.6, same_size=same_size)
     b = random_poses(count, 10, spread=0.6, same_size=same_size)
     mesh_a, mesh_b = table(), primitives.cone()
-    whole = meshes_intersect(mesh_a, a, mesh_b, b)
+    zeros = np.zeros(count, dtype=np.intp)
+    whole = Solids([mesh_a, mesh_b], patience=0).intersect(zeros, a, zeros + 1, b)
     parts = in_batches(lambda i: meshes_intersect(mesh_a, a.take(i), mesh_b, b.take(i)), count, batch)
     np.testing.assert_array_equal(parts, whole)
 

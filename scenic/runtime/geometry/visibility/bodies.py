@@ -15,6 +15,7 @@ from scenic.runtime.geometry import inside
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.poses import Booleans, Floats, Indices
+from scenic.runtime.geometry.ragged import first_of_each
 from scenic.runtime.geometry.visibility.grid import Rows, rows_towards
 from scenic.runtime.geometry.visibility.hits import Placed, place
 from scenic.runtime.geometry.visibility.obstacles import Obstacles, Occluder
@@ -177,7 +178,7 @@ class RaySearch:
             through = self._through(lane, directions)
             # One ray for each lane is enough; only where it fails the exact test, the next is looked at.
             while len(through):
-                first = through[np.unique(lane[through], return_index=True)[1]]
+                first = through[first_of_each(lane[through])]
                 passed = self._through(lane[first], directions[first], exact=True)
                 seen[lane[first[passed]]] = True
                 through = through[~seen[lane[through]] & ~np.isin(through, first)]
