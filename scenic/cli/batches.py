@@ -9,9 +9,8 @@ import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, Final
+from typing import Final
 
-from scenic.cli import workers
 from scenic.formats.growing import GrowingFile
 from scenic.formats.json_lines import SceneLines
 from scenic.language.errors import Located
@@ -143,13 +142,7 @@ def _ordered(
 ) -> Iterator[Made]:
     waiting: dict[int, Made] = {}
     upcoming = 0
-    found: Any = workers.run(
-        partial(_make, scenario, lines),
-        pieces,
-        jobs=jobs,
-        lost=lambda piece, code: Made(piece, b"", (), died=code),
-    )
-    for index, made in found:
+    for index, made in _made(scenario, lines, pieces, jobs):
         waiting[index] = made
         while upcoming in waiting:
             ready = waiting.pop(upcoming)
@@ -164,14 +157,25 @@ def _ordered(
             yield ready
 
 
+def _made(
+    scenario: Scenario, lines: SceneLines, pieces: Sequence[Job], jobs: int
+) -> Iterator[tuple[int, Made]]:
+    """What comes of pieces in several processes, as it comes, with their numbers."""
+    from scenic.cli import workers  # a sixteenth of a start, which one process can do without
+
+    return workers.run(
+        partial(_make, scenario, lines),
+        pieces,
+        jobs=jobs,
+        lost=lambda piece, code: Made(piece, b"", (), died=code),
+    )
+
+
 def _again(scenario: Scenario, lines: SceneLines, made: Made, tries: int) -> Made:
     """A piece whose worker died, made by another one."""
     code = made.died
     for _ in range(tries):
-        function = partial(_make, scenario, lines)
-        ((_, again),) = workers.run(
-            function, [made.job], jobs=1, lost=lambda piece, code: Made(piece, b"", (), died=code)
-        )
+        ((_, again),) = _made(scenario, lines, [made.job], 1)
         if again.died is None:
             return again
         code = again.died

@@ -19,6 +19,8 @@ from scenic.graph.operation import Call, Operation, always
 from scenic.language.errors import InvalidScenarioError, RejectionException, ScenicTypeError, UnsupportedError
 from scenic.runtime.context import here
 from scenic.runtime.geometry.collision import Body, Poses
+from scenic.runtime.geometry.mesh import Mesh
+from scenic.runtime.geometry.poses import Indices
 from scenic.runtime.regions.knowledge import Containment, containment_bounds, containment_inverse, payload_box
 from scenic.runtime.values import apply, as_node, is_random, random_key, to_scalar, to_vector, uniform, vector
 
@@ -280,19 +282,17 @@ def body_operands(thing: Any) -> tuple[Any, Any, Any, Any]:
 
 def body_of(position: Column, orientation: Column, size: Column, shape: Column) -> Body:
     """The body of an object over lanes, from the columns of `body_operands`."""
-    poses = Poses(position, orientation, size)
-    if len(shape) == 1:
-        return Body((shape[0].mesh,), None, poses)
-    meshes: dict[int, int] = {}
-    kinds: list[Any] = []
-    choice = np.empty(len(shape), dtype=np.intp)
-    for lane, item in enumerate(shape):
-        key = id(item)
-        if key not in meshes:
-            meshes[key] = len(kinds)
-            kinds.append(item.mesh)
-        choice[lane] = meshes[key]
-    return Body(tuple(kinds), choice, poses)
+    meshes, choice = _meshes_of(shape)
+    return Body(meshes, choice, Poses(position, orientation, size))
+
+
+def _meshes_of(shape: Column) -> tuple[tuple[Mesh, ...], Indices | None]:
+    """The different meshes of shapes, and which of them each has; ``None`` where there is one mesh."""
+    numbers: dict[Mesh, int] = {}
+    choice = [numbers.setdefault(item.mesh, len(numbers)) for item in shape.ravel().tolist()]
+    if len(numbers) == 1:
+        return tuple(numbers), None
+    return tuple(numbers), np.array(choice, dtype=np.intp).reshape(shape.shape)
 
 
 def _contains_body(
@@ -302,12 +302,18 @@ def _contains_body(
     lead = np.broadcast_shapes(
         position.shape[:-1], orientation.shape[:-1], size.shape[:-1], shape.shape, *_leading(call, columns)
     )
-    flat = [
+    meshes, choice = _meshes_of(shape)
+    if choice is not None:
+        choice = _flattened(choice, lead, Kind.INTEGER)
+    placed = [
         _flattened(column, lead, kind)
-        for column, kind in zip((position, orientation, size, shape, *columns), call.kinds, strict=True)
+        for column, kind in zip((position, orientation, size), call.kinds[:3], strict=True)
     ]
-    body = body_of(*flat[:4])
-    inside = call.payload.region.contains_bodies(body, int(np.prod(lead)), *flat[4:])
+    parameters = [
+        _flattened(column, lead, kind) for column, kind in zip(columns, call.kinds[4:], strict=True)
+    ]
+    body = Body(meshes, choice, Poses(*placed))
+    inside = call.payload.region.contains_bodies(body, int(np.prod(lead)), *parameters)
     return np.asarray(inside, dtype=np.bool_).reshape(lead)
 
 

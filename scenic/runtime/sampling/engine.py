@@ -267,14 +267,14 @@ class Engine:
         for stage in self._stages.order(len(batch)):
             if len(batch) == 0:
                 break
-            begun = time.thread_time()
+            begun = time.perf_counter()
             batch.need(stage.nodes)
-            shared = (time.thread_time() - begun) / len(stage.checks)
+            shared = (time.perf_counter() - begun) / len(stage.checks)
             rows = batch.rows
             alive = np.ones(len(rows), dtype=np.bool_)
             for index in stage.checks:
                 check = checks[index]
-                begun = time.thread_time()
+                begun = time.perf_counter()
                 verdict = check.test(batch)
                 if inactive is not None and check.probability < 1:
                     verdict = _unless(verdict, inactive[rows, self._soft.index(index)])
@@ -284,7 +284,7 @@ class Engine:
                     earlier = verdict.failed & (check.position < failed_at[rows])
                     failures[rows[earlier]] = index
                     failed_at[rows[earlier]] = check.position
-                seconds = shared + time.thread_time() - begun
+                seconds = shared + time.perf_counter() - begun
                 self._stages.measure(index, len(rows), seconds, int(np.count_nonzero(passes)))
                 alive &= passes
             if not alive.all():
