@@ -131,8 +131,9 @@ class _Network:
         for number in range(rounds):
             before = boxes
             self._visits -= len(self.inner)
-            state.forward()
-            state.backward()
+            with np.errstate(all="ignore"):
+                state.forward()
+                state.backward()
             boxes = state.boxes(before)
             if not state.alive.any():
                 break
@@ -168,6 +169,10 @@ class _State:
         self.alive: Mask = np.ones(len(boxes.lower), dtype=np.bool_)
         """Boxes in which all conditions may still hold."""
         self._bounds: dict[Node, Bounds] = {}
+        """What is known so far; another object only where it is narrower, so that unchanged nodes are not read again."""
+        self._forward: dict[Node, list[Bounds | None]] = {}
+        self._inverse: dict[Node, tuple[list[Bounds | None], Sequence[Bounds | None]]] = {}
+        self._told: dict[tuple[Node, int], tuple[Bounds, Mask]] = {}
         for node in network.order:
             if node.is_axis:
                 axis = network.axes[node]
@@ -180,7 +185,11 @@ class _State:
     def forward(self) -> None:
         """From the operands to the results, and on to the conditions, which must hold."""
         for node in self._network.inner:
-            new = bounding.forward(node, [self._bounds.get(operand) for operand in node.operands])
+            operands = [self._bounds.get(operand) for operand in node.operands]
+            if _same(self._forward.get(node), operands):
+                continue
+            self._forward[node] = operands
+            new = bounding.forward(node, operands)
             if new is not None:
                 self._narrow(node, new)
         for node in self._network.conditions:
@@ -194,12 +203,15 @@ class _State:
             mask = reached.get(node)
             if mask is None or not mask.any():
                 continue
-            for operand, part in zip(node.operands, self._inverted(node), strict=True):
+            parts = self._inverted(node)
+            for position, (operand, part) in enumerate(zip(node.operands, parts, strict=True)):
                 here = mask
                 if part is not None:
-                    part = bounding.integral(operand.kind, part)
                     here = mask & (np.True_ if node.operation.strict else _speaks(part))
-                    self._narrow(operand, _only(here, part))
+                    told = self._told.get((node, position))
+                    if told is None or told[0] is not part or not np.array_equal(told[1], here):
+                        self._told[node, position] = part, here
+                        self._narrow(operand, _only(here, part))
                 elif not node.operation.strict:
                     continue
                 reached[operand] = reached[operand] | here if operand in reached else here
@@ -214,8 +226,15 @@ class _State:
         blind = node.operation.strict and not node.operation.partial
         if blind and any(operand is None for operand in operands):
             return nothing
-        with np.errstate(all="ignore"):
-            return inverse(node.payload, result, *operands)
+        known = self._inverse.get(node)
+        if known is not None and _same(known[0], [result, *operands]):
+            return known[1]
+        parts = [
+            bounding.integral(operand.kind, part)
+            for operand, part in zip(node.operands, inverse(node.payload, result, *operands), strict=True)
+        ]
+        self._inverse[node] = [result, *operands], parts
+        return parts
 
     def _narrow(self, node: Node, new: Bounds) -> None:
         old = self._bounds.get(node)
@@ -223,6 +242,8 @@ class _State:
             if old.lower.shape[1:] != new.lower.shape[1:]:
                 return
             new = old.meet(new)
+            if (new.lower == old.lower).all() and (new.upper == old.upper).all():
+                return
         # A value that is no number has come from an operation on infinities: nothing is known.
         new = Bounds(
             np.where(np.isnan(new.lower), -np.inf, new.lower),
@@ -242,6 +263,11 @@ class _State:
         lower = np.where(point & (upper == 1), np.nextafter(lower, 0), lower)
         upper = np.where(point & (upper < 1), np.nextafter(upper, 1), upper)
         return _Boxes(lower, upper)
+
+
+def _same(before: Sequence[Bounds | None] | None, now: Sequence[Bounds | None]) -> bool:
+    """Whether bounds are the same objects as when they were last read."""
+    return before is not None and all(a is b for a, b in zip(before, now, strict=True))
 
 
 def _speaks(part: Bounds | None) -> Mask:

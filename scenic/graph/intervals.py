@@ -25,8 +25,13 @@ def spread(bounds: Bounds, dimensions: int) -> Bounds:
 
 
 def _aligned(*operands: Bounds) -> list[Bounds]:
-    dimensions = max(operand.lower.ndim for operand in operands)
+    dimensions = max([operand.lower.ndim for operand in operands])
     return [spread(operand, dimensions) for operand in operands]
+
+
+def _are_finite(lower: Floats, upper: Floats) -> bool:
+    """Whether no end is infinite or NaN; may say no where ends are huge."""
+    return bool(np.isfinite(upper - lower).all())
 
 
 def unbounded(like: Bounds) -> Bounds:
@@ -63,8 +68,11 @@ def negative(a: Bounds) -> Bounds:
 def add(a: Bounds, b: Bounds) -> Bounds:
     """``a + b``."""
     a, b = _aligned(a, b)
-    safe = _safe(a.lower + b.lower, a.upper + b.upper)
-    return outward(safe.lower, safe.upper)
+    lower, upper = a.lower + b.lower, a.upper + b.upper
+    if not _are_finite(lower, upper):
+        safe = _safe(lower, upper)
+        lower, upper = safe.lower, safe.upper
+    return outward(lower, upper)
 
 
 def subtract(a: Bounds, b: Bounds) -> Bounds:
@@ -76,6 +84,9 @@ def multiply(a: Bounds, b: Bounds) -> Bounds:
     """``a * b``."""
     a, b = _aligned(a, b)
     products = (a.lower * b.lower, a.lower * b.upper, a.upper * b.lower, a.upper * b.upper)
+    lower, upper = _extremes(products)
+    if _are_finite(lower, upper):  # and so are the operands
+        return outward(lower, upper)
     lower, upper = _extremes([np.where(np.isnan(product), 0.0, product) for product in products])
     return doubtful(outward(lower, upper), a, b)
 

@@ -379,7 +379,7 @@ class ValueCodec:
         if not kind.trailing:
             return column.tolist()  # type: ignore[no-any-return]
         cls = Vector if kind is Kind.VECTOR else Orientation
-        values = [object.__new__(cls) for _ in column]
+        values: list[Any] = [object.__new__(cls) for _ in column]
         for value, row in zip(values, zip(*column.T.tolist(), strict=True), strict=True):
             value._row = row
         return values

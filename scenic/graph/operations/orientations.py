@@ -80,15 +80,24 @@ def _product(*factors: Bounds) -> Bounds:
 
 def _from_euler_bounds(_payload: Any, *angles: Bounds) -> Bounds:
     halves = [Bounds(angle.lower / 2, angle.upper / 2) for angle in angles]
-    sines = [sin_bounds(None, half) for half in halves]
-    cosines = [cos_bounds(None, half) for half in halves]
-    (sy, sp, sr), (cy, cp, cr) = sines, cosines
+    (sy, sp, sr), (cy, cp, cr) = (
+        [reading(None, half) for half in halves] for reading in (sin_bounds, cos_bounds)
+    )
+    # x = cy sp cr - sy cp sr and so on: the eight products at once.
+    one, two, three, four, *others = intervals.components(
+        _product(
+            intervals.stacked([cy, cy, sy, cy, sy, sy, cy, sy]),
+            intervals.stacked([sp, cp, cp, cp, cp, sp, sp, sp]),
+            intervals.stacked([cr, sr, cr, cr, sr, cr, sr, sr]),
+        )
+    )
+    minus, plus, also, less = others
     return _unit(
         [
-            intervals.subtract(_product(cy, sp, cr), _product(sy, cp, sr)),
-            intervals.add(_product(cy, cp, sr), _product(sy, sp, cr)),
-            intervals.add(_product(sy, cp, cr), _product(cy, sp, sr)),
-            intervals.subtract(_product(cy, cp, cr), _product(sy, sp, sr)),
+            intervals.subtract(one, minus),
+            intervals.add(two, plus),
+            intervals.add(three, also),
+            intervals.subtract(four, less),
         ]
     )
 
@@ -99,20 +108,26 @@ def _from_yaw_bounds(_payload: Any, yaw: Bounds) -> Bounds:
     return intervals.stacked([nothing, nothing, sin_bounds(None, half), cos_bounds(None, half)])
 
 
+_COMPOSED: Final = (
+    ((3, 0, 1), (0, 3, 1), (1, 2, 1), (2, 1, -1)),
+    ((3, 1, 1), (1, 3, 1), (2, 0, 1), (0, 2, -1)),
+    ((3, 2, 1), (2, 3, 1), (0, 1, 1), (1, 0, -1)),
+    ((3, 3, 1), (0, 0, -1), (1, 1, -1), (2, 2, -1)),
+)
+"""Hamilton's product: the terms of each component, by components of the factors and sign."""
+
+
 def _compose_bounds(_payload: Any, outer: Bounds, inner: Bounds) -> Bounds:
-    px, py, pz, pw = intervals.components(outer)
-    qx, qy, qz, qw = intervals.components(inner)
-    minus = intervals.negative
-    return _unit(
-        [
-            intervals.total([_product(pw, qx), _product(px, qw), _product(py, qz), minus(_product(pz, qy))]),
-            intervals.total([_product(pw, qy), _product(py, qw), _product(pz, qx), minus(_product(px, qz))]),
-            intervals.total([_product(pw, qz), _product(pz, qw), _product(px, qy), minus(_product(py, qx))]),
-            intervals.total(
-                [_product(pw, qw), minus(_product(px, qx)), minus(_product(py, qy)), minus(_product(pz, qz))]
-            ),
-        ]
+    products = intervals.multiply(
+        Bounds(outer.lower[:, :, np.newaxis], outer.upper[:, :, np.newaxis]),
+        Bounds(inner.lower[:, np.newaxis], inner.upper[:, np.newaxis]),
     )
+    return _unit([intervals.total([_term(products, *term) for term in terms]) for terms in _COMPOSED])
+
+
+def _term(products: Bounds, first: int, second: int, sign: int) -> Bounds:
+    term = Bounds(products.lower[:, first, second], products.upper[:, first, second])
+    return term if sign > 0 else intervals.negative(term)
 
 
 def _conjugated(bounds: Bounds) -> Bounds:
@@ -128,32 +143,29 @@ def _inverse_inverse(_payload: Any, result: Bounds, _orientation: Bounds) -> lis
     return [_conjugated(result)]
 
 
-def _matrix(orientation: Bounds) -> list[list[Bounds]]:
-    """Bounds of the rotation matrix, row by row."""
+def _matrix(orientation: Bounds) -> Bounds:
+    """Bounds ``(m, 3, 3)`` of the rotation matrix."""
     x, y, z, w = intervals.components(orientation)
-    squares = {name: intervals.square(part) for name, part in (("x", x), ("y", y), ("z", z))}
-    one = Bounds.exactly(1.0)
-
-    def doubled(a: Bounds) -> Bounds:
-        return Bounds(2 * a.lower, 2 * a.upper)
-
-    def diagonal(first: str, second: str) -> Bounds:
-        return intervals.subtract(one, doubled(intervals.add(squares[first], squares[second])))
-
-    def mixed(p: Bounds, q: Bounds, r: Bounds, sign: int) -> Bounds:
-        turn = _product(r, w)
-        return doubled(intervals.add(_product(p, q), turn if sign > 0 else intervals.negative(turn)))
-
-    rows = [
-        [diagonal("y", "z"), mixed(x, y, z, -1), mixed(x, z, y, 1)],
-        [mixed(x, y, z, 1), diagonal("x", "z"), mixed(y, z, x, -1)],
-        [mixed(x, z, y, -1), mixed(y, z, x, 1), diagonal("x", "y")],
-    ]
+    xx, yy, zz = intervals.components(
+        intervals.square(Bounds(orientation.lower[:, :3], orientation.upper[:, :3]))
+    )
+    xy, xz, yz, zw, yw, xw = intervals.components(
+        intervals.multiply(intervals.stacked([x, x, y, z, y, x]), intervals.stacked([y, z, z, w, w, w]))
+    )
+    minus = intervals.negative
+    sums = intervals.add(
+        intervals.stacked([yy, xy, xz, xy, xx, yz, xz, yz, xx]),
+        intervals.stacked([zz, minus(zw), yw, zw, zz, minus(xw), minus(yw), xw, yy]),
+    )
+    doubled = Bounds(2 * sums.lower, 2 * sums.upper)
+    diagonal = intervals.subtract(Bounds.exactly(1.0), doubled)
     limit = 1 + 1e-8
-    return [
-        [Bounds(np.clip(entry.lower, -limit, limit), np.clip(entry.upper, -limit, limit)) for entry in row]
-        for row in rows
-    ]
+    lower = np.where(_DIAGONAL, diagonal.lower, doubled.lower).reshape(-1, 3, 3)
+    upper = np.where(_DIAGONAL, diagonal.upper, doubled.upper).reshape(-1, 3, 3)
+    return Bounds(np.clip(lower, -limit, limit), np.clip(upper, -limit, limit))
+
+
+_DIAGONAL: Final = np.eye(3, dtype=np.bool_).ravel()
 
 
 def turned(orientation: Bounds, vector: Bounds) -> Bounds:
@@ -161,13 +173,11 @@ def turned(orientation: Bounds, vector: Bounds) -> Bounds:
     return _turned(_matrix(orientation), vector)
 
 
-def _turned(rows: list[list[Bounds]], vector: Bounds) -> Bounds:
+def _turned(matrix: Bounds, vector: Bounds) -> Bounds:
     parts = intervals.components(vector)
-    result = intervals.stacked(
-        [
-            intervals.total([_product(entry, part) for entry, part in zip(row, parts, strict=True)])
-            for row in rows
-        ]
+    products = intervals.multiply(matrix, Bounds(vector.lower[:, np.newaxis], vector.upper[:, np.newaxis]))
+    result = intervals.total(
+        [Bounds(products.lower[:, :, column], products.upper[:, :, column]) for column in range(3)]
     )
     # A rotation keeps the length; rounding and a norm of the quaternion off by little are covered by the margin.
     length = intervals.spread(length_bounds(parts), 2).upper
