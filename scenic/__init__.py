@@ -26,6 +26,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from scenic.compiler.parser import ParseResult, parse
     from scenic.formats.reading import read_scenes
+    from scenic.formats.trajectory_reading import read_trajectory
     from scenic.language.errors import (
         InvalidScenarioError,
         ParseCompileError,
@@ -58,6 +59,7 @@ _HOMES = MappingProxyType(
         "SSSensor": "scenic.runtime.sensors",
         "load": "scenic.pipeline",
         "read_scenes": "scenic.formats.reading",
+        "read_trajectory": "scenic.formats.trajectory_reading",
         "scenarioFromFile": "scenic.pipeline",
         "scenarioFromString": "scenic.pipeline",
         "Scenario": "scenic.runtime.scenario",
@@ -84,6 +86,7 @@ __all__ = [
     "load",
     "parse",
     "read_scenes",
+    "read_trajectory",
     "scenarioFromFile",
     "scenarioFromString",
     "setDebuggingOptions",

@@ -30,12 +30,14 @@ class _Work:
         simulator: str | None,
         running: Mapping[str, Any],
         folder: Path | None,
+        form: str,
         whole: bool,
     ) -> None:
         self._loading = loading
         self._simulator = simulator
         self._running = running
         self._folder = folder
+        self._form = form
         self._whole = whole
         self._made: Any = None
 
@@ -56,7 +58,7 @@ class _Work:
 
     def file(self, k: int) -> Path | None:
         """Where simulation ``k`` is kept."""
-        return None if self._folder is None else self._folder / f"simulation-{k:04d}.jsonl"
+        return None if self._folder is None else self._folder / f"simulation-{k:04d}.{self._form}"
 
     def known(self, k: int) -> dict[str, Any] | None:
         """What an earlier run has kept of simulation ``k``, if that was of the same program, seed and settings."""
@@ -64,13 +66,21 @@ class _Work:
         if path is None or self._whole:
             return None
         try:
-            with path.open(encoding="utf-8") as stream:
-                found = json.loads(stream.readline(_FIRST_LINE))
+            found = self._about(path)
         except (OSError, ValueError):
             return None
         if not isinstance(found, dict) or found.get("settings") != self.settings():
             return None
         return found
+
+    def _about(self, path: Path) -> Any:
+        """What a file says of the whole simulation."""
+        if self._form == "parquet":
+            from scenic.formats.trajectory_tables import parquet_about
+
+            return parquet_about(path)
+        with path.open(encoding="utf-8") as stream:
+            return json.loads(stream.readline(_FIRST_LINE))
 
     def settings(self) -> dict[str, Any]:
         """What a simulation depends on beside its number."""
@@ -106,11 +116,16 @@ class _Work:
         path = self.file(k)
         steps = list(step_documents(numbered.simulation)) if path is not None or self._whole else []
         if path is not None:
-            lines = (
-                json.dumps(row, allow_nan=False, separators=(",", ":")) + "\n" for row in (about, *steps)
-            )
-            write(path, "".join(lines).encode())
+            write(path, self._file_bytes(about, steps))
         return {"k": k, "about": about, "steps": steps if self._whole else []}
+
+    def _file_bytes(self, about: dict[str, Any], steps: list[dict[str, Any]]) -> bytes:
+        if self._form == "parquet":
+            from scenic.formats.trajectory_tables import parquet_bytes
+
+            return parquet_bytes(about, steps)
+        lines = (json.dumps(row, allow_nan=False, separators=(",", ":")) + "\n" for row in (about, *steps))
+        return "".join(lines).encode()
 
 
 @click.command()
@@ -194,6 +209,14 @@ class _Work:
     help="Keep the trajectories in this folder; those that are there already are not made again.",
 )
 @click.option(
+    "--format",
+    "form",
+    type=click.Choice(["jsonl", "parquet"]),
+    default="jsonl",
+    show_default=True,
+    help="How to keep them: JSON Lines, or columns (needs the extra `parquet`).",
+)
+@click.option(
     "--view",
     metavar="PAGE.html",
     type=click.Path(path_type=Path),
@@ -215,6 +238,7 @@ def simulate(
     mode_2d: bool,
     jobs: int,
     output: Path | None,
+    form: str,
     view: Path | None,
 ) -> int:
     """Simulate scenes of a program.
@@ -229,6 +253,10 @@ def simulate(
 
     if view is not None:
         check_writable(view)
+    if form == "parquet":
+        from scenic.formats.trajectory_tables import parquet_support
+
+        parquet_support()
     if output is not None:
         output.mkdir(parents=True, exist_ok=True)
     if seed is None:
@@ -248,7 +276,7 @@ def simulate(
         "tries": tries,
         "stuck_after": step_limit,
     }
-    work = _Work(loading, simulator, running, output, view is not None)
+    work = _Work(loading, simulator, running, output, form, view is not None)
     work.load()
     numbers = range(first, first + count)
     found: dict[int, dict[str, Any]] = {

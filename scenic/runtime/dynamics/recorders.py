@@ -9,7 +9,7 @@ import pickle
 import string
 import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, BinaryIO, Final
@@ -214,15 +214,18 @@ def _video(
         ) from error
     frames = [_pixels(value) for _, value in series]
     frames = [np.stack([frame] * 3, axis=-1) if frame.ndim == 2 else frame for frame in frames]
+    # The usual coding of colours has pairs of columns and of rows.
+    even = [(0, frames[0].shape[axis] % 2) for axis in (0, 1)]
+    frames = [np.pad(frame[:, :, :3], (*even, (0, 0)), mode="edge") for frame in frames]
     height, width = frames[0].shape[:2]
     steps = series[1][0] - series[0][0] if len(series) > 1 else 1
     writer = imageio_ffmpeg.write_frames(
         str(stream.name), (width, height), fps=fps or 1 / (timestep * steps), macro_block_size=1
     )
-    writer.send(None)
-    for frame in frames:
-        writer.send(np.ascontiguousarray(frame))
-    writer.close()
+    with closing(writer):
+        writer.send(None)
+        for frame in frames:
+            writer.send(np.ascontiguousarray(frame))
 
 
 def plain(value: Any) -> Any:

@@ -1,0 +1,122 @@
+"""Simulations read back from the files that ``scenic simulate -o`` writes, JSON Lines or Parquet, as arrays."""
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from scenic.formats.trajectories import FORMAT, VERSION
+from scenic.formats.trajectory_tables import parquet_about, parquet_steps
+from scenic.language.errors import Located, MissingFileError
+
+__all__ = ["Trajectory", "TrajectoryFileError", "read_trajectory"]
+
+Array = npt.NDArray[np.float64]
+
+
+class TrajectoryFileError(Located):
+    """A file that does not hold a simulation."""
+
+    code = "SC607"
+
+
+@dataclass(frozen=True, slots=True)
+class Trajectory:
+    """A simulation that was read.
+
+    Attributes:
+        about: what is said of the whole: the fields of ``docs/simulations.md``.
+        times: seconds since the beginning, ``(s,)``, one more than steps were made.
+        positions: metres, ``(s, n, 3)``; NaN before an object was created.
+        orientations: quaternions x, y, z, w, ``(s, n, 4)``, likewise.
+        actions: what was done in each state, as data, by the number of the agent.
+
+    """
+
+    about: Mapping[str, Any]
+    times: Array
+    positions: Array
+    orientations: Array
+    actions: Sequence[Mapping[int, Any]]
+
+    def index(self, name: str) -> int:
+        """The number of the object that a variable of the program holds; raises ``KeyError`` if there is none."""
+        for number, thing in enumerate(self.about["objects"]):
+            if thing["name"] == name:
+                return number
+        raise KeyError(name)
+
+    def position(self, name: str) -> Array:
+        """Where the object of that name was, ``(s, 3)``, metres."""
+        return self.positions[:, self.index(name)]
+
+    def orientation(self, name: str) -> Array:
+        """How it stood, ``(s, 4)``: quaternions x, y, z, w."""
+        return self.orientations[:, self.index(name)]
+
+    def size(self, name: str) -> tuple[float, float, float]:
+        """Its width, length and height, metres."""
+        width, length, height = self.about["objects"][self.index(name)]["size"]
+        return width, length, height
+
+    def record(self, name: str) -> Any:
+        """What a ``record`` statement saved: of a series, which is kept as pairs of step and value, the values alone."""
+        found = self.about["records"][name]
+        is_series = isinstance(found, list) and all(
+            isinstance(item, list) and len(item) == 2 for item in found
+        )
+        return [value for _, value in found] if is_series else found
+
+
+def read_trajectory(path: str | Path) -> Trajectory:
+    """The simulation in a file.
+
+    Raises:
+        MissingFileError: the file cannot be read.
+        TrajectoryFileError: there is no simulation in it.
+
+    """
+    file = Path(path)
+    try:
+        with file.open("rb") as stream:
+            packed = stream.read(4) == b"PAR1"
+        if packed:
+            about, steps = parquet_about(file), parquet_steps(file)
+        else:
+            about, *steps = (json.loads(line) for line in file.read_text(encoding="utf-8").splitlines())
+        if about["format"] != FORMAT or about["version"] != VERSION:
+            raise ValueError(f"it is a {about['format']} file of version {about['version']}")
+        return _trajectory(about, steps)
+    except OSError as error:
+        raise MissingFileError(f"cannot read '{path}': {(error.strerror or str(error)).lower()}") from error
+    except (ValueError, KeyError, TypeError) as error:
+        raise TrajectoryFileError(
+            f"'{path}' holds no simulation: {error}",
+            help="files of simulations are made by `scenic simulate -o FOLDER`",
+        ) from error
+
+
+def _trajectory(about: dict[str, Any], steps: list[dict[str, Any]]) -> Trajectory:
+    count = len(about["objects"])
+    return Trajectory(
+        about,
+        np.array([_real(row["time"]) for row in steps], dtype=np.float64),
+        np.array([_rows(row["positions"], count, 3) for row in steps]).reshape(len(steps), count, 3),
+        np.array([_rows(row["orientations"], count, 4) for row in steps]).reshape(len(steps), count, 4),
+        [{int(number): done for number, done in row["actions"].items()} for row in steps],
+    )
+
+
+def _rows(values: list[list[Any]], count: int, width: int) -> Array:
+    rows = np.full((count, width), np.nan)
+    for number, row in enumerate(values):
+        rows[number] = [_real(value) for value in row]
+    return rows
+
+
+def _real(value: Any) -> float:
+    return float(value["$float"]) if isinstance(value, dict) else float(value)

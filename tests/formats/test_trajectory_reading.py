@@ -1,0 +1,152 @@
+"""Simulations as JSON Lines and Parquet, and back as arrays."""
+
+import importlib.util
+import json
+import math
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import scenic
+from scenic.formats.trajectory_reading import TrajectoryFileError
+from scenic.formats.trajectory_tables import parquet_bytes, parquet_steps
+from scenic.language.errors import MissingFileError
+from tests.cli.commands import run_here
+
+needs_parquet = pytest.mark.skipif(
+    importlib.util.find_spec("pyarrow") is None, reason="needs the extra [parquet]"
+)
+PROGRAM = """
+from scenic.simulators.kinematic import *
+behavior Go():
+    while True:
+        take SetVelocity((Range(-1, 1), 1, 0))
+scenario Main():
+    setup:
+        ego = new Object with behavior Go, with width 0.5
+        other = new Object at (9, 0, 1), facing 0.4, with behavior Go
+        record ego.position.y as y
+        record final other.position as end
+        require always (distance from ego to other) > 1 as apart
+    compose:
+        wait for 2 steps
+        do Later() for 9 steps
+scenario Later():
+    setup:
+        new Object at (-9, 0)
+"""
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path: Path = tmp_path_factory.mktemp("runs")
+    (path / "program.scenic").write_text(PROGRAM)
+    return path
+
+
+def simulated(folder: Path, form: str, *arguments: object) -> list[Path]:
+    options = ["-n", 2, "--seed", 1, "--time", 6, "--format", form, "-o", form, *arguments]
+    done = run_here(["simulate", "program.scenic", *options], folder=folder)
+    assert done.returncode == 0, done.stderr
+    return sorted((folder / form).glob(f"*.{form}"))
+
+
+def test_arrays_are_what_the_lines_say(folder: Path) -> None:
+    (path, _) = simulated(folder, "jsonl")
+    read = scenic.read_trajectory(path)
+    _, *lines = (json.loads(line) for line in path.read_text().splitlines())
+    assert read.positions.shape == (7, 3, 3)
+    assert read.orientations.shape == (7, 3, 4)
+    np.testing.assert_array_equal(read.times, [line["time"] for line in lines])
+    for line, places in zip(lines, read.positions, strict=True):
+        present = len(line["positions"])
+        np.testing.assert_array_equal(places[:present], line["positions"])
+        assert np.isnan(places[present:]).all()
+    assert np.isnan(read.positions[1, 2]).all()
+    assert not np.isnan(read.positions[2, 2]).any()
+    assert read.record("y") == read.position("ego")[:, 1].tolist()
+    assert read.record("end") == read.positions[-1, 1].tolist()
+    assert read.size("ego") == (0.5, 1, 1)
+    assert read.orientations[0, 1].tolist() == pytest.approx([0, 0, math.sin(0.2), math.cos(0.2)])
+    assert set(read.actions[0]) == {0, 1}
+    assert read.actions[6] == {}
+    with pytest.raises(KeyError):
+        read.orientation("third")
+
+
+@needs_parquet
+def test_both_forms_hold_the_same(folder: Path) -> None:
+    for lines, table in zip(simulated(folder, "jsonl"), simulated(folder, "parquet"), strict=True):
+        assert table.suffix == ".parquet"
+        about, *steps = (json.loads(line) for line in lines.read_text().splitlines())
+        assert parquet_steps(table) == steps
+        first, second = scenic.read_trajectory(lines), scenic.read_trajectory(table)
+        assert first.about == second.about
+        assert first.actions == second.actions
+        for name in ("times", "positions", "orientations"):
+            np.testing.assert_array_equal(getattr(first, name), getattr(second, name))
+        assert parquet_bytes(about, steps) == table.read_bytes()
+
+
+@needs_parquet
+def test_columns_are_read_by_anyone(folder: Path) -> None:
+    from pyarrow import parquet
+
+    (path, _) = simulated(folder, "parquet")
+    table = parquet.read_table(path)
+    assert {name: str(table.schema.field(name).type) for name in table.column_names} == {
+        "step": "int32",
+        "time": "double",
+        "object": "int32",
+        **dict.fromkeys(("x", "y", "z", "qx", "qy", "qz", "qw"), "double"),
+        "actions": "string",
+    }
+    assert table.num_rows == 2 * 7 + 5
+
+
+@needs_parquet
+def test_runs_go_on_in_columns(folder: Path) -> None:
+    before = {path: path.stat().st_mtime_ns for path in simulated(folder, "parquet")}
+    assert {path: path.stat().st_mtime_ns for path in simulated(folder, "parquet")} == before
+    one, two = before
+    one.write_bytes(two.read_bytes()[:100])
+    simulated(folder, "parquet")
+    assert two.stat().st_mtime_ns == before[two]
+    assert scenic.read_trajectory(one).about["k"] == 0
+
+
+@needs_parquet
+def test_numbers_that_are_not_finite(tmp_path: Path) -> None:
+    about: dict[str, Any] = {"format": "scenic-simulation", "version": 1, "steps": 0, "timestep": 1.0}
+    about["objects"] = [{"name": None}]
+    state = {"step": 0, "time": 0.0, "actions": {}, "orientations": [[0, 0, 0, 1]]}
+    state["positions"] = [[{"$float": "inf"}, {"$float": "nan"}, -1.5]]
+    (tmp_path / "a.parquet").write_bytes(parquet_bytes(about, [state]))
+    (tmp_path / "a.jsonl").write_text(f"{json.dumps(about)}\n{json.dumps(state)}\n")
+    for name in ("a.parquet", "a.jsonl"):
+        np.testing.assert_array_equal(
+            scenic.read_trajectory(tmp_path / name).positions, [[[math.inf, math.nan, -1.5]]]
+        )
+
+
+@pytest.mark.parametrize("text", ["", "{}", '{"format": "scenic-scene", "version": 1}', "PAR1", "no"])
+def test_other_files_are_refused(tmp_path: Path, text: str) -> None:
+    if text == "PAR1" and importlib.util.find_spec("pyarrow") is None:
+        pytest.skip("needs the extra [parquet]")
+    (tmp_path / "file").write_text(text)
+    with pytest.raises(TrajectoryFileError, match="holds no simulation"):
+        scenic.read_trajectory(tmp_path / "file")
+    with pytest.raises(MissingFileError):
+        scenic.read_trajectory(tmp_path / "missing")
+
+
+def test_without_the_library_the_extra_is_named(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "pyarrow", None)
+    done = run_here(["simulate", "program.scenic", "--format", "parquet", "-o", "none"], folder=folder)
+    assert done.returncode != 0
+    assert "error[SC900]: Parquet files need the package pyarrow" in done.stderr
+    assert "scenic-lang[parquet]" in done.stderr
+    assert not (folder / "none").exists()

@@ -1,0 +1,81 @@
+"""Films of recorded images."""
+
+import importlib.util
+import re
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import scenic
+from scenic.language.errors import UnsupportedError
+from scenic.simulators.dummy import DummySimulator
+
+
+def record(folder: Path, expression: str, *, more: str = "", steps: int = 9, timestep: float = 0.1) -> None:
+    text = f"""
+import numpy as np
+param recordFolder = {str(folder)!r}
+def image(y, *shape):
+    picture = np.zeros(shape, dtype=np.uint8)
+    picture[:, : 8 * (1 + round(y))] = 255
+    return picture
+ego = new Object
+record {expression} {more} to 'film.mp4'
+"""
+    scene = scenic.scenarioFromString(text).sample(1, seed=0)[0]
+    assert DummySimulator(drift=1).simulate(scene, maxSteps=steps, timestep=timestep) is not None
+
+
+def frames(path: Path) -> tuple[tuple[int, int], float, list[Any]]:
+    """Size, images a second, and the images ``(height, width, 3)``, as ffmpeg tells them."""
+    import imageio_ffmpeg
+
+    words = [imageio_ffmpeg.get_ffmpeg_exe(), "-i", str(path), "-f", "rawvideo", "-pix_fmt", "rgb24", "-"]
+    done = subprocess.run(words, capture_output=True, check=True)
+    about = next(
+        line
+        for line in done.stderr.decode().splitlines()
+        if "Stream #0:0" in line and ": Video: h264" in line
+    )
+    size = re.search(r", (\d+)x(\d+)", about)
+    pace = re.search(r", ([\d.]+) fps", about)
+    assert size is not None
+    assert pace is not None
+    width, height = int(size[1]), int(size[2])
+    images = np.frombuffer(done.stdout, dtype=np.uint8).reshape(-1, height, width, 3)
+    return (width, height), float(pace[1]), list(images)
+
+
+def white(frame: Any) -> int:
+    return round(float((frame[frame.shape[0] // 2, :, 0] > 128).sum()))
+
+
+@pytest.mark.skipif(importlib.util.find_spec("imageio_ffmpeg") is None, reason="needs the extra [video]")
+@pytest.mark.parametrize("shape", ["64, 96, 3", "64, 96", "63, 97, 3"])
+def test_films_show_every_image(tmp_path: Path, shape: str) -> None:
+    record(tmp_path, f"image(ego.y, {shape})")
+    size, pace, shown = frames(tmp_path / "film.mp4")
+    assert [path.name for path in tmp_path.iterdir()] == ["film.mp4"]
+    assert size == (96 if "96" in shape else 98, 64)
+    assert pace == 10
+    np.testing.assert_allclose([white(frame) for frame in shown], 8 * np.arange(1, 11), atol=3)
+
+
+@pytest.mark.skipif(importlib.util.find_spec("imageio_ffmpeg") is None, reason="needs the extra [video]")
+def test_films_keep_the_pace_of_the_simulation(tmp_path: Path) -> None:
+    record(tmp_path, "image(ego.y, 64, 96)", more="every 2 steps", timestep=0.05)
+    _, pace, shown = frames(tmp_path / "film.mp4")
+    assert pace == 10
+    assert len(shown) == 5
+
+
+def test_without_the_library_the_extra_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
+    with pytest.raises(UnsupportedError, match="without the package imageio-ffmpeg") as caught:
+        record(tmp_path, "image(ego.y, 64, 96)")
+    assert "scenic-lang[video]" in str(caught.value.help)
+    assert list(tmp_path.iterdir()) == []
