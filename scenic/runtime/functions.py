@@ -7,7 +7,7 @@ from typing import Any
 from scenic.language.errors import RandomControlFlowError
 from scenic.runtime.context import here, verbosity
 from scenic.runtime.lazy import Lazy, defer, is_lazy
-from scenic.runtime.opaque import call_later
+from scenic.runtime.opaque import call_later, is_later
 from scenic.runtime.values import Random, is_random, operate
 
 
@@ -30,16 +30,20 @@ def _extreme(name: str, function: Callable[..., Any]) -> Callable[..., Any]:
     def extreme(*args: Any, **options: Any) -> Any:
         if is_lazy(args) or is_lazy(options):
             return defer(extreme, *args, **options)
-        if options or not any(is_random(item) for item in args):
-            return function(*args, **options)
-        values = args[0] if len(args) == 1 else args
-        if isinstance(values, Random):
-            return call_later(function, values)
-        return operate(name, *values)
+        if options or isinstance(args[0] if len(args) == 1 else None, Random):
+            call = call_later if is_later(*args, *options.values()) else _call
+            return call(function, *args, **options)
+        if not any(is_random(item) for item in args):
+            return function(*args)
+        return operate(name, *(args[0] if len(args) == 1 else args))
 
     extreme.__name__ = function.__name__
     extreme.__doc__ = function.__doc__
     return extreme
+
+
+def _call(function: Callable[..., Any], /, *args: Any, **keywords: Any) -> Any:
+    return function(*args, **keywords)
 
 
 max = _extreme("maximum", builtins.max)
@@ -66,10 +70,11 @@ def filter(function: Callable[[Any], Any] | None, values: Any) -> Any:
     """The elements for which ``function`` holds, as a list; ``values`` may be random."""
     if is_lazy(values):
         return defer(filter, function, values)
-    keep = function if function is not None else bool
-    if not is_random(values):
-        return [item for item in values if keep(item)]
-    return call_later(lambda concrete: [item for item in concrete if keep(item)], values)
+    return (call_later if is_later(function, values) else _call)(_kept, function, values)
+
+
+def _kept(function: Callable[[Any], Any] | None, values: Any) -> list[Any]:
+    return list(builtins.filter(function, values))
 
 
 def range(*bounds: Any) -> Any:

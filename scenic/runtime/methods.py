@@ -253,6 +253,8 @@ class VectorMethods(Operand):
             return (self.x, self.y, self.z)[index]
         if isinstance(index, int):
             raise IndexError("a vector has three components")
+        if isinstance(index, Arithmetic):  # random
+            return self._operate("getitem", self, index)
         raise TypeError(f"a vector is indexed by 0, 1 or 2, not by {index!r}")
 
     def __iter__(self) -> Iterator[Any]:
@@ -283,6 +285,31 @@ class OrientationMethods(Operand):
     def eulerAngles(self) -> Any:
         """Yaw, pitch and roll."""
         return (self.yaw, self.pitch, self.roll)
+
+    @property
+    def x(self) -> Any:
+        """First imaginary part of the quaternion."""
+        return self._operate("quaternion", self, payload=0)
+
+    @property
+    def y(self) -> Any:
+        """Second imaginary part of the quaternion."""
+        return self._operate("quaternion", self, payload=1)
+
+    @property
+    def z(self) -> Any:
+        """Third imaginary part of the quaternion."""
+        return self._operate("quaternion", self, payload=2)
+
+    @property
+    def w(self) -> Any:
+        """Real part of the quaternion."""
+        return self._operate("quaternion", self, payload=3)
+
+    @property
+    def q(self) -> tuple[Any, Any, Any, Any]:
+        """The quaternion (x, y, z, w)."""
+        return (self.x, self.y, self.z, self.w)
 
     @property
     def inverse(self) -> Any:

@@ -20,7 +20,7 @@ from scenic.language.errors import RejectionException
 from scenic.runtime.context import Context, current, here, next_address
 from scenic.runtime.randomness import preserved, seed_globals
 from scenic.runtime.samples import Globals, Sample, dependencies, mention
-from scenic.runtime.values import CODEC, as_value
+from scenic.runtime.values import CODEC, Random, as_value
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,9 +62,20 @@ def later(
     return apply(operation, operands, code, here())
 
 
-def call_later(function: Callable[..., Any], *args: Any, **keywords: Any) -> Any:
+def call_later(function: Callable[..., Any], /, *args: Any, **keywords: Any) -> Any:
     """The random value of a call that is made on each sample."""
     return as_value(later(CALL, function, args, keywords))
+
+
+Random.later = staticmethod(call_later)
+
+
+def is_later(*values: Any) -> bool:
+    """Whether a call with these values has to wait for samples: something random is in their reach."""
+    context = current.get()
+    if context is not None and (context.sample is not None or not context.is_symbolic):
+        return False
+    return bool(dependencies(values))
 
 
 def evaluated(call: Call, columns: Sequence[Column]) -> list[Any]:

@@ -145,12 +145,28 @@ def _vector(name: str, value: Any) -> Any:
     return value if type(value) is Vector else to_vector(value, f"property {name!r}")
 
 
+def _position(name: str, value: Any) -> Any:
+    position = _vector(name, value)
+    if type(position) is Vector and not all(map(math.isfinite, position)):
+        raise ScenicValueError(
+            f"property {name!r} must be finite, not {position!r}",
+            span=here(),
+            help="look for what is infinite or undefined in the numbers that it is made of",
+        )
+    return position
+
+
 def _scalar(name: str, value: Any) -> Any:
     return value if type(value) is float else to_scalar(value, f"property {name!r}")
 
 
 def _angle(name: str, value: Any) -> Any:
-    return operate("normalize angle", _scalar(name, value))
+    angle = _scalar(name, value)
+    if is_number(angle) and not math.isfinite(angle):
+        raise ScenicValueError(
+            f"property {name!r} must be finite, not {angle:g}", span=here(), help="angles are in radians"
+        )
+    return operate("normalize angle", angle)
 
 
 def _orientation(name: str, value: Any) -> Any:
@@ -170,7 +186,7 @@ def _container(name: str, value: Any) -> Any:
 
 
 def _view_angles(_name: str, value: Any) -> Any:
-    """A pair of angles, at most all around; random ones are limited when they are used."""
+    """A pair of angles, at most all around."""
     if isinstance(value, Random):
         return value
     if not (isinstance(value, tuple | list | Vector) and len(value) in (2, 3)):
@@ -191,6 +207,8 @@ def _view_angles(_name: str, value: Any) -> Any:
                     stacklevel=2,
                 )
                 size = limit
+        else:
+            size = operate("minimum", size, limit)
         limited.append(size)
     return tuple(limited)
 
@@ -235,6 +253,7 @@ def update(instance: Any, changes: Mapping[str, Any]) -> None:
 _NORMAL: Mapping[str, Callable[[str, Any], Any]] = MappingProxyType(
     {
         **dict.fromkeys(_VECTORS, _vector),
+        "position": _position,
         **dict.fromkeys(_SCALARS, _scalar),
         **dict.fromkeys(_ANGLES, _angle),
         "parentOrientation": _orientation,

@@ -1,5 +1,6 @@
 """Which specifier decides which property, and the building of an instance (section 6.1 of the specification)."""
 
+import math
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -336,9 +337,9 @@ def _circle(specifiers: Sequence[Specifier]) -> SpecifierError:
 
 def _check_value(name: str, value: Any, *, mode_2d: bool) -> None:
     """Raise an error for a property of an object that no object can have."""
-    if name in ("width", "length", "height") and is_number(value) and not value > 0:
+    if name in ("width", "length", "height") and is_number(value) and not 0 < value < math.inf:
         raise ScenicValueError(
-            f"property {name!r} must be greater than 0, not {value:g}",
+            f"property {name!r} must be {'finite' if value > 0 else 'greater than 0'}, not {value:g}",
             span=here(),
             help="sizes are in metres",
         )

@@ -6,7 +6,8 @@ methods of the program's classes, and objects that say so themselves by a ``samp
 """
 
 from collections.abc import Callable, Iterable, Iterator
-from types import CellType, CodeType, FunctionType, MethodType
+from functools import partial
+from types import CellType, CodeType, FunctionType, MethodType, ModuleType
 from typing import Any
 
 from scenic.graph.node import Node
@@ -170,8 +171,17 @@ def _parts(value: Any, names: Globals) -> Iterator[Any]:
         yield from (value.__kwdefaults__ or {}).values()
     elif isinstance(value, MethodType):
         yield from (value.__self__, value.__func__)
+    elif isinstance(value, partial):
+        yield from (value.func, *value.args, *value.keywords.values())
+    elif isinstance(value, ModuleType) and PRELUDE in vars(value):
+        yield from _contents(value).values()
     elif hasattr(value, "sampled") and hasattr(value, "random_parts"):
         yield from value.random_parts()
+
+
+def _contents(module: ModuleType) -> dict[str, Any]:
+    """What a module of the language defines."""
+    return {name: item for name, item in vars(module).items() if not name.startswith("__")}
 
 
 def _content(cell: CellType) -> Any:
@@ -225,6 +235,13 @@ class Sample:
             return [self.value(item) for item in value]
         if type(value) is dict:
             return {key: self.value(item) for key, item in value.items()}
+        if type(value) in (set, frozenset):
+            return type(value)([self.value(item) for item in value])
+        if type(value) is partial:
+            keywords = {name: self.value(item) for name, item in value.keywords.items()}
+            return partial(self.value(value.func), *map(self.value, value.args), **keywords)
+        if isinstance(value, ModuleType) and PRELUDE in vars(value):
+            return self._module(value)
         if isinstance(value, slice):
             return slice(self.value(value.start), self.value(value.stop), self.value(value.step))
         if isinstance(value, FunctionType):
@@ -249,6 +266,14 @@ class Sample:
             sampled = self.value(method)
             if sampled is not method:
                 copy.__dict__[name] = MethodType(sampled, copy)
+        return copy
+
+    def _module(self, module: ModuleType) -> ModuleType:
+        """The module over sampled values."""
+        copy = ModuleType(module.__name__, module.__doc__)
+        self._memo[id(module)] = (module, copy)
+        vars(copy).update(vars(module))
+        vars(copy).update({name: self.value(item) for name, item in _contents(module).items()})
         return copy
 
     def _function(self, function: FunctionType) -> FunctionType:

@@ -5,10 +5,14 @@ operands an operation is evaluated at once, by the same reading that batches use
 the language's operators, vector methods and specifier formulas are each written once.
 """
 
+import functools
+import inspect
 import math
+import operator
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from typing import Any, Self, TypeGuard
+from types import BuiltinFunctionType
+from typing import Any, ClassVar, Self, TypeGuard
 
 import numpy as np
 
@@ -88,6 +92,9 @@ class Random(Arithmetic, Hooks):
     __slots__ = ("_again", "node")
     __array_priority__ = 1000  # NumPy scalars on the left defer to the methods below.
 
+    later: ClassVar[Callable[..., Any]]
+    """A call of Python code that is made on each sample; `scenic.runtime.opaque`, which stands on this module, gives it."""
+
     def __init__(self, node: Node, again: "Callable[[], Any] | None" = None) -> None:
         self.node = node
         self._again = again
@@ -95,6 +102,8 @@ class Random(Arithmetic, Hooks):
     # Parts
 
     def __getitem__(self, index: Any) -> Any:
+        if holds_instances(self.node):
+            return Random.later(operator.getitem, self, index)  # instances as they are in the sample
         return operate("getitem", self, index)
 
     def __getattr__(self, name: str) -> Any:
@@ -421,13 +430,29 @@ _LIST = Operation(
 )
 
 
+_SLICE = Operation("slice", always(Kind.OTHER), by_lane, "A slice with random ends.", python=slice)
+
+
+def _container(value: Any) -> Operation:
+    """What makes a container of the type of ``value`` from its parts."""
+    if isinstance(value, list):
+        return _LIST
+    if not hasattr(value, "_fields"):
+        return _TUPLE
+    return Operation(
+        "named tuple", always(Kind.OTHER), by_lane, "A named tuple with random parts.", python=type(value)
+    )
+
+
 def as_node(value: Any) -> Node:
     """The node of a value: its own if random, else a constant."""
     if isinstance(value, Random):
         return value.node
     if isinstance(value, tuple | list) and is_random(value):
-        parts = [as_node(item) for item in value]
-        return construction.apply(_LIST if isinstance(value, list) else _TUPLE, parts, span=here())
+        return construction.apply(_container(value), [as_node(item) for item in value], span=here())
+    if isinstance(value, slice) and is_random(value):
+        ends = [as_node(end) for end in (value.start, value.stop, value.step)]
+        return construction.apply(_SLICE, ends, span=here())
     kind = kind_of(value)
     return constant(value, kind, CODEC.encode(kind, value))
 
@@ -550,7 +575,7 @@ def attribute(value: Random, name: str) -> Any:
         return apply(_GETATTR, value, name)
     if node.kind.is_number or node.kind in (Kind.VECTOR, Kind.ORIENTATION):
         raise AttributeError(f"a random {node.kind.value} has no attribute {name!r}")
-    return apply(_GETATTR, value, name)
+    return Random.later(getattr, value, name) if holds_instances(node) else apply(_GETATTR, value, name)
 
 
 def call(value: Random, args: Sequence[Any], kwargs: dict[str, Any]) -> Any:
@@ -562,20 +587,21 @@ def call(value: Random, args: Sequence[Any], kwargs: dict[str, Any]) -> Any:
         for option in options:
             if option.operation is _MISSING:
                 results.append(option)
-            elif option.is_constant and _is_traceable(option.value):
+            elif option.is_constant and _is_of_runtime(option.value):
                 results.append(_traced(option.value, args, kwargs))
+            elif option.is_constant and isinstance(option.value, BuiltinFunctionType):
+                results.append(_call_in_lanes(option, args, kwargs))
             else:
-                results.append(_call_later(option, args, kwargs))
+                results.append(as_node(Random.later(as_value(option), *args, **kwargs)))
         return _select(index, results)
-    return as_value(_call_later(node, args, kwargs))
+    return Random.later(value, *args, **kwargs)
 
 
-def _is_traceable(function: Any) -> bool:
-    """Whether a callable is a method of the runtime, or of an instance, which takes random arguments."""
+def _is_of_runtime(function: Any) -> bool:
+    """Whether a callable is one of the runtime's own, which take random arguments; what programs define does not."""
     defined = getattr(function, "__func__", function)
     module = getattr(defined, "__module__", None) or ""
-    owner = getattr(function, "__self__", None)
-    return module.startswith("scenic.runtime.") or kind_of(owner) is Kind.OBJECT
+    return module.startswith("scenic.runtime.")
 
 
 def _traced(function: Any, args: Sequence[Any], kwargs: dict[str, Any]) -> Node:
@@ -586,14 +612,14 @@ def _traced(function: Any, args: Sequence[Any], kwargs: dict[str, Any]) -> Node:
         return construction.apply(_MISSING, (), error, here())
 
 
-def _call_later(function: Node, args: Sequence[Any], kwargs: dict[str, Any]) -> Node:
+def _call_in_lanes(function: Node, args: Sequence[Any], kwargs: dict[str, Any]) -> Node:
     operands = [function, *(as_node(item) for item in (*args, *kwargs.values()))]
     names, positional = tuple(kwargs), len(args)
 
     def invoke(target: Any, *values: Any) -> Any:
         return target(*values[:positional], **dict(zip(names, values[positional:], strict=True)))
 
-    operation = Operation("call", always(Kind.OTHER), by_lane, "A call of a random value.", python=invoke)
+    operation = Operation("call", always(Kind.OTHER), by_lane, "A call of Python's own.", python=invoke)
     return construction.apply(operation, operands, span=here())
 
 
@@ -601,10 +627,42 @@ def _attribute_of_option(option: Node, name: str) -> Node:
     if option.operation is _MISSING:
         return option
     value = as_value(option)
+    if kind_of(value) is Kind.OBJECT and _is_computed(type(value), name):
+        return as_node(Random.later(getattr, value, name))
     try:
         return as_node(getattr(value, name))
     except AttributeError as error:
         return construction.apply(_MISSING, (), error, here())
+
+
+def _is_computed(cls: type, name: str) -> bool:
+    """Whether an attribute is computed by code of the program, which has to see sampled values."""
+    found = inspect.getattr_static(cls, name, None)
+    code = found.fget if isinstance(found, property) else getattr(found, "func", None)
+    return isinstance(found, property | functools.cached_property) and not _is_of_runtime(code)
+
+
+def holds_instances(node: Node) -> bool:
+    """Whether instances of the program are among the constants that a node is made of, or in containers there."""
+    stack, seen = [node], {node}
+    while stack:
+        below = stack.pop()
+        if below.is_constant:
+            if below.kind is Kind.OBJECT or (below.kind.is_boxed and _with_instances(below.value)):
+                return True
+        elif not below.is_drawn and below.operation.pure:  # calls on samples give sampled instances
+            new = [operand for operand in below.operands if operand not in seen]
+            seen.update(new)
+            stack.extend(new)
+    return False
+
+
+def _with_instances(value: Any) -> bool:
+    if isinstance(value, dict):
+        value = list(value.values())
+    if isinstance(value, tuple | list | set | frozenset):
+        return any(_with_instances(item) for item in value)
+    return holds_instances(value.node) if isinstance(value, Random) else kind_of(value) is Kind.OBJECT
 
 
 def _select(index: Node, options: Sequence[Node]) -> Any:

@@ -210,6 +210,7 @@ CASES = [
     Case("inverse", (Q,)),
     Case("rotate", (Q, V)),
     *(Case("euler", (Q,), index) for index in range(3)),
+    *(Case("quaternion", (Q,), index) for index in range(4)),
     *(Case("range", (U, *kinds)) for kinds in [(S, S), (I, I), (S, I)]),
     *(Case("normal", (U, *kinds)) for kinds in [(S, P), (I, P), (S, S)]),
     *(Case("truncated normal", (U, S, P), window) for window in [(-1.0, 2.0), (30.0, 45.0), (-np.inf, -3.0)]),

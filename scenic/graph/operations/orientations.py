@@ -206,6 +206,18 @@ def _rotate_solver(terms: Terms, _payload: Any, orientation: Any, vector: Any) -
     return (vx + w * tx + (y * tz - z * ty), vy + w * ty + (z * tx - x * tz), vz + w * tz + (x * ty - y * tx))
 
 
+def _quaternion(call: Call, orientation: Column) -> Column:
+    return np.ascontiguousarray(orientation[..., call.payload])
+
+
+def _quaternion_bounds(payload: Any, orientation: Bounds) -> Bounds:
+    return intervals.component(orientation, payload)
+
+
+def _quaternion_solver(_terms: Terms, payload: Any, orientation: Any) -> Any:
+    return orientation[payload]
+
+
 def _euler_bounds(payload: Any, _orientation: Bounds) -> Bounds:
     limit = math.pi / 2 if payload == 1 else math.pi
     return Bounds(np.array([-limit - _SLACK]), np.array([limit + _SLACK]))
@@ -338,5 +350,15 @@ OPERATIONS = (
         stacks=True,
         rewrite=_angle_of_yaw,
         scalar=lambda payload, orientation: quaternions.euler_angle(orientation, payload),
+    ),
+    Operation(
+        "quaternion",
+        always(Kind.SCALAR),
+        _quaternion,
+        "One component of the unit quaternion of an orientation; payload 0 to 3 for x, y, z, w.",
+        bounds=_quaternion_bounds,
+        solver=_quaternion_solver,
+        stacks=True,
+        scalar=lambda payload, orientation: orientation[payload],
     ),
 )

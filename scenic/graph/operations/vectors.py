@@ -38,8 +38,26 @@ def _parts(vector: Column) -> tuple[Column, Column, Column]:
     return x, y, z
 
 
+_SMALL, _LARGE = 2.0**-460, 2.0**500
+"""Lengths between these come from squares that neither vanish nor overflow, whatever the components."""
+
+
 def _length(x: Column, y: Column, z: Column) -> Column:
-    return np.asarray(np.sqrt(x * x + y * y + z * z))
+    length = np.asarray(np.sqrt(x * x + y * y + z * z))
+    extreme = ~((length >= _SMALL) & (length <= _LARGE)) & (length == length)
+    if extreme.any():
+        length = np.where(extreme, _scaled_length(x, y, z), length)
+    return length
+
+
+def _scaled_length(x: Any, y: Any, z: Any) -> Any:
+    """The length by way of components whose squares are of a usual size; scaling by powers of two rounds nothing."""
+    largest = np.maximum(np.maximum(np.abs(x), np.abs(y)), np.abs(z))
+    # Tiny ones all grow by the same factor: that of the largest component might overflow.
+    _, exponent = np.frexp(np.where(np.isfinite(largest) & (largest > 0), largest, 1.0))
+    exponent = np.maximum(exponent, -1000)
+    a, b, c = (np.ldexp(part, -exponent) for part in (x, y, z))
+    return np.ldexp(np.sqrt(a * a + b * b + c * c), exponent)
 
 
 def _norm(_call: Call, vector: Column) -> Column:
@@ -81,7 +99,10 @@ def _normalized(_call: Call, vector: Column) -> Column:
 
 def _norm_scalar(_payload: Any, vector: Any) -> float:
     x, y, z = vector
-    return math.sqrt(x * x + y * y + z * z)
+    length = math.sqrt(x * x + y * y + z * z)
+    if _SMALL <= length <= _LARGE or length != length or not (x or y or z):
+        return length
+    return float(_scaled_length(float(x), float(y), float(z)))
 
 
 def _dot_scalar(_payload: Any, a: Any, b: Any) -> Any:

@@ -1,16 +1,19 @@
 """From a program's objects and requirements to the checks of a plan (sections 10.1 and 10.2 of the specification)."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from scenic.graph.bounding import overall
+from scenic.graph.bounding import forward, overall
+from scenic.graph.bounds import Bounds
 from scenic.graph.domain import Domain
 from scenic.graph.node import Graph, Node
+from scenic.graph.operations.possibilities import is_finite
 from scenic.language.errors import InvalidScenarioError
 from scenic.language.spans import Span
 from scenic.runtime.conditions import connect, truth
@@ -31,8 +34,11 @@ from scenic.runtime.sampling.checks import (
 )
 from scenic.runtime.sampling.engine import Plan
 from scenic.runtime.sight import looks, sees
-from scenic.runtime.values import CODEC, as_node, fixed_batch, is_random, operate
+from scenic.runtime.values import CODEC, Random, as_node, fixed_batch, is_random, operate
 from scenic.runtime.visibility import sees_in_plane
+
+_FAR: Final = 1e100
+"""Metres, or any other unit, that nothing is away."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,6 +68,7 @@ def outline(program: Program, ego: Object | None, workspace: Workspace, *, mode_
     """
     outputs = dependencies(program.reachable())
     checks: list[Check] = _drawing(outputs)
+    checks += _finite(program)
     checks += _sizes(program)
     containment = _containment(program, workspace)
     checks += containment
@@ -128,19 +135,72 @@ def _place(program: Program, item: Any) -> tuple[Span | None, str | None]:
     return program.places.get(id(item), (None, None))
 
 
+def _finite(program: Program) -> list[Check]:
+    """Random positions and angles must come out finite."""
+    checks: list[Check] = []
+    known: dict[Node, Bounds | None] = {}
+    for item in program.objects:
+        span, _ = _place(program, item)
+        angles = [
+            angle
+            for angle in (item.yaw, item.pitch, item.roll)
+            # Other angles are normal as they are, and so are made of what is looked at elsewhere.
+            if isinstance(angle, Random) and angle.node.operation.name == "normalize angle"
+        ]
+        for value in (item.position, *angles):
+            if isinstance(value, Random) and _may_be_infinite(value.node, known):
+                size = operate("norm" if value is item.position else "absolute", value)
+                # What is undefined is not less than anything.
+                node = truth(operate("less", size, math.inf))
+                checks.append(NodeCheck(node, "finite position and angles", span, BUILT_IN))
+    return checks
+
+
+def _may_be_infinite(root: Node, known: dict[Node, Bounds | None]) -> bool:
+    """Whether numbers below a node may overflow or be undefined; ``known`` keeps what has been found out.
+
+    Operations that say nothing of their results are those of geometry, whose results are places.
+    """
+    stack = [root]
+    while stack:
+        node = stack[-1]
+        if node in known:
+            stack.pop()
+            continue
+        if node.is_constant or node.is_drawn:
+            known[node] = overall(node)
+            continue
+        missing = [operand for operand in node.operands if operand not in known]
+        if missing:
+            stack += missing
+            continue
+        bounds = forward(node, [known[operand] for operand in node.operands])
+        if node.operation.bounds is None and bounds is not None and not _is_python(node):
+            bounds = Bounds(np.maximum(bounds.lower, -_FAR), np.minimum(bounds.upper, _FAR))
+        known[node] = bounds
+    found = known[root]
+    return found is None or not bool(np.isfinite(found.lower).all() and np.isfinite(found.upper).all())
+
+
+def _is_python(node: Node) -> bool:
+    return node.operation.is_python(node.operands, node.kind)
+
+
 def _sizes(program: Program) -> list[Check]:
-    """Random sizes must come out positive (section 5.3)."""
+    """Random sizes must come out positive (section 5.3), and finite."""
     checks: list[Check] = []
     for item in program.objects:
         for name in ("width", "length", "height"):
             size = getattr(item, name)
             if is_random(size):
+                span, _ = _place(program, item)
                 node = truth(operate("less", 0, size))
                 bounds = overall(node)
-                if bounds is not None and bounds.lower[0] == 1:
-                    continue
-                span, _ = _place(program, item)
-                checks.append(NodeCheck(node, f"positive {name}", span, BUILT_IN))
+                if bounds is None or bounds.lower[0] != 1:
+                    checks.append(NodeCheck(node, f"positive {name}", span, BUILT_IN))
+                if not is_finite(as_node(size)):
+                    node = truth(operate("less", size, math.inf))
+                    checks.append(NodeCheck(node, f"finite {name}", span, BUILT_IN))
     return checks
 
 

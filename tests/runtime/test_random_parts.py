@@ -1,0 +1,292 @@
+"""Reaching into random choices and containers: methods, attributes, items and slices; functions that see sampled values."""
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from scenic.language.errors import RandomControlFlowError, ScenicValueError
+from tests.runtime.programs import failure, place, scenario
+
+PAIR = """
+class A(Object):
+    letter = 'a'
+    def g(self, x, name='g'):
+        if x > 0.5:
+            return (self.letter, 'large', x, self.position.x)
+        return (self.letter, 'small', x, self.position.x)
+    def itself(self): return self
+    @staticmethod
+    def grade(x): return 'large' if x > 0.5 else 'small'
+    @property
+    def side(self): return 'east' if self.position.x > 5 else 'west'
+class B(A):
+    letter = 'b'
+a = new A at (Range(0, 1), 2, 3), with tag 'a'
+b = new B at (Range(10, 11), 12, 13), with tag 'b'
+c = Uniform(a, b)
+l = Uniform([a, b], [b, a])
+i, x = DiscreteRange(0, 1), Range(0, 1)
+param c = c, l = l, i = i, x = x, a = a, b = b
+"""
+
+Expected = Callable[[dict[str, Any]], Any]
+
+
+def graded(thing: Any, x: float) -> tuple[Any, ...]:
+    return (thing.tag, "large" if x > 0.5 else "small", x, thing.position.x)
+
+
+PARTS: list[tuple[str, Expected]] = [
+    ("c.g(x)", lambda p: graded(p["c"], p["x"])),
+    ("c.g(x=x, name='g')", lambda p: graded(p["c"], p["x"])),
+    ("c.itself().tag", lambda p: p["c"].tag),
+    ("c.grade(x)", lambda p: "large" if p["x"] > 0.5 else "small"),
+    ("c.side", lambda p: "east" if p["c"].tag == "b" else "west"),
+    ("c.letter", lambda p: p["c"].tag),
+    ("l[0].tag", lambda p: p["l"][0].tag),
+    ("l[0].position.x", lambda p: p["l"][0].position.x),
+    ("l[i].position.x", lambda p: p["l"][p["i"]].position.x),
+    ("l[i].g(x)", lambda p: graded(p["l"][p["i"]], p["x"])),
+    ("l[i:][0].position.x", lambda p: p["l"][p["i"]].position.x),
+    ("Uniform({'k': l}, {'k': l})['k'][i].position.x", lambda p: p["l"][p["i"]].position.x),
+    ("filter(lambda o: o.x > 0.5, [a, b])[0].tag", lambda p: "a" if p["a"].x > 0.5 else "b"),
+    ("filter(lambda o: o.position.x > x, l)[0].tag", lambda p: next(o.tag for o in p["l"] if o.x > p["x"])),
+    ("len(filter(None, Uniform([0, 1], [2, 3])))", lambda p: p["value"]),
+    ("min(a, b, key=lambda o: -o.x).tag", lambda p: "b"),
+    ("max([a, b], key=lambda o: (o.x < 0.5, o.x)).tag", lambda p: "a" if p["a"].x < 0.5 else "b"),
+    ("max(l, key=lambda o: o.x).tag", lambda p: "b"),
+    ("min([x, 0.5], key=lambda v: -v)", lambda p: max(p["x"], 0.5)),
+    ("max(x, 0.5, key=lambda v: abs(v - x))", lambda p: 0.5),
+    ("max(filter(lambda v: v > x, [0.5]), default=7)", lambda p: 0.5 if p["x"] < 0.5 else 7),
+    ("[1, 2, 3] if False else Uniform([1, 2, 3], [4, 5, 6])[i:]", lambda p: p["value"]),
+    ("Uniform('abc', 'abc')[i:i + 2]", lambda p: "abc"[p["i"] : p["i"] + 2]),
+    ("Uniform([1, 2, 3], [1, 2, 3])[slice(None, i)]", lambda p: [1, 2, 3][: p["i"]]),
+    ("Uniform((1 @ 2), (1 @ 2))[i]", lambda p: (1, 2)[p["i"]]),
+    ("(x @ 2)[i]", lambda p: (p["x"], 2)[p["i"]]),
+    ("Uniform(*filter(lambda o: o.x > 5, l)).tag", lambda p: "b"),
+    ("l[i].canSee((0, 0, 0))", lambda p: True),
+    ("(front of c).position.x", lambda p: p["c"].position.x),
+    ("(distance from l[i] to a)", lambda p: 0 if p["l"][p["i"]].tag == "a" else p["value"]),
+]
+
+
+@pytest.mark.parametrize(("text", "expected"), PARTS, ids=[text for text, _ in PARTS])
+def test_parts_of_random_values(text: str, expected: Expected) -> None:
+    scenes = scenario(f"{PAIR}param value = {text}\n").sample(12, seed=5)
+    for scene in scenes:
+        assert scene.params["value"] == expected(scene.params)
+    drawn = {(scene.params["c"].tag, scene.params["l"][0].tag, scene.params["i"]) for scene in scenes}
+    assert len(drawn) >= 5
+
+
+@pytest.mark.parametrize("text", [text for text, _ in PARTS if "Uniform(" not in text])
+def test_parts_in_requirements(text: str) -> None:
+    """A requirement that the value is what it is holds in the same scenes as none, and its opposite in none."""
+    plain = scenario(PAIR).sample(3, seed=5)
+    found = scenario(f"{PAIR}require ({text}) == ({text}) or x > 2\n").sample(3, seed=5)
+    assert [scene.params["x"] for scene in found] == [scene.params["x"] for scene in plain]
+
+
+@pytest.mark.parametrize("where", ["l[0]", "l[i]", "filter(lambda o: o.x > 5, l)[0]", "c"])
+def test_objects_beside_what_containers_hold(where: str) -> None:
+    """Of what kind the thing is, is known before it is drawn for a choice of objects alone: the extents count there."""
+    for scene in scenario(f"{PAIR}w = {where}\nd = new Object left of w by 3\nparam w = w\n").sample(
+        6, seed=3
+    ):
+        gap = scene.params["w"].position.x - scene.objects[-1].position.x
+        assert gap == pytest.approx(4 if where == "c" else 3.5)
+
+
+OPAQUE = [
+    ("from functools import partial\ndef f(a, b): return a > b\nf = partial(f, x)", "f(0.7)"),
+    ("from functools import partial\ndef f(a, b): return a > b\nf = partial(f, b=0.7)", "f(x)"),
+    ("s = {x, 3}", "min(s) > 0.7 and max(s) == 3"),
+    ("s = frozenset([x, 3])\ndef f(): return sorted(s)[0]", "f() > 0.7"),
+    ("s = {'k': [x, {x}]}\ndef f(): return s['k'][0] > 0.7 and s['k'][0] in s['k'][1]", "f()"),
+    ("from collections import namedtuple\nt = namedtuple('T', 'u v')(x, 2)\ndef f(): return t.u", "f() > 0.7"),
+    ("def f(): return filter(lambda v: v > 0.7, [x])", "f()"),
+    ("def f(): return max([x, 0.7], key=lambda v: v)", "f() != 0.7"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("before", "condition"), OPAQUE, ids=[case[0] for case in OPAQUE])
+def test_what_functions_of_conditions_see(before: str, condition: str) -> None:
+    scenes = scenario(f"x = Range(0, 1)\n{before}\nrequire {condition}\nparam x = x\n").sample(6, seed=2)
+    assert all(scene.params["x"] > 0.7 for scene in scenes)
+    assert any(scene.attempts > 1 for scene in scenes)
+
+
+def test_a_number_in_a_set_of_random_ones() -> None:
+    scenes = scenario("n = DiscreteRange(0, 4)\ns = frozenset([n, 9])\nrequire 3 in s\nparam n = n\n").sample(
+        4
+    )
+    assert [scene.params["n"] for scene in scenes] == [3] * 4
+
+
+def test_named_tuples_stay_named() -> None:
+    text = (
+        "from collections import namedtuple\nT = namedtuple('T', 'u v')\nt = T(Range(0, 1), 2)\n"
+        "param t = t, u = t.u, w = Uniform(t, T(5, 6)).u\n"
+    )
+    for scene in scenario(text).sample(6, seed=1):
+        assert scene.params["t"] == (scene.params["u"], 2)
+        assert type(scene.params["t"]).__name__ == "T"
+        assert scene.params["w"] in (5, scene.params["u"])
+
+
+@pytest.mark.parametrize("text", ["xs[i]", "xs[i:]", "{0: 1, 1: 2}[i]"])
+def test_a_random_index_of_a_fixed_container(text: str) -> None:
+    error = failure(f"xs = [1, 2]\ni = DiscreteRange(0, 1)\nparam y = {text}\n")
+    assert isinstance(error, RandomControlFlowError | KeyError)
+
+
+# Modules of the language
+
+
+def test_functions_see_sampled_values_of_modules(tmp_path: Any) -> None:
+    import scenic
+
+    (tmp_path / "parts.scenic").write_text(
+        "x = Range(0, 1)\nbox = new Object at (Range(5, 6), 5, 5)\ndef g(): return x > 0.5\n"
+    )
+    program = tmp_path / "main.scenic"
+    program.write_text(
+        "import parts\ndef f():\n    return 0.5 < parts.x < 0.7 and parts.box.x > 5.5 and parts.g()\n"
+        "require f()\nparam x = parts.x, box = parts.box\n"
+    )
+    for scene in scenic.load(program).sample(4, seed=1):
+        assert 0.5 < scene.params["x"] < 0.7
+        assert scene.params["box"].x > 5.5
+
+
+# Numbers
+
+MIXED = "x = Uniform(1, 2.5)\nparam x = x, more = x + 1, half = x // 2, text = str(x), whole = round(x), same = [x]\n"
+
+
+def test_a_choice_of_integers_and_others_keeps_their_types() -> None:
+    drawn = set()
+    for scene in scenario(MIXED).sample(12, seed=1):
+        x = scene.params["x"]
+        drawn.add(x)
+        found = [scene.params[name] for name in ("x", "more", "half", "text", "whole", "same")]
+        expected = [x, x + 1, x // 2, str(x), round(x), [x]]
+        assert found == expected
+        assert [type(item) for item in found] == [type(item) for item in expected]
+    assert drawn == {1, 2.5}
+    assert {type(item) for item in drawn} == {int, float}
+
+
+def test_components_of_a_random_orientation() -> None:
+    text = (
+        "x = new OrientedPoint facing (Range(-3, 3), Range(-1, 1), Range(-3, 3))\no = x.orientation\n"
+        "u = Uniform(o, Orientation.fromEuler(1, 0, 0))\n"
+        "param o = o, p = [o.x, o.y, o.z, o.w], q = o.q, u = u, v = [u.x, u.y, u.z, u.w]\n"
+    )
+    for scene in scenario(text).sample(8, seed=4):
+        found = scene.params
+        assert found["p"] == [found["o"].x, found["o"].y, found["o"].z, found["o"].w] == list(found["q"])
+        assert found["v"] == list(found["u"].q)
+        assert sum(part * part for part in found["p"]) == pytest.approx(1)
+
+
+@pytest.mark.parametrize("size", [5e-324, 1e-310, 1e-170, 1e-160, 1e-150, 1.0, 1e150, 1e160, 1e300])
+def test_directions_of_the_smallest_and_largest_vectors(size: float) -> None:
+    text = f"s = Uniform(1, 1) * {size!r}\nv = (s @ s)\nparam u = v.normalized(), n = v.norm(), w = ({size!r} @ {size!r}).normalized()\n"
+    (scene,) = scenario(text).sample(1)
+    rounded = size * math.sqrt(2) / size if size < 1e-300 else math.sqrt(2)
+    assert scene.params["n"] == pytest.approx(math.hypot(size, size), rel=1e-15)
+    for name in "uw":
+        assert tuple(scene.params[name]) == pytest.approx(
+            (1 / rounded, 1 / rounded, 0), rel=0.5 if size < 1e-300 else 1e-15
+        )
+
+
+# What is infinite or undefined
+
+INFINITE = [
+    ("new Object at «(float('inf'), 0, 0)»", "'position' must be finite"),
+    ("new Point at (0, float('nan'))", "'position' must be finite"),
+    ("new Object with yaw float('inf')", "'yaw' must be finite"),
+    ("new Object with width float('inf')", "'width' must be finite"),
+    ("new Object with height float('nan')", "'height' must be greater than 0"),
+]
+
+
+@pytest.mark.parametrize(("text", "message"), INFINITE)
+def test_infinite_values_are_refused(text: str, message: str) -> None:
+    error = failure(text.replace("«", "").replace("»", ""))
+    assert isinstance(error, ScenicValueError)
+    assert message in str(error)
+    assert place(error)[0] == "SC405"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "new Object at (y, 0, 0)",
+        "new Object at (0, 0, y - y)",
+        "new Object facing y",
+        "new Object with length y",
+        "a = new Object\nnew Object ahead of a by y",
+    ],
+)
+def test_candidates_with_infinite_values_are_rejected(text: str) -> None:
+    """In half of the candidates something overflows."""
+    program = scenario(
+        f"x = Range(0, 2)\ny = (5 + x // 1) * (1 + (x // 1) * 1e308) * 10\nparam x = x\n{text}\n"
+    )
+    scenes = program.sample(20, seed=1)
+    assert all(scene.params["x"] < 1 for scene in scenes)
+    assert any(scene.attempts > 1 for scene in scenes)
+
+
+def test_finite_values_need_no_check() -> None:
+    program = scenario(
+        "a = new Object at (Range(0, 1), Normal(0, 1), 0), facing Range(0, 9), with width Range(1, 2)\n"
+        "b = new Object on a, facing toward (Range(30, 40), 50)\n"
+    )
+    labels = [check.label for check in program.outline.checks]
+    assert not [label for label in labels if "finite" in label]
+
+
+@pytest.mark.parametrize(
+    ("text", "error"),
+    [
+        ("sin(x * float('inf'))", ValueError),
+        ("cos(x * 1e308 * 1e308)", ValueError),
+        ("Range(0, x * float('inf'))", ValueError),
+        ("Range(float('nan'), 1)", ValueError),
+        ("TruncatedNormal(x + 5, 0, 0, 1)", ValueError),
+        ("[1, {'k': 1 // (x // 5)}]", ZeroDivisionError),
+    ],
+)
+def test_faults_of_what_is_only_shown(text: str, error: type[Exception]) -> None:
+    found = failure(f"x = Range(1, 2)\nparam y = {text}\n")
+    assert type(found) is error
+    code, where, _ = place(found)
+    assert (code, where.partition(":")[0]) == ("SC501", "2")
+
+
+def test_a_normal_without_deviation_is_its_mean() -> None:
+    for scene in scenario(
+        "x = Range(0, 1)\nparam x = x, y = TruncatedNormal(x, 0, 0, 1), z = TruncatedNormal(x, x * 0, 0, 1)\n"
+    ).sample(3):
+        assert scene.params["x"] == scene.params["y"] == scene.params["z"]
+
+
+# View angles
+
+
+def test_view_angles_are_at_most_all_around() -> None:
+    with pytest.warns(UserWarning, match="view angle 10 is truncated"):
+        program = scenario("new Object with viewAngles (10, 3)\n")
+    assert tuple(program.sample(1)[0].objects[0].viewAngles) == (math.tau, 3)
+    text = "x = Range(6, 7)\nnew Object with viewAngles (x, x / 2)\nparam x = x\n"
+    found = [
+        (scene.params["x"], tuple(scene.objects[0].viewAngles)) for scene in scenario(text).sample(12, seed=1)
+    ]
+    assert all(angles == (min(x, math.tau), min(x / 2, math.pi)) for x, angles in found)
+    assert len({x > math.tau for x, _ in found}) == 2
