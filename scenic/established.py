@@ -84,7 +84,8 @@ MODULES: Final[Mapping[str, Mapping[str, str]]] = MappingProxyType(
                 _ESTABLISHED,
                 (
                     "normalizeAngle averageVectors rotateVector headingOfSegment viewAngleToPoint"
-                    " apparentHeadingAtPoint polygonUnion"
+                    " apparentHeadingAtPoint polygonUnion pointIsInCone distanceToLine findMinMax removeHoles"
+                    " triangulatePolygon"
                 ),
             ),
         ),
@@ -107,6 +108,11 @@ MODULES: Final[Mapping[str, Mapping[str, str]]] = MappingProxyType(
                 ),
             ),
             ("scenic.runtime.regions.base", "Region AllRegion=Everywhere EmptyRegion=Nowhere"),
+            ("scenic.runtime.regions.composite", "IntersectionRegion UnionRegion DifferenceRegion"),
+            ("scenic.runtime.regions.voxels", "VoxelRegion"),
+            ("scenic.runtime.regions.views", "ViewRegion"),
+            (_ERRORS, "UndefinedSamplingException"),
+            (_ESTABLISHED, "regionFromShapelyObject convertToFootprint toPolygon"),
         ),
         "scenic.core.scenarios": _homes(
             ("scenic.runtime.scenario", "Scenario"), ("scenic.runtime.scene", "Scene")

@@ -113,6 +113,10 @@ class InvalidScenarioError(ScenicError):
     code = "SC401"
 
 
+class UndefinedSamplingException(InvalidScenarioError):
+    """A region from which no point can be drawn uniformly."""
+
+
 class MissingFileError(ScenicError, FileNotFoundError):
     """The file of a program does not exist."""
 

@@ -14,6 +14,7 @@ from scenic.runtime.context import verbosity as verbosity_now
 from scenic.runtime.lazy import Lazy, is_lazy
 from scenic.runtime.lazy import resolve as valueInContext  # noqa: N812 - the established name
 from scenic.runtime.objects import Point
+from scenic.runtime.regions.base import Region
 from scenic.runtime.values import (
     Orientation,
     Random,
@@ -164,6 +165,58 @@ def rotateVector(vector: Any, angle: float) -> Any:
     return (turned.x, turned.y)
 
 
+def pointIsInCone(point: Any, base: Any, heading: float, angle: float) -> bool:
+    """Whether a point of the plane lies within ``angle / 2`` of ``heading`` seen from ``base`` (radians)."""
+    return bool(abs(viewAngleToPoint(point, base, heading)) <= angle / 2)
+
+
+def distanceToLine(point: Any, a: Any, b: Any) -> float:
+    """The distance of a point of the plane from the line through two others, in metres."""
+    (x, y), (ax, ay), (bx, by) = (tuple(item)[:2] for item in (point, a, b))
+    return float(abs((bx - ax) * (ay - y) - (ax - x) * (by - ay)) / math.hypot(bx - ax, by - ay))
+
+
+def findMinMax(iterable: Iterable[Any]) -> tuple[Any, Any]:
+    """The least and the greatest of some numbers."""
+    numbers = list(iterable)
+    return min(numbers, default=math.inf), max(numbers, default=-math.inf)
+
+
+def removeHoles(polygon: Any) -> Any:
+    """A shapely polygon or multipolygon without its holes."""
+    import shapely
+
+    parts = [shapely.Polygon(part.exterior) for part in getattr(polygon, "geoms", [polygon])]
+    return shapely.union_all(parts) if polygon.geom_type == "MultiPolygon" else parts[0]
+
+
+def triangulatePolygon(polygon: Any) -> list[Any]:
+    """A shapely polygon, perhaps with holes, as triangles that fill it."""
+    import shapely
+
+    parts: list[Any] = shapely.get_parts(shapely.constrained_delaunay_triangles(polygon)).tolist()
+    return parts
+
+
+def regionFromShapelyObject(obj: Any, orientation: Any = None) -> Region:
+    """The region of a shapely geometry: its polygons, else its lines, else its points."""
+    region: Region = Region.algebra.region_of(obj, 0.0, orientation)
+    return region
+
+
+def convertToFootprint(region: Region) -> Region:
+    """The columns above and below a region of the plane; any other region as it is."""
+    return region.footprint
+
+
+def toPolygon(thing: Any) -> Any:
+    """A region of the plane, or an object seen from above, as a shapely polygon."""
+    for name in ("polygons", "polygon"):
+        if hasattr(thing, name):
+            return getattr(thing, name)
+    return thing.boundingPolygon.polygons
+
+
 def polygonUnion(
     polys: Iterable[Any], buf: float = 0, tolerance: float = 0, holeTolerance: float = 0.002
 ) -> Any:
@@ -241,22 +294,30 @@ __all__ = [
     "cached_property",
     "canCoerce",
     "coerce",
+    "convertToFootprint",
+    "distanceToLine",
+    "findMinMax",
     "globalOrientation",
     "headingOfSegment",
     "isA",
     "needsLazyEvaluation",
     "needsSampling",
     "normalizeAngle",
+    "pointIsInCone",
     "polygonUnion",
+    "regionFromShapelyObject",
+    "removeHoles",
     "rotateVector",
     "setDebuggingOptions",
     "toDistribution",
     "toHeading",
     "toOrientation",
+    "toPolygon",
     "toScalar",
     "toType",
     "toTypes",
     "toVector",
+    "triangulatePolygon",
     "underlyingType",
     "valueInContext",
     "viewAngleToPoint",

@@ -6,14 +6,14 @@ from typing import Any, Self
 
 import numpy as np
 
-from scenic.graph.bounding import overall
 from scenic.graph.kinds import Column, Kind, boxed
 from scenic.graph.operation import Call, Operation, always
 from scenic.language.errors import InvalidScenarioError, ScenicTypeError
 from scenic.runtime.context import current, here
+from scenic.runtime.drawing import support_of
 from scenic.runtime.lazy import is_lazy
 from scenic.runtime.opaque import call_later, evaluated, later
-from scenic.runtime.values import Random, as_node, is_number, is_random
+from scenic.runtime.values import Random, is_random
 
 
 class Distribution(Random):
@@ -123,15 +123,7 @@ def supportInterval(value: Any) -> tuple[float | None, float | None]:
     """The least and the greatest value that a number, random or not, can have; ``None`` where that is not known."""
     if isinstance(value, Distribution):
         return value.supportInterval()
-    if is_number(value):
-        return (value, value)
-    if not isinstance(value, Random) or not as_node(value).kind.is_number:
-        return (None, None)
-    bounds = overall(value.node)
-    if bounds is None:
-        return (None, None)
-    low, high = float(bounds.lower[0]), float(bounds.upper[0])
-    return (None if np.isinf(low) else low, None if np.isinf(high) else high)
+    return support_of(value)
 
 
 __all__ = ["Distribution", "distributionMethod", "supportInterval"]

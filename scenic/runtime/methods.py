@@ -164,6 +164,9 @@ class VectorMethods(Operand):
     def distanceTo(self, other: Any) -> Any:
         """Distance to another point, or to the nearest point of a region."""
         measure = getattr(other, "distance_from", None)
+        space = getattr(other, "occupiedSpace", None)
+        if space is not None:
+            measure = space.distance_from
         return self._operate("distance", self, self._to_vector(other)) if measure is None else measure(self)
 
     def angleTo(self, other: Any) -> Any:

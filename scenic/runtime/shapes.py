@@ -14,9 +14,11 @@ import numpy as np
 from scenic.graph import quaternions
 from scenic.language.errors import Located, ScenicTypeError, ScenicValueError
 from scenic.runtime.geometry import primitives
+from scenic.runtime.geometry.bodies import Body
+from scenic.runtime.geometry.containment import contains_points
 from scenic.runtime.geometry.loading import load_mesh
 from scenic.runtime.geometry.mesh import Mesh
-from scenic.runtime.geometry.poses import Floats
+from scenic.runtime.geometry.poses import Floats, Poses
 from scenic.runtime.geometry.solids import proper_volume
 
 Triple: TypeAlias = tuple[float, float, float]
@@ -82,6 +84,17 @@ class Shape:
     def height(self) -> float:
         """Default extent along Z."""
         return self.dimensions[2]
+
+    @property
+    def isConvex(self) -> bool:
+        """Whether the volume is convex."""
+        return self.mesh.is_convex
+
+    @property
+    def containsCenter(self) -> bool:
+        """Whether the middle of the bounding box lies in the volume."""
+        body = Body((self.mesh,), None, Poses.fixed(np.zeros(3), size=np.ones(3)))
+        return bool(contains_points(body, np.zeros((1, 3)))[0])
 
     def __repr__(self) -> str:
         width, length, height = self.dimensions

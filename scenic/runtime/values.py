@@ -90,6 +90,9 @@ class Random(Arithmetic, Hooks):
     """
 
     __slots__ = ("_again", "node")
+    drawn: ClassVar[Callable[[Any], Any]]
+    """Draws one sample of a value; `scenic.runtime.drawing`, which knows how, puts itself here."""
+    supported: ClassVar[Callable[[Any], tuple[float | None, float | None]]]
     __array_priority__ = 1000  # NumPy scalars on the left defer to the methods below.
 
     later: ClassVar[Callable[..., Any]]
@@ -113,6 +116,20 @@ class Random(Arithmetic, Hooks):
 
     def __call__(self, *args: Any, **kwargs: Any) -> Any:
         return call(self, args, kwargs)
+
+    # What scripts ask of a law
+
+    def sample(self, subsamples: Any = None) -> Any:
+        """One sample, drawn now from Python's generator, independent of all scenes."""
+        return Random.drawn(self)
+
+    def supportInterval(self) -> tuple[float | None, float | None]:
+        """The least and the greatest value, as far as they are known."""
+        return Random.supported(self)
+
+    def clone(self) -> Any:
+        """An independent draw of the same law."""
+        return self if self._again is None else self._again()
 
     # What a random value cannot do
 
@@ -249,6 +266,12 @@ class Orientation(OrientationMethods, Hooks):
     _row: tuple[float, float, float, float]
 
     def __init__(self, rotation: Any = None) -> None:
+        if rotation is not None and not hasattr(rotation, "as_quat"):
+            raise ScenicTypeError(
+                f"`Orientation` takes a rotation of SciPy, not {describe(rotation)}",
+                span=here(),
+                help="use `Orientation.fromEuler(yaw, pitch, roll)` or `Orientation.fromQuaternion((x, y, z, w))`",
+            )
         self._row = (0.0, 0.0, 0.0, 1.0) if rotation is None else tuple(rotation.as_quat().tolist())
 
     @classmethod

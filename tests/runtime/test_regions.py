@@ -36,6 +36,7 @@ R = {
     'box': BoxRegion(dimensions=(2, 3, 4), position=(1, 2, 0.5), rotation=(0.3, 0.1, 0.2)),
     'spheroid': SpheroidRegion(dimensions=(2, 3, 4), position=(1, 0, 0)),
     'mesh': MeshVolumeRegion(trimesh.creation.icosahedron(), (2, 3, 4), (1, 2, 3), (0.1, 0.2, 0.3)),
+    'voxels': BoxRegion(dimensions=(2, 3, 4), position=(1, 2, 0.5)).voxelized(0.7),
     'surface': MeshSurfaceRegion(trimesh.creation.box((1, 1, 1)), (2, 3, 4), (1, 2, 3)),
 }
 R['intersection'] = R['circle'].intersect(R['polygon'])
@@ -48,7 +49,7 @@ ego = new Object at (100, 100)
 """
 NAMES = [
     "circle", "rectangle", "polygon", "sector", "wide sector", "line", "path", "points", "grid", "box", "spheroid", "mesh",
-    "surface", "intersection", "general intersection", "difference", "general difference", "union", "general union",
+    "voxels", "surface", "intersection", "general intersection", "difference", "general difference", "union", "general union",
 ]  # fmt: skip
 
 
@@ -120,7 +121,7 @@ CLOUD = [(x / 2, y / 2, z / 2) for x in range(-2, 11, 2) for y in range(-2, 11, 
 
 
 def test_set_identities_hold_at_points() -> None:
-    members = ["circle", "polygon", "sector", "box", "spheroid", "mesh"]
+    members = ["circle", "polygon", "sector", "box", "spheroid", "mesh", "voxels"]
     text = SETTING + f"cloud = {CLOUD}\n"
     text += "def held(r): return [r.containsPoint(p) for p in cloud]\n"
     pairs = [(a, b) for a in members for b in members]

@@ -73,8 +73,8 @@ def shadow(solid: Mesh) -> Any:
     import shapely
 
     flat = solid.triangles[:, :, :2]
-    area = np.abs(np.cross(flat[:, 1] - flat[:, 0], flat[:, 2] - flat[:, 0]))
-    return shapely.union_all(shapely.polygons(flat[area > 0]))
+    (x, y), (u, v) = (flat[:, 1] - flat[:, 0]).T, (flat[:, 2] - flat[:, 0]).T
+    return shapely.union_all(shapely.polygons(flat[x * v != y * u]))
 
 
 __all__ = ["prism", "shadow", "slice_at"]

@@ -5,11 +5,12 @@ manifold3d. Everything else, and everything random, becomes a composite region.
 """
 
 import itertools
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
-from scenic.graph.kinds import Kind
+from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import Operation, always
 from scenic.language.errors import InvalidScenarioError, ScenicTypeError
 from scenic.runtime.context import here
@@ -21,16 +22,19 @@ from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.poses import Poses
 from scenic.runtime.geometry.prisms import prism, shadow, slice_at
 from scenic.runtime.opaque import evaluated, later
-from scenic.runtime.regions.base import Everywhere, Nowhere, Region, Workspace, nowhere
+from scenic.runtime.regions.base import Everywhere, Mask, Nowhere, Region, Workspace, nowhere
 from scenic.runtime.regions.bodies import OccupiedSpace
 from scenic.runtime.regions.choice import as_region
 from scenic.runtime.regions.composite import DifferenceRegion, IntersectionRegion, UnionRegion
 from scenic.runtime.regions.lines import LineRegion, PathRegion, PolylineRegion
-from scenic.runtime.regions.meshes import MeshSurfaceRegion, MeshVolumeRegion, solid_in_world
+from scenic.runtime.regions.meshes import MeshSurfaceRegion, MeshVolumeRegion, solid_in_world, world_mesh
 from scenic.runtime.regions.planar import Footprint, PlanarRegion, PolygonalFootprintRegion, PolygonalRegion
 from scenic.runtime.regions.scattered import PointSetRegion
 from scenic.runtime.regions.volumes import BoxRegion, PlacedVolume
-from scenic.runtime.values import as_value, describe
+from scenic.runtime.regions.voxels import VoxelRegion
+from scenic.runtime.regions.voxels import voxelized as cells_of
+from scenic.runtime.shapes import Shape, ShapeSource
+from scenic.runtime.values import CODEC, Orientation, Vector, as_node, as_value, describe
 
 
 def _operand(value: Any, what: str) -> Region:
@@ -69,7 +73,7 @@ def _flat(region: Region) -> tuple[Any, float | None] | None:
     return None
 
 
-def _region_of(geometry: Any, height: float | None, orientation: Any) -> Region:
+def region_of(geometry: Any, height: float | None, orientation: Any) -> Region:
     """The region of a shapely geometry: of its parts of the highest dimension."""
     import shapely
 
@@ -130,7 +134,7 @@ def intersection(first: Any, second: Any) -> Region:
         exact = _exact_intersection(a, b)
         if exact is not None:
             return exact
-    return IntersectionRegion([a, b])
+    return IntersectionRegion(a, b)
 
 
 def _exact_intersection(a: Region, b: Region) -> Region | None:
@@ -140,7 +144,7 @@ def _exact_intersection(a: Region, b: Region) -> Region | None:
         if height_a is not None and height_b is not None and height_a != height_b:
             return nowhere
         height = height_b if height_a is None else height_a
-        return _region_of(one.intersection(two), height, _field(a, b))
+        return region_of(one.intersection(two), height, _field(a, b))
     solid_a, solid_b = _solid(a), _solid(b)
     if solid_a is not None and solid_b is not None:
         return _volume(booleans.intersection([solid_a, solid_b]), _field(a, b))
@@ -156,7 +160,7 @@ def _exact_intersection(a: Region, b: Region) -> Region | None:
                     if column is None
                     else _volume(booleans.intersection([solid, column]), _field(a, b))
                 )
-            return _region_of(slice_at(solid, height).intersection(polygon), height, _field(a, b))
+            return region_of(slice_at(solid, height).intersection(polygon), height, _field(a, b))
         if isinstance(line, LineRegion):
             return _line_inside(line, solid)
     return None
@@ -227,7 +231,7 @@ def union(first: Any, second: Any) -> Region:
                 field = None
                 if a.has_orientation or b.has_orientation:
                     field = PiecewiseVectorField("union", [a, b])
-                return _region_of(flat_a[0].union(flat_b[0]), flat_a[1], field)
+                return region_of(flat_a[0].union(flat_b[0]), flat_a[1], field)
         solid_a, solid_b = _solid(a), _solid(b)
         if solid_a is not None and solid_b is not None:
             return _volume(booleans.union([solid_a, solid_b]))
@@ -236,7 +240,7 @@ def union(first: Any, second: Any) -> Region:
         for region in (a, b)
         for member in (region.members if isinstance(region, UnionRegion) else [region])
     ]
-    return UnionRegion(members)
+    return UnionRegion(*members)
 
 
 def difference(first: Any, second: Any) -> Region:
@@ -255,13 +259,13 @@ def difference(first: Any, second: Any) -> Region:
             if flat_a[1] is not None and flat_b[1] is not None and flat_a[1] != flat_b[1]:
                 return a
             if flat_a[1] is not None or flat_b[1] is None:
-                return _region_of(flat_a[0].difference(flat_b[0]), flat_a[1], _field(a))
+                return region_of(flat_a[0].difference(flat_b[0]), flat_a[1], _field(a))
         solid_a, solid_b = _solid(a), _solid(b)
         if solid_a is not None and solid_b is None and flat_b is not None and flat_b[1] is None:
             solid_b = _prism_about(solid_a, flat_b[0])
         if solid_a is not None and solid_b is not None:
             return _volume(booleans.difference(solid_a, [solid_b]), _field(a))
-    return DifferenceRegion([a, b])
+    return DifferenceRegion(a, b)
 
 
 def intersects(first: Any, second: Any) -> Any:
@@ -283,6 +287,8 @@ def _meet(a: Region, b: Region) -> bool:
             return any(_holds(two, point) for point in one.points)
         if isinstance(one, UnionRegion):
             return any(_meet(member, two) for member in one.members)
+        if isinstance(one, VoxelRegion):
+            return any(_meet(cell, two) for cell in one.cells_within(*two.box(*two.fixed_columns("the box"))))
     flat_a, flat_b = _flat(a), _flat(b)
     if flat_a is not None and flat_b is not None:
         same = flat_a[1] is None or flat_b[1] is None or flat_a[1] == flat_b[1]
@@ -358,6 +364,40 @@ def _solids_meet(one: Mesh, two: Mesh) -> bool:
     return not bool(collide(bodies, np.array([[0, 1]]), lanes=1).free[0])
 
 
+class _Lane:
+    """The parameters of a region at their values in one lane, as `Region.sampled` asks for them."""
+
+    def __init__(self, region: Region, lane: int, columns: Sequence[Column]) -> None:
+        self._values = {}
+        for parameter, column in zip(region.parameters, columns, strict=True):
+            row = column[lane if len(column) > 1 else 0]
+            self._values[id(parameter)] = CODEC.decode(as_node(parameter).kind, row)
+
+    def value(self, parameter: Any) -> Any:
+        return self._values.get(id(parameter), parameter)
+
+
+def in_lane(region: Region, lane: int, columns: Sequence[Column]) -> Region:
+    """A region at the values that its parameters have in one lane."""
+    return region.sampled(_Lane(region, lane, columns))
+
+
+def meets_bodies(region: Region, body: Body, lanes: int, columns: Sequence[Column]) -> Mask:
+    """In which lanes a region shares a point with a body."""
+    result = np.zeros(lanes, dtype=np.bool_)
+    numbers = np.zeros(lanes, dtype=np.intp) if body.choice is None else np.broadcast_to(body.choice, lanes)
+    poses = body.poses
+    for lane in range(lanes):
+        row = body.poses.take(np.array([lane])) if len(poses) > 1 else poses
+        mesh = body.meshes[int(numbers[lane])]
+        space = object.__new__(OccupiedSpace)
+        shape = Shape(mesh, (1.0, 1.0, 1.0), ShapeSource("mesh"))
+        pose = (Vector.of(row.position[0]), Orientation.of(row.orientation[0]), Vector.of(row.size[0]))
+        Region.__init__(space, *pose, shape)
+        result[lane] = _meet(in_lane(region, lane, columns), space)
+    return result
+
+
 _MEET = Operation(
     "regions meet",
     always(Kind.BOOLEAN),
@@ -423,6 +463,19 @@ def volume_of(region: PlacedVolume) -> MeshVolumeRegion:
     )
 
 
+def surface_of(region: OccupiedSpace) -> MeshSurfaceRegion:
+    """The surface of a solid, with the same parameters."""
+    return MeshSurfaceRegion.of_operands(region.parameters)
+
+
+def voxelized(region: Region, pitch: float) -> VoxelRegion:
+    """The cells of a grid that a volume touches."""
+    solid = _solid(region)
+    if solid is None:
+        raise InvalidScenarioError(f"{region!r} has no cells", span=here())
+    return cells_of(region, solid, pitch)
+
+
 class _Algebra:
     """The operations above, where `Region` finds them."""
 
@@ -434,6 +487,12 @@ class _Algebra:
     boundary = staticmethod(boundary)
     volume_of = staticmethod(volume_of)
     outline_from_above = staticmethod(outline_from_above)
+    in_lane = staticmethod(in_lane)
+    meets_bodies = staticmethod(meets_bodies)
+    region_of = staticmethod(region_of)
+    surface_of = staticmethod(surface_of)
+    voxelized = staticmethod(voxelized)
+    world_mesh = staticmethod(world_mesh)
 
 
 Region.algebra = _Algebra

@@ -16,13 +16,29 @@ from numpy.typing import NDArray
 
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import Call, Operation, always
-from scenic.language.errors import InvalidScenarioError, RejectionException, ScenicTypeError, UnsupportedError
+from scenic.language.errors import (
+    InvalidScenarioError,
+    RejectionException,
+    ScenicTypeError,
+    UndefinedSamplingException,
+    UnsupportedError,
+)
 from scenic.runtime.context import here
 from scenic.runtime.geometry.collision import Body, Poses
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.poses import Indices
 from scenic.runtime.regions.knowledge import Containment, containment_bounds, containment_inverse, payload_box
-from scenic.runtime.values import apply, as_node, is_random, random_key, to_scalar, to_vector, uniform, vector
+from scenic.runtime.values import (
+    Random,
+    apply,
+    as_node,
+    is_random,
+    random_key,
+    to_scalar,
+    to_vector,
+    uniform,
+    vector,
+)
 
 Points = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -66,12 +82,19 @@ class Region(ABC):
     def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
         """In which lanes the whole body lies in the region, shape ``(lanes,)``."""
 
+    def meets_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
+        """In which lanes the body shares a point with the region, shape ``(lanes,)``; here one lane after the other."""
+        mask: Mask = self.algebra.meets_bodies(self, body, lanes, columns)
+        return mask
+
     def draw_points(self, uniforms: Column, keys: Column, *columns: Column) -> tuple[Points, Mask | None]:
         """Uniform points ``(n, 3)`` from uniform numbers ``(draws, n)``, and where there is one (``None``: everywhere).
 
         A region that retries keys its further draws with the words ``keys``, ``(n,)``.
         """
-        raise unsupported(f"drawing a point of a {type(self).__name__}")
+        raise UndefinedSamplingException(
+            f"no point can be drawn uniformly from a {type(self).__name__}", span=here()
+        )
 
     def orientations(self, points: Points, *columns: Column) -> Column:
         """Preferred orientations ``(n, 4)`` at points of the region; only where `has_orientation`."""
@@ -222,6 +245,11 @@ class Region(ABC):
         """The measure of the region: count, metres, square or cubic metres; ``None`` where it is not known."""
         size = float(self.sizes(*self.fixed_columns("the size"))[0])
         return None if np.isnan(size) else size
+
+    def sample(self, subsamples: Any = None) -> "Region":
+        """The region with its random parameters drawn now, independent of all scenes."""
+        region: Region = Random.drawn(self)
+        return region
 
     def uniformPointInner(self) -> Any:
         """A uniform point, drawn now with Python's generator."""
@@ -398,8 +426,11 @@ class Everywhere(Region):
     def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
         return np.ones(lanes, dtype=np.bool_)
 
+    def sizes(self, *columns: Column) -> NDArray[np.float64]:
+        return np.full(1, np.inf)
+
     def uniform_placement(self) -> tuple[Any, Any]:
-        raise InvalidScenarioError(
+        raise UndefinedSamplingException(
             "no point can be drawn uniformly from all of space",
             span=here(),
             help="draw from a bounded region, or set `workspace = Workspace(region)`",
@@ -422,6 +453,18 @@ class Nowhere(Region):
 
     def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
         return np.zeros(lanes, dtype=np.bool_)
+
+    def sizes(self, *columns: Column) -> NDArray[np.float64]:
+        return np.zeros(1)
+
+    def distances(self, points: Points, *columns: Column) -> NDArray[np.float64]:
+        return np.full(len(points), np.inf)
+
+    def draw_points(self, uniforms: Column, keys: Column, *columns: Column) -> tuple[Points, Mask | None]:
+        raise RejectionException("no point can be drawn from the empty region")
+
+    def project(self, point: Any, direction: Any) -> tuple[Any, Any]:
+        raise InvalidScenarioError("nothing lands on the empty region", span=here())
 
     def uniform_placement(self) -> tuple[Any, Any]:
         raise InvalidScenarioError("no point can be drawn from the empty region", span=here())

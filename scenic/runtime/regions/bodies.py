@@ -40,12 +40,16 @@ class OccupiedSpace(Region):
 
     def __init__(self, thing: Any) -> None:
         super().__init__(*body_operands(thing), name="occupied space")
+        self.position, self.rotation, self.dimensions = self.parameters[:3]
 
     def contains_points(self, points: Points, *columns: Column) -> Mask:
         return containment.contains_points(body_of(*columns), points)
 
     def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
         return containment.in_body(body, body_of(*columns), lanes)
+
+    def meets_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
+        return np.asarray(~collide([body_of(*columns), body], np.array([[0, 1]]), lanes=lanes).free)
 
     def draw_points(self, uniforms: Column, keys: Column, *columns: Column) -> tuple[Points, Mask | None]:
         return body_points.draw(body_of(*columns), uniforms, keys)
@@ -73,6 +77,35 @@ class OccupiedSpace(Region):
     def body(self) -> Body:
         """The solid of a region without random parameters."""
         return body_of(*self.fixed_columns("the solid"))
+
+    @property
+    def mesh(self) -> Any:
+        """The mesh in the world, trimesh's; of a region without random parameters."""
+        return self.algebra.world_mesh(self)
+
+    @property
+    def boundingPolygon(self) -> Any:
+        """The region seen from above."""
+        return self.algebra.outline_from_above(self)
+
+    @property
+    def isConvex(self) -> bool:
+        """Whether the volume is convex."""
+        return bool(self.parameters[3].mesh.is_convex)
+
+    def getSurfaceRegion(self) -> Region:
+        """The surface of the volume."""
+        surface: Region = self.algebra.surface_of(self)
+        return surface
+
+    def getVolumeRegion(self) -> Region:
+        """The volume itself."""
+        return self
+
+    def voxelized(self, pitch: float) -> Region:
+        """The cells of this edge length, in metres, that the volume touches."""
+        region: Region = self.algebra.voxelized(self, pitch)
+        return region
 
     def intersects(self, other: Any) -> Any:
         """Whether another object's space, or a region, shares a point with this one."""

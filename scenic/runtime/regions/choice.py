@@ -76,6 +76,28 @@ class RegionChoice(Region):
             result[chosen] = option.contains_bodies(part, len(chosen), *mine)
         return result
 
+    def meets_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
+        result = np.zeros(lanes, dtype=np.bool_)
+        for option, chosen, mine in self._drawn(lanes, columns):
+            part = body if len(body) == 1 else body.take(chosen)
+            result[chosen] = option.meets_bodies(part, len(chosen), *mine)
+        return result
+
+    def gaps(self, points: Points, *columns: Column) -> NDArray[np.float64]:
+        lanes = _lanes(points, *columns)
+        points = np.broadcast_to(points, (lanes, 3))
+        result = np.zeros(lanes)
+        for option, chosen, mine in self._drawn(lanes, columns):
+            result[chosen] = option.gaps(points[chosen], *mine)
+        return result
+
+    def sizes(self, *columns: Column) -> NDArray[np.float64]:
+        lanes = _lanes(*columns)
+        result = np.zeros(lanes)
+        for option, chosen, mine in self._drawn(lanes, columns):
+            result[chosen] = option.sizes(*mine)
+        return result
+
     def distances(self, points: Points, *columns: Column) -> NDArray[np.float64]:
         lanes = _lanes(points, *columns)
         points = np.broadcast_to(points, (lanes, 3))

@@ -18,10 +18,12 @@ from scenic.runtime.context import here
 from scenic.runtime.geometry.collision import Body
 from scenic.runtime.regions.base import Mask, Points, Region
 from scenic.runtime.regions.planar import PlanarRegion
-from scenic.runtime.values import operate
 
 TRIES: Final = 2_000
 """Draws of one point before a region counts as empty in a lane."""
+
+_PROBES: Final = 8
+"""Vertices of a body that are looked at before the union of its lane is made."""
 
 LEVEL: Final = 1e-6
 """Metres within which a point counts as being at the height of a region of the plane."""
@@ -33,9 +35,9 @@ class Composite(Region):
     draws = 1
     may_find_none = True
 
-    def __init__(self, members: Sequence[Region], name: str | None = None) -> None:
+    def __init__(self, *members: Region, name: str | None = None) -> None:
         super().__init__(*(value for member in members for value in member.parameters), name=name)
-        self.members = tuple(members)
+        self.members = members
         self.has_orientation, self.orientation = False, None
 
     def _parts(self, columns: Sequence[Column]) -> Iterator[tuple[Region, Sequence[Column]]]:
@@ -48,6 +50,11 @@ class Composite(Region):
     def sampled(self, sample: Any) -> Region:
         """The region of one sample, in closed form where it has one."""
         return self.combined([member.sampled(sample) for member in self.members]) if self.is_random else self
+
+    def in_lane(self, lane: int, columns: Sequence[Column]) -> Region:
+        """The region at the values of one lane, in closed form where it has one."""
+        region: Region = self.algebra.in_lane(self, lane, columns)
+        return region
 
     @abstractmethod
     def combined(self, members: Sequence[Region]) -> Region:
@@ -137,8 +144,8 @@ def exactly_contains(region: Region, points: Points, columns: Sequence[Column]) 
 class IntersectionRegion(Composite):
     """The points that lie in all members."""
 
-    def __init__(self, members: Sequence[Region], name: str | None = None) -> None:
-        super().__init__(members, name)
+    def __init__(self, *members: Region, name: str | None = None) -> None:
+        super().__init__(*members, name=name)
         self.dimension = min(member.dimension for member in members)
         oriented = next((member for member in members if member.has_orientation), None)
         if oriented is not None:
@@ -177,7 +184,7 @@ class IntersectionRegion(Composite):
 
     @property
     def footprint(self) -> Region:
-        return IntersectionRegion([member.footprint for member in self.members])
+        return IntersectionRegion(*(member.footprint for member in self.members))
 
     def gaps(self, points: Points, *columns: Column) -> NDArray[np.float64]:
         return np.asarray(
@@ -196,8 +203,8 @@ class IntersectionRegion(Composite):
 class UnionRegion(Composite):
     """The points that lie in any member."""
 
-    def __init__(self, members: Sequence[Region], name: str | None = None) -> None:
-        super().__init__(members, name)
+    def __init__(self, *members: Region, name: str | None = None) -> None:
+        super().__init__(*members, name=name)
         self.dimension = max(member.dimension for member in members)
 
     def combined(self, members: Sequence[Region]) -> Region:
@@ -233,12 +240,45 @@ class UnionRegion(Composite):
         return _any([member.contains_points(points, *mine) for member, mine in self._parts(columns)])
 
     def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
-        """Where one member holds the whole body; a body that only several hold together is not found to be inside."""
-        return _any([member.contains_bodies(body, lanes, *mine) for member, mine in self._parts(columns)])
+        """Where one member holds the whole body, or several together do whose union has a closed form in that lane."""
+        one = _any([member.contains_bodies(body, lanes, *mine) for member, mine in self._parts(columns)])
+        inside = np.array(np.broadcast_to(one, lanes))
+        left = np.flatnonzero(~inside)
+        if not self.is_random or not len(left):
+            return inside
+        for lane in left[self._hold_vertices(body, left, columns)].tolist():
+            region = self.in_lane(lane, columns)
+            if not isinstance(region, UnionRegion):
+                part = body if len(body) == 1 else body.take(np.array([lane]))
+                inside[lane] = region.contains_bodies(part, 1, *region.fixed_columns("the union"))[0]
+        return inside
+
+    def _hold_vertices(self, body: Body, lanes: NDArray[np.intp], columns: Sequence[Column]) -> Mask:
+        """In which of some lanes the first vertices of the body lie in members."""
+        held = np.ones(len(lanes), dtype=np.bool_)
+        rows = [column if len(column) == 1 else column[lanes] for column in columns]
+        part = body if len(body) == 1 else body.take(lanes)
+        for mesh, chosen in part.by_mesh(len(lanes)):
+            poses = part.poses.take(chosen) if len(part.poses) > 1 else part.poses
+            mine = [row if len(row) == 1 else row[chosen] for row in rows]
+            for vertex in mesh.vertices[:_PROBES]:
+                points = np.broadcast_to(
+                    poses.to_world(vertex[np.newaxis, np.newaxis])[:, 0], (len(chosen), 3)
+                )
+                held[chosen] &= self.contains_points(points, *mine)
+        return held
+
+    def meets_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
+        return _any([member.meets_bodies(body, lanes, *mine) for member, mine in self._parts(columns)])
+
+    def gaps(self, points: Points, *columns: Column) -> NDArray[np.float64]:
+        return np.asarray(
+            np.minimum.reduce([member.gaps(points, *mine) for member, mine in self._parts(columns)])
+        )
 
     @property
     def footprint(self) -> Region:
-        return UnionRegion([member.footprint for member in self.members])
+        return UnionRegion(*(member.footprint for member in self.members))
 
     def distances(self, points: Points, *columns: Column) -> NDArray[np.float64]:
         return np.asarray(
@@ -253,8 +293,8 @@ class UnionRegion(Composite):
 class DifferenceRegion(Composite):
     """The points of the first member that do not lie in the second."""
 
-    def __init__(self, members: Sequence[Region], name: str | None = None) -> None:
-        super().__init__(members, name)
+    def __init__(self, *members: Region, name: str | None = None) -> None:
+        super().__init__(*members, name=name)
         self.dimension = members[0].dimension
         self.has_orientation, self.orientation = members[0].has_orientation, members[0].orientation
 
@@ -272,21 +312,20 @@ class DifferenceRegion(Composite):
         return np.asarray(first & ~second)
 
     def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
-        (first, mine), _ = self._parts(columns)
-        return first.contains_bodies(body, lanes, *mine)
-
-    def containsObject(self, thing: Any) -> Any:
-        """Whether the first member holds the whole of an object, and the second touches it nowhere."""
-        first, second = self.members
-        held = first.containsObject(thing)
-        if held is False:
-            return False
-        return operate("and", held, operate("not", second.intersects(thing.occupiedSpace)))
+        """Where the first member holds the whole body, and the second touches it nowhere."""
+        (first, mine), (second, others) = self._parts(columns)
+        inside = np.broadcast_to(first.contains_bodies(body, lanes, *mine), lanes).copy()
+        held = np.flatnonzero(inside)
+        if len(held):
+            part = body if len(body) == 1 else body.take(held)
+            rows = [column if len(column) == 1 else column[held] for column in others]
+            inside[held] = ~second.meets_bodies(part, len(held), *rows)
+        return inside
 
     @property
     def footprint(self) -> Region:
         first, second = (member.footprint for member in self.members)
-        return DifferenceRegion([first, second])
+        return DifferenceRegion(first, second)
 
     def gaps(self, points: Points, *columns: Column) -> NDArray[np.float64]:
         (first, mine), _ = self._parts(columns)

@@ -9,10 +9,11 @@ from scenic.graph.kinds import Column
 from scenic.language.errors import ScenicTypeError, ScenicValueError
 from scenic.runtime.context import here
 from scenic.runtime.fields import RegionField
+from scenic.runtime.geometry import body_points, distance
 from scenic.runtime.geometry.loading import load_mesh
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.solids import proper_volume
-from scenic.runtime.regions.base import Region, body_of
+from scenic.runtime.regions.base import Mask, Points, Region, body_of
 from scenic.runtime.regions.bodies import OccupiedSpace, SideSurface
 from scenic.runtime.shapes import Shape, ShapeSource
 from scenic.runtime.values import Orientation, is_number, operate, to_orientation, to_vector, vector
@@ -77,7 +78,7 @@ class MeshVolumeRegion(OccupiedSpace):
         dimensions: extents; those of the mesh by default.
         position, rotation: where it is.
         orientation: a vector field, or ``None``.
-        tolerance: accepted for compatibility; containment is exact.
+        tolerance: metres within which a point beside the volume counts as inside.
         centerMesh: whether the mesh is moved so that its bounding box is about the origin first.
         onDirection: the direction in which things land on it.
 
@@ -117,6 +118,18 @@ class MeshVolumeRegion(OccupiedSpace):
         Region.__init__(self, *placed.operands, name=name)
         self.dimensions, self.position, self.rotation = placed.dimensions, placed.position, placed.rotation
 
+    def contains_points(self, points: Points, *columns: Column) -> Mask:
+        """The solid and what is within the tolerance of it."""
+        inside = super().contains_points(points, *columns)
+        body = body_of(*columns)
+        near = np.flatnonzero(~inside & (body_points.distances_from_box(body, points) <= self.tolerance))
+        if len(near):
+            inside = np.array(np.broadcast_to(inside, max(len(inside), len(points), len(body))))
+            part = body if len(body) == 1 else body.take(near)
+            place = points if len(points) == 1 else points[near]
+            inside[near] = distance.to_solid(part, place, len(near)) <= self.tolerance
+        return inside
+
     @classmethod
     def fromFile(cls, path: Any, unify: bool = True, **options: Any) -> Self:
         """The region of a mesh file; further arguments are those of the class."""
@@ -126,30 +139,6 @@ class MeshVolumeRegion(OccupiedSpace):
 
     def project(self, point: Any, direction: Any) -> tuple[Any, Any]:
         return super().project(point, self.onDirection if direction is None else direction)
-
-    def getSurfaceRegion(self) -> "MeshSurfaceRegion":
-        """The surface of the volume."""
-        return MeshSurfaceRegion.of_operands(self.parameters)
-
-    def getVolumeRegion(self) -> "MeshVolumeRegion":
-        """The volume itself."""
-        return self
-
-    @property
-    def mesh(self) -> Any:
-        """The mesh in the world, trimesh's; of a region without random parameters."""
-        return world_mesh(self)
-
-    @property
-    def boundingPolygon(self) -> Any:
-        """The region seen from above."""
-        return self.algebra.outline_from_above(self)
-
-    @property
-    def isConvex(self) -> bool:
-        """Whether the volume is convex."""
-        shape: Shape = self.parameters[3]
-        return shape.mesh.is_convex
 
 
 class MeshSurfaceRegion(SideSurface):

@@ -13,7 +13,7 @@ import numpy as np
 from scenic.graph.bounds import Bounds, outward
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import Call, Operation, always
-from scenic.language.errors import InvalidScenarioError, ScenicTypeError, ScenicValueError
+from scenic.language.errors import ScenicTypeError, ScenicValueError, UndefinedSamplingException
 from scenic.runtime.context import here
 from scenic.runtime.geometry import containment
 from scenic.runtime.geometry.collision import Body
@@ -41,6 +41,11 @@ class PlanarRegion(Region):
     def height(self) -> Any:
         """The z of the plane, in metres."""
         return 0.0
+
+    @property
+    def z(self) -> Any:
+        """The same as `height`."""
+        return self.height
 
     @property
     def footprint(self) -> Region:
@@ -256,6 +261,23 @@ class RectangularRegion(PlanarRegion):
     def heights(self, *columns: Column) -> Column:
         return columns[0][:, 2]
 
+    @property
+    def corners(self) -> tuple[Any, ...]:
+        """The corners, anticlockwise from that ahead on the right."""
+        turn = operate("from euler", self.heading, 0.0, 0.0)
+        return tuple(
+            operate(
+                "add",
+                self.position,
+                operate(
+                    "rotate",
+                    turn,
+                    vector(operate("multiply", x, self.width), operate("multiply", y, self.length), 0),
+                ),
+            )
+            for x, y in ((0.5, 0.5), (-0.5, 0.5), (-0.5, -0.5), (0.5, -0.5))
+        )
+
     def polygons_now(self) -> Any:
         import shapely
 
@@ -336,12 +358,12 @@ class PolygonalRegion(PlanarRegion):
                 self.outline = Polygons(polygon)
         except ValueError as error:
             raise ScenicValueError(f"`PolygonalRegion`: {error}", span=here()) from error
-        self.z = float(z)
+        self._z = float(z)
         super().__init__(name=name)
 
     @property
     def height(self) -> Any:
-        return self.z
+        return self._z
 
     def polygons_now(self) -> Any:
         return self.outline.polygon
@@ -534,7 +556,7 @@ class Footprint(Region):
         return np.full(1, np.inf)
 
     def uniform_placement(self) -> tuple[Any, Any]:
-        raise InvalidScenarioError(
+        raise UndefinedSamplingException(
             "no point can be drawn from a footprint, which is not bounded",
             span=here(),
             help="draw from the region itself, or intersect the footprint with a bounded region",

@@ -12,8 +12,9 @@ from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import Call, Operation, always
 from scenic.language.errors import ScenicValueError
 from scenic.runtime.context import here
-from scenic.runtime.geometry import containment
-from scenic.runtime.geometry.collision import Body
+from scenic.runtime.geometry import containment, primitives
+from scenic.runtime.geometry.collision import Body, collide
+from scenic.runtime.geometry.poses import Poses
 from scenic.runtime.regions.base import Mask, Points, Region
 from scenic.runtime.values import (
     Orientation,
@@ -82,6 +83,11 @@ class PlacedVolume(Region):
         """The mesh in the world, trimesh's; of a region without random parameters."""
         return self.algebra.volume_of(self).mesh
 
+    def voxelized(self, pitch: float) -> Region:
+        """The cells of this edge length, in metres, that the volume touches."""
+        region: Region = self.algebra.voxelized(self, pitch)
+        return region
+
     @property
     def boundingPolygon(self) -> Any:
         """The region seen from above."""
@@ -147,6 +153,11 @@ class BoxRegion(PlacedVolume):
     def distances(self, points: Points, *columns: Column) -> Column:
         beside = np.maximum((np.abs(_local(points, *columns)) - 0.5) * columns[0], 0)
         return np.asarray(np.sqrt(beside[:, 0] ** 2 + beside[:, 1] ** 2 + beside[:, 2] ** 2))
+
+    def meets_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
+        dimensions, position, rotation = columns
+        box = Body((primitives.box(),), None, Poses(position, rotation, dimensions))
+        return np.asarray(~collide([box, body], np.array([[0, 1]]), lanes=lanes).free)
 
     def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
         return containment.in_box(body, columns[0], columns[1], columns[2], lanes)

@@ -1,0 +1,214 @@
+"""Regions made of equal cubes: those of a grid that are filled (the voxel region of section 9.2 of the specification)."""
+
+from collections.abc import Iterator
+from typing import Any, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from scenic.graph.kinds import Column
+from scenic.language.errors import ScenicTypeError, ScenicValueError
+from scenic.runtime.context import here
+from scenic.runtime.geometry.bodies import Body
+from scenic.runtime.geometry.body_points import bounds
+from scenic.runtime.geometry.mesh import Mesh
+from scenic.runtime.regions.base import Mask, Points, Region
+from scenic.runtime.regions.volumes import BoxRegion
+
+_MOST_CELLS = 1 << 27
+"""Cells of a grid up to which it is made."""
+
+
+class VoxelRegion(Region):
+    """The filled cells of a grid.
+
+    Args:
+        voxelGrid: a `trimesh.voxel.VoxelGrid`, of cubes along the global axes.
+        orientation: a vector field, or ``None``.
+        name: for messages.
+
+    """
+
+    dimension: float = 3
+    draws = 4
+
+    def __init__(
+        self, voxelGrid: Any, orientation: Any = None, name: str | None = None, **_established: Any
+    ) -> None:
+        try:
+            filled = np.asarray(voxelGrid.matrix, dtype=np.bool_)
+            matrix = np.asarray(voxelGrid.transform, dtype=np.float64)
+        except AttributeError:
+            raise ScenicTypeError(
+                f"`VoxelRegion` needs a voxel grid of trimesh, not {voxelGrid!r}",
+                span=here(),
+                help="use `region.voxelized(pitch)`, or `trimesh.voxel.VoxelGrid`",
+            ) from None
+        pitch = np.diag(matrix)[:3]
+        if not np.array_equal(matrix[:3, :3], np.diag(pitch)) or not (pitch > 0).all():
+            raise ScenicValueError("`VoxelRegion` needs a grid along the global axes", span=here())
+        self._fill(filled, matrix[:3, 3] - pitch / 2, pitch, orientation, name)
+
+    @classmethod
+    def of_cells(
+        cls, filled: NDArray[np.bool_], corner: Points, pitch: float, orientation: Any = None
+    ) -> Self:
+        """The region of cells of one edge length from the lower corner ``(3,)`` of the grid on."""
+        self = object.__new__(cls)
+        self._fill(filled, np.asarray(corner, dtype=np.float64), np.full(3, float(pitch)), orientation, None)
+        return self
+
+    def _fill(
+        self, filled: NDArray[np.bool_], corner: Points, pitch: Points, orientation: Any, name: str | None
+    ) -> None:
+        if not filled.any():
+            raise ScenicValueError("`VoxelRegion` needs at least one filled cell", span=here())
+        super().__init__(name=name)
+        self.filled, self.corner, self.pitch = filled, corner, pitch
+        self.orientation = orientation
+        self.has_orientation = orientation is not None
+        self._cells = np.argwhere(filled)
+
+    @property
+    def voxelGrid(self) -> Any:
+        """The grid, trimesh's."""
+        from trimesh.voxel import VoxelGrid
+
+        matrix = np.diag([*self.pitch, 1.0])
+        matrix[:3, 3] = self.corner + self.pitch / 2
+        return VoxelGrid(  # type: ignore[no-untyped-call] # trimesh has no types
+            self.filled, transform=matrix
+        )
+
+    def draw_points(self, uniforms: Column, keys: Column, *columns: Column) -> tuple[Points, Mask | None]:
+        count = len(self._cells)
+        chosen = self._cells[np.minimum((uniforms[0] * count).astype(np.intp), count - 1)]
+        return self.corner + (chosen + uniforms[1:].T) * self.pitch, None
+
+    def contains_points(self, points: Points, *columns: Column) -> Mask:
+        place = (points - self.corner) / self.pitch
+        cell = np.floor(place).astype(np.int64)
+        # A point on a face belongs to both cells at it.
+        inside = self._are_filled(cell)
+        for axis in range(3):
+            below = cell.copy()
+            below[:, axis] -= place[:, axis] == cell[:, axis]
+            inside |= self._are_filled(below)
+        return inside
+
+    def _are_filled(self, cell: NDArray[np.int64]) -> Mask:
+        shape = np.array(self.filled.shape)
+        known = ((cell >= 0) & (cell < shape)).all(axis=1)
+        x, y, z = np.clip(cell, 0, shape - 1).T
+        return np.asarray(known & self.filled[x, y, z])
+
+    def cells_within(self, lower: Points, upper: Points) -> Iterator[Region]:
+        """The filled cells, as boxes, that reach into a box of these corners ``(1, 3)``."""
+        middles = self.corner + (self._cells + 0.5) * self.pitch
+        near = ((middles + self.pitch / 2 >= lower) & (middles - self.pitch / 2 <= upper)).all(axis=1)
+        for middle in middles[near].tolist():
+            yield BoxRegion(dimensions=self.pitch.tolist(), position=middle)
+
+    def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
+        """Where no empty cell of the grid, and nothing outside it, meets the body's box: sure, though not complete.
+
+        A body whose box alone reaches an empty cell is not found to be inside.
+        """
+        lower, upper = bounds(body)
+        first = np.floor((lower - self.corner) / self.pitch).astype(np.int64)
+        last = np.ceil((upper - self.corner) / self.pitch).astype(np.int64)
+        shape = np.array(self.filled.shape)
+        within = (first >= 0).all(axis=1) & (last <= shape).all(axis=1)
+        sums = np.zeros(shape + 1, dtype=np.int64)
+        sums[1:, 1:, 1:] = self.filled.cumsum(0).cumsum(1).cumsum(2)
+        (a, b, c), (d, e, f) = np.clip(first, 0, shape).T, np.clip(last, 0, shape).T
+        full = (
+            sums[d, e, f] - sums[a, e, f] - sums[d, b, f] - sums[d, e, c]
+            + sums[a, b, f] + sums[a, e, c] + sums[d, b, c] - sums[a, b, c]
+        )  # fmt: skip
+        count = (np.minimum(last, shape) - np.maximum(first, 0)).prod(axis=1)
+        return np.asarray(np.broadcast_to(within & (full == count), lanes))
+
+    def distances(self, points: Points, *columns: Column) -> NDArray[np.float64]:
+        """To the nearest filled cell: among those whose centres are nearest, by at most a cell's diagonal."""
+        from scipy.spatial import KDTree
+
+        centres = self.corner + (self._cells + 0.5) * self.pitch
+        index = KDTree(centres)
+        near = index.query(points)[0]
+        half = self.pitch / 2
+        result = np.empty(len(points))
+        reach = near + float(np.linalg.norm(half))
+        for lane, candidates in enumerate(index.query_ball_point(points, reach)):
+            beside = np.maximum(np.abs(points[lane] - centres[candidates]) - half, 0)
+            result[lane] = np.sqrt((beside**2).sum(axis=1).min())
+        return result
+
+    def gaps(self, points: Points, *columns: Column) -> NDArray[np.float64]:
+        lower, upper = self.box()
+        beside = np.maximum(np.maximum(lower - points, points - upper), 0)
+        return np.asarray(np.sqrt((beside**2).sum(axis=1)))
+
+    def box(self, *columns: Column) -> tuple[Points, Points]:
+        low, high = self._cells.min(axis=0), self._cells.max(axis=0) + 1
+        return (self.corner + low * self.pitch)[np.newaxis], (self.corner + high * self.pitch)[np.newaxis]
+
+    def sizes(self, *columns: Column) -> NDArray[np.float64]:
+        return np.array([len(self._cells) * float(self.pitch.prod())])
+
+    def dilation(self, iterations: int, structure: Any = None) -> "VoxelRegion":
+        """The region grown by cells that touch a filled one, so many times; shrunk where negative.
+
+        Args:
+            iterations: how often.
+            structure: which neighbours touch, an array of truth values as SciPy takes it; those that share a face by default.
+
+        """
+        from scipy import ndimage
+
+        if iterations == 0:
+            return self
+        grown = np.pad(self.filled, max(iterations, 0))
+        change = ndimage.binary_dilation if iterations > 0 else ndimage.binary_erosion
+        filled = change(grown, structure=structure, iterations=abs(iterations))
+        corner = self.corner - max(iterations, 0) * self.pitch
+        region = object.__new__(VoxelRegion)
+        region._fill(np.asarray(filled), corner, self.pitch, self.orientation, None)
+        return region
+
+
+def voxelized(region: Region, solid: Mesh, pitch: float) -> VoxelRegion:
+    """The cells of a grid about the origin that a solid touches.
+
+    Args:
+        region: the region, asked for the middles of cells that its surface does not meet.
+        solid: its surface in the world, a `Mesh`.
+        pitch: edge of a cell, metres.
+
+    """
+    if not pitch > 0:
+        raise ScenicValueError(f"`voxelized` needs a positive edge, not {pitch!r}", span=here())
+    low, high = (np.asarray(corner) for corner in solid.bounds)
+    first = np.floor(low / pitch + 0.5).astype(np.int64)
+    shape = np.floor(high / pitch + 0.5).astype(np.int64) - first + 1
+    if shape.astype(float).prod() > _MOST_CELLS:
+        raise ScenicValueError(
+            f"cells of {pitch:g} m would be {shape.tolist()} in number", span=here(), help="use larger cells"
+        )
+    corner = (first - 0.5) * pitch
+    filled = np.zeros(shape, dtype=np.bool_)
+    middles = corner + (np.argwhere(~filled) + 0.5) * pitch
+    inside = region.contains_points(middles, *region.fixed_columns("the cells")).reshape(shape)
+    # A cell that the surface meets but whose middle is outside: found by points of the surface, closer than any cell.
+    import trimesh
+
+    surface = trimesh.Trimesh(np.array(solid.vertices), np.array(solid.faces), process=False)
+    vertices, _ = trimesh.remesh.subdivide_to_size(  # type: ignore[no-untyped-call] # trimesh has no types
+        surface.vertices, surface.faces, pitch / 2, max_iter=20
+    )
+    touched = np.clip(np.floor((vertices - corner) / pitch).astype(np.int64), 0, shape - 1)
+    inside[tuple(touched.T)] = True
+    return VoxelRegion.of_cells(inside, np.asarray(corner, dtype=np.float64), pitch, region.orientation)
+
+
+__all__ = ["VoxelRegion", "voxelized"]

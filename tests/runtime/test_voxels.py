@@ -1,0 +1,179 @@
+"""Regions of cells, and what is drawn, met and held without a scenario of its own."""
+
+import random
+
+import numpy as np
+import pytest
+import trimesh
+from scenic.core.distributions import Range, Uniform
+from scenic.core.regions import (
+    BoxRegion,
+    CircularRegion,
+    MeshVolumeRegion,
+    Region,
+    SpheroidRegion,
+    UndefinedSamplingException,
+    VoxelRegion,
+    everywhere,
+    nowhere,
+    regionFromShapelyObject,
+)
+from scenic.core.vectors import Orientation, Vector
+from scipy import stats
+
+import scenic
+from scenic.language.errors import RejectionException, ScenicTypeError, ScenicValueError
+from tests.runtime.programs import FALSE_ALARM, draws, params
+
+FILLED = np.array([[[1, 0], [0, 1]], [[1, 1], [0, 0]]], dtype=bool)
+
+
+def test_a_grid_of_trimesh() -> None:
+    region = VoxelRegion(trimesh.voxel.VoxelGrid(FILLED))
+    assert region.size == 4
+    assert region.AABB == ((-0.5, -0.5, -0.5), (1.5, 1.5, 1.5))
+    held = [(0, 0, 0), (0.4, 0.4, 0.4), (-0.4, -0.4, -0.4), (0, 0.6, 1), (0.5, 0, 0.6)]
+    assert [region.containsPoint(Vector(*point)) for point in held] == [True] * 5
+    assert not any(region.containsPoint(Vector(*point)) for point in [(0, 0, 1), (-0.6, 0, 0), (0, 0, 1.6)])
+    assert (region.voxelGrid.matrix == FILLED).all()
+    np.testing.assert_allclose(region.voxelGrid.transform, np.eye(4))
+
+
+def test_cells_of_volumes() -> None:
+    box = BoxRegion(dimensions=(2, 2, 2)).voxelized(0.5)
+    assert box.size == pytest.approx(125 * 0.125)
+    assert box.dilation(1).size > box.size > box.dilation(-1).size == pytest.approx(27 * 0.125)
+    ball = SpheroidRegion(dimensions=(2, 2, 2))
+    cells = ball.voxelized(0.1)
+    assert 4 / 3 * np.pi < cells.size < 4 / 3 * np.pi * 1.1**3 * 1.1
+    rng = np.random.default_rng(3)
+    points = rng.uniform(-1, 1, (500, 3))
+    inside = np.linalg.norm(points, axis=1) <= 0.995
+    assert cells.contains_points(points)[inside].all()
+    far = np.linalg.norm(points, axis=1) > 1 + 0.1 * 3**0.5
+    assert not cells.contains_points(points)[far].any()
+
+
+def test_draws_are_uniform_over_cells() -> None:
+    text = "import trimesh, numpy\n"
+    text += f"r = VoxelRegion(trimesh.voxel.VoxelGrid(numpy.array({FILLED.tolist()})))\n"
+    text = text.replace("r = VoxelRegion", "from scenic.core.regions import VoxelRegion\nr = VoxelRegion")
+    points = np.array([tuple(p) for p in draws(text + "p = new Point in r\nparam x = p.position", n=800)])
+    cells, counts = np.unique(np.floor(points + 0.5), axis=0, return_counts=True)
+    assert sorted(map(tuple, cells.astype(int))) == sorted(map(tuple, np.argwhere(FILLED)))
+    assert stats.chisquare(counts).pvalue > FALSE_ALARM
+    rest = points + 0.5 - np.floor(points + 0.5)
+    assert stats.kstest(rest.reshape(-1), "uniform").pvalue > FALSE_ALARM
+
+
+def test_distances_are_those_to_the_boxes() -> None:
+    region = VoxelRegion(trimesh.voxel.VoxelGrid(FILLED))
+    points = np.random.default_rng(1).uniform(-3, 4, (200, 3))
+    beside = np.maximum(np.abs(points[:, None] - np.argwhere(FILLED)) - 0.5, 0)
+    expected = np.sqrt((beside**2).sum(axis=2)).min(axis=1)
+    np.testing.assert_allclose(region.distances(points), expected, atol=1e-12)
+    assert (region.gaps(points) <= expected + 1e-12).all()
+
+
+def test_objects_in_cells() -> None:
+    text = (
+        "r = BoxRegion(dimensions=(2, 2, 2)).voxelized(0.5)\n"
+        "ego = new Object with width 0.1, with length 0.1, with height 0.1\n"
+        "p = new Object at (1.22, 0, 0), with width 0.2, with length 0.1, with height 0.1\n"
+        "param x = (r.containsObject(ego), r.containsObject(p))"
+    )
+    assert params(text)["x"] == (True, False)
+
+
+def test_grids_that_are_none() -> None:
+    with pytest.raises(ScenicTypeError, match="voxel grid"):
+        VoxelRegion(3)
+    with pytest.raises(ScenicValueError, match="filled"):
+        VoxelRegion(trimesh.voxel.VoxelGrid(np.zeros((2, 2, 2), dtype=bool)))
+    with pytest.raises(ScenicValueError, match="positive"):
+        BoxRegion().voxelized(0)
+
+
+CONTAINERS = {
+    "ball without a ball": "BoxRegion(dimensions=(4, 4, 4)).difference(SpheroidRegion(dimensions=(2, 2, Range(1.99, 2))))",
+    "disc without a box": "CircularRegion((0, 0), 2).footprint.difference(BoxRegion(dimensions=(1, Range(1, 1.2), 9)))",
+    "disc without a disc": "CircularRegion((0, 0), 2).footprint.difference(CircularRegion((Range(0, 0.1), 0), 0.8).footprint)",
+    "two of them": "Uniform(SpheroidRegion(dimensions=(4, 4, 4)), BoxRegion(dimensions=(9, 9, 1)).difference(SpheroidRegion()))",
+    "either": "BoxRegion(dimensions=(3, 1, Range(2.9, 3))).union(BoxRegion(dimensions=(1, 9, 1)))",
+    "side by side": "RectangularRegion((-1, 0), 0, 2, 2).footprint.union(RectangularRegion((Range(0.9, 1), 0), 0, 2, 2).footprint)",
+}
+
+
+@pytest.mark.parametrize("name", CONTAINERS)
+def test_containers_are_kept_in_batches_as_they_are_alone(name: str) -> None:
+    """Every scene's object is held when it is asked alone; and about as many points are left as a grid says."""
+    text = (
+        f"r = {CONTAINERS[name]}\n"
+        "ego = new Object at (Range(-2, 2), Range(-2, 2), 0), with width 0.3, with length 0.4, with height 0.2, facing Range(0, 6),"
+        " with regionContainedIn r\nparam r = r"
+    )
+    loaded = scenic.scenarioFromString(text)
+    scenes = loaded.sample(60, seed=4)
+    for scene in scenes:
+        assert scene.params["r"].containsObject(scene.egoObject)
+    free = scenic.scenarioFromString(
+        text.replace("with regionContainedIn r", "with regionContainedIn everywhere")
+    )
+    held = [scene.params["r"].containsObject(scene.egoObject) for scene in free.sample(150, seed=5)]
+    tried = sum(scene.attempts for scene in loaded.sample(60, seed=6))
+    share = np.mean(held)
+    assert 0.05 < share < 0.95
+    if tried > 60:  # Containment may also have narrowed the distributions.
+        assert stats.binomtest(60, tried, float(share)).pvalue > 1e-6 or 60 / tried > share
+
+
+def test_samples_drawn_now() -> None:
+    random.seed(3)
+    draw = Range(0, 1) + 2
+    first = [draw.sample() for _ in range(200)]
+    random.seed(3)
+    assert first == [draw.sample() for _ in range(200)]
+    assert stats.kstest(np.array(first) - 2, "uniform").pvalue > FALSE_ALARM
+    assert {Uniform("a", "b").sample() for _ in range(30)} == {"a", "b"}
+    point = Region.uniformPointIn(CircularRegion((1, 2), 3)).sample()
+    assert CircularRegion((1, 2), 3).containsPoint(point)
+    assert isinstance(Vector(Range(0, 1), 2).sample(), Vector)
+    region = BoxRegion(dimensions=(Range(1, 2), 1, 1)).sample()
+    assert 1 <= region.dimensions.x <= 2
+    assert Range(1, 3).supportInterval() == pytest.approx((1, 3))
+    assert Range(1, 3).clone() is not None
+    with pytest.raises(RejectionException):
+        scenic.core.distributions.DiscreteRange(2.2, Range(2.3, 2.4)).sample()
+
+
+def test_regions_without_uniform_points() -> None:
+    for region in (everywhere, CircularRegion((0, 0), 1).footprint):
+        with pytest.raises(UndefinedSamplingException):
+            region.uniformPointInner()
+    with pytest.raises(RejectionException):
+        nowhere.uniformPointInner()
+    assert nowhere.distanceTo(Vector(1, 2, 3)) == np.inf
+    assert (everywhere.size, nowhere.size) == (np.inf, 0)
+
+
+def test_members_that_scripts_use() -> None:
+    import shapely
+
+    ego = (
+        scenic.scenarioFromString("ego = new Object at (1, 2, 3), facing 90 deg, with width 2, with length 4")
+        .sample(1, seed=0)[0]
+        .egoObject
+    )
+    space = ego.occupiedSpace
+    np.testing.assert_allclose(space.mesh.bounds, [[-1, 1, 2.5], [3, 3, 3.5]])
+    assert space.boundingPolygon.area == pytest.approx(8)
+    assert space.getSurfaceRegion().size == pytest.approx(2 * (8 + 2 + 4))
+    assert space.isConvex
+    assert tuple(space.position) == (1, 2, 3)
+    assert Vector(1, 2, 10).distanceTo(ego) == pytest.approx(6.5)
+    with pytest.raises(TypeError, match="rotation of SciPy"):
+        Orientation((0, 0, 0, 1))
+    assert regionFromShapelyObject(shapely.box(0, 0, 2, 3)).area == 6
+    corner = MeshVolumeRegion(trimesh.creation.box((1, 1, 1)))
+    assert corner.containsPoint(Vector(0.5 + 5e-7, 0.5, 0.5))
+    assert not corner.containsPoint(Vector(0.5 + 5e-6, 0.5, 0.5))
