@@ -27,17 +27,41 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 HERE = Path(__file__).parent
-PROGRAMS = ("room_with_toys", "chairs_at_table", "overtaking", "hidden", "hollow")
-REFERENCE_SCENES = {
-    "room_with_toys": 1,
-    "chairs_at_table": 3,
-    "overtaking": 8,
-    "hidden": 10,
-    "hollow": 30,
-}
 OUR_SCENES = 200
 SECONDS = 600
 """Longer than this no process runs."""
+
+
+@dataclass(frozen=True, slots=True)
+class Case:
+    """A program to compare on.
+
+    Attributes:
+        file: without its ending, beside this module.
+        scenes: how many the reference samples in a turn.
+        parameters: of the program.
+        least: how many times faster a scene is meant to be.
+
+    """
+
+    file: str
+    scenes: int
+    parameters: tuple[tuple[str, object], ...] = ()
+    least: int | None = None
+
+
+CASES = {
+    "room_with_toys": Case("room_with_toys", 1),
+    "chairs_at_table": Case("chairs_at_table", 3),
+    "overtaking": Case("overtaking", 8),
+    "vacuum-0": Case("vacuum", 4, (("toys", 0),), 50),
+    "vacuum-1": Case("vacuum", 4, (("toys", 1),), 50),
+    "vacuum-4": Case("vacuum", 3, (("toys", 4),), 50),
+    "vacuum-16": Case("vacuum", 1, (("toys", 16),), 1000),
+    "hidden": Case("hidden", 10, (), 100),
+    "hollow": Case("hollow", 30, (), 100),
+    "large_meshes": Case("loops/large_meshes", 30, (("folder", None),), 50),
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,10 +83,10 @@ class Run:
         return self.candidates / self.seconds
 
 
-def ours(program: str, seed: int, scenes: int, prune: bool) -> Run:
+def ours(program: str, seed: int, scenes: int, prune: bool, meshes: str) -> Run:
     """Sample with this implementation, in a fresh process."""
     command = [sys.executable, "-m", "benchmarks.compare", "--child", program, "--seed", str(seed)]
-    command += ["--our-scenes", str(scenes), *([] if prune else ["--no-prune"])]
+    command += ["--our-scenes", str(scenes), "--meshes", meshes, *([] if prune else ["--no-prune"])]
     result = subprocess.run(
         command, cwd=HERE.parent, capture_output=True, text=True, timeout=SECONDS, check=False
     )
@@ -71,12 +95,19 @@ def ours(program: str, seed: int, scenes: int, prune: bool) -> Run:
     return Run(**json.loads(result.stdout))
 
 
-def child(program: str, seed: int, scenes: int, prune: bool) -> None:
+def parameters(program: str, meshes: str) -> dict[str, object]:
+    """Those of a case, with the folder of meshes where it wants one."""
+    given = dict(CASES[program].parameters)
+    return given | ({"folder": meshes} if "folder" in given else {})
+
+
+def child(program: str, seed: int, scenes: int, prune: bool, meshes: str) -> None:
     """What the fresh process does: prints a `Run` as JSON."""
     from scenic.pipeline import load
     from scenic.runtime.sampling.report import Exhausted
 
-    scenario = load(HERE / f"{program}.scenic", prune=prune)
+    file = HERE / f"{CASES[program].file}.scenic"
+    scenario = load(file, params=parameters(program, meshes), prune=prune)
     for _ in scenario.stream(1, seed=seed + 1_000_000, max_attempts=None, time_limit=None):
         pass
     started = time.perf_counter()
@@ -85,22 +116,32 @@ def child(program: str, seed: int, scenes: int, prune: bool) -> None:
         candidates += result.attempts
         if not isinstance(result, Exhausted):
             found += 1
-            _ = [
-                thing.position for thing in result.objects
-            ]  # scenes make their objects when they are looked at
+            # Scenes make their objects when they are looked at.
+            for thing in result.objects:
+                (
+                    tuple(thing.position),
+                    thing.yaw,
+                    thing.pitch,
+                    thing.roll,
+                    thing.width,
+                    thing.length,
+                    thing.height,
+                )
     print(json.dumps({"scenes": found, "candidates": candidates, "seconds": time.perf_counter() - started}))
 
 
-def reference(command: str, program: str, seed: int, scenes: int, limit: int) -> Run:
+def reference(command: str, program: str, seed: int, limit: int, meshes: str) -> Run:
     """Sample with the other implementation."""
     arguments = [
         *shlex.split(command),
-        str(HERE / f"{program}.scenic"),
+        str(HERE / f"{CASES[program].file}.scenic"),
         "-n",
-        str(scenes + 1),
+        str(CASES[program].scenes + 1),
         "--seed",
         str(seed),
     ]
+    for name, value in parameters(program, meshes).items():
+        arguments += ["--param", f"{name}={json.dumps(value)}"]
     arguments += ["--max-iterations", str(limit), "--time", "--observe", "x=1"]
     try:
         result = subprocess.run(arguments, capture_output=True, text=True, timeout=SECONDS, check=False)
@@ -153,12 +194,13 @@ def main() -> None:
     )
     parser.add_argument("--our-scenes", type=int, default=OUR_SCENES)
     parser.add_argument("--no-prune", action="store_true")
-    parser.add_argument("--program", action="append", choices=PROGRAMS, help="only this one; repeatable")
-    parser.add_argument("--child", choices=PROGRAMS, help=argparse.SUPPRESS)
+    parser.add_argument("--program", action="append", choices=CASES, help="only this one; repeatable")
+    parser.add_argument("--meshes", default="", help="folder of the meshes of `large_meshes`")
+    parser.add_argument("--child", choices=CASES, help=argparse.SUPPRESS)
     options = parser.parse_args()
     prune = not options.no_prune
     if options.child:
-        child(options.child, options.seed, options.our_scenes, prune)
+        child(options.child, options.seed, options.our_scenes, prune, options.meshes)
         return
     names = ("scenic-lang", "numpy", "scipy")
     print(f"Python {platform.python_version()}, {', '.join(map(release, names))}; {machine()}")
@@ -171,8 +213,9 @@ def main() -> None:
         print(f"reference: {options.reference}")
     header = f"{'program':18} {'':10} {'scenes':>7} {'cand./scene':>12} {'s/scene':>10} {'cand./s':>12}"
     print(f"\n{header}\n{'-' * len(header)}")
-    for program in options.program or PROGRAMS:
-        compare(program, options, prune)
+    for program in options.program or CASES:
+        if "folder" not in dict(CASES[program].parameters) or options.meshes:
+            compare(program, options, prune)
 
 
 def compare(program: str, options: argparse.Namespace, prune: bool) -> None:
@@ -181,16 +224,19 @@ def compare(program: str, options: argparse.Namespace, prune: bool) -> None:
     theirs: list[Run] = []
     for turn in range(options.repeats):
         seed = options.seed + turn
-        mine.append(ours(program, seed, options.our_scenes, prune))
+        mine.append(ours(program, seed, options.our_scenes, prune, options.meshes))
         if options.reference:
-            scenes = REFERENCE_SCENES[program]
-            theirs.append(reference(options.reference, program, seed, scenes, options.max_iterations))
+            theirs.append(reference(options.reference, program, seed, options.max_iterations, options.meshes))
     show(program, "ours", mine)
     if theirs:
         show("", "reference", theirs)
         faster = median(theirs, "seconds_a_scene") / median(mine, "seconds_a_scene")
         more = median(mine, "candidates_a_second") / median(theirs, "candidates_a_second")
-        print(f"{'':18} {'ratio':10} {'':>7} {'':>12} {faster:>9.0f}x {more:>11.0f}x")
+        least = CASES[program].least
+        meant = (
+            "" if least is None else f"   meant: {least}x a scene" + (", missed" if faster < least else "")
+        )
+        print(f"{'':18} {'ratio':10} {'':>7} {'':>12} {faster:>9.0f}x {more:>11.0f}x{meant}", flush=True)
 
 
 def median(runs: list[Run], what: str) -> float:

@@ -23,11 +23,11 @@ class Toy:
     length: self.size
     height: self.size
 
-floor = new Fixed at (0, 0, -0.05), with width 5, with length 5, with height 0.1
-new Fixed at (0, 2.55, 1.2), with width 5.2, with length 0.1, with height 2.4
-new Fixed at (0, -2.55, 1.2), with width 5.2, with length 0.1, with height 2.4
-new Fixed at (2.55, 0, 1.2), with width 0.1, with length 5, with height 2.4
-new Fixed at (-2.55, 0, 1.2), with width 0.1, with length 5, with height 2.4
+floor = new Fixed at (0, 0, -0.06), with width 5, with length 5, with height 0.1
+new Fixed at (0, 2.57, 1.2), with width 5.24, with length 0.1, with height 2.4
+new Fixed at (0, -2.57, 1.2), with width 5.24, with length 0.1, with height 2.4
+new Fixed at (2.57, 0, 1.2), with width 0.1, with length 5, with height 2.4
+new Fixed at (-2.57, 0, 1.2), with width 0.1, with length 5, with height 2.4
 
 ego = new Vacuum on floor, facing Range(0, 360) deg
 table = new Object on floor, facing Range(0, 360) deg, with shape mesh("dining_table"),

@@ -9,7 +9,8 @@ from typing import Any, Final
 import numpy as np
 
 from scenic.graph.draws import mix, open_unit, words_of
-from scenic.graph.kinds import Column
+from scenic.graph.kinds import Column, Kind
+from scenic.graph.operation import Call, Operation, always
 from scenic.runtime.geometry import containment
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.poses import Poses
@@ -23,10 +24,12 @@ from scenic.runtime.geometry.visibility.regions import (
     view_volume,
 )
 from scenic.runtime.geometry.visibility.views import CORNERS, Views
-from scenic.runtime.regions.base import Everywhere, Mask, Points, Region, Workspace
+from scenic.runtime.regions.base import Everywhere, Mask, Points, Region, Workspace, body_of
+from scenic.runtime.regions.bodies import OccupiedSpace
+from scenic.runtime.regions.composite import DifferenceRegion, IntersectionRegion
 from scenic.runtime.regions.planar import CircularRegion
 from scenic.runtime.sight import view_operands
-from scenic.runtime.values import operate, to_scalar, vector
+from scenic.runtime.values import apply, operate, to_scalar, vector
 
 VIEW_PARAMETERS: Final = 5
 """The first so many of an observer's operands say what is in view: the others are about rays."""
@@ -66,6 +69,16 @@ class ViewRegion(Region):
             result[chosen] = containment.in_body(part, Body((unit,), None, poses), len(chosen))
         return result
 
+    def meets_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
+        """A body reaches into the view if it could be seen were nothing in the way."""
+        return np.asarray(prove(views_over(columns), body, (), lanes) != Proof.HIDDEN)
+
+    def intersects(self, other: Any) -> Any:
+        """Whether an object, or another region, shares a point with the view."""
+        if isinstance(other, OccupiedSpace):
+            return apply(_TOUCHES, *other.parameters, *self.parameters, payload=self)
+        return super().intersects(other)
+
     def box(self, *columns: Column) -> tuple[Points, Points]:
         camera, reach = columns[0], columns[4][:, None]
         return camera - reach, camera + reach
@@ -83,59 +96,20 @@ def views_over(columns: Sequence[Column]) -> Views:
     return Views(camera, orientation, angles, distance, one, none, np.zeros(1, dtype=np.bool_))
 
 
-class SeenPart(Region):
-    """The part of a region that is in an observer's view, or the part that is not."""
+def _touches(
+    call: Call, position: Column, orientation: Column, size: Column, shape: Column, *columns: Column
+) -> Column:
+    region: ViewRegion = call.payload
+    operands = (position, orientation, size, shape, *columns)
+    return region.meets_bodies(body_of(*operands[:4]), max(map(len, operands)), *columns)
 
-    may_find_none = True
 
-    def __init__(self, region: Region, view: ViewRegion, *, seen: bool) -> None:
-        super().__init__(*region.parameters, *view.parameters)
-        self.region, self.view, self.seen = region, view, seen
-        self.dimension = region.dimension
-        self.draws = region.draws
-        self.has_orientation = region.has_orientation
-
-    def sampled(self, sample: Any) -> Region:
-        if not self.is_random:
-            return self
-        view = self.view.sampled(sample)
-        assert isinstance(view, ViewRegion)
-        return SeenPart(self.region.sampled(sample), view, seen=self.seen)
-
-    def contains_points(self, points: Points, *columns: Column) -> Mask:
-        inside = self.region.contains_points(points, *columns[:-VIEW_PARAMETERS])
-        in_view = views_over(columns[-VIEW_PARAMETERS:]).contain(points)
-        return np.asarray(inside & (in_view if self.seen else ~in_view))
-
-    def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
-        inside = self.region.contains_bodies(body, lanes, *columns[:-VIEW_PARAMETERS])
-        view = columns[-VIEW_PARAMETERS:]
-        if self.seen:
-            return np.asarray(inside & self.view.contains_bodies(body, lanes, *view))
-        # A body reaches into the view if it could be seen were nothing in the way.
-        return np.asarray(inside & (prove(views_over(view), body, (), lanes) == Proof.HIDDEN))
-
-    def draw_points(self, uniforms: Column, keys: Column, *columns: Column) -> tuple[Points, Mask | None]:
-        views = views_over(columns[-VIEW_PARAMETERS:]).spread(uniforms.shape[1])
-
-        def draw(numbers: Column, words: Column, lanes: Column) -> tuple[Points, Mask]:
-            own = _rows(columns[:-VIEW_PARAMETERS], lanes)
-            points, found = self.region.draw_points(numbers, words, *own)
-            fits = views.take(lanes).contain(points) == self.seen
-            return points, fits if found is None else fits & found
-
-        return _drawn_until_fit(uniforms, keys, draw)
-
-    def orientations(self, points: Points, *columns: Column) -> Column:
-        return self.region.orientations(points, *columns[:-VIEW_PARAMETERS])
-
-    def box(self, *columns: Column) -> tuple[Points, Points]:
-        return self.region.box(*columns[:-VIEW_PARAMETERS])
-
-    @property
-    def footprint(self) -> Region:
-        flat = self.region.footprint
-        return self if flat is self.region else SeenPart(flat, self.view, seen=self.seen)
+_TOUCHES = Operation(
+    "view reaches body",
+    always(Kind.BOOLEAN),
+    _touches,
+    "Whether a body reaches into a view, occlusion ignored.",
+)
 
 
 class NearView(Region):
@@ -239,4 +213,6 @@ def part_of(region: Region, observer: Any, *, seen: bool) -> Region:
     view = ViewRegion(observer)
     while isinstance(region, Workspace):
         region = region.region
-    return view if seen and isinstance(region, Everywhere) else SeenPart(region, view, seen=seen)
+    if not seen:
+        return DifferenceRegion([region, view])
+    return view if isinstance(region, Everywhere) else IntersectionRegion([region, view])
