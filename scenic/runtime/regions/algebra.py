@@ -370,8 +370,8 @@ class _Lane:
     def __init__(self, region: Region, lane: int, columns: Sequence[Column]) -> None:
         self._values = {}
         for parameter, column in zip(region.parameters, columns, strict=True):
-            row = column[lane if len(column) > 1 else 0]
-            self._values[id(parameter)] = CODEC.decode(as_node(parameter).kind, row)
+            row = lane if len(column) > 1 else 0
+            (self._values[id(parameter)],) = CODEC.decode(as_node(parameter).kind, column[row : row + 1])
 
     def value(self, parameter: Any) -> Any:
         return self._values.get(id(parameter), parameter)
