@@ -214,5 +214,5 @@ def part_of(region: Region, observer: Any, *, seen: bool) -> Region:
     while isinstance(region, Workspace):
         region = region.region
     if not seen:
-        return DifferenceRegion([region, view])
-    return view if isinstance(region, Everywhere) else IntersectionRegion([region, view])
+        return DifferenceRegion(region, view)
+    return view if isinstance(region, Everywhere) else IntersectionRegion(region, view)
