@@ -52,17 +52,26 @@ class _Line:
 def formatting(snapshot: Snapshot, lines: tuple[int, int] | None = None) -> tuple[Edit, ...]:
     """The changes that put a document into the usual style, one for each run of lines that change.
 
-    With ``lines``, the first and the last of some, only changes that touch these. None for a text with mistakes.
+    With ``lines``, the first and the last of some, only changes that touch these; where a document would mean something
+    else after them alone (a part of a block indented otherwise), those of the whole statements of the top level. None for
+    a text with mistakes.
     """
     before = snapshot.text
     after = snapshot.derived("formatted", lambda: format_text(before))
     if after is None or after == before:
         return ()
-    old, new = before.split("\n"), after.split("\n")
-    edits = []
+    edits = tuple(_edits(before.split("\n"), after.split("\n")))
+    if lines is None:
+        return edits
+    for first, last in (lines, _statements_around(snapshot.tree, *lines)):
+        chosen = tuple(each for each in edits if each.span.line <= last and _last_line(each) >= first)
+        if _same(snapshot.tree, snapshot.tokens, _edited(before, chosen)):
+            return chosen
+    return edits
+
+
+def _edits(old: Sequence[str], new: Sequence[str]) -> Iterator[Edit]:
     for start, end, new_start, new_end in _changes(old, new):
-        if lines is not None and not (start + 1 <= lines[1] and max(end, start + 1) >= lines[0]):
-            continue
         text = "\n".join(new[new_start:new_end])
         if end < len(old):
             span = Span(start + 1, 0, end + 1, 0)
@@ -73,8 +82,37 @@ def formatting(snapshot: Snapshot, lines: tuple[int, int] | None = None) -> tupl
             text = "\n" + text if new_end > new_start else ""
         else:
             span = Span(1, 0, len(old), len(old[-1]))
-        edits.append(Edit(span, text))
-    return tuple(edits)
+        yield Edit(span, text)
+
+
+def _last_line(edit: Edit) -> int:
+    """The last line that an edit touches; one that only inserts touches the line before which it does."""
+    span = edit.span
+    return span.end_line - 1 if span.end_column == 0 and span.end_line > span.line else span.end_line
+
+
+def _statements_around(tree: ast.Module, first: int, last: int) -> tuple[int, int]:
+    """The first and the last line of the statements of the top level on some lines, with what stands before these."""
+    end = 0
+    begin, stop = first, last
+    for node in tree.body:
+        start, end = end + 1, max(end, node.end_lineno or node.lineno)
+        if start <= last and end >= first:
+            begin, stop = min(begin, start), max(stop, end)
+    return begin, stop
+
+
+def _edited(text: str, edits: Sequence[Edit]) -> str:
+    """A text after edits that are in order and do not overlap."""
+    lines = text.split("\n")
+    starts = [0]
+    for line in lines:
+        starts.append(starts[-1] + len(line) + 1)
+    parts, done = [], 0
+    for each in edits:
+        parts += [text[done : starts[each.span.line - 1] + each.span.column], each.text]
+        done = starts[each.span.end_line - 1] + each.span.end_column
+    return "".join([*parts, text[done:]])
 
 
 def _changes(old: Sequence[str], new: Sequence[str]) -> Iterator[tuple[int, int, int, int]]:

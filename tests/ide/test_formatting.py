@@ -187,3 +187,38 @@ def test_only_what_is_asked_for() -> None:
     assert [edit.text for edit in formatting(snapshot)] == ["x = 1\n", "z = 3\n"]
     assert [edit.text for edit in formatting(snapshot, (2, 3))] == ["z = 3\n"]
     assert formatting(snapshot, (2, 2)) == ()
+
+
+def _formatted(text: str, first: int, last: int) -> str:
+    lines = text.split("\n")
+    for edit in reversed(formatting(Snapshot(text, "x"), (first, last))):
+        span = edit.span
+        before = "\n".join([*lines[: span.line - 1], lines[span.line - 1][: span.column]])
+        after = "\n".join([lines[span.end_line - 1][span.end_column :], *lines[span.end_line :]])
+        lines = (before + edit.text + after).split("\n")
+    return "\n".join(lines)
+
+
+@pytest.mark.parametrize(
+    ("text", "first", "last", "expected"),
+    [
+        ("x=1\ny=2\n", 1, 1, "x = 1\ny=2\n"),
+        # The first line of what is written in its place would be the only one in the range.
+        ("import a\ndef f(x): return x\n", 1, 3, "import a\n\n\ndef f(x):\n    return x\n"),
+        # The rest of a block stays with a part that is indented otherwise.
+        ("z=1\nclass A:\n  width:  2\n  length:3\n", 3, 3, "z=1\n\n\nclass A:\n    width: 2\n    length: 3\n"),
+    ],
+)
+def test_a_range_with_all_that_belongs_to_it(text: str, first: int, last: int, expected: str) -> None:
+    assert _formatted(text, first, last) == expected
+
+
+@pytest.mark.parametrize("index", range(len(TEXTS)))
+def test_ranges_of_programs_mean_the_same(index: int) -> None:
+    text = TEXTS[index].replace("    ", "  ").replace(" = ", "=")
+    tree = parse(text).tree
+    chance = random.Random(index)
+    count = text.count("\n") + 1
+    first = chance.randint(1, count)
+    after = _formatted(text, first, min(count, first + chance.randrange(6)))
+    assert ast.dump(parse(after).tree) == ast.dump(tree)
