@@ -49,22 +49,26 @@ class _Line:
     """Comments on lines of their own before it: line, column, text."""
 
 
-def formatting(snapshot: Snapshot, lines: tuple[int, int] | None = None) -> tuple[Edit, ...]:
+def formatting(snapshot: Snapshot, *ranges: tuple[int, int]) -> tuple[Edit, ...]:
     """The changes that put a document into the usual style, one for each run of lines that change.
 
-    With ``lines``, the first and the last of some, only changes that touch these; where a document would mean something
-    else after them alone (a part of a block indented otherwise), those of the whole statements of the top level. None for
-    a text with mistakes.
+    With ``ranges``, each the first and the last of some lines, only changes that touch these; where a document would mean
+    something else after them alone (a part of a block indented otherwise), those of the whole statements of the top
+    level. None for a text with mistakes.
     """
     before = snapshot.text
     after = snapshot.derived("formatted", lambda: format_text(before))
     if after is None or after == before:
         return ()
     edits = tuple(_edits(before.split("\n"), after.split("\n")))
-    if lines is None:
+    if not ranges:
         return edits
-    for first, last in (lines, _statements_around(snapshot.tree, *lines)):
-        chosen = tuple(each for each in edits if each.span.line <= last and _last_line(each) >= first)
+    for lines in (ranges, [_statements_around(snapshot.tree, *each) for each in ranges]):
+        chosen = tuple(
+            each
+            for each in edits
+            if any(each.span.line <= last and _last_line(each) >= first for first, last in lines)
+        )
         if _same(snapshot.tree, snapshot.tokens, _edited(before, chosen)):
             return chosen
     return edits

@@ -2,11 +2,13 @@
 
 import ast
 import keyword
+import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from scenic.compiler.generated import HARD_KEYWORDS
+from scenic.compiler.scopes import ScopeKind
 from scenic.ide.snapshot import Snapshot
 from scenic.language.names import RESERVED, TRACKED
 from scenic.language.spans import Span
@@ -18,6 +20,7 @@ from scenic.project.symbols import Symbol, SymbolKind, symbol_of_binding, symbol
 
 __all__ = [
     "Highlight",
+    "Moniker",
     "RenameError",
     "Target",
     "declarations",
@@ -25,6 +28,7 @@ __all__ = [
     "highlights",
     "implementations",
     "linked",
+    "moniker",
     "prepare_rename",
     "rename",
     "type_definitions",
@@ -50,6 +54,15 @@ class Highlight:
     writes: bool
 
 
+@dataclass(frozen=True, slots=True)
+class Moniker:
+    """What tells a name from all others: the file below its folder of the workspace, and the names on the way to it."""
+
+    identifier: str
+    is_local: bool
+    is_import: bool
+
+
 class RenameError(Exception):
     """Why a name cannot be changed, or not into that."""
 
@@ -64,6 +77,24 @@ def definitions(project: Project, snapshot: Snapshot, line: int, column: int) ->
     if symbol is None or found is None or symbol.is_builtin:
         return _ego(module, found)
     return _targets(symbol, found.span)
+
+
+def moniker(project: Project, snapshot: Snapshot, line: int, column: int) -> Moniker | None:
+    """The moniker of the name at a place; ``None`` if the language provides it."""
+    module, found = _occurrence(project, snapshot, line, column)
+    symbol = None if module is None or found is None else symbol_of(project, module, found)
+    if module is None or symbol is None or symbol.filename is None:
+        return None
+    homes = [root for root in project.finder.roots if symbol.filename.startswith(os.path.join(root, ""))]
+    home = max(homes, key=len, default=os.path.dirname(symbol.filename))
+    path = os.path.relpath(symbol.filename, home).replace(os.sep, "/")
+    inner = symbol.binding is not None and symbol.binding.scope.kind not in (
+        ScopeKind.MODULE,
+        ScopeKind.CLASS,
+    )
+    names = [] if symbol.kind is SymbolKind.MODULE else [symbol.container, symbol.name]
+    identifier = ":".join([path, ".".join(filter(None, names))]) if names else path
+    return Moniker(identifier, inner, symbol.filename != module.filename)
 
 
 def declarations(project: Project, snapshot: Snapshot, line: int, column: int) -> tuple[Target, ...]:

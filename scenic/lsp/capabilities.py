@@ -20,6 +20,12 @@ SIMULATE: Final = "scenic.simulate"
 WATCHED: Final = ("**/*.scenic", "**/*.sc", "**/*.py", "**/pyproject.toml")
 """The files whose changes on the disk matter."""
 
+_FILES: Final = (
+    {"scheme": "file", "pattern": {"glob": "**/*.{scenic,sc,py}", "matches": "file"}},
+    {"scheme": "file", "pattern": {"glob": "**", "matches": "folder"}},
+)
+"""The files and folders of which it matters what they are called."""
+
 _INCREMENTAL: Final = 2
 
 
@@ -60,13 +66,17 @@ def capabilities(client: Client) -> Json:
         "documentLinkProvider": {"resolveProvider": True},
         "colorProvider": True,
         "documentFormattingProvider": True,
-        "documentRangeFormattingProvider": True,
+        "documentRangeFormattingProvider": {"rangesSupport": True}
+        if client.can("textDocument", "rangeFormatting", "rangesSupport")
+        else True,
+        "documentOnTypeFormattingProvider": {"firstTriggerCharacter": ":"},
         "renameProvider": {"prepareProvider": True}
         if client.can("textDocument", "rename", "prepareSupport") or not client.has("textDocument", "rename")
         else True,
         "foldingRangeProvider": True,
         "selectionRangeProvider": True,
         "linkedEditingRangeProvider": True,
+        "monikerProvider": True,
         "callHierarchyProvider": True,
         "typeHierarchyProvider": True,
         "semanticTokensProvider": {
@@ -84,6 +94,9 @@ def capabilities(client: Client) -> Json:
         },
         "workspace": {
             "workspaceFolders": {"supported": True, "changeNotifications": True},
+            "fileOperations": {
+                name: {"filters": _FILES} for name in ("willRename", "didRename", "didCreate", "didDelete")
+            },
         },
     }
 

@@ -222,4 +222,5 @@ def _protocol(found: Sequence[Diagnostic], lines: Lines, uri: str, session: Sess
     told = client.has("textDocument", "publishDiagnostics")
     related = not told or client.can("textDocument", "publishDiagnostics", "relatedInformation")
     tags = not told or client.has("textDocument", "publishDiagnostics", "tagSupport")
-    return [to_diagnostic(item, lines, uri, related=related, tags=tags) for item in found]
+    pages = client.can("textDocument", "publishDiagnostics", "codeDescriptionSupport")
+    return [to_diagnostic(item, lines, uri, related=related, tags=tags, pages=pages) for item in found]

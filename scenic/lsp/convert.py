@@ -11,8 +11,10 @@ from enum import StrEnum
 from typing import Any, Final, TypeAlias
 
 from scenic.language.diagnostics import Diagnostic, Edit, Severity
+from scenic.language.explanations import explanation_file
 from scenic.language.source import Source
 from scenic.language.spans import Span
+from scenic.lsp.uris import to_uri
 
 __all__ = ["Encoding", "Json", "Lines", "to_diagnostic", "units"]
 
@@ -104,11 +106,17 @@ class Lines:
 
 
 def to_diagnostic(
-    diagnostic: Diagnostic, lines: Lines, uri: str, *, related: bool = True, tags: bool = True
+    diagnostic: Diagnostic,
+    lines: Lines,
+    uri: str,
+    *,
+    related: bool = True,
+    tags: bool = True,
+    pages: bool = False,
 ) -> Json:
     """A diagnostic as the protocol has it: the help is a line of the message, labels are related places.
 
-    ``related`` and ``tags`` tell whether the client shows such.
+    ``related`` and ``tags`` tell whether the client shows such, ``pages`` whether it opens the page of a code.
     """
     message = diagnostic.message
     if diagnostic.help:
@@ -120,6 +128,9 @@ def to_diagnostic(
         "source": "scenic",
         "message": message,
     }
+    page = explanation_file(diagnostic.code) if pages else None
+    if page is not None:
+        found["codeDescription"] = {"href": to_uri(page)}
     if tags and diagnostic.code in _UNNECESSARY:
         found["tags"] = [_TAG_UNNECESSARY]
     places = [

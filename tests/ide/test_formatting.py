@@ -206,7 +206,12 @@ def _formatted(text: str, first: int, last: int) -> str:
         # The first line of what is written in its place would be the only one in the range.
         ("import a\ndef f(x): return x\n", 1, 3, "import a\n\n\ndef f(x):\n    return x\n"),
         # The rest of a block stays with a part that is indented otherwise.
-        ("z=1\nclass A:\n  width:  2\n  length:3\n", 3, 3, "z=1\n\n\nclass A:\n    width: 2\n    length: 3\n"),
+        (
+            "z=1\nclass A:\n  width:  2\n  length:3\n",
+            3,
+            3,
+            "z=1\n\n\nclass A:\n    width: 2\n    length: 3\n",
+        ),
     ],
 )
 def test_a_range_with_all_that_belongs_to_it(text: str, first: int, last: int, expected: str) -> None:

@@ -3,14 +3,16 @@
 The pages are the files ``SCnnn.md`` beside this module. `explanation` reads one; the tests run all of them.
 """
 
+import os
 import re
 from dataclasses import dataclass
 from importlib import resources
+from pathlib import Path
 from typing import Final
 
 from scenic.language.diagnostics import CODES, Severity
 
-__all__ = ["Explanation", "explanation"]
+__all__ = ["Explanation", "explanation", "explanation_file"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,6 +37,12 @@ class Explanation:
     message: str
     help: str | None
     repair: str
+
+
+def explanation_file(code: str) -> str | None:
+    """The file with the page of ``code``; ``None`` if there is none, or the package is no folder."""
+    page = resources.files(__name__).joinpath(f"{code}.md")
+    return os.fspath(page) if isinstance(page, Path) and page.is_file() else None
 
 
 def explanation(code: str) -> Explanation:

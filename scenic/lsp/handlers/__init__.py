@@ -24,6 +24,8 @@ _METHODS: Final = {
         "codeAction/resolve",
         "textDocument/formatting",
         "textDocument/rangeFormatting",
+        "textDocument/rangesFormatting",
+        "textDocument/onTypeFormatting",
         "textDocument/prepareRename",
         "textDocument/rename",
         "textDocument/linkedEditingRange",
@@ -58,6 +60,7 @@ _METHODS: Final = {
         "textDocument/prepareTypeHierarchy",
         "typeHierarchy/supertypes",
         "typeHierarchy/subtypes",
+        "textDocument/moniker",
         "workspace/symbol",
         "workspaceSymbol/resolve",
     ),
@@ -80,6 +83,10 @@ _METHODS: Final = {
         "workspace/didChangeConfiguration",
         "workspace/didChangeWorkspaceFolders",
         "workspace/didChangeWatchedFiles",
+        "workspace/willRenameFiles",
+        "workspace/didRenameFiles",
+        "workspace/didCreateFiles",
+        "workspace/didDeleteFiles",
     ),
 }
 

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from typing import Any, Final
 
 from scenic.ide import navigation
+from scenic.ide.dedenting import dedented
 from scenic.ide.diagnostics import found_in
 from scenic.ide.formatting import formatting
 from scenic.ide.repairs import ignoring, repair_all, repairs
@@ -102,9 +103,30 @@ def _format(session: Session, params: Any) -> Json:
 
 def _format_range(session: Session, params: Any) -> Json:
     document = session.document(reading.uri_of(params))
-    span = document.lines.from_range(*reading.range_of(params, "range"))
+    lines = _lines(document, reading.range_of(params, "range"))
+    return document.lines.to_edits(formatting(document.snapshot, lines), document.line_end)
+
+
+def _format_ranges(session: Session, params: Any) -> Json:
+    document = session.document(reading.uri_of(params))
+    every = reading.items(params, "ranges")
+    ranges = [_lines(document, reading.range_of(params, "ranges", index)) for index, _ in enumerate(every)]
+    edits = formatting(document.snapshot, *ranges) if ranges else ()
+    return document.lines.to_edits(edits, document.line_end)
+
+
+def _lines(document: Document, places: tuple[tuple[int, int], tuple[int, int]]) -> tuple[int, int]:
+    """The first and the last line of a range; one that ends where a line begins does not hold that line."""
+    span = document.lines.from_range(*places)
     last = span.end_line - 1 if span.end_column == 0 and span.end_line > span.line else span.end_line
-    return document.lines.to_edits(formatting(document.snapshot, (span.line, last)), document.line_end)
+    return span.line, last
+
+
+def _format_typed(session: Session, params: Any) -> Json:
+    document, line, column = place_of(session, params)
+    typed = reading.text(params, "ch")
+    edits = dedented(document.snapshot, line, column) if typed == ":" else ()
+    return document.lines.to_edits(edits, document.line_end)
 
 
 # Names
@@ -149,6 +171,8 @@ REQUESTS: Final = {
     "codeAction/resolve": _resolve_action,
     "textDocument/formatting": _format,
     "textDocument/rangeFormatting": _format_range,
+    "textDocument/rangesFormatting": _format_ranges,
+    "textDocument/onTypeFormatting": _format_typed,
     "textDocument/prepareRename": _prepare_rename,
     "textDocument/rename": _rename,
     "textDocument/linkedEditingRange": _linked,

@@ -223,7 +223,24 @@ def _resolve_symbol(session: Session, params: Any) -> Json:
     return {**params, "location": {"uri": uri, "range": place}} if place is not None else params
 
 
+def _moniker(session: Session, params: Any) -> Json:
+    document, line, column = place_of(session, params)
+    project = session.project_with(document)
+    found = navigation.moniker(project, document.snapshot, line, column)
+    if found is None:
+        return None
+    return [
+        {
+            "scheme": "scenic",
+            "identifier": found.identifier,
+            "unique": "document" if found.is_local else "project",
+            "kind": "local" if found.is_local else "import" if found.is_import else "export",
+        }
+    ]
+
+
 REQUESTS: Final = {
+    "textDocument/moniker": _moniker,
     "textDocument/declaration": _goto(navigation.declarations, "declaration"),
     "textDocument/definition": _goto(navigation.definitions, "definition"),
     "textDocument/typeDefinition": _goto(navigation.type_definitions, "typeDefinition"),

@@ -2,12 +2,13 @@
 
 from typing import Any, Final
 
+from scenic.ide.moving import imports_after_moves
 from scenic.lsp import reading
 from scenic.lsp.convert import Json
 from scenic.lsp.session import Session
 from scenic.lsp.uris import to_path
 
-__all__ = ["NOTIFICATIONS", "read_settings", "take_settings"]
+__all__ = ["NOTIFICATIONS", "REQUESTS", "read_settings", "take_settings"]
 
 _SECTION: Final = "scenic"
 
@@ -59,8 +60,32 @@ def _files(session: Session, params: Any) -> None:
         session.files_changed()
 
 
+def _will_rename(session: Session, params: Any) -> Json:
+    """What changes in the files that import those which get another name."""
+    moves = []
+    for each in reading.items(params, "files"):
+        old, new = to_path(reading.text(each, "oldUri")), to_path(reading.text(each, "newUri"))
+        if old is not None and new is not None:
+            moves.append((old, new))
+    project = session.project_beside(None)
+    changes: dict[str, list[Json]] = {}
+    for place, text in imports_after_moves(project, moves):
+        edit = {"range": session.lines_of(place.filename).to_range(place.span), "newText": text}
+        changes.setdefault(session.uri_of(place.filename), []).append(edit)
+    return session.workspace_edit(changes) if changes else None
+
+
+def _moved(session: Session, params: Any) -> None:
+    if reading.items(params, "files"):
+        session.files_changed()
+
+
+REQUESTS: Final = {"workspace/willRenameFiles": _will_rename}
 NOTIFICATIONS: Final = {
     "workspace/didChangeConfiguration": _configuration,
     "workspace/didChangeWorkspaceFolders": _folders,
     "workspace/didChangeWatchedFiles": _files,
+    "workspace/didRenameFiles": _moved,
+    "workspace/didCreateFiles": _moved,
+    "workspace/didDeleteFiles": _moved,
 }
