@@ -4,6 +4,7 @@ import difflib
 import inspect
 import sys
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from types import CodeType, FrameType, ModuleType, TracebackType
 from typing import Any
@@ -12,8 +13,8 @@ from scenic.analysis.contraction import contract
 from scenic.analysis.facts import Condition
 from scenic.compiler import loader
 from scenic.compiler.compile import compile_text
-from scenic.compiler.tracebacks import SOURCE_NAME, Locator, locate
-from scenic.language.diagnostics import Diagnostic
+from scenic.compiler.tracebacks import SOURCE_NAME, Locator, locate, raised_at
+from scenic.language.diagnostics import Diagnostic, Label
 from scenic.language.errors import (
     InvalidScenarioError,
     Located,
@@ -151,7 +152,7 @@ def diagnose(error: BaseException) -> Diagnostic | None:
         return error.diagnostic()
     told = annotation(error)
     if told is not None:
-        return told
+        return _with_origin(told, error)
     place = locate(error.__traceback__) if error.__traceback__ is not None else None
     if place is None:
         return None
@@ -163,13 +164,24 @@ def diagnose(error: BaseException) -> Diagnostic | None:
             filename=place.filename,
             help="modules are .scenic files beside the program, or anything that Python can import",
         )
-    return Diagnostic(
+    found = Diagnostic(
         "SC400",
         f"{type(error).__name__}: {error}",
         place.span,
         filename=place.filename,
         help="the program raised this exception while it ran",
     )
+    return _with_origin(found, error)
+
+
+def _with_origin(found: Diagnostic, error: BaseException) -> Diagnostic:
+    """The diagnostic with the line that raised the exception, where that is another one."""
+    origin = raised_at(error)
+    if origin is None or found.span is None or found.labels:
+        return found
+    if origin.filename == found.filename and found.span.line <= origin.span.line <= found.span.end_line:
+        return found
+    return replace(found, labels=(Label(origin.span, "raised here", origin.filename),))
 
 
 # From text to scenario

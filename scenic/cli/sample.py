@@ -265,7 +265,11 @@ def sample(
     from scenic.pipeline import load
     from scenic.runtime.sampling.report import Exhausted
 
-    with _limited(time_limit, path):
+    with _limited(
+        time_limit,
+        f"'{path}' was still being run when the time limit of {time_limit or 0:g} s was over",
+        "give it more time, or look for a loop without end at the top of the program",
+    ):
         loaded = load(
             path, params=parameters, model=model, scenario=scenario, mode2D=mode_2d, prune=not no_prune
         )
@@ -279,7 +283,13 @@ def sample(
     job = batches.Job(seed, first + done, first + count, max_attempts, deadline)
     missing: list[Exhausted] = []
     to_terminal = target == sinks.STANDARD_OUTPUT and sys.stdout.isatty()
-    with _ended_by_signals(), ExitStack() as stack:
+    left = None if deadline is None else max(0.0, deadline - time.monotonic()) + PATIENCE
+    endless = _limited(
+        left,
+        f"a candidate was still being evaluated {PATIENCE:g} s after the time limit of {time_limit or 0:g} s",
+        "look for a loop without end in what is called on samples",
+    )
+    with _ended_by_signals(), endless, ExitStack() as stack:
         takers = [stack.enter_context(sink) for sink in chosen]
         put = _to_output if grown is None else stack.enter_context(grown).write
         advance = stack.enter_context(_progress(count, shown=not to_terminal))
@@ -311,6 +321,10 @@ def sample(
     return CLEAN
 
 
+PATIENCE: Final = 10.0
+"""Seconds after the time limit until candidates under way are given up; the engine itself looks at the time between rounds."""
+
+
 def _to_output(lines: bytes) -> None:
     try:
         sys.stdout.write(lines.decode("ascii"))
@@ -323,17 +337,19 @@ def _to_output(lines: bytes) -> None:
 
 
 @contextmanager
-def _limited(seconds: float | None, path: Path) -> Iterator[None]:
-    """Ends the running of a program that takes longer than the time limit, where the system can."""
+def _limited(seconds: float | None, what: str, help: str) -> Iterator[None]:
+    """Ends running Python code of a program that takes longer than so many seconds, where the system can.
+
+    Raises `TimeLimitError` with the place that was reached; ``what`` says what was done for too long.
+    """
     if seconds is None or not hasattr(signal, "setitimer"):
         yield
         return
 
-    def end(_number: int, _frame: FrameType | None) -> None:
-        raise TimeLimitError(
-            f"'{path}' was still being run when the time limit of {seconds:g} s was over",
-            help="give it more time, or look for a loop without end at the top of the program",
-        )
+    def end(_number: int, frame: FrameType | None) -> None:
+        from scenic.compiler.tracebacks import locate
+
+        raise _TimeIsOver(None if frame is None else locate(frame))
 
     try:
         before = signal.signal(signal.SIGALRM, end)
@@ -343,9 +359,21 @@ def _limited(seconds: float | None, path: Path) -> Iterator[None]:
     signal.setitimer(signal.ITIMER_REAL, seconds)
     try:
         yield
+    except _TimeIsOver as over:
+        (place,) = over.args
+        raise TimeLimitError(
+            what,
+            span=None if place is None else place.span,
+            filename=None if place is None else place.filename,
+            help=help,
+        ) from None
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0)
         signal.signal(signal.SIGALRM, before)
+
+
+class _TimeIsOver(BaseException):
+    """Raised wherever the program is; no exception that it catches."""
 
 
 class TimeLimitError(Located):

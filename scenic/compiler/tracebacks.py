@@ -22,7 +22,7 @@ from scenic.compiler.lowering.build import PRELUDE
 from scenic.language.source import Source
 from scenic.language.spans import Span
 
-__all__ = ["SOURCE_NAME", "Locator", "Place", "format_traceback", "locate"]
+__all__ = ["SOURCE_NAME", "Locator", "Place", "format_traceback", "locate", "raised_at"]
 
 SOURCE_NAME: Final = "__scenic_source__"
 """A global of generated modules that may hold their `Source`; without it the text is read from the file."""
@@ -175,6 +175,20 @@ def _user_frames(step: TracebackType | None) -> Iterator[traceback.FrameSummary]
                 end_colno=end_column,
             )
         step = step.tb_next
+
+
+def raised_at(error: BaseException) -> Place | None:
+    """Where an exception was raised: the innermost line that is the user's, of the program or of a Python module."""
+    frames = list(_user_frames(error.__traceback__))
+    if not frames or frames[-1].lineno is None:
+        return None
+    frame = frames[-1]
+    line, column, end_column = frames[-1].lineno, frame.colno, frame.end_colno
+    if column is None or end_column is None or frame.end_lineno != line:
+        return Place(frame.filename, Span(line, 0, line, 0))
+    text = linecache.getline(frame.filename, line).encode("utf-8", "surrogatepass")
+    first, last = (len(text[:end].decode("utf-8", "ignore")) for end in (column, end_column))
+    return Place(frame.filename, Span(line, first, line, last))
 
 
 def _is_users(filename: str) -> bool:

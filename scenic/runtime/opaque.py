@@ -16,7 +16,7 @@ from scenic.graph.construction import apply
 from scenic.graph.kinds import Column, Kind, boxed
 from scenic.graph.node import Node, key
 from scenic.graph.operation import OK, Call, Operation, always
-from scenic.language.errors import RejectionException
+from scenic.language.errors import InvalidScenarioError, RejectionException
 from scenic.runtime.context import Context, current, here, next_address
 from scenic.runtime.randomness import preserved, seed_globals
 from scenic.runtime.samples import Globals, Sample, dependencies, mention
@@ -114,6 +114,9 @@ def evaluated(call: Call, columns: Sequence[Column]) -> list[Any]:
                     results[lane] = sample.value(code.function)(*args, **keywords)
                 except RejectionException:
                     rejected[lane] = True
+                except SystemExit as end:
+                    failed[lane] = True
+                    error = _ended(end) if error is None else error
                 except Exception as problem:  # noqa: BLE001 - whatever the program raises is that lane's fault
                     failed[lane] = True
                     error = problem if error is None else error
@@ -126,6 +129,13 @@ def evaluated(call: Call, columns: Sequence[Column]) -> list[Any]:
         call.fault(failed, error)
     call.reject(rejected)
     return results
+
+
+def _ended(end: SystemExit) -> InvalidScenarioError:
+    return InvalidScenarioError(
+        f"the program ended itself (`sys.exit`, with {end.code!r}) while a candidate was evaluated",
+        help="raise `RejectionException` to reject a candidate, or an exception that says what is wrong",
+    )
 
 
 def _value(values: Mapping[Node, list[Any]], lane: int, node: Node) -> Any:

@@ -1,0 +1,70 @@
+"""What commands tell of programs that fail, end themselves or do not end, while they run and on samples."""
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from scenic.cli import sample
+from tests.cli.commands import run_here
+
+TOOLS = "def boom(v):\n    raise ValueError(f'boom')\ndef root(v):\n    import math\n    return math.sqrt(-1 - v)\n"
+
+CASES = [
+    # (program, code, the line of the program, what is shown beside it)
+    ("import tools\ny = tools.boom(1)\n", "SC400", 2, "tools.py:2:5: raised here"),
+    ("import tools\nx = Range(0, 1)\nrequire tools.boom(x)\n", "SC501", 3, "tools.py:2:5: raised here"),
+    ("import tools\nx = Range(0, 1)\nrequire tools.root(x) > 0\n", "SC501", 3, "tools.py:5:12: raised here"),
+    ("import tools\nego = new Object with tag tools.root(3)\n", "SC400", 2, "tools.py:5:12: raised here"),
+    ("x = Range(0, 1)\ndef f(v):\n    return v / 0\nrequire f(x)\n", "SC501", 4, "- raised here"),
+    ("import sys\nsys.exit(3)\n", "SC401", 2, "ended itself"),
+    ("import sys\nx = Range(0, 1)\ndef f(v): sys.exit(3)\nrequire f(x)\n", "SC401", 4, "ended itself"),
+    ("import sys\nx = Range(0, 1)\nparam y = distributionFunction(sys.exit)(x)\n", "SC401", 3, "ended itself"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("text", "code", "line", "shown"), CASES, ids=[case[0] for case in CASES])
+def test_programs_that_fail(tmp_path: Path, text: str, code: str, line: int, shown: str) -> None:
+    (tmp_path / "tools.py").write_text(TOOLS)
+    program = tmp_path / "program.scenic"
+    program.write_text(text)
+    result = run_here(["sample", program.name, "--seed", 1], folder=tmp_path)
+    assert result.returncode == 1
+    assert f"error[{code}]" in result.stderr
+    assert f"program.scenic:{line}:" in result.stderr
+    assert shown in result.stderr
+    assert "help: " in result.stderr
+    assert result.stdout == ""
+
+
+def test_an_end_that_a_requirement_rejects_is_none(tmp_path: Path) -> None:
+    program = tmp_path / "program.scenic"
+    program.write_text(
+        "import sys\nx = Range(0, 1)\ndef f(v):\n    if v > 0.2: sys.exit(3)\n    return True\n"
+        "def g(v): return v < 0.2\nrequire f(x)\nrequire g(x)\nparam x = x\n"
+    )
+    result = run_here(["sample", program.name, "--seed", 1, "-n", 3], folder=tmp_path)
+    assert result.returncode == 0, result.stderr
+    assert result.stdout.count("\n") == 3
+
+
+ENDLESS = [
+    ("while True: pass\n", 1, "still being run when the time limit of 0.5 s was over"),
+    ("import time\ntime.sleep(60)\n", 2, "still being run when the time limit of 0.5 s was over"),
+    ("try:\n    while True: pass\nexcept Exception:\n    while True: pass\n", 2, "still being run"),
+    ("x = Range(0, 1)\ndef f(v):\n    while True: pass\nrequire f(x)\n", 3, "a candidate was still being evaluated"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("text", "line", "message"), ENDLESS, ids=[case[0] for case in ENDLESS])
+def test_programs_that_do_not_end(
+    tmp_path: Path, text: str, line: int, message: str, monkeypatch: Any
+) -> None:
+    monkeypatch.setattr(sample, "PATIENCE", 0.2)
+    program = tmp_path / "program.scenic"
+    program.write_text(text)
+    result = run_here(["sample", program.name, "--seed", 1, "--time-limit", "0.5"], folder=tmp_path)
+    assert result.returncode == 1
+    assert "error[SC608]" in result.stderr
+    assert message in result.stderr
+    assert f"program.scenic:{line}:" in result.stderr
