@@ -84,7 +84,7 @@ def outlines(region: Any) -> list[Array]:
             lines = [_CORNERS[list(edge)] for edge in _EDGES] if isinstance(region, BoxRegion) else rings
             return [middle + line @ frame.T for line in lines]
         case SideSurface():
-            return _mesh_lines(solid_in_world(columns), region.side, region.threshold)
+            return _mesh_lines(solid_in_world(columns), region.facing.side, region.facing.threshold)
         case OccupiedSpace():
             return _mesh_lines(solid_in_world(columns), None, 0.0)
         case ViewRegion():

@@ -20,7 +20,7 @@ from scenic.runtime.geometry.visibility.obstacles import Occluder
 from scenic.runtime.geometry.visibility.points import sees_points
 from scenic.runtime.geometry.visibility.proving import Proof, prove
 from scenic.runtime.geometry.visibility.views import Views
-from scenic.runtime.regions.base import body_of, body_operands
+from scenic.runtime.regions.stacked import body_of, body_operands
 from scenic.runtime.values import (
     Orientation,
     Random,

@@ -24,17 +24,15 @@ from scenic.language.errors import (
     UnsupportedError,
 )
 from scenic.runtime.context import here
-from scenic.runtime.geometry.collision import Body, Poses
-from scenic.runtime.geometry.mesh import Mesh
-from scenic.runtime.geometry.poses import Indices
+from scenic.runtime.geometry.collision import Body
 from scenic.runtime.regions.knowledge import Containment, containment_bounds, containment_inverse, payload_box
+from scenic.runtime.regions.stacked import Stack, body_operands
 from scenic.runtime.values import (
     Random,
     apply,
     as_node,
     is_random,
     random_key,
-    to_scalar,
     to_vector,
     uniform,
     vector,
@@ -302,63 +300,10 @@ _DISTANCE = Operation(
 )
 
 
-def body_operands(thing: Any) -> tuple[Any, Any, Any, Any]:
-    """Position, orientation, size and shape of an object: the operands of operations on its body."""
-    size = vector(to_scalar(thing.width), to_scalar(thing.length), to_scalar(thing.height))
-    return thing.position, thing.orientation, size, thing.shape
-
-
-def body_of(position: Column, orientation: Column, size: Column, shape: Column) -> Body:
-    """The body of an object over lanes, from the columns of `body_operands`."""
-    meshes, choice = _meshes_of(shape)
-    return Body(meshes, choice, Poses(position, orientation, size))
-
-
-def _meshes_of(shape: Column) -> tuple[tuple[Mesh, ...], Indices | None]:
-    """The different meshes of shapes, and which of them each has; ``None`` where there is one mesh."""
-    numbers: dict[Mesh, int] = {}
-    choice = [numbers.setdefault(item.mesh, len(numbers)) for item in shape.ravel().tolist()]
-    if len(numbers) == 1:
-        return tuple(numbers), None
-    return tuple(numbers), np.array(choice, dtype=np.intp).reshape(shape.shape)
-
-
-def _contains_body(
-    call: Call, position: Column, orientation: Column, size: Column, shape: Column, *columns: Column
-) -> Column:
-    """All members and lanes as the lanes of one body, for each shape that there is."""
-    lead = np.broadcast_shapes(
-        position.shape[:-1], orientation.shape[:-1], size.shape[:-1], shape.shape, *_leading(call, columns)
-    )
-    meshes, choice = _meshes_of(shape)
-    if choice is not None:
-        choice = _flattened(choice, lead, Kind.INTEGER)
-    placed = [
-        _flattened(column, lead, kind)
-        for column, kind in zip((position, orientation, size), call.kinds[:3], strict=True)
-    ]
-    parameters = [
-        _flattened(column, lead, kind) for column, kind in zip(columns, call.kinds[4:], strict=True)
-    ]
-    body = Body(meshes, choice, Poses(*placed))
-    inside = call.payload.region.contains_bodies(body, int(np.prod(lead)), *parameters)
-    return np.asarray(inside, dtype=np.bool_).reshape(lead)
-
-
-def _leading(call: Call, columns: Sequence[Column]) -> list[tuple[int, ...]]:
-    """Shapes of the parameters' columns without the components of vectors."""
-    kinds = call.kinds[-len(columns) :] if columns else ()
-    return [
-        column.shape[: column.ndim - len(kind.trailing)] for column, kind in zip(columns, kinds, strict=True)
-    ]
-
-
-def _flattened(column: Column, lead: tuple[int, ...], kind: Kind) -> Column:
-    """A column of members and lanes as one of lanes; what is the same everywhere stays a single row."""
-    trailing = column.shape[column.ndim - len(kind.trailing) :]
-    if column.size == int(np.prod(trailing)):
-        return column.reshape(1, *trailing)
-    return np.ascontiguousarray(np.broadcast_to(column, (*lead, *trailing))).reshape(-1, *trailing)
+def _contains_body(call: Call, *columns: Column) -> Column:
+    stack = Stack(call, columns)
+    inside = call.payload.region.contains_bodies(stack.body(0), stack.rows, *stack.columns(4))
+    return stack.restored(np.asarray(inside, dtype=np.bool_))
 
 
 _CONTAINS_BODY = Operation(
@@ -547,8 +492,6 @@ __all__ = [
     "Points",
     "Region",
     "Workspace",
-    "body_of",
-    "body_operands",
     "everywhere",
     "nowhere",
     "unsupported",

@@ -1,6 +1,7 @@
 """Regions that belong to an object: the space it fills, and the sides of its surface."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
 
@@ -10,13 +11,12 @@ from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import Call, Operation, always
 from scenic.runtime.geometry import body_points, containment, distance, projection, surface
 from scenic.runtime.geometry.collision import Body, collide
-from scenic.runtime.regions.base import Mask, Points, Region, body_of, body_operands, unsupported
+from scenic.runtime.geometry.surface import Side
+from scenic.runtime.regions.base import Mask, Points, Region, unsupported
+from scenic.runtime.regions.stacked import Stack, body_of, body_operands
 from scenic.runtime.values import Random, apply, to_vector, uniform, vector
 
-Side = tuple[int, int]
-"""Axis of the world (0 to 2) and sign."""
-
-SIDES: Mapping[str, Side | None] = MappingProxyType(
+SIDES: Mapping[str, Side] = MappingProxyType(
     {
         "surface": None,
         "right": (0, 1),
@@ -117,8 +117,7 @@ class OccupiedSpace(Region):
 def _landing_or_inside(call: Call, point: Column, direction: Column, *columns: Column) -> Column:
     body = body_of(*columns)
     lanes = _rows(point, direction, *columns)
-    _, landed = projection.project(body, None, 0.0, point, direction, lanes)
-    faces, _ = projection.project(body, None, 0.0, point, direction, lanes)
+    faces, landed = projection.project(body, None, 0.0, point, direction, lanes)
     inside = np.broadcast_to(containment.contains_points(body, point), lanes)
     call.reject((faces < 0) & ~inside)
     return np.where(inside[:, np.newaxis], point, landed)
@@ -200,6 +199,14 @@ _INTERSECT = Operation(
 )
 
 
+@dataclass(frozen=True, slots=True)
+class Facing:
+    """Which faces of a surface are meant: all, or those whose unit normal passes the threshold on a side's axis."""
+
+    side: Side = None
+    threshold: float = 0.0
+
+
 class SideSurface(Region):
     """The faces of an object's surface that look along one direction of the world, or the whole surface.
 
@@ -216,69 +223,78 @@ class SideSurface(Region):
         if isinstance(thresholds, Random):
             raise unsupported("a random `sideComponentThresholds`")
         super().__init__(*body_operands(thing), name=f"{side} surface" if SIDES[side] else side)
-        self.side = SIDES[side]
-        self.threshold = 0.0
-        if self.side is not None:
-            axis, sign = self.side
+        self.facing = Facing(SIDES[side])
+        if self.facing.side is not None:
+            axis, sign = self.facing.side
             lower, upper = thresholds[axis]
-            self.threshold = float(upper if sign > 0 else -lower)
+            self.facing = Facing((axis, sign), float(upper if sign > 0 else -lower))
 
     def uniform_placement(self) -> tuple[Any, Any]:
-        face = apply(_FACE, uniform(), *self.parameters, payload=self)
+        face = apply(_FACE, uniform(), *self.parameters, payload=self.facing)
         point = apply(_FACE_POINT, face, uniform(), uniform(), *self.parameters)
         return point, apply(_FACE_ORIENTATION, face, *self.parameters)
 
     def project(self, point: Any, direction: Any) -> tuple[Any, Any]:
         place = to_vector(point)
         if direction is None:
-            way = apply(_MEAN_NORMAL, *self.parameters, payload=self)
+            way = apply(_MEAN_NORMAL, *self.parameters, payload=self.facing)
         else:
             way = to_vector(direction, "`onDirection`")
-        face = apply(_LANDING_FACE, place, way, *self.parameters, payload=self)
+        face = apply(_LANDING_FACE, place, way, *self.parameters, payload=self.facing)
         landed = apply(_LANDING_POINT, face, place, way, *self.parameters)
         return landed, apply(_FACE_ORIENTATION, face, *self.parameters)
 
     def contains_points(self, points: Points, *columns: Column) -> Mask:
         body = body_of(*columns)
-        return projection.near_surface(body, self.side, self.threshold, points, max(len(points), len(body)))
+        return projection.near_surface(
+            body, self.facing.side, self.facing.threshold, points, max(len(points), len(body))
+        )
 
     def draw_points(self, uniforms: Column, keys: Column, *columns: Column) -> tuple[Points, Mask | None]:
         body = body_of(*columns)
-        faces = surface.draw_faces(body, self.side, self.threshold, uniforms[0], uniforms.shape[1])
+        faces = surface.draw_faces(
+            body, self.facing.side, self.facing.threshold, uniforms[0], uniforms.shape[1]
+        )
         return surface.face_points(body, np.maximum(faces, 0), uniforms[1], uniforms[2]), faces >= 0
 
     def distances(self, points: Points, *columns: Column) -> Column:
-        return body_points.distances_to_surface(body_of(*columns), points, self.side, self.threshold)
+        return body_points.distances_to_surface(
+            body_of(*columns), points, self.facing.side, self.facing.threshold
+        )
 
     def orientations(self, points: Points, *columns: Column) -> Column:
         body = body_of(*columns)
         return surface.face_orientations(
-            body, body_points.nearest_faces(body, points, self.side, self.threshold)
+            body, body_points.nearest_faces(body, points, self.facing.side, self.facing.threshold)
         )
 
     def box(self, *columns: Column) -> tuple[Points, Points]:
         return body_points.bounds(body_of(*columns))
 
     def sizes(self, *columns: Column) -> Column:
-        return body_points.areas(body_of(*columns), self.side, self.threshold)
+        return body_points.areas(body_of(*columns), self.facing.side, self.facing.threshold)
 
     def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
         return np.zeros(lanes, dtype=np.bool_)
 
 
-def _face(call: Call, draw: Column, *columns: Column) -> Column:
-    region: SideSurface = call.payload
-    faces = surface.draw_faces(body_of(*columns), region.side, region.threshold, draw, _rows(draw, *columns))
-    call.reject(faces < 0)
-    return faces.astype(np.int64)
+def _face(call: Call, *columns: Column) -> Column:
+    stack, facing = Stack(call, columns), call.payload
+    faces = surface.draw_faces(stack.body(1), facing.side, facing.threshold, stack.column(0), stack.rows)
+    result = stack.restored(faces.astype(np.int64))
+    call.reject(result < 0)
+    return result
 
 
-def _face_point(_call: Call, face: Column, first: Column, second: Column, *columns: Column) -> Column:
-    return surface.face_points(body_of(*columns), face, first, second)
+def _face_point(call: Call, *columns: Column) -> Column:
+    stack = Stack(call, columns)
+    points = surface.face_points(stack.body(3), stack.column(0), stack.column(1), stack.column(2))
+    return stack.restored(points)
 
 
-def _face_orientation(_call: Call, face: Column, *columns: Column) -> Column:
-    return surface.face_orientations(body_of(*columns), face)
+def _face_orientation(call: Call, *columns: Column) -> Column:
+    stack = Stack(call, columns)
+    return stack.restored(surface.face_orientations(stack.body(1), stack.column(0)))
 
 
 def _may_have_no_face(operands: Sequence[Any], payload: Any) -> bool:
@@ -296,28 +312,38 @@ _FACE = Operation(
     _face,
     "A face of a side, by area; the candidate is rejected where the side has none.",
     rejects=_may_have_no_face,
+    stacks=True,
 )
-_FACE_POINT = Operation("face point", always(Kind.VECTOR), _face_point, "A uniform point of a face.")
+_FACE_POINT = Operation(
+    "face point", always(Kind.VECTOR), _face_point, "A uniform point of a face.", stacks=True
+)
 _FACE_ORIENTATION = Operation(
-    "face orientation", always(Kind.ORIENTATION), _face_orientation, "The preferred orientation of a face."
+    "face orientation",
+    always(Kind.ORIENTATION),
+    _face_orientation,
+    "The preferred orientation of a face.",
+    stacks=True,
 )
 
 
 def _mean_normal(call: Call, *columns: Column) -> Column:
-    region: SideSurface = call.payload
-    return surface.mean_normals(body_of(*columns), region.side, region.threshold, _rows(*columns))
+    stack, facing = Stack(call, columns), call.payload
+    return stack.restored(surface.mean_normals(stack.body(0), facing.side, facing.threshold, stack.rows))
 
 
-def _landing_face(call: Call, point: Column, direction: Column, *columns: Column) -> Column:
-    region: SideSurface = call.payload
-    lanes = _rows(point, direction, *columns)
-    faces, _ = projection.project(body_of(*columns), region.side, region.threshold, point, direction, lanes)
-    call.reject(faces < 0)
-    return faces.astype(np.int64)
+def _landing_face(call: Call, *columns: Column) -> Column:
+    stack, facing = Stack(call, columns), call.payload
+    point, direction = stack.column(0), stack.column(1)
+    faces, _ = projection.project(stack.body(2), facing.side, facing.threshold, point, direction, stack.rows)
+    result = stack.restored(faces.astype(np.int64))
+    call.reject(result < 0)
+    return result
 
 
-def _landing_point(_call: Call, face: Column, point: Column, direction: Column, *columns: Column) -> Column:
-    return projection.landing_points(body_of(*columns), face, point, direction)
+def _landing_point(call: Call, *columns: Column) -> Column:
+    stack = Stack(call, columns)
+    landed = projection.landing_points(stack.body(3), stack.column(0), stack.column(1), stack.column(2))
+    return stack.restored(landed)
 
 
 def _rows(*columns: Column) -> int:
@@ -326,7 +352,11 @@ def _rows(*columns: Column) -> int:
 
 
 _MEAN_NORMAL = Operation(
-    "mean normal", always(Kind.VECTOR), _mean_normal, "The direction in which things land on a side."
+    "mean normal",
+    always(Kind.VECTOR),
+    _mean_normal,
+    "The direction in which things land on a side.",
+    stacks=True,
 )
 _LANDING_FACE = Operation(
     "landing face",
@@ -334,7 +364,8 @@ _LANDING_FACE = Operation(
     _landing_face,
     "The face of a side where a point lands; the candidate is rejected where it misses.",
     rejects=True,
+    stacks=True,
 )
 _LANDING_POINT = Operation(
-    "landing point", always(Kind.VECTOR), _landing_point, "Where a point lands on a face."
+    "landing point", always(Kind.VECTOR), _landing_point, "Where a point lands on a face.", stacks=True
 )

@@ -5,7 +5,7 @@ outside where that box lies beside the region's bounding box, or farther from th
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -29,7 +29,9 @@ class Containment:
     """Payload of the operation: the region, and the unit mesh of the body where that is fixed."""
 
     region: "Region"
-    mesh: Mesh | None
+    mesh: Mesh | None = field(
+        compare=False
+    )  # follows from the operands; bodies of different meshes are alike
 
 
 def containment_bounds(payload: Containment, *operands: Bounds | None) -> Bounds | None:

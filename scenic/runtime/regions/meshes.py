@@ -13,8 +13,9 @@ from scenic.runtime.geometry import body_points, distance
 from scenic.runtime.geometry.loading import load_mesh
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.solids import proper_volume
-from scenic.runtime.regions.base import Mask, Points, Region, body_of
-from scenic.runtime.regions.bodies import OccupiedSpace, SideSurface
+from scenic.runtime.regions.base import Mask, Points, Region
+from scenic.runtime.regions.bodies import Facing, OccupiedSpace, SideSurface
+from scenic.runtime.regions.stacked import body_of
 from scenic.runtime.shapes import Shape, ShapeSource
 from scenic.runtime.values import Orientation, is_number, operate, to_orientation, to_vector, vector
 
@@ -179,7 +180,7 @@ class MeshSurfaceRegion(SideSurface):
 
     def _finish(self, operands: tuple[Any, ...], orientation: Any, name: str | None) -> None:
         Region.__init__(self, *operands, name=name)
-        self.side, self.threshold = None, 0.0
+        self.facing = Facing()
         self.orientation = RegionField(self) if orientation is True else orientation
         self.has_orientation = self.orientation is not None
 

@@ -14,7 +14,7 @@ from scenic.graph.operation import FAULT, OK, REJECTED
 from scenic.language.spans import Span
 from scenic.runtime.geometry.collision import Body, Collider, collide
 from scenic.runtime.geometry.crowd import Crowd
-from scenic.runtime.regions.base import body_of
+from scenic.runtime.regions.stacked import body_of
 
 Mask = NDArray[np.bool_]
 

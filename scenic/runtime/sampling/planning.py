@@ -21,8 +21,9 @@ from scenic.runtime.geometry.collision import collide
 from scenic.runtime.geometry.ragged import distinct
 from scenic.runtime.objects import Object
 from scenic.runtime.program import Program, Requirement
-from scenic.runtime.regions.base import Everywhere, Workspace, body_operands
+from scenic.runtime.regions.base import Everywhere, Region, Workspace
 from scenic.runtime.regions.choice import as_region
+from scenic.runtime.regions.stacked import body_operands
 from scenic.runtime.samples import dependencies
 from scenic.runtime.sampling.checks import (
     BUILT_IN,
@@ -206,6 +207,7 @@ def _sizes(program: Program) -> list[Check]:
 
 def _containment(program: Program, workspace: Workspace) -> list[NodeCheck]:
     checks: list[NodeCheck] = []
+    footprints: dict[Region, Region] = {}  # one for each region, so that alike checks are made together
     for item in program.objects:
         container = item.regionContainedIn
         region = as_region(workspace if container is None else container)
@@ -217,8 +219,10 @@ def _containment(program: Program, workspace: Workspace) -> list[NodeCheck]:
             raise InvalidScenarioError(
                 f"`regionContainedIn` must be a region, not {container!r}", span=_place(program, item)[0]
             )
+        if region not in footprints:
+            footprints[region] = region.footprint
         checks += _required(
-            truth(region.footprint.containsObject(item)),
+            truth(footprints[region].containsObject(item)),
             f"{_name(item)} inside its container",
             _place(program, item),
             f"this {_name(item)} is not inside its container, {region!r}",

@@ -1,0 +1,84 @@
+"""Bodies as operands of operations, and calls over members and lanes as calls over lanes.
+
+Geometry works on lanes: columns with one leading dimension. An operation that stacks gets the columns of several alike
+nodes at once, with a leading dimension for these members; their members and lanes become lanes here, and what comes
+out of the geometry gets its shape back.
+"""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from scenic.graph.kinds import Column, Kind
+from scenic.graph.operation import Call
+from scenic.runtime.geometry.bodies import Body
+from scenic.runtime.geometry.mesh import Mesh
+from scenic.runtime.geometry.poses import Indices, Poses
+from scenic.runtime.values import to_scalar, vector
+
+
+def body_operands(thing: Any) -> tuple[Any, Any, Any, Any]:
+    """Position, orientation, size and shape of an object: the operands of operations on its body."""
+    size = vector(to_scalar(thing.width), to_scalar(thing.length), to_scalar(thing.height))
+    return thing.position, thing.orientation, size, thing.shape
+
+
+def body_of(position: Column, orientation: Column, size: Column, shape: Column) -> Body:
+    """The body of an object over lanes, from the columns of `body_operands`."""
+    meshes, choice = _meshes_of(shape)
+    return Body(meshes, choice, Poses(position, orientation, size))
+
+
+def _meshes_of(shape: Column) -> tuple[tuple[Mesh, ...], Indices | None]:
+    """The different meshes of shapes, and which of them each has; ``None`` where there is one mesh."""
+    numbers: dict[Mesh, int] = {}
+    choice = [numbers.setdefault(item.mesh, len(numbers)) for item in shape.ravel().tolist()]
+    if len(numbers) == 1:
+        return tuple(numbers), None
+    return tuple(numbers), np.array(choice, dtype=np.intp).reshape(shape.shape)
+
+
+class Stack:
+    """The columns of a call, whose members and lanes are taken for lanes.
+
+    Attributes:
+        rows: the number of lanes so taken; 1 where all columns are the same everywhere.
+
+    """
+
+    def __init__(self, call: Call, columns: Sequence[Column]) -> None:
+        self._columns = columns
+        self._kinds = call.kinds
+        leads = (
+            column.shape[: column.ndim - len(kind.trailing)]
+            for column, kind in zip(columns, call.kinds, strict=True)
+        )
+        self._lead = np.broadcast_shapes(*leads)
+        self.rows = int(np.prod(self._lead))
+
+    def column(self, position: int) -> Column:
+        """A column of ``rows`` lanes; of one row where it is the same everywhere."""
+        return self._flat(self._columns[position], self._kinds[position])
+
+    def columns(self, start: int) -> list[Column]:
+        """The columns from one position on."""
+        return [self.column(position) for position in range(start, len(self._columns))]
+
+    def body(self, start: int) -> Body:
+        """The body of `body_operands` whose columns begin at a position."""
+        meshes, choice = _meshes_of(self._columns[start + 3])
+        if choice is not None:
+            choice = self._flat(choice, Kind.INTEGER)
+        return Body(meshes, choice, Poses(*(self.column(start + part) for part in range(3))))
+
+    def restored(self, column: Column) -> Column:
+        """A column of ``rows`` lanes or one as the call's members and lanes."""
+        trailing = column.shape[1:]
+        return np.broadcast_to(column, (self.rows, *trailing)).reshape(*self._lead, *trailing)
+
+    def _flat(self, column: Column, kind: Kind) -> Column:
+        trailing = column.shape[column.ndim - len(kind.trailing) :]
+        if column.size == int(np.prod(trailing)):
+            return column.reshape(1, *trailing)
+        return np.ascontiguousarray(np.broadcast_to(column, (*self._lead, *trailing))).reshape(-1, *trailing)
