@@ -84,6 +84,39 @@ def test_a_killed_run_goes_on_to_the_same_bytes(folder: Path) -> None:
     assert not part.exists()
 
 
+def children(parent: int) -> list[int]:
+    """The processes that a process has started."""
+    try:
+        return [int(pid) for pid in Path(f"/proc/{parent}/task/{parent}/children").read_text().split()]
+    except FileNotFoundError:
+        return []
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="finds processes in /proc")
+def test_killed_workers_change_nothing(folder: Path) -> None:
+    rng = random.Random(11)
+    target = folder / "workers.jsonl"
+    kills = 0
+    while kills < 10:
+        target.unlink(missing_ok=True)
+        with subprocess.Popen(
+            command("-j", 2, "-o", target.name), cwd=folder, stderr=subprocess.PIPE, text=True
+        ) as process:
+            for _ in range(3):  # as often as a piece may lose its process
+                while process.poll() is None and not children(process.pid):
+                    time.sleep(0.002)
+                time.sleep(rng.random() * 0.1)
+                workers = children(process.pid)
+                if process.poll() is None and workers:
+                    os.kill(rng.choice(workers), signal.SIGKILL)
+                    kills += 1
+            assert process.stderr is not None
+            shown = process.stderr.read()
+        assert process.returncode == 0, shown
+        assert target.read_bytes() == whole(folder)
+
+
 def test_a_torn_line_is_made_again(folder: Path) -> None:
     rows = whole(folder).splitlines(keepends=True)
     target = folder / "torn.jsonl"
