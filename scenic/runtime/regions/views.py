@@ -24,10 +24,11 @@ from scenic.runtime.geometry.visibility.regions import (
     view_volume,
 )
 from scenic.runtime.geometry.visibility.views import CORNERS, Views
-from scenic.runtime.regions.base import Everywhere, Mask, Points, Region, Workspace, body_of
+from scenic.runtime.regions.base import Everywhere, Mask, Points, Region, Workspace
 from scenic.runtime.regions.bodies import OccupiedSpace
 from scenic.runtime.regions.composite import DifferenceRegion, IntersectionRegion
 from scenic.runtime.regions.planar import CircularRegion
+from scenic.runtime.regions.stacked import body_of
 from scenic.runtime.sight import view_operands
 from scenic.runtime.values import apply, operate, to_scalar, vector
 
