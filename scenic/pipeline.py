@@ -10,7 +10,7 @@ from types import CodeType, FrameType, ModuleType, TracebackType
 from typing import Any
 
 from scenic.analysis.contraction import contract
-from scenic.analysis.facts import Condition
+from scenic.analysis.facts import Fact
 from scenic.compiler import loader
 from scenic.compiler.compile import compile_text
 from scenic.compiler.tracebacks import SOURCE_NAME, Locator, locate, raised_at
@@ -137,12 +137,12 @@ def deep_check(path: str | Path) -> tuple[Diagnostic, ...]:
     )
 
 
-def conditions(scenario: Scenario) -> list[Condition]:
+def conditions(scenario: Scenario) -> list[Fact]:
     """The hard requirements of a scenario, as analysis reads them: those of the program, then containment."""
     outline = scenario.outline
     return [
-        *(Condition(item.condition, item.label, item.span) for item in outline.requirements),
-        *(Condition(item.node, item.label, item.span) for item in outline.containment),
+        *(Fact(item.condition, item.label, item.span) for item in outline.requirements),
+        *(Fact(item.node, item.label, item.span) for item in outline.containment),
     ]
 
 

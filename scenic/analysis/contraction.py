@@ -16,7 +16,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from scenic.analysis.facts import Condition
+from scenic.analysis.facts import Fact
 from scenic.graph import bounding
 from scenic.graph.bounds import Bounds, Floats
 from scenic.graph.domain import Domain
@@ -58,15 +58,15 @@ class Pruning:
     """
 
     domain: Domain
-    impossible: tuple[Condition, ...]
+    impossible: tuple[Fact, ...]
 
 
-def prune(graph: Graph, conditions: Sequence[Condition]) -> Domain:
+def prune(graph: Graph, conditions: Sequence[Fact]) -> Domain:
     """The part of the cube in which the conditions can hold; the whole cube where they cannot hold at all."""
     return contract(graph, conditions).domain
 
 
-def contract(graph: Graph, conditions: Sequence[Condition]) -> Pruning:
+def contract(graph: Graph, conditions: Sequence[Fact]) -> Pruning:
     """Narrow the cube of ``graph`` to where all conditions can hold. Never samples."""
     network = _Network(graph, conditions)
     whole = Domain.whole(graph.dimension)
@@ -83,7 +83,7 @@ def contract(graph: Graph, conditions: Sequence[Condition]) -> Pruning:
     return Pruning(union if union.volume < GAIN * hull.volume else hull, ())
 
 
-def _impossible_alone(graph: Graph, conditions: Sequence[Condition]) -> tuple[Condition, ...]:
+def _impossible_alone(graph: Graph, conditions: Sequence[Fact]) -> tuple[Fact, ...]:
     """The conditions that are impossible by themselves, or all of them where it takes several."""
     whole = Domain.whole(graph.dimension)
     alone = []
@@ -117,7 +117,7 @@ def _moved(before: _Boxes, after: _Boxes, alive: Mask) -> bool:
 class _Network:
     """The nodes below some conditions, in the order of evaluation."""
 
-    def __init__(self, graph: Graph, conditions: Sequence[Condition]) -> None:
+    def __init__(self, graph: Graph, conditions: Sequence[Fact]) -> None:
         self.conditions = [condition.node for condition in conditions]
         self.order = Graph(self.conditions).nodes
         self.axes = {node: graph.axes[node] for node in self.order if node.is_axis}

@@ -7,7 +7,7 @@ from scenic.language.spans import Span
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Condition:
+class Fact:
     """A hard requirement whose truth value is a node.
 
     ``label`` names it in reports (``"requirement on line 3"``); ``span`` is its place in the program.

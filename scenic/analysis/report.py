@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from typing import Final
 
 from scenic.analysis.contraction import contract
-from scenic.analysis.facts import Condition
+from scenic.analysis.facts import Fact
 from scenic.analysis.smt import Contradiction, Support, Verdict, judge
 from scenic.graph.node import Graph, Node
 from scenic.graph.operations import TABLE
@@ -14,7 +14,7 @@ from scenic.language.spans import Span
 _MEND: Final = "no scene can meet all of the marked places; change one of them"
 
 
-def prove(graph: Graph, conditions: Sequence[Condition]) -> tuple[Diagnostic, ...]:
+def prove(graph: Graph, conditions: Sequence[Fact]) -> tuple[Diagnostic, ...]:
     """Contradictions among the conditions (SC700) and conditions that always hold (SC701). Never samples.
 
     Each diagnostic lacks the file's name, which the caller knows.
@@ -32,14 +32,14 @@ def prove(graph: Graph, conditions: Sequence[Condition]) -> tuple[Diagnostic, ..
     return tuple(found)
 
 
-def _place(condition: Condition) -> tuple[bool, Span]:
+def _place(condition: Fact) -> tuple[bool, Span]:
     """Sorts in program order; conditions of no place come last, in the order given."""
     if condition.span is None:
         return True, Span(1, 0, 1, 0)
     return False, condition.span
 
 
-def _by_intervals(graph: Graph, conditions: Sequence[Condition]) -> tuple[Condition, ...]:
+def _by_intervals(graph: Graph, conditions: Sequence[Fact]) -> tuple[Fact, ...]:
     """A minimal set of conditions that intervals prove impossible; empty where there is none.
 
     Intervals know functions that the solver does not, such as sine.
@@ -108,7 +108,7 @@ def _options(choice: Node, nodes: Sequence[Node]) -> list[str]:
     return []
 
 
-def _tautology(condition: Condition) -> Diagnostic:
+def _tautology(condition: Fact) -> Diagnostic:
     return Diagnostic(
         "SC701",
         "this requirement always holds",

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from scenic.analysis.facts import Condition
+from scenic.analysis.facts import Fact
 from scenic.analysis.terms import Questions, SolverTerms, Term
 from scenic.graph.kinds import Kind
 from scenic.graph.node import Graph, Node
@@ -29,7 +29,7 @@ class Support:
 class Contradiction:
     """Conditions and supports that cannot hold together, while each part of them can; in the order they were given."""
 
-    conditions: tuple[Condition, ...]
+    conditions: tuple[Fact, ...]
     supports: tuple[Support, ...]
 
 
@@ -38,11 +38,11 @@ class Verdict:
     """What the solver found out about a set of conditions."""
 
     contradictions: tuple[Contradiction, ...]
-    tautologies: tuple[Condition, ...]
+    tautologies: tuple[Fact, ...]
     encoding: "Encoding"
 
 
-def judge(conditions: Sequence[Condition]) -> Verdict:
+def judge(conditions: Sequence[Fact]) -> Verdict:
     """Find the contradictions among conditions, and those that hold in every scene.
 
     Conditions that are impossible by themselves are reported first and alone; then, as long as the rest cannot hold

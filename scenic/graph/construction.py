@@ -14,7 +14,7 @@ from scenic.graph.node import Consumers, Node
 from scenic.graph.operation import Operation
 
 
-def apply(
+def make_node(
     operation: Operation, operands: Sequence[Node], payload: Any = None, span: Hashable | None = None
 ) -> Node:
     """The node of ``operation`` over ``operands``, of the kind that the operation's rule gives."""

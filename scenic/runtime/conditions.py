@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from scenic.graph.construction import apply
+from scenic.graph.construction import make_node
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.node import Node
 from scenic.graph.operation import Call, Operation, always
@@ -139,12 +139,12 @@ def truth(value: Any) -> Node:
         return node
     if node.is_constant:
         return as_node(bool(node.value))
-    return apply(TABLE["truth"], [node], span=here())
+    return make_node(TABLE["truth"], [node], span=here())
 
 
 def connect(operation: str, conditions: Sequence[Node]) -> Node:
     """``and``, ``or`` or ``not`` of conditions."""
-    return apply(TABLE[operation], conditions, span=here())
+    return make_node(TABLE[operation], conditions, span=here())
 
 
 def _truths(call: Call, *columns: Column) -> Column:

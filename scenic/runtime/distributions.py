@@ -8,7 +8,7 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Final
 
-from scenic.graph.construction import apply as apply_node
+from scenic.graph.construction import make_node
 from scenic.graph.kinds import Kind
 from scenic.graph.node import axis, constant
 from scenic.graph.operations import TABLE
@@ -20,7 +20,7 @@ from scenic.runtime.values import (
     as_node,
     as_value,
     describe,
-    evaluate,
+    folded,
     is_number,
     is_random,
     to_scalar,
@@ -30,7 +30,7 @@ _MOST_EXACT: Final = 2**61
 """Whole numbers of smaller size than this fit the integers of columns."""
 
 
-def draw(operation: str, *operands: Any, payload: Any = None) -> Any:
+def primitive(operation: str, *operands: Any, payload: Any = None) -> Any:
     """A primitive random value: the operation's first operand is an axis of its own.
 
     In a simulation it is drawn at once. Raises `InvalidScenarioError` inside a requirement.
@@ -43,26 +43,26 @@ def draw(operation: str, *operands: Any, payload: Any = None) -> Any:
             help="draw the value before the `require` statement and use it there",
         )
     if is_lazy(operands):
-        return defer(draw, operation, *operands, payload=payload)
+        return defer(primitive, operation, *operands, payload=payload)
     nodes = [as_node(operand) for operand in operands]
     uniform = uniform_draw()
     entry = TABLE[operation]
     if uniform is not None:
         first = constant(uniform, Kind.SCALAR, uniform)
-        return evaluate(entry, [first, *nodes], payload)
+        return folded(entry, [first, *nodes], payload)
     span = here()
-    node = apply_node(entry, [axis(span, next_address()), *nodes], payload, span)
-    return as_value(node, lambda: draw(operation, *operands, payload=payload))
+    node = make_node(entry, [axis(span, next_address()), *nodes], payload, span)
+    return as_value(node, lambda: primitive(operation, *operands, payload=payload))
 
 
 def Range(low: Any, high: Any) -> Any:
     """A real number, uniform between two ends (in either order; they may be random)."""
-    return draw("range", to_scalar(low, "`Range`"), to_scalar(high, "`Range`"))
+    return primitive("range", to_scalar(low, "`Range`"), to_scalar(high, "`Range`"))
 
 
 def Normal(mean: Any, stdDev: Any) -> Any:
     """A real number, normally distributed."""
-    return draw("normal", to_scalar(mean, "`Normal`"), to_scalar(stdDev, "`Normal`"))
+    return primitive("normal", to_scalar(mean, "`Normal`"), to_scalar(stdDev, "`Normal`"))
 
 
 def TruncatedNormal(mean: Any, stdDev: Any, low: Any, high: Any) -> Any:
@@ -76,7 +76,7 @@ def TruncatedNormal(mean: Any, stdDev: Any, low: Any, high: Any) -> Any:
             span=here(),
             help="give the lower end first",
         )
-    return draw(
+    return primitive(
         "truncated normal",
         to_scalar(mean, "`TruncatedNormal`"),
         to_scalar(stdDev, "`TruncatedNormal`"),
@@ -87,7 +87,7 @@ def TruncatedNormal(mean: Any, stdDev: Any, low: Any, high: Any) -> Any:
 def DiscreteRange(low: Any, high: Any, weights: Sequence[float] | None = None) -> Any:
     """An integer between two ends (included), uniform, or with a weight for each."""
     if weights is None:
-        return draw("discrete range", _end(low), _end(high))
+        return primitive("discrete range", _end(low), _end(high))
     ends = []
     for end in (low, high):
         if is_random(end) or not is_number(end) or int(end) != end:
@@ -106,7 +106,7 @@ def DiscreteRange(low: Any, high: Any, weights: Sequence[float] | None = None) -
     fixed = [_weight(weight) for weight in weights]
     if not any(fixed):
         raise _nothing("DiscreteRange")
-    return draw("weighted integer", payload=(ends[0], _cumulative(fixed)))
+    return primitive("weighted integer", payload=(ends[0], _cumulative(fixed)))
 
 
 def _end(value: Any) -> Any:
@@ -145,11 +145,11 @@ def _choose(options: Sequence[Any], weights: Sequence[float], name: str) -> Any:
     possible = [(option, weight) for option, weight in zip(options, weights, strict=True) if weight > 0]
     if not possible:
         raise _nothing(name)
-    index = draw("choice", payload=_cumulative([weight for _, weight in possible]))
+    index = primitive("choice", payload=_cumulative([weight for _, weight in possible]))
     chosen = [option for option, _ in possible]
     if not isinstance(index, Random):
         return chosen[index]
-    node = apply_node(TABLE["select"], [as_node(index), *map(as_node, chosen)], span=here())
+    node = make_node(TABLE["select"], [as_node(index), *map(as_node, chosen)], span=here())
     # Drawing again keeps the options and draws only which one.
     return as_value(node, lambda: _choose(options, weights, name))
 

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from scenic.graph.construction import apply
+from scenic.graph.construction import make_node
 from scenic.graph.kinds import Column, Kind, boxed
 from scenic.graph.node import Node, key
 from scenic.graph.operation import OK, Call, Operation, always
@@ -59,7 +59,7 @@ def later(
         reads += context.objects
     operands = (own, *dependencies(reads, seen))
     code = OpaqueCode(function, tuple(args), keywords, operands, seen, context)
-    return apply(operation, operands, code, here())
+    return make_node(operation, operands, code, here())
 
 
 def call_later(function: Callable[..., Any], /, *args: Any, **keywords: Any) -> Any:

@@ -15,7 +15,7 @@ from pathlib import Path
 from types import CodeType, MappingProxyType, ModuleType
 from typing import Any, Protocol
 
-from scenic.graph.construction import apply
+from scenic.graph.construction import make_node
 from scenic.graph.kinds import Kind
 from scenic.graph.operations import TABLE
 from scenic.language.errors import (
@@ -414,7 +414,7 @@ class Prelude(Dynamics):
         node = test.build()
         if node.is_constant:
             return then() if node.value else otherwise()
-        return as_value(apply(TABLE["if"], [node, as_node(then()), as_node(otherwise())], span=here()))
+        return as_value(make_node(TABLE["if"], [node, as_node(then()), as_node(otherwise())], span=here()))
 
 
 class Loader:

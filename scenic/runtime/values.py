@@ -115,7 +115,7 @@ class Random(Arithmetic, Hooks):
         return attribute(self, name)
 
     def __call__(self, *args: Any, **kwargs: Any) -> Any:
-        return call(self, args, kwargs)
+        return called(self, args, kwargs)
 
     # What scripts ask of a law
 
@@ -472,10 +472,10 @@ def as_node(value: Any) -> Node:
     if isinstance(value, Random):
         return value.node
     if isinstance(value, tuple | list) and is_random(value):
-        return construction.apply(_container(value), [as_node(item) for item in value], span=here())
+        return construction.make_node(_container(value), [as_node(item) for item in value], span=here())
     if isinstance(value, slice) and is_random(value):
         ends = [as_node(end) for end in (value.start, value.stop, value.step)]
-        return construction.apply(_SLICE, ends, span=here())
+        return construction.make_node(_SLICE, ends, span=here())
     kind = kind_of(value)
     return constant(value, kind, CODEC.encode(kind, value))
 
@@ -525,8 +525,8 @@ def apply(operation: Operation, *operands: Any, payload: Any = None) -> Any:
         return defer(apply, operation, *operands, payload=payload)
     nodes = [as_node(operand) for operand in operands]
     if operation.pure and all(node.is_constant for node in nodes):
-        return evaluate(operation, nodes, payload)
-    return as_value(construction.apply(operation, nodes, payload, here()))
+        return folded(operation, nodes, payload)
+    return as_value(construction.make_node(operation, nodes, payload, here()))
 
 
 def _at_once(scalar: Callable[..., Any], payload: Any, operands: Sequence[Any]) -> Any:
@@ -546,7 +546,7 @@ def _at_once(scalar: Callable[..., Any], payload: Any, operands: Sequence[Any]) 
     return result
 
 
-def evaluate(operation: Operation, nodes: Sequence[Node], payload: Any) -> Any:
+def folded(operation: Operation, nodes: Sequence[Node], payload: Any) -> Any:
     """The value of an operation on constants; raises what a sample of it would raise."""
     kind = operation.kind(nodes, payload)
     plain = all(node.kind.is_number for node in nodes) or kind.is_boxed
@@ -601,7 +601,7 @@ def attribute(value: Random, name: str) -> Any:
     return Random.later(getattr, value, name) if holds_instances(node) else apply(_GETATTR, value, name)
 
 
-def call(value: Random, args: Sequence[Any], kwargs: dict[str, Any]) -> Any:
+def called(value: Random, args: Sequence[Any], kwargs: dict[str, Any]) -> Any:
     """The result of calling a random value. A choice among functions calls each with the arguments."""
     node = value.node
     if node.operation is TABLE["select"]:
@@ -632,7 +632,7 @@ def _traced(function: Any, args: Sequence[Any], kwargs: dict[str, Any]) -> Node:
     try:
         return as_node(function(*args, **kwargs))
     except Exception as error:  # noqa: BLE001 - whatever the call raises
-        return construction.apply(_MISSING, (), error, here())
+        return construction.make_node(_MISSING, (), error, here())
 
 
 def _call_in_lanes(function: Node, args: Sequence[Any], kwargs: dict[str, Any]) -> Node:
@@ -643,7 +643,7 @@ def _call_in_lanes(function: Node, args: Sequence[Any], kwargs: dict[str, Any]) 
         return target(*values[:positional], **dict(zip(names, values[positional:], strict=True)))
 
     operation = Operation("call", always(Kind.OTHER), by_lane, "A call of Python's own.", python=invoke)
-    return construction.apply(operation, operands, span=here())
+    return construction.make_node(operation, operands, span=here())
 
 
 def _attribute_of_option(option: Node, name: str) -> Node:
@@ -655,7 +655,7 @@ def _attribute_of_option(option: Node, name: str) -> Node:
     try:
         return as_node(getattr(value, name))
     except AttributeError as error:
-        return construction.apply(_MISSING, (), error, here())
+        return construction.make_node(_MISSING, (), error, here())
 
 
 def _is_computed(cls: type, name: str) -> bool:
@@ -689,7 +689,7 @@ def _with_instances(value: Any) -> bool:
 
 
 def _select(index: Node, options: Sequence[Node]) -> Any:
-    return as_value(construction.apply(TABLE["select"], [index, *options], span=here()))
+    return as_value(construction.make_node(TABLE["select"], [index, *options], span=here()))
 
 
 def _missing(call: Call) -> Any:

@@ -3,7 +3,7 @@
 import numpy as np
 from graph.programs import CODEC, batch_at, make, one_of, uniform
 
-from scenic.analysis.facts import Condition
+from scenic.analysis.facts import Fact
 from scenic.graph import node as graph
 from scenic.graph.kinds import Kind
 from scenic.graph.node import Graph
@@ -77,14 +77,12 @@ class Writer:
         return make(name, self.expression(depth), self.number())
 
 
-def conditions(seed: int, **options) -> list[Condition]:
+def conditions(seed: int, **options) -> list[Fact]:
     writer = Writer(seed, **options)
-    return [
-        Condition(writer.condition(3), f"condition {place}") for place in range(writer.rng.integers(1, 4))
-    ]
+    return [Fact(writer.condition(3), f"condition {place}") for place in range(writer.rng.integers(1, 4))]
 
 
-def accepted(nodes: Graph, points: np.ndarray, items: list[Condition]) -> np.ndarray:
+def accepted(nodes: Graph, points: np.ndarray, items: list[Fact]) -> np.ndarray:
     """Which points of the cube meet every condition."""
     batch = batch_at(nodes, points, CODEC)
     result = np.ones(len(points), dtype=bool)

@@ -7,7 +7,7 @@ from scipy import stats
 
 from analysis.random_programs import accepted, conditions
 from scenic.analysis.contraction import contract, prune
-from scenic.analysis.facts import Condition
+from scenic.analysis.facts import Fact
 from scenic.graph import construction
 from scenic.graph import node as graph
 from scenic.graph.kinds import Kind
@@ -25,7 +25,7 @@ def placed(domain, rows):
 
 def check(*nodes):
     """Prune under requirements; returns the axes' bounds, once no solution is found to be lost."""
-    items = [Condition(node, "requirement") for node in nodes]
+    items = [Fact(node, "requirement") for node in nodes]
     network = Graph(nodes)
     domain = prune(network, items)
     points = np.random.default_rng(0).random((POINTS, network.dimension))
@@ -51,7 +51,7 @@ def test_the_worked_example():
 
 def test_an_impossible_requirement_is_named():
     impossible, possible = example(9), example(2)
-    items = [Condition(possible, "possible"), Condition(impossible, "impossible")]
+    items = [Fact(possible, "possible"), Fact(impossible, "impossible")]
     found = contract(Graph([item.node for item in items]), items)
     assert [item.label for item in found.impossible] == ["impossible"]
     assert found.domain.is_whole
@@ -60,15 +60,15 @@ def test_an_impossible_requirement_is_named():
 def test_requirements_impossible_together_are_all_named():
     x = uniform(0, 1)
     items = [
-        Condition(make("greater", x, 0.7), "high"),
-        Condition(make("less", x, 0.3), "low"),
+        Fact(make("greater", x, 0.7), "high"),
+        Fact(make("less", x, 0.3), "low"),
     ]
     found = contract(Graph([item.node for item in items]), items)
     assert [item.label for item in found.impossible] == ["high", "low"]
 
 
 def test_a_false_constant_is_impossible():
-    items = [Condition(make("less", 2, 1), "false")]
+    items = [Fact(make("less", 2, 1), "false")]
     assert contract(Graph([items[0].node]), items).impossible == tuple(items)
 
 
@@ -143,7 +143,7 @@ def test_what_may_not_be_evaluated_narrows_nothing():
         make("greater", make("if", make("less", x, 0.0), 1.0, root), 0.1),
         make("greater", make("select", make("int", make("greater", x, 0.0)), 1.0, root), 0.1),
     ):
-        items = [Condition(node, "")]
+        items = [Fact(node, "")]
         network = Graph([node])
         points = np.linspace(0.001, 0.999, 999)[:, None]
         good = accepted(network, points, items)
@@ -168,7 +168,7 @@ def test_empty_integer_ranges_among_undrawn_options_narrow_nothing():
 def test_unknown_operations_are_passed_over():
     unknown = Operation("unknown", always(Kind.BOOLEAN), lambda call, a: a > 0.5, "A test.")
     x = uniform(0, 1)
-    domain = check(make("and", construction.apply(unknown, [x]), make("less", x, 0.75)))
+    domain = check(make("and", construction.make_node(unknown, [x]), make("less", x, 0.75)))
     assert interval(domain) == pytest.approx((0, 0.75))
 
 
@@ -176,7 +176,7 @@ def test_conditions_that_are_python_objects_are_passed_over():
     word = source(Kind.OTHER, np.array(["word"], dtype=object))
     x = uniform(0, 1)
     node = make("and", make("equal", word, "word"), make("greater", x, 0.5))
-    assert interval(prune(Graph([node]), [Condition(node, "")])) == pytest.approx((0.5, 1))
+    assert interval(prune(Graph([node]), [Fact(node, "")])) == pytest.approx((0.5, 1))
 
 
 def test_nothing_to_prune():
@@ -241,7 +241,7 @@ def test_values_follow_one_law_too():
     node = example(2)
     network = Graph([node])
     draws = [item for item in network.nodes if item.operation.name in ("range", "select")]
-    domain = prune(network, [Condition(node, "")])
+    domain = prune(network, [Fact(node, "")])
     rng = np.random.default_rng(5)
     samples = []
     for points in (rng.random((20_000, 3)), placed(domain, rng.random((20_000, 4)))):

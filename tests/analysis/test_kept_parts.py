@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from graph.programs import Triple, make, source, uniform
 
-from scenic.analysis.facts import Condition
+from scenic.analysis.facts import Fact
 from scenic.analysis.smt import judge
 from scenic.graph.kinds import Kind
 from tests.runtime.programs import scenario
@@ -71,7 +71,7 @@ def test_one_constraint_leaves_the_other_axes_alone() -> None:
 
 
 def verdict(*nodes):
-    found = judge([Condition(node, str(place)) for place, node in enumerate(nodes)])
+    found = judge([Fact(node, str(place)) for place, node in enumerate(nodes)])
     return [[item.label for item in core.conditions] for core in found.contradictions]
 
 

@@ -2,7 +2,7 @@
 
 from graph.programs import make, one_of, uniform
 
-from scenic.analysis.facts import Condition
+from scenic.analysis.facts import Fact
 from scenic.analysis.report import prove
 from scenic.graph import node as graph
 from scenic.graph.node import Graph
@@ -15,7 +15,7 @@ def line(number, column=0):
 
 
 def report(*items):
-    conditions = [Condition(node, "requirement", span) for node, span in items]
+    conditions = [Fact(node, "requirement", span) for node, span in items]
     return prove(Graph([node for node, _ in items]), conditions)
 
 

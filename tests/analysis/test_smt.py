@@ -8,7 +8,7 @@ import pytest
 from graph.programs import Triple, constant, make, one_of, source, uniform
 
 from analysis.random_programs import accepted, conditions
-from scenic.analysis.facts import Condition
+from scenic.analysis.facts import Fact
 from scenic.analysis.smt import judge
 from scenic.analysis.terms import Answer, Questions, SolverTerms
 from scenic.graph import construction
@@ -20,7 +20,7 @@ from scenic.graph.operation import Operation, always
 
 def verdict(*nodes):
     """Labels of the members of each contradiction, and of the tautologies."""
-    items = [Condition(node, str(place)) for place, node in enumerate(nodes)]
+    items = [Fact(node, str(place)) for place, node in enumerate(nodes)]
     found = judge(items)
     return (
         [[item.label for item in core.conditions] for core in found.contradictions],
@@ -47,7 +47,7 @@ def test_the_core_is_minimal():
 
 def test_the_core_names_the_draws_it_rests_on():
     x, y = uniform(0, 10), uniform(1, 4)
-    found = judge([Condition(make("greater", make("subtract", x, y), 9.5), "")])
+    found = judge([Fact(make("greater", make("subtract", x, y), 9.5), "")])
     (core,) = found.contradictions
     assert [(item.node is x, item.phrase) for item in core.supports] == [
         (True, "is at most 10"),
@@ -125,7 +125,7 @@ def test_the_same_formula_written_twice_is_one():
 def test_different_unknown_values_are_not_taken_for_one():
     unknown = Operation("unknown", always(Kind.SCALAR), lambda call, a: a, "A test.", pure=False)
     x = uniform(0, 1)
-    first, second = construction.apply(unknown, [x]), construction.apply(unknown, [x])
+    first, second = construction.make_node(unknown, [x]), construction.make_node(unknown, [x])
     assert verdict(make("less", first, 0.0), make("greater", second, 0.0)) == ([], [])
 
 

@@ -56,7 +56,7 @@ def constant(value: Any) -> Node:
 def make(name: str, *operands: Any, payload: Any = None, span: Any = None) -> Node:
     """A node of the table; operands that are no nodes become constants."""
     nodes = [operand if isinstance(operand, Node) else constant(operand) for operand in operands]
-    return construction.apply(TABLE[name], nodes, payload, span)
+    return construction.make_node(TABLE[name], nodes, payload, span)
 
 
 def uniform(low: Any, high: Any, span: Any = None) -> Node:
@@ -83,7 +83,7 @@ def source(kind: Kind, values: Any) -> Node:
     if kind is Kind.INTEGER:
         limits = int(column.min()), int(column.max())
     operation = replace(_SOURCE, kind=always(kind))
-    return replace(construction.apply(operation, (), (column,)), limits=limits)
+    return replace(construction.make_node(operation, (), (column,)), limits=limits)
 
 
 _FAULTY = Operation(
@@ -100,7 +100,9 @@ _FAULTY = Operation(
 def faulty(kind: Kind, values: Any, statuses: Any, error: Exception) -> Node:
     """As `source`, with the status of each lane."""
     operation = replace(_FAULTY, kind=always(kind))
-    return construction.apply(operation, (), (np.asarray(values, kind.dtype), np.asarray(statuses), error))
+    return construction.make_node(
+        operation, (), (np.asarray(values, kind.dtype), np.asarray(statuses), error)
+    )
 
 
 def _with_status(call):

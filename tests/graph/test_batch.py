@@ -180,7 +180,7 @@ def test_python_functions_may_reject():
         return value
 
     operation = Operation("picky", always(Kind.OTHER), lambda call, a: a, "A test.", python=picky)
-    node = construction.apply(operation, [source(Kind.SCALAR, [0.5, 1.5, 2.5])])
+    node = construction.make_node(operation, [source(Kind.SCALAR, [0.5, 1.5, 2.5])])
     batch = batch_at(Graph([node]), np.empty((3, 0)), CODEC, rejections=(Rejected,))
     assert batch.status(node).tolist() == [REJECTED, FAULT, OK]
     assert batch.value(node, 2) == 2.5
@@ -188,7 +188,7 @@ def test_python_functions_may_reject():
 
 def test_a_value_of_the_wrong_kind_is_a_fault():
     operation = Operation("word", always(Kind.SCALAR), lambda call, a: a, "A test.", python=lambda a: a)
-    node = construction.apply(operation, [source(Kind.OTHER, np.array(["word", 1.5], dtype=object))])
+    node = construction.make_node(operation, [source(Kind.OTHER, np.array(["word", 1.5], dtype=object))])
     batch = evaluate(node, 2)
     assert batch.status(node).tolist() == [FAULT, OK]
     assert batch.value(node, 1) == 1.5

@@ -10,7 +10,7 @@ from scenic.analysis.smt import Encoding
 from scenic.analysis.terms import Answer, Questions
 from scenic.graph import bounding
 from scenic.graph.bounds import Bounds
-from scenic.graph.construction import apply
+from scenic.graph.construction import make_node
 from scenic.graph.kinds import Kind
 from scenic.graph.operation import Operation, always
 from scenic.graph.operations import TABLE
@@ -161,7 +161,7 @@ def test_terms_agree_with_numpy(case):
 
 def fixed_node(part, column):
     if part == U:
-        return apply(
+        return make_node(
             TABLE["range"], [source(S, [0.5])] * 3
         )  # any unknown number: primitives ignore their axis
     kind = kind_of(part)
@@ -189,7 +189,7 @@ def matches(terms, term, value):
 def test_unknown_readings_say_nothing():
     """An operation without bounds or terms of its own has those of its kind."""
     mystery = Operation("mystery", always(Kind.BOOLEAN), lambda call, a: a > 0, "A test.")
-    node = apply(mystery, [source(S, [1.0])])
+    node = make_node(mystery, [source(S, [1.0])])
     known = bounding.forward(node, [Bounds.exactly(1.0)])
     assert (known.lower[0], known.upper[0]) == (0, 1)
     encoding = Encoding([node])

@@ -117,7 +117,11 @@ def test_headers_fall_into_place(before: str, expected: str | None) -> None:
 def client(folder: Path) -> Iterator[Client]:
     client = Client(cwd=folder)
     detailed = {**FULL["textDocument"]["publishDiagnostics"], "codeDescriptionSupport": True}
-    told = {**FULL["textDocument"], "publishDiagnostics": detailed, "rangeFormatting": {"rangesSupport": True}}
+    told = {
+        **FULL["textDocument"],
+        "publishDiagnostics": detailed,
+        "rangeFormatting": {"rangesSupport": True},
+    }
     offered = client.start({**FULL, "textDocument": told}, folder)
     assert offered["documentRangeFormattingProvider"] == {"rangesSupport": True}
     yield client

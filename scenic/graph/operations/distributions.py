@@ -12,7 +12,7 @@ import numpy as np
 from scenic.graph import intervals
 from scenic.graph.bounding import overall
 from scenic.graph.bounds import Bounds, Floats, outward
-from scenic.graph.construction import apply
+from scenic.graph.construction import make_node
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.node import Node
 from scenic.graph.operation import Call, Operation, Terms, always
@@ -182,7 +182,7 @@ def _constants(operands: Sequence[Node], _payload: Any) -> Node | None:
     if len(kinds) > 1 or not all(option.is_constant and not option.kind.is_boxed for option in options):
         return None
     table = Table(kinds.pop(), np.concatenate([option.payload.column for option in options]))
-    return apply(LOOKUP, [index], table)
+    return make_node(LOOKUP, [index], table)
 
 
 def _may_be_endless(operands: Sequence[Node], _payload: Any) -> bool:

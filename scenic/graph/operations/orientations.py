@@ -8,7 +8,7 @@ import numpy as np
 
 from scenic.graph import intervals, quaternions
 from scenic.graph.bounds import Bounds
-from scenic.graph.construction import apply
+from scenic.graph.construction import make_node
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.node import Node, constant
 from scenic.graph.operation import Call, Operation, Terms, always
@@ -257,7 +257,7 @@ def _only_yaw(operands: Sequence[Node], _payload: Any) -> Node | None:
     yaw, pitch, roll = operands
     if yaw.is_constant or yaw.kind is not Kind.SCALAR or not (_is_nothing(pitch) and _is_nothing(roll)):
         return None
-    return apply(FROM_YAW, [yaw])
+    return make_node(FROM_YAW, [yaw])
 
 
 def _with_identity(operands: Sequence[Node], _payload: Any) -> Node | None:
@@ -267,7 +267,7 @@ def _with_identity(operands: Sequence[Node], _payload: Any) -> Node | None:
     if _is_identity(inner):
         return outer
     if _is_upright(outer) and _is_upright(inner):
-        return apply(FROM_YAW, [apply(ADD, [outer.operands[0], inner.operands[0]])])
+        return make_node(FROM_YAW, [make_node(ADD, [outer.operands[0], inner.operands[0]])])
     return None
 
 
@@ -276,7 +276,7 @@ def _twice_inverse(operands: Sequence[Node], _payload: Any) -> Node | None:
     if orientation.operation.name == "inverse":
         return orientation.operands[0]
     if _is_upright(orientation):
-        return apply(FROM_YAW, [apply(NEGATIVE, [orientation.operands[0]])])
+        return make_node(FROM_YAW, [make_node(NEGATIVE, [orientation.operands[0]])])
     return None
 
 
@@ -291,7 +291,7 @@ def _angle_of_yaw(operands: Sequence[Node], payload: Any) -> Node | None:
     if not _is_upright(orientation):
         return None
     if payload == 0:
-        return apply(NORMALIZE_ANGLE, [orientation.operands[0]])
+        return make_node(NORMALIZE_ANGLE, [orientation.operands[0]])
     return constant(0.0, Kind.SCALAR, 0.0)
 
 

@@ -20,7 +20,7 @@ TRIES: Final = 20_000
 """Draws of one point before a solid counts as empty."""
 
 
-def draw(body: Body, uniforms: Floats, keys: Floats) -> tuple[Floats, Booleans]:
+def draw_points(body: Body, uniforms: Floats, keys: Floats) -> tuple[Floats, Booleans]:
     """Uniform points ``(n, 3)`` of solids, from numbers ``(3, n)`` and words ``(n,)``, and where one was found.
 
     A point of the bounding box is drawn until it lies inside: the first with the numbers, further ones keyed by the words.

@@ -52,7 +52,7 @@ class OccupiedSpace(Region):
         return np.asarray(~collide([body_of(*columns), body], np.array([[0, 1]]), lanes=lanes).free)
 
     def draw_points(self, uniforms: Column, keys: Column, *columns: Column) -> tuple[Points, Mask | None]:
-        return body_points.draw(body_of(*columns), uniforms, keys)
+        return body_points.draw_points(body_of(*columns), uniforms, keys)
 
     def distances(self, points: Points, *columns: Column) -> Column:
         body = body_of(*columns)
