@@ -2,6 +2,7 @@
 
 import json
 import math
+import os
 import re
 import secrets
 import signal
@@ -102,6 +103,21 @@ def outlook_option(
     return {"azimuth": azimuth, "elevation": elevation}
 
 
+def _without_store(_context: click.Context, _parameter: click.Parameter, given: bool) -> None:
+    # Workers inherit the environment.
+    if given:
+        os.environ["SCENIC_CACHE"] = "off"
+
+
+no_cache_option = click.option(
+    "--no-cache",
+    is_flag=True,
+    expose_value=False,
+    callback=_without_store,
+    help="Neither read nor keep on disk what is computed of meshes.",
+)
+
+
 @click.command()
 @click.argument("file", metavar="FILE")
 @click.option(
@@ -155,6 +171,7 @@ def outlook_option(
 @click.option(
     "--no-prune", is_flag=True, help="Do not narrow the distributions first. The same scenes are as likely."
 )
+@no_cache_option
 @click.option(
     "--max-attempts",
     metavar="M",

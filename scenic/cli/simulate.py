@@ -12,7 +12,14 @@ import click
 
 from scenic.cli import workers
 from scenic.cli.output import CLEAN, FINDINGS, show_diagnostics
-from scenic.cli.sample import NOT_ALL, _ended_by_signals, _parameters, _progress, _seconds
+from scenic.cli.sample import (
+    NOT_ALL,
+    _ended_by_signals,
+    _parameters,
+    _progress,
+    _seconds,
+    no_cache_option,
+)
 from scenic.language.diagnostics import Diagnostic
 
 __all__ = ["simulate"]
@@ -198,6 +205,7 @@ class _Work:
 @click.option("--scenario", metavar="NAME", help="Which scenario of the file, where it defines several.")
 @click.option("--model", metavar="MODULE", help="A world model to use in place of the program's.")
 @click.option("--2d", "mode_2d", is_flag=True, help="Use the 2D compatibility mode.")
+@no_cache_option
 @click.option(
     "-j", "jobs", metavar="J", type=click.IntRange(min=1), default=1, help="Processes.  [default: 1]"
 )

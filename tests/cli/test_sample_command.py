@@ -204,3 +204,23 @@ def test_progress_is_shown_on_a_terminal_only(folder: Path) -> None:
     assert process.returncode == 0
     assert b"sampling" in shown
     assert b"/30" in shown
+
+
+def test_what_is_computed_of_meshes_is_kept_unless_it_must_not(tmp_path: Path) -> None:
+    (tmp_path / "cones.scenic").write_text(
+        "for i in range(4):\n    new Object at (Range(-1, 1), Range(-1, 1), 0), with shape ConeShape(), facing (0, 40 deg, 0)\n"
+    )
+    variables = {**environment(), "SCENIC_CACHE": "", "SCENIC_CACHE_DIR": str(tmp_path / "kept")}
+    found = []
+    for options in (["--no-cache"], []):
+        result = subprocess.run(
+            command("cones.scenic", "-n", 60, "--seed", 2, *options),
+            cwd=tmp_path,
+            env=variables,
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+        found.append(result.stdout)
+        assert (tmp_path / "kept").exists() == (options == [])
+    assert found[0] == found[1]

@@ -6,7 +6,8 @@ import pytest
 import trimesh
 
 from scenic.language.errors import MeshError
-from scenic.runtime.geometry import primitives
+from scenic.runtime.geometry import loading, primitives
+from scenic.runtime.geometry.inside import contains_points
 from scenic.runtime.geometry.loading import load_mesh
 
 from .samples import FILES, bumpy, hollow, placed, real_meshes
@@ -95,6 +96,43 @@ def test_inconsistent_winding(tmp_path):
     trimesh.Trimesh(box.vertices, faces, process=False).export(tmp_path / "twisted.obj")
     with pytest.raises(MeshError, match="winding of its triangles is inconsistent"):
         load_mesh(tmp_path / "twisted.obj")
+
+
+def test_triangles_without_an_area_are_left_out(tmp_path):
+    box = primitives.box()
+    faces = np.vstack([box.faces, [[0, 0, 1], [2, 2, 2]]])
+    trimesh.Trimesh(box.vertices, faces, process=False).export(tmp_path / "degenerate.ply")
+    mesh = load_mesh(tmp_path / "degenerate.ply")
+    assert len(mesh.faces) == 12
+    assert mesh.volume == pytest.approx(1)
+
+
+def test_what_encloses_nothing_is_refused(tmp_path):
+    box = primitives.box()
+    trimesh.Trimesh(box.vertices * [1, 1, 0], box.faces, process=False).export(tmp_path / "flat.ply")
+    with pytest.raises(MeshError, match=r"encloses nothing|no triangles with an area"):
+        load_mesh(tmp_path / "flat.ply")
+
+
+def test_a_surface_through_itself_bounds_what_an_odd_number_of_crossings_reaches(tmp_path):
+    """The lemon in the middle of a torus whose tube is thicker than its ring is reached after two."""
+    trimesh.creation.torus(0.5, 0.8).export(tmp_path / "spindle.ply")
+    mesh = load_mesh(tmp_path / "spindle.ply")
+    inside = contains_points(mesh, np.array([[0.0, 0, 0], [0.9, 0, 0], [0, 0, 0.7]]))
+    assert inside.tolist() == [False, True, False]
+
+
+def test_solids_that_share_an_edge_are_one_mesh(tmp_path):
+    path = export(tmp_path, "edge.obj", primitives.box(), placed(primitives.box(), (1, 1, 0), (1, 1, 1)))
+    assert load_mesh(path).volume == pytest.approx(2)
+
+
+def test_very_many_triangles_are_refused(tmp_path, monkeypatch):
+    monkeypatch.setattr(loading, "MOST_TRIANGLES", 1000)
+    trimesh.creation.icosphere(subdivisions=4).export(tmp_path / "large.stl")
+    with pytest.raises(MeshError, match="has 5120 triangles, more than 1000") as caught:
+        load_mesh(tmp_path / "large.stl")
+    assert "simplify" in caught.value.help
 
 
 @pytest.mark.parametrize(
