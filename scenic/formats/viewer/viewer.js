@@ -341,9 +341,11 @@
 
   const cornersOf = (scene) => scene.objects.flatMap((thing) => thing.corners);
 
-  /** Shows the workspace, and the objects of all scenes. */
+  /** Shows the workspace and what is in view, as far as they are shown, and the objects of all scenes. */
   function wholeScene() {
-    const points = data.scenes.flatMap(cornersOf).concat(state.layers.workspace ? data.scenes[0].border.flat() : []);
+    const views = current().objects.flatMap((thing) => (thing.view ?? []).flat());
+    const points = data.scenes.flatMap(cornersOf)
+      .concat(state.layers.workspace ? data.scenes[0].border.flat() : [], state.layers.views ? views : []);
     frame(points.length ? points : [[-1, -1, -1], [1, 1, 1]]);
   }
 
