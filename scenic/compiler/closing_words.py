@@ -106,10 +106,12 @@ _Event: TypeAlias = _Open | _Close | Literal["if", "else"]
 class _Frame:
     """What is between two brackets, or two commas in them.
 
-    ``regions`` are the events of the expression, and of the first two operands of each `follow` that is not closed.
+    ``regions`` are the events of the expression, and of the first two operands of each `follow` that is not closed. The
+    default of a parameter of a lambda has a frame of its own, which ``is_default``.
     """
 
     condition: bool = False
+    is_default: bool = False
     lambdas: int = 0
     new: int | None = None
     regions: list[list[_Event]] = field(default_factory=lambda: [[]])
@@ -190,6 +192,10 @@ class _Scan:
         while index < end:
             kind = kinds[index]
             frame = frames[-1]
+            if frame.is_default and (kind in _CLOSERS or (kind in (_COMMA, _COLON) and not frame.lambdas)):
+                self._end(frame)
+                frames.pop()
+                frame = frames[-1]
             if kind in _OPENERS:
                 group = frame.condition and (kinds[index - 1] in _LADDER or index == start)
                 frames.append(_Frame(condition=group and kind == OPERATORS["("]))
@@ -203,6 +209,8 @@ class _Scan:
                 frame.lambdas += 1
             elif kind == _COLON and frame.lambdas:
                 frame.lambdas -= 1
+            elif kind in _ENDS and frame.lambdas:
+                frames.append(_Frame(is_default=True))
             elif kind in _ENDS or kind == _COLON or (kind == _COMMA and not frame.lambdas):
                 self._end(frame)
             else:

@@ -4,18 +4,18 @@ Which words may stand at a place, the parser says (`scenic.compiler.probing`); w
 added to the grammar and declared is offered without further ado.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 from types import MappingProxyType
 from typing import Final
 
-from scenic.compiler.precedence import ATOM, FORMS, Form, Ladder, Slot, Word
+from scenic.compiler.forms import DeclaredForm, declared_forms
+from scenic.compiler.precedence import ATOM, FORMS, Ladder, Slot
 from scenic.compiler.precedence import SPECIFIERS as SPECIFIER_FORMS
 from scenic.compiler.probing import Wanted, wanted_at
 from scenic.compiler.syntax import STATEMENT_FORMS, words_of
 from scenic.ide import documentation
-from scenic.language.keywords import TEMPORAL_OPERATORS
 from scenic.language.operators import OPERATORS
 from scenic.language.specifiers import SPECIFIERS
 from scenic.language.statements import STATEMENTS
@@ -158,49 +158,34 @@ def _continuation(phrase: _Phrase, count: int) -> Continuation:
     return Continuation(phrase.kind, phrase.name, text, words, phrase.operands, phrase.form)
 
 
+_KINDS: Final = {
+    "Specifier": PhraseKind.SPECIFIER,
+    "Operation": PhraseKind.OPERATOR,
+    "Temporal": PhraseKind.TEMPORAL,
+}
+
+
 def _phrases() -> Iterator[_Phrase]:
-    for kind, table, node in (
-        (PhraseKind.SPECIFIER, SPECIFIERS, "Specifier"),
-        (PhraseKind.OPERATOR, OPERATORS, "Operation"),
-        (PhraseKind.TEMPORAL, TEMPORAL_OPERATORS, "Temporal"),
-    ):
-        for name, declared in table.items():
-            for form in declared.forms:
-                yield _phrase(
-                    kind,
-                    name,
-                    form,
-                    [each for each in _WRITTEN if (each.node, each.operator) == (node, name)],
-                )
+    for declared in declared_forms():
+        yield _phrase(_KINDS[declared.node], declared)
     for name, statement in STATEMENTS.items():
         for form in statement.forms:
             yield from _statement(name, form)
 
 
-def _phrase(kind: PhraseKind, name: str, text: str, forms: Sequence[Form]) -> _Phrase:
-    """A declared form, in which the words are those that it shares with a form of the grammar."""
-    words = text.split()
-    agreeing = next(form for form in forms if _agrees(words, form))
-    parts = agreeing.parts
-    is_word = [isinstance(part, Word) for part in parts]
+def _phrase(kind: PhraseKind, declared: DeclaredForm) -> _Phrase:
+    words, is_word = declared.words, declared.is_word
     first = 0 if is_word[0] else 1
     count = next((index for index in range(first, len(words)) if not is_word[index]), len(words))
-    operands = tuple(words[index] for index in range(count, len(words)) if not is_word[index])
     return _Phrase(
         kind,
-        name,
-        tuple(words[first:count]),
+        declared.name,
+        words[first:count],
         " ".join(words[count:]),
-        text,
-        operands,
+        declared.text,
+        tuple(words[index] for index in range(count, len(words)) if not is_word[index]),
         is_infix=first > 0,
-        level=agreeing.level if kind is PhraseKind.OPERATOR else ATOM,
-    )
-
-
-def _agrees(words: Sequence[str], form: Form) -> bool:
-    return len(words) == len(form.parts) and all(
-        not isinstance(part, Word) or part.text == word for word, part in zip(words, form.parts, strict=True)
+        level=declared.form.level if kind is PhraseKind.OPERATOR else ATOM,
     )
 
 

@@ -39,6 +39,15 @@ READINGS = [
         "angle to (not angle to (not angle to x) from a) from b",
     ),
     ("angle to lambda a, b: distance to x from y", "angle to (lambda a, b: distance to x) from y"),
+    ("angle to lambda a, b=1: distance to x from y", "angle to (lambda a, b=1: distance to x) from y"),
+    (
+        "angle to lambda a=distance to c: distance to x from y",
+        "angle to (lambda a=distance to c: distance to x) from y",
+    ),
+    (
+        "f(a=angle to lambda b=(c, d), e=f: distance to x from y, g=h)",
+        "f(a=angle to (lambda b=(c, d), e=f: distance to x) from y, g=h)",
+    ),
     ("distance past not distance past x of y", "distance past (not distance past x) of y"),
     ("angle to not a if distance to b else c from d", "angle to (not a if distance to b else c) from d"),
     ("[follow angle to x from b for c for d in e]", "[(follow (angle to x) from b for c) for d in e]"),

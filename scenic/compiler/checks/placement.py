@@ -7,11 +7,15 @@ from typing import Any, Final
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.blocks import DYNAMIC, Where, where_of
 from scenic.compiler.checks.context import Context
+from scenic.compiler.traversal import walk
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.names import TRACKED
 from scenic.language.statements import STATEMENTS, Place
 
 __all__ = ["NOTED", "check_placement"]
+
+_ASKED: Final = (scenic.Record, scenic.Require, scenic.Simulator, scenic.TerminateWhen)
+"""Statements whose expressions become functions of their own."""
 
 NOTED: Final = (ast.Await, ast.Yield, ast.YieldFrom)
 """The expressions that cannot stand everywhere."""
@@ -40,10 +44,30 @@ def check_placement(context: Context) -> Iterator[tuple[ast.AST, Diagnostic | No
                     yield statement, context.error("SC201", message, statement, help_)
     if context.broken:
         return
+    later = _evaluated_later(context)
     for cls in NOTED:
         for node, scope in context.nodes(cls):
+            if node in later:
+                message = "`await` cannot be used in what simulations ask for later, outside of the function"
+                yield node, context.error("SC201", message, node, "await the value before, and name it here")
+                continue
             for message, help_ in _misplaced_expression(node, where_of(node, scope)):
                 yield node, context.error("SC201", message, node, help_)
+
+
+def _evaluated_later(context: Context) -> set[ast.AST]:
+    """The expressions with ``await`` in conditions and values that become functions of their own."""
+    awaiting = {node for node, _ in context.nodes(ast.Await)}
+    if not awaiting:
+        return set()
+    return {
+        part
+        for block in context.blocks
+        for statement in block.statements
+        if isinstance(statement, _ASKED)
+        for part in walk(statement)
+        if part in awaiting
+    }
 
 
 def _problems(node: ast.AST, where: Where) -> Iterator[tuple[str, str]]:

@@ -8,10 +8,9 @@ from types import MappingProxyType
 from typing import Final
 
 from scenic.compiler.checks.context import Context
+from scenic.compiler.forms import declared_forms
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.keywords import SOFT_KEYWORDS, TEMPORAL_OPERATORS
-from scenic.language.operators import OPERATORS
-from scenic.language.specifiers import SPECIFIERS
 from scenic.language.statements import STATEMENTS
 
 __all__ = ["alone_names", "begun_word", "text_before", "unfinished"]
@@ -24,12 +23,13 @@ _ENDS: Final = ("", ",", ")", "]", "}", ";", ":", "#")
 def _following() -> Mapping[tuple[str, str], str]:
     """For two words that follow each other in a form of the language, the form."""
     found: dict[tuple[str, str], str] = {}
-    forms = [form for specifier in SPECIFIERS.values() for form in specifier.forms]
-    forms += [form for operator in OPERATORS.values() for form in operator.forms]
-    forms += [form for statement in STATEMENTS.values() for form in statement.forms]
-    for form in forms:
-        words = form.split()
-        for first, second in pairwise(words):
+    for declared in declared_forms():
+        words = zip(declared.words, declared.is_word, strict=True)
+        for (first, is_first), (second, is_second) in pairwise(words):
+            if is_first and is_second and second in SOFT_KEYWORDS:
+                found.setdefault((first, second), declared.text)
+    for form in (form for statement in STATEMENTS.values() for form in statement.forms):
+        for first, second in pairwise(form.split()):
             if second in SOFT_KEYWORDS:
                 found.setdefault((first, second), form)
     for temporal in TEMPORAL_OPERATORS.values():
@@ -48,6 +48,19 @@ def _beginnings() -> Mapping[str, str]:
             first, *rest = form.split()
             if first in SOFT_KEYWORDS and rest:
                 found.setdefault(first, form)
+    return MappingProxyType(found)
+
+
+@cache
+def _operators() -> Mapping[str, str]:
+    """For the words of operators, the form: one that begins with the word, if there is any."""
+    found: dict[str, str] = {}
+    operators = [each for each in declared_forms() if each.node == "Operation"]
+    for begins in (True, False):
+        for each in operators:
+            for index, word in enumerate(each.words):
+                if each.is_word[index] and word in SOFT_KEYWORDS and begins == (index == 0):
+                    found.setdefault(word, each.text)
     return MappingProxyType(found)
 
 
@@ -73,9 +86,19 @@ def unfinished(context: Context, node: ast.Name) -> Diagnostic | None:
     form = _following().get((_word_before(context, node), node.id))
     if form is None and not text_before(context, node) and node in alone_names(context):
         form = _beginnings().get(node.id)
+    if form is not None:
+        return context.error(
+            "SC110", f"something is missing after `{node.id}`", node, f"the form is `{form}`"
+        )
+    form = _operators().get(node.id) if rest[:1] in ("", "#") else None
     if form is None:
         return None
-    return context.error("SC110", f"something is missing after `{node.id}`", node, f"the form is `{form}`")
+    return context.error(
+        "SC110",
+        f"`{node.id}` is a word of an operator, and nothing by itself",
+        node,
+        f"the form is `{form}`; a variable of that name would have to be defined",
+    )
 
 
 def alone_names(context: Context) -> set[ast.Name]:
@@ -86,7 +109,9 @@ def alone_names(context: Context) -> set[ast.Name]:
 def begun_word(context: Context, node: ast.Name) -> str | None:
     """The one word of the language that a name at the end of a line may be the beginning of."""
     before = _word_before(context, node)
-    found = {second for first, second in _candidates(before) if second.startswith(node.id)}
+    found = {
+        second for first, second in _candidates(before) if second.startswith(node.id) and second != node.id
+    }
     return found.pop() if len(found) == 1 and len(node.id) > 1 else None
 
 

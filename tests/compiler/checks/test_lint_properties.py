@@ -3,7 +3,7 @@
 import ast
 from pathlib import Path
 
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from scenic.compiler.check import check_text
@@ -78,6 +78,7 @@ def test_arguments_fit_where_python_takes_them(parameters: str, count: int, keyw
     assert ("SC211" not in {item.code for item in found}) is fits
 
 
+@settings(deadline=None)  # Some texts take long, and the machine may be busy.
 @given(
     st.sampled_from(TEXTS), st.lists(st.tuples(st.integers(0, 60), st.integers(0, 60)), max_size=4), st.data()
 )

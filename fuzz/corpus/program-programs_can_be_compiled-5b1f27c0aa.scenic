@@ -1,0 +1,2 @@
+@ ()
+async def f(): terminate when f << await f

@@ -1,0 +1,2 @@
+ego = new Object,
+    at position or Range
