@@ -91,14 +91,20 @@ def of_euler(yaw: Any, pitch: Any, roll: Any) -> Parts:
     half_yaw, half_pitch, half_roll = yaw * 0.5, pitch * 0.5, roll * 0.5
     # NumPy's functions also for floats: the C library's may differ from them in the last bit.
     cy, sy = np.cos(half_yaw), np.sin(half_yaw)
-    cp, sp = np.cos(half_pitch), np.sin(half_pitch)
-    cr, sr = np.cos(half_roll), np.sin(half_roll)
+    cp, sp = _cos_and_sin(half_pitch)
+    cr, sr = _cos_and_sin(half_roll)
     return (
         cy * sp * cr - sy * cp * sr,
         cy * cp * sr + sy * sp * cr,
         sy * cp * cr + cy * sp * sr,
         cy * cp * cr - sy * sp * sr,
     )
+
+
+def _cos_and_sin(angle: Any) -> tuple[Any, Any]:
+    if type(angle) is float and angle == 0:  # the most frequent single angle
+        return 1.0, angle
+    return np.cos(angle), np.sin(angle)
 
 
 def from_yaw(yaw: npt.ArrayLike) -> Array:

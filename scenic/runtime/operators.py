@@ -13,7 +13,7 @@ from scenic.language.errors import InvalidScenarioError, ScenicTypeError
 from scenic.runtime.context import current, here
 from scenic.runtime.fields import field_of, frame_at, is_field, relative_to
 from scenic.runtime.lazy import defer, is_lazy
-from scenic.runtime.objects import SIDES, Object, OrientedPoint, oriented_point
+from scenic.runtime.objects import SIDES, Object, OrientedPoint, Point, oriented_point
 from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.bodies import gap_between
 from scenic.runtime.regions.choice import as_region
@@ -38,9 +38,12 @@ from scenic.runtime.values import (
 )
 from scenic.runtime.visibility import sees_in_plane
 
+_PLACES = (Vector, Point)
+"""What has a place and is no region."""
+
 
 def _degrees(_ego: Ego, value: Any) -> Any:
-    if not (isinstance(value, Random | Vector) or is_number(value)):
+    if not (is_number(value) or isinstance(value, Random | Vector)):
         raise wrong_type("a number", value, "`deg`")
     return operate("multiply", value, 0.017453292519943295)
 
@@ -58,6 +61,8 @@ def _is_frame(value: Any) -> bool:
 
 def _relative_to(_ego: Ego, value: Any, frame: Any) -> Any:
     """Section 7.1: the first row of the table that fits."""
+    if type(value) is Vector and type(frame) is Vector:
+        return value + frame
     if is_field(value) or is_field(frame):
         return relative_to(value, frame)
     oriented = [is_kind(operand, OrientedPoint) for operand in (value, frame)]
@@ -126,7 +131,10 @@ def _apparent_heading(ego: Ego, target: Any, origin: Any) -> Any:
 
 
 def _distance(ego: Ego, origin: Any, target: Any) -> Any:
-    start, end = (ego() if operand is None else operand for operand in (origin, target))
+    start = ego() if origin is None else origin
+    end = ego() if target is None else target
+    if isinstance(start, _PLACES) and isinstance(end, _PLACES):
+        return operate("distance", to_vector(start), to_vector(end))
     for near, far in ((start, end), (end, start)):
         region = as_region(near)
         if region is not None:
@@ -150,8 +158,8 @@ def _distance_past(ego: Ego, target: Any, reference: Any) -> Any:
 
 
 def _direction(ego: Ego, origin: Any, target: Any, what: str) -> Any:
-    start, end = (to_vector(ego() if operand is None else operand, what) for operand in (origin, target))
-    return operate("subtract", end, start)
+    start = to_vector(ego() if origin is None else origin, what)
+    return operate("subtract", to_vector(ego() if target is None else target, what), start)
 
 
 def _angle(ego: Ego, origin: Any, target: Any) -> Any:
@@ -236,6 +244,7 @@ OPERATORS: Mapping[str, Callable[..., Any]] = MappingProxyType(
 
 def operation(name: str, ego: Ego, *operands: Any) -> Any:
     """The result of an operator; a lazy value where an operand is one."""
-    if any(is_lazy(operand) for operand in operands):
-        return defer(OPERATORS[name], ego, *operands)
+    for operand in operands:
+        if is_lazy(operand):
+            return defer(OPERATORS[name], ego, *operands)
     return OPERATORS[name](ego, *operands)

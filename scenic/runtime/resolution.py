@@ -4,7 +4,7 @@ import math
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Final
 
 from scenic.language.errors import InvalidScenarioError, Located, ScenicValueError, SpecifierError
 from scenic.language.spans import Span
@@ -22,7 +22,7 @@ MISSPELT = 3
 """Names of at most so many letters are near to others by chance."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Step:
     """One specifier's turn: which of its values are taken.
 
@@ -51,6 +51,9 @@ class Resolution:
     """
 
     steps: tuple[Step, ...]
+    """All but those of ``constants``."""
+    constants: Mapping[str, Any]
+    """Properties whose defaults are the same for every instance, as instances store them."""
     providers: Mapping[str, Step]
     """Whose value of a property the others read: its modifier if it has one, else its owner."""
     names: tuple[str, ...]
@@ -68,6 +71,9 @@ class Resolution:
         return provider
 
 
+_CHECKED = frozenset({"width", "length", "height", "shape"})
+_VARIES: Final = object()
+
 _PLAIN = frozenset({bool, int, float, str, type(None), Vector, Orientation})
 """Types of values that are never lazy and hold nothing that is."""
 
@@ -81,6 +87,7 @@ def build(cls: type[Point], specifiers: Sequence[Specifier], *, mode_2d: bool = 
     resolution = resolution_of(cls, specifiers, mode_2d=mode_2d)
     instance = cls._make({})
     values = instance.__dict__
+    values.update(resolution.constants)
     done: set[Step] = set()
     is_object = issubclass(cls, Object)
 
@@ -103,7 +110,7 @@ def build(cls: type[Point], specifiers: Sequence[Specifier], *, mode_2d: bool = 
                 if type(value) not in _PLAIN:
                     value = settle(value, instance)
                 value = values[name] = normalised(name, value)
-                if is_object:
+                if is_object and name in _CHECKED:
                     _check_value(name, value, mode_2d=mode_2d)
         except Located as error:
             if not specifier.is_default:
@@ -192,8 +199,14 @@ def resolve(
         )
         for specifier in _topological(owns, modifies, claims, modifiers)
     }
+    constants = {
+        step.names[0]: value
+        for step in steps.values()
+        if step.default is not None and (value := _constant(properties[step.names[0]])) is not _VARIES
+    }
     return Resolution(
-        tuple(steps.values()),
+        tuple(step for step in steps.values() if step.default is None or step.names[0] not in constants),
+        constants,
         {name: steps[specifier] for name, specifier in {**claims, **modifiers}.items()},
         tuple(dict.fromkeys([*cls.scenic_properties, *claims])),
         tuple(
@@ -282,6 +295,16 @@ def _default_specifier(name: str, entry: Property) -> Specifier:
         span=entry.definitions[0].span,
         is_default=True,
     )
+
+
+def _constant(entry: Property) -> Any:
+    """The default of a property as every instance has it, or `_VARIES`."""
+    definition = entry.definitions[0]
+    if entry.additive or definition.dependencies or not definition.is_builtin:
+        return _VARIES
+    value = definition.compute(None)
+    # Other values may be changed in place, and must not be shared.
+    return normalised(entry.name, value) if type(value) in _PLAIN or type(value) is tuple else _VARIES
 
 
 def _by_specifier(owners: Mapping[str, Specifier]) -> dict[Specifier, frozenset[str]]:

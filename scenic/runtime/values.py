@@ -200,6 +200,16 @@ class Random(Arithmetic, Hooks):
         return self._again()
 
 
+def _scalar(name: str) -> Callable[..., Any]:
+    """An operation of the table on plain numbers."""
+    scalar = TABLE[name].scalar
+    assert scalar is not None, name
+    return scalar
+
+
+_ADD, _SUBTRACT, _MULTIPLY = map(_scalar, ("add", "subtract", "multiply"))
+
+
 class Vector(VectorMethods, Hooks):
     """A definite vector: three floats, in metres. ``Vector(x, y, z)`` with a random coordinate is a random vector."""
 
@@ -232,6 +242,25 @@ class Vector(VectorMethods, Hooks):
 
     def __iter__(self) -> Iterator[float]:
         return iter(self._row)
+
+    # The operations that running simulations do most, without a detour.
+
+    def __add__(self, other: Any) -> Any:
+        if type(other) is Vector:
+            return Vector.of(_ADD(None, self._row, other._row))
+        return super().__add__(other)
+
+    def __sub__(self, other: Any) -> Any:
+        if type(other) is Vector:
+            return Vector.of(_SUBTRACT(None, self._row, other._row))
+        return super().__sub__(other)
+
+    def __mul__(self, other: Any) -> Any:
+        if type(other) is float or type(other) is int:
+            return Vector.of(_MULTIPLY(None, self._row, float(other)))
+        return super().__mul__(other)
+
+    __rmul__ = __mul__
 
     def __eq__(self, other: object) -> bool:
         if isinstance(other, Vector):
@@ -382,9 +411,13 @@ def is_random(value: Any) -> bool:
     return False
 
 
+_NUMBERS = (int, float, np.integer, np.floating, np.bool_)  # made once: it is asked for all the time
+_ROWS = (tuple, list, np.ndarray)
+
+
 def is_number(value: Any) -> TypeGuard[float]:
     """Whether a definite value is a real number."""
-    return isinstance(value, int | float | np.integer | np.floating | np.bool_)
+    return isinstance(value, _NUMBERS)
 
 
 def is_vector(value: Any) -> bool:
@@ -512,7 +545,12 @@ def as_value(node: Node, again: Callable[[], Any] | None = None) -> Any:
 
 def operate(name: str, *operands: Any, payload: Any = None) -> Any:
     """Apply an operation of the table to values."""
-    return apply(TABLE[name], *operands, payload=payload)
+    operation = TABLE[name]
+    if operation.scalar is not None:
+        result = _at_once(operation.scalar, payload, operands)
+        if result is not NotImplemented:
+            return result
+    return apply(operation, *operands, payload=payload)
 
 
 def apply(operation: Operation, *operands: Any, payload: Any = None) -> Any:
@@ -534,10 +572,10 @@ def _at_once(scalar: Callable[..., Any], payload: Any, operands: Sequence[Any]) 
     rows = []
     for operand in operands:
         cls = type(operand)
-        if cls is float or cls is int:
-            rows.append(operand)
-        elif cls is Vector or cls is Orientation:
+        if cls is Vector or cls is Orientation:
             rows.append(operand._row)
+        elif cls is float or cls is int:
+            rows.append(operand)
         else:
             return NotImplemented
     result = scalar(payload, *rows)
@@ -738,6 +776,8 @@ def wrong_type(wanted: str, value: Any, what: str = "") -> ScenicTypeError:
 
 def to_scalar(value: Any, what: str = "") -> Any:
     """A real number, as a float."""
+    if type(value) is float:
+        return value
     if isinstance(value, Lazy):
         return defer(to_scalar, value, what)
     if isinstance(value, Random):
@@ -757,17 +797,17 @@ def to_scalar(value: Any, what: str = "") -> Any:
 
 def to_vector(value: Any, what: str = "") -> Any:
     """A vector: also a pair (z = 0), a triple, and anything with a position."""
-    if isinstance(value, Lazy):
-        return defer(to_vector, value, what)
     if isinstance(value, Vector):
         return value
+    if isinstance(value, Lazy):
+        return defer(to_vector, value, what)
     if isinstance(value, Random):
         if value.node.kind is Kind.VECTOR:
             return value
         if value.node.kind.is_boxed:
             return _coerce_boxed(value, Kind.VECTOR, to_vector, what)
         raise wrong_type("a vector", value, what)
-    if isinstance(value, tuple | list | np.ndarray):
+    if isinstance(value, _ROWS):
         if len(value) not in (2, 3):
             raise ScenicTypeError(
                 f"{what + ': ' if what else ''}a vector has 2 or 3 coordinates, not {len(value)}",
@@ -781,6 +821,8 @@ def to_vector(value: Any, what: str = "") -> Any:
 
 def to_heading(value: Any, what: str = "") -> Any:
     """A heading in radians: a number, the global yaw of an orientation, the heading of an oriented point."""
+    if type(value) is float:
+        return value
     if isinstance(value, Lazy):
         return defer(to_heading, value, what)
     if isinstance(value, Random):
@@ -814,7 +856,7 @@ def to_orientation(value: Any, what: str = "") -> Any:
             return _coerce_boxed(value, Kind.ORIENTATION, to_orientation, what)
     elif is_number(value):
         return Orientation.fromEuler(value, 0, 0)
-    elif isinstance(value, Vector) or (isinstance(value, tuple | list | np.ndarray) and len(value) == 3):
+    elif isinstance(value, Vector) or (isinstance(value, _ROWS) and len(value) == 3):
         return Orientation.fromEuler(*value)
     elif hasattr(value, "toOrientation") and not isinstance(value, type):
         return value.toOrientation()
@@ -823,6 +865,8 @@ def to_orientation(value: Any, what: str = "") -> Any:
 
 def vector(x: Any, y: Any, z: Any = 0) -> Any:
     """The vector of three numbers."""
+    if type(x) is float and type(y) is float and type(z) is float:
+        return Vector.of((x, y, z))
     if is_number(x) and is_number(y) and is_number(z):
         return Vector.of((float(x), float(y), float(z)))
     return operate("vector", to_scalar(x), to_scalar(y), to_scalar(z))

@@ -10,7 +10,7 @@ from scenic.language.errors import (
     RejectSimulationException,
     ScenicTypeError,
 )
-from scenic.runtime.context import Context, here
+from scenic.runtime.context import Context, current, here
 from scenic.runtime.dynamics import statements
 from scenic.runtime.dynamics.activations import Termination, Yielded
 from scenic.runtime.dynamics.declarations import End, Kept, MonitorUse, RecordUse, Required
@@ -52,8 +52,8 @@ class Dynamics:
     @property
     def _run(self) -> Run | None:
         """The running simulation."""
-        context = self._context
-        return context.run if isinstance(context, RunContext) else None
+        active = current.get()
+        return active.run if type(active) is RunContext else None
 
     # Definitions
 

@@ -1,7 +1,7 @@
 """The statements that take time, as generators to which code delegates (sections 12.2 and 12.4)."""
 
-import inspect
 from collections.abc import Callable, Generator, Iterator, Sequence
+from types import GeneratorType
 from typing import Any, Final, cast
 
 from scenic.language.errors import RejectSimulationException, ScenicTypeError, ScenicValueError
@@ -192,7 +192,7 @@ def interruptible(
                 block = blocks[selected] = clauses[selected][1]()
             else:
                 block = blocks[selected]
-            if inspect.isgenerator(block):
+            if isinstance(block, GeneratorType):
                 try:
                     output = next(cast("Iterator[Yielded]", block))
                 except StopIteration as end:
@@ -207,5 +207,5 @@ def interruptible(
             blocks[selected] = None
     finally:
         for block in (*blocks, main):
-            if inspect.isgenerator(block):
+            if isinstance(block, GeneratorType):
                 block.close()
