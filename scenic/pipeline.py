@@ -23,6 +23,7 @@ from scenic.language.errors import (
     ScenicSyntaxError,
     annotate,
     annotation,
+    compile_error,
 )
 from scenic.language.source import Source, read_source
 from scenic.language.spans import Span
@@ -215,7 +216,7 @@ def _scenario(
     compiled = compile_text(text, filename=filename)
     if compiled.code is None:
         errors = [item for item in compiled.diagnostics if item.severity == "error"]
-        failure = ScenicSyntaxError(errors, filename=filename)
+        failure = compile_error(errors, filename=filename)
         failure.program = text
         raise failure
     locator = Locator()

@@ -70,3 +70,19 @@ def test_pruning_can_be_switched_off_as_before(monkeypatch: pytest.MonkeyPatch) 
     assert not scenic.scenarioFromString(text).domain.is_whole
     monkeypatch.setattr(scenic.syntax.translator, "usePruning", False, raising=False)
     assert scenic.scenarioFromString(text).domain.is_whole
+
+
+@pytest.mark.parametrize(
+    ("text", "kind"),
+    [
+        ("x = foo", NameError),
+        ("ego = new Foo", NameError),
+        ("mutate foo", NameError),
+        ("x = Object at 3", TypeError),
+    ],
+)
+def test_what_is_found_early_has_the_type_that_python_would_raise(text: str, kind: type[Exception]) -> None:
+    with pytest.raises(kind) as caught:
+        scenic.scenarioFromString(text)
+    assert isinstance(caught.value, scenic.language.errors.ScenicSyntaxError)
+    assert caught.value.lineno == 1

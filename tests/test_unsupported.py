@@ -8,9 +8,12 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from click.testing import CliRunner
 
 import scenic
-from scenic.language.diagnostics import Diagnostic
+from scenic.cli.check import check
+from scenic.compiler.check import check_text
+from scenic.language.diagnostics import Diagnostic, Severity
 from scenic.language.errors import Located, UnsupportedError
 from scenic.language.names import NAMES
 from scenic.language.support import refused_features
@@ -98,3 +101,16 @@ def mistake(text: str) -> Diagnostic | None:
             raise
         return found
     return None
+
+
+@pytest.mark.parametrize("name", UNAVAILABLE)
+def test_a_check_says_it_as_information(name: str, tmp_path: Path) -> None:
+    file = tmp_path / "main.scenic"
+    file.write_text(f"x = {name}(0, 1)\nego = new Object\n")
+    (found,) = check_text(file.read_text(), filename=str(file))
+    assert (found.code, found.severity) == ("SC900", Severity.INFORMATION)
+    assert "no external sampler" in (found.help or "")
+    for options in ([], ["--deep"]):
+        result = CliRunner().invoke(check, [str(file), *options], standalone_mode=False)
+        assert result.return_value == 0, result.output
+    refused(file.read_text())

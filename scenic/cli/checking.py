@@ -11,7 +11,7 @@ from typing import Final
 from scenic.compiler.check import check_text, in_order
 from scenic.compiler.ignores import apply_ignores
 from scenic.compiler.surroundings import SurroundingsOf
-from scenic.language.diagnostics import Diagnostic, Severity
+from scenic.language.diagnostics import UNSUPPORTED, Diagnostic, Severity
 from scenic.language.errors import Located
 from scenic.language.selection import Rules
 from scenic.language.source import Source, read_source
@@ -110,7 +110,7 @@ def fault(filename: str, what: str) -> Diagnostic:
 def _check(task: Task, surroundings_of: SurroundingsOf) -> tuple[Diagnostic, ...]:
     source = Source(task.text, task.filename) if task.text is not None else read_source(task.filename)
     found = check_text(source.text, filename=task.filename, surroundings_of=surroundings_of)
-    if task.deep and not any(item.severity is Severity.ERROR for item in found):
+    if task.deep and not any(item.severity is Severity.ERROR or item.code == UNSUPPORTED for item in found):
         found = in_order((*found, *_deep(task, source)), filename=task.filename)
     return task.rules.apply(found)
 

@@ -13,7 +13,7 @@ from scenic.compiler.ignores import apply_ignores
 from scenic.compiler.parser import ParseResult
 from scenic.compiler.scopes import Resolution
 from scenic.compiler.surroundings import SurroundingsOf
-from scenic.language.diagnostics import Diagnostic
+from scenic.language.diagnostics import UNSUPPORTED, Diagnostic, Severity
 from scenic.language.source import Source
 
 __all__ = ["check_again", "check_text", "in_order"]
@@ -34,7 +34,7 @@ def check_text(
 
 def _found(text: str, filename: str, surroundings_of: SurroundingsOf | None) -> tuple[Diagnostic, ...]:
     compiled = compile_text(text, filename=filename, thorough=True, surroundings_of=surroundings_of)
-    found = in_order(compiled.diagnostics, filename=filename)
+    found = in_order(map(_as_shown, compiled.diagnostics), filename=filename)
     return in_order(apply_ignores(text, found, filename=filename), filename=filename)
 
 
@@ -59,9 +59,16 @@ def check_again(
         warned=warned,
         go_on=go_on,
     )
-    found = in_order(checked.diagnostics, filename=source.filename)
+    found = in_order(map(_as_shown, checked.diagnostics), filename=source.filename)
     kept = apply_ignores(source.text, found, filename=source.filename)
     return Checked(in_order(kept, filename=source.filename), checked.warned)
+
+
+def _as_shown(diagnostic: Diagnostic) -> Diagnostic:
+    """What this version does not build is no mistake of the program: only running it has to stop there."""
+    return (
+        replace(diagnostic, severity=Severity.INFORMATION) if diagnostic.code == UNSUPPORTED else diagnostic
+    )
 
 
 def in_order(diagnostics: Iterable[Diagnostic], *, filename: str) -> tuple[Diagnostic, ...]:

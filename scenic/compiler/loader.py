@@ -22,7 +22,7 @@ import scenic.compiler
 import scenic.language
 from scenic.compiler.compile import compile_text
 from scenic.language.diagnostics import Severity
-from scenic.language.errors import ScenicSyntaxError
+from scenic.language.errors import compile_error
 from scenic.language.source import Source, read_source
 
 __all__ = ["SUFFIXES", "ScenicLoader", "cache_file", "find_module", "load_code"]
@@ -100,7 +100,7 @@ class ScenicLoader(importlib.abc.ExecutionLoader):
         compiled = compile_text(source.text, filename=source.filename)
         if compiled.code is None:
             by_severity = sorted(compiled.diagnostics, key=lambda item: item.severity is not Severity.ERROR)
-            raise ScenicSyntaxError(by_severity, filename=source.filename)
+            raise compile_error(by_severity, filename=source.filename)
         if kept is not None and not sys.dont_write_bytecode:
             _write(kept, key, compiled.code)
         return compiled.code

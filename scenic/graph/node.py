@@ -20,8 +20,7 @@ class Node:
 
     ``payload`` is data of the operation that is no operand (an attribute's name, a table of weights). ``span`` is
     the place in the program, carried for reports and never looked into here. ``limits`` bound the value of an integer
-    exactly; integer arithmetic uses them to prove that its results fit 64 bits. ``consumers`` are the nodes made of this
-    one so far: a value that is computed twice is one node (`scenic.graph.construction`).
+    exactly; integer arithmetic uses them to prove that its results fit 64 bits.
     """
 
     operation: Operation
@@ -30,7 +29,15 @@ class Node:
     payload: Any = None
     span: Hashable | None = None
     limits: tuple[int, int] | None = None
-    consumers: Consumers = field(default_factory=WeakValueDictionary, repr=False)
+    _consumers: Consumers | None = field(default=None, init=False, repr=False)
+
+    @property
+    def consumers(self) -> Consumers:
+        """The nodes made of this one so far: a value that is computed twice is one node (`scenic.graph.construction`)."""
+        if self._consumers is None:
+            object.__setattr__(self, "_consumers", WeakValueDictionary())
+            assert self._consumers is not None
+        return self._consumers
 
     @property
     def is_constant(self) -> bool:

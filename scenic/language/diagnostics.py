@@ -15,6 +15,10 @@ _LONGEST: Final = 2000
 """The characters of a message, about; of a longer one the middle is left out."""
 
 
+UNSUPPORTED: Final = "SC900"
+"""The code of what is right, but not built by this version."""
+
+
 class Severity(StrEnum):
     """How bad it is: errors keep a program from being compiled; errors and warnings make ``scenic check`` fail."""
 

@@ -4,7 +4,8 @@ Each carries a code, a place and a help line, so that the command line can show 
 """
 
 import linecache
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 
 from scenic.language.diagnostics import Diagnostic, Severity
 from scenic.language.spans import Span
@@ -107,10 +108,32 @@ class ScenicSyntaxError(ParseCompileError):
     """Lexical, grammatical and placement errors."""
 
 
+class UndefinedNameError(ScenicSyntaxError, NameError):
+    """A name that nothing defines: found before the program runs."""
+
+
+class MissingNewError(ScenicSyntaxError, TypeError):
+    """A class used like an instance, where ``new`` is missing."""
+
+
+_BY_CODE: Mapping[str, type[ScenicSyntaxError]] = MappingProxyType(
+    {"SC111": MissingNewError, "SC202": UndefinedNameError, "SC203": UndefinedNameError}
+)
+
+
+def compile_error(diagnostics: Sequence[Diagnostic], *, filename: str | None = None) -> ScenicSyntaxError:
+    """The exception of a program that cannot be compiled, of the class that its first problem asks for."""
+    return _BY_CODE.get(diagnostics[0].code, ScenicSyntaxError)(diagnostics, filename=filename)
+
+
 class InvalidScenarioError(ScenicError):
     """The program describes no scenario."""
 
     code = "SC401"
+
+
+class UnknownParameterError(InvalidScenarioError, AttributeError):
+    """A global parameter that the program does not set; also what ``hasattr`` asks for."""
 
 
 class UndefinedSamplingException(InvalidScenarioError):
@@ -131,6 +154,10 @@ class RandomControlFlowError(ScenicError):
     """A random value was used where the program needs a definite one (section 8.3)."""
 
     code = "SC403"
+
+
+class RandomIndexError(RandomControlFlowError, TypeError):
+    """A random index of a container of Python's own."""
 
 
 class SamplingError(ScenicError):

@@ -15,6 +15,7 @@ from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import Call, Operation, always
 from scenic.language.errors import RejectionException, ScenicTypeError
 from scenic.runtime.context import here
+from scenic.runtime.geometry.cell_index import CellIndex
 from scenic.runtime.lazy import Lazy, defer, reads_of, resolve
 from scenic.runtime.opaque import evaluated, later
 from scenic.runtime.values import (
@@ -124,31 +125,28 @@ class PolygonalVectorField(VectorField):
                 )
         self.headingFunction = headingFunction
         self.defaultHeading = defaultHeading
-        self._index: Any = None
+        self._table: Headings | None = None
+        if all(heading is not None for _, heading in self.cells):
+            headings = [*(heading for _, heading in self.cells), defaultHeading or 0.0]
+            self._table = np.array(headings, dtype=np.float64)
+        self._index: CellIndex | None = None
         super().__init__(name, self._value, **options)
 
     def _nearest_cells(self, x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.intp]:
         """The first cell that holds each point; the number of cells where none does."""
-        import shapely
-
         if self._index is None:
-            self._index = shapely.STRtree([_polygon(cell) for cell, _ in self.cells])
-        found = np.full(len(x), len(self.cells), dtype=np.intp)
-        points, cells = self._index.query(shapely.points(x, y), predicate="intersects")
-        np.minimum.at(found, points, cells)
-        return found
+            self._index = CellIndex([_polygon(cell) for cell, _ in self.cells])
+        return self._index.first_at(x, y)
 
     def headings(self, points: Points) -> tuple[Headings, NDArray[np.bool_]]:
         """Headings at points ``(n, 3)``, and which points have one; for fields without a function."""
-        table = np.array(
-            [*(heading for _, heading in self.cells), self.defaultHeading or 0.0], dtype=np.float64
-        )
+        assert self._table is not None
         cells = self._nearest_cells(points[:, 0], points[:, 1])
-        return table[cells], (cells < len(self.cells)) | (self.defaultHeading is not None)
+        return self._table[cells], (cells < len(self.cells)) | (self.defaultHeading is not None)
 
     @property
     def _is_table(self) -> bool:
-        return all(heading is not None for _, heading in self.cells)
+        return self._table is not None
 
     def _value(self, point: Any) -> Any:
         (cell,) = self._nearest_cells(np.array([point.x]), np.array([point.y]))

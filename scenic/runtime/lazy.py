@@ -115,15 +115,22 @@ for _name in ("neg", "pos", "abs"):
     setattr(Lazy, f"__{_name}__", _unary(getattr(operator, _name)))
 
 
+_NOTHING: frozenset[str] = frozenset()
+_NUMBERS = frozenset({int, float})
+"""Types that most parts of containers have; looked at first."""
+
+
 def reads_of(value: Any) -> frozenset[str]:
     """The properties that a value, or something in it, reads; none where it is not lazy."""
     if isinstance(value, Lazy):
         return value.reads
-    if type(value) in (tuple, list):
-        return frozenset().union(*map(reads_of, value))
-    if type(value) is dict:
-        return frozenset().union(*map(reads_of, value.values()))
-    return frozenset()
+    kind = type(value)
+    found = _NOTHING
+    if kind is tuple or kind is list or kind is dict:
+        for item in value.values() if kind is dict else value:
+            if type(item) not in _NUMBERS and (reads := reads_of(item)):
+                found |= reads
+    return found
 
 
 def is_lazy(value: Any) -> bool:

@@ -7,7 +7,7 @@ from types import MappingProxyType
 from typing import Any
 
 from scenic.language import errors
-from scenic.language.errors import InvalidScenarioError
+from scenic.language.errors import InvalidScenarioError, UnknownParameterError
 from scenic.runtime import distributions, fields, functions, laws, shapes
 from scenic.runtime.context import current, here
 from scenic.runtime.dynamics.definitions import Behavior, Monitor
@@ -154,7 +154,7 @@ class GlobalParameters:
             return self._program.overrides[name]
         if name not in parameters:
             known = ", ".join(sorted(parameters)) or "none"
-            raise InvalidScenarioError(
+            raise UnknownParameterError(
                 f"there is no global parameter {name!r}",
                 span=here(),
                 help=f"parameters set so far: {known}; set it with `param {name} = ...`",

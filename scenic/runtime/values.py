@@ -27,6 +27,7 @@ from scenic.graph.schedule import Scheduler
 from scenic.language.errors import (
     InvalidScenarioError,
     RandomControlFlowError,
+    RandomIndexError,
     ScenicTypeError,
     UnsupportedError,
 )
@@ -172,7 +173,11 @@ class Random(Arithmetic, Hooks):
         raise self._definite("taking Python's own `len` of")
 
     def __index__(self) -> int:
-        raise self._definite("indexing with")
+        raise RandomIndexError(
+            "indexing a container of Python's own with a random value is not possible",
+            span=here(),
+            help="make the container itself random: `Uniform(xs)[index]`, or choose an element: `Uniform(*xs)`",
+        )
 
     def __int__(self) -> int:
         raise self._definite("converting (outside Scenic code)")
@@ -688,7 +693,7 @@ def _attribute_of_option(option: Node, name: str) -> Node:
     if option.operation is _MISSING:
         return option
     value = as_value(option)
-    if kind_of(value) is Kind.OBJECT and _is_computed(type(value), name):
+    if kind_of(value) is Kind.OBJECT and _is_computed(type(value), name):  # type: ignore[arg-type] # classes are hashable
         return as_node(Random.later(getattr, value, name))
     try:
         return as_node(getattr(value, name))
@@ -696,6 +701,7 @@ def _attribute_of_option(option: Node, name: str) -> Node:
         return construction.make_node(_MISSING, (), error, here())
 
 
+@functools.lru_cache(maxsize=1024)
 def _is_computed(cls: type, name: str) -> bool:
     """Whether an attribute is computed by code of the program, which has to see sampled values."""
     found = inspect.getattr_static(cls, name, None)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
+import scenic
 from scenic.language.errors import InvalidScenarioError, ScenicTypeError, SpecifierError
 from tests.runtime.programs import FALSE_ALARM, draws, failure, scenario, scene
 
@@ -114,3 +115,13 @@ def test_view_angles_are_limited_with_a_warning() -> None:
     with pytest.warns(UserWarning, match="truncated"):
         item = scene("ego = new Object with viewAngles (7, 4)\n").egoObject
     assert item.viewAngles == pytest.approx((2 * np.pi, np.pi))
+
+
+def test_parameters_are_asked_for_without_harm() -> None:
+    text = "param a = 3\nego = new Object\nx = globalParameters\ndef f(): return x.a == 3 and not hasattr(x, 'b')\nrequire f()\n"
+    assert scenic.scenarioFromString(text).sample(1, seed=0)
+
+
+def test_a_random_index_of_a_plain_list_is_a_type_error() -> None:
+    with pytest.raises(TypeError, match="container of Python's own"):
+        scenic.scenarioFromString("x = [1, 2][DiscreteRange(0, 1)]")

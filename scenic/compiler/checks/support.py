@@ -25,8 +25,11 @@ _STATEMENTS: Final = tuple(
 NOTED: Final = (scenic.Operation, scenic.Specifier, scenic.Temporal, *_STATEMENTS)
 """The nodes that a feature can belong to, beside names."""
 
-_INSTEAD: Final = "draw with `Range`, `DiscreteRange`, `Uniform` or `Options`: values then come from this program, not from a sampler"
-"""What to do without the only thing that is refused: external samplers."""
+_INSTEAD: Final = (
+    "with `Range`, `DiscreteRange`, `Uniform` or `Options` in its place the values are independent draws: "
+    "no external sampler chooses them, and feedback changes nothing"
+)
+"""What is different without the only thing that is refused: external samplers."""
 _NAMES: Final = frozenset(name.name for name in NAMES.values() if not name.available)
 
 

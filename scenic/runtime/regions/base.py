@@ -375,7 +375,7 @@ class Everywhere(Region):
         return np.full(1, np.inf)
 
     def uniform_placement(self) -> tuple[Any, Any]:
-        raise UndefinedSamplingException(
+        raise InvalidScenarioError(
             "no point can be drawn uniformly from all of space",
             span=here(),
             help="draw from a bounded region, or set `workspace = Workspace(region)`",

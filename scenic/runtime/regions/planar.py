@@ -13,7 +13,7 @@ import numpy as np
 from scenic.graph.bounds import Bounds, outward
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import Call, Operation, always
-from scenic.language.errors import ScenicTypeError, ScenicValueError, UndefinedSamplingException
+from scenic.language.errors import InvalidScenarioError, ScenicTypeError, ScenicValueError
 from scenic.runtime.context import here
 from scenic.runtime.geometry import containment
 from scenic.runtime.geometry.collision import Body
@@ -556,7 +556,7 @@ class Footprint(Region):
         return np.full(1, np.inf)
 
     def uniform_placement(self) -> tuple[Any, Any]:
-        raise UndefinedSamplingException(
+        raise InvalidScenarioError(
             "no point can be drawn from a footprint, which is not bounded",
             span=here(),
             help="draw from the region itself, or intersect the footprint with a bounded region",

@@ -1,0 +1,80 @@
+"""Which of many polygons holds a point: by a grid of bins over their boxes."""
+
+from collections.abc import Sequence
+from typing import Any, Final
+
+import numpy as np
+
+from scenic.runtime.geometry.poses import Floats, Indices
+from scenic.runtime.geometry.ragged import expand, group_starts, pieces
+
+_BINS_PER_POLYGON: Final = 2.0
+_MOST_BINS: Final = 1 << 20
+_PAIRS: Final = 1 << 18
+"""Pairs of a point and a polygon that are tested at a time."""
+
+
+class CellIndex:
+    """Polygons of the plane, in order.
+
+    Each bin lists the polygons whose boxes reach into it; a point is tested against those of its bin alone.
+
+    Args:
+        polygons: shapely's polygons or multipolygons.
+
+    """
+
+    def __init__(self, polygons: Sequence[Any]) -> None:
+        import shapely
+
+        self._polygons = np.array(polygons, dtype=object)
+        shapely.prepare(self._polygons)
+        boxes = shapely.bounds(self._polygons).reshape(-1, 4)
+        self._known = np.flatnonzero(np.isfinite(boxes).all(axis=1))
+        boxes = boxes[self._known]
+        if not len(boxes):
+            boxes = np.zeros((0, 4))
+        self._low = boxes[:, :2].min(axis=0, initial=np.inf) if len(boxes) else np.zeros(2)
+        high = boxes[:, 2:].max(axis=0) if len(boxes) else np.zeros(2)
+        extent = np.maximum(high - self._low, 1e-9)
+        # About so many square bins in all; long thin maps get long thin grids.
+        wanted = min(max(len(boxes) * _BINS_PER_POLYGON, 1.0), _MOST_BINS)
+        edge = np.sqrt(extent[0] * extent[1] / wanted)
+        edge = max(edge, extent.max() / _MOST_BINS**0.5, 1e-9)
+        self._shape = np.maximum(np.ceil(extent / edge).astype(np.int64), 1)
+        self._edge = extent / self._shape
+        first, last = self._bins(boxes[:, :2]), self._bins(boxes[:, 2:])
+        spans = last - first + 1
+        owner, place = expand(spans[:, 0] * spans[:, 1])
+        column, row = place // spans[owner, 1], place % spans[owner, 1]
+        number = (first[owner, 0] + column) * self._shape[1] + first[owner, 1] + row
+        # Sorted by bin; within one the order of the polygons stays.
+        order = np.argsort(number, kind="stable")
+        self._members: Indices = self._known[owner[order]]
+        self._starts: Indices = group_starts(number[order], int(self._shape.prod()))
+
+    def _bins(self, points: Floats) -> Indices:
+        """The bins of points ``(n, 2)``; those outside are put into the nearest."""
+        place = np.floor((points - self._low) / self._edge)
+        clipped: Indices = np.clip(place, 0, self._shape - 1).astype(np.int64)
+        return clipped
+
+    def first_at(self, x: Floats, y: Floats) -> Indices:
+        """The first polygon that holds each point ``(n,)``, edge included; the number of polygons where none does."""
+        import shapely
+
+        result = np.full(len(x), len(self._polygons), dtype=np.intp)
+        sound = np.flatnonzero(np.isfinite(x) & np.isfinite(y))
+        bins = self._bins(np.stack([x[sound], y[sound]], axis=-1))
+        number = bins[:, 0] * self._shape[1] + bins[:, 1]
+        starts = self._starts[number]
+        counts = self._starts[number + 1] - starts
+        for part in pieces(counts, _PAIRS):
+            owner, place = expand(counts[part])
+            polygon, point = self._members[starts[part][owner] + place], sound[part][owner]
+            held = shapely.intersects_xy(self._polygons[polygon], x[point], y[point])
+            np.minimum.at(result, point[held], polygon[held])
+        return result
+
+
+__all__ = ["CellIndex"]
