@@ -6,7 +6,7 @@ is a function of the seed and its number. A worker that dies is replaced, and it
 
 import json
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import partial
 from typing import Final
@@ -18,11 +18,17 @@ from scenic.runtime.sampling.report import Exhausted
 from scenic.runtime.scenario import Scenario
 from scenic.runtime.scene import Scene
 
-_RUNS: Final = 16
-"""Runs for each worker, about, so that all end at nearly the same time."""
+_FIRST: Final = 16
+"""Scenes of the first piece of a job that a process makes; later ones follow what these took."""
 
-_LONGEST: Final = 256
-"""Scenes of a run, at most: what an interruption may lose."""
+_SECONDS: Final = 0.8
+"""What a piece should take: starting one costs some hundredths, and an interruption loses those under way."""
+
+_SMALLEST: Final = 6
+"""The smallest pieces are such a part of the usual one: more would take longer to start than to make."""
+
+_LONGEST: Final = 4096
+"""Scenes of a piece, at most: what has to be kept until those before it are there."""
 
 _TRIES: Final = 3
 
@@ -61,6 +67,7 @@ class Made:
     lines: bytes
     missing: tuple[Exhausted, ...]
     attempts: int = 0
+    seconds: float = 0.0
     failed: bool = False
     died: int | None = None
 
@@ -108,6 +115,7 @@ def continued(
 
 def _make(scenario: Scenario, lines: SceneLines, job: Job) -> Made:
     text, missing, attempts = bytearray(), [], 0
+    begun = time.monotonic()
     try:
         for result in results_of(scenario, job):
             attempts += result.attempts
@@ -117,7 +125,7 @@ def _make(scenario: Scenario, lines: SceneLines, job: Job) -> Made:
                 text += lines.line(result).encode("ascii") + b"\n"
     except Exception:  # noqa: BLE001 - the parent makes the job again, and shows the error with its place
         return Made(job, b"", (), failed=True)
-    return Made(job, bytes(text), tuple(missing), attempts)
+    return Made(job, bytes(text), tuple(missing), attempts, time.monotonic() - begun)
 
 
 def in_processes(scenario: Scenario, lines: SceneLines, job: Job, jobs: int) -> Iterator[Made]:
@@ -125,24 +133,41 @@ def in_processes(scenario: Scenario, lines: SceneLines, job: Job, jobs: int) -> 
 
     Raises `WorkerDiedError` where processes keep dying, and whatever sampling raises.
     """
-    yield from _ordered(scenario, lines, _split(job, jobs), jobs, tries=_TRIES)
+    yield from _ordered(scenario, lines, _Pieces(job, jobs), jobs, tries=_TRIES)
 
 
-def _split(job: Job, jobs: int) -> list[Job]:
-    count = job.last - job.first
-    size = max(1, min(_LONGEST, -(-count // (jobs * _RUNS))))
-    return [
-        Job(job.seed, first, min(first + size, job.last), job.max_attempts, job.deadline)
-        for first in range(job.first, job.last, size)
-    ]
+class _Pieces:
+    """A job in pieces that take about as long each, smaller ones at the end, so that all processes end together."""
+
+    def __init__(self, job: Job, jobs: int) -> None:
+        self._job = job
+        self._jobs = jobs
+        self._size = self._usual = _FIRST
+
+    def __iter__(self) -> Iterator[Job]:
+        job, first = self._job, self._job.first
+        while first < job.last:
+            left = job.last - first
+            fair = -(-left // (2 * self._jobs))
+            last = first + min(left, self._size, max(fair, self._usual // _SMALLEST))
+            yield Job(job.seed, first, last, job.max_attempts, job.deadline)
+            first = last
+
+    def learn(self, made: Made) -> None:
+        """Take into account what a piece took."""
+        count = made.job.last - made.job.first
+        self._size = max(1, min(_LONGEST, int(count * _SECONDS / max(made.seconds, 1e-6))))
+        self._usual = max(self._usual, self._size)
 
 
 def _ordered(
-    scenario: Scenario, lines: SceneLines, pieces: Sequence[Job], jobs: int, *, tries: int
+    scenario: Scenario, lines: SceneLines, pieces: _Pieces, jobs: int, *, tries: int
 ) -> Iterator[Made]:
     waiting: dict[int, Made] = {}
     upcoming = 0
     for index, made in _made(scenario, lines, pieces, jobs):
+        if made.seconds:
+            pieces.learn(made)
         waiting[index] = made
         while upcoming in waiting:
             ready = waiting.pop(upcoming)
@@ -158,7 +183,7 @@ def _ordered(
 
 
 def _made(
-    scenario: Scenario, lines: SceneLines, pieces: Sequence[Job], jobs: int
+    scenario: Scenario, lines: SceneLines, pieces: Iterable[Job], jobs: int
 ) -> Iterator[tuple[int, Made]]:
     """What comes of pieces in several processes, as it comes, with their numbers."""
     from scenic.cli import workers  # a sixteenth of a start, which one process can do without

@@ -9,7 +9,7 @@ import multiprocessing
 import os
 import signal
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess, parent_process
 from typing import Any, Final, TypeVar
@@ -31,7 +31,7 @@ def usable_cpus() -> int:
 
 def run(
     function: Callable[[_Argument], _Result],
-    arguments: Sequence[_Argument],
+    arguments: Iterable[_Argument],
     *,
     jobs: int,
     lost: Callable[[_Argument, int], _Result],
@@ -39,12 +39,14 @@ def run(
 ) -> Iterator[tuple[int, _Result]]:
     """Call ``function``, which raises nothing, on each of the arguments; yields index and result as they come.
 
+    Arguments are taken when a process is free, so that later ones may depend on earlier results.
+
     Where a process dies, ``lost`` makes the result from the argument that it was at and its exit code, and another
     process takes its place. When the iterator is closed, which Ctrl-C does too, the processes are ended.
     """
     context: Any = multiprocessing.get_context(method)
-    waiting = list(enumerate(arguments))[::-1]
-    busy: dict[Connection, tuple[BaseProcess, int]] = {}
+    waiting = enumerate(arguments)
+    busy: dict[Connection, tuple[BaseProcess, int, _Argument]] = {}
     processes: list[BaseProcess] = []
 
     def start() -> tuple[Connection, BaseProcess]:
@@ -58,32 +60,37 @@ def run(
         processes.append(process)
         return ours, process
 
-    def give(connection: Connection, process: BaseProcess) -> None:
+    def give(connection: Connection, process: BaseProcess, upcoming: tuple[int, _Argument] | None) -> None:
         """The next argument to a process, or the message that there is none."""
         with contextlib.suppress(BrokenPipeError):  # if it died, that is noticed when its answer is read
-            if not waiting:
+            if upcoming is None:
                 connection.send(None)
                 return
-            index, argument = waiting.pop()
-            busy[connection] = (process, index)
+            index, argument = upcoming
+            busy[connection] = (process, index, argument)
             connection.send((argument,))
 
+    def replace() -> None:
+        """Another process, if there is something left to do for it."""
+        upcoming = next(waiting, None)
+        if upcoming is not None:
+            give(*start(), upcoming)
+
     try:
-        for _ in range(min(jobs, len(waiting))):
-            give(*start())
+        for _ in range(jobs):
+            replace()
         while busy:
             ready: list[Any] = wait(list(busy))  # what a connection is differs between systems
             for connection in ready:
-                process, index = busy.pop(connection)
+                process, index, argument = busy.pop(connection)
                 try:
                     result = connection.recv()
                 except (EOFError, ConnectionResetError):
                     process.join()
-                    yield index, lost(arguments[index], process.exitcode or 0)
-                    if waiting:
-                        give(*start())
+                    yield index, lost(argument, process.exitcode or 0)
+                    replace()
                 else:
-                    give(connection, process)
+                    give(connection, process, next(waiting, None))
                     yield index, result
     finally:
         for process in processes:
