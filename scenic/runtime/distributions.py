@@ -97,7 +97,9 @@ def DiscreteRange(low: Any, high: Any, weights: Sequence[float] | None = None) -
             )
         ends.append(int(end))
     if ends[0] > ends[1]:
-        raise ScenicValueError(f"`DiscreteRange` is empty: {low} is above {high}", span=here())
+        raise ScenicValueError(
+            f"`DiscreteRange` is empty: {low} is above {high}", span=here(), help="give the lower end first"
+        )
     count = ends[1] - ends[0] + 1
     if len(weights) != count:
         raise ScenicValueError(
@@ -164,7 +166,9 @@ def _weight(weight: Any) -> float:
     if is_random(weight) or not is_number(weight):
         raise ScenicTypeError(f"a weight is a fixed number, not {describe(weight)}", span=here())
     if not 0 <= weight < math.inf:
-        raise ScenicValueError(f"a weight is a number from 0 on, not {weight}", span=here())
+        raise ScenicValueError(
+            f"a weight is a number from 0 on, not {weight}", span=here(), help="weights need not sum to 1"
+        )
     return float(weight)
 
 

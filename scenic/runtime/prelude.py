@@ -142,7 +142,8 @@ class Prelude(Dynamics):
     @ego.setter
     def ego(self, value: Any) -> None:
         if not isinstance(value, Object):
-            hint = f"write `ego = new {value.__name__}`" if isinstance(value, type) else None
+            made = value.__name__ if isinstance(value, type) else "Object"
+            hint = f"write `ego = new {made}`, with specifiers where they are needed"
             raise ScenicTypeError(f"the ego must be an object, not {describe(value)}", span=here(), help=hint)
         if self._run is not None:
             self._run.current.ego = value
@@ -207,7 +208,11 @@ class Prelude(Dynamics):
                 help="Python classes are called: `C(...)`",
             )
         if self._context.evaluating and issubclass(cls, Object):
-            raise InvalidScenarioError("a requirement cannot create an object", span=here())
+            raise InvalidScenarioError(
+                "a requirement cannot create an object",
+                span=here(),
+                help="create it before the `require` statement; points may be created in a requirement",
+            )
         instance = build(cls, specifiers, mode_2d=self._context.mode_2d)
         if self._context.evaluating:
             return instance
@@ -217,7 +222,9 @@ class Prelude(Dynamics):
                 instance.__dict__["behavior"] = behavior()
             elif behavior is not None and not isinstance(behavior, Behavior | Random):
                 raise ScenicTypeError(
-                    f"property 'behavior' must be a behavior, not {describe(behavior)}", span=here()
+                    f"property 'behavior' must be a behavior, not {describe(behavior)}",
+                    span=here(),
+                    help="define one with `behavior NAME():`, and write `with behavior NAME()`",
                 )
         sightings = [specifier.sighting for specifier in specifiers if specifier.sighting is not None]
         if self._run is not None:
@@ -271,7 +278,11 @@ class Prelude(Dynamics):
     def param(self, values: Mapping[str, Any]) -> None:
         """``param name = value, ...``."""
         if self._context.evaluating or not self._context.is_symbolic:
-            raise InvalidScenarioError("parameters cannot be set here", span=here())
+            raise InvalidScenarioError(
+                "parameters cannot be set here",
+                span=here(),
+                help="set them where the program describes the scenario, outside of requirements and simulations",
+            )
         program = self._program
         for name, value in values.items():
             definite(value, f"parameter {name!r}")
@@ -289,7 +300,9 @@ class Prelude(Dynamics):
     def mutate(self, targets: Sequence[Any] | None = None, scale: Any = 1) -> None:
         """``mutate a, b by scale``; without targets all objects so far."""
         if self._context.evaluating:
-            raise InvalidScenarioError("a requirement cannot mutate objects", span=here())
+            raise InvalidScenarioError(
+                "a requirement cannot mutate objects", span=here(), help="mutate them before or after it"
+            )
         chosen = self._program.objects if targets is None else targets
         mutation.request(chosen, scale)
 
@@ -302,7 +315,11 @@ class Prelude(Dynamics):
     ) -> None:
         """``require condition``: recorded while compiling, checked or followed during a simulation."""
         if self._context.evaluating:
-            raise InvalidScenarioError("a requirement cannot contain another one", span=here())
+            raise InvalidScenarioError(
+                "a requirement cannot contain another one",
+                span=here(),
+                help="return the condition, and join conditions with `and`",
+            )
         span = here()
         label = name or (f"requirement on line {span.line}" if span else "requirement")
         formula = required(condition.tree, label, span, self._module.filename)

@@ -89,13 +89,17 @@ def _combine(name: str, definitions: Sequence[PropertyDefinition]) -> Property:
     for overridden in definitions[1:]:
         if "final" in overridden.attributes:
             raise InvalidScenarioError(
-                f"property {name!r} is final and cannot be defined again", span=primary.span
+                f"property {name!r} is final and cannot be defined again",
+                span=primary.span,
+                help="choose another name, or leave `final` out where it is defined first",
             )
     additive = "additive" in primary.attributes
     dynamic = any("dynamic" in definition.attributes for definition in definitions)
     if additive and dynamic:
         raise InvalidScenarioError(
-            f"property {name!r} cannot be both additive and dynamic", span=primary.span
+            f"property {name!r} cannot be both additive and dynamic",
+            span=primary.span,
+            help="leave one of the two out",
         )
     return Property(
         name,

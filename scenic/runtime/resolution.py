@@ -60,13 +60,17 @@ class Resolution:
     """All properties, those of the class first."""
     given: tuple[str, ...]
     """Those that the program gives, by a specifier or in a class of its own."""
+    is_doubtful: bool
+    """Whether a name looks misspelt, which is told each time."""
 
     def provider(self, name: str, reader: Specifier) -> Step:
         """Who provides a property that ``reader`` reads."""
         provider = self.providers.get(name)
         if provider is None:
             raise SpecifierError(
-                f"{reader} needs property {name!r}, which nothing provides", span=reader.span
+                f"{reader} needs property {name!r}, which nothing provides",
+                span=reader.span,
+                help=f"give the class a default for it, or the object a value: `with {name} ...`",
             )
         return provider
 
@@ -143,7 +147,8 @@ def resolution_of(cls: type[Point], specifiers: Sequence[Specifier], *, mode_2d:
     resolution = known.get((mode_2d, kinds))
     if resolution is None:
         resolution = resolve(cls, specifiers, class_defaults(cls, mode_2d=mode_2d))
-        known[mode_2d, kinds] = resolution
+        if not resolution.is_doubtful:
+            known[mode_2d, kinds] = resolution
     return resolution
 
 
@@ -168,6 +173,7 @@ def resolve(
             raise _clash(cls, name, entry.definitions[0].span)
     claims: dict[str, Specifier] = {}
     modifiers: dict[str, Specifier] = {}
+    is_doubtful = False
     for specifier in specifiers:
         own = specifier.dependencies & specifier.priorities.keys()
         if own:
@@ -176,7 +182,7 @@ def resolve(
                 span=specifier.span,
             )
         for name in specifier.priorities:
-            _check_property(cls, name, specifier, properties)
+            is_doubtful |= _check_property(cls, name, specifier, properties)
     for specifier in specifiers:
         if not specifier.modifiable:
             for name, priority in specifier.priorities.items():
@@ -214,6 +220,7 @@ def resolve(
             for name, specifier in {**claims, **modifiers}.items()
             if specifier in numbers or not properties[name].definitions[0].is_builtin
         ),
+        is_doubtful,
     )
 
 
@@ -229,7 +236,8 @@ def _reject_duplicates(specifiers: Sequence[Specifier]) -> None:
 
 def _check_property(
     cls: type[Point], name: str, specifier: Specifier, properties: Mapping[str, Property]
-) -> None:
+) -> bool:
+    """Raise an error for a property that cannot be specified; returns whether its name looks misspelt, and says so."""
     if name in properties:
         if properties[name].final:
             hint = None
@@ -248,6 +256,8 @@ def _check_property(
             f"{line}{cls.__name__} has no property {name!r}, which is now created: did you mean {meant!r}?",
             stacklevel=2,
         )
+        return True
+    return False
 
 
 def _clash(cls: type[Point], name: str, span: Span | None) -> SpecifierError:
@@ -335,7 +345,9 @@ def _topological(
             provider = modifiers.get(name) or claims.get(name)
             if provider is None:
                 raise SpecifierError(
-                    f"{specifier} needs property {name!r}, which nothing provides", span=specifier.span
+                    f"{specifier} needs property {name!r}, which nothing provides",
+                    span=specifier.span,
+                    help=f"give the class a default for it, or the object a value: `with {name} ...`",
                 )
             visit(provider)
         for name in sorted(modifies.get(specifier, ())):

@@ -280,7 +280,10 @@ def _scaled(dimensions: Triple, scale: Any, name: str) -> Triple:
     factor = _number(scale, "scale", name)
     width, length, height = (factor * extent for extent in dimensions)
     if not min(width, length, height) > 0:
-        raise ScenicValueError(f"the dimensions of {name} must be positive, not {(width, length, height)}")
+        raise ScenicValueError(
+            f"the dimensions of {name} must be positive, not {(width, length, height)}",
+            help="they are width, length and height in metres, times `scale`",
+        )
     return width, length, height
 
 

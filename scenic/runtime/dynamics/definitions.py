@@ -10,7 +10,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from scenic.language.errors import InvalidScenarioError, ScenicTypeError
+from scenic.language.diagnostics import Diagnostic
+from scenic.language.errors import InvalidScenarioError, ScenicSyntaxError, ScenicTypeError
 from scenic.language.spans import Span
 from scenic.runtime.context import current, here
 
@@ -53,6 +54,18 @@ class Invocable:
     def __init__(self, *args: Any, **kwargs: Any) -> None:
         context = current.get()
         if context is not None and (context.evaluating or getattr(context, "guarding", False)):
+            if self._kind == "monitor" and context.evaluating:
+                name = self._definition.name
+                raise ScenicSyntaxError(
+                    [
+                        Diagnostic(
+                            "SC114",
+                            f"`monitor` is missing: `{name}` is a monitor, not a condition",
+                            here(),
+                            help=f"write `require monitor {name}(...)`",
+                        )
+                    ]
+                )
             raise InvalidScenarioError(
                 f"a {self._kind} cannot be created in a condition",
                 span=here(),

@@ -189,7 +189,9 @@ class Dynamics:
         """``terminate after``."""
         if not is_number(value) or isinstance(value, bool):
             raise ScenicTypeError(
-                f"`terminate after`: expected a fixed number of {unit}, not {describe(value)}", span=here()
+                f"`terminate after`: expected a fixed number of {unit}, not {describe(value)}",
+                span=here(),
+                help="write a number, or one that is computed of fixed numbers alone",
             )
         self._declared.limit = (value, unit)  # the last one counts
 

@@ -74,7 +74,9 @@ class Overrides:
                 value = value()
             if value is not None and not isinstance(value, Behavior):
                 raise ScenicTypeError(
-                    f"property 'behavior' must be a behavior, not {describe(value)}", span=here()
+                    f"property 'behavior' must be a behavior, not {describe(value)}",
+                    span=here(),
+                    help="define one with `behavior NAME():`, and write `with behavior NAME()`",
                 )
             if value is not None:
                 Activation(self._run, value, target, self._run.current).start()

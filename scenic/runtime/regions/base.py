@@ -431,7 +431,11 @@ class Workspace(Region):
         if not isinstance(region, Region):
             raise ScenicTypeError(f"a workspace is made of a region, not of {region!r}", span=here())
         if region.is_random:
-            raise InvalidScenarioError("the workspace's region must be fixed", span=here())
+            raise InvalidScenarioError(
+                "the workspace's region must be fixed",
+                span=here(),
+                help="for a random place use `with regionContainedIn`, or `in` the region",
+            )
         super().__init__(*region.parameters, name=name)
         self.region = region
         self.has_orientation, self.orientation = region.has_orientation, region.orientation

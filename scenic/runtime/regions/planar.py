@@ -118,7 +118,9 @@ _LAND = Operation(
 def _positive(value: Any, what: str) -> Any:
     size = to_scalar(value, what)
     if is_number(size) and not size >= 0:
-        raise ScenicValueError(f"{what} cannot be negative: {size:g}", span=here())
+        raise ScenicValueError(
+            f"{what} cannot be negative: {size:g}", span=here(), help="sizes are in metres"
+        )
     return size
 
 
