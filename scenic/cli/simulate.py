@@ -107,6 +107,7 @@ class _Work:
             return {"k": k, "error": found or Diagnostic("SC503", message, help="the simulator raised this")}
 
     def _one(self, k: int) -> dict[str, Any]:
+        from scenic.formats.course_page import course_data
         from scenic.formats.files import write
         from scenic.formats.trajectories import course_document, step_documents
         from scenic.simulators.batch import simulate_number
@@ -121,10 +122,9 @@ class _Work:
             "settings": self.settings(),
         }
         path = self.file(k)
-        steps = list(step_documents(numbered.simulation)) if path is not None or self._whole else []
         if path is not None:
-            write(path, self._file_bytes(about, steps))
-        return {"k": k, "about": about, "steps": steps if self._whole else []}
+            write(path, self._file_bytes(about, list(step_documents(numbered.simulation))))
+        return {"k": k, "about": about, "page": course_data(numbered.simulation) if self._whole else None}
 
     def _file_bytes(self, about: dict[str, Any], steps: list[dict[str, Any]]) -> bytes:
         if self._form == "parquet":
@@ -288,7 +288,7 @@ def simulate(
     work.load()
     numbers = range(first, first + count)
     found: dict[int, dict[str, Any]] = {
-        k: {"k": k, "about": about, "steps": []} for k in numbers if (about := work.known(k)) is not None
+        k: {"k": k, "about": about, "page": None} for k in numbers if (about := work.known(k)) is not None
     }
     missing = [k for k in numbers if k not in found]
     with (
@@ -305,7 +305,7 @@ def simulate(
     if view is not None:
         from scenic.formats.course_page import course_page
 
-        made = [(found[k]["about"], found[k]["steps"]) for k in numbers if "about" in found[k]]
+        made = [found[k]["page"] for k in numbers if "about" in found[k]]
         if made:
             write(view, course_page(Path(file).name, made).encode())
     failed = any("error" in row for row in found.values())

@@ -12,7 +12,7 @@ from scenic.formats.files import check_folder, check_writable, numbered, write
 from scenic.formats.scenes import Scene
 from scenic.language.errors import Located
 
-Take = Callable[[Scene], None]
+Take = Callable[[Scene], object]
 Sink = AbstractContextManager[Take]
 
 STANDARD_OUTPUT = Path("-")

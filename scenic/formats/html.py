@@ -35,19 +35,21 @@ class Page:
     def __len__(self) -> int:
         return len(self._scenes)
 
-    def add(self, scene: Scene) -> None:
-        """Put a scene on the page, after the others."""
+    def add(self, scene: Scene) -> tuple[Instance, ...]:
+        """Put a scene on the page, after the others; gives what is drawn of it."""
+        instances = self._gallery.add(scene)
         self._scenes.append(
             {
                 "seed": str(scene.seed),  # may be larger than JavaScript's numbers
                 "k": scene.k,
                 "attempts": scene.attempts,
                 "params": {str(name): _brief(value) for name, value in scene.params.items()},
-                "objects": [_object(instance) for instance in self._gallery.add(scene)],
+                "objects": [_object(instance) for instance in instances],
                 "workspace": self._outline(scene.workspace),
                 "regions": self._regions(scene),
             }
         )
+        return instances
 
     def _regions(self, scene: Scene) -> dict[str, int]:
         """Numbers of the lines of named regions; those without lines, and the workspace, are left out."""
@@ -65,19 +67,30 @@ class Page:
         text = json.dumps(lines, allow_nan=False, separators=(",", ":"))
         return self._outlines.setdefault(text, len(self._outlines))
 
+    def data(self) -> dict[str, Any]:
+        """What the page holds, as plain data."""
+        return {
+            "meshes": [_mesh(surface) for surface in self._gallery.surfaces],
+            "scenes": self._scenes,
+            "outlines": [json.loads(text) for text in self._outlines],
+        }
+
     def text(self) -> str:
         """The text of the page, which needs at least one scene."""
-        data = {"meshes": [_mesh(surface) for surface in self._gallery.surfaces], "scenes": self._scenes}
-        text = json.dumps(data, allow_nan=False, separators=(",", ":"))
-        text = f'{text[:-1]},"outlines":[{",".join(self._outlines)}]}}'
-        parts = {
-            "title": markup.escape(self._title),
-            "style": _asset("page.css"),
-            "script": _asset("viewer.js"),
-            # No text of the scenes may end the element that holds it.
-            "data": text.replace("<", "\\u003c"),
-        }
-        return _filled(_asset("page.html"), parts)
+        return page_text(self._title, self.data())
+
+
+def page_text(title: str, data: Mapping[str, Any]) -> str:
+    """The text of a page that holds this data, as `Page.data` gives it."""
+    text = json.dumps(data, allow_nan=False, separators=(",", ":"))
+    parts = {
+        "title": markup.escape(title),
+        "style": _asset("page.css"),
+        "script": _asset("viewer.js"),
+        # No text of the scenes may end the element that holds it.
+        "data": text.replace("<", "\\u003c"),
+    }
+    return _filled(_asset("page.html"), parts)
 
 
 def page(scenes: Iterable[Scene], title: str) -> str:
@@ -93,13 +106,14 @@ def _mesh(surface: Surface) -> dict[str, str]:
     normals = np.zeros((len(surface.normals), 4), "<i2")
     normals[:, :3] = np.round(surface.normals * 32767)
     return {
-        "points": _packed(surface.vertices.astype("<f4")),
-        "normals": _packed(normals),
-        "indices": _packed(surface.faces.astype("<u4")),
+        "points": packed(surface.vertices.astype("<f4")),
+        "normals": packed(normals),
+        "indices": packed(surface.faces.astype("<u4")),
     }
 
 
-def _packed(values: npt.NDArray[Any]) -> str:
+def packed(values: npt.NDArray[Any]) -> str:
+    """An array as text: its bytes in base 64."""
     return base64.b64encode(values.tobytes()).decode("ascii")
 
 

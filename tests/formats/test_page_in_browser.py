@@ -1,30 +1,18 @@
 """The page of scenes as its user meets it, in headless Chromium."""
 
-import base64
-import io
-import shutil
 import time
 from collections.abc import Iterator
 
 import numpy as np
-import PIL.Image
 import pytest
 from selenium import webdriver
-from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.common.action_chains import ActionChains
 
 import scenic
 from scenic.formats.html import page
+from tests.formats.browsers import MARKS, count, opened, picture
 
-BROWSER = shutil.which("chromium") or shutil.which("google-chrome")
-DRIVER = shutil.which("chromedriver")
-
-pytestmark = [
-    pytest.mark.slow,
-    pytest.mark.skipif(
-        not (BROWSER and DRIVER), reason="needs Chromium: apt-get install chromium chromium-driver"
-    ),
-]
+pytestmark = MARKS
 
 PROGRAM = """
 workspace = Workspace(RectangularRegion((0, 0, 0), 0, 600, 400))
@@ -32,48 +20,14 @@ zone = RectangularRegion((0, 0, 0), 0, 12, 12)
 ego = new Object at (Range(-1, 1), 0, 1), with width 2, with length 2, with height 2, with color (1, 0, 0)
 new Object at (4, 4, 1), with color (0, 0, 1)
 """
-SIZE = (1300, 900)
 
 
 @pytest.fixture(scope="module")
 def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[webdriver.Chrome]:
-    options = webdriver.ChromeOptions()
-    options.binary_location = str(BROWSER)
-    for argument in (
-        "--headless=new",
-        "--no-sandbox",
-        "--disable-dev-shm-usage",
-        "--disable-background-networking",
-        "--disable-component-update",
-        "--enable-unsafe-swiftshader",
-        f"--window-size={SIZE[0]},{SIZE[1]}",
-    ):
-        options.add_argument(argument)
-    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
     target = tmp_path_factory.mktemp("page") / "page.html"
     target.write_text(page(scenic.scenarioFromString(PROGRAM).sample(4, seed=1), "page"), encoding="utf-8")
-    driver = webdriver.Chrome(options=options, service=Service(DRIVER))
-    try:
-        driver.get(target.as_uri() + "#k=2")
-        time.sleep(1)
+    with opened(target.as_uri() + "#k=2") as driver:
         yield driver
-        severe = [line for line in driver.get_log("browser") if line["level"] == "SEVERE"]
-        assert not severe
-    finally:
-        driver.quit()
-
-
-def picture(browser: webdriver.Chrome) -> np.ndarray:
-    """What the canvas shows."""
-    time.sleep(0.4)
-    text = browser.find_element("id", "view").screenshot_as_base64
-    image = PIL.Image.open(io.BytesIO(base64.b64decode(text))).convert("RGB")
-    return np.asarray(image).astype(int)
-
-
-def count(image: np.ndarray, channel: int) -> int:
-    others = [other for other in range(3) if other != channel]
-    return int((image[..., channel] > 2 * image[..., others].max(axis=-1)).sum())
 
 
 def press(browser: webdriver.Chrome, keys: str) -> None:

@@ -241,25 +241,70 @@
 
   const linear = (value) => (value <= 0.04045 ? value / 12.92 : ((value + 0.055) / 1.055) ** 2.4);
 
+  /** Puts an object where its position and quaternion say. */
+  function settle(thing) {
+    const sides = rotation(thing.quaternion).map((column, axis) => times(column, thing.size[axis]));
+    thing.model = new Float32Array([...sides[0], 0, ...sides[1], 0, ...sides[2], 0, ...thing.position, 1]);
+    thing.corners = [];
+    for (let i = 0; i < 8; i++) {
+      const signs = [(i & 1) - 0.5, ((i >> 1) & 1) - 0.5, (i >> 2) - 0.5];
+      let corner = thing.position;
+      signs.forEach((sign, axis) => { corner = add(corner, times(sides[axis], sign)); });
+      thing.corners.push(corner);
+    }
+  }
+
+  /** Puts all objects of a simulation where they are after so many steps; those that do not exist yet are absent. */
+  function settleAll(scene, step) {
+    const { poses } = scene.course;
+    scene.objects.forEach((thing, index) => {
+      const start = (step * scene.objects.length + index) * 7;
+      thing.absent = Number.isNaN(poses[start]);
+      if (thing.absent) return;
+      thing.position = Array.from(poses.subarray(start, start + 3));
+      thing.quaternion = Array.from(poses.subarray(start + 3, start + 7));
+      thing.euler = eulerAngles(thing.quaternion);
+      if (thing.seen) {
+        const axes = rotation(thing.quaternion);
+        const place = (point) => point.reduce((sum, part, axis) => add(sum, times(axes[axis], part)), thing.position);
+        thing.view = thing.seen.map((line) => line.map(place));
+      }
+      settle(thing);
+    });
+  }
+
+  /** Yaw, pitch and roll: rotations about Z, the new X and the new Y. */
+  function eulerAngles(quaternion) {
+    const [right, front, top] = rotation(quaternion);
+    return [Math.atan2(-front[0], front[1]), Math.asin(Math.max(-1, Math.min(1, front[2]))), Math.atan2(-right[2], top[2])];
+  }
+
   for (const scene of data.scenes) {
     const low = [Infinity, Infinity, Infinity];
     const high = [-Infinity, -Infinity, -Infinity];
+    const extend = (thing) => thing.corners.forEach((corner) => corner.forEach((value, axis) => {
+      low[axis] = Math.min(low[axis], value);
+      high[axis] = Math.max(high[axis], value);
+    }));
     for (const thing of scene.objects) {
-      const columns = rotation(thing.quaternion);
-      const sides = columns.map((column, axis) => times(column, thing.size[axis]));
-      thing.model = new Float32Array([...sides[0], 0, ...sides[1], 0, ...sides[2], 0, ...thing.position, 1]);
       thing.light = [...thing.color.slice(0, 3).map(linear), thing.color[3]];
-      thing.corners = [];
-      for (let i = 0; i < 8; i++) {
-        const signs = [(i & 1) - 0.5, ((i >> 1) & 1) - 0.5, (i >> 2) - 0.5];
-        let corner = thing.position;
-        signs.forEach((sign, axis) => { corner = add(corner, times(sides[axis], sign)); });
-        thing.corners.push(corner);
-        corner.forEach((value, axis) => {
-          low[axis] = Math.min(low[axis], value);
-          high[axis] = Math.max(high[axis], value);
-        });
+      settle(thing);
+      if (!scene.course) extend(thing);
+    }
+    if (scene.course) {
+      // The space that is shown is that of the whole simulation; a hundred moments tell it well enough.
+      scene.course.poses = new Float32Array(bytes(scene.course.poses).buffer);
+      for (const thing of scene.objects) {
+        // What it has in view, in its own frame, moves with it.
+        const axes = rotation(thing.quaternion);
+        thing.seen = thing.view?.map((line) => line.map((point) => axes.map((axis) => dot(axis, sub(point, thing.position)))));
       }
+      const stride = Math.max(1, Math.floor(scene.course.steps / 100));
+      for (let step = 0; step <= scene.course.steps; step += stride) {
+        settleAll(scene, step);
+        for (const thing of scene.objects) if (!thing.absent) extend(thing);
+      }
+      settleAll(scene, 0);
     }
     if (!scene.objects.length) { low.fill(-0.5); high.fill(0.5); }
     scene.middle = times(add(low, high), 0.5);
@@ -297,15 +342,15 @@
   // ---- What is shown --------------------------------------------------------------------------------------------
 
   const state = {
-    scene: 0, near: -1, chosen: -1, playing: 0, dark: false, flat: false, measuring: false, measured: [],
-    layers: { grid: true, workspace: true, regions: true, views: false, headings: false, labels: false },
+    scene: 0, step: 0, near: -1, chosen: -1, following: false, running: 0, playing: 0, dark: false, flat: false, measuring: false, measured: [],
+    layers: { grid: true, workspace: true, regions: true, views: false, headings: false, labels: false, trails: true },
   };
   /** Regions not shown. Those of a whole road network would only hide each other. */
   const hiddenRegions = new Set(regionNames.slice(12));
   /** Objects not shown, by their place in the list and their name, so that they stay hidden from scene to scene. */
   const hidden = new Set();
   const keyOf = (thing, index) => `${index} ${thing.label}`;
-  const isHidden = (index) => hidden.has(keyOf(current().objects[index], index));
+  const isHidden = (index) => current().objects[index].absent || hidden.has(keyOf(current().objects[index], index));
   const view = { target: [0, 0, 0], distance: 10, azimuth: (-35 * Math.PI) / 180, elevation: (33 * Math.PI) / 180 };
   const FOV = (38 * Math.PI) / 180;
   const current = () => data.scenes[state.scene];
@@ -339,7 +384,10 @@
     changed();
   }
 
-  const cornersOf = (scene) => scene.objects.flatMap((thing) => thing.corners);
+  /** Corners of the objects, of a simulation those of the box in which it takes place. */
+  const cornersOf = (scene) => (scene.course
+    ? [0, 1, 2, 3, 4, 5, 6, 7].map((i) => [0, 1, 2].map((axis) => ((i >> axis) & 1 ? scene.high : scene.low)[axis]))
+    : scene.objects.flatMap((thing) => thing.corners));
 
   /** Shows the workspace and what is in view, as far as they are shown, and the objects of all scenes. */
   function wholeScene() {
@@ -534,6 +582,7 @@
         .map(([name, number]) => ["regions", outline(number), regionColor(name, state.dark)]),
       ["views", scene.lines.views, [0.62, 0.3, 0.75]],
       ["headings", scene.lines.headings, [0.85, 0.25, 0.2]],
+      ["trails", trails(scene), [0.36, 0.42, 0.52]],
     ];
     gl.uniformMatrix4fv(plain.places.model, false, IDENTITY);
     // Faintly through what is before them, fully where nothing is.
@@ -564,6 +613,28 @@
     return outlineLines[number];
   }
   const outlineLines = [];
+
+  /** The ways of all objects of a simulation up to now. */
+  function trails(scene) {
+    const { course } = scene;
+    if (!course || !state.step) return null;
+    const count = scene.objects.length;
+    if (!course.trails) {
+      const place = (step, index) => course.poses.subarray((step * count + index) * 7, (step * count + index) * 7 + 3);
+      const points = new Float32Array(course.steps * count * 6);
+      for (let step = 0; step < course.steps; step++) {
+        for (let index = 0; index < count; index++) {
+          const to = place(step + 1, index);
+          const from = Number.isNaN(place(step, index)[0]) ? to : place(step, index);
+          if (Number.isNaN(to[0])) continue;
+          points.set(from, (step * count + index) * 6);
+          points.set(to, (step * count + index) * 6 + 3);
+        }
+      }
+      course.trails = mesh(points, null, Uint32Array.from({ length: points.length / 3 }, (_, i) => i));
+    }
+    return { array: course.trails.array, count: state.step * count * 2 };
+  }
 
   /** An arrow along an object's heading, above it. */
   function headingOf(thing) {
@@ -663,7 +734,7 @@
       pickOf = "";
     }
     const camera = viewCamera();
-    const key = [state.scene, ...hidden, ...camera].join();
+    const key = [state.scene, state.step, ...hidden, ...camera].join();
     if (key !== pickOf) {
       pickOf = key;
       gl.viewport(0, 0, width, height);
@@ -705,9 +776,11 @@
     byId("previous").disabled = state.scene === 0;
     byId("next").disabled = state.scene === data.scenes.length - 1;
     const params = Object.entries(scene.params).map(([name, value]) => ` · ${name} = ${value}`).join("");
+    const outcome = scene.course ? scene.course.reason : `${scene.attempts} ${scene.attempts === 1 ? "attempt" : "attempts"}`;
     byId("facts").textContent =
-      `Scene ${state.scene + 1} of ${data.scenes.length} · seed ${scene.seed}, k ${scene.k} · ` +
-      `${scene.attempts} ${scene.attempts === 1 ? "attempt" : "attempts"}${params}`;
+      `${scene.course ? "Simulation" : "Scene"} ${state.scene + 1} of ${data.scenes.length} · ` +
+      `seed ${scene.seed}, k ${scene.k} · ${outcome}${params}`;
+    showCourse(scene);
     const list = byId("objects");
     const scrolled = list.scrollTop;
     list.replaceChildren(...scene.objects.map((thing, k) => {
@@ -726,6 +799,63 @@
     choose(state.chosen);
     state.measured = [];
     history.replaceState(null, "", `#k=${scene.k}`);
+  }
+
+  /** Shows the time line and the requirements of a simulation, which begins anew. */
+  function showCourse(scene) {
+    run(false);
+    const { course } = scene;
+    byId("clock").hidden = !course;
+    document.querySelector('[data-layer="trails"]').parentElement.hidden = !course;
+    byId("follow").hidden = !course;
+    byId("verdicts").replaceChildren(...(course ? course.requirements : []).map(({ label, verdict, robustness }) => {
+      const row = element("li", "", { className: verdict.replaceAll(" ", "-") });
+      const by = typeof robustness === "number" ? `, by ${number(robustness)}` : "";
+      row.append(element("span", label), element("small", verdict + by));
+      return row;
+    }));
+    if (!course) return;
+    byId("time").max = course.steps;
+    at(0);
+  }
+
+  /** Shows the present simulation after so many steps. */
+  function at(step) {
+    const scene = current();
+    if (!scene.course) return;
+    const before = scene.objects[state.chosen]?.position;
+    state.step = Math.max(0, Math.min(scene.course.steps, step));
+    settleAll(scene, state.step);
+    if (state.following && before) view.target = add(view.target, sub(scene.objects[state.chosen].position, before));
+    scene.lines = null;
+    shadowsOf = -1;
+    byId("time").value = state.step;
+    byId("now").textContent = `${(state.step * scene.course.timestep).toFixed(2)} s, step ${state.step} of ${scene.course.steps}`;
+    if (byId("objects").childElementCount === scene.objects.length) choose(state.chosen);
+    changed();
+  }
+
+  /** Lets the time of the present simulation run, as fast as it is or by a factor, to its end. */
+  function run(on) {
+    cancelAnimationFrame(state.running);
+    state.running = 0;
+    const { course } = current();
+    if (on && course) {
+      if (state.step >= course.steps) at(0);
+      let before = performance.now();
+      let time = state.step * course.timestep;
+      const tick = (now) => {
+        time += ((now - before) / 1000) * Number(byId("speed").value);
+        before = now;
+        const step = Math.floor(time / course.timestep + 1e-9);
+        if (step !== state.step) at(step);
+        if (state.step >= course.steps) run(false);
+        else state.running = requestAnimationFrame(tick);
+      };
+      state.running = requestAnimationFrame(tick);
+    }
+    byId("run").textContent = state.running ? "❚❚" : "▶";
+    byId("run").setAttribute("aria-label", state.running ? "Pause" : "Play the simulation");
   }
 
   /** Shows in the list which object is near the pointer and which is selected. */
@@ -869,6 +999,12 @@
     wholeScene();
   }
 
+  /** Lets the view go with the selected object. */
+  function follow(on) {
+    state.following = on;
+    byId("follow").setAttribute("aria-pressed", String(on));
+  }
+
   const focus = () => { if (state.chosen >= 0) frame(current().objects[state.chosen].corners); };
 
   byId("slider").max = data.scenes.length - 1;
@@ -878,10 +1014,13 @@
   byId("previous").addEventListener("click", () => show(state.scene - 1));
   byId("next").addEventListener("click", () => show(state.scene + 1));
   byId("play").addEventListener("click", () => play(!state.playing));
+  byId("time").addEventListener("input", (event) => { run(false); at(Number(event.target.value)); });
+  byId("run").addEventListener("click", () => run(!state.running));
   byId("theme").addEventListener("click", () => setTheme(!state.dark));
   byId("whole").addEventListener("click", fromTheSide);
   byId("above").addEventListener("click", fromAbove);
   byId("focus").addEventListener("click", focus);
+  byId("follow").addEventListener("click", () => follow(!state.following));
   byId("refit").addEventListener("click", refit);
   byId("hide").addEventListener("click", hideChosen);
   byId("isolate").addEventListener("click", isolate);
@@ -899,9 +1038,10 @@
       ArrowLeft: () => show(state.scene - 1), ArrowRight: () => show(state.scene + 1),
       PageUp: () => show(state.scene - 10), PageDown: () => show(state.scene + 10),
       Home: () => show(0), End: () => show(data.scenes.length - 1),
-      " ": () => play(!state.playing), 0: fromTheSide, 5: fromAbove, f: focus,
+      " ": () => (current().course ? run(!state.running) : play(!state.playing)),
+      ",": () => { run(false); at(state.step - 1); }, ".": () => { run(false); at(state.step + 1); }, 0: fromTheSide, 5: fromAbove, f: focus,
       g: () => setLayer("grid", !state.layers.grid), l: () => setLayer("labels", !state.layers.labels),
-      r: refit, h: hideChosen, i: isolate, u: reveal, m: () => setMeasuring(!state.measuring), p: savePng,
+      r: refit, c: () => follow(!state.following), h: hideChosen, i: isolate, u: reveal, m: () => setMeasuring(!state.measuring), p: savePng,
       t: () => setTheme(!state.dark), Escape: () => (state.measuring ? setMeasuring(false) : choose(-1)),
     };
     const action = actions[event.key];
@@ -1013,10 +1153,18 @@
 
   setTheme(window.matchMedia?.("(prefers-color-scheme: dark)").matches ?? false);
   const byNumber = () => {
-    const asked = /^#k=(\d+)$/.exec(location.hash);
+    const asked = /^#k=(\d+)(?:&|$)/.exec(location.hash);
     return asked ? data.scenes.findIndex((scene) => String(scene.k) === asked[1]) : -1;
   };
   window.addEventListener("hashchange", () => { if (byNumber() >= 0) show(byNumber()); });
+  const start = /&t=([\d.]+)$/.exec(location.hash);
+  if (data.scenes.some((scene) => scene.course)) {
+    for (const [name, word] of [["previous", "Previous"], ["next", "Next"]]) {
+      byId(name).title = byId(name).title.replace(/.* scene/, `${word} simulation`);
+    }
+    byId("play").hidden = true;
+  }
   show(Math.max(byNumber(), 0));
+  if (start && current().course) at(Math.round(Number(start[1]) / current().course.timestep));
   wholeScene();
 })();

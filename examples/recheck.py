@@ -1,0 +1,146 @@
+"""Judges the simulated examples again from their saved trajectories: ``python -m examples.recheck FOLDER...``.
+
+Each formula is written down here a second time, over arrays; nothing of the engine that judged them in the simulation is used
+but the reader of files. ``scenic simulate -o FOLDER`` makes the files.
+"""
+
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from itertools import combinations, product
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any, Final
+
+import numpy as np
+import numpy.typing as npt
+from scipy.spatial.transform import Rotation
+
+from scenic.formats.trajectory_reading import Trajectory, read_trajectory
+
+Array = npt.NDArray[Any]
+Judgement = tuple[bool, float | None]
+"""Whether a formula held, and by how much, if that is a number."""
+
+
+def always(values: Array) -> Judgement:
+    """A margin ``(s,)`` was never negative."""
+    return bool((values > 0).all()), float(values.min())
+
+
+def eventually(values: Array) -> Judgement:
+    """A margin ``(s,)`` was positive once."""
+    return bool((values > 0).any()), float(values.max())
+
+
+def apart(run: Trajectory, one: str, other: str) -> Array:
+    """The distance of two objects, ``(s,)``, metres."""
+    return np.linalg.norm(run.position(one) - run.position(other), axis=1)
+
+
+def corners(run: Trajectory, name: str) -> Array:
+    """The corners of an object's box at each step, ``(s, 8, 3)``."""
+    signs = np.array(list(product((-0.5, 0.5), repeat=3))) * run.size(name)
+    turned = [Rotation.from_quat(turn).apply(signs) for turn in run.orientation(name)]
+    return run.position(name)[:, None] + np.array(turned)
+
+
+def within(points: Array, x: tuple[float, float], y: tuple[float, float]) -> Array:
+    """Whether points ``(..., 3)`` lie above a rectangle."""
+    return (
+        (points[..., 0] > x[0]) & (points[..., 0] < x[1]) & (points[..., 1] > y[0]) & (points[..., 1] < y[1])
+    )
+
+
+def overtaking(run: Trajectory) -> dict[str, Judgement]:
+    ego, slow = run.position("ego"), run.position("slow")
+    return {
+        "apart": always(apart(run, "ego", "slow") - 2.2),
+        "clear": always(apart(run, "ego", "coming") - 2.2),
+        "on the road": always(3.5 - 0.95 - np.abs(ego[:, 0])),
+        "overtaken": eventually(ego[:, 1] - slow[:, 1] - 12),
+    }
+
+
+def intersection(run: Trajectory) -> dict[str, Judgement]:
+    turned = within(corners(run, "ego"), (-60, -20), (0, 3.5)).all(axis=1)
+    crossing = within(run.position("waiting"), (-3.5, 3.5), (-3.5, 3.5))
+    first = int(turned.argmax())
+    return {
+        "gives way": always(apart(run, "ego", "coming") - 3),
+        "apart": always(apart(run, "ego", "waiting") - 3),
+        "turned": (bool(turned.any()), None),
+        "waits its turn": (bool(turned.any()) and not crossing[:first].any(), None),
+    }
+
+
+def pick_and_place(run: Trajectory) -> dict[str, Judgement]:
+    blocks = ("first", "second", "third")
+    inside = [within(corners(run, name), (0.25, 0.55), (-0.2, 0.2)).all(axis=1) for name in blocks]
+    heights = np.min([run.position(name)[:, 2] for name in blocks], axis=0)
+    return {
+        "sorted": (bool(np.all(inside, axis=0).any()), None),
+        "none falls down": always(heights - 0.42),
+        "grasped": (any(run.record("holding")), None),
+    }
+
+
+def robot_vacuum(run: Trajectory) -> dict[str, Judgement]:
+    ego = run.position("ego")
+    return {
+        "inside": (bool(within(ego, (-2, 2), (-1.5, 1.5)).all()), None),
+        "on the floor": always(0.08 - ego[:, 2]),
+        "reaches the corner": eventually(0.6 - np.linalg.norm(ego - (-1.2, -0.8, 0.06), axis=1)),
+    }
+
+
+def drones(run: Trajectory) -> dict[str, Judgement]:
+    names = ("one", "two", "three", "four")
+    gaps = [apart(run, one, other) for one, other in combinations(names, 2)]
+    goals = np.array(run.record("goals"))[[2, 3, 0, 1]]
+    far = [np.linalg.norm(run.position(name) - goal, axis=1) for name, goal in zip(names, goals, strict=True)]
+    return {
+        "apart": always(np.min(gaps, axis=0) - 0.9),
+        "in the air": always(np.min([run.position(name)[:, 2] for name in names], axis=0) - 1.5),
+        "change places": eventually(0.4 - np.max(far, axis=0)),
+    }
+
+
+JUDGES: Final[Mapping[str, Callable[[Trajectory], dict[str, Judgement]]]] = MappingProxyType(
+    {
+        "overtaking": overtaking,
+        "intersection": intersection,
+        "pick_and_place": pick_and_place,
+        "robot_vacuum": robot_vacuum,
+        "drones": drones,
+    }
+)
+
+
+def disagreements(example: str, run: Trajectory) -> list[str]:
+    """Where the simulation's verdicts and margins are not those that follow from its trajectory."""
+    judged = JUDGES[example](run)
+    told = {item["label"]: item for item in run.about["requirements"]}
+    found = [f"{label}: not judged by both" for label in judged.keys() ^ told.keys()]
+    for label in judged.keys() & told.keys():
+        held, margin = judged[label]
+        verdict, robustness = told[label]["verdict"], told[label]["robustness"]
+        if not held or verdict not in ("TRUE", "PRESUMABLY_TRUE"):
+            found.append(f"{label}: {verdict} in the simulation, {held} in its trajectory")
+        if margin is not None and not np.isclose(margin, robustness, rtol=1e-6, atol=1e-6):
+            found.append(f"{label}: by {robustness} in the simulation, by {margin} in its trajectory")
+    return found
+
+
+def main(folders: Sequence[str]) -> int:
+    """Judge the files of folders that are named as the examples are."""
+    wrong = 0
+    for folder in map(Path, folders):
+        for file in sorted((*folder.glob("*.jsonl"), *folder.glob("*.parquet"))):
+            found = disagreements(folder.name, read_trajectory(file))
+            wrong += bool(found)
+            print(f"{file}: {'; '.join(found) or 'holds'}")
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,65 @@
+"""The examples that move: what their simulations say of themselves follows from their trajectories alone."""
+
+import importlib.util
+from pathlib import Path
+
+import pytest
+
+from examples.motion import SHOTS, exposed
+from examples.recheck import JUDGES, disagreements
+from scenic.formats.trajectory_reading import read_trajectory
+from scenic.pipeline import load
+from scenic.simulators.batch import choose_simulator, simulate_number
+from tests.cli.commands import run_here
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+KINEMATIC = ("drones", "intersection", "overtaking")
+PHYSICAL = ("pick_and_place", "robot_vacuum")
+
+
+def simulated(name: str, folder: Path, count: int) -> list[Path]:
+    program = EXAMPLES / f"{name}.scenic"
+    options = ["-n", count, "--seed", 1, "--time", 800, "-o", folder]
+    done = run_here(["simulate", program, *options])
+    assert done.returncode in (0, 3), done.stderr
+    return sorted(folder.iterdir())
+
+
+def test_every_example_that_moves_is_judged_and_shown() -> None:
+    moving = {path.stem for path in EXAMPLES.glob("*.scenic") if "behavior " in path.read_text()}
+    assert moving == set(JUDGES) == set(SHOTS) == {*KINEMATIC, *PHYSICAL}
+
+
+@pytest.mark.parametrize("name", KINEMATIC)
+def test_simulations_hold_what_they_say(name: str, tmp_path: Path) -> None:
+    files = simulated(name, tmp_path, 4)
+    assert len(files) >= 3
+    for file in files:
+        assert disagreements(name, read_trajectory(file)) == []
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(importlib.util.find_spec("mujoco") is None, reason="needs the extra [mujoco]")
+@pytest.mark.parametrize("name", PHYSICAL)
+def test_physical_simulations_hold_what_they_say(name: str, tmp_path: Path) -> None:
+    (file,) = simulated(name, tmp_path, 1)
+    assert disagreements(name, read_trajectory(file)) == []
+
+
+def test_other_trajectories_are_found_out(tmp_path: Path) -> None:
+    (file,) = simulated("overtaking", tmp_path, 1)
+    run = read_trajectory(file)
+    run.positions[40, run.index("ego"), 0] = 5
+    assert any("on the road" in found for found in disagreements("overtaking", run))
+
+
+def test_pictures_show_objects_at_several_moments() -> None:
+    scenario = load(EXAMPLES / "overtaking.scenic")
+    done = simulate_number(
+        scenario, choose_simulator(None, scenario), seed=1, k=0, tries=20, maxSteps=SHOTS["overtaking"].steps
+    )
+    assert done.simulation is not None
+    drawn = exposed(done.simulation, (0, 0.5, 1)).scenes[0]
+    assert [each.label for each in drawn].count("ego") == 3
+    places = [each.position[1] for each in drawn if each.label == "ego"]
+    assert places[0] > places[1] > places[2] == 0
