@@ -242,6 +242,25 @@ def test_scenes_are_sampled(editor: Editor, tmp_path: Path) -> None:
     editor.until(lambda: '"seed":"7"' in page.read_text(encoding="utf-8"))
 
 
+@pytest.mark.slow
+def test_programs_are_simulated(editor: Editor, tmp_path: Path) -> None:
+    editor.lines = [
+        "behavior B():",
+        "    for _ in range(3):",
+        "        wait",
+        "    terminate",
+        "ego = new Object with behavior B",
+    ]
+    page = tmp_path / "page"
+    editor.lua(
+        "local page = ...; require('scenic').simulate(7, function(path) vim.loop.fs_copyfile(path, page) end)",
+        str(page),
+    )
+    editor.until(page.exists, 60)
+    editor.until(lambda: "</html>" in page.read_text(encoding="utf-8"))
+    assert editor.lua("return vim.lsp.commands['scenic.simulate'] ~= nil")
+
+
 def test_colours_and_indentation(editor: Editor) -> None:
     editor.lines = [
         "ego = new Object ahead of x by 3 deg, facing directly toward y",

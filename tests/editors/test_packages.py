@@ -49,10 +49,16 @@ def test_the_extension_runs_nothing_where_nobody_is_trusted() -> None:
 
 
 def test_the_extension_uses_the_commands_of_the_server() -> None:
-    from scenic.lsp.capabilities import SAMPLE
+    from scenic.lsp.capabilities import SAMPLE, SIMULATE
 
-    assert f'"{SAMPLE}"' in (VSCODE / "src" / "extension.ts").read_text(encoding="utf-8")
-    assert SAMPLE in (ROOT / "editors" / "neovim" / "lua" / "scenic" / "init.lua").read_text(encoding="utf-8")
+    client = (VSCODE / "src" / "extension.ts").read_text(encoding="utf-8")
+    plugin = (ROOT / "editors" / "neovim" / "lua" / "scenic" / "init.lua").read_text(encoding="utf-8")
+    for command in (SAMPLE, SIMULATE):
+        assert f'"{command}"' in client
+        assert f'"{command}"' in plugin
+    offered = {each["command"] for each in manifest()["contributes"]["commands"]}
+    registered = set(re.findall(r'registerCommand\("(.*?)"', client))
+    assert offered == registered
 
 
 def commands() -> list[str]:

@@ -18,6 +18,10 @@ vim.api.nvim_create_user_command("ScenicSample", function(command)
   require("scenic").sample(tonumber(command.args))
 end, { nargs = "?", desc = "Sample a scene of the program, and show it in the browser" })
 
+vim.api.nvim_create_user_command("ScenicSimulate", function(command)
+  require("scenic").simulate(tonumber(command.args))
+end, { nargs = "?", desc = "Save the program, simulate it, and show that in the browser" })
+
 vim.api.nvim_create_user_command("ScenicRestart", function()
   require("scenic").restart()
 end, { desc = "Restart Scenic's language server" })

@@ -3,8 +3,9 @@ import * as vscode from "vscode";
 import { LanguageClient, State, Trace } from "vscode-languageclient/node";
 import { ScenePanel } from "./panel";
 
-/** The server's command that runs a program and answers with a page of its scenes. */
+/** The server's commands that run a program, and answer with a page: of a scene, or of a simulation. */
 const SAMPLE = "scenic.sample";
+const SIMULATE = "scenic.simulate";
 
 let client: LanguageClient | undefined;
 
@@ -13,7 +14,8 @@ export async function activate(context: vscode.ExtensionContext): Promise<void> 
   context.subscriptions.push(
     panel,
     vscode.commands.registerCommand("scenic.restart", () => restart(panel)),
-    vscode.commands.registerCommand("scenic.preview", () => preview()),
+    vscode.commands.registerCommand("scenic.preview", () => run(SAMPLE, "Sampling a scene")),
+    vscode.commands.registerCommand("scenic.play", () => run(SIMULATE, "Simulating")),
     vscode.workspace.onDidGrantWorkspaceTrust(() =>
       client?.sendNotification("workspace/didChangeConfiguration", { settings: { scenic: settings() } }),
     ),
@@ -51,8 +53,8 @@ async function start(panel: ScenePanel): Promise<void> {
         // What comes back is a page: commands of the server have no other place to show it.
         executeCommand: async (name, given, next) => {
           const answer: unknown = await next(name, given);
-          if (name === SAMPLE && typeof answer === "string") {
-            panel.show(answer, title(given[0]));
+          if ((name === SAMPLE || name === SIMULATE) && typeof answer === "string") {
+            panel.show(answer, title(name, given[0]));
           }
           return answer;
         },
@@ -83,15 +85,18 @@ async function restart(panel: ScenePanel): Promise<void> {
   await start(panel);
 }
 
-async function preview(): Promise<void> {
+async function run(command: string, doing: string): Promise<void> {
   const document = vscode.window.activeTextEditor?.document;
   if (document?.languageId !== "scenic") {
     return;
   }
+  if (command === SIMULATE && !(await document.save())) {
+    return; // The server simulates the file.
+  }
   const seed = Math.floor(Math.random() * 2 ** 31);
   try {
-    await vscode.window.withProgress({ location: vscode.ProgressLocation.Window, title: "Sampling a scene" }, () =>
-      Promise.resolve(vscode.commands.executeCommand(SAMPLE, document.uri.toString(), { seed })),
+    await vscode.window.withProgress({ location: vscode.ProgressLocation.Window, title: doing }, () =>
+      Promise.resolve(vscode.commands.executeCommand(command, document.uri.toString(), { seed })),
     );
   } catch (problem) {
     await vscode.window.showErrorMessage(problem instanceof Error ? problem.message : String(problem));
@@ -99,7 +104,8 @@ async function preview(): Promise<void> {
 }
 
 /** The name of the program that an argument of the server's command tells of. */
-function title(argument: unknown): string {
+function title(command: string, argument: unknown): string {
+  const what = command === SIMULATE ? "Simulation" : "Scene";
   const uri = typeof argument === "string" ? argument : (argument as { uri?: string } | undefined)?.uri;
-  return uri === undefined ? "Scene" : `Scene of ${uri.slice(uri.lastIndexOf("/") + 1)}`;
+  return uri === undefined ? what : `${what} of ${uri.slice(uri.lastIndexOf("/") + 1)}`;
 }

@@ -5,7 +5,7 @@ local M = {}
 M.config = {
   --- How the server is started.
   cmd = { "scenic", "lsp" },
-  --- Whether `:ScenicSample` may run programs; the server asks if this is nil.
+  --- Whether `:ScenicSample` and `:ScenicSimulate` may run programs; the server asks if this is nil.
   trusted = nil,
   --- Called with client and buffer when the server serves a buffer: the place for mappings.
   on_attach = nil,
@@ -89,15 +89,12 @@ local function open(path)
   end
 end
 
---- Run the program of the present buffer, and show a scene of it in the browser.
---- `show` is called with the page's path instead, if it is given.
-function M.sample(seed, show)
-  local buffer = vim.api.nvim_get_current_buf()
-  local arguments = { vim.uri_from_bufnr(buffer), { seed = seed or vim.fn.rand() % 1000000 } }
+--- Have the server run a command that answers with a page, and show that.
+local function run(buffer, command, arguments, show)
   vim.lsp.buf_request(
     buffer,
     "workspace/executeCommand",
-    { command = "scenic.sample", arguments = arguments },
+    { command = command, arguments = arguments },
     function(problem, page)
       if problem then
         vim.notify("scenic: " .. problem.message, vim.log.levels.ERROR)
@@ -109,6 +106,32 @@ function M.sample(seed, show)
       end
     end
   )
+end
+
+local function run_present(command, seed, show)
+  local buffer = vim.api.nvim_get_current_buf()
+  run(buffer, command, { vim.uri_from_bufnr(buffer), { seed = seed or vim.fn.rand() % 1000000 } }, show)
+end
+
+--- Run the program of the present buffer, and show a scene of it in the browser.
+--- `show` is called with the page's path instead, if it is given.
+function M.sample(seed, show)
+  run_present("scenic.sample", seed, show)
+end
+
+--- Save the present buffer, simulate its program, and show that in the browser, or to `show` as `sample` does.
+function M.simulate(seed, show)
+  vim.cmd("silent update")
+  run_present("scenic.simulate", seed, show)
+end
+
+--- What is run from a lens is shown too.
+if vim.lsp.commands then
+  for _, name in ipairs { "scenic.sample", "scenic.simulate" } do
+    vim.lsp.commands[name] = function(command, context)
+      run(context.bufnr or vim.api.nvim_get_current_buf(), command.command, command.arguments)
+    end
+  end
 end
 
 return M
