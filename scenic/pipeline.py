@@ -1,6 +1,5 @@
 """Joins the layers: compile, run the program once, analyse, plan. What the API and the commands call."""
 
-import difflib
 import inspect
 import sys
 from collections.abc import Mapping
@@ -27,6 +26,7 @@ from scenic.language.errors import (
 )
 from scenic.language.source import Source, read_source
 from scenic.language.spans import Span
+from scenic.language.spelling import nearest
 from scenic.runtime.context import Context, current
 from scenic.runtime.dynamics.definitions import ModularScenario
 from scenic.runtime.importing import beside
@@ -331,12 +331,12 @@ def _run_chosen(module: ModuleType, state: Module, chosen: str | None) -> Modula
         and item._definition.setup.__globals__ is vars(module)
     }
     if chosen is not None and chosen not in defined:
-        near = difflib.get_close_matches(chosen, defined, n=1)
+        near = nearest(chosen, defined)
         known = ", ".join(sorted(defined)) or "none"
         raise ScenarioChoiceError(
             f"there is no scenario {chosen!r}",
             filename=state.filename,
-            help=f"did you mean {near[0]!r}?" if near else f"scenarios of this file: {known}",
+            help=f"did you mean {near!r}?" if near else f"scenarios of this file: {known}",
         )
     scenario = defined.get(chosen or "Main")
     if scenario is None and len(defined) == 1:
@@ -379,11 +379,11 @@ def _settle_parameters(program: Program, *, strict: bool) -> None:
     for name, value in program.overrides.items():
         if strict and name not in program.parameters and name not in program.read_parameters:
             known = ", ".join(sorted(program.parameters)) or "none"
-            near = difflib.get_close_matches(name, program.parameters, n=1)
+            near = nearest(name, program.parameters)
             raise InvalidScenarioError(
                 f"the program has no parameter {name!r}",
                 code="SC603",
-                help=f"did you mean {near[0]!r}?" if near else f"its parameters: {known}",
+                help=f"did you mean {near!r}?" if near else f"its parameters: {known}",
             )
         program.parameters[name] = value
 

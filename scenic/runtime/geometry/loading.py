@@ -3,7 +3,6 @@
 import bz2
 import gzip
 import io
-import logging
 import warnings
 import zlib
 from collections.abc import Callable, Mapping
@@ -137,6 +136,8 @@ def _check_format(file_type: str, name: str) -> None:
 
 def _loaded(data: bytes, file_type: str, file: Path, name: str, *, packed: bool) -> Soup:
     """What trimesh reads."""
+    import logging  # takes a fortieth of a start, and few files are read by that library
+
     import trimesh
 
     logger = logging.getLogger("trimesh")

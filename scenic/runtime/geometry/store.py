@@ -12,7 +12,6 @@ import contextlib
 import hashlib
 import os
 import tempfile
-import zipfile
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final, TypeAlias
@@ -77,10 +76,12 @@ def _key(kind: str, content: Sequence[npt.NDArray[Any]]) -> str:
 
 
 def _read(path: Path) -> Arrays | None:
+    from zipfile import BadZipFile  # with what it imports, a hundredth of a start
+
     try:
         with path.open("rb") as stream, np.load(stream, allow_pickle=False) as arrays:
             found = {name: arrays[name] for name in arrays.files}
-    except (OSError, ValueError, EOFError, KeyError, zipfile.BadZipFile):
+    except (OSError, ValueError, EOFError, KeyError, BadZipFile):
         # Not there, or no file of ours: what is computed takes its place.
         return None
     with contextlib.suppress(OSError):
