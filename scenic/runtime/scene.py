@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, TextIO
 
 from scenic.graph.node import Node
+from scenic.language.spans import Span
 from scenic.runtime.dumping import program_of
 from scenic.runtime.dynamics.declarations import Copier
 from scenic.runtime.objects import Object, Point
@@ -111,10 +112,17 @@ class Scene:
     def objects(self) -> tuple[Any, ...]:
         """All objects: the ego first, then the others in order of creation."""
         if self._objects is None:
-            ordered: list[Object] = [] if self._ego is None else [self._ego]
-            ordered += [item for item in self._program.objects if item is not self._ego]
-            self._objects = tuple(self._sample.value(item) for item in ordered)
+            self._objects = tuple(self._sample.value(item) for item in self._ordered())
         return self._objects
+
+    def _ordered(self) -> list[Object]:
+        """The program's objects in the order of those of the scene."""
+        ordered: list[Object] = [] if self._ego is None else [self._ego]
+        return ordered + [item for item in self._program.objects if item is not self._ego]
+
+    def place(self, number: int) -> tuple[Span | None, str | None]:
+        """Where the program creates the object of that number: span and file, as far as they are known."""
+        return self._program.places.get(id(self._ordered()[number]), (None, None))
 
     @property
     def egoObject(self) -> Any:

@@ -13,6 +13,7 @@ from scenic.language.errors import (
     InvalidScenarioError,
     Located,
     RejectSimulationException,
+    SimulationCreationError,
     annotate,
 )
 from scenic.runtime.dynamics.copies import Copies
@@ -315,7 +316,15 @@ class Simulation(ABC):
     def add(self, obj: Any) -> None:
         """Create an object in the simulator, and let it take part."""
         self.objects.append(obj)
-        self.createObjectInSimulator(obj)
+        try:
+            self.createObjectInSimulator(obj)
+        except SimulationCreationError as error:
+            number, scene = len(self.objects) - 1, self._original
+            if error.span is None and number < len(scene.objects):
+                error.span, error.filename = scene.place(number)
+            elif error.span is None:
+                error.span, error.filename = scene.program.places.get(id(obj), (None, None))
+            raise
         obj.startDynamicSimulation()
         if self._run.top.running:
             self._update(obj, first=False)

@@ -451,6 +451,26 @@ def test_scenes_that_cannot_be_made(properties: str, message: str) -> None:
     assert caught.value.help
 
 
+def test_the_object_that_cannot_be_made_is_shown() -> None:
+    with pytest.raises(SimulationCreationError) as caught:
+        run("other = new Body at (9, 9)\nego = new Body\nnew Body at (5, 5),\n    with mass -1\n", 1)
+    assert caught.value.line == 4
+    late = """
+scenario Main():
+    setup:
+        ego = new Body
+    compose:
+        wait
+        do Later()
+scenario Later():
+    setup:
+        new Body at (3, 3), with mass -1
+"""
+    with pytest.raises(SimulationCreationError) as caught:
+        run(late, 9)
+    assert caught.value.line == 11
+
+
 def test_instability_is_told_and_leaves_no_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     text = told("SetVelocity((1e12, 0, 0))") + "ego = new Body\nball = new Body at (9, 0), with behavior B\n"
