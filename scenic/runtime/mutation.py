@@ -53,6 +53,21 @@ def apply_noise(program: Program) -> None:
         program.requirements[:] = [requirement.rebuilt() for requirement in program.requirements]
 
 
+def mutate_now(instance: Point) -> None:
+    """Add noise to an instance whose values are definite, if it asks for it."""
+    scale = instance.mutationScale
+    if scale == 0:
+        return
+    given = instance.mutator
+    for mutator in given if isinstance(given, tuple | list) else (given,):
+        if type(mutator) in BUILT_IN:
+            update(instance, mutator.noisy(instance, scale))
+        elif mutator is not None:
+            _, go_on = mutator.appliedTo(instance)
+            if not go_on:
+                break
+
+
 def _mutate(instance: Point, scale: Any) -> bool:
     given = instance.__dict__["mutator"]
     mutators = given if isinstance(given, tuple | list) else (given,)
@@ -104,4 +119,4 @@ def _applied(instance: Any, mutators: tuple[Any, ...], names: tuple[str, ...]) -
     return tuple(getattr(instance, name) for name in names)
 
 
-__all__ = ["apply_noise", "request"]
+__all__ = ["apply_noise", "mutate_now", "request"]

@@ -303,8 +303,14 @@ class Prelude(Dynamics):
             raise InvalidScenarioError(
                 "a requirement cannot mutate objects", span=here(), help="mutate them before or after it"
             )
-        chosen = self._program.objects if targets is None else targets
+        run = self._run
+        if targets is not None:
+            chosen = targets
+        else:
+            chosen = self._program.objects if run is None else run.current.objects
         mutation.request(chosen, scale)
+        if run is not None:
+            run.check_mutable(chosen)
 
     def simulator(self, make: Callable[[], Any]) -> None:
         """``simulator expr``: kept, and evaluated when a simulator is asked for."""

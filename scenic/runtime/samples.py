@@ -1,23 +1,33 @@
 """From values of the program to their values in one sample: random values, and everything that holds some.
 
 `dependencies` lists the nodes that a value needs, `Sample` replaces them. Both walk the same structure: random values,
-instances, tuples, lists, dictionaries, slices, functions of the program (their global names and closures), bound methods,
-methods of the program's classes, and objects that say so themselves by a ``sampled(sample)`` method.
+instances, containers, slices, functions of the program (their global names and closures) and what wraps them, bound methods,
+methods of the program's classes, plain Python classes of the program and their instances, and objects that say so themselves by a ``sampled(sample)`` method.
 """
 
+import abc
+import copy as shallow
 from collections.abc import Callable, Iterable, Iterator
-from functools import partial
+from functools import cached_property, lru_cache, partial
 from types import CellType, CodeType, FunctionType, MethodType, ModuleType
 from typing import Any
 
 from scenic.graph.node import Node
 from scenic.runtime.objects import Object, OrientedPoint, Point
+from scenic.runtime.ownership import (
+    CACHED,
+    CONTAINERS,
+    PRELUDE,
+    content,
+    is_own,
+    is_own_function,
+    namespace,
+    own_functions,
+    slots,
+)
 from scenic.runtime.values import Random
 
 Lookup = Callable[[Node], Any]
-
-PRELUDE = "__scenic__"
-"""The global name by which generated code finds the prelude, through which functions read the ego."""
 
 
 class Globals:
@@ -28,8 +38,9 @@ class Globals:
 
     def __init__(self) -> None:
         self._values: dict[tuple[int, str], Any] = {}
-        self._fixed: dict[int, tuple[FunctionType, bool]] = {}
+        self._fixed: dict[int, tuple[Any, bool]] = {}
         self._methods: dict[type, tuple[tuple[str, FunctionType], ...]] = {}
+        self._owned: dict[type, bool] = {}
         self._placements: dict[int, tuple[Point, dict[str, float]]] = {}
 
     def of(self, function: FunctionType) -> list[tuple[str, Any]]:
@@ -51,13 +62,20 @@ class Globals:
             codes.extend(item for item in code.co_consts if isinstance(item, CodeType))
         return list(found.items())
 
-    def is_fixed(self, function: FunctionType) -> bool:
-        """Whether a function does the same in every sample: it reaches nothing random, and nothing bound anew."""
-        known = self._fixed.get(id(function))
+    def is_fixed(self, item: Any) -> bool:
+        """Whether a function or class does the same in every sample: it reaches nothing random, and nothing bound anew."""
+        known = self._fixed.get(id(item))
         if known is None:
-            fixed = all(self._is_plain(value) for value in reachable([function], self))
-            known = self._fixed[id(function)] = (function, fixed)
+            fixed = all(self._is_plain(value) for value in reachable([item], self))
+            known = self._fixed[id(item)] = (item, fixed)
         return known[1]
+
+    def owns(self, cls: type) -> bool:
+        """Whether a class is a plain Python class of the program (`is_own`)."""
+        known = self._owned.get(cls)
+        if known is None:
+            known = self._owned[cls] = is_own(cls, Point)
+        return known
 
     def _is_plain(self, value: Any) -> bool:
         if isinstance(value, Random):
@@ -77,7 +95,7 @@ class Globals:
             for base in cls.__mro__:
                 if base not in _BUILT_IN:
                     for name, item in vars(base).items():
-                        if isinstance(item, FunctionType) and PRELUDE in item.__globals__:
+                        if is_own_function(item):
                             found.setdefault(name, item)
             self._methods[cls] = tuple(found.items())
         return self._methods[cls]
@@ -105,9 +123,7 @@ def dependencies(values: Iterable[Any], names: Globals | None = None) -> list[No
 def mention(values: Iterable[Any], names: Globals, word: str) -> bool:
     """Whether functions of the program among the values, or reached by them, hold a text among their constants."""
     return any(
-        _mentions(value.__code__, word)
-        for value in reachable(values, names)
-        if isinstance(value, FunctionType) and PRELUDE in value.__globals__
+        _mentions(value.__code__, word) for value in reachable(values, names) if is_own_function(value)
     )
 
 
@@ -133,7 +149,7 @@ def reachable(values: Iterable[Any], names: Globals) -> Iterator[Any]:
             stack.extend(reversed(list(_parts(value, names))))
 
 
-_PLAIN = (int, float, str, bytes, bool, type, CodeType)
+_PLAIN = (int, float, str, bytes, bool, CodeType)
 
 
 def _boxed_constants(root: Node, seen: dict[int, Any]) -> list[Any]:
@@ -166,9 +182,16 @@ def _parts(value: Any, names: Globals) -> Iterator[Any]:
         yield from (value.start, value.stop, value.step)
     elif isinstance(value, FunctionType):
         yield from (item for _, item in names.of(value))
-        yield from (_content(cell) for cell in value.__closure__ or ())
+        yield from (content(cell) for cell in value.__closure__ or ())
         yield from value.__defaults__ or ()
         yield from (value.__kwdefaults__ or {}).values()
+        yield from value.__dict__.values()
+    elif isinstance(value, type):
+        if names.owns(value):
+            yield from (function for base in value.__mro__ for function in own_functions(base))
+            yield from namespace(value).values()
+    elif isinstance(value, CACHED):
+        yield value.__wrapped__
     elif isinstance(value, MethodType):
         yield from (value.__self__, value.__func__)
     elif isinstance(value, partial):
@@ -177,18 +200,15 @@ def _parts(value: Any, names: Globals) -> Iterator[Any]:
         yield from _contents(value).values()
     elif hasattr(value, "sampled") and hasattr(value, "random_parts"):
         yield from value.random_parts()
+    elif names.owns(type(value)):
+        yield type(value)
+        yield from getattr(value, "__dict__", {}).values()
+        yield from (getattr(value, name, None) for name in slots(type(value)))
 
 
 def _contents(module: ModuleType) -> dict[str, Any]:
     """What a module of the language defines."""
     return {name: item for name, item in vars(module).items() if not name.startswith("__")}
-
-
-def _content(cell: CellType) -> Any:
-    try:
-        return cell.cell_contents
-    except ValueError:  # not bound yet
-        return None
 
 
 class Sample:
@@ -220,24 +240,31 @@ class Sample:
             return value
         known = self._memo.get(id(value))
         if known is None:
-            known = self._memo[id(value)] = (value, self._sampled(value))
+            sampled = self._sampled(value)
+            # What was kept while it was made leads back to itself.
+            known = self._memo.setdefault(id(value), (value, sampled))
         return known[1]
 
+    def remember(self, value: Any, copy: Any) -> None:
+        """Say what the copy of a value is while it is being made: parts of it may lead back to it."""
+        self._memo[id(value)] = (value, copy)
+
     def _sampled(self, value: Any) -> Any:
+        cls = type(value)
         if isinstance(value, Point):
             return self._instance(value)
         if isinstance(value, tuple):
             items = [self.value(item) for item in value]
             if all(new is old for new, old in zip(items, value, strict=True)):
                 return value
-            return type(value)(*items) if hasattr(value, "_fields") else tuple(items)
+            return cls(*items) if hasattr(value, "_fields") else tuple(items)
+        if cls in CONTAINERS:
+            return self._container(value)
         if isinstance(value, list):
             return [self.value(item) for item in value]
-        if type(value) is dict:
-            return {key: self.value(item) for key, item in value.items()}
-        if type(value) in (set, frozenset):
-            return type(value)([self.value(item) for item in value])
-        if type(value) is partial:
+        if cls is frozenset:
+            return frozenset([self.value(item) for item in value])
+        if cls is partial:
             keywords = {name: self.value(item) for name, item in value.keywords.items()}
             return partial(self.value(value.func), *map(self.value, value.args), **keywords)
         if isinstance(value, ModuleType) and PRELUDE in vars(value):
@@ -245,12 +272,37 @@ class Sample:
         if isinstance(value, slice):
             return slice(self.value(value.start), self.value(value.stop), self.value(value.step))
         if isinstance(value, FunctionType):
-            return value if self._names.is_fixed(value) else self._function(value)
+            return value if self._stays(value) else self._function(value)
         if isinstance(value, MethodType):
             return MethodType(self.value(value.__func__), self.value(value.__self__))
+        if isinstance(value, CACHED):
+            function = self.value(value.__wrapped__)
+            if function is value.__wrapped__:
+                return value
+            return lru_cache(**value.cache_parameters())(function)
+        if isinstance(value, type):
+            return self._class(value) if self._names.owns(value) and not self._stays(value) else value
         if hasattr(value, "sampled") and hasattr(value, "random_parts"):
             return value.sampled(self)
+        if self._names.owns(cls):
+            return self._object(value)
         return value
+
+    def _stays(self, item: Any) -> bool:
+        """Whether a function or class is the same in this sample."""
+        return self._names.is_fixed(item)
+
+    def _container(self, container: Any) -> Any:
+        copy = container.copy()
+        copy.clear()
+        self.remember(container, copy)
+        if isinstance(container, dict):
+            copy.update([(self.value(key), self.value(item)) for key, item in container.items()])
+        elif isinstance(container, set):
+            copy.update([self.value(item) for item in container])
+        else:
+            copy.extend([self.value(item) for item in container])
+        return copy
 
     def _instance(self, instance: Point) -> Point:
         if "_source" in instance.__dict__:
@@ -261,7 +313,7 @@ class Sample:
         stored["_sample"] = self
         stored.update(self._names.placement(instance))
         # Methods may lead back to the instance, which must find its entry then.
-        self._memo[id(instance)] = (instance, copy)
+        self.remember(instance, copy)
         for name, method in self._names.methods(type(instance)):
             sampled = self.value(method)
             if sampled is not method:
@@ -271,27 +323,84 @@ class Sample:
     def _module(self, module: ModuleType) -> ModuleType:
         """The module over sampled values."""
         copy = ModuleType(module.__name__, module.__doc__)
-        self._memo[id(module)] = (module, copy)
+        self.remember(module, copy)
         vars(copy).update(vars(module))
         vars(copy).update({name: self.value(item) for name, item in _contents(module).items()})
         return copy
 
+    def _class(self, cls: type) -> type:
+        """The class with methods over sampled names."""
+        bases = tuple(self.value(base) for base in cls.__bases__)
+        members = namespace(cls)
+        # Functions come later: they lead back to the class.
+        later = {
+            name: item
+            for name, item in members.items()
+            if name != "__slots__" and not isinstance(item, str | tuple)
+        }
+        copy = type(cls)(cls.__name__, bases, {n: item for n, item in members.items() if n not in later})
+        copy.__qualname__ = cls.__qualname__
+        self.remember(cls, copy)
+        for name, item in later.items():
+            setattr(copy, name, self._member(item, copy, name))
+        abc.update_abstractmethods(copy)
+        return copy
+
+    def _member(self, member: Any, owner: type, name: str) -> Any:
+        if isinstance(member, staticmethod | classmethod):
+            return type(member)(self.value(member.__func__))
+        if isinstance(member, property):
+            get, put, delete = map(self.value, (member.fget, member.fset, member.fdel))
+            return property(get, put, delete, member.__doc__)
+        if isinstance(member, cached_property):
+            copy = cached_property(self.value(member.func))
+            copy.__set_name__(owner, name)
+            return copy
+        return self.value(member)
+
+    def _object(self, instance: Any) -> Any:
+        """The instance of a plain Python class of the program."""
+        cls = self.value(type(instance))
+        if cls is type(instance) and self._stays(instance):
+            return instance
+        copy = shallow.copy(instance)
+        self.remember(instance, copy)
+        object.__setattr__(copy, "__class__", cls)
+        held = getattr(copy, "__dict__", {})
+        held.update({name: self.value(item) for name, item in held.items()})
+        for name in slots(cls):
+            if hasattr(copy, name):
+                object.__setattr__(copy, name, self.value(getattr(copy, name)))
+        return copy
+
     def _function(self, function: FunctionType) -> FunctionType:
         """The function over sampled globals, closure and defaults."""
-        names = function.__globals__
-        # All functions of a module share one scope, so that functions which call each other find each other.
-        scope = self._scopes.setdefault(id(names), dict(names))
+        own = PRELUDE in function.__globals__
+        scope = self._scope(function) if own else function.__globals__
         cells = tuple(CellType() for _ in function.__closure__ or ())
         copy = FunctionType(function.__code__, scope, function.__name__, None, cells or None)
-        self._memo[id(function)] = (function, copy)
-        for name, value in self._names.of(function):
-            scope[name] = self.value(value)
+        copy.__doc__ = function.__doc__
+        copy.__qualname__ = function.__qualname__
+        self.remember(function, copy)
+        if own:
+            self._fill(function, scope)
         for new, old in zip(cells, function.__closure__ or (), strict=True):
             try:
-                content = old.cell_contents
+                inside = old.cell_contents
             except ValueError:  # not bound yet
                 continue
-            new.cell_contents = self.value(content)
+            new.cell_contents = self.value(inside)
         copy.__defaults__ = self.value(function.__defaults__)
         copy.__kwdefaults__ = self.value(function.__kwdefaults__)
+        copy.__dict__.update({name: self.value(item) for name, item in function.__dict__.items()})
         return copy
+
+    def _scope(self, function: FunctionType) -> dict[str, Any]:
+        """Sampled names: all functions of a module share them, so that functions which call each other find each other."""
+        names = function.__globals__
+        return self._scopes.setdefault(id(names), dict(names))
+
+    def _fill(self, function: FunctionType, scope: dict[str, Any]) -> None:
+        """Give a scope the names that a function reads."""
+        for name, value in self._names.of(function):
+            scope[name] = self.value(value)

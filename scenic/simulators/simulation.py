@@ -18,8 +18,8 @@ from scenic.language.errors import (
 )
 from scenic.runtime.dynamics.copies import Copies
 from scenic.runtime.dynamics.run import Run
+from scenic.runtime.ownership import PRELUDE
 from scenic.runtime.randomness import preserved, restore, seed_globals, states
-from scenic.runtime.samples import PRELUDE
 from scenic.runtime.scene import Scene
 from scenic.runtime.values import describe, kind_of
 from scenic.simulators.replays import Replay, Tape, fresh_key
@@ -51,6 +51,8 @@ class Simulation(ABC):
         robustness: whether to compute by how much requirements hold.
         stuck_after: seconds that the program's code may run in one step before `StuckBehaviorWarning` names its line.
         stuck_is_error: raise `StuckBehaviorError` then.
+        keep_course: keep all states and actions; if not, memory does not grow with the steps, and the result holds the last
+            state and the last actions.
         keep_poses: keep position and orientation of every object at every step in `poses`.
         deferred: do not run now: the caller calls `begin`, then `advanceOnce` until it returns false.
 
@@ -83,6 +85,7 @@ class Simulation(ABC):
         robustness: bool = False,
         stuck_after: float = 10.0,
         stuck_is_error: bool = False,
+        keep_course: bool = True,
         keep_poses: bool = False,
         deferred: bool = False,
     ) -> None:
@@ -101,9 +104,11 @@ class Simulation(ABC):
         self.screen: Any = None
         self.worker_num = 0
         self._max_steps = maxSteps
+        self._keep_course = keep_course
         self._original = scene
         self._copies = Copies(scene.lookup)
         self._properties: dict[type, tuple[str, ...]] = {}
+        self._sets: dict[type, frozenset[str]] = {}
         self._finals: dict[type, tuple[Any, ...]] = {}
         self._adopted: dict[tuple[int, str], Any] = {}
         self._destroyed = False
@@ -126,6 +131,7 @@ class Simulation(ABC):
             program.context.namer,
             mode_2d=program.context.mode_2d,
             robustness=robustness,
+            keep_draws=enableReplay,
         )
         self._tape.draws = self._run.draws
         self._isolated = _Isolated(self._run)
@@ -342,6 +348,8 @@ class Simulation(ABC):
 
     def recordCurrentState(self) -> None:
         """Append the state to the trajectory."""
+        if not self._keep_course:
+            self.trajectory.clear()
         self.trajectory.append(self.currentState())
         if self.poses is not None:
             self.poses.append(tuple((obj.position, obj.orientation) for obj in self.objects))
@@ -357,6 +365,8 @@ class Simulation(ABC):
 
     def act(self, actions: Mapping[Any, tuple[Any, ...]]) -> None:
         """Log and execute the actions of a step."""
+        if not self._keep_course:
+            self.actionSequence.clear()
         self.actionSequence.append(dict(actions))
         if self.verbosity >= 3:
             for agent, taken in actions.items():
@@ -378,6 +388,7 @@ class Simulation(ABC):
             entries = cls.scenic_properties.items()  # type: ignore[attr-defined] # classes of objects have them
             names = tuple(name for name, entry in entries if entry.dynamic and not entry.final)
             self._properties[cls] = names
+            self._sets[cls] = frozenset(names)
             self._finals[cls] = tuple(
                 (name, entry) for name, entry in entries if entry.dynamic and entry.final
             )
@@ -400,7 +411,7 @@ class Simulation(ABC):
         cls = type(obj)
         names = self._dynamic(cls)
         values = self.getProperties(obj, set(names))
-        if len(values) != len(names) or any(name not in values for name in names):
+        if values.keys() != self._sets[cls]:
             wrong = set(names) ^ set(values)
             raise RuntimeError(
                 f"simulator gave other properties of {obj!r} than it was asked for: {', '.join(sorted(wrong))}"

@@ -42,7 +42,8 @@ _COMPARISONS: Final[dict[type[ast.cmpop], str]] = {
     ast.Gt: ">",
     ast.GtE: ">=",
 }
-_INEQUALITIES: Final = (ast.Lt, ast.LtE, ast.Gt, ast.GtE)
+_MEASURED: Final = {**_COMPARISONS, ast.In: "in", ast.NotIn: "not in"}
+"""Comparisons of which it can be said by how much they hold."""
 
 
 class Conditions:
@@ -98,12 +99,19 @@ class Conditions:
         return prelude_call("condition", [traced, *self.kept(node), *self._margin(node)], node)
 
     def _margin(self, node: ast.expr) -> list[ast.expr]:
-        """For an inequality, a function of the same names that gives by how much it holds."""
-        if not isinstance(node, ast.Compare) or not all(type(item) in _INEQUALITIES for item in node.ops):
-            return []
-        symbols = tuple_([constant(_COMPARISONS[type(item)], node) for item in node.ops], node)
-        operands = tuple_([self._captured(part) for part in (node.left, *node.comparators)], node)
-        value = prelude_call("margin", [symbols, operands], node)
+        """For a comparison, a function of the same names that gives by how much it holds."""
+        match node:
+            case ast.Compare(left=left, ops=ops, comparators=others):
+                if not all(type(item) in _MEASURED for item in ops):
+                    return []
+                symbols, compared = [_MEASURED[type(item)] for item in ops], [left, *others]
+            case scenic.Operation(operator="intersects", operands=[ast.expr() as left, ast.expr() as right]):
+                symbols, compared = ["intersects"], [left, right]
+            case _:
+                return []
+        words = tuple_([constant(symbol, node) for symbol in symbols], node)
+        operands = tuple_([self._captured(part) for part in compared], node)
+        value = prelude_call("margin", [words, operands], node)
         return [lambda_([(part.id, part) for part in self._parameters(node)], value, node)]
 
     def kept(self, node: ast.expr) -> list[ast.expr]:

@@ -5,22 +5,19 @@ functions over global names that they may assign. So nothing that happens in it 
 or by another simulation.
 """
 
-from collections.abc import Callable
-from types import CellType, CodeType, FunctionType, MethodType
+from types import CodeType, FunctionType, MethodType
 from typing import Any
 
-from scenic.graph.node import Node
-from scenic.runtime.objects import Object, OrientedPoint, Point
-from scenic.runtime.samples import PRELUDE
-from scenic.runtime.values import Random
+import numpy as np
+
+from scenic.runtime.objects import Point
+from scenic.runtime.ownership import PRELUDE, is_own_function, leads_back
+from scenic.runtime.samples import Lookup, Sample
 
 __all__ = ["Copies"]
 
-_PLAIN = (int, float, str, bytes, bool, type, CodeType)
-_BUILT_IN = frozenset({object, Point, OrientedPoint, Object})
 
-
-class Copies:
+class Copies(Sample):
     """Makes the copies, one of each value however often it is asked for.
 
     Args:
@@ -28,65 +25,28 @@ class Copies:
 
     """
 
-    def __init__(self, lookup: Callable[[Node], Any]) -> None:
-        self._lookup = lookup
-        self._memo: dict[int, tuple[Any, Any]] = {}
-        self._scopes: dict[int, tuple[dict[str, Any], dict[str, Any]]] = {}
-        self._methods: dict[type, tuple[tuple[str, FunctionType], ...]] = {}
-        self._filled: dict[int, set[str]] = {}
-        self._own: set[int] = set()
-        self._names: dict[CodeType, frozenset[str]] = {}
+    __slots__ = ("_codes", "_filled", "_own")
 
-    def value(self, value: Any) -> Any:
-        """The copy of a value; the value itself if it is one that nothing can change."""
-        if value is None or isinstance(value, _PLAIN):
-            return value
-        kept = self._memo.get(id(value))
-        if kept is None:
-            copy = self._copy(value)
-            # What was kept while copying leads back to itself.
-            kept = self._memo.setdefault(id(value), (value, copy))
-        return kept[1]
+    def __init__(self, lookup: Lookup) -> None:
+        super().__init__(lookup)
+        self._filled: dict[int, set[str]] = {}
+        self._own: dict[int, dict[str, Any]] = {}
+        self._codes: dict[CodeType, frozenset[str]] = {}
 
     def remember(self, value: Any, copy: Any) -> None:
-        """Say what the copy of a value is while it is being made."""
-        self._memo[id(value)] = (value, copy)
+        """Say what the copy of a value is while it is being made; the copy is its own."""
+        super().remember(value, copy)
         self._memo[id(copy)] = (copy, copy)
 
-    def _copy(self, value: Any) -> Any:
-        if isinstance(value, Random):
-            drawn = self._lookup(value.node)
-            return self.value(drawn) if value.node.kind.is_boxed else drawn
-        if isinstance(value, Point):
-            return self._instance(value)
-        if isinstance(value, tuple):
-            items = [self.value(item) for item in value]
-            if all(new is old for new, old in zip(items, value, strict=True)):
-                return value
-            return type(value)(*items) if hasattr(value, "_fields") else tuple(items)
-        if type(value) is list:
-            copy: list[Any] = []
-            self.remember(value, copy)
-            copy.extend(self.value(item) for item in value)
-            return copy
-        if type(value) is dict:
-            table: dict[Any, Any] = {}
-            self.remember(value, table)
-            table.update((self.value(key), self.value(item)) for key, item in value.items())
-            return table
-        if type(value) is set:
-            return {self.value(item) for item in value}
-        if isinstance(value, slice):
-            return slice(self.value(value.start), self.value(value.stop), self.value(value.step))
-        if isinstance(value, FunctionType):
-            names = value.__globals__
-            # What the simulation itself defined is its own already.
-            return self._function(value) if PRELUDE in names and id(names) not in self._own else value
-        if isinstance(value, MethodType):
-            return MethodType(self.value(value.__func__), self.value(value.__self__))
-        if hasattr(value, "sampled") and hasattr(value, "random_parts"):
-            return value.sampled(self)
-        return value
+    def _sampled(self, value: Any) -> Any:
+        # An array may be changed in place.
+        return value.copy() if type(value) is np.ndarray else super()._sampled(value)
+
+    def _stays(self, item: Any) -> bool:
+        if not isinstance(item, FunctionType):
+            return False
+        # What the simulation itself defined is its own already.
+        return id(item.__globals__) in self._own if is_own_function(item) else not leads_back(item)
 
     def _instance(self, instance: Point) -> Any:
         source = instance.__dict__.get("_source", instance)
@@ -96,36 +56,21 @@ class Copies:
         self.remember(instance, copy)
         for name, value in instance.__dict__.items():
             copy.__dict__[name] = self.value(value)
-        for name, method in self.methods(type(instance)):
+        for name, method in self._names.methods(type(instance)):
             copy.__dict__[name] = MethodType(self.value(method), copy)
         return copy
 
-    def methods(self, cls: type) -> tuple[tuple[str, FunctionType], ...]:
-        """The methods that a class has from the program."""
-        found = self._methods.get(cls)
-        if found is None:
-            own: dict[str, FunctionType] = {}
-            for base in cls.__mro__:
-                if base not in _BUILT_IN:
-                    for name, item in vars(base).items():
-                        if isinstance(item, FunctionType) and PRELUDE in item.__globals__:
-                            own.setdefault(name, item)
-            found = self._methods[cls] = tuple(own.items())
-        return found
-
-    def _function(self, function: FunctionType) -> FunctionType:
-        """The function over the simulation's own globals and closure."""
+    def _scope(self, function: FunctionType) -> dict[str, Any]:
         names = function.__globals__
-        known = self._scopes.get(id(names))
-        if known is None:
-            known = self._scopes[id(names)] = (names, dict(names))
-            self._own.add(id(known[1]))
+        scope = self._scopes.get(id(names))
+        if scope is None:
+            scope = self._scopes[id(names)] = dict(names)
+            self._own[id(scope)] = names  # Kept alive, so that identities stay unique.
             self._filled[id(names)] = {PRELUDE, "__builtins__"}
-        scope = known[1]
-        cells = tuple(CellType() for _ in function.__closure__ or ())
-        copy = FunctionType(function.__code__, scope, function.__name__, None, cells or None)
-        copy.__doc__ = function.__doc__
-        self.remember(function, copy)
+        return scope
+
+    def _fill(self, function: FunctionType, scope: dict[str, Any]) -> None:
+        names = function.__globals__
         filled = self._filled[id(names)]
         for name in self._globals_of(function.__code__):
             if name not in filled:
@@ -133,20 +78,15 @@ class Copies:
                 filled.add(name)
                 if name in names:
                     scope[name] = self.value(names[name])
-        for new, old in zip(cells, function.__closure__ or (), strict=True):
-            try:
-                content = old.cell_contents
-            except ValueError:  # not bound yet
-                continue
-            new.cell_contents = self.value(content)
-        copy.__defaults__ = self.value(function.__defaults__)
-        copy.__kwdefaults__ = self.value(function.__kwdefaults__)
-        return copy
+
+    def names_in(self, function: Any) -> frozenset[str]:
+        """All names of globals and attributes in a function's code."""
+        return self._globals_of(function.__code__)
 
     def _globals_of(self, code: CodeType) -> frozenset[str]:
         """The names that code, or code nested in it, may read or write."""
-        found = self._names.get(code)
+        found = self._codes.get(code)
         if found is None:
             nested = [self._globals_of(item) for item in code.co_consts if isinstance(item, CodeType)]
-            found = self._names[code] = frozenset(code.co_names).union(*nested)
+            found = self._codes[code] = frozenset(code.co_names).union(*nested)
         return found

@@ -80,15 +80,17 @@ class Draws:
     Args:
         source: of the numbers.
         where: who draws, and where in the program, as far as the simulation knows.
+        keep: whether to remember what was drawn.
 
     """
 
-    def __init__(self, source: Source, where: Callable[[], Hashable]) -> None:
+    def __init__(self, source: Source, where: Callable[[], Hashable], *, keep: bool = True) -> None:
         self._source = source
         self._where = where
         self._counts: dict[Hashable, int] = {}
+        self._keep = keep
         self.made: list[tuple[int, float]] = []
-        """Addresses and numbers so far, in order."""
+        """Addresses and numbers so far, in order, if they are kept."""
 
     def random(self) -> float:
         """The next number, from (0, 1)."""
@@ -97,7 +99,8 @@ class Draws:
         self._counts[where] = count + 1
         place = address(where, count)
         number = self._source.draw(place)
-        self.made.append((place, number))
+        if self._keep:
+            self.made.append((place, number))
         return number
 
     def seed(self, purpose: str) -> int:

@@ -11,7 +11,7 @@ from scenic.language.errors import (
     ScenicTypeError,
 )
 from scenic.runtime.context import Context, current, here
-from scenic.runtime.dynamics import statements
+from scenic.runtime.dynamics import margins, statements
 from scenic.runtime.dynamics.activations import Termination, Yielded
 from scenic.runtime.dynamics.declarations import End, Kept, MonitorUse, RecordUse, Required
 from scenic.runtime.dynamics.definitions import (
@@ -147,13 +147,8 @@ class Dynamics:
         return outcome is not None and outcome.way == "return"
 
     def margin(self, symbols: Sequence[str], operands: Sequence[Any]) -> float | None:
-        """By how much ``a < b <= c`` holds, the least of its parts; ``None`` unless all are numbers."""
-        if not all(is_number(operand) for operand in operands):
-            return None
-        return min(
-            float(right - left if symbol.startswith("<") else left - right)
-            for symbol, left, right in zip(symbols, operands, operands[1:], strict=False)
-        )
+        """By how much ``a < b <= c`` or the like holds, the least of its parts; ``None`` where that is not known."""
+        return margins.margin(symbols, operands)
 
     # Statements that do not
 

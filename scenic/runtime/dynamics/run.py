@@ -1,5 +1,6 @@
 """One simulation as the language sees it: what runs, what has been drawn, and the procedure of a step (section 12.7)."""
 
+import warnings
 from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from typing import Any, Protocol
@@ -13,6 +14,7 @@ from scenic.runtime.dynamics.draws import Draws, Source
 from scenic.runtime.dynamics.recording import Recording
 from scenic.runtime.dynamics.requirements import Followed
 from scenic.runtime.dynamics.scenarios import ScenarioActivation
+from scenic.runtime.mutation import mutate_now
 from scenic.runtime.objects import Object
 from scenic.runtime.program import Program
 
@@ -91,6 +93,7 @@ class Run:
         name: names them, for the addresses of draws.
         mode_2d: whether the 2D compatibility mode is on.
         robustness: whether to follow by how much requirements hold, which needs memory for every step.
+        keep_draws: whether to remember what was drawn.
 
     """
 
@@ -105,11 +108,12 @@ class Run:
         *,
         mode_2d: bool = False,
         robustness: bool = False,
+        keep_draws: bool = True,
     ) -> None:
         self.simulation = simulation
         self.program = program
         self.copies = copies
-        self.draws = Draws(source, self._where)
+        self.draws = Draws(source, self._where, keep=keep_draws)
         self.context = RunContext(self, locate, name, mode_2d=mode_2d)
         self.wants_robustness = robustness
         self.scenarios: list[ScenarioActivation] = []
@@ -185,7 +189,8 @@ class Run:
     def holds(self, condition: Callable[[], Any]) -> bool:
         """Whether a condition of an interrupt holds; one that reads a variable that is not set yet does not."""
         context = self.context
-        before, context.guarding = context.guarding, True
+        before = context.guarding
+        context.guarding = True
         try:
             return bool(condition())
         except (AttributeError, NameError) as error:
@@ -217,8 +222,36 @@ class Run:
         scenario.objects.append(instance)
         if instance.behavior is not None:
             scenario.agents.append(instance)
+        if scenario.awaited is None:
+            self._enter(instance)
+        else:
+            scenario.awaited.append(instance)
+
+    def _enter(self, instance: Any) -> None:
+        """A new object enters the simulator."""
+        mutate_now(instance)
         self.simulation.add(instance)
         self._numbers[id(instance)] = len(self._numbers)
+
+    def enter_awaited(self, scenario: ScenarioActivation) -> None:
+        """The set-up of a scenario has ended: what it may have mutated enters the simulator."""
+        awaited, scenario.awaited = scenario.awaited, None
+        for instance in awaited or ():
+            self._enter(instance)
+
+    def mutates(self, setup: Callable[..., Any]) -> bool:
+        """Whether a set-up has a ``mutate`` statement."""
+        return "mutate" in self.copies.names_in(setup)
+
+    def check_mutable(self, targets: Sequence[Any]) -> None:
+        """Warn of objects that are in the simulator already, and stay where they are."""
+        for target in targets:
+            if id(target) in self._numbers:
+                warnings.warn(
+                    f"`mutate` has no effect on {target!r}, which the simulator has already: "
+                    "mutate objects in the setup that creates them",
+                    stacklevel=2,
+                )
 
     def start_behavior(self, agent: Any, scenario: ScenarioActivation) -> None:
         """Make the behavior of an agent ready for its first turn."""

@@ -56,6 +56,8 @@ class ScenarioActivation:
         self.workspace: Any = None if parent is None else parent.workspace
         self.objects: list[Any] = []
         self.agents: list[Any] = []
+        self.awaited: list[Any] | None = None
+        """Objects that enter the simulator at the end of the set-up, where that may mutate them."""
         self.agent = None
         self.scenario = self
         self.declared = Declared()
@@ -88,8 +90,11 @@ class ScenarioActivation:
             self.instance._activation = self
             arguments = self.instance._arguments
             setup = self.run.copies.value(self.instance._definition.setup)
+            if self.run.mutates(setup):
+                self.awaited = []
             with self.run.within(self, creating=True):
                 setup(self.instance, *arguments.args, **arguments.kwargs)
+                self.run.enter_awaited(self)
         self.go()
 
     def go(self) -> None:

@@ -1,0 +1,107 @@
+"""By how much a condition holds: the atoms of quantitative robustness (`scenic.runtime.temporal.robustness`).
+
+A margin is in the unit of what is compared, positive where the condition holds and negative where it does not. It is infinite
+where there is nothing to measure: for an equality that holds, or inside something of which no depth is known.
+"""
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+from scenic.language.errors import ScenicError
+from scenic.runtime.objects import Object, Point
+from scenic.runtime.regions.base import Region
+from scenic.runtime.regions.bodies import gap_between
+from scenic.runtime.regions.planar import PlanarRegion
+from scenic.runtime.shapes import BoxShape
+from scenic.runtime.values import Vector, is_number, is_vector, to_vector
+
+__all__ = ["margin"]
+
+
+def margin(symbols: Sequence[str], operands: Sequence[Any]) -> float | None:
+    """The least margin of ``a SYMBOL b SYMBOL c ...``; ``None`` where one of the parts has none.
+
+    Args:
+        symbols: comparisons, ``in``, ``not in`` or ``intersects``.
+        operands: one more than symbols.
+
+    """
+    least = math.inf
+    for symbol, left, right in zip(symbols, operands, operands[1:], strict=False):
+        part = _part(symbol, left, right)
+        if part is None:
+            return None
+        least = min(least, part)
+    return least
+
+
+def _part(symbol: str, left: Any, right: Any) -> float | None:
+    match symbol:
+        case "<" | "<=" | ">" | ">=":
+            if not (is_number(left) and is_number(right)):
+                return None
+            return float(right - left if symbol.startswith("<") else left - right)
+        case "==":
+            return _equality(left, right)
+        case "in":
+            return _membership(left, right)
+        case "intersects":
+            return _overlap(left, right)
+        case _:
+            opposite = _part("==" if symbol == "!=" else "in", left, right)
+            return None if opposite is None else -opposite
+
+
+def _equality(left: Any, right: Any) -> float | None:
+    if is_number(left) and is_number(right):
+        apart = abs(float(left - right))
+    elif (isinstance(left, Vector) and is_vector(right)) or (is_vector(left) and isinstance(right, Vector)):
+        apart = (to_vector(left) - to_vector(right)).norm()
+    else:
+        return None
+    return -apart if apart else math.inf
+
+
+def _membership(item: Any, region: Any) -> float | None:
+    """The signed distance of a point, or of the corner of a box that is least inside."""
+    if not isinstance(region, Region):
+        return None
+    try:
+        if isinstance(item, Object):
+            return _clearance(item, region)
+        if is_vector(item) or isinstance(item, Point):
+            return _signed_distance(to_vector(item), region)
+    except ScenicError:  # some regions know no distances
+        return None
+    return None
+
+
+def _clearance(item: Object, region: Region) -> float:
+    inside = bool(region.containsObject(item))
+    if not isinstance(item.shape, BoxShape):
+        return math.inf if inside else -math.inf
+    if inside:
+        return max(0.0, min(_depth(corner, region) for corner in item.corners))
+    # A box may stick out between its corners, over a hole; then it is not known by how much.
+    outside = max(float(region.distanceTo(corner)) for corner in item.corners)
+    return -outside if outside > 0 else -math.inf
+
+
+def _signed_distance(point: Vector, region: Region) -> float:
+    return _depth(point, region) if region.containsPoint(point) else -float(region.distanceTo(point))
+
+
+def _depth(point: Vector, region: Region) -> float:
+    """How far a point of the region is from its boundary, in metres."""
+    if isinstance(region, PlanarRegion):
+        return float(region.boundary.distanceTo(Vector(point.x, point.y, region.z)))
+    surface = getattr(region, "getSurfaceRegion", None)
+    return math.inf if surface is None else float(surface().distanceTo(point))
+
+
+def _overlap(left: Any, right: Any) -> float | None:
+    """The gap between two objects, negative; how deep one is in the other is not known."""
+    if not (isinstance(left, Object) and isinstance(right, Object)):
+        return None
+    return math.inf if left.intersects(right) else -float(gap_between(left, right))
