@@ -25,11 +25,14 @@ from scenic.runtime.regions.planar import CircularRegion, Footprint, PlanarRegio
 from scenic.runtime.regions.scattered import PointSetRegion
 from scenic.runtime.regions.views import ViewRegion
 from scenic.runtime.regions.volumes import BoxRegion, SpheroidRegion
+from scenic.runtime.regions.voxels import VoxelRegion
 
 Keep = Callable[[Array], npt.NDArray[np.bool_]]
 
 _CORNERS = np.array(list(product((-0.5, 0.5), repeat=3)))
 _EDGES = [(a, a | bit) for a in range(8) for bit in (1, 2, 4) if not a & bit]
+_AXES: Final = ([2, 0, 1], [0, 2, 1], [0, 1, 2])
+"""Where the coordinates along x, y and z are when an axis has been moved to the end."""
 _SIDES = 72
 _CREASE: Final = np.cos(np.radians(25))
 """Edges at which the faces of a mesh turn by more are drawn."""
@@ -50,8 +53,7 @@ def outlines(region: Any) -> list[Array]:
     """Lines ``(k, 3)`` that show where a fixed region is; none for what is no region, or has no bounds.
 
     Regions made of others are drawn as those parts of the others' lines that bound them; in the plane they are hatched, since
-    a volume cuts them along lines that no member has. Of what is only known by its points (voxels, and kinds that are
-    not known here), some points are shown.
+    a volume cuts them along lines that no member has. Of kinds that are not known here, some points are shown.
     """
     while isinstance(region, Workspace):
         region = region.region
@@ -83,6 +85,8 @@ def outlines(region: Any) -> list[Array]:
             rings = [ring, ring[:, [0, 2, 1]], ring[:, [2, 0, 1]]]
             lines = [_CORNERS[list(edge)] for edge in _EDGES] if isinstance(region, BoxRegion) else rings
             return [middle + line @ frame.T for line in lines]
+        case VoxelRegion():
+            return _longest([region.corner + line * region.pitch for line in _cell_edges(region.filled)])
         case SideSurface():
             return _mesh_lines(solid_in_world(columns), region.facing.side, region.facing.threshold)
         case OccupiedSpace():
@@ -206,14 +210,35 @@ def _mesh_lines(mesh: Mesh, side: tuple[int, int] | None, threshold: float) -> l
     squared = (total**2).sum(axis=1)
     sharp = (count != 2) | (squared < 2 + 2 * _CREASE)
     curved = ~sharp & (squared < 4 - 1e-6)
-    shown = vertices[edges[sharp]]
-    if len(shown) > _MOST_EDGES:
-        length = np.linalg.norm(shown[:, 1] - shown[:, 0], axis=1)
-        shown = shown[np.sort(np.argsort(-length, kind="stable")[:_MOST_EDGES])]
-    lines = list(shown)
+    lines = _longest(list(vertices[edges[sharp]]))
     if curved.mean() > _ROUND:
         for axis in range(3):
             lines += _section(vertices[faces], axis)
+    return lines
+
+
+def _longest(lines: list[Array]) -> list[Array]:
+    """As many of the lines ``(2, 3)`` as a page takes, the longest ones, in their order."""
+    if len(lines) <= _MOST_EDGES:
+        return lines
+    length = np.array([np.linalg.norm(line[1] - line[0]) for line in lines])
+    return [lines[index] for index in np.sort(np.argsort(-length, kind="stable")[:_MOST_EDGES]).tolist()]
+
+
+def _cell_edges(filled: npt.NDArray[np.bool_]) -> list[Array]:
+    """The edges ``(2, 3)`` of filled cells of side 1, along each axis joined to lines; none within flat faces."""
+    lines = []
+    for axis in range(3):
+        cells = np.pad(np.moveaxis(filled, axis, 2), 1)
+        a, b, c, d = cells[:-1, :-1], cells[1:, :-1], cells[:-1, 1:], cells[1:, 1:]
+        count = a.astype(np.int8) + b + c + d
+        # Of four cells around an edge two side by side are flat, two across from each other are not.
+        edge = (count == 1) | (count == 3) | ((count == 2) & (a == d))
+        steps = np.diff(edge.astype(np.int8), axis=2)
+        starts, ends = np.argwhere(steps == 1), np.argwhere(steps == -1)
+        # Both are in the order of the lines; padding moves all cells up by one.
+        joined = np.stack([starts, ends], axis=1).astype(float)
+        lines += list(joined[..., _AXES[axis]])
     return lines
 
 

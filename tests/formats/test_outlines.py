@@ -7,7 +7,7 @@ import pytest
 
 import scenic
 from scenic.formats.html import page
-from scenic.formats.regions import bounds, outlines
+from scenic.formats.regions import _cell_edges, bounds, outlines
 from tests.formats.test_html import data_of
 
 PROGRAM = """
@@ -25,6 +25,7 @@ box = BoxRegion(dimensions=(4, 5, 6), position=(-24, -14, 3), rotation=Orientati
 ball = SpheroidRegion(dimensions=(6, 6, 4), position=(-14, -14, 2))
 ring = MeshVolumeRegion(trimesh.creation.annulus(2, 3, 2), position=(-5, -14, 1))
 shell = MeshSurfaceRegion(trimesh.creation.icosphere(radius=3), position=(4, -14, 3))
+voxels = ball.voxelized(1)
 both = rectangle.union(disc)
 cut = ball.difference(BoxRegion(dimensions=(4, 4, 9), position=(-12, -14, 2)))
 common = box.intersect(SpheroidRegion(dimensions=(5, 5, 5), position=(-24, -14, 5)))
@@ -92,6 +93,18 @@ def test_lines_lie_on_their_region(scenes, name):
         "footprint",
     ):
         assert region.distances(points, *columns).max() < 0.01
+
+
+def test_edges_of_cells_are_joined():
+    filled = np.zeros((3, 2, 2), dtype=bool)
+    filled[:2, 0, 0] = filled[0, 1, 0] = True
+    lines = {tuple(map(tuple, line.astype(int).tolist())) for line in _cell_edges(filled)}
+    assert ((0, 0, 0), (2, 0, 0)) in lines
+    assert ((1, 1, 0), (1, 1, 1)) in lines
+    assert ((0, 2, 1), (1, 2, 1)) in lines
+    # An L of three cells has the eighteen edges of a prism over a hexagon.
+    assert len(lines) == 18
+    assert len(_cell_edges(np.ones((4, 5, 6), dtype=bool))) == 12
 
 
 def test_the_page_holds_each_region_once_with_its_name(scenes):
