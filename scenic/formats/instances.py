@@ -28,7 +28,7 @@ PALETTE: tuple[Triple, ...] = (
     (0.75, 0.72, 0.40),
     (0.38, 0.68, 0.71),
 )
-"""Colours of objects that have none of their own: one for each class, in order of appearance."""
+"""Colours of objects that have none of their own: one for each class, in order of appearance, or for each plain object."""
 
 _SHADES = (1.0, 0.72, 1.12, 0.86, 0.6)
 """How bright those of one class are in turn, so that neighbours can be told apart."""
@@ -109,10 +109,8 @@ class Gallery:
             if not thing.properties.get("render", True) or min(size) <= 0:
                 continue
             x, y, z = (float(value) for value in thing.position)
-            base = self._colors.setdefault(class_name, PALETTE[len(self._colors) % len(PALETTE)])
-            shade = _SHADES[shades[class_name] % len(_SHADES)]
+            default = self._default_color(class_name, shades[class_name])
             shades[class_name] += thing.color is None
-            default = (base[0] * shade, base[1] * shade, base[2] * shade)
             instances.append(
                 Instance(
                     surface=self._number(thing.shape.mesh, size),
@@ -127,6 +125,20 @@ class Gallery:
                 )
             )
         return tuple(instances)
+
+    def _default_color(self, class_name: str, number: int) -> Triple:
+        """The colour of an object that has none, by its number among those of its class in the scene.
+
+        A class has one colour in several shades; of plain objects, which have no class of their own, each has another colour.
+        """
+        if class_name == "Object":
+            # From the end, since classes take theirs from the beginning.
+            base, shade = PALETTE[-1 - number % len(PALETTE)], number // len(PALETTE)
+        else:
+            base = self._colors.setdefault(class_name, PALETTE[len(self._colors) % len(PALETTE)])
+            shade = number
+        bright = _SHADES[shade % len(_SHADES)]
+        return base[0] * bright, base[1] * bright, base[2] * bright
 
     def _number(self, mesh: UnitMesh, size: Triple) -> int:
         if id(mesh) not in self._known:

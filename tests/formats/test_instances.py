@@ -92,3 +92,15 @@ def test_matrix_takes_the_unit_box_to_the_object() -> None:
     # Its front, +Y, looks west after a quarter turn anticlockwise.
     np.testing.assert_allclose(instance.matrix() @ [0, 0.5, 0, 1], [-1, 2, 3, 1], atol=1e-12)
     np.testing.assert_allclose(instance.matrix() @ [0.5, 0, 0.5, 1], [1, 3, 6, 1], atol=1e-12)
+
+
+def test_plain_objects_without_a_colour_have_different_ones() -> None:
+    scenes = [
+        Scene([Object(position=place) for place in places]) for places in ([(0, 0, k) for k in range(9)],) * 2
+    ]
+    first, second = picture(scenes).scenes
+    assert len({item.color for item in first}) == 9
+    assert [item.color for item in first] == [item.color for item in second]
+    chairs = picture([Scene([Chair(), Chair(), Object()])]).scenes[0]
+    ratios = [one / other for one, other in zip(chairs[0].color[:3], chairs[1].color[:3], strict=True)]
+    assert max(ratios) == pytest.approx(min(ratios))
