@@ -190,42 +190,50 @@ class _Drawing:
     def _smooth_edges(self, torn: Mask) -> None:
         """Mix into pixels at edges what rays through their corners see, one for all pixels that share a corner.
 
-        A ray takes the mean colour of the pixels around its corner that show the surface it meets. A pixel keeps half
-        of its own colour, and takes an eighth of that at each corner.
+        A pixel keeps half of its own colour, and takes an eighth of that at each corner around which surfaces differ, or are
+        torn.
         """
-        height, width = self._group.shape
-        edge = torn
-        across, along = self._group[:, 1:] != self._group[:, :-1], self._group[1:] != self._group[:-1]
-        edge[:, 1:] |= across
-        edge[:, :-1] |= across
-        edge[1:] |= along
-        edge[:-1] |= along
-        pixels = np.flatnonzero(edge.reshape(-1))
-        pixel_row, pixel_column = np.divmod(pixels, width)
-        number = np.zeros((height + 1) * (width + 1), np.int32)
-        upper_left = pixel_row * (width + 1) + pixel_column
-        at_corners = [upper_left + step for step in (0, 1, width + 1, width + 2)]
-        for corner in at_corners:
-            number[corner] = 1
-        corners = np.flatnonzero(number)
-        number[corners] = np.arange(len(corners))
-        colors = self._corner_colors(*np.divmod(corners, width + 1))
+        group = self._group
+        height, width = group.shape
+        across, along = group[:, 1:] != group[:, :-1], group[1:] != group[:-1]
+        # If three sides of a square of pixels join the same surface, so does the fourth.
+        mixed = across[:-1] | across[1:] | along[:, 1:]
+        for down in (0, 1):
+            for right in (0, 1):
+                mixed |= torn[down : height - 1 + down, right : width - 1 + right]
+        edge = np.zeros(group.shape, np.bool_)
+        for down in (0, 1):
+            for right in (0, 1):
+                edge[down : height - 1 + down, right : width - 1 + right] |= mixed
+        row, column = np.divmod(np.flatnonzero(mixed), width - 1)
+        colors = self._corner_colors(row + 1, column + 1)
+        number = np.full((height + 1, width + 1), -1, np.int32)
+        number[row + 1, column + 1] = np.arange(len(row))
+        pixels = np.flatnonzero(edge)
         image = self.image.reshape(-1, 3)
-        total = decoded(image[pixels]) * np.float32(0.5)
-        for corner in at_corners:
-            total += colors[number[corner]]
+        own = decoded(image[pixels])
+        total = own * np.float32(0.5)
+        row, column = np.divmod(pixels, width)
+        for down in (0, 1):
+            for right in (0, 1):
+                corner = number[row + down, column + right]
+                there = np.flatnonzero(corner >= 0)
+                part = own * np.float32(0.125)
+                part[there] = colors[corner[there]]
+                total += part
         image[pixels] = encoded(total)
 
     def _corner_colors(self, row: Index, column: Index) -> Singles:
-        """An eighth of the linear colours ``(n, 3)`` that rays through corners of pixels see."""
-        height, width = self._group.shape
+        """An eighth of the linear colours ``(n, 3)`` at corners between pixels: above and to the left of those given.
+
+        It is the mean of the pixels around the corner that show the surface which a ray through it meets.
+        """
+        width = self._group.shape[1]
         directions = self._lens.directions(column.astype(np.float32), row.astype(np.float32))
         found = first_groups(self._stage, self._lens.eye, directions)
         group, image = self._group.reshape(-1), self.image.reshape(-1, 3)
-        around = [
-            np.clip(row - up, 0, height - 1) * width + np.clip(column - left, 0, width - 1)
-            for up, left in ((1, 1), (1, 0), (0, 1), (0, 0))
-        ]
+        pixel = row * width + column
+        around = [pixel - width - 1, pixel - width, pixel - 1, pixel]
         total, matching = np.zeros((len(row), 3), np.float32), np.zeros(len(row), np.float32)
         for pixel in around:
             match = np.flatnonzero(group[pixel] == found)
