@@ -177,3 +177,22 @@ def test_members_that_scripts_use() -> None:
     corner = MeshVolumeRegion(trimesh.creation.box((1, 1, 1)))
     assert corner.containsPoint(Vector(0.5 + 5e-7, 0.5, 0.5))
     assert not corner.containsPoint(Vector(0.5 + 5e-6, 0.5, 0.5))
+
+
+@pytest.mark.parametrize("angles", [(6.28, 3.14), (1.5, 3.14), (2, 0.8)])
+def test_distances_from_views_are_those_of_their_points(angles: tuple[float, float]) -> None:
+    ego = (
+        scenic.scenarioFromString(
+            f"ego = new Object at (1, 2, 3), facing (0.4, 0.2, 0), with viewAngles {angles}, with visibleDistance 5"
+        )
+        .sample(1, seed=0)[0]
+        .egoObject
+    )
+    view = ego.visibleRegion
+    random.seed(1)
+    inner = np.array([tuple(view.uniformPointInner()) for _ in range(4000)])
+    for point in np.random.default_rng(2).uniform(-9, 12, (12, 3)):
+        found = view.distanceTo(Vector(*point))
+        nearest = np.linalg.norm(inner - point, axis=1).min()
+        assert found <= nearest + 1e-6 or view.containsPoint(Vector(*point))
+        assert nearest - found < 1.2

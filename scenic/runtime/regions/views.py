@@ -3,7 +3,7 @@
 Occlusion is ignored here (section 11.2 of the specification).
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any, Final
 
 import numpy as np
@@ -11,9 +11,9 @@ import numpy as np
 from scenic.graph.draws import mix, open_unit, words_of
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import Call, Operation, always
-from scenic.runtime.geometry import containment
+from scenic.runtime.geometry import containment, distance
 from scenic.runtime.geometry.bodies import Body
-from scenic.runtime.geometry.poses import Poses
+from scenic.runtime.geometry.poses import Indices, Poses
 from scenic.runtime.geometry.visibility.proving import Proof, prove
 from scenic.runtime.geometry.visibility.regions import (
     draw_near,
@@ -54,21 +54,20 @@ class ViewRegion(Region):
         return views_over(columns).contain(points)
 
     def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
-        views = views_over(columns).spread(lanes)
         result = np.zeros(lanes, dtype=np.bool_)
-        for angles in np.unique(views.angles, axis=0):
-            chosen = np.flatnonzero((views.angles == angles).all(axis=1))
-            unit, centre, extents = view_mesh(*angles.tolist()).normalized()
-            view, reach = views.take(chosen), views.distance[chosen, None]
-            x, y, z = (reach * centre).T
-            turn = view.matrix
-            offset = np.stack(
-                [turn[:, i, 0] * x + turn[:, i, 1] * y + turn[:, i, 2] * z for i in range(3)], -1
-            )
-            poses = Poses(view.camera + offset, view.orientation, reach * extents)
+        for chosen, solid in _solids(views_over(columns).spread(lanes)):
             part = body if len(body) == 1 else body.take(chosen)
-            result[chosen] = containment.in_body(part, Body((unit,), None, poses), len(chosen))
+            result[chosen] = containment.in_body(part, solid, len(chosen))
         return result
+
+    def distances(self, points: Points, *columns: Column) -> Column:
+        """To the mesh of the view, which is inside it by a thousandth of its reach at most; 0 for points in view."""
+        lanes = max(len(points), *map(len, columns))
+        points = np.broadcast_to(points, (lanes, 3))
+        result = np.zeros(lanes)
+        for chosen, solid in _solids(views_over(columns).spread(lanes)):
+            result[chosen] = distance.to_solid(solid, points[chosen], len(chosen))
+        return np.where(self.contains_points(points, *columns), 0.0, result)
 
     def meets_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
         """A body reaches into the view if it could be seen were nothing in the way."""
@@ -86,6 +85,18 @@ class ViewRegion(Region):
 
     def sizes(self, *columns: Column) -> Column:
         return view_volume(views_over(columns))
+
+
+def _solids(views: Views) -> Iterator[tuple[Indices, Body]]:
+    """The meshes of views, of each pair of angles with the lanes that have it."""
+    for angles in np.unique(views.angles, axis=0):
+        chosen = np.flatnonzero((views.angles == angles).all(axis=1))
+        unit, centre, extents = view_mesh(*angles.tolist()).normalized()
+        view, reach = views.take(chosen), views.distance[chosen, None]
+        x, y, z = (reach * centre).T
+        turn = view.matrix
+        offset = np.stack([turn[:, i, 0] * x + turn[:, i, 1] * y + turn[:, i, 2] * z for i in range(3)], -1)
+        yield chosen, Body((unit,), None, Poses(view.camera + offset, view.orientation, reach * extents))
 
 
 def views_over(columns: Sequence[Column]) -> Views:

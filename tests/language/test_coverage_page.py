@@ -1,0 +1,24 @@
+"""``docs/language.md`` tells of every word that the declarations know."""
+
+from pathlib import Path
+
+import pytest
+
+from scenic.language.names import NAMES
+from scenic.language.operators import OPERATORS
+from scenic.language.specifiers import SPECIFIERS
+
+PAGE = (Path(__file__).parents[2] / "docs" / "language.md").read_text()
+NOT_BUILT = PAGE.split("## What is not built")[1]
+
+
+@pytest.mark.parametrize("word", [*NAMES, *OPERATORS, *SPECIFIERS])
+def test_every_word_is_listed(word: str) -> None:
+    assert f"`{word}`" in PAGE
+
+
+def test_the_last_section_lists_exactly_what_is_refused() -> None:
+    refused = {name for name, entry in NAMES.items() if not entry.available}
+    refused |= {name for name, entry in {**OPERATORS, **SPECIFIERS}.items() if not entry.available}
+    told = {word for word in [*NAMES, *OPERATORS, *SPECIFIERS] if f"`{word}`" in NOT_BUILT}
+    assert told == refused
