@@ -105,9 +105,10 @@ def _faces_near(
     size = np.broadcast_to(poses.size, (count, 3))
     reach = TOLERANCE / size
     result = np.full(count, -1, dtype=np.intp)
+    few = _few_faces(mesh, poses, side, threshold)
     for part in rows(count, 1, _CHUNK // _FEW_FACES):
-        if len(mesh.faces) <= _FEW_FACES:
-            entry, face = _all_pairs(part, len(mesh.faces))
+        if few is not None:
+            entry, face = _all_pairs(part, few)
         else:
             entry, face = mesh.derived(face_grid).near_points(local[part], reach[part])
             entry = entry + part.start
@@ -143,9 +144,10 @@ def _nearest_hits(
     local = np.broadcast_to(taken.to_unit(start), (len(chosen), 3))
     course = np.broadcast_to(taken.directions_to_unit(way), (len(chosen), 3))
     faces, travel = np.full(len(chosen), -1, dtype=np.intp), np.zeros(len(chosen))
+    few = _few_faces(mesh, taken, side, threshold)
     for part in rows(len(chosen), 1, _CHUNK // _FEW_FACES):
-        if len(mesh.faces) <= _FEW_FACES:
-            entry, face = _all_pairs(part, len(mesh.faces))
+        if few is not None:
+            entry, face = _all_pairs(part, few)
         else:
             moving = np.flatnonzero((course[part] != 0).any(axis=1)) + part.start
             line, face = mesh.derived(face_grid).along_lines(local[moving], course[moving])
@@ -160,9 +162,19 @@ def _nearest_hits(
     return faces, travel
 
 
-def _all_pairs(part: slice, faces: int) -> tuple[Indices, Indices]:
+def _few_faces(mesh: Mesh, poses: Poses, side: Side, threshold: float) -> Indices | None:
+    """The faces to compare one by one, if they are few: those of the side, where that is the same in all lanes."""
+    if len(mesh.faces) > _FEW_FACES:
+        return None
+    faces = np.arange(len(mesh.faces))
+    if len(poses) > 1:
+        return faces
+    return faces[side_contains(mesh, poses, side, threshold, np.zeros_like(faces), faces)]
+
+
+def _all_pairs(part: slice, faces: Indices) -> tuple[Indices, Indices]:
     entries = np.arange(part.start, part.stop)
-    return np.repeat(entries, faces), np.tile(np.arange(faces), len(entries))
+    return np.repeat(entries, len(faces)), np.tile(faces, len(entries))
 
 
 def _crossings(mesh: Mesh, points: Floats, directions: Floats, faces: Indices) -> tuple[Booleans, Floats]:
