@@ -83,11 +83,12 @@ def in_convex_polygon(body: Body, corners: Floats, lanes: int) -> Booleans:
     for mesh, chosen in body.by_mesh(lanes):
         result[chosen] = box_inside[chosen]
         left = chosen[~box_inside[chosen]]
-        # The edge that the world box oversteps most is the one that the body is likely to overstep.
-        for part in rows(len(left), len(mesh.hull.vertices), _CHUNK):
-            some = left[part]
-            result[some] = beside(_world(body.poses, some, mesh.hull.vertices), some, worst[some])
-        left = left[result[left]]
+        # The edge that the world box oversteps most is the one that the body is likely to overstep, with its extremes.
+        for points in (extreme_corners(mesh), mesh.hull.vertices):
+            for part in rows(len(left), len(points), _CHUNK):
+                some = left[part]
+                result[some] = beside(_world(body.poses, some, points), some, worst[some])
+            left = left[result[left]]
         result[left] = _chunked(test, left, mesh.hull.vertices)
     result &= has_area
     return result
