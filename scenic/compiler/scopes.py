@@ -5,12 +5,12 @@ A scope is built once by `scenic.compiler.resolver` and only read afterwards. No
 
 import ast
 import builtins
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, field
 from enum import StrEnum
 from functools import cached_property
-from typing import Any, Final, TypeVar
+from typing import Any, Final
 
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.names import NAMES, TRACKED
@@ -26,8 +26,6 @@ __all__ = [
     "ScopeKind",
     "Stretch",
 ]
-
-_T = TypeVar("_T")
 
 _MODULE_ATTRIBUTES: Final = frozenset(
     {
@@ -207,7 +205,7 @@ class Resolution:
         self.rebinding: Final = not reflecting.isdisjoint(REBINDING)
         self.wildcard: bool = self.rebinding or any(each.wildcard for each in stretches)
         self._tree = tree
-        self._merged: dict[str, Any] = {}
+        self._nodes: dict[type[ast.AST], list[tuple[Any, Scope]]] = {}
         self._more: Mapping[ast.AST, Reference] = {}
 
     def _names(self) -> dict[str, Binding]:
@@ -233,21 +231,18 @@ class Resolution:
         """The same names, with some more nodes that mean one of them."""
         new = copy(self)
         new._more = {**self._more, **more}
-        new._merged = {key: value for key, value in self._merged.items() if key != "references"}
+        new.__dict__.pop("references", None)
         return new
 
     # All of them
 
-    @property
+    @cached_property
     def references(self) -> Mapping[ast.AST, Reference]:
         """What each name means, in no particular order.
 
         Names bound by other nodes than ``ast.Name`` (functions, parameters, imports, captures) are found through
         `Binding.sites`.
         """
-        return self._once("references", self._references)
-
-    def _references(self) -> dict[ast.AST, Reference]:
         found: dict[ast.AST, Reference] = dict(self._more)
         names = self.names
         for stretch in self.stretches:
@@ -257,22 +252,20 @@ class Resolution:
                     found[node] = Reference(reference.node, reference.scope, names[reference.node.id])
         return found
 
-    @property
+    @cached_property
     def scopes(self) -> Mapping[ast.AST, Scope]:
         """The scope that a node opens."""
-        return self._once("scopes", lambda: self._joined({self._tree: self.module}, "scopes"))
+        return self._joined({self._tree: self.module}, "scopes")
 
-    @property
+    @cached_property
     def nonlocals(self) -> Mapping[ast.AST, Scope]:
         """The scope in which a ``nonlocal`` statement stands."""
-        return self._once("nonlocals", lambda: self._joined({}, "nonlocals"))
+        return self._joined({}, "nonlocals")
 
-    @property
+    @cached_property
     def tolerated(self) -> Collection[ast.AST]:
         """The names read where a missing name is provided for."""
-        return self._once(
-            "tolerated", lambda: frozenset().union(*(each.tolerated for each in self.stretches))
-        )
+        return frozenset().union(*(each.tolerated for each in self.stretches))
 
     @property
     def reserved(self) -> Sequence[tuple[str, ast.AST]]:
@@ -283,19 +276,15 @@ class Resolution:
         """The nodes of one of the classes that the checks look for, each with the scope in which it stands, unordered."""
         if len(self.stretches) == 1:
             return self.stretches[0].nodes.get(cls, ())
-        key = f"nodes {cls.__name__}"
-        return self._once(key, lambda: [item for each in self.stretches for item in each.nodes.get(cls, ())])
+        found = self._nodes.get(cls)
+        if found is None:
+            found = [item for each in self.stretches for item in each.nodes.get(cls, ())]
+            self._nodes[cls] = found
+        return found
 
     def _joined(self, found: dict[ast.AST, Scope], name: str) -> dict[ast.AST, Scope]:
         for stretch in self.stretches:
             found.update(getattr(stretch, name))
-        return found
-
-    def _once(self, key: str, make: Callable[[], _T]) -> _T:
-        # Two threads that ask at the same time both make it, which does no harm.
-        if key not in self._merged:
-            self._merged[key] = make()
-        found: _T = self._merged[key]
         return found
 
     def sites(self) -> Iterator[tuple[ast.AST, Binding]]:
@@ -308,7 +297,7 @@ class Resolution:
 
     def reference(self, node: ast.AST | None) -> Reference | None:
         """Where a name of the program stands and what it means; ``None`` for all other nodes."""
-        known: Mapping[ast.AST, Reference] | None = self._merged.get("references")
+        known: Mapping[ast.AST, Reference] | None = self.__dict__.get("references")
         if known is not None:
             return known.get(node)  # type: ignore[arg-type]
         for references in (self._more, *(each.references for each in self.stretches)):
@@ -333,7 +322,7 @@ class Resolution:
 
     def scope(self, node: ast.AST) -> Scope | None:
         """The scope that a node opens."""
-        if "scopes" in self._merged:
+        if "scopes" in self.__dict__:
             return self.scopes.get(node)
         if node is self._tree:
             return self.module

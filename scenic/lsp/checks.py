@@ -150,6 +150,7 @@ class Checks:
         self._show_problems(uri, problems)
         if present is not document:
             self.changed(uri)
+        self._session.garbage.checked()
 
     def _stop_timer(self, uri: str) -> None:
         timer = self._timers.pop(uri, None)

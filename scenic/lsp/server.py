@@ -17,7 +17,6 @@ from scenic.ide.snapshot import Cancelled
 from scenic.lsp import parent, reading
 from scenic.lsp.checks import Checks
 from scenic.lsp.errors import ErrorCode, ProtocolError
-from scenic.lsp.garbage import Garbage
 from scenic.lsp.handlers import notification_handler, request_handler
 from scenic.lsp.handlers.lifecycle import initialize
 from scenic.lsp.loop import Job, Loop, Worker
@@ -47,7 +46,6 @@ class Server:
         self._loop = Loop()
         self._session = Session(self._loop, self._writer)
         self._session.checks = Checks(self._session)
-        self._garbage = Garbage(self._loop)
         self._worker = Worker("requests")
         self._stage = _Stage.NEW
         self._code = 0
@@ -91,7 +89,7 @@ class Server:
         self._loop.stop()
 
     def _receive(self, message: Message | list[Any]) -> None:
-        self._garbage.touched()
+        self._session.garbage.touched()
         if isinstance(message, list):
             wrong = ProtocolError(
                 ErrorCode.INVALID_REQUEST, "batches of messages are not part of the protocol"

@@ -14,6 +14,7 @@ from scenic.lsp import reading
 from scenic.lsp.convert import Encoding, Json, Lines
 from scenic.lsp.documents import Document, snapshot_of
 from scenic.lsp.errors import ErrorCode, ProtocolError
+from scenic.lsp.garbage import Garbage
 from scenic.lsp.loop import Loop, Worker
 from scenic.lsp.uris import to_path, to_uri
 from scenic.lsp.wire import Writer
@@ -122,6 +123,7 @@ class Session:
         self.trusted: bool | None = None
         """Whether programs may be run; ``None`` if the client did not say."""
         self.settings: Mapping[str, Any] = {}
+        self.garbage = Garbage(loop)
         self.checker = Worker("checks")
         self.checks: Checks
         self.tokens = Results()

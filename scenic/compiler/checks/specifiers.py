@@ -171,7 +171,7 @@ def _cycle(node: scenic.New, properties: Mapping[str, Property], context: Contex
 
     # Where the defaults need one another in no circle, there can only be one through what the specifiers give. Those of
     # other modules are checked there.
-    own = properties if context.classes.is_circular(properties) and context.foreign(node.cls) is None else ()
+    own = properties if context.foreign(node.cls) is None and context.classes.is_circular(properties) else ()
     cycle = find_cycle([*(name for name in providers if needed(name)), *own], needed)
     if cycle is None:
         return
