@@ -212,3 +212,26 @@ def test_what_makes_no_sense_is_refused(text: str, message: str) -> None:
     with pytest.raises(Exception, match=message) as caught:
         scenic.scenarioFromString(text)
     assert isinstance(caught.value, Located)
+
+
+def test_parts_in_view_are_intersections_and_differences() -> None:
+    """What a program gets by `visible` it also gets by combining with the view itself."""
+    text = """
+floor = RectangularRegion((0, 0, 0), 0, 30, 30)
+ego = new Object at (Range(-3, 3), 0, 0.5), facing Range(0, 360) deg, with viewAngles (90 deg, 60 deg), with visibleDistance 12
+seen = visible floor
+unseen = not visible floor
+by_hand = floor.intersect(ego.visibleRegion)
+without = floor.difference(ego.visibleRegion)
+"""
+    points = np.random.default_rng(3).uniform((-18, -18, 0), (18, 18, 0), (400, 3))
+    for scene in scenic.scenarioFromString(text).sample(3, seed=5):
+        inside = {
+            name: region.contains_points(points, *region.fixed_columns("the test"))
+            for name, region in scene.regions.items()
+        }
+        assert (inside["seen"] == inside["by_hand"]).all()
+        assert (inside["unseen"] == inside["without"]).all()
+        assert (inside["floor"] == (inside["seen"] | inside["unseen"])).all()
+        assert not (inside["seen"] & inside["unseen"]).any()
+        assert 20 < inside["seen"].sum() < inside["unseen"].sum()
