@@ -56,10 +56,17 @@ class _Work:
         """The scenario and the simulator; raises what is wrong with either."""
         if self._made is None:
             from scenic.pipeline import load
+            from scenic.runtime.importing import beside, forget_stranger
             from scenic.simulators.batch import choose_simulator
 
             scenario = load(**self._loading)
-            self._made = scenario, choose_simulator(self._simulator, scenario)
+            # A simulator of one's own may lie beside the program, like everything that the program imports.
+            folder = Path(self._loading["path"]).absolute().parent
+            module, colon, _ = (self._simulator or "").partition(":")
+            if colon:
+                forget_stranger(module, folder)
+            with beside(folder):
+                self._made = scenario, choose_simulator(self._simulator, scenario)
         made: tuple[Any, Any] = self._made
         return made
 
@@ -104,7 +111,10 @@ class _Work:
 
             found = diagnose(error)
             message = f"{type(error).__name__}: {error}"
-            return {"k": k, "error": found or Diagnostic("SC503", message, help="the simulator raised this")}
+            hint = "the simulator raised this"
+            if isinstance(error, OSError) and error.filename is not None:
+                hint = "nothing of this simulation is kept; make room, and give the same command again"
+            return {"k": k, "error": found or Diagnostic("SC503", message, help=hint)}
 
     def _one(self, k: int) -> dict[str, Any]:
         from scenic.formats.course_page import course_data

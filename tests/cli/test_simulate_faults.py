@@ -1,0 +1,121 @@
+"""``scenic simulate`` when things outside of the program go wrong: what is lost, what is said, and how it goes on."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.cli.commands import run_here
+
+ROOT = Path(__file__).parents[2]
+PROGRAM = """
+behavior B():
+    while True:
+        take Range(0, 1)
+ego = new Object with behavior B
+record ego.position to "place-{simulation}.jsonl"
+"""
+FAILING = """
+import os
+from pathlib import Path
+from scenic.simulators.dummy import DummySimulation, DummySimulator
+
+class Failing(DummySimulation):
+    def step(self):
+        if self.currentTime == 3 and self.name.startswith("1") and (how := Path(__file__).with_name("how")).exists():
+            if how.read_text() == "dies":
+                os._exit(7)
+            raise ConnectionResetError("the server has gone")
+        super().step()
+
+class Fragile(DummySimulator):
+    def createSimulation(self, scene, **options):
+        return Failing(scene, drift=self.drift, **options)
+"""
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    (tmp_path / "program.scenic").write_text(PROGRAM)
+    (tmp_path / "fragile_simulator.py").write_text(FAILING)
+    return tmp_path
+
+
+def run(folder: Path, *arguments: object) -> "subprocess.CompletedProcess[str]":
+    options = ["program.scenic", "-n", 3, "--seed", 1, "--time", 5, "-o", "out"]
+    variables = {"NO_COLOR": "1", "COLUMNS": "100"}
+    return run_here(["simulate", *options, *arguments], folder=folder, variables=variables)
+
+
+def kept(folder: Path) -> dict[str, str]:
+    """What the run has left, by name."""
+    files = [*(folder / "out").iterdir(), *folder.glob("*place*")]
+    return {path.name: path.read_text() for path in files}
+
+
+def whole(*numbers: int) -> set[str]:
+    return {f"simulation-000{k}.jsonl" for k in numbers} | {f"place-{k}.1.jsonl" for k in numbers}
+
+
+def check_resumed(folder: Path, before: dict[str, str], *arguments: object) -> None:
+    """Called again, the command makes what is missing, and leaves the rest as it is."""
+    (folder / "how").unlink()
+    times = {name: (folder / "out" / name).stat().st_mtime_ns for name in before if name.startswith("sim")}
+    again = run(folder, *arguments)
+    assert again.returncode == 0, again.stderr
+    after = kept(folder)
+    assert set(after) == whole(0, 1, 2)
+    assert {name: after[name] for name in before} == before
+    assert {name: (folder / "out" / name).stat().st_mtime_ns for name in times} == times
+
+
+def test_a_simulator_that_fails_costs_one_simulation(folder: Path) -> None:
+    (folder / "how").write_text("fails")
+    result = run(folder, "--simulator", "fragile_simulator:Fragile")
+    assert result.returncode == 1
+    assert "simulation 1 failed:\nerror[SC503]: ConnectionResetError: the server has gone" in result.stderr
+    before = kept(folder)
+    assert set(before) == whole(0, 2)
+    check_resumed(folder, before, "--simulator", "fragile_simulator:Fragile")
+
+
+@pytest.mark.slow
+def test_a_process_that_dies_costs_one_simulation(folder: Path) -> None:
+    (folder / "how").write_text("dies")
+    arguments = ("--simulator", "fragile_simulator:Fragile", "-j", 2)
+    result = run(folder, *arguments)
+    assert result.returncode == 1
+    assert "the process of simulation 1 died (exit code 7)" in result.stderr
+    before = kept(folder)
+    assert set(before) == whole(0, 2)
+    check_resumed(folder, before, *arguments)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="limits of files are POSIX")
+@pytest.mark.parametrize("target", ["place-{simulation}.jsonl", "place-{simulation}-{step}.npy"])
+def test_a_full_disk_leaves_no_half_files(folder: Path, target: str) -> None:
+    text = PROGRAM.replace("place-{simulation}.jsonl", target).replace("ego.position to", "[[1.5] * 900] to")
+    (folder / "program.scenic").write_text(text)
+    arguments = ["simulate", "program.scenic", "-n", "2", "--seed", "1", "--time", "50", "-o", "out"]
+    arguments += ["--simulator", "dummy"]
+    code = (
+        "import resource, signal, sys\n"
+        "signal.signal(signal.SIGXFSZ, signal.SIG_IGN)\n"
+        "resource.setrlimit(resource.RLIMIT_FSIZE, (2000, 2000))\n"
+        f"sys.argv = ['scenic', *{arguments!r}]\n"
+        "from scenic.cli.main import main\nmain()\n"
+    )
+    result = subprocess.run(
+        [sys.executable, "-c", code],
+        cwd=folder,
+        env={**os.environ, "PYTHONPATH": str(ROOT), "NO_COLOR": "1", "COLUMNS": "200", "SCENIC_CACHE": "off"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert result.returncode == 1, result.stderr
+    assert result.stderr.count("File too large: 'place-") == 2
+    assert "nothing of this simulation is kept" in result.stderr
+    assert kept(folder) == {}
