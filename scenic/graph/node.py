@@ -39,6 +39,11 @@ class Node:
             assert self._consumers is not None
         return self._consumers
 
+    def complete(self, operands: tuple["Node", ...], payload: Any) -> None:
+        """Give the node the operands that were not there yet when it was made, before anything reads the graph."""
+        object.__setattr__(self, "operands", operands)
+        object.__setattr__(self, "payload", payload)
+
     @property
     def is_constant(self) -> bool:
         """Whether the value is fixed."""

@@ -9,10 +9,10 @@ from typing import Any
 
 from scenic.graph.kinds import Kind
 from scenic.language.errors import ScenicTypeError
-from scenic.runtime.context import here
+from scenic.runtime.context import current, here
 from scenic.runtime.mutators import BUILT_IN
 from scenic.runtime.objects import Point
-from scenic.runtime.opaque import call_later
+from scenic.runtime.opaque import call_later, see_mutated
 from scenic.runtime.program import Program
 from scenic.runtime.properties import update
 from scenic.runtime.values import (
@@ -49,6 +49,9 @@ def apply_noise(program: Program) -> None:
         scale = instance.__dict__["mutationScale"]
         if is_random(scale) or scale != 0:
             mutated |= _mutate(instance, scale)
+    context = current.get()
+    if mutated and context is not None:
+        see_mutated(context)
     if mutated:
         program.requirements[:] = [requirement.rebuilt() for requirement in program.requirements]
 

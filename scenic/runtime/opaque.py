@@ -5,7 +5,7 @@ concrete values too; analysis sees nothing of it.
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from types import MappingProxyType
 from typing import Any
@@ -14,12 +14,13 @@ import numpy as np
 
 from scenic.graph.construction import make_node
 from scenic.graph.kinds import Column, Kind, boxed
-from scenic.graph.node import Node, key
+from scenic.graph.node import Graph, Node, key
 from scenic.graph.operation import OK, Call, Operation, always
 from scenic.language.errors import InvalidScenarioError, RejectionException
 from scenic.runtime.context import Context, current, here, next_address
+from scenic.runtime.objects import Point
 from scenic.runtime.randomness import preserved, seed_globals
-from scenic.runtime.samples import Globals, Sample, dependencies, mention
+from scenic.runtime.samples import Globals, Sample, dependencies, mention, reachable
 from scenic.runtime.values import CODEC, Random, as_value
 
 
@@ -59,7 +60,25 @@ def later(
         reads += context.objects
     operands = (own, *dependencies(reads, seen))
     code = OpaqueCode(function, tuple(args), keywords, operands, seen, context)
-    return make_node(operation, operands, code, here())
+    node = make_node(operation, operands, code, here())
+    if context is not None and context.is_symbolic:
+        instances = [value for value in reachable(reads, seen) if isinstance(value, Point)]
+        if instances:
+            context.calls.append((node, instances))
+    return node
+
+
+def see_mutated(context: Context) -> None:
+    """Let calls that were made before see instances as they come out in the end, mutated.
+
+    What a call sees of an instance is looked up when it is made on a sample; so the nodes of what has been
+    mutated since have to be among its operands. A call that decides how an instance is mutated sees it as it was.
+    """
+    for node, instances in context.calls:
+        new = [item for item in dependencies(instances) if item not in node.operands]
+        if new and node not in Graph(new).index:
+            operands = (*node.operands, *new)
+            node.complete(operands, replace(node.payload, operands=operands))
 
 
 def call_later(function: Callable[..., Any], /, *args: Any, **keywords: Any) -> Any:

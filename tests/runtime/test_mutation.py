@@ -135,3 +135,36 @@ def test_mistakes_with_mutation() -> None:
     assert isinstance(
         failure("ego = new Object\ndef f():\n    mutate ego\nrequire f() is None"), InvalidScenarioError
     )
+
+
+def test_calls_on_samples_see_what_comes_out() -> None:
+    """Whether the call stands before `mutate` or after it; of a choice, of a list, of several calls in a row."""
+    text = (
+        "def f(o): return o.position.x\nclass A(Object):\n    def east(self): return self.position.x\n"
+        "a = new A at (Range(0, 1), 0)\nb = new A at (100, 0)\nc = Uniform(a, b)\nl = Uniform([a, b], [b, a])\n"
+        "i = DiscreteRange(0, 1)\ng = distributionFunction(f)\n"
+        "param c = c, d = l[i], r = [g(c), g(c) + 1, c.east(), l[i].position.x, max(a, b, key=f).position.x], b = b\n"
+        "{}require g(c) > 0.5\n"
+    )
+    for item in scenario(text.format("mutate a, b by 3\n")).sample(8, seed=1):
+        x = item.params["c"].position.x
+        assert item.params["r"] == [x, x + 1, x, item.params["d"].position.x, item.params["b"].position.x]
+        assert x > 0.5
+        assert item.params["b"].position.x != 100
+    for item in scenario(text.format("")).sample(3, seed=1):
+        assert item.params["b"].position.x == 100
+
+
+def test_a_mutator_sees_the_instance_as_it_was() -> None:
+    text = (
+        "class M(Mutator):\n    def appliedTo(self, o):\n        o.position = (100 + o.position.x, 0, 0)\n"
+        "        return o, False\na = new Object at (Range(0, 1), 0), with mutator M(), with mutationScale 1\n"
+        "param x = a.position.x, a = a\n"
+    )
+    for item in scenario(text).sample(3, seed=1):
+        assert item.params["a"].position.x == 100 + item.params["x"]
+
+
+def test_whether_to_be_visible_may_be_drawn_without_an_ego() -> None:
+    text = "seen = Uniform(True, False)\nnew Object with requireVisible seen\nparam seen = seen\n"
+    assert [item.params["seen"] for item in scenario(text).sample(6, seed=1)] == [False] * 6

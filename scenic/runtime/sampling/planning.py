@@ -268,6 +268,10 @@ def _visibility(program: Program, ego: Object | None, *, mode_2d: bool) -> list[
         if item is ego or (not is_random(wanted) and not wanted):
             continue
         span, filename = _place(program, item)
+        if ego is None and is_random(wanted):
+            node = connect("not", [truth(wanted)])
+            checks.append(NodeCheck(node, f"{_name(item)} visible from the ego", span, BUILT_IN))
+            continue
         if ego is None:
             raise InvalidScenarioError(
                 "an object must be visible from the ego, but there is no ego",
