@@ -3,13 +3,13 @@
 import json
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from scenic.formats.poses import euler_angles, quaternion_of
-from scenic.formats.scenes import Scene, SceneObject
+from scenic.formats.scenes import Origin, Scene, SceneObject
 
 FORMAT = "scenic-scene"
 VERSION = 1
@@ -48,11 +48,12 @@ class SceneLines:
         self._head = {"format": FORMAT, "version": VERSION}
         if program is not None:
             self._head["program"], self._head["digest"] = program
-        self._fixed: dict[tuple[int, str], tuple[object, str]] = {}
+        self._templates: dict[int, _Template] = {}
 
     def line(self, scene: Scene) -> str:
         """The scene as one line of JSON, without the line's end."""
-        numbers = {id(thing): index for index, thing in enumerate(scene.objects)}
+        things = scene.objects
+        numbers = {id(thing): index for index, thing in enumerate(things)}
         names = scene.names
         head = self._head | {
             "seed": scene.seed,
@@ -61,39 +62,84 @@ class SceneLines:
             "params": {str(name): plain(value, numbers) for name, value in scene.params.items()},
             "ego": None if scene.egoObject is None else numbers[id(scene.egoObject)],
         }
-        objects = ",".join(self._object(scene, thing, names.get(thing), numbers) for thing in scene.objects)
+        objects = ",".join([self._object(scene, thing, names.get(thing), numbers) for thing in things])
         return f'{_text_of(head)[:-1]},"objects":[{objects}]}}'
 
     def _object(self, scene: Scene, thing: SceneObject, name: str | None, numbers: Mapping[int, int]) -> str:
-        quaternion = quaternion_of(thing)
-        head = {
-            "class": type(thing).__name__,
-            "name": name,
-            "position": [number(value) for value in thing.position],
-            "quaternion": [number(value) for value in quaternion],
-            "euler": [number(value) for value in euler_angles(quaternion)],
-            "size": [number(value) for value in (thing.width, thing.length, thing.height)],
-            "shape": plain(thing.shape.source.as_dict(), numbers),
-        }
         origin = scene.origin(thing)
-        properties = []
-        for key in origin.given if self._changed else origin.names:
+        template = self._templates.get(id(origin))
+        if template is None:
+            template = _Template(origin, thing, name, numbers, changed=self._changed)
+            self._templates[id(origin)] = template
+        quaternion = quaternion_of(thing)
+        shape = template.shape or _text_of(plain(thing.shape.source.as_dict(), numbers))
+        place = f'{template.head},"position":{_list_of(thing.position)},"quaternion":{_list_of(quaternion)}'
+        size = _list_of((thing.width, thing.length, thing.height))
+        turn = _list_of(euler_angles(quaternion))
+        parts = [f'{place},"euler":{turn},"size":{size},"shape":{shape},"properties":{{']
+        for text, key in template.pieces:
+            parts.append(text)
+            if key:
+                value = origin.read(thing, key)
+                parts.append(_real(value) if type(value) is float else _text_of(plain(value, numbers)))
+        return "".join(parts)
+
+
+class _Template:
+    """What of an object is told alike in all scenes.
+
+    Attributes:
+        head: the object's text up to its name.
+        shape: the text of its shape; empty where it differs.
+        pieces: text, and the property whose value comes next, if any.
+
+    """
+
+    def __init__(
+        self,
+        origin: Origin,
+        thing: SceneObject,
+        name: str | None,
+        numbers: Mapping[int, int],
+        *,
+        changed: bool,
+    ) -> None:
+        self.origin = origin  # kept, so that its identity stays its own
+        self.head = _text_of({"class": type(thing).__name__, "name": name})[:-1]
+        self.shape = ""
+        if "shape" in origin.fixed:
+            self.shape = _text_of(plain(thing.shape.source.as_dict(), numbers))
+        self.pieces: list[tuple[str, str]] = []
+        text, separator = "", ""
+        for key in origin.given if changed else origin.names:
             if key in TOLD_ELSEWHERE:
                 continue
-            known = self._fixed.get((id(origin), key))
-            if known is not None:
-                properties.append(known[1])
-                continue
-            text = f"{_text_of(key)}:{_text_of(plain(origin.read(thing, key), numbers))}"
-            properties.append(text)
+            text += f"{separator}{_text_of(key)}:"
+            separator = ","
             if key in origin.fixed:
-                # The origin is kept, so that its identity stays its own.
-                self._fixed[id(origin), key] = origin, text
-        return f'{_text_of(head)[:-1]},"properties":{{{",".join(properties)}}}}}'
+                text += _text_of(plain(origin.read(thing, key), numbers))
+            else:
+                self.pieces.append((text, key))
+                text = ""
+        self.pieces.append((text + "}}", ""))
+
+
+def _list_of(values: Iterable[float]) -> str:
+    # What is not finite, or a number of NumPy's, has an n in it.
+    text = ",".join([repr(value + 0.0) for value in values])
+    return f"[{text}]" if "n" not in text else _text_of([number(value) for value in values])
+
+
+def _real(value: float) -> str:
+    """A real number as JSON, as `number` and Python's own writer tell it."""
+    return repr(value + 0.0) if math.isfinite(value) else _text_of(number(value))
+
+
+_ENCODER = json.JSONEncoder(allow_nan=False, separators=(",", ":"))
 
 
 def _text_of(data: Any) -> str:
-    return json.dumps(data, allow_nan=False, separators=(",", ":"))
+    return _ENCODER.encode(data)
 
 
 def number(value: float) -> float | dict[str, str]:
