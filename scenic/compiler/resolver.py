@@ -12,6 +12,7 @@ from typing import Any, Final, NamedTuple
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks import NOTED, Context, check
+from scenic.compiler.checks.blocks import position
 from scenic.compiler.garbage import no_garbage_collection
 from scenic.compiler.scopes import (
     PROVIDED,
@@ -199,7 +200,10 @@ class _Collector:
                         stack.append(part)
 
     def finish(self) -> Stretch:
-        """What has been noted, put together."""
+        """What has been noted, put together; nodes in the order of the text, however the statements are divided up."""
+        for noted in self._nodes.values():
+            if len(noted) > 1:
+                noted.sort(key=lambda item: position(item[0]))
         inner = {(event.scope, event.name) for event in self._events}
         bound: dict[str, list[tuple[BindingKind, ast.AST]]] = {}
         reserved: list[tuple[str, ast.AST]] = []

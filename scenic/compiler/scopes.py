@@ -273,7 +273,7 @@ class Resolution:
         return [item for each in self.stretches for item in each.reserved]
 
     def nodes(self, cls: type[ast.AST]) -> Sequence[tuple[Any, Scope]]:
-        """The nodes of one of the classes that the checks look for, each with the scope in which it stands, unordered."""
+        """The nodes of one of the classes that the checks look for, each with the scope in which it stands."""
         if len(self.stretches) == 1:
             return self.stretches[0].nodes.get(cls, ())
         found = self._nodes.get(cls)

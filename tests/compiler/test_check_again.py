@@ -89,3 +89,22 @@ def test_what_python_says(text: str) -> None:
     assert sum(item.code == "SC307" for item in before.diagnostics) == 3
     after = check_again(revise(text, filename="f").result, Source(text, "f"), warned=before.warned)
     assert after.diagnostics == check_text(text, filename="f")
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_large_texts_with_mistakes_are_told_of_in_one_order(seed: int) -> None:
+    # Names that nothing binds, of which each is told once, and mutable defaults that are changed in several places.
+    chance = random.Random(seed)
+    lines = [
+        f"def f{index}(a=[], b=missing{index % 7}): a.append(other{index % 5}); a.pop(missing{index % 3})"
+        for index in range(60)
+    ]
+    lines.insert(30, "x = (")
+    revision, names = revise("\n".join(lines), filename="f"), None
+    for _ in range(4):
+        text = "\n".join(lines)
+        revision = revise(text, revision, filename="f")
+        names = bind_again(revision.result.tree, names)
+        checked = check_again(revision.result, Source(text, "f"), resolution=names)
+        assert checked.diagnostics == check_text(text, filename="f")
+        lines[chance.randrange(len(lines))] = chance.choice(["y = missing1", "x = )", "pass", "z = other1 +"])

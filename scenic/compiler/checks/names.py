@@ -60,13 +60,16 @@ def check_names(context: Context, provided: Collection[str]) -> Iterator[Diagnos
     importing = False
     suggestions: dict[str, str | None] = {}
     elsewhere: dict[str, Binding] | None = None
-    for reference in context.references.values():
-        if reference.binding is not None:
-            continue
+    missing = [
+        reference
+        for reference in context.references.values()
+        if reference.binding is None
+        and reference.node.id not in provided
+        and reference.node.id not in context.brought
+    ]
+    for reference in sorted(missing, key=lambda each: position(each.node)):
         node = reference.node
         name = node.id
-        if name in provided or name in context.brought:
-            continue
         if node in resolution.tolerated or isinstance(node.ctx, ast.Store):
             continue
         if skipped is None:
