@@ -48,6 +48,7 @@ MODULES: Final[Mapping[str, Mapping[str, str]]] = MappingProxyType(
         ),
         "scenic.core.dynamics": _homes(
             ("scenic.simulators.actions", "Action"),
+            (_DEFINITIONS, "Behavior Monitor Invocable DynamicScenario=ModularScenario"),
             (
                 _ERRORS,
                 (
@@ -125,6 +126,7 @@ MODULES: Final[Mapping[str, Mapping[str, str]]] = MappingProxyType(
             ("scenic.runtime.sensors", "Sensor RGBSensor SSSensor"),
             (_RECORDERS, "Recorder File Files"),
         ),
+        "scenic.core.serialization": _homes((_ERRORS, "SerializationError")),
         "scenic.core.simulators": _homes(
             ("scenic.simulators.simulator", "Simulator"),
             ("scenic.simulators.simulation", "Simulation"),

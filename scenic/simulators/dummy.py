@@ -46,13 +46,18 @@ class DummySimulator(Simulator):
 
     Args:
         drift: metres along Y that objects move in each step.
+        timestep: seconds in a step, where `simulate` does not say (1 if ``None``).
 
     """
 
-    def __init__(self, drift: float = 0) -> None:
+    def __init__(self, drift: float = 0, timestep: float | None = None) -> None:
         super().__init__()
         self.drift = drift
+        self.timestep = timestep
 
-    def createSimulation(self, scene: Scene, **options: Any) -> DummySimulation:
+    def createSimulation(
+        self, scene: Scene, *, timestep: float | None = None, **options: Any
+    ) -> DummySimulation:
         """A simulation that has run."""
-        return DummySimulation(scene, drift=self.drift, **options)
+        seconds = self.timestep if timestep is None else timestep
+        return DummySimulation(scene, drift=self.drift, timestep=seconds, **options)

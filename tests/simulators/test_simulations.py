@@ -222,6 +222,29 @@ def test_violated_guards_reject_or_are_raised() -> None:
 # Steps
 
 
+def test_a_simulator_may_have_a_timestep() -> None:
+    scene = scene_of("ego = new Object\nterminate after 2 seconds\n")
+    simulator = DummySimulator(timestep=0.5)
+    for given, steps in ((None, 4), (1, 2)):
+        done = simulator.simulate(scene, maxSteps=9, timestep=given)
+        assert done is not None
+        assert done.currentTime == steps
+
+
+def test_long_simulations_need_not_keep_their_course() -> None:
+    text = (
+        "behavior B():\n    while True:\n        take Range(0, 1)\nego = new Object with behavior B\n"
+        "record final simulation().currentTime as time\n"
+    )
+    whole = simulate(text, 20, key=b"1", drift=1)
+    short = simulate(text, 20, key=b"1", drift=1, keep_course=False, enableReplay=False)
+    assert whole.result is not None
+    assert short.result is not None
+    assert short.result.trajectory == whole.result.trajectory[-1:]
+    assert [taken(short)[-1]] == taken(short) == taken(whole)[-1:]
+    assert short.result.records == {"time": 20}
+
+
 def test_no_steps_at_all() -> None:
     done = simulate("behavior B():\n    take 1\nego = new Object with behavior B\n", 0)
     assert done.result is not None
