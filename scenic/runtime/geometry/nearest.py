@@ -1,9 +1,8 @@
-"""The nearest points of many triangles, segments or points, by a tree of boxes and in double precision.
+"""The nearest points of many triangles or segments, by a tree of boxes and in double precision.
 
-Segments and points are triangles that have collapsed, so that surfaces, polylines and point sets share one index.
+Segments are triangles that have collapsed, so that surfaces and lines share one index.
 """
 
-from collections.abc import Sequence
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -25,7 +24,7 @@ class Found(NamedTuple):
     Attributes:
         distance: ``(n,)``, metres.
         point: where it is, ``(n, 3)``.
-        number: of the triangle, segment or point that it belongs to, ``(n,)``.
+        number: of the triangle or segment that it belongs to, ``(n,)``.
 
     """
 
@@ -41,19 +40,6 @@ class Nearest:
         self._corners: Final = np.asarray(triangles, dtype=np.float64)
         self._tree: Final = tree_of(self._corners) if tree is None else tree
         self._inner: Final = len(self._tree.starts) - 2
-
-    @classmethod
-    def of_polylines(cls, polylines: Sequence[npt.ArrayLike]) -> "Nearest":
-        """An index of the segments of polylines ``(k, 2 | 3)``, numbered from the first one's first on."""
-        parts = [_in_space(polyline) for polyline in polylines]
-        start = np.concatenate([part[:-1] for part in parts])
-        end = np.concatenate([part[1:] for part in parts])
-        return cls(np.stack([start, end, end], axis=1))
-
-    @classmethod
-    def of_points(cls, points: npt.ArrayLike) -> "Nearest":
-        """An index of points ``(k, 2 | 3)``."""
-        return cls(np.repeat(_in_space(points)[:, None], 3, axis=1))
 
     def find(self, points: Floats, scale: Floats | None = None) -> Found:
         """The nearest points of all that is indexed.
@@ -173,11 +159,3 @@ def _nearest_on_segments(points: Floats, start: Floats, end: Floats) -> Floats:
     square = dot(along, along)
     part = np.clip(dot(points - start, along) / np.where(square > 0, square, 1.0), 0.0, 1.0)
     return start + part[:, None] * along
-
-
-def _in_space(points: npt.ArrayLike) -> Floats:
-    """Points of the plane are put at height 0."""
-    array = np.asarray(points, dtype=np.float64)
-    if array.shape[1] == 3:
-        return array
-    return np.concatenate([array, np.zeros((len(array), 1))], axis=1)

@@ -9,7 +9,11 @@ from typing import Final, Self
 import numpy as np
 
 from scenic.graph import quaternions
+from scenic.runtime.geometry.nearest import Nearest
 from scenic.runtime.geometry.poses import Floats, Indices
+
+_FEW: Final = 96
+"""Segments up to which looking at all of them is faster than a tree."""
 
 CHUNK: Final = 1 << 20
 """Pairs of points and segments looked at together."""
@@ -70,7 +74,24 @@ class Segments:
         return np.asarray(self.starts[chosen] * (1 - part) + self.ends[chosen] * part)
 
     def nearest(self, points: Floats) -> tuple[Floats, Indices, Floats]:
-        """For points ``(n, 3)``: distance ``(n,)``, segment ``(n,)`` and place ``(n, 3)`` of the nearest point of the line."""
+        """For points ``(n, 3)``: distance ``(n,)``, segment ``(n,)`` and place ``(n, 3)`` of the nearest point of the line.
+
+        Where two segments meet, the first one counts. Long lines are asked through a tree of boxes.
+        """
+        if len(self.starts) <= _FEW:
+            return self._nearest_of_all(points)
+        distance, place, number = self._index.find(points)
+        before = np.maximum(number - 1, 0)
+        at_start = (place == self.starts[number]).all(axis=1) & (number > 0)
+        joined = at_start & (self.ends[before] == self.starts[number]).all(axis=1)
+        return distance, np.where(joined, before, number).astype(np.intp), place
+
+    @cached_property
+    def _index(self) -> Nearest:
+        return Nearest(np.stack([self.starts, self.ends, self.ends], axis=1))
+
+    def _nearest_of_all(self, points: Floats) -> tuple[Floats, Indices, Floats]:
+        """The same by looking at all segments."""
         distance = np.empty(len(points))
         segment = np.empty(len(points), dtype=np.intp)
         place = np.empty((len(points), 3))

@@ -8,7 +8,8 @@ from scipy.optimize import minimize
 
 from scenic.runtime.geometry import distance
 from scenic.runtime.geometry.bodies import Body
-from scenic.runtime.geometry.nearest import Nearest, nearest_on_triangles
+from scenic.runtime.geometry.nearest import nearest_on_triangles
+from scenic.runtime.geometry.segments import Segments
 
 from .samples import (
     SHAPES,
@@ -148,20 +149,19 @@ def test_batches_do_not_matter(batch):
         np.testing.assert_array_equal(in_batches(function, 60, batch), function(np.arange(60)))
 
 
-def test_polylines_and_point_sets():
+def test_lines():
+    """Long lines, through the tree, and short ones: the same as shapely, and the first of two segments that meet."""
     rng = np.random.default_rng(9)
     lines = [np.cumsum(rng.normal(size=(length, 2)), axis=0) for length in (2, 50, 400)]
     points = rng.normal(size=(300, 2)) * 15
-    flat = np.c_[points, np.zeros(300)]
-    found = Nearest.of_polylines(lines).find(flat)
-    oracle = shapely.MultiLineString([line.tolist() for line in lines])
-    np.testing.assert_allclose(found.distance, shapely.distance(oracle, shapely.points(points)), atol=1e-12)
-    segments = np.concatenate([np.stack([line[:-1], line[1:]], axis=1) for line in lines])
-    ends = shapely.linestrings(segments[found.number])
-    np.testing.assert_allclose(shapely.distance(ends, shapely.points(found.point[:, :2])), 0, atol=1e-12)
-    cloud = rng.normal(size=(500, 3)) * 5
-    queries = rng.normal(size=(200, 3)) * 8
-    found = Nearest.of_points(cloud).find(queries)
-    gaps = np.linalg.norm(queries[:, None] - cloud, axis=2)
-    np.testing.assert_allclose(found.distance, gaps.min(axis=1))
-    np.testing.assert_array_equal(found.number, gaps.argmin(axis=1))
+    for chosen in (lines, lines[:1], lines[:2]):
+        segments = Segments.of_chains([np.c_[line, np.zeros(len(line))].tolist() for line in chosen])
+        distance, number, place = segments.nearest(np.c_[points, np.zeros(300)])
+        oracle = shapely.MultiLineString([line.tolist() for line in chosen])
+        np.testing.assert_allclose(distance, shapely.distance(oracle, shapely.points(points)), atol=1e-12)
+        ends = shapely.linestrings(np.stack([segments.starts[number, :2], segments.ends[number, :2]], axis=1))
+        np.testing.assert_allclose(shapely.distance(ends, shapely.points(place[:, :2])), 0, atol=1e-12)
+    vertices = np.c_[lines[2][1:-1], np.zeros(398)]
+    distance, number, place = Segments.of_chains([np.c_[lines[2], np.zeros(400)].tolist()]).nearest(vertices)
+    np.testing.assert_array_equal(number, np.arange(398))
+    np.testing.assert_allclose(place, vertices, atol=1e-12)
