@@ -44,11 +44,22 @@ def corners(run: Trajectory, name: str) -> Array:
     return run.position(name)[:, None] + np.array(turned)
 
 
-def within(points: Array, x: tuple[float, float], y: tuple[float, float]) -> Array:
-    """Whether points ``(..., 3)`` lie above a rectangle."""
-    return (
-        (points[..., 0] > x[0]) & (points[..., 0] < x[1]) & (points[..., 1] > y[0]) & (points[..., 1] < y[1])
+def depth(points: Array, x: tuple[float, float], y: tuple[float, float]) -> Array:
+    """How deep points ``(..., 3)`` lie above a rectangle: the distance to its border, negative outside, metres."""
+    beyond = np.stack(
+        [
+            np.maximum(x[0] - points[..., 0], points[..., 0] - x[1]),
+            np.maximum(y[0] - points[..., 1], points[..., 1] - y[1]),
+        ]
     )
+    outside = np.linalg.norm(np.maximum(beyond, 0), axis=0)
+    return np.where(outside > 0, -outside, -beyond.max(axis=0))
+
+
+def until(first: Array, second: Array) -> Judgement:
+    """One margin ``(s,)`` is never negative before another one is positive."""
+    before = np.minimum.accumulate(np.concatenate([[np.inf], first[:-1]]))
+    return eventually(np.minimum(second, before))
 
 
 def overtaking(run: Trajectory) -> dict[str, Judgement]:
@@ -62,23 +73,22 @@ def overtaking(run: Trajectory) -> dict[str, Judgement]:
 
 
 def intersection(run: Trajectory) -> dict[str, Judgement]:
-    turned = within(corners(run, "ego"), (-60, -20), (0, 3.5)).all(axis=1)
-    crossing = within(run.position("waiting"), (-3.5, 3.5), (-3.5, 3.5))
-    first = int(turned.argmax())
+    turned = depth(corners(run, "ego"), (-60, -20), (0, 3.5)).min(axis=1)
+    crossing = depth(run.position("waiting"), (-3.5, 3.5), (-3.5, 3.5))
     return {
         "gives way": always(apart(run, "ego", "coming") - 3),
         "apart": always(apart(run, "ego", "waiting") - 3),
-        "turned": (bool(turned.any()), None),
-        "waits its turn": (bool(turned.any()) and not crossing[:first].any(), None),
+        "turned": eventually(turned),
+        "waits its turn": until(-crossing, turned),
     }
 
 
 def pick_and_place(run: Trajectory) -> dict[str, Judgement]:
     blocks = ("first", "second", "third")
-    inside = [within(corners(run, name), (0.25, 0.55), (-0.2, 0.2)).all(axis=1) for name in blocks]
+    inside = [depth(corners(run, name), (0.25, 0.55), (-0.2, 0.2)).min(axis=1) for name in blocks]
     heights = np.min([run.position(name)[:, 2] for name in blocks], axis=0)
     return {
-        "sorted": (bool(np.all(inside, axis=0).any()), None),
+        "sorted": eventually(np.min(inside, axis=0)),
         "none falls down": always(heights - 0.42),
         "grasped": (any(run.record("holding")), None),
     }
@@ -87,7 +97,7 @@ def pick_and_place(run: Trajectory) -> dict[str, Judgement]:
 def robot_vacuum(run: Trajectory) -> dict[str, Judgement]:
     ego = run.position("ego")
     return {
-        "inside": (bool(within(ego, (-2, 2), (-1.5, 1.5)).all()), None),
+        "inside": always(depth(ego, (-2, 2), (-1.5, 1.5))),
         "on the floor": always(0.08 - ego[:, 2]),
         "reaches the corner": eventually(0.6 - np.linalg.norm(ego - (-1.2, -0.8, 0.06), axis=1)),
     }

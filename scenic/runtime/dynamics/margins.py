@@ -84,18 +84,26 @@ def _clearance(item: Object, region: Region) -> float:
     if inside:
         return max(0.0, min(_depth(corner, region) for corner in item.corners))
     # A box may stick out between its corners, over a hole; then it is not known by how much.
-    outside = max(float(region.distanceTo(corner)) for corner in item.corners)
+    outside = max(_distance(corner, region) for corner in item.corners)
     return -outside if outside > 0 else -math.inf
 
 
 def _signed_distance(point: Vector, region: Region) -> float:
-    return _depth(point, region) if region.containsPoint(point) else -float(region.distanceTo(point))
+    return _depth(point, region) if region.containsPoint(point) else -_distance(point, region)
+
+
+def _distance(point: Vector, region: Region) -> float:
+    """How far a point is from the region, in metres; from a region of the plane as it is contained in it, seen from above."""
+    if isinstance(region, PlanarRegion):
+        point = Vector(point.x, point.y, region.z)
+    return float(region.distanceTo(point))
 
 
 def _depth(point: Vector, region: Region) -> float:
     """How far a point of the region is from its boundary, in metres."""
     if isinstance(region, PlanarRegion):
-        return float(region.boundary.distanceTo(Vector(point.x, point.y, region.z)))
+        # Its outline is a line of the ground, whatever the height of the region is.
+        return float(region.boundary.distanceTo(Vector(point.x, point.y, 0)))
     surface = getattr(region, "getSurfaceRegion", None)
     return math.inf if surface is None else float(surface().distanceTo(point))
 

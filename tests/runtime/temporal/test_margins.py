@@ -9,6 +9,7 @@ from scenic.simulators.dummy import DummySimulator
 
 SCENE = """
 zone = RectangularRegion((0, 2), 0, 10, 10)
+shelf = RectangularRegion((0, 2, 0.4), 0, 10, 10)
 room = BoxRegion(dimensions=(20, 20, 20), position=(0, 0, 0))
 row = PointSetRegion('row', [(0, 0, 0), (0, 1, 0), (0, 2, 0), (0, 3, 0)])
 ego = new Object with name 'ego'
@@ -38,6 +39,9 @@ def robustness(condition: str, steps: int) -> float:
         ("always ego.position != (4, 0, 0)", 4),
         ("always ego.position in zone", 3),
         ("always ego in zone", 2.5),
+        ("always ego.position in shelf", 3),
+        ("always ego in shelf", 2.5),
+        ("eventually wall.position not in shelf", 2),
         ("always wall.position not in zone implies ego in zone", 2.5),
         ("eventually wall.position not in zone", 2),
         ("always ego.position in room", 7),
