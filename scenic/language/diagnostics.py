@@ -154,6 +154,7 @@ CODES: Final = MappingProxyType(
         "SC311": "comma that makes a tuple",
         "SC312": "behavior that nothing runs",
         "SC313": "attribute where a property is meant",
+        "SC314": "something else than can be run",
         "SC390": "ignore comment that silences nothing",
         "SC391": "ignore comment that cannot be understood",
         # Found while the program runs.

@@ -139,9 +139,81 @@ def _require(node: scenic.Require, _scope: Scope, context: Context) -> Iterator[
     )
 
 
+def _do(
+    node: scenic.Do | scenic.DoChoose | scenic.DoShuffle, scope: Scope, context: Context
+) -> Iterator[Diagnostic]:
+    """SC314: ``do`` with what cannot be done there."""
+    match where_of(node, scope).place:
+        case Place.COMPOSE:
+            kinds: tuple[str, ...] = ("scenario",)
+        case Place.BEHAVIOR:
+            kinds = ("behavior",)
+        case Place.MONITOR:
+            kinds = ("behavior", "monitor")
+        case _:
+            return
+    for target in node.targets:
+        for value in target.keys if isinstance(target, ast.Dict) else [target]:
+            if value is not None:
+                yield from _wrong(value, kinds, "do", context)
+
+
+def _require_monitor(node: scenic.RequireMonitor, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+    """SC314: ``require monitor`` with something else than a monitor."""
+    yield from _wrong(node.monitor, ("monitor",), "require monitor", context)
+
+
+def _specifier(node: scenic.Specifier, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+    """SC314: ``with behavior`` with something else than a behavior."""
+    if node.specifier == "with" and node.property == "behavior":
+        for value in filter(None, node.operands[:1]):
+            yield from _wrong(value, ("behavior",), "with behavior", context, classes=True)
+
+
+def _wrong(
+    value: ast.expr, kinds: tuple[str, ...], words: str, context: Context, *, classes: bool = False
+) -> Iterator[Diagnostic]:
+    """What is wrong with a value where one of the kinds is run; ``classes`` if a definition itself will do."""
+    called = isinstance(value, ast.Call)
+    name = value.func if isinstance(value, ast.Call) else value
+    if not isinstance(name, ast.Name | ast.Attribute):
+        return
+    foreign = context.foreign(name)
+    definition: Any = context.definition(name) if foreign is None else foreign.definition
+    kind = _RUN.get(type(definition))
+    if kind is None:
+        return
+    if kind not in kinds:
+        yield context.error(
+            "SC314",
+            f"`{words}` takes a {kinds[0]} here, and `{definition.name}` is a {kind}",
+            value,
+            _PLACES_OF[kind].format(definition.name),
+        )
+    elif not called and not classes:
+        yield context.error(
+            "SC314",
+            f"this names the {kind} `{definition.name}`, and makes none",
+            value,
+            f"write `{words} {definition.name}(...)`",
+        )
+
+
+_PLACES_OF: Final = {
+    "behavior": "give it to an object `with behavior {}(...)`, or run it with `do` in another behavior",
+    "monitor": "start it with `require monitor {}(...)`",
+    "scenario": "run it with `do {}(...)` in the compose block of a scenario",
+}
+
+
 RULES: Final[dict[type[ast.AST], NodeRule]] = {
     ast.Assign: _assign,
     ast.Call: _call,
     ast.Expr: _statement,
     scenic.Require: _require,
+    scenic.Do: _do,
+    scenic.DoChoose: _do,
+    scenic.DoShuffle: _do,
+    scenic.RequireMonitor: _require_monitor,
+    scenic.Specifier: _specifier,
 }

@@ -22,7 +22,7 @@ from scenic.language.source import Source
 FOLDER = Path(__file__).parents[2] / "data" / "checks" / "lint"
 CASES = sorted(FOLDER.glob("*.scenic"))
 MARK = re.compile(r"^( *)#( *)(\^+) (SC\d+)(?: (.*))?$")
-ERRORS = {"SC202", "SC203", "SC204", "SC209", "SC211", "SC301", "SC308", "SC313"}
+ERRORS = {"SC202", "SC203", "SC204", "SC209", "SC211", "SC301", "SC308", "SC313", "SC314"}
 
 
 def marks(text: str) -> list[tuple[int, int, int, str, str]]:

@@ -36,8 +36,10 @@ new Object with behavior Drive(1, spede=3)
 #                                 ^^^^^ SC211
 behavior Other():
     do Idle
+    #  ^^^^ SC314 this names the behavior `Idle`, and makes none
     do Drive
     #  ^^^^^ SC211
+    #  ^^^^^ SC314
     do Drive(3)
     do plain()
     #  ^^^^^^^ SC211 `do` runs behaviors and scenarios, and `plain` is a plain function that returns nothing
