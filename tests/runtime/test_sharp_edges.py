@@ -8,7 +8,7 @@ import shapely
 import trimesh
 
 from scenic.graph.draws import Counter, open_unit
-from scenic.runtime.geometry import body_points
+from scenic.runtime.geometry import body_points, primitives
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.poses import Poses
 from tests.runtime.boundaries import Thing, unit_mesh
@@ -197,3 +197,23 @@ def test_shapely_agrees_about_discs() -> None:
         except Exception as error:  # noqa: BLE001 - whether there is one is asked
             outcome = error
         assert (outcome is None) is inside
+
+
+def test_primitive_solids() -> None:
+    """Closed, wound outwards, of unit extents, and of the volumes of their prisms and pyramids."""
+    for sections in (4, 8, 24):
+        expected = sections / 2 * np.sin(2 * np.pi / sections) / 4
+        solid = trimesh.Trimesh(
+            primitives.cylinder(sections).vertices, primitives.cylinder(sections).faces, process=False
+        )
+        assert solid.is_volume
+        assert solid.volume == pytest.approx(expected)
+    for mesh, low, high in (
+        (primitives.box(), 1, 1),
+        (primitives.cone(), 0.95 * np.pi / 12, np.pi / 12),
+        (primitives.spheroid(), 0.95 * np.pi / 6, np.pi / 6),
+    ):
+        solid = trimesh.Trimesh(mesh.vertices, mesh.faces, process=False)
+        assert solid.is_volume
+        assert low - 1e-12 <= solid.volume <= high + 1e-12
+        np.testing.assert_allclose(solid.bounds, [[-0.5] * 3, [0.5] * 3], atol=1e-12)
