@@ -164,7 +164,7 @@ class Point:
     @property
     def visibleRegion(self) -> Any:
         """The places in its view, as far as nothing hides them."""
-        return ViewRegion(self)
+        return ViewRegion.of(self)
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__}>"

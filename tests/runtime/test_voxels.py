@@ -13,6 +13,7 @@ from scenic.core.regions import (
     Region,
     SpheroidRegion,
     UndefinedSamplingException,
+    ViewRegion,
     VoxelRegion,
     everywhere,
     nowhere,
@@ -196,3 +197,16 @@ def test_distances_from_views_are_those_of_their_points(angles: tuple[float, flo
         nearest = np.linalg.norm(inner - point, axis=1).min()
         assert found <= nearest + 1e-6 or view.containsPoint(Vector(*point))
         assert nearest - found < 1.2
+
+
+def test_views_of_no_observer() -> None:
+    view = ViewRegion(10, (1, 1), position=(1, 2, 3), rotation=Orientation.fromEuler(np.pi / 2, 0, 0))
+    assert view.containsPoint(Vector(-5, 2, 3))
+    assert not view.containsPoint(Vector(5, 2, 3))
+    assert not view.containsPoint(Vector(-12, 2, 3))
+    assert view.size == pytest.approx(1000 / 3 * 2 * np.sin(0.5), rel=1e-3)
+    assert isinstance(
+        scenic.scenarioFromString("ego = new Object").sample(1, seed=0)[0].egoObject.visibleRegion, ViewRegion
+    )
+    with pytest.raises(ScenicValueError, match="greater than 0"):
+        ViewRegion(10, (0, 1))

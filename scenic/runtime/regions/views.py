@@ -4,13 +4,15 @@ Occlusion is ignored here (section 11.2 of the specification).
 """
 
 from collections.abc import Callable, Iterator, Sequence
-from typing import Any, Final
+from typing import Any, Final, Self
 
 import numpy as np
 
 from scenic.graph.draws import mix, open_unit, words_of
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import Call, Operation, always
+from scenic.language.errors import ScenicValueError
+from scenic.runtime.context import here
 from scenic.runtime.geometry import containment, distance
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.poses import Indices, Poses
@@ -30,7 +32,16 @@ from scenic.runtime.regions.composite import DifferenceRegion, IntersectionRegio
 from scenic.runtime.regions.planar import CircularRegion
 from scenic.runtime.regions.stacked import body_of
 from scenic.runtime.sight import view_operands
-from scenic.runtime.values import apply, operate, to_scalar, vector
+from scenic.runtime.values import (
+    Orientation,
+    apply,
+    is_number,
+    operate,
+    to_orientation,
+    to_scalar,
+    to_vector,
+    vector,
+)
 
 VIEW_PARAMETERS: Final = 5
 """The first so many of an observer's operands say what is in view: the others are about rays."""
@@ -44,8 +55,42 @@ class ViewRegion(Region):
 
     dimension: float = 3
 
-    def __init__(self, observer: Any) -> None:
-        super().__init__(*view_operands(observer)[:VIEW_PARAMETERS])
+    def __init__(
+        self,
+        visibleDistance: Any,
+        viewAngles: Any,
+        name: str | None = None,
+        position: Any = (0, 0, 0),
+        rotation: Any = None,
+    ) -> None:
+        """The view of an observer that is none of the program's.
+
+        Args:
+            visibleDistance: how far it sees, metres.
+            viewAngles: horizontal and vertical, radians.
+            name: for messages.
+            position: where it is.
+            rotation: of its frame, as an orientation.
+
+        """
+        horizontal, vertical = (to_scalar(angle, "`ViewRegion` angle") for angle in viewAngles)
+        if any(is_number(angle) and not angle > 0 for angle in (horizontal, vertical)):
+            raise ScenicValueError(f"view angles are greater than 0, not {tuple(viewAngles)!r}", span=here())
+        super().__init__(
+            to_vector(position, "`ViewRegion` position"),
+            Orientation() if rotation is None else to_orientation(rotation, "`ViewRegion` rotation"),
+            horizontal,
+            vertical,
+            to_scalar(visibleDistance, "`ViewRegion` distance"),
+            name=name,
+        )
+
+    @classmethod
+    def of(cls, observer: Any) -> Self:
+        """What an observer has in view."""
+        region = object.__new__(cls)
+        Region.__init__(region, *view_operands(observer)[:VIEW_PARAMETERS])
+        return region
 
     def draw_points(self, uniforms: Column, keys: Column, *columns: Column) -> tuple[Points, Mask | None]:
         return draw_places(views_over(columns).spread(uniforms.shape[1]), uniforms.T), None
@@ -222,7 +267,7 @@ def place_near(observer: Any, container: Region, thing: Any, *, mode_2d: bool) -
 
 def part_of(region: Region, observer: Any, *, seen: bool) -> Region:
     """The part of a region that an observer has in view, or has not."""
-    view = ViewRegion(observer)
+    view = ViewRegion.of(observer)
     while isinstance(region, Workspace):
         region = region.region
     if not seen:
