@@ -18,7 +18,6 @@ from scenic.language.errors import (
     ScenicTypeError,
     ScenicValueError,
     SpecifierError,
-    UndefinedSamplingException,
 )
 from scenic.pipeline import diagnose
 from tests.runtime.programs import failure, scenario
@@ -78,8 +77,7 @@ ERRORS: list[tuple[type[Exception], str, str, str]] = [
     (InvalidScenarioError, "SC401", "«globalParameters.x» = 3", "write `param x = ...`"),
     (InvalidScenarioError, "SC401", "«raise RejectionException»", "raise `RejectionException` only in what"),
     (InvalidScenarioError, "SC401", "x = «globalParameters.time»", "parameters set so far: none; set it with"),
-    # UndefinedSamplingException
-    (UndefinedSamplingException, "SC401", "new Object «in everywhere»", "draw from a bounded region, or set"),
+    (InvalidScenarioError, "SC401", "new Object «in everywhere»", "draw from a bounded region, or set"),
     # SpecifierError
     (SpecifierError, "SC402", "new Object at (1, 2), «at (3, 4)»", "remove one of the two"),
     (SpecifierError, "SC402", "ego = new Object\nnew Object at (5, 5), «offset by (1, 2)»", "remove one of the two specifiers"),
@@ -132,7 +130,7 @@ ERRORS: list[tuple[type[Exception], str, str, str]] = [
 def test_errors(error: type[Exception], code: str, text: str, advice: str) -> None:
     plain = text.replace("«", "").replace("»", "")
     raised = failure(plain)
-    assert type(raised) is error, raised
+    assert isinstance(raised, error), raised
     found = diagnose(raised)
     assert found is not None
     assert found.span is not None
