@@ -115,7 +115,7 @@ def test_every_method_has_a_handler() -> None:
 
 def test_what_is_offered(project: Project) -> None:
     providers = {name for name, value in project.offered.items() if name.endswith("Provider") and value}
-    assert len(providers) == 27
+    assert len(providers) == 29
     assert project.offered["textDocumentSync"] == {
         "openClose": True,
         "change": 2,
