@@ -4,8 +4,7 @@ A lane is one point of the cube. What nodes hold in a lane depends on that lane 
 nodes are evaluated together (`scenic.graph.schedule`).
 """
 
-from collections.abc import Callable, Iterable, Sequence
-from functools import partial
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -151,13 +150,10 @@ class Batch:
 
     def value(self, node: Node, lane: int = 0) -> Any:
         """The Python value of ``node`` in one lane; the same object whenever it is asked for."""
-        return self._read(lane, node)
+        return self.read(lane, node)
 
-    def reader(self, lane: int) -> Callable[[Node], Any]:
-        """`value` in one lane."""
-        return partial(self._read, lane)
-
-    def _read(self, lane: int, node: Node) -> Any:
+    def read(self, lane: int, node: Node) -> Any:
+        """`value` in one lane, as samples ask for it."""
         values = self._values.get(node)
         if values is None:
             values = self._values[node] = self._codec.decode(node.kind, self.column(node))

@@ -34,7 +34,7 @@ def sample_of(value: Any) -> Any:
             if status[0] == FAULT and batch.errors:
                 raise next(iter(batch.errors.values()))
             raise RejectionException(f"this sample of {value!r} is rejected")
-    return Sample(batch.value).value(value)
+    return Sample(batch, 0).value(value)
 
 
 def support_of(value: Any) -> tuple[float | None, float | None]:

@@ -6,7 +6,6 @@ concrete values too; analysis sees nothing of it.
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 from types import MappingProxyType
 from typing import Any
 
@@ -111,10 +110,10 @@ def evaluated(call: Call, columns: Sequence[Column]) -> list[Any]:
             absent |= status != OK
     error: Exception | None = None
     sample_before = None if code.context is None else code.context.sample
-    values = {
-        node: CODEC.decode(node.kind, column) for node, column in zip(code.operands, columns, strict=True)
-    }
-    seeds = values[code.operands[0]]
+    lanes = _Lanes(
+        {node: CODEC.decode(node.kind, column) for node, column in zip(code.operands, columns, strict=True)}
+    )
+    seeds = lanes.values[code.operands[0]]
     context = code.context
     was_evaluating = context is not None and context.evaluating
     token = current.set(context)
@@ -123,7 +122,7 @@ def evaluated(call: Call, columns: Sequence[Column]) -> list[Any]:
             context.evaluating = True
         with preserved():
             for lane in np.flatnonzero(~absent).tolist():
-                sample = Sample(partial(_value, values, lane), code.names)
+                sample = Sample(lanes, lane, code.names)
                 if context is not None:
                     context.sample = sample
                 seed_globals(seeds[lane])
@@ -157,10 +156,18 @@ def _ended(end: SystemExit) -> InvalidScenarioError:
     )
 
 
-def _value(values: Mapping[Node, list[Any]], lane: int, node: Node) -> Any:
-    """The value of a node in one lane."""
-    found = values[node]
-    return found[lane if len(found) > 1 else 0]
+class _Lanes:
+    """The values of the operands, by node."""
+
+    __slots__ = ("values",)
+
+    def __init__(self, values: Mapping[Node, list[Any]]) -> None:
+        self.values = values
+
+    def read(self, lane: int, node: Node) -> Any:
+        """The value of a node in one lane."""
+        found = self.values[node]
+        return found[lane if len(found) > 1 else 0]
 
 
 CALL = Operation(

@@ -7,10 +7,10 @@ methods of the program's classes, plain Python classes of the program and their 
 
 import abc
 import copy as shallow
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from functools import cached_property, lru_cache, partial
 from types import CellType, CodeType, FunctionType, MethodType, ModuleType
-from typing import Any
+from typing import Any, Final, Protocol
 
 from scenic.graph.node import Node
 from scenic.runtime.objects import Object, OrientedPoint, Point
@@ -27,7 +27,12 @@ from scenic.runtime.ownership import (
 )
 from scenic.runtime.values import Random
 
-Lookup = Callable[[Node], Any]
+
+class Lanes(Protocol):
+    """Values of nodes in a number of lanes."""
+
+    def read(self, lane: int, node: Node) -> Any:
+        """The value of a node in one lane; the same object whenever it is asked for."""
 
 
 class Globals:
@@ -211,21 +216,30 @@ def _contents(module: ModuleType) -> dict[str, Any]:
     return {name: item for name, item in vars(module).items() if not name.startswith("__")}
 
 
+_MISSING: Final = object()
+
+
 class Sample:
     """Values of the program in one sample.
 
+    Made for every scene, so of few objects: Python's search for garbage takes longer than making a scene.
+
     Args:
-        lookup: the value of a node in this sample.
+        lanes: the values of nodes.
+        lane: which of the lanes this sample is.
         names: the global names that functions of the program read; by default as they are now.
 
     """
 
-    __slots__ = ("_lookup", "_memo", "_names", "_scopes")
+    __slots__ = ("_alive", "_lane", "_lanes", "_memo", "_names", "_scopes")
 
-    def __init__(self, lookup: Lookup, names: Globals | None = None) -> None:
-        self._lookup = lookup
+    def __init__(self, lanes: Lanes, lane: int, names: Globals | None = None) -> None:
+        self._lanes = lanes
+        self._lane = lane
         self._names = Globals() if names is None else names
-        self._memo: dict[int, tuple[Any, Any]] = {}
+        self._memo: dict[int, Any] = {}
+        """The sampled values by the identities of what they stand for, which is kept alive."""
+        self._alive: list[Any] = []
         self._scopes: dict[int, dict[str, Any]] = {}
 
     def value(self, value: Any) -> Any:
@@ -234,20 +248,24 @@ class Sample:
         One value gives one object, however often it is asked for, so that identity survives sampling.
         """
         if isinstance(value, Random):
-            drawn = self._lookup(value.node)  # one object, too
+            drawn = self._lanes.read(self._lane, value.node)  # one object, too
             return self.value(drawn) if value.node.kind.is_boxed else drawn
         if value is None or isinstance(value, _PLAIN):
             return value
-        known = self._memo.get(id(value))
-        if known is None:
+        known = self._memo.get(id(value), _MISSING)
+        if known is _MISSING:
             sampled = self._sampled(value)
-            # What was kept while it was made leads back to itself.
-            known = self._memo.setdefault(id(value), (value, sampled))
-        return known[1]
+            known = self._memo.get(id(value), _MISSING)
+            if known is not _MISSING:
+                return known  # what was kept while it was made leads back to itself
+            known = self._memo[id(value)] = sampled
+            self._alive.append(value)
+        return known
 
     def remember(self, value: Any, copy: Any) -> None:
         """Say what the copy of a value is while it is being made: parts of it may lead back to it."""
-        self._memo[id(value)] = (value, copy)
+        self._memo[id(value)] = copy
+        self._alive.append(value)
 
     def _sampled(self, value: Any) -> Any:
         cls = type(value)

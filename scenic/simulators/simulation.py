@@ -106,7 +106,7 @@ class Simulation(ABC):
         self._max_steps = maxSteps
         self._keep_course = keep_course
         self._original = scene
-        self._copies = Copies(scene.lookup)
+        self._copies = Copies(scene.accepted.batch, scene.accepted.lane)
         self._properties: dict[type, tuple[str, ...]] = {}
         self._sets: dict[type, frozenset[str]] = {}
         self._finals: dict[type, tuple[Any, ...]] = {}

@@ -12,7 +12,7 @@ import numpy as np
 
 from scenic.runtime.objects import Point
 from scenic.runtime.ownership import PRELUDE, is_own_function, leads_back
-from scenic.runtime.samples import Lookup, Sample
+from scenic.runtime.samples import Lanes, Sample
 
 __all__ = ["Copies"]
 
@@ -21,14 +21,15 @@ class Copies(Sample):
     """Makes the copies, one of each value however often it is asked for.
 
     Args:
-        lookup: the value of a node in the scene.
+        lanes: the values of nodes.
+        lane: which of the lanes the scene is.
 
     """
 
     __slots__ = ("_codes", "_filled", "_own")
 
-    def __init__(self, lookup: Lookup) -> None:
-        super().__init__(lookup)
+    def __init__(self, lanes: Lanes, lane: int) -> None:
+        super().__init__(lanes, lane)
         self._filled: dict[int, set[str]] = {}
         self._own: dict[int, dict[str, Any]] = {}
         self._codes: dict[CodeType, frozenset[str]] = {}
@@ -36,7 +37,7 @@ class Copies(Sample):
     def remember(self, value: Any, copy: Any) -> None:
         """Say what the copy of a value is while it is being made; the copy is its own."""
         super().remember(value, copy)
-        self._memo[id(copy)] = (copy, copy)
+        self._memo[id(copy)] = copy
 
     def _sampled(self, value: Any) -> Any:
         # An array may be changed in place.

@@ -9,7 +9,6 @@ are fixed in advance by their addresses (`scenic.graph.draws`).
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import partial
 from itertools import islice
 
 import numpy as np
@@ -69,13 +68,17 @@ class Task:
 
 @dataclass(frozen=True, slots=True)
 class Accepted:
-    """A scene's values: one lane of a finished batch. ``again`` makes a batch of that lane alone, to look at its draws."""
+    """A scene's values: one lane of a finished batch. ``alone`` makes a batch of one attempt, to look at its draws."""
 
     task: Task
     attempts: int
     batch: Batch
     lane: int
-    again: Callable[[], Batch]
+    alone: Callable[[Task, int], Batch]
+
+    def again(self) -> Batch:
+        """A batch of that lane alone."""
+        return self.alone(self.task, self.attempts - 1)
 
     def is_active(self, place: int, probability: float) -> bool:
         """Whether a soft requirement, number ``place`` among those that are checked, had to hold in the scene."""
@@ -230,11 +233,11 @@ class Engine:
         if len(good):
             batch.keep(good)
             batch.settle(self.plan.outputs)
+            alone = self._alone
             for lane, row in enumerate(rows[good].tolist()):
                 scene = active[int(owner[row])]
                 attempt = int(attempts[row])
-                again = partial(self._alone, scene.task, attempt)
-                done[scene.number] = Accepted(scene.task, attempt + 1, batch, lane, again)
+                done[scene.number] = Accepted(scene.task, attempt + 1, batch, lane, alone)
         for scene in active:
             if scene.number not in done and scene.attempts >= max_attempts:
                 done[scene.number] = self._give_up(scene, "attempts")
@@ -244,8 +247,11 @@ class Engine:
         """The scene of given draws, one lane of points of the cube; no check is made again."""
         batch = Batch(self._single, source, self.plan.codec, rejections=(RejectionException,))
         batch.settle(self.plan.outputs)
-        again = partial(Batch, self._single, source, self.plan.codec, rejections=(RejectionException,))
-        return Accepted(task, attempts, batch, 0, again)
+
+        def alone(_task: Task, _attempt: int) -> Batch:
+            return Batch(self._single, source, self.plan.codec, rejections=(RejectionException,))
+
+        return Accepted(task, attempts, batch, 0, alone)
 
     def _batch(self, source: Source, *, grouped: bool = True) -> Batch:
         return Batch(
