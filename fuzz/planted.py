@@ -426,7 +426,7 @@ FAULTS: Final = (
         (
             Change(
                 "scenic/compiler/scopes.py",
-                "reachable = scope.kind is not ScopeKind.CLASS or transparent",
+                "reachable = transparent or scope.kind is not ScopeKind.CLASS",
                 "reachable = True",
             ),
         ),
