@@ -25,7 +25,7 @@ from scenic.runtime.ownership import (
     own_functions,
     slots,
 )
-from scenic.runtime.values import Random
+from scenic.runtime.values import Random, Vector
 
 
 class Lanes(Protocol):
@@ -33,6 +33,10 @@ class Lanes(Protocol):
 
     def read(self, lane: int, node: Node) -> Any:
         """The value of a node in one lane; the same object whenever it is asked for."""
+
+
+Placement = tuple[dict[str, Any], list[tuple[str, Node]]]
+"""Of the values that are asked of every object: those that are the same in all samples, and the nodes of the others."""
 
 
 class Globals:
@@ -46,7 +50,7 @@ class Globals:
         self._fixed: dict[int, tuple[Any, bool]] = {}
         self._methods: dict[type, tuple[tuple[str, FunctionType], ...]] = {}
         self._owned: dict[type, bool] = {}
-        self._placements: dict[int, tuple[Point, dict[str, float]]] = {}
+        self._placements: dict[int, tuple[Point, Placement]] = {}
 
     def of(self, function: FunctionType) -> list[tuple[str, Any]]:
         """Global names of the program that a function of the program, or code nested in it, may read."""
@@ -105,18 +109,23 @@ class Globals:
             self._methods[cls] = tuple(found.items())
         return self._methods[cls]
 
-    def placement(self, instance: Point) -> dict[str, float]:
-        """What of the numbers that are asked of every object is the same in all samples."""
+    def placement(self, instance: Point) -> "Placement":
+        """What is known of the values that are asked of every object."""
         known = self._placements.get(id(instance))
         if known is None:
-            values = ((name, instance.__dict__.get(name)) for name in _PLACEMENT)
-            fixed = {name: value for name, value in values if isinstance(value, int | float)}
-            known = self._placements[id(instance)] = (instance, fixed)
+            values = [(name, instance.__dict__.get(name)) for name in _PLACEMENT]
+            fixed = {name: value for name, value in values if isinstance(value, int | float | Vector)}
+            drawn = [
+                (name, value.node)
+                for name, value in values
+                if isinstance(value, Random) and not value.node.kind.is_boxed
+            ]
+            known = self._placements[id(instance)] = (instance, (fixed, drawn))
         return known[1]
 
 
 _BUILT_IN = frozenset({object, Point, OrientedPoint, Object})
-_PLACEMENT = ("yaw", "pitch", "roll", "heading", "width", "length", "height")
+_PLACEMENT = ("position", "yaw", "pitch", "roll", "heading", "width", "length", "height")
 
 
 def dependencies(values: Iterable[Any], names: Globals | None = None) -> list[Node]:
@@ -228,12 +237,14 @@ class Sample:
         lanes: the values of nodes.
         lane: which of the lanes this sample is.
         names: the global names that functions of the program read; by default as they are now.
+        whole: whether objects get their place and size at once, as they are sure to be asked for them.
 
     """
 
-    __slots__ = ("_alive", "_lane", "_lanes", "_memo", "_names", "_scopes")
+    __slots__ = ("_alive", "_lane", "_lanes", "_memo", "_names", "_scopes", "_whole")
 
-    def __init__(self, lanes: Lanes, lane: int, names: Globals | None = None) -> None:
+    def __init__(self, lanes: Lanes, lane: int, names: Globals | None = None, *, whole: bool = False) -> None:
+        self._whole = whole
         self._lanes = lanes
         self._lane = lane
         self._names = Globals() if names is None else names
@@ -329,7 +340,12 @@ class Sample:
         stored = copy.__dict__
         stored["_source"] = instance
         stored["_sample"] = self
-        stored.update(self._names.placement(instance))
+        fixed, drawn = self._names.placement(instance)
+        stored.update(fixed)
+        if self._whole:
+            read, lane = self._lanes.read, self._lane
+            for name, node in drawn:
+                stored[name] = read(lane, node)
         # Methods may lead back to the instance, which must find its entry then.
         self.remember(instance, copy)
         for name, method in self._names.methods(type(instance)):

@@ -79,7 +79,7 @@ class Scene:
         self._ego = ego
         self._names = names
         self._regions = regions or {}
-        self._sample: Copier = Sample(accepted.batch, accepted.lane, program.names)
+        self._sample: Copier = Sample(accepted.batch, accepted.lane, program.names, whole=True)
         self._objects: tuple[Any, ...] | None = None
         self._params: dict[str, Any] | None = None
 
@@ -188,7 +188,7 @@ class Scene:
     def __deepcopy__(self, _memo: Any) -> "Scene":
         """The same scene with objects of its own."""
         scene = self.__copy__()
-        scene._sample = Sample(self.accepted.batch, self.accepted.lane, scene._program.names)
+        scene._sample = Sample(self.accepted.batch, self.accepted.lane, scene._program.names, whole=True)
         scene._objects = scene._params = None
         return scene
 
