@@ -27,7 +27,7 @@ HERE = Path(__file__).parent
 PROGRAMS = tuple(sorted(path.stem for path in (HERE / "breadth").glob("*.scenic")))
 BATCH = 1000
 LOOP = 300
-THEIRS = 12
+THEIRS = 200
 CROWD = "".join(
     f"thing{i} = new Object at (Range({4 * (i % 20)}, {4 * (i % 20) + 2}), Range({4 * (i // 20)}, {4 * (i // 20) + 2})),"
     " facing Range(0, 6)\n"
