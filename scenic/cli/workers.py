@@ -62,7 +62,7 @@ def run(
 
     def give(connection: Connection, process: BaseProcess, upcoming: tuple[int, _Argument] | None) -> None:
         """The next argument to a process, or the message that there is none."""
-        with contextlib.suppress(BrokenPipeError):  # if it died, that is noticed when its answer is read
+        with contextlib.suppress(OSError):  # if it died, that is noticed when its answer is read
             if upcoming is None:
                 connection.send(None)
                 return
@@ -85,7 +85,7 @@ def run(
                 process, index, argument = busy.pop(connection)
                 try:
                     result = connection.recv()
-                except (EOFError, ConnectionResetError):
+                except (EOFError, OSError):  # it died, perhaps in the middle of its answer
                     process.join()
                     yield index, lost(argument, process.exitcode or 0)
                     replace()
@@ -109,7 +109,7 @@ def _work(function: Callable[[Any], Any], connection: Connection, inherited: Con
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
     parent = parent_process()
     sentinels = [] if parent is None else [parent.sentinel]
-    with contextlib.suppress(EOFError, BrokenPipeError):  # the parent has gone
+    with contextlib.suppress(EOFError, OSError):  # the parent has gone, perhaps in the middle of a message
         while connection in wait([connection, *sentinels]):
             message = connection.recv()
             if message is None:
