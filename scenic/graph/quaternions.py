@@ -88,11 +88,9 @@ def from_euler(yaw: npt.ArrayLike, pitch: npt.ArrayLike, roll: npt.ArrayLike) ->
 
 def of_euler(yaw: Any, pitch: Any, roll: Any) -> Parts:
     """As `from_euler`, over arrays or plain floats."""
-    half_yaw, half_pitch, half_roll = yaw * 0.5, pitch * 0.5, roll * 0.5
-    # NumPy's functions also for floats: the C library's may differ from them in the last bit.
-    cy, sy = np.cos(half_yaw), np.sin(half_yaw)
-    cp, sp = _cos_and_sin(half_pitch)
-    cr, sr = _cos_and_sin(half_roll)
+    cy, sy = _cos_and_sin(yaw * 0.5)
+    cp, sp = _cos_and_sin(pitch * 0.5)
+    cr, sr = _cos_and_sin(roll * 0.5)
     return (
         cy * sp * cr - sy * cp * sr,
         cy * cp * sr + sy * sp * cr,
@@ -102,9 +100,12 @@ def of_euler(yaw: Any, pitch: Any, roll: Any) -> Parts:
 
 
 def _cos_and_sin(angle: Any) -> tuple[Any, Any]:
-    if type(angle) is float and angle == 0:  # the most frequent single angle
+    if type(angle) is not float:
+        return np.cos(angle), np.sin(angle)
+    if angle == 0:  # the most frequent single angle
         return 1.0, angle
-    return np.cos(angle), np.sin(angle)
+    # NumPy's functions: the C library's may differ from them in the last bit. Its scalars would slow down what follows.
+    return float(np.cos(angle)), float(np.sin(angle))
 
 
 def from_yaw(yaw: npt.ArrayLike) -> Array:
@@ -129,8 +130,8 @@ def to_euler(q: npt.ArrayLike) -> tuple[Array, Array, Array]:
     x, y, z, w = a[..., 0], a[..., 1], a[..., 2], a[..., 3]
     sum_sine, sum_cosine = z + y, w + x
     difference_sine, difference_cosine = z - y, w - x
-    plus = np.hypot(sum_sine, sum_cosine)
-    minus = np.hypot(difference_sine, difference_cosine)
+    plus = np.sqrt(sum_sine * sum_sine + sum_cosine * sum_cosine)
+    minus = np.sqrt(difference_sine * difference_sine + difference_cosine * difference_cosine)
     pitch = 2 * np.arctan2(plus, minus) - np.pi / 2
     half_sum = np.arctan2(sum_sine, sum_cosine)
     half_difference = np.arctan2(difference_sine, difference_cosine)
@@ -141,27 +142,41 @@ def to_euler(q: npt.ArrayLike) -> tuple[Array, Array, Array]:
     return normalize_angle(half_sum + half_difference), pitch, normalize_angle(half_sum - half_difference)
 
 
-def euler_angle(q: tuple[float, float, float, float], index: int) -> float:
+def euler_angle(q: Parts, index: int) -> float:
     """One of the angles of `to_euler` of a quaternion of plain floats; equal to it in every bit."""
+    x, y, z, w = q
+    if (
+        index == 0 and x == 0 == y and z != 0
+    ):  # upright, as most things are: the half sum is the half difference
+        return normal_angle(2 * _angle(z, w))
+    return euler_angles(q)[index]
+
+
+def euler_angles(q: Parts) -> tuple[float, float, float]:
+    """All three angles of `to_euler` of a quaternion of plain floats; equal to it in every bit."""
     x, y, z, w = q
     sum_sine, sum_cosine = z + y, w + x
     difference_sine, difference_cosine = z - y, w - x
-    plus = float(np.hypot(sum_sine, sum_cosine))
-    minus = float(np.hypot(difference_sine, difference_cosine))
-    if index == 1:
-        return 2 * float(np.arctan2(plus, minus)) - np.pi / 2
-    half_sum = float(np.arctan2(sum_sine, sum_cosine))
-    half_difference = float(np.arctan2(difference_sine, difference_cosine))
-    if minus <= _GIMBAL * plus:
+    plus = math.sqrt(sum_sine * sum_sine + sum_cosine * sum_cosine)
+    minus = math.sqrt(difference_sine * difference_sine + difference_cosine * difference_cosine)
+    pitch = 2 * float(np.arctan2(plus, minus)) - math.pi / 2
+    half_sum = _angle(sum_sine, sum_cosine)
+    if minus <= _GIMBAL * plus or (difference_sine == sum_sine != 0 and difference_cosine == sum_cosine):
         half_difference = half_sum
+    else:
+        half_difference = _angle(difference_sine, difference_cosine)
     if plus <= _GIMBAL * minus:
         half_sum = half_difference
-    return normal_angle(half_sum + half_difference if index == 0 else half_sum - half_difference)
+    return normal_angle(half_sum + half_difference), pitch, normal_angle(half_sum - half_difference)
+
+
+def _angle(sine: float, cosine: float) -> float:
+    return sine if sine == 0 and cosine > 0 else float(np.arctan2(sine, cosine))
 
 
 def normal_angle(angle: float) -> float:
     """As `normalize_angle`, of a plain float."""
-    if abs(angle) <= np.pi:
+    if abs(angle) <= math.pi:
         return angle
     if not math.isfinite(angle):
         return math.nan

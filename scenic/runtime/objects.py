@@ -420,7 +420,6 @@ def oriented_point(position: Any, orientation: Any) -> OrientedPoint:
     for name in ("yaw", "pitch", "roll"):
         instance.__dict__[name] = 0.0
     instance.__dict__["orientation"] = instance.parentOrientation
-    instance.__dict__["heading"] = instance.orientation.yaw
     instance.__dict__["_implied"] = True
     return instance
 

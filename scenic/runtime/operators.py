@@ -23,6 +23,7 @@ from scenic.runtime.specifiers import Ego, is_kind, region_of
 from scenic.runtime.values import (
     Random,
     Vector,
+    binary,
     describe,
     is_number,
     is_orientation,
@@ -33,11 +34,17 @@ from scenic.runtime.values import (
     to_orientation,
     to_scalar,
     to_vector,
+    unary,
     vector,
     wrong_type,
 )
 from scenic.runtime.visibility import sees_in_plane
 
+_add, _rotate, _compose, _distance_between = map(binary, ("add", "rotate", "compose", "distance"))
+_minus, _azimuth, _slope, _normal = (
+    binary("subtract"),
+    *map(unary, ("azimuth", "altitude", "normalize angle")),
+)
 _PLACES = (Vector, Point)
 """What has a place and is no region."""
 
@@ -75,14 +82,14 @@ def _relative_to(_ego: Ego, value: Any, frame: Any) -> Any:
     if any(oriented):
         point, other = (value, frame) if oriented[0] else (frame, value)
         if is_number(other) or (isinstance(other, Random) and other.node.kind.is_number):
-            return operate("add", point.heading, to_scalar(other))
+            return _add(point.heading, to_scalar(other))
         if is_orientation(other):
-            return operate("compose", to_orientation(frame), to_orientation(value))
+            return _compose(to_orientation(frame), to_orientation(value))
         return point.relativize(to_vector(other, "`relative to`"))
     if _is_frame(value) and _is_frame(frame):
-        return operate("compose", to_orientation(frame), to_orientation(value))
+        return _compose(to_orientation(frame), to_orientation(value))
     if _is_place(value) and _is_place(frame):
-        return operate("add", to_vector(value), to_vector(frame))
+        return _add(to_vector(value), to_vector(frame))
     raise ScenicTypeError(
         f"`relative to` cannot combine {describe(value)} with {describe(frame)}",
         span=here(),
@@ -97,7 +104,7 @@ def _is_place(value: Any) -> bool:
 def _offset_along(_ego: Ego, base: Any, direction: Any, offset: Any) -> Any:
     start = to_vector(base, "`offset along`")
     frame = frame_at(direction, start, "`offset along`")
-    return operate("add", start, operate("rotate", frame, to_vector(offset, "`offset along`")))
+    return _add(start, _rotate(frame, to_vector(offset, "`offset along`")))
 
 
 def _field_at(_ego: Ego, field: Any, position: Any) -> Any:
@@ -114,32 +121,32 @@ def _follow(ego: Ego, field: Any, origin: Any, distance: Any) -> Any:
 
 def _relative_position(ego: Ego, target: Any, origin: Any) -> Any:
     start = to_vector(ego() if origin is None else origin, "`relative position`")
-    return operate("subtract", to_vector(target, "`relative position`"), start)
+    return _minus(to_vector(target, "`relative position`"), start)
 
 
 def _relative_heading(ego: Ego, target: Any, origin: Any) -> Any:
     start = to_heading(ego() if origin is None else origin, "`relative heading`")
-    return operate("normalize angle", operate("subtract", to_heading(target, "`relative heading`"), start))
+    return _normal(_minus(to_heading(target, "`relative heading`"), start))
 
 
 def _apparent_heading(ego: Ego, target: Any, origin: Any) -> Any:
     if not is_kind(target, OrientedPoint):
         raise wrong_type("an oriented point", target, "`apparent heading of`")
     start = to_vector(ego() if origin is None else origin, "`apparent heading`")
-    line = operate("azimuth", operate("subtract", target.position, start))
-    return operate("normalize angle", operate("subtract", target.heading, line))
+    line = _azimuth(_minus(target.position, start))
+    return _normal(_minus(target.heading, line))
 
 
 def _distance(ego: Ego, origin: Any, target: Any) -> Any:
     start = ego() if origin is None else origin
     end = ego() if target is None else target
     if isinstance(start, _PLACES) and isinstance(end, _PLACES):
-        return operate("distance", to_vector(start), to_vector(end))
+        return _distance_between(to_vector(start), to_vector(end))
     for near, far in ((start, end), (end, start)):
         region = as_region(near)
         if region is not None:
             return region.distance_from(to_vector(far, "`distance`"))
-    return operate("distance", to_vector(start, "`distance`"), to_vector(end, "`distance`"))
+    return _distance_between(to_vector(start, "`distance`"), to_vector(end, "`distance`"))
 
 
 def _minimum_distance(ego: Ego, origin: Any, target: Any) -> Any:
@@ -159,15 +166,15 @@ def _distance_past(ego: Ego, target: Any, reference: Any) -> Any:
 
 def _direction(ego: Ego, origin: Any, target: Any, what: str) -> Any:
     start = to_vector(ego() if origin is None else origin, what)
-    return operate("subtract", to_vector(ego() if target is None else target, what), start)
+    return _minus(to_vector(ego() if target is None else target, what), start)
 
 
 def _angle(ego: Ego, origin: Any, target: Any) -> Any:
-    return operate("azimuth", _direction(ego, origin, target, "`angle`"))
+    return _azimuth(_direction(ego, origin, target, "`angle`"))
 
 
 def _altitude(ego: Ego, origin: Any, target: Any) -> Any:
-    return operate("altitude", _direction(ego, origin, target, "`altitude`"))
+    return _slope(_direction(ego, origin, target, "`altitude`"))
 
 
 def _intersects(_ego: Ego, left: Any, right: Any) -> Any:
@@ -242,9 +249,14 @@ OPERATORS: Mapping[str, Callable[..., Any]] = MappingProxyType(
 """Each operator as a function ``(ego, *operands)``; an operand that the text leaves out is ``None``."""
 
 
+_NEVER_LAZY = frozenset({float, int, Vector, type(None)})
+"""Types that most operands have; looked at first."""
+
+
 def operation(name: str, ego: Ego, *operands: Any) -> Any:
     """The result of an operator; a lazy value where an operand is one."""
+    function = OPERATORS[name]
     for operand in operands:
-        if is_lazy(operand):
-            return defer(OPERATORS[name], ego, *operands)
-    return OPERATORS[name](ego, *operands)
+        if type(operand) not in _NEVER_LAZY and is_lazy(operand):
+            return defer(function, ego, *operands)
+    return function(ego, *operands)

@@ -259,11 +259,11 @@ class Prelude(Dynamics):
 
     def operation(self, name: str, *operands: Any) -> Any:
         """One of the language's own operators."""
+        if name in OPERATORS:
+            return operation(name, self._ego, *operands)
         if name == "initial scenario":
             return self._context.is_symbolic
-        if name not in OPERATORS:
-            raise UnsupportedError(f"the operator `{name}` is not supported yet", span=here())
-        return operation(name, self._ego, *operands)
+        raise UnsupportedError(f"the operator `{name}` is not supported yet", span=here())
 
     def convert(self, name: str, *args: Any) -> Any:
         """``int(x)``, ``float(x)``, ``str(x)``."""

@@ -166,6 +166,8 @@ def _scalar(name: str, value: Any) -> Any:
 
 def _angle(name: str, value: Any) -> Any:
     angle = _scalar(name, value)
+    if type(angle) is float and abs(angle) <= math.pi:
+        return angle
     if is_number(angle) and not math.isfinite(angle):
         raise ScenicValueError(
             f"property {name!r} must be finite, not {angle:g}", span=here(), help="angles are in radians"

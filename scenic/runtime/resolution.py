@@ -2,9 +2,9 @@
 
 import math
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Any
 
 from scenic.language.errors import InvalidScenarioError, Located, ScenicValueError, SpecifierError
 from scenic.language.spans import Span
@@ -34,6 +34,8 @@ class Step:
     names: tuple[str, ...]
     modifies: frozenset[str]
     """Those of ``names`` whose value another specifier has given before."""
+    builtin: Callable[[Any], Any] | None = None
+    """The default, where it is the language's own: it is never lazy, and always fits its property."""
 
     def specifier(self, given: Sequence[Specifier]) -> Specifier:
         """The specifier, ``given`` those of the statement."""
@@ -76,7 +78,6 @@ class Resolution:
 
 
 _CHECKED = frozenset({"width", "length", "height", "shape"})
-_VARIES: Final = object()
 
 _PLAIN = frozenset({bool, int, float, str, type(None), Vector, Orientation})
 """Types of values that are never lazy and hold nothing that is."""
@@ -99,6 +100,10 @@ def build(cls: type[Point], specifiers: Sequence[Specifier], *, mode_2d: bool = 
         if step in done:
             return
         done.add(step)
+        if step.builtin is not None:
+            (name,) = step.names
+            values[name] = normalised(name, step.builtin(instance))
+            return
         specifier = step.specifier(specifiers)
         function = specifier.modify if step.modifies and specifier.modify else specifier.evaluate
         try:
@@ -202,14 +207,11 @@ def resolve(
             None if specifier in numbers else specifier,
             tuple(sorted(owns.get(specifier, frozenset()) | modifies.get(specifier, frozenset()))),
             modifies.get(specifier, frozenset()),
+            None if specifier in numbers else _builtin_default(properties, next(iter(specifier.priorities))),
         )
         for specifier in _topological(owns, modifies, claims, modifiers)
     }
-    constants = {
-        step.names[0]: value
-        for step in steps.values()
-        if step.default is not None and (value := _constant(properties[step.names[0]])) is not _VARIES
-    }
+    constants = _constants(cls, steps.values(), properties)
     return Resolution(
         tuple(step for step in steps.values() if step.default is None or step.names[0] not in constants),
         constants,
@@ -307,14 +309,33 @@ def _default_specifier(name: str, entry: Property) -> Specifier:
     )
 
 
-def _constant(entry: Property) -> Any:
-    """The default of a property as every instance has it, or `_VARIES`."""
-    definition = entry.definitions[0]
-    if entry.additive or definition.dependencies or not definition.is_builtin:
-        return _VARIES
-    value = definition.compute(None)
-    # Other values may be changed in place, and must not be shared.
-    return normalised(entry.name, value) if type(value) in _PLAIN or type(value) is tuple else _VARIES
+def _builtin_default(properties: Mapping[str, Property], name: str) -> Callable[[Any], Any] | None:
+    """What computes the default of a property, where only the language itself defines it."""
+    entry = properties[name]
+    if not all(definition.is_builtin for definition in entry.definitions):
+        return None
+    return entry.default if entry.additive else entry.definitions[0].value
+
+
+def _constants(cls: type[Point], steps: Iterable[Step], properties: Mapping[str, Property]) -> dict[str, Any]:
+    """The built-in defaults that are the same for every instance: those that read nothing but one another.
+
+    ``steps`` are in the order in which they are evaluated.
+    """
+    constants: dict[str, Any] = {}
+    for step in steps:
+        if step.default is None:
+            continue
+        (name,) = step.names
+        entry = properties[name]
+        definition = entry.definitions[0]
+        if entry.additive or not definition.is_builtin or not constants.keys() >= entry.dependencies:
+            continue
+        value = definition.compute(cls._make(constants))
+        # Other values may be changed in place, and must not be shared.
+        if type(value) in _PLAIN or type(value) is tuple or type(value) is BoxShape:
+            constants[name] = normalised(name, value)
+    return constants
 
 
 def _by_specifier(owners: Mapping[str, Specifier]) -> dict[Specifier, frozenset[str]]:

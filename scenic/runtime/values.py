@@ -16,7 +16,7 @@ from typing import Any, ClassVar, Self, TypeGuard
 
 import numpy as np
 
-from scenic.graph import construction
+from scenic.graph import construction, quaternions
 from scenic.graph.batch import Batch
 from scenic.graph.draws import Counter
 from scenic.graph.kinds import Column, Kind
@@ -230,7 +230,7 @@ class Vector(VectorMethods, Hooks):
     def of(cls, row: Iterable[float]) -> Self:
         """The vector of three floats."""
         self = object.__new__(cls)
-        self._row = tuple(row)  # type: ignore[assignment]
+        self._row = tuple(row)  # type: ignore[assignment] # of three
         return self
 
     @property
@@ -266,6 +266,10 @@ class Vector(VectorMethods, Hooks):
         return super().__mul__(other)
 
     __rmul__ = __mul__
+
+    def rotatedBy(self, rotation: Any) -> Any:
+        """As of `VectorMethods`, without a detour."""
+        return _ROTATE(to_orientation(rotation), self)
 
     def __eq__(self, other: object) -> bool:
         if isinstance(other, Vector):
@@ -318,6 +322,13 @@ class Orientation(OrientationMethods, Hooks):
     @staticmethod
     def fromEuler(yaw: Any, pitch: Any, roll: Any) -> Any:
         """Intrinsic rotations about Z, the new X and the new Y (radians)."""
+        if (
+            type(yaw) is float
+            and type(pitch) is float
+            and type(roll) is float
+            and math.isfinite(yaw + pitch + roll)
+        ):
+            return Orientation.of(quaternions.of_euler(yaw, pitch, roll))
         return operate("from euler", to_scalar(yaw), to_scalar(pitch), to_scalar(roll))
 
     @classmethod
@@ -378,6 +389,16 @@ class Orientation(OrientationMethods, Hooks):
     def __hash__(self) -> int:
         sign = next((part for part in reversed(self._row) if part != 0), 1.0)
         return hash(tuple(part if sign > 0 else -part for part in self._row))
+
+    @property
+    def yaw(self) -> float:
+        """Rotation about Z, the first of the intrinsic Euler angles (radians)."""
+        return quaternions.euler_angle(self._row, 0)
+
+    @property
+    def eulerAngles(self) -> tuple[float, float, float]:
+        """Yaw, pitch and roll."""
+        return quaternions.euler_angles(self._row)
 
     def __repr__(self) -> str:
         return "Orientation.fromEuler({:g}, {:g}, {:g})".format(*self.eulerAngles)
@@ -550,12 +571,7 @@ def as_value(node: Node, again: Callable[[], Any] | None = None) -> Any:
 
 def operate(name: str, *operands: Any, payload: Any = None) -> Any:
     """Apply an operation of the table to values."""
-    operation = TABLE[name]
-    if operation.scalar is not None:
-        result = _at_once(operation.scalar, payload, operands)
-        if result is not NotImplemented:
-            return result
-    return apply(operation, *operands, payload=payload)
+    return apply(TABLE[name], *operands, payload=payload)
 
 
 def apply(operation: Operation, *operands: Any, payload: Any = None) -> Any:
@@ -583,10 +599,51 @@ def _at_once(scalar: Callable[..., Any], payload: Any, operands: Sequence[Any]) 
             rows.append(operand)
         else:
             return NotImplemented
-    result = scalar(payload, *rows)
-    if type(result) is tuple:
-        return Vector.of(result) if len(result) == 3 else Orientation.of(result)
-    return result
+    return _of_row(scalar(payload, *rows))
+
+
+def _of_row(result: Any) -> Any:
+    if type(result) is not tuple:
+        return result
+    value: Any = object.__new__(Vector if len(result) == 3 else Orientation)
+    value._row = result
+    return value
+
+
+def unary(name: str) -> Callable[[Any], Any]:
+    """`operate` for one operation of one operand without data, for what simulations do all the time."""
+    operation, scalar = TABLE[name], _scalar(name)
+
+    def applied(operand: Any) -> Any:
+        cls = type(operand)
+        if cls is float:
+            result = scalar(None, operand)
+        elif cls is Vector or cls is Orientation:
+            result = scalar(None, operand._row)
+        else:
+            return apply(operation, operand)
+        return apply(operation, operand) if result is NotImplemented else _of_row(result)
+
+    return applied
+
+
+def binary(name: str) -> Callable[[Any, Any], Any]:
+    """`operate` for one operation of two operands without data, for what simulations do all the time."""
+    operation, scalar = TABLE[name], _scalar(name)
+
+    def applied(left: Any, right: Any) -> Any:
+        first, second = type(left), type(right)
+        if second is Vector and (first is Vector or first is Orientation):
+            return _of_row(scalar(None, left._row, right._row))
+        if first is float and second is float:
+            result = scalar(None, left, right)
+            return apply(operation, left, right) if result is NotImplemented else result
+        return apply(operation, left, right)
+
+    return applied
+
+
+_ROTATE = binary("rotate")
 
 
 def folded(operation: Operation, nodes: Sequence[Node], payload: Any) -> Any:
@@ -866,10 +923,12 @@ def to_heading(value: Any, what: str = "") -> Any:
 
 def to_orientation(value: Any, what: str = "") -> Any:
     """An orientation: also a heading, a triple of Euler angles, and anything that has an orientation."""
-    if isinstance(value, Lazy):
-        return defer(to_orientation, value, what)
     if isinstance(value, Orientation):
         return value
+    if type(value) is float:
+        return Orientation.fromEuler(value, 0.0, 0.0)
+    if isinstance(value, Lazy):
+        return defer(to_orientation, value, what)
     if isinstance(value, Random):
         if value.node.kind is Kind.ORIENTATION:
             return value

@@ -1,5 +1,6 @@
 """Quaternions against SciPy's rotations, which know nothing of this implementation."""
 
+import itertools
 import math
 
 import numpy as np
@@ -142,3 +143,16 @@ def test_batches_and_strides_do_not_matter(batch):
         parts = np.concatenate([function(slice(i, i + batch)) for i in range(0, 512, batch)])
         np.testing.assert_array_equal(parts, whole)
         np.testing.assert_array_equal(function(slice(0, None, 3)), whole[::3])
+
+
+def test_euler_angles_of_floats_equal_those_of_arrays_in_every_bit() -> None:
+    parts = (0.0, -0.0, 1.0, -1.0, 0.6, 1e-12, -1e-12, 5e-324, 1e-160)
+    rows = list(itertools.product(parts, repeat=4))
+    turns = np.random.default_rng(0).normal(size=(2000, 4))
+    rows += map(tuple, (turns / np.linalg.norm(turns, axis=1)[:, None]).tolist())
+    rows += [(0.0, 0.0, math.sin(angle), math.cos(angle)) for angle in np.linspace(-4, 4, 501).tolist()]
+    expected = np.stack(quaternions.to_euler(np.array(rows)), axis=1)
+    found = np.array([quaternions.euler_angles(row) for row in rows])
+    alone = np.array([[quaternions.euler_angle(row, index) for index in range(3)] for row in rows])
+    for angles in (found, alone):
+        np.testing.assert_array_equal(angles.view(np.int64), expected.view(np.int64))

@@ -9,7 +9,8 @@ from scenic.language.errors import InvalidScenarioError, ScenicValueError, Speci
 from scenic.runtime.objects import Object, OrientedPoint
 from scenic.runtime.resolution import class_defaults, resolve
 from scenic.runtime.specifiers import Specifier
-from tests.runtime.programs import failure, params, place, thing
+from scenic.runtime.values import Vector
+from tests.runtime.programs import failure, params, place, scene, thing
 
 
 def specifier(
@@ -214,3 +215,23 @@ def test_the_usual_mode_is_not_changed_by_a_2d_program() -> None:
     thing("ego = new Object at (0, 0, 5)", mode2D=True)
     found = thing("ego = new Object at (0, 0, 5), with width 3")
     assert (found.z, found.height, found.contactTolerance) == (5, 1, 1e-4)
+
+
+def test_defaults_that_are_shared_follow_what_is_given() -> None:
+    """Constant defaults are computed once for a class and a set of specifiers, never across them."""
+    plain, long, turned, shaped = scene(
+        "class Long(Object):\n    length: 4\n"
+        "a = new Object\n"
+        "b = new Long at (9, 0)\n"
+        "c = new Object at (20, 0), facing 90 deg, with speed 2\n"
+        "d = new Object at (40, 0), with shape BoxShape(dimensions=(1, 1, 6))\n"
+        "a.sensors['eye'] = 1\n"
+    ).objects
+    assert plain.visionSensorOffset == Vector(0, 0.5, 0)
+    assert long.visionSensorOffset == Vector(0, 2, 0)
+    assert (shaped.height, shaped.baseOffset) == (6, Vector(0, 0, -3))
+    assert turned.velocity.x == pytest.approx(-2)
+    assert (plain.velocity, plain.heading) == (Vector(0, 0, 0), 0)
+    assert plain.sensors == {"eye": 1}
+    assert long.sensors == turned.sensors == {}
+    assert plain.sensors is not turned.sensors is not shaped.sensors

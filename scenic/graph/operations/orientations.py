@@ -29,8 +29,7 @@ def _from_euler(_call: Call, yaw: Column, pitch: Column, roll: Column) -> Column
 def _from_euler_scalar(_payload: Any, yaw: float, pitch: float, roll: float) -> Any:
     if not math.isfinite(yaw + pitch + roll):
         return NotImplemented
-    x, y, z, w = quaternions.of_euler(float(yaw), float(pitch), float(roll))
-    return float(x), float(y), float(z), float(w)
+    return quaternions.of_euler(float(yaw), float(pitch), float(roll))
 
 
 def _from_yaw_scalar(_payload: Any, yaw: float) -> Any:

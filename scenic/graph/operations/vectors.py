@@ -85,7 +85,7 @@ def _azimuth(_call: Call, vector: Column) -> Column:
 
 def _altitude(_call: Call, vector: Column) -> Column:
     x, y, z = _parts(vector)
-    return np.asarray(np.arctan2(z, np.hypot(x, y)))
+    return np.asarray(np.arctan2(z, _length(x, y, np.zeros_like(x))))
 
 
 def _normalized(_call: Call, vector: Column) -> Column:
@@ -123,7 +123,7 @@ def _azimuth_scalar(_payload: Any, vector: Any) -> float:
 
 
 def _altitude_scalar(_payload: Any, vector: Any) -> float:
-    return float(np.arctan2(vector[2], np.hypot(vector[0], vector[1])))
+    return float(np.arctan2(vector[2], _norm_scalar(None, (vector[0], vector[1], 0.0))))
 
 
 def _normalized_scalar(_payload: Any, vector: Any) -> Any:
