@@ -41,9 +41,13 @@ class AffineMaps:
 
     def take(self, entries: Indices) -> "AffineMaps":
         """The maps of these entries."""
-        rows: list[Columns] = [(a[entries], b[entries], c[entries]) for a, b, c in self.matrix]
-        x, y, z = self.offset
-        return AffineMaps((rows[0], rows[1], rows[2]), (x[entries], y[entries], z[entries]))
+        rows = [taken(row, entries) for row in self.matrix]
+        return AffineMaps((rows[0], rows[1], rows[2]), taken(self.offset, entries))
+
+    def followed_by(self, others: "AffineMaps") -> "AffineMaps":
+        """These maps, then the others."""
+        rows = [_joined(mine, theirs) for mine, theirs in zip(self.matrix, others.matrix, strict=True)]
+        return AffineMaps((rows[0], rows[1], rows[2]), _joined(self.offset, others.offset))
 
     def of_entry(self, entry: int, points: Floats) -> Floats:
         """Points ``(k, 3)`` under the map of one entry."""
@@ -52,6 +56,17 @@ class AffineMaps:
         for i, row in enumerate(self.matrix):
             result[:, i] = row[0][entry] * x + row[1][entry] * y + row[2][entry] * z + self.offset[i][entry]
         return result
+
+
+def taken(columns: Columns, chosen: Indices) -> Columns:
+    """These elements of each column."""
+    x, y, z = columns
+    return x[chosen], y[chosen], z[chosen]
+
+
+def _joined(first: Columns, second: Columns) -> Columns:
+    x, y, z = (np.concatenate(parts) for parts in zip(first, second, strict=True))
+    return x, y, z
 
 
 def relative_map(moving: Poses, still: Poses) -> AffineMaps:

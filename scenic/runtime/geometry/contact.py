@@ -4,16 +4,16 @@ Exact up to rounding: trees of boxes name the pairs of faces that may meet, and 
 axes. Each mesh stays in its unit frame; what is known of it there serves all sizes and poses.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import Final
 
 import numpy as np
 
-from scenic.runtime.geometry.affine import AffineMaps, Columns
-from scenic.runtime.geometry.facetree import Forest
-from scenic.runtime.geometry.mesh import Mesh
+from scenic.runtime.geometry.affine import AffineMaps
+from scenic.runtime.geometry.facetree import Forest, Meeting
 from scenic.runtime.geometry.poses import Booleans, Indices
-from scenic.runtime.geometry.triangles import Corners, separated_by_edges
+from scenic.runtime.geometry.ragged import Groups, expand, pieces
+from scenic.runtime.geometry.triangles import Corners, separated_by_edges, taken_corners
 
 _FIRST: Final = 4
 """Pairs of faces of an entry compared first; each further turn takes four times as many, until one pair touches."""
@@ -21,15 +21,18 @@ _FIRST: Final = 4
 _CHUNK: Final = 1 << 12
 """Pairs of faces compared together, so that the temporary columns stay in the processor's cache."""
 
+_PAIRS: Final = 1 << 15
+"""Pairs of leaves compared together."""
+
 _SLACK: Final = 1e-14
 """Gap, in parts of the faces' size and distance from the origin, up to which they touch: rounding."""
 
 
 class Surfaces:
-    """The surfaces of several unit meshes; entries name meshes by their numbers."""
+    """The surfaces of several unit meshes, given by the trees of their faces; entries name meshes by their numbers."""
 
-    def __init__(self, meshes: Sequence[Mesh]) -> None:
-        self._forest = Forest(meshes)
+    def __init__(self, forest: Forest) -> None:
+        self._forest = forest
 
     def touch(self, first: Indices, second: Indices, forth: AffineMaps, back: AffineMaps) -> Booleans:
         """Which surfaces share a point, ``(n,)``.
@@ -42,22 +45,64 @@ class Surfaces:
 
         """
         result = np.zeros(len(first), dtype=np.bool_)
-        for entry, one, two in self._forest.near_faces(first, second, forth, back, result):
-            for part in _turns(entry):
-                some = part[~result[entry[part]]]
-                touching = self._touching(entry[some], one[some], two[some], forth, back)
-                result[entry[some[touching]]] = True
+        for faces in self._forest.near_faces(first, second, forth, back, result):
+            self._settle(result, *faces, forth, back)
         return result
+
+    def touch_among(
+        self, leaves: Indices, first: Groups, second: Groups, forth: AffineMaps, back: AffineMaps
+    ) -> Booleans:
+        """Which surfaces share a point, ``(n,)``, where it is known which of their leaves may.
+
+        Args:
+            leaves: nodes of the forest.
+            first: where those of the first surface begin in ``leaves``, and how many there are, ``(n,)`` each.
+            second: those of the second surface, likewise.
+            forth: as in `touch`.
+            back: the maps the other way.
+
+        """
+        result = np.zeros(len(first.counts), dtype=np.bool_)
+        meet = Meeting(self._forest, forth, back)
+        pairs = first.counts * second.counts
+        for part in pieces(pairs, _PAIRS):
+            owner, offset = expand(pairs[part])
+            entry = owner + part.start
+            width = second.counts[entry]
+            one = leaves[first.starts[entry] + offset // width]
+            two = leaves[second.starts[entry] + offset % width]
+            self._settle(result, *self._forest.faces_of(*meet(entry, one, two)), forth, back)
+        return result
+
+    def _settle(
+        self,
+        result: Booleans,
+        entry: Indices,
+        one: Indices,
+        two: Indices,
+        forth: AffineMaps,
+        back: AffineMaps,
+    ) -> None:
+        """Mark the entries of which a pair of faces touches."""
+        for part in _turns(entry):
+            some = part[~result[entry[part]]]
+            touching = self._touching(entry[some], one[some], two[some], forth, back)
+            result[entry[some[touching]]] = True
 
     def _touching(
         self, entry: Indices, one: Indices, two: Indices, forth: AffineMaps, back: AffineMaps
     ) -> Indices:
         """Which of the pairs of faces share a point."""
-        first, second = _corners(self._forest.corners, one), _corners(self._forest.corners, two)
+        first, second = taken_corners(self._forest.corners, one), taken_corners(self._forest.corners, two)
         left = self._cut_plane(first, two, second, forth, entry)
-        entry, first, second = entry[left], _taken(first, left), _taken(second, left)
+        entry, first, second = entry[left], taken_corners(first, left), taken_corners(second, left)
         more = self._cut_plane(second, one[left], first, back, entry)
-        left, entry, first, second = left[more], entry[more], _taken(first, more), _taken(second, more)
+        left, entry, first, second = (
+            left[more],
+            entry[more],
+            taken_corners(first, more),
+            taken_corners(second, more),
+        )
         images = [forth.take(entry).columns(corner) for corner in first]
         return left[~separated_by_edges(images, second)]
 
@@ -66,11 +111,11 @@ class Surfaces:
     ) -> Indices:
         """The pairs in which the corners, taken through the maps, are not all on one side of the other face's plane."""
         x, y, z = (column[other] for column in self._forest.normals)
-        taken = maps.take(entry)
+        map_ = maps.take(entry)
         # The plane is taken back through the map: n (M p + o - q) = (M^T n) p + n (o - q).
-        normal = [x * taken.matrix[0][i] + y * taken.matrix[1][i] + z * taken.matrix[2][i] for i in range(3)]
+        normal = [x * map_.matrix[0][i] + y * map_.matrix[1][i] + z * map_.matrix[2][i] for i in range(3)]
         origin = on_plane[0]
-        offset = [taken.offset[i] - origin[i] for i in range(3)]
+        offset = [map_.offset[i] - origin[i] for i in range(3)]
         height = x * offset[0] + y * offset[1] + z * offset[2]
         sizes = [np.abs(column) for column in (x, y, z)]
         slack = sizes[0] * np.abs(offset[0]) + sizes[1] * np.abs(offset[1]) + sizes[2] * np.abs(offset[2])
@@ -100,11 +145,3 @@ def _turns(entry: Indices) -> Iterator[Indices]:
             yield chosen[start : start + _CHUNK]
         done += most
         most *= 4
-
-
-def _corners(columns: Sequence[Columns], faces: Indices) -> Corners:
-    return [(x[faces], y[faces], z[faces]) for x, y, z in columns]
-
-
-def _taken(corners: Corners, chosen: Indices) -> Corners:
-    return [(x[chosen], y[chosen], z[chosen]) for x, y, z in corners]

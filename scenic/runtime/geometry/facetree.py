@@ -11,7 +11,7 @@ from typing import Final
 
 import numpy as np
 
-from scenic.runtime.geometry.affine import AffineMaps, Columns
+from scenic.runtime.geometry.affine import AffineMaps, Columns, taken
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.poses import Booleans, Floats, Indices
 from scenic.runtime.geometry.ragged import expand
@@ -83,6 +83,14 @@ def _starts(count: int, level: int) -> Indices:
     return (np.arange((1 << level) + 1) * count) >> level
 
 
+def _first_faces(tree: FaceTree) -> Indices:
+    """The place of the first face below each node."""
+    levels = [tree.starts[:-1]]
+    while len(levels[-1]) > 1:
+        levels.append(levels[-1][::2])
+    return np.concatenate(levels[::-1])
+
+
 class Forest:
     """The trees of several meshes side by side; entries name meshes by their numbers."""
 
@@ -111,6 +119,16 @@ class Forest:
         """The three corners of all faces as columns ``(f,)``, in the unit frames of their meshes."""
         self.normals: Final = _columns([mesh.area_vectors[faces] for mesh, faces in ordered])
         """Area vectors of all faces, likewise."""
+        self._leaves = np.array([len(tree.starts) - 1 for tree in trees])
+        self.face: Final = np.concatenate(
+            [face + _first_faces(tree) for face, tree in zip(first_face.tolist(), trees, strict=True)]
+        )
+        """One of the faces below each node."""
+
+    def level(self, level: int) -> tuple[Indices, Indices]:
+        """The first node of each mesh's tree at a level, or that of its leaves, and how many there are."""
+        width = np.minimum(1 << level, self._leaves)
+        return self.roots + width - 1, width
 
     def near_faces(
         self, first: Indices, second: Indices, forth: AffineMaps, back: AffineMaps, settled: Booleans
@@ -125,7 +143,7 @@ class Forest:
             settled: entries of which no more is wanted, ``(n,)``; may change while the groups are read.
 
         """
-        there, here = _Maps(forth), _Maps(back)
+        meet = Meeting(self, forth, back)
         fronts = [(np.arange(len(first)), self.roots[first], self.roots[second])]
         while fronts:
             entry, one, two = fronts.pop()
@@ -135,11 +153,7 @@ class Forest:
                 half = len(left) // 2
                 fronts.append((entry[left[half:]], one[left[half:]], two[left[half:]]))
                 left = left[:half]
-            entry, one, two = entry[left], one[left], two[left]
-            near = self._meet(there, entry, one, two)
-            entry, one, two = entry[near], one[near], two[near]
-            near = self._meet(here, entry, two, one)
-            entry, one, two = entry[near], one[near], two[near]
+            entry, one, two = meet(entry[left], one[left], two[left])
             ends = (self.child[one] < 0) & (self.child[two] < 0)
             if ends.any():
                 yield self.faces_of(entry[ends], one[ends], two[ends])
@@ -149,22 +163,11 @@ class Forest:
                 below = self.below(entry, one, two)
                 fronts.append(self.below(*below) if len(below[0]) <= _SMALL else below)
 
-    def _meet(self, maps: "_Maps", entry: Indices, moving: Indices, still: Indices) -> Indices:
-        """Which boxes around images of moving boxes meet still boxes."""
-        middle = [column[moving] for column in self.middle]
-        half = [column[moving] for column in self.half]
-        near: Booleans | None = None
-        for axis in range(3):
-            matrix, size = maps.matrix[axis], maps.size[axis]
-            centre = maps.offset[axis][entry] - self.middle[axis][still]
-            reach = self.half[axis][still]
-            for other in range(3):
-                centre += matrix[other][entry] * middle[other]
-                reach += size[other][entry] * half[other]
-            beside = np.abs(centre, out=centre) <= reach
-            near = beside if near is None else near & beside
-        assert near is not None
-        return np.flatnonzero(near)
+    def parts(self, entry: Indices, node: Indices) -> tuple[Indices, Indices]:
+        """The children of nodes; leaves stay."""
+        child = self.child[node]
+        owner, offset = expand((child >= 0) + 1)
+        return entry[owner], np.where(child < 0, node, child)[owner] + offset
 
     def below(self, entry: Indices, one: Indices, two: Indices) -> tuple[Indices, Indices, Indices]:
         """The pairs of the children; a leaf stays beside the children of the other."""
@@ -186,6 +189,45 @@ class Forest:
             self.start[one][owner] + offset // width,
             self.start[two][owner] + offset % width,
         )
+
+
+class Meeting:
+    """Tells which boxes of two posed trees meet, looked at in the frames of both.
+
+    Args:
+        forest: the trees.
+        forth: the maps from the unit frames of the first meshes to those of the second.
+        back: the maps the other way.
+
+    """
+
+    def __init__(self, forest: Forest, forth: AffineMaps, back: AffineMaps) -> None:
+        self._forest = forest
+        self._there, self._here = _Maps(forth), _Maps(back)
+
+    def __call__(self, entry: Indices, one: Indices, two: Indices) -> tuple[Indices, Indices, Indices]:
+        """Those of the entries whose boxes, nodes ``one`` and ``two``, meet."""
+        near = self._near(self._there, entry, one, two)
+        entry, one, two = entry[near], one[near], two[near]
+        near = self._near(self._here, entry, two, one)
+        return entry[near], one[near], two[near]
+
+    def _near(self, maps: "_Maps", entry: Indices, moving: Indices, still: Indices) -> Indices:
+        """Which boxes around images of moving boxes meet still boxes."""
+        forest = self._forest
+        middle, half = taken(forest.middle, moving), taken(forest.half, moving)
+        near: Booleans | None = None
+        for axis in range(3):
+            matrix, size = maps.matrix[axis], maps.size[axis]
+            centre = maps.offset[axis][entry] - forest.middle[axis][still]
+            reach = forest.half[axis][still]
+            for other in range(3):
+                centre += matrix[other][entry] * middle[other]
+                reach += size[other][entry] * half[other]
+            beside = np.abs(centre, out=centre) <= reach
+            near = beside if near is None else near & beside
+        assert near is not None
+        return np.flatnonzero(near)
 
 
 class _Maps:

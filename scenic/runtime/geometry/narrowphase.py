@@ -8,6 +8,7 @@ never says anything else than the exact test.
 
 import time
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Final
 
@@ -16,15 +17,20 @@ import numpy as np
 from scenic.runtime.geometry.affine import AffineMaps, relative_map
 from scenic.runtime.geometry.broadphase import boxes_overlap
 from scenic.runtime.geometry.contact import Surfaces
+from scenic.runtime.geometry.facetree import Forest
+from scenic.runtime.geometry.fronts import Fronts
 from scenic.runtime.geometry.inside import contains_points
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.poses import Booleans, Floats, Indices, Poses
 from scenic.runtime.geometry.proofs import ProofTable
-from scenic.runtime.geometry.ragged import distinct, expand, rows
-from scenic.runtime.geometry.voxels import seconds_to_make
+from scenic.runtime.geometry.ragged import Groups, distinct, expand, group_starts, rows
+from scenic.runtime.geometry.voxels import PROBES, seconds_to_make
 
-_STAGES: Final = (slice(3), slice(3, 16), None, slice(16, 64), slice(64, None))
+_STAGES: Final = (slice(3), slice(3, 16), None, slice(16, None))
 """Probing points looked at one group after the other; ``None`` is the proof that solids are apart."""
+
+_MOST_LEAVES: Final = 1 << 14
+"""Pairs of near leaves of an entry up to which each is looked at; for more of them the trees are descended together."""
 
 _CHUNK: Final = 1 << 17
 """Combinations of entry and probing point looked at together."""
@@ -48,8 +54,16 @@ class Solids:
         self._patience = patience
 
     @cached_property
+    def _forest(self) -> Forest:
+        return Forest(self.meshes)
+
+    @cached_property
     def _surfaces(self) -> Surfaces:
-        return Surfaces(self.meshes)
+        return Surfaces(self._forest)
+
+    @cached_property
+    def _fronts(self) -> Fronts:
+        return Fronts(self._forest, self._proofs)
 
     @cached_property
     def _proofs(self) -> ProofTable:
@@ -101,28 +115,29 @@ class Solids:
         count = len(first)
         if not self._can_prove:
             return np.zeros(count, dtype=np.bool_), np.ones(count, dtype=np.bool_)
-        forth, back = relative_map(first_poses, second_poses), relative_map(second_poses, first_poses)
+        pairs = _Pairs.of(first, first_poses, second, second_poses)
         together = np.zeros(count, dtype=np.bool_)
         left = np.arange(count)
         for stage in _STAGES:
-            for moving, still, maps in ((first, second, forth), (second, first, back)):
-                if len(left):
-                    done = self._stage(stage, moving[left], still[left], maps.take(left))
-                    together[left[done]] = stage is not None
-                    left = left[~done]
+            if not len(left):
+                break
+            done = self._stage(stage, pairs.take(left))
+            together[left[done]] = stage is not None
+            left = left[~done]
         remains = np.zeros(count, dtype=np.bool_)
         remains[left] = True
         return together, remains
 
-    def _stage(self, points: slice | None, moving: Indices, still: Indices, maps: AffineMaps) -> Booleans:
+    def _stage(self, points: slice | None, pairs: "_Pairs") -> Booleans:
         """Which entries a stage decides."""
+        moving, still, maps = pairs.ways
         if points is None:
-            return self._proofs.distance(moving, still, maps)
+            return _either(self._proofs.distance(moving, still, maps))
         result = np.empty(len(moving), dtype=np.bool_)
         every = np.arange(len(moving))
-        for part in rows(len(moving), points.stop or 256, _CHUNK):
+        for part in rows(len(moving), points.stop or PROBES, _CHUNK):
             result[part] = self._proofs.contact(moving[part], still[part], maps.take(every[part]), points)
-        return result
+        return _either(result)
 
     def touch(self, first: Indices, first_poses: Poses, second: Indices, second_poses: Poses) -> Booleans:
         """The same as `intersect` for at least one entry of which `prove` says nothing, by the exact test.
@@ -150,22 +165,41 @@ class Solids:
         return result
 
     def _touch(self, first: Indices, first_poses: Poses, second: Indices, second_poses: Poses) -> Booleans:
-        forth, back = relative_map(first_poses, second_poses), relative_map(second_poses, first_poses)
-        touching = self._surfaces.touch(first, second, forth, back)
+        pairs = _Pairs.of(first, first_poses, second, second_poses)
+        touching = self._meet(pairs) if self._can_prove else self._surfaces_touch(pairs)
         apart = np.flatnonzero(~touching)
-        for moving, still, maps in ((first, second, forth), (second, first, back)):
-            if len(apart):
-                inside = self._some_part_inside(moving[apart], still[apart], maps.take(apart))
-                touching[apart[inside]] = True
-                apart = apart[~inside]
+        if len(apart):
+            touching[apart] = _either(self._some_part_inside(*pairs.take(apart).ways))
         return touching
+
+    def _meet(self, pairs: "_Pairs") -> Booleans:
+        """Entries whose surfaces share a point, and some of those where one solid reaches into the other."""
+        front = self._fronts.find(*pairs.ways)
+        result = _either(front.touching)
+        starts = group_starts(front.entry, 2 * len(result))
+        leaves = Groups(starts[:-1], np.diff(starts))
+        every = np.arange(len(result))
+        first, second = leaves.take(every), leaves.take(every + len(result))
+        products = np.where(result, 0, first.counts * second.counts)
+        few = np.flatnonzero((products > 0) & (products <= _MOST_LEAVES))
+        if len(few):
+            some = pairs.take(few)
+            result[few] = self._surfaces.touch_among(
+                front.leaf, first.take(few), second.take(few), some.forth, some.back
+            )
+        many = np.flatnonzero(products > _MOST_LEAVES)
+        if len(many):
+            result[many] = self._surfaces_touch(pairs.take(many))
+        return result
+
+    def _surfaces_touch(self, pairs: "_Pairs") -> Booleans:
+        return self._surfaces.touch(pairs.first, pairs.second, pairs.forth, pairs.back)
 
     def surfaces_touch(
         self, first: Indices, first_poses: Poses, second: Indices, second_poses: Poses
     ) -> Booleans:
         """Whether the surfaces share a point, ``(n,)``."""
-        forth, back = relative_map(first_poses, second_poses), relative_map(second_poses, first_poses)
-        return self._surfaces.touch(first, second, forth, back)
+        return self._surfaces_touch(_Pairs.of(first, first_poses, second, second_poses))
 
     def some_part_inside(
         self, inner: Indices, inner_poses: Poses, outer: Indices, outer_poses: Poses
@@ -190,6 +224,40 @@ class Solids:
             inside = contains_points(self.meshes[number], points[members])
             result[entry[which[members[inside]]]] = True
         return result
+
+
+@dataclass(frozen=True, slots=True)
+class _Pairs:
+    """Posed solids, two by two: numbers of their meshes and the maps between their unit frames both ways."""
+
+    first: Indices
+    second: Indices
+    forth: AffineMaps
+    back: AffineMaps
+
+    @classmethod
+    def of(cls, first: Indices, first_poses: Poses, second: Indices, second_poses: Poses) -> "_Pairs":
+        forth, back = relative_map(first_poses, second_poses), relative_map(second_poses, first_poses)
+        return cls(first, second, forth, back)
+
+    def take(self, chosen: Indices) -> "_Pairs":
+        """These pairs."""
+        return _Pairs(
+            self.first[chosen], self.second[chosen], self.forth.take(chosen), self.back.take(chosen)
+        )
+
+    @property
+    def ways(self) -> tuple[Indices, Indices, AffineMaps]:
+        """Moving and still meshes and the maps from those to these: all pairs, then all of them the other way round."""
+        moving = np.concatenate([self.first, self.second])
+        still = np.concatenate([self.second, self.first])
+        return moving, still, self.forth.followed_by(self.back)
+
+
+def _either(ways: Booleans) -> Booleans:
+    """Which of n pairs something holds of, one way or the other, from ``(2 n,)``."""
+    first, second = ways.reshape(2, -1)
+    return first | second
 
 
 def meshes_intersect(mesh_a: Mesh, poses_a: Poses, mesh_b: Mesh, poses_b: Poses) -> Booleans:

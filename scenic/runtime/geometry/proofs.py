@@ -40,27 +40,41 @@ class ProofTable:
             points: which of the probes; the deepest come first, those on the surface last.
 
         """
-        x, y, z = maps.columns(_gathered(self._probes[:, points], moving))
-        near = (np.abs(x) <= 0.5) & (np.abs(y) <= 0.5) & (np.abs(z) <= 0.5)
-        where = np.flatnonzero(near)
-        result = np.zeros(len(moving), dtype=np.bool_)
-        entry = where % len(moving)
-        index = still[entry]
-        for part in (x, y, z):
-            cell = ((part.ravel()[where] + 0.5) * RESOLUTION).astype(np.intp)
-            index = index * RESOLUTION + np.minimum(cell, RESOLUTION - 1)
-        result[entry[self._solid[index]]] = True
+        inside = self.in_solid(still, maps.columns(_gathered(self._probes[:, points], moving)))
+        result: Booleans = np.logical_or.reduce(inside, axis=0)
         return result
 
     def distance(self, moving: Indices, still: Indices, maps: AffineMaps) -> Booleans:
         """Whether all boxes that cover a moving mesh lie in empty cells of a still one, ``(n,)``."""
         centre = maps.columns(_gathered(self._middle, moving))
         reach = maps.reaches(_gathered(self._half, moving))
-        near = np.ones(centre[0].shape, dtype=np.bool_)
-        for axis in range(3):
+        near: Booleans = np.logical_or.reduce(self.near_filled(still, centre, reach), axis=0)
+        return ~near
+
+    def in_solid(self, still: Indices, points: Columns) -> Booleans:
+        """Whether points, of coordinates ``(..., n)`` in the frames of still meshes ``(n,)``, lie in solid cells."""
+        x, y, z = points
+        near = (np.abs(x) <= 0.5) & (np.abs(y) <= 0.5) & (np.abs(z) <= 0.5)
+        where = np.flatnonzero(near)
+        index = still[where % len(still)] if near.ndim > 1 else still[where]
+        for part in points:
+            cell = ((part.ravel()[where] + 0.5) * RESOLUTION).astype(np.intp)
+            index = index * RESOLUTION + np.minimum(cell, RESOLUTION - 1)
+        return _scattered(self._solid[index], where, near.shape)
+
+    def near_filled(self, still: Indices, centre: Columns, reach: Columns) -> Booleans:
+        """Whether boxes reach into cells of still meshes that are not empty.
+
+        Args:
+            still: mesh numbers, ``(n,)``.
+            centre: the boxes' centres, of coordinates ``(..., n)``, in the frames of the still meshes.
+            reach: half the boxes' extents, likewise.
+
+        """
+        near: Booleans = np.abs(centre[0]) <= reach[0] + (0.5 + PADDING)
+        for axis in (1, 2):
             near &= np.abs(centre[axis]) <= reach[axis] + (0.5 + PADDING)
         where = np.flatnonzero(near)
-        entry = where % len(moving)
         low, high = [], []
         for axis in range(3):
             middle, half = centre[axis].ravel()[where], reach[axis].ravel()[where] + PADDING
@@ -70,15 +84,21 @@ class ProofTable:
             above = np.clip((middle + half + 0.5) * RESOLUTION, 0, RESOLUTION - 1)
             low.append(below.astype(np.intp) * weight)
             high.append((above.astype(np.intp) + 1) * weight)
-        base = still[entry] * _STEP**3
+        owner = still[where % len(still)] if near.ndim > 1 else still[where]
+        base = owner * _STEP**3
         count = np.zeros(len(where), dtype=np.int32)
         for corner in np.ndindex(2, 2, 2):
             x, y, z = ((high if top else low)[axis] for axis, top in enumerate(corner))
             value = self._filled[base + x + y + z]
             count += value if sum(corner) % 2 else -value
-        result = np.ones(len(moving), dtype=np.bool_)
-        result[entry[count > 0]] = False
-        return result
+        return _scattered(count > 0, where, near.shape)
+
+
+def _scattered(values: Booleans, where: Indices, shape: tuple[int, ...]) -> Booleans:
+    """The values at these places, in C order, of an array of that shape that is false elsewhere."""
+    result = np.zeros(shape, dtype=np.bool_)
+    result.ravel()[where] = values
+    return result
 
 
 def _padded(items: Floats, length: int) -> Floats:

@@ -1,10 +1,22 @@
 """Loops over groups of different lengths, written as flat arrays in bounded pieces."""
 
 from collections.abc import Iterator
+from typing import NamedTuple
 
 import numpy as np
 
 from scenic.runtime.geometry.poses import Indices
+
+
+class Groups(NamedTuple):
+    """Groups of consecutive elements: where each begins and how many it has, ``(n,)`` each."""
+
+    starts: Indices
+    counts: Indices
+
+    def take(self, chosen: Indices) -> "Groups":
+        """These groups."""
+        return Groups(self.starts[chosen], self.counts[chosen])
 
 
 def expand(counts: Indices) -> tuple[Indices, Indices]:

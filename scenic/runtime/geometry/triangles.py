@@ -9,7 +9,7 @@ from typing import Final, TypeAlias
 
 import numpy as np
 
-from scenic.runtime.geometry.affine import Columns
+from scenic.runtime.geometry.affine import Columns, taken
 from scenic.runtime.geometry.poses import Booleans, Floats, Indices
 
 Corners: TypeAlias = Sequence[Columns]
@@ -41,7 +41,7 @@ def separated_by_edges(first: Corners, second: Corners) -> Booleans:
         apart[left[here]] = True
         stay = np.flatnonzero(~here)
         left, scale = left[stay], scale[stay]
-        a, b, edges_a, edges_b = (_taken(part, stay) for part in (a, b, edges_a, edges_b))
+        a, b, edges_a, edges_b = (taken_corners(part, stay) for part in (a, b, edges_a, edges_b))
     normals = _cross(edges_a[0], edges_a[1]), _cross(edges_b[0], edges_b[1])
     squares = [_dot(normal, normal) for normal in normals]
     across = _cross(*normals)
@@ -49,9 +49,9 @@ def separated_by_edges(first: Corners, second: Corners) -> Booleans:
     if len(level):
         larger = squares[0] >= squares[1]
         x, y, z = (np.where(larger, *pair)[level] for pair in zip(*normals, strict=True))
-        a, b, scale = _taken(a, level), _taken(b, level), scale[level]
+        a, b, scale = taken_corners(a, level), taken_corners(b, level), scale[level]
         here = np.zeros(len(level), dtype=np.bool_)
-        for edge in (*_taken(edges_a, level), *_taken(edges_b, level)):
+        for edge in (*taken_corners(edges_a, level), *taken_corners(edges_b, level)):
             here |= _separates(_cross((x, y, z), edge), a, b, scale)
         apart[left[level[here]]] = True
     return apart
@@ -75,8 +75,9 @@ def _edges(corners: Corners) -> list[Columns]:
     return [_minus(corners[(k + 1) % 3], corners[k]) for k in range(3)]
 
 
-def _taken(columns: Corners, chosen: Indices) -> list[Columns]:
-    return [(x[chosen], y[chosen], z[chosen]) for x, y, z in columns]
+def taken_corners(corners: Corners, chosen: Indices) -> list[Columns]:
+    """The corners of these triangles."""
+    return [taken(corner, chosen) for corner in corners]
 
 
 def _minus(a: Columns, b: Columns) -> Columns:

@@ -24,10 +24,10 @@ _COVER_WASTE: Final = 0.002
 """Part of the whole that a box of the cover may hold in empty cells without being cut further."""
 
 INTERIOR_POINTS: Final = 16
-PROBES: Final = 256
+PROBES: Final = 64
 """Points of a solid that are looked for in another one: some inside, the others on its surface."""
 
-_KIND: Final = f"voxels 1, {RESOLUTION}"
+_KIND: Final = f"voxels 2, {RESOLUTION}"
 """Names what is kept of a mesh."""
 
 _CANDIDATES: Final = 4096

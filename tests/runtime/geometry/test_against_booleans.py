@@ -67,7 +67,7 @@ def contact(first: int, a: Poses, second: int, b: Poses, entry: int, rng: np.ran
 def compare(count: int, seed: int) -> dict[str, int]:
     """Compare all pairs; returns how many of each kind there were."""
     first, a, second, b = pairs(count, seed)
-    met = Solids(meshes()).intersect(first, a, second, b)
+    met = Solids(meshes(), patience=0).intersect(first, a, second, b)
     held = containment.in_body(Body(meshes(), second, b), Body(meshes(), first, a), count)
     seen = {"meet": 0, "apart": 0, "held": 0, "not held": 0, "contact": 0}
     for entry in range(count):

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from scenic.graph import quaternions
-from scenic.runtime.geometry import primitives
+from scenic.runtime.geometry import narrowphase, primitives
 from scenic.runtime.geometry.affine import relative_map
 from scenic.runtime.geometry.narrowphase import Solids, meshes_intersect
 from scenic.runtime.geometry.poses import Poses
@@ -132,16 +132,20 @@ def test_a_body_around_one_part_of_another():
         assert meshes_intersect(primitives.cylinder(), filler, hollow(), a)[0]
 
 
-def test_steps_agree_with_the_exact_test():
-    """What cells prove is what faces and parity say."""
-    proved, count, pairs = 0, 270, PAIRS[::2]
+@pytest.mark.parametrize("most", [narrowphase._MOST_LEAVES, 300, 0])
+def test_steps_agree_with_the_exact_test(most, monkeypatch):
+    """What cells prove, and what is found among the faces near them, is what all faces and parity say."""
+    monkeypatch.setattr(narrowphase, "_MOST_LEAVES", most)
+    proved, count, pairs = 0, 150, PAIRS[::2]
     zeros = np.zeros(count, dtype=np.intp)
     for first, second in pairs:
         a, b = random_poses(count, 7, spread=0.8), random_poses(count, 8, spread=0.8)
-        solids = Solids([SHAPES[first](), SHAPES[second]()], patience=0)
+        meshes = [SHAPES[first](), SHAPES[second]()]
+        solids = Solids(meshes, patience=0)
+        exact = Solids(meshes, patience=np.inf).touch(zeros, a, zeros + 1, b)
         together, left = solids.prove(zeros, a, zeros + 1, b)
-        exact = solids.touch(zeros, a, zeros + 1, b)
         np.testing.assert_array_equal(together[~left], exact[~left])
+        np.testing.assert_array_equal(solids.touch(zeros, a, zeros + 1, b), exact)
         proved += int((~left).sum())
     assert proved > 0.7 * count * len(pairs)
 

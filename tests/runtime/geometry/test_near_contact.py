@@ -44,7 +44,7 @@ def bisected(apart, near: float, far: float, steps: int) -> float:
 def test_collisions_near_contact():
     rng = np.random.default_rng(1)
     table = meshes()
-    solids = Solids(table)
+    solids = Solids(table, patience=0)
     numbers = rng.integers(0, len(table), (2, PAIRS))
     a = random_poses(PAIRS, 2, spread=0.1, sizes=(0.3, 1.5))
     b = random_poses(PAIRS, 3, spread=0.1, sizes=(0.3, 1.5))
