@@ -5,6 +5,7 @@ nodes are evaluated together (`scenic.graph.schedule`).
 """
 
 from collections.abc import Iterable, Sequence
+from itertools import repeat
 from typing import Any
 
 import numpy as np
@@ -68,6 +69,7 @@ class Batch:
         self._groups: dict[Slot, _Group] = {}
         self._boxes: NDArray[np.intp] | None = None
         self._values: dict[Node, list[Any]] = {}
+        self._tuples: dict[int, tuple[tuple[Node, ...], list[tuple[Any, ...]]]] = {}
 
     def __len__(self) -> int:
         return len(self.rows)
@@ -91,6 +93,7 @@ class Batch:
         self._kept.append(chosen)
         self._generation += 1
         self._values.clear()
+        self._tuples.clear()
 
     def settle(self, nodes: Sequence[Node]) -> None:
         """Evaluate ``nodes`` and drop all other columns: the batch is finished but for being read."""
@@ -154,10 +157,29 @@ class Batch:
 
     def read(self, lane: int, node: Node) -> Any:
         """`value` in one lane, as samples ask for it."""
+        values = self._values_of(node)
+        return values[lane if len(values) > 1 else 0]
+
+    def tuples(self, nodes: tuple[Node, ...]) -> list[tuple[Any, ...]]:
+        """The values of several nodes lane by lane, the objects that `read` gives; one row where all lanes agree."""
+        known = self._tuples.get(id(nodes))
+        if known is None:
+            columns = [[node.value] if node.is_constant else self._values_of(node) for node in nodes]
+            count = max(map(len, columns))
+            rows = list(
+                zip(
+                    *(column if len(column) == count else repeat(column[0], count) for column in columns),
+                    strict=True,
+                )
+            )
+            known = self._tuples[id(nodes)] = (nodes, rows)
+        return known[1]
+
+    def _values_of(self, node: Node) -> list[Any]:
         values = self._values.get(node)
         if values is None:
             values = self._values[node] = self._codec.decode(node.kind, self.column(node))
-        return values[lane if len(values) > 1 else 0]
+        return values
 
     def _place(self, node: Node) -> Place:
         place = self._schedule.places.get(node)

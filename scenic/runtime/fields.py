@@ -5,19 +5,21 @@ arrays of points.
 """
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from scenic.graph import quaternions
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import Call, Operation, always
 from scenic.language.errors import RejectionException, ScenicTypeError
 from scenic.runtime.context import here
 from scenic.runtime.geometry.cell_index import CellIndex
 from scenic.runtime.lazy import Lazy, defer, reads_of, resolve
-from scenic.runtime.opaque import evaluated, later
+from scenic.runtime.opaque import Calls, Rows, evaluated, later, together
 from scenic.runtime.values import (
     Orientation,
     Random,
@@ -33,6 +35,7 @@ from scenic.runtime.values import (
 
 Points = NDArray[np.float64]
 Headings = NDArray[np.float64]
+Mask = NDArray[np.bool_]
 
 
 class VectorField:
@@ -61,7 +64,7 @@ class VectorField:
         if isinstance(place, Lazy):
             return defer(self.__getitem__, place)
         if isinstance(place, Random):
-            return as_value(later(_VALUE, _oriented, (self.value, place)))
+            return as_value(later(_VALUE, self.value, (place,)))
         return _oriented(self.value, place)
 
     def at(self, position: Any) -> Any:
@@ -313,25 +316,74 @@ def _followed(function: Callable[[Any], Any], point: Any, distance: float, law: 
     return point
 
 
-def _rows(width: int) -> Callable[..., Column]:
-    """The reading of calls that give vectors or orientations."""
+def _values(call: Call, *columns: Column) -> Column:
+    failed = np.zeros(call.lanes, dtype=np.bool_)
+    turns, error = _turns(evaluated(call, columns), failed)
+    if error is not None:
+        call.fault(failed, error)
+    return turns
 
-    def batch(call: Call, *columns: Column) -> Column:
-        rows = np.zeros((call.lanes, width))
-        if width == 4:
-            rows[:, 3] = 1.0
+
+def _turns(values: Sequence[Any], failed: Mask) -> tuple[NDArray[np.float64], Exception | None]:
+    """Values of a field as quaternions ``(n, 4)``; marks the lanes whose value is none, and gives the first error."""
+    if all(type(value) in _HEADINGS for value in values):
+        yaw = np.array([0.0 if value is None else float(value) for value in values])
+        return quaternions.from_euler(yaw, np.zeros(1), np.zeros(1)), None
+    rows = np.zeros((len(values), 4))
+    rows[:, 3] = 1.0
+    first: Exception | None = None
+    for lane, value in enumerate(values):
+        if value is not None:
+            try:
+                rows[lane] = to_orientation(value, "the value of a field").q
+            except ScenicTypeError as error:
+                failed[lane] = True
+                first = error if first is None else first
+    return rows, first
+
+
+_HEADINGS = (float, int, type(None))
+
+
+def _follow(call: Call, *columns: Column) -> Column:
+    rows = together(call, columns, partial(_followed_together, call.lanes))
+    if rows is None:
+        rows = np.zeros((call.lanes, 3))
         for lane, value in enumerate(evaluated(call, columns)):
             if value is not None:
-                rows[lane] = tuple(value) if width == 3 else (value.x, value.y, value.z, value.w)
-        return rows
+                rows[lane] = tuple(value)
+    return rows
 
-    return batch
+
+def _followed_together(lanes: int, calls: Calls, rows: Rows) -> Column:
+    """As `_followed`, step by step in all lanes."""
+    place = np.zeros((lanes, 3))
+    stride = np.zeros((lanes, 3))
+    counts = np.zeros(lanes, dtype=np.int64)
+    for lane in calls.present:
+        _, point, distance, law = rows[lane]
+        place[lane] = tuple(point)
+        counts[lane] = _steps(distance, law)
+        stride[lane, 1] = distance / counts[lane]
+    for step in range(int(counts.max(initial=0))):
+        moving = np.flatnonzero((step < counts) & ~calls.failed & ~calls.rejected)
+        points = [(Vector.of(row),) for row in zip(*place[moving].T.tolist(), strict=True)]
+        values: list[Any] = [None] * lanes
+        if len(moving):
+            calls.each(rows[moving[0]][0], moving.tolist(), points, values)
+        failed = np.zeros(lanes, dtype=np.bool_)
+        turns, error = _turns(values, failed)
+        if error is not None:
+            for lane in np.flatnonzero(failed).tolist():
+                calls.mark(lane, error)
+        place[moving] += quaternions.rotate(turns[moving], stride[moving])
+    return place
 
 
 _VALUE = Operation(
     "field value",
     always(Kind.ORIENTATION),
-    _rows(4),
+    _values,
     "The value of a field, by its own function.",
     pure=False,
     faults=True,
@@ -340,7 +392,7 @@ _VALUE = Operation(
 _FOLLOW = Operation(
     "follow field",
     always(Kind.VECTOR),
-    _rows(3),
+    _follow,
     "The end of a way along a field, by its own function.",
     pure=False,
     faults=True,

@@ -1,6 +1,7 @@
 """Python functions that also take random arguments (section 7.2 of the specification)."""
 
 import builtins
+import math
 from collections.abc import Callable
 from typing import Any
 
@@ -8,19 +9,33 @@ from scenic.language.errors import RandomControlFlowError
 from scenic.runtime.context import here, verbosity
 from scenic.runtime.lazy import Lazy, defer, is_lazy
 from scenic.runtime.opaque import call_later, is_later
-from scenic.runtime.values import Random, is_random, operate
+from scenic.runtime.purity import is_pure
+from scenic.runtime.values import Random, as_node, is_random, operate, over_options
 
 
+def _for_python(function: Callable[..., Any]) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+    """Note which of Python's own functions one stands for (`scenic.runtime.purity`)."""
+
+    def noted(lifted: Any) -> Callable[..., Any]:
+        lifted.__wrapped__ = function
+        return lifted  # type: ignore[no-any-return] # what it was given
+
+    return noted
+
+
+@_for_python(math.sin)
 def sin(x: Any) -> Any:
     """Sine of an angle in radians."""
     return operate("sin", x)
 
 
+@_for_python(math.cos)
 def cos(x: Any) -> Any:
     """Cosine of an angle in radians."""
     return operate("cos", x)
 
 
+@_for_python(math.hypot)
 def hypot(*coordinates: Any) -> Any:
     """Euclidean length of a vector given by its coordinates."""
     return operate("hypot", *coordinates)
@@ -31,25 +46,24 @@ def _extreme(name: str, function: Callable[..., Any]) -> Callable[..., Any]:
         if is_lazy(args) or is_lazy(options):
             return defer(extreme, *args, **options)
         if options or isinstance(args[0] if len(args) == 1 else None, Random):
-            call = call_later if is_later(*args, *options.values()) else _call
-            return call(function, *args, **options)
+            if not is_later(*args, *options.values()):
+                return function(*args, **options)
+            chosen = None if options else over_options([as_node(item) for item in args], function)
+            return call_later(function, *args, **options) if chosen is None else chosen
         if not any(is_random(item) for item in args):
             return function(*args)
         return operate(name, *(args[0] if len(args) == 1 else args))
 
     extreme.__name__ = function.__name__
     extreme.__doc__ = function.__doc__
-    return extreme
-
-
-def _call(function: Callable[..., Any], /, *args: Any, **keywords: Any) -> Any:
-    return function(*args, **keywords)
+    return _for_python(function)(extreme)
 
 
 max = _extreme("maximum", builtins.max)
 min = _extreme("minimum", builtins.min)
 
 
+@_for_python(builtins.round)
 def round(number: Any, ndigits: Any = None) -> Any:
     """Python's ``round``, also of random numbers."""
     if is_lazy((number, ndigits)):
@@ -59,6 +73,7 @@ def round(number: Any, ndigits: Any = None) -> Any:
     return builtins.round(number, ndigits)
 
 
+@_for_python(builtins.len)
 def len(value: Any) -> Any:
     """Python's ``len``, also of random containers."""
     if isinstance(value, Lazy):
@@ -70,7 +85,13 @@ def filter(function: Callable[[Any], Any] | None, values: Any) -> Any:
     """The elements for which ``function`` holds, as a list; ``values`` may be random."""
     if is_lazy(values):
         return defer(filter, function, values)
-    return (call_later if is_later(function, values) else _call)(_kept, function, values)
+    if not is_later(function, values):
+        return _kept(function, values)
+    if function is None or is_pure(function):
+        chosen = over_options([as_node(values)], lambda items: _kept(function, items))
+        if chosen is not None:
+            return chosen
+    return call_later(_kept, function, values)
 
 
 def _kept(function: Callable[[Any], Any] | None, values: Any) -> list[Any]:

@@ -6,7 +6,7 @@ concrete values too; analysis sees nothing of it.
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from types import MappingProxyType
+from types import BuiltinFunctionType, FunctionType, MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -18,16 +18,26 @@ from scenic.graph.operation import OK, Call, Operation, always
 from scenic.language.errors import InvalidScenarioError, RejectionException
 from scenic.runtime.context import Context, current, here, next_address
 from scenic.runtime.objects import Point
-from scenic.runtime.randomness import preserved, seed_globals
+from scenic.runtime.randomness import is_as, preserved, seed_globals
 from scenic.runtime.samples import Globals, Sample, dependencies, mention, reachable
 from scenic.runtime.values import CODEC, Random, as_value
+
+
+class _Habit:
+    """What has been seen of code so far: whether it draws from the global generators. Changes speed, never a result."""
+
+    __slots__ = ("draws",)
+
+    def __init__(self) -> None:
+        self.draws = False
 
 
 @dataclass(frozen=True, slots=True)
 class OpaqueCode:
     """A function with its arguments, the nodes behind both, and where it runs.
 
-    ``names`` are the global names that functions in reach read, as they were when this was made.
+    ``names`` are the global names that functions in reach read, as they were when this was made. ``looks`` says that they may
+    ask what is seen, which depends on all objects.
     """
 
     function: Callable[..., Any]
@@ -36,6 +46,8 @@ class OpaqueCode:
     operands: tuple[Node, ...]
     names: Globals
     context: Context | None
+    looks: bool
+    habit: _Habit
 
 
 def later(
@@ -54,11 +66,14 @@ def later(
     own = key(here(), next_address())
     context = current.get()
     reads: list[Any] = [function, *args, *keywords.values()]
-    if context is not None and mention(reads, seen, "can see"):
+    looks = context is not None and mention(reads, seen, "can see")
+    if context is not None and looks:
         context.looks = True
         reads += context.objects
     operands = (own, *dependencies(reads, seen))
-    code = OpaqueCode(function, tuple(args), keywords, operands, seen, context)
+    habit = _Habit()
+    habit.draws = any(mention(reads, seen, word) for word in _STATE_READERS)
+    code = OpaqueCode(function, tuple(args), keywords, operands, seen, context, looks, habit)
     node = make_node(operation, operands, code, here())
     if context is not None and context.is_symbolic:
         instances = [value for value in reachable(reads, seen) if isinstance(value, Point)]
@@ -85,6 +100,12 @@ def call_later(function: Callable[..., Any], /, *args: Any, **keywords: Any) -> 
     return as_value(later(CALL, function, args, keywords))
 
 
+Rows = Sequence[tuple[Any, ...]]
+"""Arguments by lane."""
+
+_STATE_READERS = ("getstate", "get_state")
+"""What code calls that looks at the state of a generator without drawing."""
+
 Random.later = staticmethod(call_later)
 
 
@@ -102,51 +123,154 @@ def evaluated(call: Call, columns: Sequence[Column]) -> list[Any]:
     A call that raises `RejectionException` rejects its lane, any other exception is that lane's fault. Python's and
     NumPy's global generators are seeded for each call by its key, the first column, and are afterwards as they were before.
     """
-    code: OpaqueCode = call.payload
-    results: list[Any] = [None] * call.lanes
-    failed, rejected, absent = (np.zeros(call.lanes, dtype=np.bool_) for _ in range(3))
-    for status in call.operands:
-        if status is not None:
-            absent |= status != OK
-    error: Exception | None = None
-    sample_before = None if code.context is None else code.context.sample
-    lanes = _Lanes(
-        {node: CODEC.decode(node.kind, column) for node, column in zip(code.operands, columns, strict=True)}
-    )
-    seeds = lanes.values[code.operands[0]]
-    context = code.context
-    was_evaluating = context is not None and context.evaluating
-    token = current.set(context)
-    try:
-        if context is not None:
-            context.evaluating = True
-        with preserved():
-            for lane in np.flatnonzero(~absent).tolist():
-                sample = Sample(lanes, lane, code.names)
-                if context is not None:
-                    context.sample = sample
-                seed_globals(seeds[lane])
-                try:
-                    args = [sample.value(item) for item in code.args]
-                    keywords = {name: sample.value(item) for name, item in code.keywords.items()}
-                    results[lane] = sample.value(code.function)(*args, **keywords)
-                except RejectionException:
-                    rejected[lane] = True
-                except SystemExit as end:
-                    failed[lane] = True
-                    error = _ended(end) if error is None else error
-                except Exception as problem:  # noqa: BLE001 - whatever the program raises is that lane's fault
-                    failed[lane] = True
-                    error = problem if error is None else error
-    finally:
-        if context is not None:
-            context.evaluating = was_evaluating
-            context.sample = sample_before
-        current.reset(token)
-    if error is not None:
-        call.fault(failed, error)
-    call.reject(rejected)
+    results: list[Any] = Calls(call, columns).made(lambda calls: calls.results())
     return results
+
+
+def together(
+    call: Call, columns: Sequence[Column], compute: Callable[["Calls", Rows], Column]
+) -> Column | None:
+    """What ``compute`` gives from the arguments of the code by lane; it may make calls of its own, in many lanes at once.
+
+    ``None`` where the code draws random numbers, or is not the same in every lane: then only one lane after the other will do.
+    """
+    calls = Calls(call, columns)
+    plain = calls.plain()
+    if plain is None or calls.code.habit.draws:
+        return None
+    found: Column | None = calls.made(lambda calls: compute(calls, plain[1]), again=False)
+    return found
+
+
+class Calls:
+    """The calls of one evaluation.
+
+    Attributes:
+        present: the lanes in which all operands are fine.
+        failed, rejected: masks ``(n,)`` of the lanes in which a call has raised an exception.
+
+    """
+
+    def __init__(self, call: Call, columns: Sequence[Column]) -> None:
+        self.code: OpaqueCode = call.payload
+        self.call = call
+        self.lanes = _Lanes(
+            {
+                node: CODEC.decode(node.kind, column)
+                for node, column in zip(self.code.operands, columns, strict=True)
+            }
+        )
+        self.failed, self.rejected, absent = (np.zeros(call.lanes, dtype=np.bool_) for _ in range(3))
+        for status in call.operands:
+            if status is not None:
+                absent |= status != OK
+        self.present: list[int] = np.flatnonzero(~absent).tolist()
+        self.error: Exception | None = None
+        self.seeding = False
+
+    def made(self, compute: Callable[["Calls"], Any], *, again: bool = True) -> Any:
+        """What ``compute`` gives, where code of the program may run.
+
+        Setting the generators takes longer than most calls, and most draw nothing: then their states are afterwards as they
+        were. Otherwise all calls are made ``again``, each with its own seed, now and later.
+        """
+        code, context = self.code, self.code.context
+        sample_before = None if context is None else context.sample
+        was_evaluating = context is not None and context.evaluating
+        token = current.set(context)
+        try:
+            if context is not None:
+                context.evaluating = True
+            with preserved() as before:
+                self.seeding = code.habit.draws
+                result = compute(self)
+                if not self.seeding and not is_as(before):
+                    code.habit.draws = self.seeding = True
+                    self.failed[:] = self.rejected[:] = False
+                    self.error = None
+                    if not again:
+                        return None
+                    result = compute(self)
+        finally:
+            if context is not None:
+                context.evaluating = was_evaluating
+                context.sample = sample_before
+            current.reset(token)
+        if self.error is not None:
+            self.call.fault(self.failed, self.error)
+        self.call.reject(self.rejected)
+        return result
+
+    def results(self) -> list[Any]:
+        """The result of each call, ``None`` in lanes where there is none."""
+        results: list[Any] = [None] * self.call.lanes
+        code, context = self.code, self.code.context
+        plain = None if self.seeding else self.plain()
+        if plain is not None:
+            function, rows = plain
+            self.each(function, self.present, [rows[lane] for lane in self.present], results)
+            return results
+        seeds = self.lanes.values[code.operands[0]]
+        for lane in self.present:
+            sample = Sample(self.lanes, lane, code.names)
+            if context is not None:
+                context.sample = sample
+            if self.seeding:
+                seed_globals(seeds[lane])
+            try:
+                args = [sample.value(item) for item in code.args]
+                keywords = {name: sample.value(item) for name, item in code.keywords.items()}
+                results[lane] = sample.value(code.function)(*args, **keywords)
+            except (Exception, SystemExit) as problem:  # noqa: BLE001 - whatever the program raises is that lane's fault
+                self.mark(lane, problem)
+        return results
+
+    def plain(self) -> tuple[Callable[..., Any], Rows] | None:
+        """The function, and its arguments by lane, where these are columns and what is the same in every sample."""
+        code = self.code
+        if code.keywords or code.looks or not self._is_same(code.function):
+            return None
+        columns = []
+        for item in code.args:
+            if isinstance(item, Random) and not item.node.kind.is_boxed:
+                values = [item.node.value] if item.node.is_constant else self.lanes.values[item.node]
+                columns.append(values * self.call.lanes if len(values) == 1 else values)
+            elif self._is_same(item):
+                columns.append([item] * self.call.lanes)
+            else:
+                return None
+        if code.context is not None:
+            code.context.sample = Sample(self.lanes, 0, code.names)  # says that samples are being made
+        return code.function, list(zip(*columns, strict=True)) if columns else [()] * self.call.lanes
+
+    def _is_same(self, item: Any) -> bool:
+        """Whether something is the same object in every sample."""
+        if item is None or isinstance(item, int | float | str):
+            return True
+        if isinstance(item, tuple):
+            return all(map(self._is_same, item))
+        return isinstance(item, BuiltinFunctionType) or (
+            isinstance(item, FunctionType) and self.code.names.is_fixed(item)
+        )
+
+    def each(
+        self, function: Callable[..., Any], lanes: Sequence[int], rows: Rows, results: list[Any]
+    ) -> None:
+        """Call a function in some lanes, with a row of arguments for each."""
+        for lane, row in zip(lanes, rows, strict=True):
+            try:
+                results[lane] = function(*row)
+            except (Exception, SystemExit) as problem:  # noqa: BLE001 - whatever the program raises is that lane's fault
+                self.mark(lane, problem)
+
+    def mark(self, lane: int, problem: BaseException) -> None:
+        """Note what went wrong in a lane."""
+        if isinstance(problem, RejectionException):
+            self.rejected[lane] = True
+            return
+        self.failed[lane] = True
+        if self.error is None:
+            self.error = _ended(problem) if isinstance(problem, SystemExit) else problem  # type: ignore[assignment]
 
 
 def _ended(end: SystemExit) -> InvalidScenarioError:
@@ -168,6 +292,11 @@ class _Lanes:
         """The value of a node in one lane."""
         found = self.values[node]
         return found[lane if len(found) > 1 else 0]
+
+    def tuples(self, nodes: tuple[Node, ...]) -> list[tuple[Any, ...]]:
+        """The values of several nodes lane by lane."""
+        count = max(len(self.values[node]) for node in nodes)
+        return [tuple(self.read(lane, node) for node in nodes) for lane in range(count)]
 
 
 CALL = Operation(

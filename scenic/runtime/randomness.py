@@ -12,11 +12,11 @@ import numpy as np
 
 
 @contextmanager
-def preserved() -> Iterator[None]:
-    """Both generators are afterwards as they were before."""
+def preserved() -> Iterator[Any]:
+    """Both generators are afterwards as they were before, in the states that this gives."""
     before = states()
     try:
-        yield
+        yield before
     finally:
         restore(before)
 
@@ -24,6 +24,16 @@ def preserved() -> Iterator[None]:
 def states() -> Any:
     """The states of both generators, for `restore`."""
     return random.getstate(), np.random.get_state()  # noqa: NPY002 - what programs use
+
+
+def is_as(before: Any) -> bool:
+    """Whether both generators are in the states of another moment: then nothing has been drawn since."""
+    (python_before, numpy_before), (python_now, numpy_now) = before, states()
+    return bool(
+        python_before == python_now
+        and numpy_before[2:] == numpy_now[2:]
+        and np.array_equal(numpy_before[1], numpy_now[1])
+    )
 
 
 def restore(before: Any) -> None:

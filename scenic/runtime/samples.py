@@ -25,7 +25,7 @@ from scenic.runtime.ownership import (
     own_functions,
     slots,
 )
-from scenic.runtime.values import Random, Vector
+from scenic.runtime.values import Random, Vector, as_node
 
 
 class Lanes(Protocol):
@@ -34,9 +34,15 @@ class Lanes(Protocol):
     def read(self, lane: int, node: Node) -> Any:
         """The value of a node in one lane; the same object whenever it is asked for."""
 
+    def tuples(self, nodes: tuple[Node, ...]) -> list[tuple[Any, ...]]:
+        """The values of several nodes lane by lane, the objects that `read` gives; one row where all lanes agree."""
 
-Placement = tuple[dict[str, Any], list[tuple[str, Node]]]
-"""Of the values that are asked of every object: those that are the same in all samples, and the nodes of the others."""
+
+Placement = tuple[dict[str, Any], tuple[Node, ...]]
+"""Of the values that are asked of every object: those that are the same in all samples, and the nodes of all of them.
+
+There are no nodes where some value cannot be read from a column.
+"""
 
 
 class Globals:
@@ -49,6 +55,7 @@ class Globals:
         self._values: dict[tuple[int, str], Any] = {}
         self._fixed: dict[int, tuple[Any, bool]] = {}
         self._methods: dict[type, tuple[tuple[str, FunctionType], ...]] = {}
+        self._varying: dict[type, tuple[tuple[str, FunctionType], ...]] = {}
         self._owned: dict[type, bool] = {}
         self._placements: dict[int, tuple[Point, Placement]] = {}
 
@@ -109,23 +116,34 @@ class Globals:
             self._methods[cls] = tuple(found.items())
         return self._methods[cls]
 
-    def placement(self, instance: Point) -> "Placement":
+    def varying_methods(self, cls: type) -> tuple[tuple[str, FunctionType], ...]:
+        """Those of the `methods` of a class that are not the same in every sample."""
+        known = self._varying.get(cls)
+        if known is None:
+            varying = [(name, method) for name, method in self.methods(cls) if not self.is_fixed(method)]
+            known = self._varying[cls] = tuple(varying)
+        return known
+
+    def placement(self, instance: Point) -> Placement:
         """What is known of the values that are asked of every object."""
         known = self._placements.get(id(instance))
         if known is None:
-            values = [(name, instance.__dict__.get(name)) for name in _PLACEMENT]
-            fixed = {name: value for name, value in values if isinstance(value, int | float | Vector)}
+            values = {name: instance.__dict__.get(name) for name in _PLACEMENT}
+            fixed = {name: value for name, value in values.items() if isinstance(value, int | float | Vector)}
             drawn = [
-                (name, value.node)
-                for name, value in values
+                value
+                for value in values.values()
                 if isinstance(value, Random) and not value.node.kind.is_boxed
             ]
-            known = self._placements[id(instance)] = (instance, (fixed, drawn))
+            is_whole = len(fixed) + len(drawn) == len(_PLACEMENT)
+            nodes = tuple(as_node(value) for value in values.values()) if is_whole else ()
+            known = self._placements[id(instance)] = (instance, (fixed, nodes))
         return known[1]
 
 
 _BUILT_IN = frozenset({object, Point, OrientedPoint, Object})
 _PLACEMENT = ("position", "yaw", "pitch", "roll", "heading", "width", "length", "height")
+"""What every object is sure to be asked for, in the order in which `Sample` unpacks it."""
 
 
 def dependencies(values: Iterable[Any], names: Globals | None = None) -> list[Node]:
@@ -135,14 +153,14 @@ def dependencies(values: Iterable[Any], names: Globals | None = None) -> list[No
 
 
 def mention(values: Iterable[Any], names: Globals, word: str) -> bool:
-    """Whether functions of the program among the values, or reached by them, hold a text among their constants."""
+    """Whether functions of the program among the values, or reached by them, hold a text among their constants and names."""
     return any(
         _mentions(value.__code__, word) for value in reachable(values, names) if is_own_function(value)
     )
 
 
 def _mentions(code: CodeType, word: str) -> bool:
-    return any(
+    return word in code.co_names or any(
         item == word or (isinstance(item, CodeType) and _mentions(item, word)) for item in code.co_consts
     )
 
@@ -250,7 +268,7 @@ class Sample:
         self._names = Globals() if names is None else names
         self._memo: dict[int, Any] = {}
         """The sampled values by the identities of what they stand for, which is kept alive."""
-        self._alive: list[Any] = []
+        self._alive: dict[int, Any] = {}
         self._scopes: dict[int, dict[str, Any]] = {}
 
     def value(self, value: Any) -> Any:
@@ -265,23 +283,23 @@ class Sample:
             return value
         known = self._memo.get(id(value), _MISSING)
         if known is _MISSING:
+            if isinstance(value, Point):
+                return self._instance(value)
             sampled = self._sampled(value)
             known = self._memo.get(id(value), _MISSING)
             if known is not _MISSING:
                 return known  # what was kept while it was made leads back to itself
             known = self._memo[id(value)] = sampled
-            self._alive.append(value)
+            self._alive[id(value)] = value
         return known
 
     def remember(self, value: Any, copy: Any) -> None:
         """Say what the copy of a value is while it is being made: parts of it may lead back to it."""
         self._memo[id(value)] = copy
-        self._alive.append(value)
+        self._alive[id(value)] = value
 
     def _sampled(self, value: Any) -> Any:
         cls = type(value)
-        if isinstance(value, Point):
-            return self._instance(value)
         if isinstance(value, tuple):
             items = [self.value(item) for item in value]
             if all(new is old for new, old in zip(items, value, strict=True)):
@@ -336,23 +354,30 @@ class Sample:
     def _instance(self, instance: Point) -> Point:
         if "_source" in instance.__dict__:
             return instance
-        copy = object.__new__(type(instance))
-        stored = copy.__dict__
-        stored["_source"] = instance
-        stored["_sample"] = self
-        fixed, drawn = self._names.placement(instance)
-        stored.update(fixed)
-        if self._whole:
-            read, lane = self._lanes.read, self._lane
-            for name, node in drawn:
-                stored[name] = read(lane, node)
+        # Attributes are set one by one: dictionaries, which take more time and memory, are made only when they are asked for.
+        copy: Any = object.__new__(type(instance))
+        copy._source = instance
+        copy._sample = self
+        fixed, nodes = self._names.placement(instance)
+        if nodes and self._whole:
+            rows = self._lanes.tuples(nodes)
+            (
+                copy.position,
+                copy.yaw,
+                copy.pitch,
+                copy.roll,
+                copy.heading,
+                copy.width,
+                copy.length,
+                copy.height,
+            ) = rows[self._lane if len(rows) > 1 else 0]
+        else:
+            copy.__dict__.update(fixed)
+        self._memo[id(instance)] = copy  # which keeps the instance alive
         # Methods may lead back to the instance, which must find its entry then.
-        self.remember(instance, copy)
-        for name, method in self._names.methods(type(instance)):
-            sampled = self.value(method)
-            if sampled is not method:
-                copy.__dict__[name] = MethodType(sampled, copy)
-        return copy
+        for name, method in self._names.varying_methods(type(instance)):
+            copy.__dict__[name] = MethodType(self.value(method), copy)
+        return copy  # type: ignore[no-any-return] # of the class of the instance
 
     def _module(self, module: ModuleType) -> ModuleType:
         """The module over sampled values."""

@@ -19,7 +19,7 @@ from scenic.runtime.sampling.foresight import SEED_BITS, Foreseen
 from scenic.runtime.sampling.planning import Outline, outline
 from scenic.runtime.sampling.report import Exhausted
 from scenic.runtime.saving import SavedScene, draws_of, fixed_draws, source_of
-from scenic.runtime.scene import Scene
+from scenic.runtime.scene import Family, Scene
 
 PROOF_CANDIDATES = 200
 """Candidates looked at to illustrate why no scene exists, where that is proven."""
@@ -75,6 +75,18 @@ class Scenario:
         self._engine = Engine(self.outline.plan())
         self._foreseen = Foreseen()
         self._impossible: tuple[str, ...] = ()
+        self._family = Family(
+            program,
+            ego,
+            self.objects,
+            self.workspace,
+            names,
+            digest,
+            self.sceneToBytes,
+            self,
+            view,
+            self._regions,
+        )
 
     @property
     def objects(self) -> tuple[Object, ...]:
@@ -356,18 +368,7 @@ class Scenario:
         self._foreseen = Foreseen()
 
     def _scene(self, accepted: Accepted) -> Scene:
-        return Scene(
-            accepted,
-            self._program,
-            self.egoObject,
-            self.workspace,
-            self._names,
-            self.digest,
-            self.sceneToBytes,
-            self,
-            self._view,
-            self._regions,
-        )
+        return Scene(accepted, self._family)
 
 
 def _until_error(results: Iterator[Scene | Exhausted]) -> Iterator[Scene | Exhausted]:

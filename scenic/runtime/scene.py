@@ -43,45 +43,63 @@ class Origin:
         return getattr(thing, name)
 
 
+@dataclass(frozen=True, slots=True)
+class Family:
+    """What all scenes of a scenario have in common.
+
+    ``order`` holds the program's objects in the order of those of a scene, ``names`` the variables that hold them, by their
+    identities. ``keep`` gives a scene as data, ``view`` shows it.
+    """
+
+    program: Program
+    ego: Object | None
+    order: tuple[Object, ...]
+    workspace: Workspace
+    names: Mapping[int, str]
+    digest: str
+    keep: Callable[["Scene"], bytes]
+    scenario: Any
+    view: Callable[["Scene"], Any] | None
+    regions: Mapping[str, Region]
+
+
 class Scene:
     """Concrete objects and parameters. Values are taken from the sample when they are first looked at.
 
-    Attributes:
-        seed: seed of the run that made the scene.
-        k: number of the scene in that run, from 0; with ``seed`` it determines the scene.
-        attempts: candidates tried until this one was accepted, itself included.
-
+    Made for every scene, so of few attributes; what all scenes of a scenario share is in its ``family``.
     """
 
-    def __init__(
-        self,
-        accepted: Accepted,
-        program: Program,
-        ego: Object | None,
-        workspace: Workspace,
-        names: Mapping[int, str],
-        digest: str,
-        keep: Callable[["Scene"], bytes],
-        scenario: Any = None,
-        view: Callable[["Scene"], Any] | None = None,
-        regions: Mapping[str, Region] | None = None,
-    ) -> None:
-        self.seed = accepted.task.seed
-        self.k = accepted.task.k
-        self.attempts = accepted.attempts
-        self.workspace = workspace
+    def __init__(self, accepted: Accepted, family: Family) -> None:
         self.accepted = accepted
-        self.digest = digest
-        self._keep = keep
-        self._scenario = scenario
-        self._view = view
-        self._program = program
-        self._ego = ego
-        self._names = names
-        self._regions = regions or {}
-        self._sample: Copier = Sample(accepted.batch, accepted.lane, program.names, whole=True)
+        self._family = family
+        self._sample: Copier = Sample(accepted.batch, accepted.lane, family.program.names, whole=True)
         self._objects: tuple[Any, ...] | None = None
         self._params: dict[str, Any] | None = None
+
+    @property
+    def seed(self) -> int:
+        """Seed of the run that made the scene."""
+        return self.accepted.task.seed
+
+    @property
+    def k(self) -> int:
+        """Number of the scene in that run, from 0; with `seed` it determines the scene."""
+        return self.accepted.task.k
+
+    @property
+    def attempts(self) -> int:
+        """Candidates tried until this one was accepted, itself included."""
+        return self.accepted.attempts
+
+    @property
+    def workspace(self) -> Workspace:
+        """The region in which everything takes place."""
+        return self._family.workspace
+
+    @property
+    def digest(self) -> str:
+        """What a saved scene remembers of the program."""
+        return self._family.digest
 
     def lookup(self, node: Node) -> Any:
         """The value of a node in this scene."""
@@ -90,13 +108,13 @@ class Scene:
     @property
     def program(self) -> Program:
         """What the scene is a sample of."""
-        return self._program
+        return self._family.program
 
     def enforces(self, requirement: Requirement) -> bool:
         """Whether a requirement of the program is among those that the scene has to meet: soft ones may not be."""
         if requirement.probability == 1:
             return True
-        soft = [item for item in self._program.requirements if item.probability < 1 and not _always(item)]
+        soft = [item for item in self.program.requirements if item.probability < 1 and not _always(item)]
         if requirement not in soft:
             return True
         return self.accepted.is_active(soft.index(requirement), requirement.probability)
@@ -112,29 +130,25 @@ class Scene:
     def objects(self) -> tuple[Any, ...]:
         """All objects: the ego first, then the others in order of creation."""
         if self._objects is None:
-            self._objects = tuple(self._sample.value(item) for item in self._ordered())
+            self._objects = tuple(map(self._sample.value, self._family.order))
         return self._objects
-
-    def _ordered(self) -> list[Object]:
-        """The program's objects in the order of those of the scene."""
-        ordered: list[Object] = [] if self._ego is None else [self._ego]
-        return ordered + [item for item in self._program.objects if item is not self._ego]
 
     def place(self, number: int) -> tuple[Span | None, str | None]:
         """Where the program creates the object of that number: span and file, as far as they are known."""
-        return self._program.places.get(id(self._ordered()[number]), (None, None))
+        return self.program.places.get(id(self._family.order[number]), (None, None))
 
     @property
     def egoObject(self) -> Any:
         """The ego, or ``None``."""
-        return None if self._ego is None else self._sample.value(self._ego)
+        ego = self._family.ego
+        return None if ego is None else self._sample.value(ego)
 
     @property
     def params(self) -> dict[str, Any]:
         """Values of the global parameters."""
         if self._params is None:
             self._params = {
-                name: self._sample.value(value) for name, value in self._program.parameters.items()
+                name: self._sample.value(value) for name, value in self.program.parameters.items()
             }
         return self._params
 
@@ -144,13 +158,13 @@ class Scene:
         return {
             item: name
             for item in self.objects
-            if (name := self._names.get(id(item.__dict__.get("_source")))) is not None
+            if (name := self._family.names.get(id(item.__dict__.get("_source")))) is not None
         }
 
     @property
     def regions(self) -> dict[str, Region]:
         """The regions that variables of the program hold, by name, as they are in this scene."""
-        return {name: self._sample.value(region) for name, region in self._regions.items()}
+        return {name: self._sample.value(region) for name, region in self._family.regions.items()}
 
     def origin(self, thing: Any) -> Origin:
         """What an object of the scene is in all scenes of the program."""
@@ -166,7 +180,8 @@ class Scene:
 
         ``axes`` is accepted for compatibility.
         """
-        return None if self._view is None else self._view(self)
+        view = self._family.view
+        return None if view is None else view(self)
 
     def show3D(self, axes: bool = True) -> Any:
         """The same as `show`."""
@@ -178,7 +193,7 @@ class Scene:
 
     def __reduce__(self) -> tuple[Any, ...]:
         """A scene is pickled as its scenario and its draws."""
-        return _taken_up, (self._scenario, self._keep(self))
+        return _taken_up, (self._family.scenario, self._family.keep(self))
 
     def __copy__(self) -> "Scene":
         scene = object.__new__(type(self))
@@ -188,7 +203,7 @@ class Scene:
     def __deepcopy__(self, _memo: Any) -> "Scene":
         """The same scene with objects of its own."""
         scene = self.__copy__()
-        scene._sample = Sample(self.accepted.batch, self.accepted.lane, scene._program.names, whole=True)
+        scene._sample = Sample(self.accepted.batch, self.accepted.lane, self.program.names, whole=True)
         scene._objects = scene._params = None
         return scene
 
@@ -196,7 +211,7 @@ class Scene:
         """Write the scene to a file, from which `Scenario.replay` takes it up again; the file is complete or absent."""
         target = Path(path)
         with tempfile.NamedTemporaryFile(dir=target.absolute().parent, delete=False) as file:
-            file.write(self._keep(self))
+            file.write(self._family.keep(self))
         Path(file.name).replace(target)
 
     def dump(self) -> str:

@@ -278,6 +278,8 @@ def facing(_ego: Ego, orientation: Any) -> Specifier:
     def evaluate(instance: Any) -> Mapping[str, Any]:
         wanted = target[instance.position] if is_field(target) else target
         local = operate("compose", operate("inverse", instance.parentOrientation), wanted)
+        if isinstance(local, Lazy):
+            return {"yaw": local.yaw, "pitch": local.pitch, "roll": local.roll}
         yaw, pitch, roll = local.eulerAngles
         return {"yaw": yaw, "pitch": pitch, "roll": roll}
 

@@ -6,7 +6,8 @@ from typing import Any
 from scenic.language.errors import RejectionException
 from scenic.runtime.distributions import Uniform
 from scenic.runtime.opaque import call_later
-from scenic.runtime.values import Random, uniform
+from scenic.runtime.purity import is_pure
+from scenic.runtime.values import NOTHING, Random, as_node, element_of, over_options, uniform
 
 Parts = Sequence[tuple[bool, Any]]
 """Positional arguments, each with whether it is starred."""
@@ -21,8 +22,31 @@ def spread(function: Callable[..., Any], parts: Parts, keywords: Mapping[str, An
     if not any(is_starred and isinstance(value, Random) for is_starred, value in parts):
         return function(*_arguments(parts), **keywords)
     if function is Uniform:
-        return call_later(_element, uniform(), parts)
+        return _one_of(parts)
+    if not keywords and is_pure(function):
+        chosen = _for_each_option(parts, function)
+        if chosen is not None:
+            return chosen
     return call_later(_call, function, parts, **keywords)
+
+
+def _for_each_option(parts: Parts, function: Callable[..., Any]) -> Any:
+    """The call for each option of a choice among constant lists; ``None`` for other arguments."""
+    flags = [is_starred for is_starred, _ in parts]
+
+    def call(*values: Any) -> Any:
+        return function(*_arguments(list(zip(flags, values, strict=True))))
+
+    return over_options([as_node(value) for _, value in parts], call)
+
+
+def _one_of(parts: Parts) -> Any:
+    draw = uniform()
+    if isinstance(draw, Random):
+        lists = _for_each_option(parts, lambda *elements: list(elements))
+        if lists is not None:
+            return element_of(lists, draw)
+    return call_later(_element, draw, parts)
 
 
 def _arguments(parts: Parts) -> Iterator[Any]:
@@ -40,5 +64,5 @@ def _call(function: Callable[..., Any], parts: Parts, **keywords: Any) -> Any:
 def _element(draw: float, parts: Parts) -> Any:
     elements = list(_arguments(parts))
     if not elements:
-        raise RejectionException("there is nothing to choose from")
+        raise RejectionException(NOTHING)
     return elements[min(int(draw * len(elements)), len(elements) - 1)]

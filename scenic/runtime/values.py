@@ -18,6 +18,7 @@ import numpy as np
 
 from scenic.graph import construction, quaternions
 from scenic.graph.batch import Batch
+from scenic.graph.bounds import Bounds
 from scenic.graph.draws import Counter
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.node import Graph, Node, axis, constant, key
@@ -28,6 +29,7 @@ from scenic.language.errors import (
     InvalidScenarioError,
     RandomControlFlowError,
     RandomIndexError,
+    RejectionException,
     ScenicTypeError,
     UnsupportedError,
 )
@@ -585,7 +587,76 @@ def apply(operation: Operation, *operands: Any, payload: Any = None) -> Any:
     nodes = [as_node(operand) for operand in operands]
     if operation.pure and all(node.is_constant for node in nodes):
         return folded(operation, nodes, payload)
+    if operation.pure and operation.is_python(nodes, Kind.OTHER):
+        distributed = over_options(nodes, lambda *options: operation.python(*options))  # type: ignore[misc] # it has one
+        if distributed is not None:
+            return distributed
     return as_value(construction.make_node(operation, nodes, payload, here()))
+
+
+MOST_OPTIONS = 256
+"""Options of a choice for each of which a call is made at once, at most."""
+
+
+def over_options(operands: Sequence[Node], function: Callable[..., Any]) -> Any:
+    """The result of a function that depends on nothing but its operands, where these are constants and choices by one draw.
+
+    It is the choice among the results, so that no sample needs a call: what the options give is computed here. An option for
+    which the function fails does so only in samples that draw it. ``None`` for other operands, and for choices among instances.
+    """
+    choices = [node for node in operands if not node.is_constant]
+    if not choices or not all(_is_choice_of_data(node) for node in choices):
+        return None
+    index, count = choices[0].operands[0], len(choices[0].operands) - 1
+    if count > MOST_OPTIONS or any(node.operands[0] is not index for node in choices):
+        return None
+    results: list[Node] = []
+    for place in range(1, count + 1):
+        values = [(node if node.is_constant else node.operands[place]).value for node in operands]
+        try:
+            results.append(as_node(function(*values)))
+        except RejectionException:
+            return None
+        except Exception as error:  # noqa: BLE001 - whatever it raises is an error where this option is drawn
+            results.append(construction.make_node(_MISSING, (), error, here()))
+    return _select(index, results)
+
+
+NOTHING = "there is nothing to choose from"
+
+
+def element_of(lists: Random, draw: Random) -> Any:
+    """The element of a list at the share ``draw`` of its length; ``lists`` is a choice among constant lists.
+
+    Samples in which the list is empty are rejected.
+    """
+    index, *options = lists.node.operands
+    results = []
+    for option in options:
+        if not option.is_constant:
+            results.append(option)  # an error where it is drawn
+        elif not option.value:
+            results.append(construction.make_node(_NOTHING, (), span=here()))
+        else:
+            place = apply(_PLACE, draw, payload=len(option.value))
+            results.append(as_node(_select(as_node(place), [as_node(item) for item in option.value])))
+    return _select(index, results)
+
+
+def _is_choice_of_data(node: Node) -> bool:
+    """Whether a node is a choice among constants that are data of Python, in which nothing is random."""
+    if node.operation is not TABLE["select"]:
+        return False
+    return all(option.is_constant and _is_data(option.value) for option in node.operands[1:])
+
+
+def _is_data(value: Any) -> bool:
+    cls = type(value)
+    if cls in (list, tuple, set, frozenset):
+        return all(map(_is_data, value))
+    if cls is dict:
+        return all(_is_data(key) and _is_data(item) for key, item in value.items())
+    return value is None or cls in (int, float, bool, str, bytes, slice, Vector, Orientation)
 
 
 def _at_once(scalar: Callable[..., Any], payload: Any, operands: Sequence[Any]) -> Any:
@@ -805,6 +876,32 @@ _MISSING = Operation(
     "An attribute that an option of a choice does not have; an error only where that option is drawn.",
     pure=False,
     faults=True,
+)
+
+
+def _nothing(call: Call) -> Any:
+    call.reject(np.ones(1, dtype=np.bool_))
+    return np.empty(1, dtype=object)
+
+
+_NOTHING = Operation(
+    "nothing",
+    always(Kind.OTHER),
+    _nothing,
+    "An element of an empty list; a sample that draws it is rejected.",
+    pure=False,
+    rejects=True,
+)
+_PLACE = Operation(
+    "place in a list",
+    always(Kind.INTEGER),
+    lambda call, draw: np.minimum((draw * call.payload).astype(np.int64), call.payload - 1),
+    "The place of an element that is drawn by a number of the unit interval; payload the length.",
+    bounds=lambda count, draw: Bounds(
+        np.clip(np.floor(draw.lower * count) - 1, 0, count - 1),
+        np.clip(np.floor(draw.upper * count) + 1, 0, count - 1),
+    ),
+    stacks=True,
 )
 _GETATTR = Operation(
     "attribute", always(Kind.OTHER), by_lane, "An attribute of a random value.", python=getattr

@@ -10,6 +10,7 @@ import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import islice
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -58,16 +59,14 @@ class Plan:
         return 8 * numbers + BODY_BYTES * self.bodies
 
 
-@dataclass(frozen=True, slots=True)
-class Task:
+class Task(NamedTuple):
     """Which scene to find: scene ``k`` of a seed."""
 
     seed: int
     k: int
 
 
-@dataclass(frozen=True, slots=True)
-class Accepted:
+class Accepted(NamedTuple):
     """A scene's values: one lane of a finished batch. ``alone`` makes a batch of one attempt, to look at its draws."""
 
     task: Task

@@ -1,0 +1,135 @@
+"""Which functions need not be called on each sample, and that the choices that they give instead are the same."""
+
+import math
+import random
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from scenic.language.errors import RejectionException
+from scenic.runtime.functions import max as language_max
+from scenic.runtime.purity import is_pure
+from tests.runtime.programs import draws, failure, scenario
+
+LIMIT = 3
+LIST: list[int] = []
+
+
+def _calls_itself(n: int) -> int:
+    return n if n < 1 else _calls_itself(n - 1)
+
+
+@pytest.mark.parametrize(
+    "function",
+    [max, len, math.sqrt, language_max, lambda x: x > 0.7, lambda x: [math.sin(i) + LIMIT for i in x if i], lambda p: abs(p.x)],
+)  # fmt: skip
+def test_functions_of_their_arguments_alone(function: Callable[..., Any]) -> None:
+    assert is_pure(function)
+
+
+@pytest.mark.parametrize(
+    "function",
+    [
+        random.random,
+        print,
+        LIST.append,
+        lambda x: LIST,
+        lambda x: x.append(1),
+        lambda x: random.random() > x,
+        lambda x, seen=LIST: seen,
+        lambda x: _calls_itself(x),
+        _calls_itself,
+        lambda x: __import__("os"),
+        (lambda y: lambda x: x + y)(2),
+    ],
+)
+def test_all_others_are_called_on_samples(function: Callable[..., Any]) -> None:
+    assert not is_pure(function)
+
+
+def test_a_store_into_an_argument_is_an_effect() -> None:
+    def store(x: list[int]) -> list[int]:
+        x[0] = 1
+        return x
+
+    assert not is_pure(store)
+
+
+CHOICES = """
+sizes = Uniform([1, 2, 3], [0.5, 1.5], [4])
+other = Uniform(*[[1], [2, 2]])
+"""
+
+
+@pytest.mark.parametrize(
+    ("text", "meaning"),
+    [
+        ("sizes[0]", lambda s: s[0]),
+        ("len(sizes)", len),
+        ("sizes[-1] + sizes[0]", lambda s: s[-1] + s[0]),
+        ("max(*sizes, 2)", lambda s: max(*s, 2)),
+        ("min(sizes)", min),
+        ("filter(lambda size: size > 0.7, sizes)", lambda s: [x for x in s if x > 0.7]),
+        ("filter(lambda size: size > 0.7, sizes)[0] * 2", lambda s: next(x for x in s if x > 0.7) * 2),
+    ],
+)
+def test_what_choices_among_lists_give(text: str, meaning: Callable[[list[float]], Any]) -> None:
+    for sizes, found in draws(f"{CHOICES}param x = (sizes, {text})", n=30):
+        assert found == meaning(sizes)
+        assert type(found) is type(meaning(sizes))
+
+
+def test_an_option_that_fails_does_so_only_where_it_is_drawn() -> None:
+    text = CHOICES + "require len(sizes) > 1\nparam x = sizes[1]"
+    assert set(draws(text, n=40)) == {2, 1.5}
+    assert isinstance(failure(CHOICES + "param x = sizes[1]", n=30), IndexError)
+
+
+def test_an_element_of_a_chosen_list() -> None:
+    text = "sizes = Uniform([1, 2], [], [5, 6, 7])\nx = Uniform(*sizes)\nparam x = (sizes, x)"
+    found = draws(text, n=400)
+    assert {(tuple(sizes), x) for sizes, x in found} == {((1, 2), 1), ((1, 2), 2), ((5, 6, 7), 5), ((5, 6, 7), 6), ((5, 6, 7), 7)}  # fmt: skip
+    share = sum(len(sizes) == 2 for sizes, _ in found) / len(found)
+    assert 0.4 < share < 0.6
+    with pytest.raises(RejectionException):
+        scenario("param x = Uniform(*Uniform([], []))").sample(1, seed=1, max_attempts=50)
+
+
+def test_scenes_do_not_share_what_a_call_gave() -> None:
+    first, second = draws("x = Uniform([1], [1])\nparam x = filter(lambda y: y > 0, x)", n=2)
+    first.append(2)
+    assert second == [1]
+
+
+COUNTING = """
+import random
+def late(x):
+    return random.random() if x > 0.9 else x
+x = Range(0, 1)
+f = distributionFunction(late)
+param x = (x, f(x))
+"""
+
+
+def test_code_that_draws_only_sometimes_has_the_draws_of_its_own_lane() -> None:
+    program = scenario(COUNTING)
+    together = [scene.params["x"] for scene in program.sample(60, seed=1)]
+    fresh = scenario(COUNTING)
+    alone = [next(iter(fresh.stream(1, seed=1, first=k))).params["x"] for k in range(60)]  # type: ignore[union-attr] # scenes
+    assert together == alone
+    assert any(x != y for x, y in together)
+
+
+def test_code_that_looks_at_the_generators_finds_them_seeded() -> None:
+    text = (
+        "import random\nf = distributionFunction(lambda x: hash(random.getstate()))\nparam x = f(Range(0, 1))"
+    )
+    assert draws(text, n=3) == draws(text, n=3)
+    assert len(set(draws(text, n=3))) == 3
+
+
+def test_generators_are_as_before() -> None:
+    before = random.getstate()
+    scenario(COUNTING).sample(20, seed=3)
+    assert random.getstate() == before
