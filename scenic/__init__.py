@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from scenic.compiler.parser import ParseResult, parse
     from scenic.formats.reading import read_scenes
     from scenic.formats.trajectory_reading import read_trajectory
+    from scenic.graph.points import GivenPoints, Sobol
     from scenic.language.errors import (
         InvalidScenarioError,
         ParseCompileError,
@@ -42,11 +43,15 @@ if TYPE_CHECKING:
     from scenic.runtime.scene import Scene
     from scenic.runtime.sensors import DepthSensor, RGBSensor, SSSensor
     from scenic.runtime.specifiers import specifier
+    from scenic.simulators.replays import Conditioned
 
 _HOMES = MappingProxyType(
     {
         "ParseResult": "scenic.compiler.parser",
         "parse": "scenic.compiler.parser",
+        "Conditioned": "scenic.simulators.replays",
+        "GivenPoints": "scenic.graph.points",
+        "Sobol": "scenic.graph.points",
         "InvalidScenarioError": "scenic.language.errors",
         "ParseCompileError": "scenic.language.errors",
         "RandomControlFlowError": "scenic.language.errors",
@@ -70,7 +75,9 @@ _HOMES = MappingProxyType(
 )
 
 __all__ = [
+    "Conditioned",
     "DepthSensor",
+    "GivenPoints",
     "InvalidScenarioError",
     "ParseCompileError",
     "ParseResult",
@@ -82,6 +89,7 @@ __all__ = [
     "Scene",
     "ScenicError",
     "ScenicSyntaxError",
+    "Sobol",
     "SpecifierError",
     "load",
     "parse",

@@ -126,7 +126,7 @@ class _Work:
         numbered = simulate_number(scenario, simulator, k=k, stuck_is_error=True, **self._running)
         if numbered.simulation is None:
             what = f"rejected ({numbered.tries} tried)" if numbered.has_scene else "no scene found"
-            return {"k": k, "missing": what}
+            return {"k": k, "missing": what, "rejections": numbered.rejections}
         about = {
             **course_document(numbered.simulation, k=k, tries=numbered.tries),
             "settings": self.settings(),
@@ -196,6 +196,11 @@ class _Work:
     help="Simulate a scene so often before giving it up as rejected.  [default: 20]",
 )
 @click.option(
+    "--sobol",
+    is_flag=True,
+    help="Spread scenes and simulations evenly: rows of Sobol's sequence rather than random points.",
+)
+@click.option(
     "--step-limit",
     metavar="T",
     type=float,
@@ -249,6 +254,7 @@ def simulate(
     max_steps: int,
     timestep: float | None,
     tries: int,
+    sobol: bool,
     step_limit: float,
     parameters: Mapping[str, Any],
     scenario: str | None,
@@ -293,6 +299,7 @@ def simulate(
         "timestep": timestep,
         "tries": tries,
         "stuck_after": step_limit,
+        **({"sobol": True} if sobol else {}),
     }
     work = _Work(loading, simulator, running, output, form, view is not None)
     work.load()
@@ -343,6 +350,8 @@ def _show(row: Mapping[str, Any]) -> int:
         return FINDINGS
     if "missing" in row:
         print(f"simulation {k}: {row['missing']}")
+        for reason, times in row["rejections"]:
+            print(f"  {reason}: {times} {'try' if times == 1 else 'tries'}")
         return NOT_ALL
     about = row["about"]
     print(f"simulation {k}: {about['steps']} steps, {about['reason']}")

@@ -8,6 +8,7 @@ So no draw depends on which others there are, in which order they are asked for,
 
 import hashlib
 from collections.abc import Mapping
+from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Final, Protocol, Self
 
@@ -94,6 +95,30 @@ class Source(Protocol):
         """Words that key further draws (of nodes that retry, of opaque calls), ``(addresses, lanes)``."""
 
 
+@dataclass(frozen=True, slots=True)
+class Lanes:
+    """Whose numbers those of a number of lanes are: attempts ``(n,)`` at scenes ``(n,)`` of seeds ``(n,)``.
+
+    ``seeds`` are words (`seed_word`), ``keys`` (`attempt_keys`) what the hash gives for all three.
+    """
+
+    seeds: Words
+    scenes: NDArray[np.int64]
+    attempts: NDArray[np.int64]
+    keys: Words
+
+    @classmethod
+    def of(cls, seed: int, scene: int, attempt: int) -> Self:
+        """One lane."""
+        seeds, scenes = np.array([seed_word(seed)]), np.array([scene], dtype=np.int64)
+        attempts = np.array([attempt], dtype=np.int64)
+        return cls(seeds, scenes, attempts, attempt_keys(scene_keys(seeds, scenes), attempts))
+
+    def take(self, lanes: NDArray[np.intp]) -> "Lanes":
+        """Some of the lanes."""
+        return Lanes(self.seeds[lanes], self.scenes[lanes], self.attempts[lanes], self.keys[lanes])
+
+
 class Counter:
     """The source that hashes: lane ``i`` has the key ``keys[i]``."""
 
@@ -101,12 +126,6 @@ class Counter:
 
     def __init__(self, keys: Words) -> None:
         self.keys = keys
-
-    @classmethod
-    def of(cls, seed: int, scene: int, attempt: int) -> Self:
-        """The source of one attempt at a scene, as one lane."""
-        keys = scene_keys(np.array([seed_word(seed)]), np.array([scene], dtype=np.int64))
-        return cls(attempt_keys(keys, np.array([attempt], dtype=np.int64)))
 
     def __len__(self) -> int:
         return len(self.keys)

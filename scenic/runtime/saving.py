@@ -12,7 +12,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from scenic.graph.draws import Counter, Points
+from scenic.graph.draws import Counter, Points, Source
 from scenic.graph.node import Graph, Node
 from scenic.language.errors import SerializationError
 from scenic.runtime.sampling.engine import Accepted, Task
@@ -106,7 +106,7 @@ def source_of(saved: SavedScene, graph: Graph) -> Points:
     return fixed_draws(saved.numbers, saved.words, Counter(np.zeros(1, dtype=np.uint64)))
 
 
-def fixed_draws(numbers: Mapping[int, float], words: Mapping[int, int], rest: Counter) -> Points:
+def fixed_draws(numbers: Mapping[int, float], words: Mapping[int, int], rest: Source) -> Points:
     """The source in which some draws are fixed in every lane."""
     lanes = len(rest)
     return Points(

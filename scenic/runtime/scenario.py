@@ -3,17 +3,21 @@
 import random
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from functools import partial
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from scenic.graph.domain import Domain
+from scenic.graph.draws import Counter, Lanes, Source
 from scenic.graph.node import Graph
+from scenic.graph.points import PointSet
 from scenic.language.errors import Located, RejectionException, SamplingError, SerializationError, annotate
+from scenic.language.spans import Span
 from scenic.runtime.objects import Object
 from scenic.runtime.program import Program
 from scenic.runtime.regions.base import Region, Workspace, everywhere
 from scenic.runtime.samples import dependencies
+from scenic.runtime.sampling.driving import driven
 from scenic.runtime.sampling.engine import Accepted, CandidateError, Engine, Task
 from scenic.runtime.sampling.foresight import SEED_BITS, Foreseen
 from scenic.runtime.sampling.planning import Outline, outline
@@ -29,6 +33,14 @@ OPAQUE_ATTEMPTS = 1000
 
 DEFAULT_ATTEMPTS = 100_000
 """Candidates tried for one scene before giving up, unless the caller says otherwise."""
+
+
+@dataclass(frozen=True, slots=True)
+class Axis:
+    """An axis of the unit cube: one draw of the program, and where it stands."""
+
+    address: int
+    span: Span | None
 
 
 class Scenario:
@@ -100,6 +112,13 @@ class Scenario:
         return dict(self._program.parameters)
 
     @property
+    def axes(self) -> tuple[Axis, ...]:
+        """The axes of the unit cube that scenes are drawn from: the columns of `scenic.GivenPoints`."""
+        graph = self.outline.graph
+        spans = (node.span if isinstance(node.span, Span) else None for node in graph.axes)
+        return tuple(Axis(graph.address(node), span) for node, span in zip(graph.axes, spans, strict=True))
+
+    @property
     def requirements(self) -> tuple[Any, ...]:
         """The ``require`` statements, in program order."""
         return tuple(self._program.requirements)
@@ -127,6 +146,7 @@ class Scenario:
         max_attempts: int | None = None,
         time_limit: float | None = None,
         lanes: int | None = None,
+        source: PointSet | None = None,
     ) -> Iterator[Scene | Exhausted]:
         """Scenes ``first`` to ``first + n`` of a seed, in order, as they are found.
 
@@ -137,6 +157,9 @@ class Scenario:
             max_attempts: candidates tried for one scene before it is given up as `Exhausted`.
             time_limit: seconds for all of them; scenes not found by then are `Exhausted`.
             lanes: candidates evaluated at a time. Changes speed and memory, never the scenes.
+            source: where random numbers come from, if they are not hashed: `scenic.Sobol` for scenes that are spread evenly,
+                `scenic.GivenPoints` for points of the cube that somebody chose. The words that key draws which take tries
+                are hashed all the same.
 
         Raises:
             SamplingError: if a requirement or property fails on a candidate; an exception of the program's own code keeps
@@ -145,7 +168,7 @@ class Scenario:
         """
         tasks = [Task(seed, k) for k in range(first, first + n)]
         deadline = None if time_limit is None else time.monotonic() + time_limit
-        yield from self._find(tasks, max_attempts=max_attempts, deadline=deadline, lanes=lanes)
+        yield from self._find(tasks, max_attempts=max_attempts, deadline=deadline, lanes=lanes, source=source)
 
     def _find(
         self,
@@ -154,14 +177,17 @@ class Scenario:
         max_attempts: int | None = None,
         deadline: float | None = None,
         lanes: int | None = None,
+        source: PointSet | None = None,
     ) -> Iterator[Scene | Exhausted]:
-        engine = self._engine
+        engine = self._engine_of(source)
         if self._impossible:
             report = engine.report(tasks[0], PROOF_CANDIDATES)
             for task in tasks:
                 yield Exhausted(task.seed, task.k, 0, "impossible", report)
             return
         limit = DEFAULT_ATTEMPTS if max_attempts is None else max_attempts
+        if source is not None and not source.retries:
+            limit = 1
         nodes = engine.plan.graph.nodes
         if not any(node.is_axis for node in nodes):
             # Every attempt is the same, unless the program's own functions draw random numbers.
@@ -187,8 +213,9 @@ class Scenario:
         max_attempts: int | None = None,
         time_limit: float | None = None,
         lanes: int | None = None,
+        source: PointSet | None = None,
     ) -> list[Scene]:
-        """``n`` scenes of a seed (drawn from Python's ``random`` if not given).
+        """``n`` scenes of a seed (drawn from Python's ``random`` if not given); ``source`` as of `stream`.
 
         Raises:
             RejectionException: if a scene is not found within the limits; the message lists what rejected it.
@@ -199,7 +226,7 @@ class Scenario:
         chosen = random.getrandbits(SEED_BITS) if seed is None else seed
         scenes = []
         for result in self.stream(
-            n, seed=chosen, max_attempts=max_attempts, time_limit=time_limit, lanes=lanes
+            n, seed=chosen, max_attempts=max_attempts, time_limit=time_limit, lanes=lanes, source=source
         ):
             if isinstance(result, Exhausted):
                 raise RejectionException(exhaustion_message(result))
@@ -364,8 +391,20 @@ class Scenario:
             nodes = Graph(dependencies(values)).nodes
             numbers, words = draws_of(scene.accepted, nodes)
             self._condition = ({**self._condition[0], **numbers}, {**self._condition[1], **words})
-        self._engine = Engine(self.outline.plan(), partial(fixed_draws, *self._condition))
+        self._engine = Engine(self.outline.plan(), self._conditioned(lambda lanes: Counter(lanes.keys)))
         self._foreseen = Foreseen()
+
+    def _conditioned(self, source: Callable[[Lanes], Source]) -> Callable[[Lanes], Source]:
+        """A source in which what `conditionOn` says is fixed."""
+        if not any(self._condition):
+            return source
+        return lambda lanes: fixed_draws(*self._condition, source(lanes))
+
+    def _engine_of(self, points: PointSet | None) -> Engine:
+        """What samples by rows of a point set; the usual engine where there is none."""
+        if points is None:
+            return self._engine
+        return self._engine.driven(self._conditioned(driven(points, self._engine.plan.graph)))
 
     def _scene(self, accepted: Accepted) -> Scene:
         return Scene(accepted, self._family)

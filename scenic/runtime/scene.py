@@ -106,6 +106,11 @@ class Scene:
         return self.accepted.batch.value(node, self.accepted.lane)
 
     @property
+    def dimension(self) -> int:
+        """How many axes the unit cube has that scenes of the program are drawn from."""
+        return self.accepted.batch.graph.dimension
+
+    @property
     def program(self) -> Program:
         """What the scene is a sample of."""
         return self._family.program

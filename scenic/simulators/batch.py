@@ -1,10 +1,13 @@
 """Many simulations of a scenario, each a function of seed and number alone."""
 
+from collections import Counter
 from dataclasses import dataclass
 from importlib import import_module
 from typing import Any
 
+from scenic.graph.points import Sobol
 from scenic.language.errors import Located
+from scenic.runtime.dynamics.driving import driven
 from scenic.runtime.sampling.report import Exhausted
 from scenic.runtime.scenario import Scenario
 from scenic.simulators.simulation import Simulation
@@ -28,6 +31,8 @@ class Numbered:
     tries: int
     simulation: Simulation | None
     has_scene: bool = True
+    rejections: tuple[tuple[str, int], ...] = ()
+    """What rejected the tries, and how many each; the most frequent first."""
 
 
 def choose_simulator(name: str | None, scenario: Scenario) -> Simulator:
@@ -66,15 +71,36 @@ def simulate_number(
     k: int,
     tries: int = 1,
     max_attempts: int | None = None,
+    sobol: bool = False,
     **options: Any,
 ) -> Numbered:
-    """Simulate scene ``k`` of a seed, again with other draws while it is rejected; ``options`` are those of `simulate`."""
-    (scene,) = scenario.stream(1, seed=seed, first=k, max_attempts=max_attempts)
+    """Simulate scene ``k`` of a seed, again with other draws while it is rejected; ``options`` are those of `simulate`.
+
+    ``sobol`` says that scenes and simulations are rows of Sobol's sequence.
+    """
+    points = Sobol() if sobol else None
+    (scene,) = scenario.stream(1, seed=seed, first=k, max_attempts=max_attempts, source=points)
     if isinstance(scene, Exhausted):
         return Numbered(k, seed, 0, None, has_scene=False)
+    reasons: Counter[str] = Counter()
     for number in range(1, tries + 1):
         key = f"{seed}:{k}:{number}".encode()
-        done = simulator.simulate(scene, name=f"{k}", key=key, keep_poses=True, robustness=True, **options)
+        if points is not None:
+            options["source"] = driven(points, scene.dimension, seed=seed, scene=k, attempt=number - 1)
+        done = simulator.simulate(
+            scene,
+            name=f"{k}",
+            key=key,
+            keep_poses=True,
+            robustness=True,
+            onRejection=lambda error: reasons.update([_reason(error)]),
+            **options,
+        )
         if done is not None:
-            return Numbered(k, seed, number, done)
-    return Numbered(k, seed, tries, None)
+            return Numbered(k, seed, number, done, rejections=tuple(reasons.most_common()))
+    return Numbered(k, seed, tries, None, rejections=tuple(reasons.most_common()))
+
+
+def _reason(error: Exception) -> str:
+    """What rejected a simulation, in a few words."""
+    return str(error) or f"`raise {type(error).__name__}` in the program"

@@ -2,15 +2,16 @@
 
 import random
 import struct
-from collections.abc import Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Final
 
 from scenic.language.errors import DivergenceError, SerializationError
-from scenic.runtime.dynamics.draws import Draws, Recorded, Seeded, Source
+from scenic.runtime.dynamics.draws import Draw, Draws, Recorded, Seeded, Source
+from scenic.runtime.dynamics.driving import Sourcing, kept
 from scenic.runtime.values import Orientation, Vector, is_number
 
-__all__ = ["Replay", "Tape", "fresh_key"]
+__all__ = ["Conditioned", "Replay", "Tape", "fresh_key"]
 
 _MAGIC: Final = b"SCR1"
 
@@ -66,6 +67,35 @@ class Replay:
         return Replay(key, draws, states)
 
 
+class Conditioned:
+    """Draws of an earlier simulation where they are wanted, new ones elsewhere; for the ``source`` of `Simulator.simulate`.
+
+    Args:
+        replay: the bytes of the earlier simulation's `getReplay`.
+        until: only draws of the steps before this one are kept: all that happened before happens again.
+        agents: only draws of the behaviors of these objects are kept, by their places in the simulation; ``None`` among them
+            stands for scenarios and monitors.
+        keep: only draws for which this holds are kept; it is asked when something is drawn.
+
+    What a new simulation draws where the earlier one did not is new in any case.
+
+    """
+
+    def __init__(
+        self,
+        replay: bytes,
+        *,
+        until: int | None = None,
+        agents: Collection[int | None] | None = None,
+        keep: Callable[[Draw], bool] | None = None,
+    ) -> None:
+        self._sourcing = kept(dict(Replay.decoded(replay).draws), until=until, agents=agents, keep=keep)
+
+    def __call__(self, rest: Source) -> Source:
+        """The source that gives them, and numbers of ``rest``."""
+        return self._sourcing(rest)
+
+
 class Tape:
     """Plays an earlier simulation back, if there is one, and records the present one."""
 
@@ -78,6 +108,7 @@ class Tape:
         keep_states: bool,
         tolerance: float,
         go_on: bool,
+        sourcing: Sourcing | None = None,
     ) -> None:
         self._earlier = earlier
         self._key = key
@@ -91,17 +122,18 @@ class Tape:
         self.draws: Draws | None = None
         self.replaying = earlier is not None
         """Whether the earlier simulation is still followed."""
-        self._seeded = Seeded(key)
+        seeded = Seeded(key)
+        self._others: Source = seeded if sourcing is None else sourcing(seeded)
         self._recorded = (
-            None if earlier is None else Recorded(dict(earlier.draws), self._seeded, self._strayed)
+            None if earlier is None else Recorded(dict(earlier.draws), self._others, self._strayed)
         )
         self.source: Source = _Switch(self)
 
-    def draw(self, place: int) -> float:
+    def draw(self, place: int, what: Draw) -> float:
         """The number at an address."""
         if self._recorded is None or not self.replaying:
-            return self._seeded.draw(place)
-        return self._recorded.draw(place)
+            return self._others.draw(place, what)
+        return self._recorded.draw(place, what)
 
     @property
     def key(self) -> bytes:
@@ -169,9 +201,9 @@ class _Switch(Seeded):
         super().__init__(tape.key)
         self._tape = tape
 
-    def draw(self, place: int) -> float:
+    def draw(self, place: int, what: Draw) -> float:
         """The number at an address."""
-        return self._tape.draw(place)
+        return self._tape.draw(place, what)
 
 
 def _numbers(value: Any) -> list[float] | None:

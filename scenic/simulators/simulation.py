@@ -17,6 +17,7 @@ from scenic.language.errors import (
     annotate,
 )
 from scenic.runtime.dynamics.copies import Copies
+from scenic.runtime.dynamics.driving import Sourcing
 from scenic.runtime.dynamics.run import Run
 from scenic.runtime.ownership import PRELUDE
 from scenic.runtime.randomness import preserved, restore, seed_globals, states
@@ -48,6 +49,7 @@ class Simulation(ABC):
         continueAfterDivergence: whether to go on with other draws then, rather than to raise `DivergenceError`.
         verbosity: what to print, 3 for actions.
         key: decides all random draws; drawn from Python's ``random`` if ``None``.
+        source: what random numbers come from, given the source that hashes with the key; that one if ``None``.
         robustness: whether to compute by how much requirements hold.
         stuck_after: seconds that the program's code may run in one step before `StuckBehaviorWarning` names its line.
         stuck_is_error: raise `StuckBehaviorError` then.
@@ -82,6 +84,7 @@ class Simulation(ABC):
         continueAfterDivergence: bool = False,
         verbosity: int = 0,
         key: bytes | None = None,
+        source: Sourcing | None = None,
         robustness: bool = False,
         stuck_after: float = 10.0,
         stuck_is_error: bool = False,
@@ -120,6 +123,7 @@ class Simulation(ABC):
             keep_states=enableDivergenceCheck,
             tolerance=divergenceTolerance,
             go_on=continueAfterDivergence,
+            sourcing=source,
         )
         program = scene.program
         self._run = Run(

@@ -1,9 +1,12 @@
 """Simulators: what runs scenes."""
 
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 from typing import Any
 
+from scenic.graph.points import PointSet
 from scenic.language.errors import GuardViolation, RejectionException, RejectSimulationException
+from scenic.runtime.dynamics.driving import Sourcing, driven
 from scenic.runtime.scene import Scene
 from scenic.simulators.simulation import Simulation
 
@@ -32,6 +35,8 @@ class Simulator(ABC):
         divergenceTolerance: float = 0,
         continueAfterDivergence: bool = False,
         allowPickle: bool = False,
+        source: PointSet | Sourcing | None = None,
+        onRejection: Callable[[Exception], None] | None = None,
         **options: Any,
     ) -> Simulation | None:
         """Run a scene until a simulation is not rejected; ``None`` if all are.
@@ -50,12 +55,17 @@ class Simulator(ABC):
             divergenceTolerance: by how much numbers may differ.
             continueAfterDivergence: go on with other draws.
             allowPickle: has no effect.
+            source: what random numbers come from, if they are not hashed: `scenic.Sobol`, `scenic.GivenPoints` (the row of the
+                scene, behind the numbers of its axes, in the order in which they are drawn) or `scenic.Conditioned`.
+            onRejection: called with what rejected a simulation, each time.
             options: for the simulator.
 
         """
         if getattr(self, "_destroyed", False):
             raise RuntimeError("the simulator has been destroyed")
         for iteration in range(1, maxIterations + 1):
+            if source is not None:
+                options["source"] = _sourcing(source, scene, iteration - 1)
             try:
                 return self._runSingleSimulation(
                     scene,
@@ -75,6 +85,8 @@ class Simulator(ABC):
             except (RejectSimulationException, RejectionException, GuardViolation) as error:
                 if isinstance(error, GuardViolation) and raiseGuardViolations:
                     raise
+                if onRejection is not None:
+                    onRejection(error)
                 if verbosity is not None and verbosity >= 2:
                     print(f"  Rejected simulation {iteration}: {error}")  # noqa: T201 - asked for by the user
         return None
@@ -102,3 +114,10 @@ class Simulator(ABC):
     def destroy(self) -> None:
         """Clean up; the simulator cannot be used any more."""
         self._destroyed = True
+
+
+def _sourcing(source: PointSet | Sourcing, scene: Scene, attempt: int) -> Sourcing:
+    if callable(source):
+        return source
+    task = scene.accepted.task
+    return driven(source, scene.dimension, seed=task.seed, scene=task.k, attempt=attempt)

@@ -108,6 +108,42 @@ def test_rejected_simulations(folder: Path) -> None:
     result = run(folder, "rejected.scenic", "--seed", 3, "--time", 4, "--tries", 2)
     assert result.returncode == 3
     assert "simulation 0: rejected (2 tried)" in result.stdout
+    assert "requirement on line" in result.stdout
+    assert "2 tries" in result.stdout
+
+
+def test_what_rejected_simulations_is_counted(folder: Path) -> None:
+    (folder / "often.scenic").write_text(
+        "behavior B():\n"
+        "    x = Range(0, 1)\n"
+        "    require x < 0.5\n"
+        "    do C()\n"
+        "behavior C():\n    precondition: False\n    wait\n"
+        "ego = new Object with behavior B\n"
+    )
+    result = run(folder, "often.scenic", "-n", 1, "--seed", 3, "--time", 4, "--tries", 9)
+    assert result.returncode == 3
+    head, *reasons = result.stdout.splitlines()
+    assert head == "simulation 0: rejected (9 tried)"
+    assert sum(int(line.rpartition(": ")[2].split()[0]) for line in reasons) == 9
+    assert sorted(line.rpartition(":")[0].strip() for line in reasons) == [
+        "requirement on line 3 is violated",
+        "violated precondition of C() on line 6",
+    ]
+
+
+def test_simulations_by_rows_of_a_sequence(folder: Path) -> None:
+    """They are others than those at random, evenly spread, the same whatever the number of processes, and kept apart."""
+    options = ("moving.scenic", "-n", 4, "--seed", 3, "--time", 4)
+    assert run(folder, *options, "--sobol", "-o", "even").returncode == 0
+    assert run(folder, *options, "--sobol", "-j", 2, "-o", "again").returncode == 0
+    assert run(folder, *options, "-o", "random").returncode == 0
+    kept = {name: sorted((folder / name).iterdir()) for name in ("even", "again", "random")}
+    even, again, other = ([path.read_text() for path in kept[name]] for name in kept)
+    assert even == again
+    assert not set(even) & set(other)
+    assert run(folder, *options, "-o", "even").returncode == 0
+    assert [path.read_text() for path in kept["even"]] == other
 
 
 def test_one_that_fails_leaves_the_others(folder: Path) -> None:

@@ -7,7 +7,7 @@ import pytest
 import shapely
 import trimesh
 
-from scenic.graph.draws import Counter, open_unit
+from scenic.graph.draws import Counter, Lanes, open_unit
 from scenic.runtime.geometry import body_points, primitives
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.poses import Poses
@@ -140,7 +140,7 @@ def test_keys_differ_in_seed_scene_attempt_and_address() -> None:
     ]
     found = set()
     for seed, scene, attempt, place in variants:
-        (row,) = Counter.of(seed, scene, attempt).uniforms(np.array([place], dtype=np.uint64))
+        (row,) = Counter(Lanes.of(seed, scene, attempt).keys).uniforms(np.array([place], dtype=np.uint64))
         found.add(float(row[0]))
     assert len(found) == len(variants)
 

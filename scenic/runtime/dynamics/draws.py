@@ -7,17 +7,34 @@ simulation can be repeated, replayed from what was drawn, or driven by numbers f
 
 import hashlib
 from collections.abc import Callable, Hashable, Mapping
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 from scenic.graph.draws import address
 
-__all__ = ["Draws", "Recorded", "Seeded", "Source"]
+__all__ = ["Draw", "Draws", "Recorded", "Seeded", "Source"]
+
+
+class Draw(NamedTuple):
+    """A draw of a simulation in words: who draws, where and when.
+
+    ``scenario`` numbers the running scenarios in the order in which they were made ready, from 1, the top-level one; ``agent`` is
+    the place of the object whose behavior draws among those of the simulation, ``None`` for scenarios and monitors.
+    ``line`` and ``column`` are the text of the line that draws and the place in it; ``occurrence`` counts the draws that have
+    all these in common, and ``step`` those of the simulation.
+    """
+
+    scenario: int
+    agent: int | None
+    line: str
+    column: int
+    occurrence: int
+    step: int
 
 
 class Source(Protocol):
     """Gives numbers from (0, 1) by address."""
 
-    def draw(self, place: int) -> float:
+    def draw(self, place: int, what: Draw) -> float:
         """The number at an address of 64 bits."""
 
     def word(self, place: int) -> int:
@@ -35,7 +52,7 @@ class Seeded:
     def __init__(self, key: bytes) -> None:
         self.key = key
 
-    def draw(self, place: int) -> float:
+    def draw(self, place: int, what: Draw) -> float:
         """The number at an address."""
         # 52 bits and a half: never 0 or 1.
         return ((self.word(place) >> 12) + 0.5) * 2.0**-52
@@ -63,7 +80,7 @@ class Recorded:
         """64 bits at an address."""
         return self._otherwise.word(place)
 
-    def draw(self, place: int) -> float:
+    def draw(self, place: int, what: Draw) -> float:
         """The number at an address."""
         number = self._numbers.pop(place, None)
         if number is not None:
@@ -71,7 +88,7 @@ class Recorded:
         if self._numbers:
             # Not exhausted, and yet something else is drawn: the replay goes another way.
             self._missing()
-        return self._otherwise.draw(place)
+        return self._otherwise.draw(place, what)
 
 
 class Draws:
@@ -79,14 +96,23 @@ class Draws:
 
     Args:
         source: of the numbers.
-        where: who draws, and where in the program, as far as the simulation knows.
+        where: the scenario and the agent that draw, and the name of the place in the program (text of the line, column).
+        now: the step of the simulation.
         keep: whether to remember what was drawn.
 
     """
 
-    def __init__(self, source: Source, where: Callable[[], Hashable], *, keep: bool = True) -> None:
+    def __init__(
+        self,
+        source: Source,
+        where: Callable[[], tuple[int, int | None, tuple[str, int] | None]],
+        now: Callable[[], int],
+        *,
+        keep: bool = True,
+    ) -> None:
         self._source = source
         self._where = where
+        self._now = now
         self._counts: dict[Hashable, int] = {}
         self._keep = keep
         self.made: list[tuple[int, float]] = []
@@ -98,7 +124,9 @@ class Draws:
         count = self._counts.get(where, 0)
         self._counts[where] = count + 1
         place = address(where, count)
-        number = self._source.draw(place)
+        scenario, agent, name = where
+        what = Draw(scenario, agent, *(name or ("", 0)), count, self._now())
+        number = self._source.draw(place, what)
         if self._keep:
             self.made.append((place, number))
         return number

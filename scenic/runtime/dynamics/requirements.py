@@ -54,7 +54,7 @@ class Followed:
                 self._signals.append([margin(atom) for atom in self._required.atoms])
             verdict = self._monitor.add(self._holds)
         if verdict is Verdict.FALSE:
-            raise RejectSimulationException(f"{self._required.label} is violated")
+            raise RejectSimulationException(f"{self._words} is violated")
 
     def _holds(self, index: int) -> bool:
         return bool(self._required.atoms[index]())
@@ -62,7 +62,13 @@ class Followed:
     def finish(self) -> None:
         """The trace ends. Raises `RejectSimulationException` if the requirement does not hold on it."""
         if self._monitor.verdict is not None and not self._monitor.verdict:
-            raise RejectSimulationException(f"{self._required.label} does not hold at the end")
+            raise RejectSimulationException(f"{self._words} does not hold at the end")
+
+    @property
+    def _words(self) -> str:
+        """The requirement in a message: with its line, if it has a name of its own."""
+        label, span = self._required.label, self._required.span
+        return label if span is None or label.endswith(f"line {span.line}") else f"{label} (line {span.line})"
 
     @property
     def outcome(self) -> Outcome:

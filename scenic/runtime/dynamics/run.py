@@ -1,7 +1,7 @@
 """One simulation as the language sees it: what runs, what has been drawn, and the procedure of a step (section 12.7)."""
 
 import warnings
-from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from typing import Any, Protocol
 
@@ -113,7 +113,7 @@ class Run:
         self.simulation = simulation
         self.program = program
         self.copies = copies
-        self.draws = Draws(source, self._where, keep=keep_draws)
+        self.draws = Draws(source, self._where, lambda: simulation.currentTime, keep=keep_draws)
         self.context = RunContext(self, locate, name, mode_2d=mode_2d)
         self.wants_robustness = robustness
         self.scenarios: list[ScenarioActivation] = []
@@ -142,7 +142,7 @@ class Run:
         self._count += 1
         return self._count
 
-    def _where(self) -> Hashable:
+    def _where(self) -> tuple[int, int | None, Any]:
         agent = None if self.agent is None else self._numbers.get(id(self.agent))
         return (self.current.number, agent, self.context.place_name())
 

@@ -8,6 +8,7 @@ are fixed in advance by their addresses (`scenic.graph.draws`).
 
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from copy import copy
 from dataclasses import dataclass
 from itertools import islice
 from typing import NamedTuple
@@ -17,7 +18,7 @@ from numpy.typing import NDArray
 
 from scenic.graph.batch import Batch
 from scenic.graph.domain import Domain
-from scenic.graph.draws import Counter, Source, Words, address, attempt_keys, scene_keys, seed_word
+from scenic.graph.draws import Counter, Lanes, Source, address, attempt_keys, scene_keys, seed_word
 from scenic.graph.kinds import Codec
 from scenic.graph.node import Graph, Node
 from scenic.graph.schedule import Scheduler
@@ -111,6 +112,7 @@ class _Pending:
 
     number: int
     task: Task
+    seed: np.uint64
     key: np.uint64
     attempts: int = 0
     inactive: NDArray[np.bool_] | None = None
@@ -121,7 +123,7 @@ class Engine:
 
     Args:
         plan: what to sample.
-        conditioned: the draws of lanes, with those fixed that are to be the same in all scenes.
+        source: gives the draws of lanes; by default they are hashed.
         grouped: whether alike nodes are evaluated together; changes speed, never a scene.
 
     """
@@ -129,12 +131,12 @@ class Engine:
     def __init__(
         self,
         plan: Plan,
-        conditioned: Callable[[Counter], Source] = lambda source: source,
+        source: Callable[[Lanes], Source] = lambda lanes: Counter(lanes.keys),
         *,
         grouped: bool = True,
     ) -> None:
         self.plan = plan
-        self._conditioned = conditioned
+        self._source = source
         self.candidates = 0
         """Candidates tried so far."""
         self.passed = 0
@@ -193,6 +195,12 @@ class Engine:
                 yield result
                 upcoming += 1
 
+    def driven(self, source: Callable[[Lanes], Source]) -> "Engine":
+        """The engine with other draws; it knows, and learns, what rounds and checks cost together with this one."""
+        other = copy(self)
+        other._source = source
+        return other
+
     # One round
 
     def _round(
@@ -211,7 +219,10 @@ class Engine:
         starts = np.array([scene.attempts for scene in active], dtype=np.int64)
         attempts = starts[owner] + np.arange(len(owner)) - firsts[owner]
         keys = np.array([scene.key for scene in active], dtype=np.uint64)
-        batch = self._batch(self._conditioned(Counter(attempt_keys(keys[owner], attempts))))
+        seeds = np.array([scene.seed for scene in active], dtype=np.uint64)
+        numbers = np.array([scene.task.k for scene in active], dtype=np.int64)
+        lanes = Lanes(seeds[owner], numbers[owner], attempts, attempt_keys(keys[owner], attempts))
+        batch = self._batch(self._source(lanes))
         inactive = None
         if self._soft:
             inactive = np.array([scene.inactive for scene in active], dtype=np.bool_)[owner]
@@ -302,7 +313,10 @@ class Engine:
         words = {seed: seed_word(seed) for seed in {task.seed for _, task in tasks}}
         seeds = np.array([words[task.seed] for _, task in tasks], dtype=np.uint64)
         keys = scene_keys(seeds, np.array([task.k for _, task in tasks], dtype=np.int64))
-        scenes = [_Pending(number, task, key) for (number, task), key in zip(tasks, keys, strict=True)]
+        scenes = [
+            _Pending(number, task, seed, key)
+            for (number, task), seed, key in zip(tasks, seeds, keys, strict=True)
+        ]
         if self._soft and scenes:
             inactive = Counter(keys).uniforms(self._soft_addresses) >= self._chances[:, np.newaxis]
             for lane, scene in enumerate(scenes):
@@ -314,7 +328,7 @@ class Engine:
 
     def source(self, task: Task, attempt: int) -> Source:
         """The random numbers of one attempt at a scene."""
-        return self._conditioned(Counter.of(task.seed, task.k, attempt))
+        return self._source(Lanes.of(task.seed, task.k, attempt))
 
     def _error(self, check: Check, scene: _Pending, attempt: int) -> CandidateError:
         """The error of a lane, found by evaluating it alone."""
@@ -335,13 +349,12 @@ class Engine:
         which the engine happens to make the checks.
         """
         count = max(1, min(attempts, REPORT_CANDIDATES))
-        key: Words = scene_keys(np.array([seed_word(task.seed)]), np.array([task.k], dtype=np.int64))
         size = self._pace.most
         batches = [
             [
                 part
                 for check in self.plan.checks
-                for part in check.parts(self._batch(self._conditioned(Counter(attempt_keys(key, numbers)))))
+                for part in check.parts(self._batch(self._source(_attempts(task, numbers))))
             ]
             for numbers in np.split(np.arange(count, dtype=np.int64), range(size, count, size))
         ]
@@ -354,6 +367,13 @@ class Engine:
             for part, mine, only in zip(batches[0], rejected, alone, strict=True)
         ]
         return RejectionReport(count, tuple(row for row in rows if row.rejected > 0))
+
+
+def _attempts(task: Task, numbers: NDArray[np.int64]) -> Lanes:
+    """Lanes of some attempts at a scene."""
+    seeds = np.repeat(seed_word(task.seed), len(numbers))
+    scenes = np.repeat(np.int64(task.k), len(numbers))
+    return Lanes(seeds, scenes, numbers, attempt_keys(scene_keys(seeds, scenes), numbers))
 
 
 def _unless(verdict: Verdict, inactive: NDArray[np.bool_]) -> Verdict:

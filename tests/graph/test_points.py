@@ -1,0 +1,91 @@
+"""Sobol's sequence beside SciPy's own, the laws of its scrambling, and points that are given."""
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from scipy.stats import chisquare, kstest, qmc
+
+from scenic.graph.draws import Lanes
+from scenic.graph.points import GivenPoints, Sobol
+
+FALSE_ALARM = 1e-6
+
+
+def lanes(count: int, *, seed: int = 0, first: int = 0, attempt: int = 0) -> Lanes:
+    parts = [Lanes.of(seed, first + k, attempt) for k in range(count)]
+    columns = ("seeds", "scenes", "attempts", "keys")
+    return Lanes(*(np.concatenate([getattr(part, name) for part in parts]) for name in columns))
+
+
+def rows(count: int, dimensions: int, **options: int) -> NDArray[np.float64]:
+    return Sobol().of_scenes(np.arange(dimensions), dimensions, lanes(count, **options)).T
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_scrambled_rows_are_as_evenly_spread_as_the_sequence(seed: int) -> None:
+    """Owen's scrambling keeps elementary intervals: each cell of a grid of 2**m rows holds one row."""
+    found = rows(1024, 6, seed=seed)
+    for first in range(5):
+        pair = found[:, [first, first + 1]]
+        assert qmc.discrepancy(pair) < 0.05 * qmc.discrepancy(np.random.default_rng(seed).random((1024, 2)))
+    for column in found.T:
+        assert len(np.unique(np.floor(column * 1024))) == 1024
+
+
+def test_a_number_has_the_uniform_law_whatever_its_row() -> None:
+    """Over seeds: a row of a scrambled sequence is a point like any other."""
+    found = np.array([rows(1, 2, seed=seed, first=5)[0] for seed in range(3000)])
+    for column in found.T:
+        assert kstest(column, "uniform").pvalue > FALSE_ALARM
+    cells = np.floor(found * 5) @ [5, 1]
+    assert chisquare(np.bincount(cells.astype(int), minlength=25)).pvalue > FALSE_ALARM
+
+
+def test_candidates_seeds_and_simulations_are_independent() -> None:
+    sobol, scenes, again = Sobol(), lanes(1024), lanes(1024, attempt=1)
+    axis = np.array([0])
+    columns = [
+        sobol.of_scenes(axis, 1, scenes)[0],
+        sobol.of_scenes(axis, 1, again)[0],
+        sobol.of_scenes(axis - 1, 1, scenes)[0],
+        sobol.of_simulations(axis, 1, scenes)[0],
+        sobol.of_simulations(axis, 1, again)[0],
+    ]
+    for place, one in enumerate(columns):
+        for other in columns[:place]:
+            # Jointly even, too: what is drawn when the first candidate was rejected depends in no way on why.
+            cells = np.floor(one * 4) * 4 + np.floor(other * 4)
+            assert np.bincount(cells.astype(int), minlength=16).tolist() == pytest.approx([64] * 16, abs=24)
+    other_seed = sobol.of_scenes(axis, 1, lanes(1024, seed=1))[0]
+    assert not np.array_equal(columns[0], other_seed)
+
+
+def test_rows_do_not_depend_on_company() -> None:
+    sobol, axes = Sobol(), np.arange(40)
+    whole = sobol.of_scenes(axes, 40, lanes(300))
+    alone = Sobol().of_scenes(np.array([39, 3]), 40, lanes(1, first=250))
+    assert alone.tolist() == whole[[39, 3], 250:251].tolist()
+    late = sobol.of_scenes(axes[:2], 40, lanes(2, first=2**20 - 1))
+    assert len(np.unique(late)) == 4
+    assert Sobol().of_scenes(axes[:2], 40, lanes(1, first=2**20))[:, 0].tolist() == late[:, 1].tolist()
+
+
+def test_what_has_no_dimension_is_left_to_others() -> None:
+    found = Sobol().of_scenes(np.array([0, 8000]), 10_000, lanes(1, attempt=1))
+    assert np.isnan(found).tolist() == [[False], [True]]
+    draws = Sobol().of_simulations(np.array([0, 511, 512]), 10_000, lanes(1))
+    assert np.isnan(draws).tolist() == [[False], [False], [True]]
+
+
+def test_given_points() -> None:
+    points = GivenPoints([[0.1, 0.2], [0.3, 0.4]])
+    assert points.of_scenes(np.array([1, 0]), 2, lanes(2)).tolist() == [[0.2, 0.4], [0.1, 0.3]]
+    assert points.of_simulations(np.array([0]), 1, lanes(2)).tolist() == [[0.2, 0.4]]
+    assert np.isnan(points.of_simulations(np.array([1]), 1, lanes(2))).all()
+    assert np.isnan(points.of_scenes(np.array([-1]), 2, lanes(2))).all()
+    assert len(points) == 2
+    with pytest.raises(IndexError, match="no row for scene 2: 2 rows"):
+        points.of_scenes(np.array([0]), 1, lanes(3))
+    for wrong in ([[0.0]], [[1.0]], [[float("nan")]], [[[0.5]]]):
+        with pytest.raises(ValueError, match="between 0 and 1"):
+            GivenPoints(wrong)
