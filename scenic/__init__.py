@@ -19,9 +19,10 @@ if sys.argv[:1] == ["-m"] and not sys.flags.safe_path:
     if _started and _started[0].partition(".")[0] == "scenic":
         del sys.path[0]
 
-from importlib import import_module
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
+
+from scenic.language.garbage import import_lasting
 
 if TYPE_CHECKING:
     from scenic.compiler.parser import ParseResult, parse
@@ -109,7 +110,8 @@ def __getattr__(name: str) -> Any:
         return version("scenic-lang")
     if name not in _HOMES:
         raise AttributeError(f"module 'scenic' has no attribute {name!r}")
-    return getattr(import_module(_HOMES[name]), name)
+    home = sys.modules.get(_HOMES[name]) or import_lasting(_HOMES[name])
+    return getattr(home, name)
 
 
 def __dir__() -> list[str]:

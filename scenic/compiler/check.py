@@ -8,12 +8,12 @@ from dataclasses import replace
 from types import MappingProxyType
 
 from scenic.compiler.compile import Checked, Warned, check_parsed, compile_text
-from scenic.compiler.garbage import no_garbage_collection
 from scenic.compiler.ignores import apply_ignores
 from scenic.compiler.parser import ParseResult
 from scenic.compiler.scopes import Resolution
 from scenic.compiler.surroundings import SurroundingsOf
 from scenic.language.diagnostics import UNSUPPORTED, Diagnostic, Severity
+from scenic.language.garbage import no_garbage_collection
 from scenic.language.source import Source
 
 __all__ = ["check_again", "check_text", "in_order"]

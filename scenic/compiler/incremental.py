@@ -13,12 +13,12 @@ from dataclasses import dataclass
 from typing import Any
 
 from scenic.compiler.actions import Problem
-from scenic.compiler.garbage import no_garbage_collection
 from scenic.compiler.generated import WORDS
 from scenic.compiler.lexer import lex
 from scenic.compiler.parser import Parsed, ParseResult, Statements, parse_tokens, result_of
 from scenic.compiler.tokens import DEDENT, ENDMARKER, INDENT, NEWLINE, Tokens
 from scenic.compiler.traversal import FIELDS
+from scenic.language.garbage import no_garbage_collection
 
 __all__ = ["Revision", "revise"]
 

@@ -15,11 +15,11 @@ from typing import Final, TypeAlias
 
 from scenic.compiler.actions import Actions, Problem
 from scenic.compiler.actions.common import Place
-from scenic.compiler.garbage import no_garbage_collection
 from scenic.compiler.generated import WORDS, build_parser
 from scenic.compiler.lexer import lex
 from scenic.compiler.tokens import ENDMARKER, Tokens
 from scenic.language.diagnostics import Diagnostic, Edit, Fix, Label
+from scenic.language.garbage import no_garbage_collection
 from scenic.language.source import Source
 from scenic.language.spans import Span
 

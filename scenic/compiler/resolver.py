@@ -13,7 +13,6 @@ from typing import Any, Final, NamedTuple
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks import NOTED, Context, check
 from scenic.compiler.checks.blocks import position
-from scenic.compiler.garbage import no_garbage_collection
 from scenic.compiler.scopes import (
     PROVIDED,
     REFLECTION,
@@ -27,6 +26,7 @@ from scenic.compiler.scopes import (
 )
 from scenic.compiler.surroundings import SurroundingsOf
 from scenic.compiler.traversal import FIELDS, parts, walk
+from scenic.language.garbage import no_garbage_collection
 from scenic.language.names import RESERVED, TRACKED
 from scenic.language.source import Source
 from scenic.language.spelling import nearest

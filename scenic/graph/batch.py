@@ -164,7 +164,7 @@ class Batch:
         """The values of several nodes lane by lane, the objects that `read` gives; one row where all lanes agree."""
         known = self._tuples.get(id(nodes))
         if known is None:
-            columns = [[node.value] if node.is_constant else self._values_of(node) for node in nodes]
+            columns = self.lists(nodes)
             count = max(map(len, columns))
             rows = list(
                 zip(
@@ -174,6 +174,10 @@ class Batch:
             )
             known = self._tuples[id(nodes)] = (nodes, rows)
         return known[1]
+
+    def lists(self, nodes: Sequence[Node]) -> list[list[Any]]:
+        """The values of several nodes, lane by lane, the objects that `read` gives; one where all lanes agree."""
+        return [[node.value] if node.is_constant else self._values_of(node) for node in nodes]
 
     def _values_of(self, node: Node) -> list[Any]:
         values = self._values.get(node)

@@ -7,6 +7,7 @@ sample when it is first read: most values of most scenes are never looked at.
 
 import math
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from copy import deepcopy
 from types import MappingProxyType
 from typing import Any, ClassVar, Self
@@ -42,6 +43,30 @@ def _combine_properties(cls: type["Point"]) -> None:
     chain = [base.__dict__["_definitions"] for base in cls.__mro__ if "_definitions" in base.__dict__]
     cls.scenic_properties = MappingProxyType(combine(chain))
     cls._resolutions = {}
+    # Instances without dictionaries take half the time and memory. They share the names that the first of them has, which
+    # has to come before any with a dictionary: CPython (3.11 on) gives up names that nobody has used by then.
+    first: Any = object.__new__(cls)
+    first._source = first._sample = None
+    with suppress(AttributeError):  # of a class that hides a property, which is refused when it is used
+        put(first, (None,) * len(PLACEMENT))
+
+
+PLACEMENT = ("position", "yaw", "pitch", "roll", "heading", "width", "length", "height")
+"""What every object of a scene is sure to be asked for, in the order in which `put` unpacks it."""
+
+
+def put(thing: Any, row: tuple[Any, ...]) -> None:
+    """Give an object of a scene its place and size."""
+    (
+        thing.position,
+        thing.yaw,
+        thing.pitch,
+        thing.roll,
+        thing.heading,
+        thing.width,
+        thing.length,
+        thing.height,
+    ) = row
 
 
 class Point:
@@ -101,7 +126,9 @@ class Point:
     def _make(cls, values: Mapping[str, Any]) -> Self:
         """An instance with these property values; for the runtime, not for programs."""
         instance = object.__new__(cls)
-        instance.__dict__.update(values)
+        instance.__dict__ = dict(
+            values
+        )  # not updated, which would add to the names that scenes' objects share
         return instance
 
     @property

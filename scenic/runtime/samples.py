@@ -13,7 +13,7 @@ from types import CellType, CodeType, FunctionType, MethodType, ModuleType
 from typing import Any, Final, Protocol
 
 from scenic.graph.node import Node
-from scenic.runtime.objects import Object, OrientedPoint, Point
+from scenic.runtime.objects import PLACEMENT, Object, OrientedPoint, Point, put
 from scenic.runtime.ownership import (
     CACHED,
     CONTAINERS,
@@ -128,22 +128,20 @@ class Globals:
         """What is known of the values that are asked of every object."""
         known = self._placements.get(id(instance))
         if known is None:
-            values = {name: instance.__dict__.get(name) for name in _PLACEMENT}
+            values = {name: instance.__dict__.get(name) for name in PLACEMENT}
             fixed = {name: value for name, value in values.items() if isinstance(value, int | float | Vector)}
             drawn = [
                 value
                 for value in values.values()
                 if isinstance(value, Random) and not value.node.kind.is_boxed
             ]
-            is_whole = len(fixed) + len(drawn) == len(_PLACEMENT)
+            is_whole = len(fixed) + len(drawn) == len(PLACEMENT)
             nodes = tuple(as_node(value) for value in values.values()) if is_whole else ()
             known = self._placements[id(instance)] = (instance, (fixed, nodes))
         return known[1]
 
 
 _BUILT_IN = frozenset({object, Point, OrientedPoint, Object})
-_PLACEMENT = ("position", "yaw", "pitch", "roll", "heading", "width", "length", "height")
-"""What every object is sure to be asked for, in the order in which `Sample` unpacks it."""
 
 
 def dependencies(values: Iterable[Any], names: Globals | None = None) -> list[Node]:
@@ -354,23 +352,13 @@ class Sample:
     def _instance(self, instance: Point) -> Point:
         if "_source" in instance.__dict__:
             return instance
-        # Attributes are set one by one: dictionaries, which take more time and memory, are made only when they are asked for.
         copy: Any = object.__new__(type(instance))
         copy._source = instance
         copy._sample = self
         fixed, nodes = self._names.placement(instance)
         if nodes and self._whole:
             rows = self._lanes.tuples(nodes)
-            (
-                copy.position,
-                copy.yaw,
-                copy.pitch,
-                copy.roll,
-                copy.heading,
-                copy.width,
-                copy.length,
-                copy.height,
-            ) = rows[self._lane if len(rows) > 1 else 0]
+            put(copy, rows[self._lane if len(rows) > 1 else 0])
         else:
             copy.__dict__.update(fixed)
         self._memo[id(instance)] = copy  # which keeps the instance alive

@@ -14,6 +14,7 @@ from scenic.graph.points import PointSet
 from scenic.language.errors import Located, RejectionException, SamplingError, SerializationError, annotate
 from scenic.language.spans import Span
 from scenic.runtime.objects import Object
+from scenic.runtime.population import Populations
 from scenic.runtime.program import Program
 from scenic.runtime.regions.base import Region, Workspace, everywhere
 from scenic.runtime.samples import dependencies
@@ -90,7 +91,7 @@ class Scenario:
         self._family = Family(
             program,
             ego,
-            self.objects,
+            Populations(self.objects, [*program.parameters.values(), *self._regions.values()], program.names),
             self.workspace,
             names,
             digest,

@@ -12,9 +12,10 @@ from scenic.language.spans import Span
 from scenic.runtime.dumping import program_of
 from scenic.runtime.dynamics.declarations import Copier
 from scenic.runtime.objects import Object, Point
+from scenic.runtime.population import Populations
 from scenic.runtime.program import Program, Requirement
 from scenic.runtime.regions.base import Region, Workspace
-from scenic.runtime.samples import Sample, dependencies
+from scenic.runtime.samples import dependencies
 from scenic.runtime.sampling.engine import Accepted
 
 
@@ -47,13 +48,13 @@ class Origin:
 class Family:
     """What all scenes of a scenario have in common.
 
-    ``order`` holds the program's objects in the order of those of a scene, ``names`` the variables that hold them, by their
-    identities. ``keep`` gives a scene as data, ``view`` shows it.
+    ``populations`` makes their objects, ``names`` are the variables that hold these, by the identities of the program's.
+    ``keep`` gives a scene as data, ``view`` shows it.
     """
 
     program: Program
     ego: Object | None
-    order: tuple[Object, ...]
+    populations: Populations
     workspace: Workspace
     names: Mapping[int, str]
     digest: str
@@ -72,7 +73,9 @@ class Scene:
     def __init__(self, accepted: Accepted, family: Family) -> None:
         self.accepted = accepted
         self._family = family
-        self._sample: Copier = Sample(accepted.batch, accepted.lane, family.program.names, whole=True)
+        # Kept by the scenes of a batch, so that they have their objects made together.
+        self._population = family.populations.of(accepted.batch)
+        self._sample: Copier | None = None
         self._objects: tuple[Any, ...] | None = None
         self._params: dict[str, Any] | None = None
 
@@ -135,26 +138,32 @@ class Scene:
     def objects(self) -> tuple[Any, ...]:
         """All objects: the ego first, then the others in order of creation."""
         if self._objects is None:
-            self._objects = tuple(map(self._sample.value, self._family.order))
+            sample = self._values()
+            if self._objects is None:
+                self._objects = tuple(map(sample.value, self._family.populations.objects))
         return self._objects
+
+    def _values(self) -> Copier:
+        """The values of the program in this scene."""
+        if self._sample is None:
+            self._sample, self._objects = self._population.take(self.accepted.lane)
+        return self._sample
 
     def place(self, number: int) -> tuple[Span | None, str | None]:
         """Where the program creates the object of that number: span and file, as far as they are known."""
-        return self.program.places.get(id(self._family.order[number]), (None, None))
+        return self.program.places.get(id(self._family.populations.objects[number]), (None, None))
 
     @property
     def egoObject(self) -> Any:
         """The ego, or ``None``."""
-        ego = self._family.ego
-        return None if ego is None else self._sample.value(ego)
+        return None if self._family.ego is None else self.objects[0]
 
     @property
     def params(self) -> dict[str, Any]:
         """Values of the global parameters."""
         if self._params is None:
-            self._params = {
-                name: self._sample.value(value) for name, value in self.program.parameters.items()
-            }
+            sample = self._values()
+            self._params = {name: sample.value(value) for name, value in self.program.parameters.items()}
         return self._params
 
     @property
@@ -169,7 +178,8 @@ class Scene:
     @property
     def regions(self) -> dict[str, Region]:
         """The regions that variables of the program hold, by name, as they are in this scene."""
-        return {name: self._sample.value(region) for name, region in self._family.regions.items()}
+        sample = self._values()
+        return {name: sample.value(region) for name, region in self._family.regions.items()}
 
     def origin(self, thing: Any) -> Origin:
         """What an object of the scene is in all scenes of the program."""
@@ -208,8 +218,7 @@ class Scene:
     def __deepcopy__(self, _memo: Any) -> "Scene":
         """The same scene with objects of its own."""
         scene = self.__copy__()
-        scene._sample = Sample(self.accepted.batch, self.accepted.lane, self.program.names, whole=True)
-        scene._objects = scene._params = None
+        scene._sample = scene._objects = scene._params = None
         return scene
 
     def save(self, path: str | Path) -> None:

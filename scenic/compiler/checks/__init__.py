@@ -31,8 +31,8 @@ from scenic.compiler.checks import (
     uses,
 )
 from scenic.compiler.checks.context import Context, NodeRule, ProgramRule
-from scenic.compiler.garbage import no_garbage_collection
 from scenic.language.diagnostics import Diagnostic
+from scenic.language.garbage import no_garbage_collection
 
 __all__ = ["NOTED", "Context", "check", "lint"]
 

@@ -14,7 +14,7 @@ from scenic.runtime.scene import Scene
 
 SEED_BITS: Final = 63
 
-_MOST: Final = 256
+_MOST: Final = 128
 """Scenes foreseen at a time, at most."""
 
 _SECONDS: Final = 0.05

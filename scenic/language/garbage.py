@@ -1,0 +1,35 @@
+"""Pausing Python's search for garbage while much is made of which nothing is garbage."""
+
+import gc
+from collections.abc import Iterator
+from contextlib import contextmanager
+from importlib import import_module
+from types import ModuleType
+
+__all__ = ["import_lasting", "no_garbage_collection"]
+
+
+@contextmanager
+def no_garbage_collection() -> Iterator[None]:
+    """For passes over trees and for objects made by the thousand: looking for garbage takes longer than they do."""
+    enabled = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if enabled:
+            gc.enable()
+
+
+def import_lasting(name: str) -> ModuleType:
+    """Import a module that brings many others, and tell Python's collector that all of them are to stay.
+
+    With NumPy they are some forty thousand objects, which it would look through twelve times: in the midst of whatever
+    the program does next.
+    """
+    wanted = gc.isenabled()
+    with no_garbage_collection():
+        module = import_module(name)
+        if wanted:
+            gc.collect(1)  # what is young is old from now on
+    return module

@@ -1,0 +1,112 @@
+"""Objects of scenes are made together with those of neighbouring scenes; nothing of it shows."""
+
+import gc
+import weakref
+from copy import deepcopy
+from typing import Any
+
+import pytest
+
+import scenic
+from scenic.language.garbage import import_lasting, no_garbage_collection
+
+ALONE = """\
+ego = new Object at (Range(0, 1), 0, 0), with name "first"
+new Object at (Range(3, 4), 0, 0), with width Range(1, 2)
+"""
+LINKED = ALONE + "new Object at (6, 0, 0), with friend ego\n"
+IN_PARAMETER = ALONE + "param friend = ego\n"
+BY_METHOD = """\
+class Counting:
+    def where(self):
+        return ego.position.x
+ego = new Object at (Range(0, 1), 0, 0)
+new Counting at (3, 0, 0)
+"""
+EMPTY = "param x = Range(0, 1)\n"
+PROGRAMS = [EMPTY, ALONE, LINKED, IN_PARAMETER]
+
+
+def told(scene: Any) -> list[Any]:
+    return [(tuple(item.position), item.yaw, item.width, item.length) for item in scene.objects]
+
+
+@pytest.mark.parametrize("text", PROGRAMS)
+def test_every_order_of_reading_shows_the_same_objects(text: str) -> None:
+    scenario = scenic.scenarioFromString(text)
+    forward = [told(scene) for scene in scenario.sample(600, seed=3)]
+    scenes = scenario.sample(600, seed=3)
+    assert [told(scene) for scene in reversed(scenes)][::-1] == forward
+    assert [told(scene) for scene in scenario.sample(600, seed=3, lanes=7)] == forward
+    assert told(scenes[0]) == forward[0], "and again"
+
+
+@pytest.mark.parametrize("text", PROGRAMS)
+def test_streams_in_turns_do_not_disturb_each_other(text: str) -> None:
+    scenario = scenic.scenarioFromString(text)
+    pairs = zip(scenario.stream(40, seed=1), scenario.stream(40, seed=2), strict=True)
+    told_in_turns = [(told(one), told(other)) for one, other in pairs]
+    assert [one for one, _ in told_in_turns] == [told(scene) for scene in scenario.sample(40, seed=1)]
+    assert [other for _, other in told_in_turns] == [told(scene) for scene in scenario.sample(40, seed=2)]
+
+
+@pytest.mark.parametrize("text", PROGRAMS)
+def test_an_object_is_one_however_it_is_reached(text: str) -> None:
+    for scene in scenic.scenarioFromString(text).sample(3, seed=1):
+        assert scene.egoObject is (scene.objects[0] if scene.objects else None)
+        friends = [item.friend for item in scene.objects if "friend" in item.properties]
+        friends += [scene.params["friend"]] if "friend" in scene.params else []
+        assert all(friend is scene.objects[0] for friend in friends)
+        assert len(friends) == (text in (LINKED, IN_PARAMETER))
+
+
+def test_a_method_finds_the_objects_of_its_own_scene() -> None:
+    for scene in scenic.scenarioFromString(BY_METHOD).sample(5, seed=1):
+        assert scene.objects[1].where() == scene.objects[0].position.x
+
+
+def test_what_a_script_sets_stays_in_one_scene() -> None:
+    first, second, *_ = scenic.scenarioFromString(ALONE).sample(5, seed=1)
+    first.objects[0].mark = 1
+    assert first.egoObject.mark == 1
+    assert not hasattr(second.objects[0], "mark")
+    again = deepcopy(first)
+    assert not hasattr(again.objects[0], "mark")
+    assert told(again) == told(first)
+
+
+def test_scenes_are_freed_as_soon_as_nobody_holds_them() -> None:
+    scenario = scenic.scenarioFromString(ALONE)
+    with no_garbage_collection():
+        scenes = scenario.sample(3, seed=1)
+        items = [weakref.ref(item) for scene in scenes for item in scene.objects]
+        kept = scenes[0].objects[1]
+        del scenes
+        assert [item() for item in items] == [None, kept, None, None, None, None]
+        assert kept.shape.width == 1, "values are still to be had"
+
+
+@pytest.mark.parametrize("enabled", [True, False])
+def test_an_import_leaves_the_collector_as_it_was(enabled: bool) -> None:
+    before = gc.isenabled()
+    try:
+        (gc.enable if enabled else gc.disable)()
+        assert import_lasting("json").__name__ == "json"
+        assert gc.isenabled() is enabled
+    finally:
+        (gc.enable if before else gc.disable)()
+
+
+def test_objects_are_made_without_dictionaries() -> None:
+    (scene,) = scenic.scenarioFromString(
+        "class Box:\n    mine: 1\n" + "new Box at (Range(0, 1), 0, 0)"
+    ).sample(1, seed=1)
+    (thing,) = scene.objects
+    assert not any(type(held) is dict for held in gc.get_referents(thing))
+    assert thing.mine == 1
+
+
+def test_a_class_that_hides_a_property_is_refused() -> None:
+    text = "class Box:\n    @property\n    def heading(self):\n        return 3\nego = new Box\n"
+    with pytest.raises(scenic.SpecifierError, match="heading"):
+        scenic.scenarioFromString(text)
