@@ -114,8 +114,34 @@ class Emitter(RuleWriter):
                 self.line("return r, p, *found")
             else:
                 self.line("return r, p")
+        if self.fast:
+            self.again()
         self.line("")
         self.line("return run")
+
+    def again(self) -> None:
+        """Emit what lets the fast parser go on to another text: making its functions takes as long as many lines."""
+        lists = ("kinds", "texts", "lines", "columns", "end_lines", "end_columns")
+        helpers = sorted(self.translator.used_helpers)
+        self.line("")
+        with self.block(f"def read({', '.join(f'new_{name}' for name in lists)}, actions):"):
+            self.line(f"nonlocal {', '.join([*lists, *helpers])}")
+            for name in lists:
+                self.line(f"{name} = new_{name}")
+            for name in helpers:
+                self.line(f"{name} = actions.{name}")
+        self.line("")
+        with self.block("def forget():"):
+            self.line(f"nonlocal {', '.join([*lists, *helpers])}")
+            self.line(f"{' = '.join(lists)} = ()")
+            for name in helpers:
+                self.line(f"{name} = None")
+            self.line("found_ahead.clear()")
+            for name in self.analysis.memoised:
+                self.line(f"memo_{name}.clear()")
+        self.line("")
+        self.line("run.read = read")
+        self.line("run.forget = forget")
 
 
 RECORDER = """\

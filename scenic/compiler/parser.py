@@ -8,16 +8,16 @@ import ast
 import sys
 import threading
 from bisect import bisect_left, bisect_right
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, replace
-from typing import Final, TypeAlias
+from typing import Any, Final, TypeAlias
 
 from scenic.compiler.actions import Actions, Problem
 from scenic.compiler.actions.common import Place
 from scenic.compiler.generated import WORDS, build_parser
 from scenic.compiler.lexer import lex
-from scenic.compiler.tokens import ENDMARKER, Tokens
+from scenic.compiler.tokens import ENDMARKER, TokenLists, Tokens
 from scenic.language.diagnostics import Diagnostic, Edit, Fix, Label
 from scenic.language.garbage import no_garbage_collection
 from scenic.language.source import Source
@@ -39,6 +39,9 @@ class ParseResult:
 
 Statements: TypeAlias = Mapping[int, tuple[list[ast.stmt], int]]
 """Statements of the top level by the token with which they begin: what was made of one, and the token after it."""
+
+Run: TypeAlias = Callable[[str, int], tuple[Any, int]]
+"""Parses what a rule has from a token on: what was made of it (``None`` if it does not stand there), and the token after."""
 
 Known: TypeAlias = Callable[[Tokens], Statements]
 """Finds the statements in some tokens that are known already."""
@@ -116,9 +119,19 @@ def _fast(tokens: Tokens, known: Known) -> Parsed | None:
     if tokens.diagnostics:
         return None
     actions = Actions(tokens)
-    kinds, *others = tokens.lists()
-    run = build_parser(kinds, *others, actions)
-    old = dict(known(tokens))
+    lists = tokens.lists()
+    with _PARSERS.reading(lists, actions) as run:
+        statements = _statements(run, lists[0], dict(known(tokens)))
+    if statements is None:
+        return None
+    tree = actions.module([node for found, _ in statements.values() for node in found])
+    return Parsed(tokens, tree, list(actions.problems.values()), statements)
+
+
+def _statements(
+    run: Run, kinds: Sequence[int], old: dict[int, tuple[list[ast.stmt], int]]
+) -> Statements | None:
+    """The statements of the top level, of which some are known; ``None`` if there is a mistake."""
     statements: dict[int, tuple[list[ast.stmt], int]] = {}
     position = 0
     before: int | None = None
@@ -140,8 +153,7 @@ def _fast(tokens: Tokens, known: Known) -> Parsed | None:
             before, position = position, found[1]
     except RecursionError:
         return None
-    tree = actions.module([node for found, _ in statements.values() for node in found])
-    return Parsed(tokens, tree, list(actions.problems.values()), statements)
+    return statements
 
 
 def _recovered(tokens: Tokens, known: Known) -> Parsed:
@@ -155,6 +167,34 @@ def _recovered(tokens: Tokens, known: Known) -> Parsed:
         tree = recovery.file()
     problems = [*actions.problems.values(), *recovery.problems]
     return Parsed(tokens, tree, problems, recovery.top_level)
+
+
+class _Parsers:
+    """The fast parsers that wait for a text: making one takes as long as parsing twenty lines with it.
+
+    What one has read it forgets before it waits, so that what is made of a text depends on that text alone.
+    """
+
+    def __init__(self) -> None:
+        self._idle: list[Any] = []
+
+    @contextmanager
+    def reading(self, lists: TokenLists, actions: Actions) -> Iterator[Run]:
+        """A parser of these tokens, which nobody else uses meanwhile; each thread and each nested parse has its own."""
+        try:
+            run = self._idle.pop()
+        except IndexError:
+            run = build_parser(*lists, actions)
+        else:
+            run.read(*lists, actions)
+        try:
+            yield run
+        finally:
+            run.forget()
+            self._idle.append(run)
+
+
+_PARSERS: Final = _Parsers()
 
 
 def _diagnostic(problem: Problem, source: Source) -> Diagnostic:
