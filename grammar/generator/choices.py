@@ -145,7 +145,7 @@ class ChoiceWriter(ItemWriter):
                         self.line(f"return parse_{item.rule}()")
                         return
                     needed = self.needed_ahead(group)
-                    with self.block(f"if ahead({needed})[p]:") if needed is not None else nullcontext():
+                    with self.block(f"if ahead({needed}):") if needed is not None else nullcontext():
                         self.step(group, mode)
                     if mark is not None:
                         self.reset(mark)

@@ -214,25 +214,31 @@ AHEAD = """\
 found_ahead = {{}}
 
 def ahead(kind):
-    # For every token: is there one of this kind, there or further on, before the bracket or the line ends?
+    # Is there a token of this kind, here or further on, before the bracket or the line ends?
     flags = found_ahead.get(kind)
     if flags is None:
-        flags = found_ahead[kind] = bytearray(len(kinds))
+        flags = found_ahead[kind] = {{}}
+    flag = flags.get(p)
+    if flag is None:
+        # What holds for the other tokens up to the end of the line is found on the way.
+        try:
+            end = kinds.index({newline}, p)
+        except ValueError:
+            end = len(kinds)
         outer = []
-        found = 0
-        for index in range(len(kinds) - 1, -1, -1):
+        flag = 0
+        for index in range(end - 1, p - 1, -1):
             k = kinds[index]
             if k == kind:
-                found = 1
+                flag = 1
             elif k in {closers}:
-                outer.append(found)
-                found = 0
+                outer.append(flag)
+                flag = 0
             elif k in {openers}:
-                found = outer.pop() if outer else 0
-            elif k == {newline}:
-                found = 0
-            flags[index] = found
-    return flags
+                flag = outer.pop() if outer else 0
+            flags[index] = flag
+        flags[p] = flag
+    return flag
 """
 
 CLIMB = """

@@ -5,11 +5,10 @@ This one function is what ``scenic check`` and the language server show.
 
 from collections.abc import Callable, Iterable
 from dataclasses import replace
-from types import MappingProxyType
 
-from scenic.compiler.compile import Checked, Warned, check_parsed, compile_text
+from scenic.compiler.compile import Checked, check_parsed
 from scenic.compiler.ignores import apply_ignores
-from scenic.compiler.parser import ParseResult
+from scenic.compiler.parser import ParseResult, parse
 from scenic.compiler.scopes import Resolution
 from scenic.compiler.surroundings import SurroundingsOf
 from scenic.language.diagnostics import UNSUPPORTED, Diagnostic, Severity
@@ -29,13 +28,9 @@ def check_text(
     """
     # Nearly all that is made of a text is gone when this returns: only then it is time to look for garbage.
     with no_garbage_collection():
-        return _found(text, filename, surroundings_of)
-
-
-def _found(text: str, filename: str, surroundings_of: SurroundingsOf | None) -> tuple[Diagnostic, ...]:
-    compiled = compile_text(text, filename=filename, thorough=True, surroundings_of=surroundings_of)
-    found = in_order(map(_as_shown, compiled.diagnostics), filename=filename)
-    return in_order(apply_ignores(text, found, filename=filename), filename=filename)
+        source = Source(text, filename)
+        parsed = parse(source.text, filename=filename)
+        return check_again(parsed, source, surroundings_of=surroundings_of).diagnostics
 
 
 def check_again(
@@ -44,7 +39,7 @@ def check_again(
     *,
     resolution: Resolution | None = None,
     surroundings_of: SurroundingsOf | None = None,
-    warned: Warned = MappingProxyType({}),
+    before: Checked | None = None,
     go_on: Callable[[], None] = lambda: None,
 ) -> Checked:
     """The same for a program that is parsed already, and of which an earlier version may have been checked.
@@ -56,12 +51,12 @@ def check_again(
         source,
         resolution=resolution,
         surroundings_of=surroundings_of,
-        warned=warned,
+        before=before,
         go_on=go_on,
     )
     found = in_order(map(_as_shown, checked.diagnostics), filename=source.filename)
     kept = apply_ignores(source.text, found, filename=source.filename)
-    return Checked(in_order(kept, filename=source.filename), checked.warned)
+    return replace(checked, diagnostics=in_order(kept, filename=source.filename))
 
 
 def _as_shown(diagnostic: Diagnostic) -> Diagnostic:

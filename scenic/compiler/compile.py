@@ -4,11 +4,13 @@ import ast
 import threading
 import warnings
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from types import CodeType, MappingProxyType
 from typing import Final, TypeAlias
 
 from scenic.compiler.checks import lint
+from scenic.compiler.checks.kept import Kept
+from scenic.compiler.complaints import suspects
 from scenic.compiler.lowering import lower
 from scenic.compiler.parser import DEEPEST, ParseResult, ordinary_recursion, parse, recursion_limit
 from scenic.compiler.resolver import resolve_within
@@ -49,23 +51,18 @@ Warned: TypeAlias = Mapping[str, tuple[tuple[int, str], ...]]
 
 @dataclass(frozen=True, slots=True)
 class Checked:
-    """What was found in a program; ``warned`` saves the next check of it from compiling what has not changed."""
+    """What was found in a program; the rest saves the check of its next version from looking at what has not changed."""
 
     diagnostics: tuple[Diagnostic, ...]
-    warned: Warned
+    warned: Warned = field(default_factory=dict, repr=False)
+    kept: Kept | None = field(default=None, repr=False)
 
 
-def lower_text(
-    text: str, *, filename: str, thorough: bool = False, surroundings_of: SurroundingsOf | None = None
-) -> Lowered:
-    """Parses, checks and lowers a program. Whatever is wrong with it is in the diagnostics.
-
-    If ``thorough``, so is what is legal but hardly meant, and what will fail once it is reached. ``surroundings_of``
-    finds out about the modules that the program imports.
-    """
+def lower_text(text: str, *, filename: str) -> Lowered:
+    """Parses, checks and lowers a program. Whatever is wrong with it is in the diagnostics."""
     source = Source(text, filename)
     parsed = parse(source.text, filename=filename)
-    found, resolution = _checked(parsed, source, thorough, surroundings_of)
+    found, resolution, _ = _checked(parsed, source, False, None)
     if resolution is None:
         return Lowered(None, found)
     try:
@@ -75,14 +72,12 @@ def lower_text(
         return Lowered(None, (*found, _too_deep(source)))
 
 
-def compile_text(
-    text: str, *, filename: str, thorough: bool = False, surroundings_of: SurroundingsOf | None = None
-) -> Compiled:
-    """Compiles a program; ``filename`` is what tracebacks will name, the rest as in `lower_text`.
+def compile_text(text: str, *, filename: str) -> Compiled:
+    """Compiles a program; ``filename`` is what tracebacks will name.
 
     Python's own complaints about the program become diagnostics at their place.
     """
-    lowered = lower_text(text, filename=filename, thorough=thorough, surroundings_of=surroundings_of)
+    lowered = lower_text(text, filename=filename)
     if lowered.module is None:
         return Compiled(None, lowered.diagnostics)
     source = Source(text, filename)
@@ -100,32 +95,41 @@ def check_parsed(
     *,
     resolution: Resolution | None = None,
     surroundings_of: SurroundingsOf | None = None,
-    warned: Warned = MappingProxyType({}),
+    before: Checked | None = None,
     go_on: Callable[[], None] = lambda: None,
 ) -> Checked:
-    """All that `compile_text` says of a program when it is ``thorough``, without making code of what has not changed.
+    """What can be said of a program without running any of it.
 
-    ``resolution`` are its names, if they are bound already, ``warned`` is that of an earlier check of it. ``go_on`` is called between steps, and may raise to stop.
+    That is all that `compile_text` says, what is legal but hardly meant, and what will fail once it is reached. Only
+    what Python may complain of is compiled, and only what has changed of that. ``surroundings_of`` finds out about the
+    modules that the program imports. ``resolution`` are its names, if they are bound already, ``before`` is what was
+    found in an earlier version of it. ``go_on`` is called between steps, and may raise to stop.
     """
-    found, names = _checked(parsed, source, True, surroundings_of, go_on, resolution)
+    warned = MappingProxyType({}) if before is None else before.warned
+    found, names, kept = _checked(
+        parsed, source, True, surroundings_of, go_on, resolution, None if before is None else before.kept
+    )
     if names is None:
-        return Checked(found, warned)
+        return Checked(found, warned, kept)
     go_on()
-    blocks = _blocks(parsed.tree, source)
+    suspected = suspects(names, source, longest_line=parsed.longest_line)
+    if not suspected:
+        return Checked(found, warned, kept)
+    blocks = _blocks(suspected, source)
     fresh = [block for block in blocks if block.text not in warned]
-    if warned and len(fresh) * 2 < len(blocks) and not _is_one_piece(parsed.tree):
-        statements = [each for block in fresh for each in block.statements]
-        part = ast.Module(body=statements, type_ignores=[])
-        error, noted = _complaints(part, names, source)
+    if warned and len(fresh) * 2 < len(blocks) and len(suspected) < len(parsed.tree.body):
+        error, noted = _complaints([each for block in fresh for each in block.statements], names, source)
         if error is None:
             known = {block.text: warned[block.text] for block in blocks if block.text in warned}
-            return _with_warnings(found, source, blocks, {**_by_block(fresh, noted), **known})
+            noticed = {**_by_block(fresh, noted), **known}
+            return Checked((*found, *_warnings(source, blocks, noticed)), noticed, kept)
     # Python stops at the first error, whichever it takes for that: all must be there.
-    error, noted = _complaints(parsed.tree, names, source)
+    error, noted = _complaints(suspected, names, source)
     if error is not None:
         warnings_found = [_python_warning(line, message, source) for line, message in noted]
-        return Checked((*found, error, *warnings_found), MappingProxyType({}))
-    return _with_warnings(found, source, blocks, _by_block(blocks, noted))
+        return Checked((*found, error, *warnings_found), kept=kept)
+    noticed = _by_block(blocks, noted)
+    return Checked((*found, *_warnings(source, blocks, noticed)), noticed, kept)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -137,10 +141,10 @@ class _Block:
     statements: list[ast.stmt]
 
 
-def _blocks(tree: ast.Module, source: Source) -> list[_Block]:
+def _blocks(statements: Sequence[ast.stmt], source: Source) -> list[_Block]:
     found: list[_Block] = []
     end = 0
-    for node in tree.body:
+    for node in statements:
         decorators = getattr(node, "decorator_list", None)
         line = decorators[0].lineno if decorators else node.lineno
         last = node.end_lineno or node.lineno
@@ -152,14 +156,6 @@ def _blocks(tree: ast.Module, source: Source) -> list[_Block]:
         end = max(end, last)
         found.append(_Block(line, "\n".join(source.lines[line - 1 : end]), statements))
     return found
-
-
-def _is_one_piece(tree: ast.Module) -> bool:
-    """Whether what Python says of one statement of the top level depends on others."""
-    return any(
-        isinstance(node, ast.Global) or (isinstance(node, ast.ImportFrom) and node.module == "__future__")
-        for node in tree.body
-    )
 
 
 def _by_block(
@@ -175,15 +171,12 @@ def _by_block(
     }
 
 
-def _with_warnings(
-    found: tuple[Diagnostic, ...], source: Source, blocks: Sequence[_Block], warned: Warned
-) -> Checked:
-    noted = [
+def _warnings(source: Source, blocks: Sequence[_Block], warned: Warned) -> list[Diagnostic]:
+    return [
         _python_warning(block.line + line, message, source)
         for block in blocks
         for line, message in warned[block.text]
     ]
-    return Checked((*found, *noted), warned)
 
 
 def _checked(
@@ -193,25 +186,27 @@ def _checked(
     surroundings_of: SurroundingsOf | None,
     go_on: Callable[[], None] = lambda: None,
     bound: Resolution | None = None,
-) -> tuple[tuple[Diagnostic, ...], Resolution | None]:
-    """What is wrong with a parsed program; its names, if it has no errors."""
+    before: Kept | None = None,
+) -> tuple[tuple[Diagnostic, ...], Resolution | None, Kept | None]:
+    """What is wrong with a parsed program; its names, if it has no errors; what to keep for its next version."""
     found = list(parsed.diagnostics)
     try:
         with recursion_limit(DEEPEST):
             go_on()
-            resolution, context = resolve_within(parsed.tree, source, surroundings_of, bound, go_on)
+            resolution, context = resolve_within(parsed.tree, source, surroundings_of, bound, go_on, before)
             go_on()
             hints = lint(context, go_on) if thorough else ()
     except RecursionError:
-        return (*found, _too_deep(source)), None
+        return (*found, _too_deep(source)), None, None
     found = list(dict.fromkeys([*found, *resolution.diagnostics, *hints]))
-    return tuple(found), None if _has_errors(found) else resolution
+    return tuple(found), None if _has_errors(found) else resolution, context.kept
 
 
 def _complaints(
-    tree: ast.Module, resolution: Resolution, source: Source
+    statements: list[ast.stmt], resolution: Resolution, source: Source
 ) -> tuple[Diagnostic | None, list[tuple[int, str]]]:
-    """What Python says of a program: an error, and warnings by line."""
+    """What Python says of statements of a program: an error, and warnings by line."""
+    tree = ast.Module(body=statements, type_ignores=[])
     try:
         with recursion_limit(DEEPEST):
             module = lower(tree, resolution)

@@ -17,7 +17,7 @@ from scenic.compiler.actions import Actions, Problem
 from scenic.compiler.actions.common import Place
 from scenic.compiler.generated import WORDS, build_parser
 from scenic.compiler.lexer import lex
-from scenic.compiler.tokens import ENDMARKER, TokenLists, Tokens
+from scenic.compiler.tokens import ENDMARKER, NEWLINE, TokenLists, Tokens
 from scenic.language.diagnostics import Diagnostic, Edit, Fix, Label
 from scenic.language.garbage import no_garbage_collection
 from scenic.language.source import Source
@@ -31,10 +31,14 @@ DEEPEST: Final = 1_000_000
 
 @dataclass(frozen=True, slots=True)
 class ParseResult:
-    """The tree of a text, as complete as it could be made, and what is wrong with the text, in order."""
+    """The tree of a text, as complete as it could be made, and what is wrong with the text, in order.
+
+    ``longest_line`` is the number of tokens of the longest logical line, if that has been counted.
+    """
 
     tree: ast.Module
     diagnostics: tuple[Diagnostic, ...]
+    longest_line: int = sys.maxsize
 
 
 Statements: TypeAlias = Mapping[int, tuple[list[ast.stmt], int]]
@@ -72,11 +76,21 @@ def result_of(parsed: Parsed, filename: str) -> ParseResult:
     """The tree, and what is wrong as diagnostics."""
     tokens, problems = parsed.tokens, parsed.problems
     if not problems and not tokens.diagnostics:
-        return ParseResult(parsed.tree, ())
+        return ParseResult(parsed.tree, (), _longest_line(tokens.kinds))
     source = Source(tokens.text, filename)
     diagnostics = {replace(each, filename=filename) for each in tokens.diagnostics}
     diagnostics.update(_diagnostic(each, source) for each in problems)
     return ParseResult(parsed.tree, tuple(sorted(diagnostics, key=_order)))
+
+
+def _longest_line(kinds: list[int]) -> int:
+    longest = start = 0
+    for _ in range(kinds.count(NEWLINE)):
+        end = kinds.index(NEWLINE, start) + 1
+        if end - start > longest:
+            longest = end - start
+        start = end
+    return max(longest, len(kinds) - start)
 
 
 def parse_tokens(tokens: Tokens, known: Known = lambda _tokens: {}) -> Parsed:

@@ -13,6 +13,7 @@ from typing import Any, Final, NamedTuple
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks import NOTED, Context, check
 from scenic.compiler.checks.blocks import position
+from scenic.compiler.checks.kept import Kept
 from scenic.compiler.scopes import (
     PROVIDED,
     REFLECTION,
@@ -51,11 +52,12 @@ def resolve_within(
     surroundings_of: SurroundingsOf | None,
     resolution: Resolution | None = None,
     go_on: Callable[[], None] = lambda: None,
+    before: Kept | None = None,
 ) -> tuple[Resolution, Context]:
     """The same, with what ``surroundings_of`` finds out about the imports; also returns what further checks need.
 
-    ``resolution`` are the names of the tree, if they are bound already. ``go_on`` is called now and then, and may raise
-    to stop.
+    ``resolution`` are the names of the tree, if they are bound already, ``before`` is what was said of the version before.
+    ``go_on`` is called now and then, and may raise to stop.
     """
     with no_garbage_collection():
         bound = bind(tree) if resolution is None else resolution
@@ -67,7 +69,7 @@ def resolve_within(
             wildcard = True
         known = bound.with_findings((), wildcard=wildcard)
         go_on()
-        context = Context(tree, source, known, surroundings)
+        context = Context(tree, source, known, surroundings, before)
         diagnostics = check(context, provided=PROVIDED, go_on=go_on)
     return known.with_findings(diagnostics, wildcard=wildcard), context
 
@@ -159,6 +161,7 @@ class _Collector:
         self._plain_targets: set[ast.AST] = set()
         self._nodes: dict[type[ast.AST], list[tuple[Any, Scope]]] = {cls: [] for cls in NOTED}
         self._pending: list[tuple[Scope, list[Any]]] = []
+        self._classes: set[type] = set()
         self._wildcard = False
         self._tolerated: set[ast.AST] = set()
         """Names read where a ``NameError`` is caught."""
@@ -168,6 +171,7 @@ class _Collector:
         pending = self._pending
         pending.append((self._module, list(self._statements)))
         handlers, fields, noted, uses = _HANDLERS, FIELDS, self._nodes, self._uses
+        seen = self._classes.add
         while pending:
             scope, stack = pending.pop()
             while stack:
@@ -180,6 +184,7 @@ class _Collector:
                     continue
                 if cls is ast.Constant:
                     continue
+                seen(cls)
                 found = noted.get(cls)
                 if found is not None:
                     found.append((node, scope))
@@ -239,6 +244,7 @@ class _Collector:
             self._scopes,
             self._nonlocals,
             self._nodes,
+            frozenset(self._classes),
             self._tolerated,
             reserved,
             frozenset(free & REFLECTION),

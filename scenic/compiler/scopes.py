@@ -5,6 +5,7 @@ A scope is built once by `scenic.compiler.resolver` and only read afterwards. No
 
 import ast
 import builtins
+from bisect import bisect_right
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, field
@@ -143,13 +144,20 @@ class Reference:
     binding: Binding | None
 
 
+def _start(node: Any) -> tuple[int, int]:
+    """Where a statement begins, its decorators included, or another node."""
+    first = node.decorator_list[0] if getattr(node, "decorator_list", None) else node
+    return first.lineno, first.col_offset
+
+
 @dataclass(frozen=True, eq=False)
 class Stretch:
     """Successive statements of the top level, and all that can be said of their names without what stands around them.
 
     ``bound`` gives the nodes that bind each name of the module, and how. ``references`` to names of the module have no
     binding here. ``nodes``, ``scopes``, ``nonlocals`` and ``tolerated`` are as in `Resolution`; ``reserved`` are the
-    places that bind a name which must not be bound, ``reflecting`` the names read here that could mean builtins by
+    places that bind a name which must not be bound, ``classes`` those of all nodes but names, constants and what only
+    definitions have, ``reflecting`` the names read here that could mean builtins by
     which programs read or bind names. ``wildcard`` tells whether names come in that the text does not show.
     """
 
@@ -159,10 +167,29 @@ class Stretch:
     scopes: Mapping[ast.AST, Scope]
     nonlocals: Mapping[ast.AST, Scope]
     nodes: Mapping[type[ast.AST], list[tuple[Any, Scope]]]
+    classes: frozenset[type]
     tolerated: Collection[ast.AST]
     reserved: Sequence[tuple[str, ast.AST]]
     reflecting: frozenset[str]
     wildcard: bool
+
+    @cached_property
+    def reads(self) -> frozenset[str]:
+        """The names that are read or written here and may belong to the module."""
+        return frozenset(each.node.id for each in self.references.values() if each.binding is None)
+
+    @cached_property
+    def needs(self) -> Mapping[str, frozenset[str]]:
+        """For each name of the module that is bound here: such names in the statements that bind it."""
+        starts = [_start(statement) for statement in self.statements]
+        named: list[set[str]] = [set() for _ in starts]
+        for each in self.references.values():
+            if each.binding is None:
+                named[bisect_right(starts, (each.node.lineno, each.node.col_offset)) - 1].add(each.node.id)
+        return {
+            name: frozenset().union(*(named[bisect_right(starts, _start(site)) - 1] for _, site in sites))
+            for name, sites in self.bound.items()
+        }
 
     @cached_property
     def sites(self) -> Mapping[ast.AST, Binding | str]:

@@ -47,6 +47,10 @@ class Surroundings(Protocol):
     """What is known about the imports of a program."""
 
     @property
+    def state(self) -> object:
+        """What stands for all other modules: the same object as long as nothing of them has changed."""
+
+    @property
     def complete(self) -> bool:
         """Whether ``names`` are all names that star imports and the model bring."""
 

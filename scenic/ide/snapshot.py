@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from typing import Any, TypeVar
 
 from scenic.compiler.check import check_again
-from scenic.compiler.compile import Warned
+from scenic.compiler.compile import Checked
 from scenic.compiler.generated import WORDS
 from scenic.compiler.incremental import Revision, revise
 from scenic.compiler.parser import DEEPEST, ParseResult, recursion_limit
@@ -40,7 +40,7 @@ class Snapshot:
         self.source = Source(text, filename)
         self._before = None if before is None else before._latest()
         self._before_names = None if before is None else before._latest_names()
-        self._warned: Warned = {} if before is None else before._warned
+        self._checked: Checked | None = None if before is None else before._checked
         self._lock = threading.Lock()
         self._making: dict[str, threading.RLock] = {}
         self._known: dict[str, Any] = {}
@@ -178,16 +178,16 @@ class Snapshot:
     def check(
         self, surroundings_of: SurroundingsOf | None, go_on: Callable[[], None] = lambda: None
     ) -> tuple[Diagnostic, ...]:
-        """What the static check finds. Compiles only what no version before has been found right in."""
+        """What the static check finds. Looks only at what may be different from the version that was checked before."""
         checked = check_again(
             self.parsed,
             self.source,
             resolution=self.resolution,
             surroundings_of=surroundings_of,
-            warned=self._warned,
+            before=self._checked,
             go_on=go_on,
         )
-        self._warned = checked.warned
+        self._checked = checked
         return checked.diagnostics
 
     def _latest(self) -> Revision | None:

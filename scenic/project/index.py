@@ -114,6 +114,8 @@ class Project:
         self._compiled: dict[str, Exports] = {}
         self.derived: dict[object, Any] = {}
         """What others compute from the modules; emptied when any of them changes."""
+        self.state = object()
+        """Another object whenever any of the modules has changed."""
 
     # Texts
 
@@ -166,6 +168,7 @@ class Project:
         """Forget what was computed from modules of which one has changed."""
         self._exports = {}
         self.derived = {}
+        self.state = object()
 
     def module(self, filename: str) -> Module | None:
         """The module in a file; ``None`` if it cannot be read, or is too large to look into."""

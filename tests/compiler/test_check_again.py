@@ -2,6 +2,7 @@
 
 import ast
 import random
+from pathlib import Path
 
 import pytest
 
@@ -10,6 +11,8 @@ from scenic.compiler.incremental import revise
 from scenic.compiler.resolver import bind, bind_again
 from scenic.compiler.scopes import Binding, Reference
 from scenic.language.source import Source
+from scenic.project.index import Project
+from scenic.project.surroundings import surroundings_in
 from tests.compiler.test_incremental import TEXTS, edited
 
 WARNED = """\
@@ -26,12 +29,11 @@ def g(): return x is 'b'
 def test_the_same_after_random_edits(seed: int) -> None:
     chance = random.Random(seed)
     text = chance.choice([*TEXTS, WARNED])
-    revision, warned, names = revise(text, filename="f"), {}, None
+    revision, checked, names = revise(text, filename="f"), None, None
     for _ in range(10):
         names = bind_again(revision.result.tree, names)
-        checked = check_again(revision.result, Source(text, "f"), resolution=names, warned=warned)
+        checked = check_again(revision.result, Source(text, "f"), resolution=names, before=checked)
         assert checked.diagnostics == check_text(text, filename="f")
-        warned = checked.warned
         text = Source(edited(text, chance), "").text
         revision = revise(text, revision, filename="f")
 
@@ -87,7 +89,7 @@ def _meaning(found: Reference | Binding | None) -> object:
 def test_what_python_says(text: str) -> None:
     before = check_again(revise(WARNED, filename="f").result, Source(WARNED, "f"))
     assert sum(item.code == "SC307" for item in before.diagnostics) == 3
-    after = check_again(revise(text, filename="f").result, Source(text, "f"), warned=before.warned)
+    after = check_again(revise(text, filename="f").result, Source(text, "f"), before=before)
     assert after.diagnostics == check_text(text, filename="f")
 
 
@@ -100,11 +102,128 @@ def test_large_texts_with_mistakes_are_told_of_in_one_order(seed: int) -> None:
         for index in range(60)
     ]
     lines.insert(30, "x = (")
-    revision, names = revise("\n".join(lines), filename="f"), None
+    revision, names, checked = revise("\n".join(lines), filename="f"), None, None
     for _ in range(4):
         text = "\n".join(lines)
         revision = revise(text, revision, filename="f")
         names = bind_again(revision.result.tree, names)
-        checked = check_again(revision.result, Source(text, "f"), resolution=names)
+        checked = check_again(revision.result, Source(text, "f"), resolution=names, before=checked)
         assert checked.diagnostics == check_text(text, filename="f")
         lines[chance.randrange(len(lines))] = chance.choice(["y = missing1", "x = )", "pass", "z = other1 +"])
+
+
+STATEMENTS = """\
+class A(Object): width: 3
+class A(B): length: 4
+class B(A): speed: self.width
+class B(Object):\\n    speed: 3\\n    def go(self, a): return self.stop(a)\\n    def stop(self): return 1
+class C(B):\\n    def stop(self, b): pass
+class C: pass
+A = 3
+A = B
+x = 3
+x = Range(1, 2)
+x = [1, 2]
+y = x
+def f(a): return a
+def f(a, b): pass
+def f(): pass
+def f(): pass
+behavior D(a): take a
+behavior D(): wait
+behavior D(): x = 3
+monitor M(): wait
+monitor D(): wait
+f(1)
+f(x, 2)
+if f: pass
+if x > 1: pass
+if y: pass
+z = new A with speed 3
+z = new A with widht 3, with speed 4
+z = new B at x, with behavior D
+z = new f
+z = A(1)
+ego = new C with behavior D(1)
+ego = A
+D()
+require D()
+require M()
+require x
+behavior E(): do D()
+behavior E(): do f(1)
+behavior E():\\n    while True:\\n        f(1)
+x.speed = 3
+z.stop = 4
+print(eval, z.speed, q)
+from m import *
+from m import A
+from m import g, D
+import m
+m.g(1)
+g(1)
+model m
+raise ValueError
+x = = 3
+take x
+def h(a): yield a
+del x
+global x
+x is 3
+""".splitlines()
+"""Statements of which what is said depends on others, with ``\\n`` for line ends."""
+
+MODULES = (
+    "class A(Object): speed: 3\ndef g(a, b): pass\n",
+    "def A(): pass\nbehavior D(a, b): wait\ndef g(): pass\n",
+)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_what_is_said_of_statements_that_stay_follows_the_others(seed: int, tmp_path: Path) -> None:
+    chance = random.Random(seed)
+    statements = (
+        STATEMENTS if seed % 3 else [each for each in STATEMENTS if "m" not in each and " = =" not in each]
+    )
+    (tmp_path / "m.scenic").write_text(MODULES[0])
+    filename = str(tmp_path / "p.scenic")
+    project = Project([str(tmp_path)])
+    lines = [chance.choice(statements) for _ in range(chance.choice([20, 60]))]
+    revision, names, checked = None, None, None
+    for _ in range(25):
+        text = "\n".join(lines).replace("\\n", "\n") + "\n"
+        revision = revise(text, revision, filename=filename)
+        names = bind_again(revision.result.tree, names)
+        surroundings_of = surroundings_in(project)
+        checked = check_again(
+            revision.result,
+            Source(text, filename),
+            resolution=names,
+            surroundings_of=surroundings_of,
+            before=checked,
+        )
+        assert checked.diagnostics == check_text(text, filename=filename, surroundings_of=surroundings_of)
+        index = chance.randrange(len(lines))
+        lines[index : index + chance.choice([0, 1, 1, 1])] = chance.choices(
+            statements, k=chance.choice([0, 1, 1, 1])
+        )
+        if chance.random() < 0.1:
+            project.open(str(tmp_path / "m.scenic"), chance.choice(MODULES))
+
+
+def test_little_is_looked_at_again() -> None:
+    lines = [
+        f"class C{index}(Object): width: {index}\nx{index} = new C{index} at {index}" for index in range(100)
+    ]
+    lines.insert(50, "y = 1")
+    revision = revise("\n".join(lines), filename="f")
+    names = bind_again(revision.result.tree, None)
+    before = check_again(revision.result, Source("\n".join(lines), "f"), resolution=names)
+    lines[50] = "y = x3"
+    revision = revise("\n".join(lines), revision, filename="f")
+    names = bind_again(revision.result.tree, names)
+    after = check_again(revision.result, Source("\n".join(lines), "f"), resolution=names, before=before)
+    assert before.kept is not None
+    assert after.kept is not None
+    fresh = [key for key, said in after.kept.said.items() if before.kept.said.get(key) is not said]
+    assert 0 < len(fresh) <= 6

@@ -31,6 +31,7 @@ from scenic.compiler.checks import (
     uses,
 )
 from scenic.compiler.checks.context import Context, NodeRule, ProgramRule
+from scenic.compiler.checks.pieces import Piece, PieceRule, piecewise
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.garbage import no_garbage_collection
 
@@ -41,14 +42,36 @@ _NODE_RULES: Final[tuple[tuple[type[ast.AST], NodeRule], ...]] = tuple(
     for module in (angles, arguments, bodies, conditions, making, randomness, specifiers)
     for rule in module.RULES.items()
 )
-_PROGRAM_RULES: Final[tuple[ProgramRule, ...]] = (
+
+
+def _nodes(piece: Piece, context: Context) -> Iterator[Diagnostic]:
+    """What is said of single nodes."""
+    for cls, rule in _NODE_RULES:
+        for node, scope in piece.nodes(cls):
+            yield from rule(node, scope, context)
+
+
+def _misplaced(piece: Piece, context: Context) -> Iterator[Diagnostic]:
+    """What is said of statements that stand where they must not, and of others that cannot be used at all."""
+    misplaced = dict(placement.check_placement(piece, context))
+    yield from filter(None, misplaced.values())
+    yield from support.check_support(piece, context, misplaced)
+
+
+_CHECKS: Final[tuple[PieceRule, ...]] = (
+    names.check_classes,
+    _misplaced,
+    declarations.check_declarations,
+)
+_LINTS: Final[tuple[PieceRule, ...]] = (
+    _nodes,
     defaults.check_defaults,
     flow.check_flow,
     guards.check_guards,
     instances.check_instances,
-    order.check_order,
-    uses.check_uses,
+    uses.check_replaced,
 )
+_PROGRAM_RULES: Final[tuple[ProgramRule, ...]] = (flow.check_end, order.check_order, uses.check_uses)
 
 MOST_OF_ONE_CODE: Final = 200
 """So many findings of one kind are told."""
@@ -64,6 +87,7 @@ NOTED: Final = frozenset(
         ast.ImportFrom,
         ast.Return,
         ast.Subscript,
+        ast.UnaryOp,
         scenic.BehaviorDef,
         scenic.Model,
         scenic.MonitorDef,
@@ -85,13 +109,9 @@ def check(
     def findings() -> Iterator[Diagnostic]:
         yield from names.check_reserved(context, context.resolution.reserved)
         yield from names.check_names(context, provided)
+        yield from piecewise(context, "check", _CHECKS, go_on)
         go_on()
-        misplaced = dict(placement.check_placement(context))
-        yield from filter(None, misplaced.values())
-        go_on()
-        yield from support.check_support(context, misplaced)
-        go_on()
-        yield from declarations.check_declarations(context)
+        yield from support.check_supported_names(context)
 
     return tuple(_capped(sorted(findings(), key=_order)))
 
@@ -104,10 +124,7 @@ def lint(context: Context, go_on: Callable[[], None] = lambda: None) -> tuple[Di
     surroundings = context.surroundings
 
     def findings() -> Iterator[Diagnostic]:
-        for cls, rule in _NODE_RULES:
-            go_on()
-            for node, scope in context.nodes(cls):
-                yield from rule(node, scope, context)
+        yield from piecewise(context, "lint", _LINTS, go_on)
         wrong = () if surroundings is None else tuple(surroundings.findings())
         yield from wrong
         places = {item.span for item in wrong}

@@ -36,9 +36,9 @@ class Block(NamedTuple):
     where: Where
 
 
-def blocks(tree: ast.Module) -> Iterator[Block]:
-    """Every block of a module, outer ones before those in them."""
-    stack = [Block(tree, tree.body, Where())]
+def blocks(tree: ast.Module, statements: Iterable[ast.stmt]) -> Iterator[Block]:
+    """Every block of some statements of a module, outer ones before those in them."""
+    stack = [Block(tree, list(statements), Where())]
     while stack:
         block = stack.pop()
         yield block

@@ -58,7 +58,7 @@ def _misspelt(
 ) -> Iterator[Diagnostic]:
     """SC300: ``lenght: 4``, of which nothing else in the program speaks."""
     name = item.name
-    if name in context.attributes or name in _given(context):
+    if name in context.attributes or name in context.given:
         return
     for meant in sorted(inherited):
         if meant not in own and _is_slip(name, meant):
@@ -83,11 +83,6 @@ def _is_slip(name: str, meant: str) -> bool:
     if distance(name, meant, limit=1) > 1:
         return False
     return len(name) != len(meant) or sorted(name) == sorted(meant)
-
-
-def _given(context: Context) -> set[str | None]:
-    """The properties that the program gives with `with`."""
-    return {node.property for node, _ in context.nodes(scenic.Specifier)}
 
 
 RULES: Final[dict[type[ast.AST], NodeRule]] = {ast.ClassDef: _class}

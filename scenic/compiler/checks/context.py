@@ -9,8 +9,9 @@ from weakref import proxy
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.blocks import Block, blocks, position
 from scenic.compiler.checks.classes import Classes
+from scenic.compiler.checks.kept import Kept, Said, changed_names
 from scenic.compiler.checks.places import header_span, word_span
-from scenic.compiler.scopes import PROVIDED, Binding, BindingKind, Resolution, Scope, ScopeKind
+from scenic.compiler.scopes import PROVIDED, Binding, BindingKind, Resolution, Scope, ScopeKind, Stretch
 from scenic.compiler.surroundings import Foreign, Surroundings
 from scenic.language.diagnostics import Diagnostic, Edit, Fix, Label, Severity
 from scenic.language.source import Source
@@ -28,6 +29,16 @@ DEFINITIONS: Final = (
     scenic.ScenarioDef,
 )
 """Statements that bind a name to something that can be called, instantiated or run."""
+
+HEADED: Final = (
+    ast.ClassDef,
+    ast.FunctionDef,
+    scenic.BehaviorDef,
+    scenic.Model,
+    scenic.MonitorDef,
+    scenic.ScenarioDef,
+)
+"""Statements after which what could not be parsed is no longer taken for the header of what follows."""
 
 Definition = (
     ast.FunctionDef
@@ -48,6 +59,7 @@ class Context:
         source: Source,
         resolution: Resolution,
         surroundings: Surroundings | None = None,
+        before: Kept | None = None,
     ) -> None:
         self.tree = tree
         self.source = source
@@ -56,13 +68,19 @@ class Context:
         self.references: Final = resolution.references
         self.brought: Final[Collection[str]] = () if surroundings is None else surroundings.names
         """The names that star imports and the model are known to bring."""
+        self.before: Final = before
+        self.said: Final[dict[tuple[str, Stretch], Said]] = {}
+        """What was said of each stretch by each group of rules."""
+        self.asked: Final[set[str]] = set()
+        """The facts about the whole program that rules have asked for."""
+        self._facts: Final[dict[str, Any]] = {}
 
     # What the program is
 
     @cached_property
     def blocks(self) -> tuple[Block, ...]:
         """Every list of statements, outer ones before those in them."""
-        return tuple(blocks(self.tree))
+        return tuple(blocks(self.tree, self.tree.body))
 
     @cached_property
     def classes(self) -> Classes:
@@ -70,10 +88,103 @@ class Context:
         # Without a reference back all of this is gone as soon as the check is done.
         return Classes(proxy(self))
 
+    # What has changed since the version before
+
     @cached_property
+    def kept(self) -> Kept:
+        """What was said, for the next version."""
+        return Kept(self._state, self.resolution.names, self.said)
+
+    @cached_property
+    def _state(self) -> tuple[object, ...]:
+        """What every rule may depend on."""
+        imports = [node for cls in (ast.Import, ast.ImportFrom, scenic.Model) for node, _ in self.nodes(cls)]
+        resolution, surroundings = self.resolution, self.surroundings
+        modules = None if surroundings is None else surroundings.state
+        return (self.source.filename, resolution.wildcard, resolution.reflective, modules, *imports)
+
+    @cached_property
+    def _changed(self) -> frozenset[str] | None:
+        """The names of the module that no longer mean the same; ``None`` if anything may have changed."""
+        before = self.before
+        if (
+            before is None
+            or len(before.state) != len(self._state)
+            or not all(
+                one is other or one == other for one, other in zip(before.state, self._state, strict=True)
+            )
+        ):
+            return None
+        return changed_names(before.names, self.resolution.names, self.resolution.stretches)
+
+    def is_unchanged(self, stretch: Stretch) -> bool:
+        """Whether all that a stretch that stood in the version before may depend on is as it was, but for `fact`."""
+        return self._changed is not None and stretch.reads.isdisjoint(self._changed)
+
+    def follows_error(self, stretch: Stretch) -> bool:
+        """Whether the last thing before a stretch that could be a header could not be parsed."""
+        return stretch in self._after_errors
+
+    @cached_property
+    def _after_errors(self) -> frozenset[Stretch]:
+        found = set()
+        wrong = False
+        for stretch in self.resolution.stretches if self.nodes(scenic.ErrorStatement) else ():
+            if wrong:
+                found.add(stretch)
+            for statement in stretch.statements:
+                if isinstance(statement, scenic.ErrorStatement):
+                    wrong = True
+                elif isinstance(statement, HEADED):
+                    wrong = False
+        return frozenset(found)
+
+    # Facts about the whole program
+
+    def fact(self, name: str) -> Any:
+        """One of the facts below by its name; that it was asked for is noted."""
+        self.asked.add(name)
+        if name not in self._facts:
+            self._facts[name] = _FACTS[name](self)
+        return self._facts[name]
+
+    @property
     def broken(self) -> bool:
         """Whether parts could not be parsed: then nothing can be said to be missing or unused."""
-        return bool(self.nodes(scenic.ErrorStatement))
+        found: bool = self.fact("broken")
+        return found
+
+    @property
+    def attributes(self) -> frozenset[str]:
+        """The names of all attributes that the program reads or writes."""
+        found: frozenset[str] = self.fact("attributes")
+        return found
+
+    @property
+    def stored_attributes(self) -> frozenset[str]:
+        """The names of all attributes that the program writes."""
+        found: frozenset[str] = self.fact("stored attributes")
+        return found
+
+    @property
+    def given(self) -> frozenset[str]:
+        """The properties that the program gives with `with`."""
+        found: frozenset[str] = self.fact("given")
+        return found
+
+    @property
+    def owners(self) -> Mapping[str, list[Scope]]:
+        """The classes of the program that define an attribute or method of each name."""
+        found: Mapping[str, list[Scope]] = self.fact("owners")
+        return found
+
+    @property
+    def returning(self) -> frozenset[Scope | None]:
+        """The scopes of the functions whose calls may give anything else than ``None``."""
+        found: frozenset[Scope | None] = self.fact("returning")
+        return found
+
+    # What its names mean
 
     def nodes(self, cls: type[ast.AST]) -> Sequence[tuple[Any, Scope]]:
         """All nodes of a class, with their scopes."""
@@ -188,41 +299,9 @@ class Context:
         }
 
     @cached_property
-    def attributes(self) -> frozenset[str]:
-        """The names of all attributes that the program reads or writes."""
-        return frozenset(node.attr for node, _ in self.nodes(ast.Attribute))
-
-    @cached_property
-    def stored_attributes(self) -> frozenset[str]:
-        """The names of all attributes that the program writes."""
-        return frozenset(
-            node.attr for node, _ in self.nodes(ast.Attribute) if not isinstance(node.ctx, ast.Load)
-        )
-
-    @cached_property
     def read_sites(self) -> frozenset[ast.AST]:
         """The nodes that bind what is read somewhere."""
         return frozenset(site for binding in self.loads for site in binding.sites)
-
-    @cached_property
-    def owners(self) -> Mapping[str, list[Scope]]:
-        """The classes of the program that define an attribute or method of each name."""
-        found: dict[str, list[Scope]] = {}
-        for scope in self.resolution.scopes.values():
-            if scope.kind is ScopeKind.CLASS:
-                for name in scope.bindings:
-                    found.setdefault(name, []).append(scope)
-        return found
-
-    @cached_property
-    def returning(self) -> frozenset[Scope | None]:
-        """The scopes of the functions whose calls may give anything else than ``None``."""
-        return frozenset(
-            scope
-            for cls in (ast.Return, ast.Yield, ast.YieldFrom)
-            for node, scope in self.nodes(cls)
-            if cls is not ast.Return or node.value is not None
-        )
 
     @cached_property
     def unresolved(self) -> frozenset[str]:
@@ -309,6 +388,48 @@ class Context:
     def renaming(self, place: ast.AST | Span, name: str, meant: str, *, certain: bool = True) -> Fix:
         """A repair of a misspelt name, certain at most if it can hardly be anything else."""
         return self.replacement(f"Write `{meant}`", place, meant, certain=certain and is_slip(name, meant))
+
+
+def _attributes(context: Context) -> frozenset[str]:
+    return frozenset(node.attr for node, _ in context.nodes(ast.Attribute))
+
+
+def _stored_attributes(context: Context) -> frozenset[str]:
+    return frozenset(
+        node.attr for node, _ in context.nodes(ast.Attribute) if not isinstance(node.ctx, ast.Load)
+    )
+
+
+def _given(context: Context) -> frozenset[str]:
+    return frozenset(node.property for node, _ in context.nodes(scenic.Specifier))
+
+
+def _owners(context: Context) -> dict[str, list[Scope]]:
+    found: dict[str, list[Scope]] = {}
+    for scope in context.resolution.scopes.values():
+        if scope.kind is ScopeKind.CLASS:
+            for name in scope.bindings:
+                found.setdefault(name, []).append(scope)
+    return found
+
+
+def _returning(context: Context) -> frozenset[Scope | None]:
+    return frozenset(
+        scope
+        for cls in (ast.Return, ast.Yield, ast.YieldFrom)
+        for node, scope in context.nodes(cls)
+        if cls is not ast.Return or node.value is not None
+    )
+
+
+_FACTS: Final[Mapping[str, Callable[[Context], Any]]] = {
+    "attributes": _attributes,
+    "broken": lambda context: bool(context.nodes(scenic.ErrorStatement)),
+    "given": _given,
+    "owners": _owners,
+    "returning": _returning,
+    "stored attributes": _stored_attributes,
+}
 
 
 NodeRule = Callable[[Any, Scope, Context], Iterator[Diagnostic]]

@@ -6,6 +6,7 @@ from typing import Any, Final
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.context import Context
+from scenic.compiler.checks.pieces import Piece
 from scenic.compiler.checks.places import word_span
 from scenic.compiler.scopes import ScopeKind
 from scenic.compiler.traversal import walk
@@ -22,14 +23,14 @@ NOTED: Final = (ast.ClassDef, scenic.New, scenic.Param, scenic.PropertyDef, scen
 """The nodes that declare something."""
 
 
-def check_declarations(context: Context) -> Iterator[Diagnostic]:
+def check_declarations(piece: Piece, context: Context) -> Iterator[Diagnostic]:
     """SC110, SC200, SC210, SC220 and SC300 in declarations and specifiers."""
-    for node, _ in context.nodes(ast.ClassDef):
+    for node, _ in piece.nodes(ast.ClassDef):
         definitions = [item for item in node.body if isinstance(item, scenic.PropertyDef)]
         yield from _duplicates(context, [(item.name, item) for item in definitions], "property")
-    for node, _ in context.nodes(scenic.PropertyDef):
+    for node, _ in piece.nodes(scenic.PropertyDef):
         yield from _property(context, node)
-    for node, _ in context.nodes(scenic.Require):
+    for node, _ in piece.nodes(scenic.Require):
         if node.probability is not None and not 0 <= node.probability <= 1:
             yield context.error(
                 "SC220",
@@ -37,7 +38,7 @@ def check_declarations(context: Context) -> Iterator[Diagnostic]:
                 node,
                 "write for example `require[0.9] condition`",
             )
-    for node, _ in context.nodes(scenic.New):
+    for node, _ in piece.nodes(scenic.New):
         yield from _misspelt(context, node)
 
 

@@ -1,18 +1,19 @@
 """Code that is never reached, and behaviors that never let time pass."""
 
 import ast
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any, Final
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.blocks import DYNAMIC, Where
 from scenic.compiler.checks.conditions import truth
 from scenic.compiler.checks.context import Context
+from scenic.compiler.checks.pieces import Piece
 from scenic.compiler.checks.places import word_span
 from scenic.compiler.traversal import parts
 from scenic.language.diagnostics import Diagnostic
 
-__all__ = ["check_flow"]
+__all__ = ["check_end", "check_flow"]
 
 _LASTING: Final = (
     scenic.Take,
@@ -41,29 +42,38 @@ _OWN_BODIES: Final = (
 """Nodes whose contents run at other times than what surrounds them."""
 
 
-def check_flow(context: Context) -> Iterator[Diagnostic]:
-    """SC303: code that is never reached; SC304, SC305: no time passes."""
+def check_end(context: Context) -> Iterator[Diagnostic]:
+    """SC303: code of the module that is never reached."""
+    yield from _after_end(context.tree.body, Where(), context)
+
+
+def check_flow(piece: Piece, context: Context) -> Iterator[Diagnostic]:
+    """SC303: code of blocks that is never reached; SC304, SC305: no time passes."""
     endless: set[ast.AST] = set()
-    for _, statements, where in context.blocks:
-        last = len(statements) - 1
-        for index, statement in enumerate(statements):
-            if index < last and _ends(statement, where):
-                yield from _unreachable(context, statement, statements[index + 1 :])
-                break
-        if where.place in DYNAMIC and where.function is None and not context.broken:
+    for _, statements, where in piece.inner_blocks:
+        yield from _after_end(statements, where, context)
+        if where.place in DYNAMIC and where.function is None:
             for statement in statements:
                 if (
                     isinstance(statement, ast.While)
                     and truth(statement.test) is True
                     and not _gives_way(statement)
+                    and not context.broken
                 ):
                     endless.add(statement)
                     yield _endless(context, statement)
-    if not context.broken:
-        yield from _timeless(context, endless)
+    yield from _timeless(piece, context, endless)
 
 
-def _unreachable(context: Context, ending: Any, rest: list[Any]) -> Iterator[Diagnostic]:
+def _after_end(statements: Sequence[Any], where: Where, context: Context) -> Iterator[Diagnostic]:
+    last = len(statements) - 1
+    for index, statement in enumerate(statements):
+        if index < last and _ends(statement, where):
+            yield from _unreachable(context, statement, statements[index + 1 :])
+            break
+
+
+def _unreachable(context: Context, ending: Any, rest: Sequence[Any]) -> Iterator[Diagnostic]:
     # A lone `yield` or `wait` after `return` makes a generator or a behavior of what has nothing else to do.
     if len(rest) == 1:
         only = rest[0]
@@ -149,11 +159,11 @@ def _endless(context: Context, loop: ast.While) -> Diagnostic:
     )
 
 
-def _timeless(context: Context, endless: set[ast.AST]) -> Iterator[Diagnostic]:
+def _timeless(piece: Piece, context: Context, endless: set[ast.AST]) -> Iterator[Diagnostic]:
     for cls in (scenic.BehaviorDef, scenic.MonitorDef, scenic.ScenarioDef):
-        for node, _ in context.nodes(cls):
+        for node, _ in piece.nodes(cls):
             body = node.compose if cls is scenic.ScenarioDef else node.body
-            if not body or _lasts(body) or any(loop in endless for loop in _loops(body)):
+            if not body or _lasts(body) or any(loop in endless for loop in _loops(body)) or context.broken:
                 continue
             kind = {scenic.BehaviorDef: "behavior", scenic.MonitorDef: "monitor"}.get(cls)
             if kind is None:

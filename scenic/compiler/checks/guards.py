@@ -6,16 +6,17 @@ from typing import Any
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.context import Context
+from scenic.compiler.checks.pieces import Piece
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.spelling import nearest
 
 __all__ = ["check_guards"]
 
 
-def check_guards(context: Context) -> Iterator[Diagnostic]:
+def check_guards(piece: Piece, context: Context) -> Iterator[Diagnostic]:
     """SC310: ``precondtion: condition`` in a behavior or scenario."""
     for cls in (scenic.BehaviorDef, scenic.ScenarioDef):
-        for node, _ in context.nodes(cls):
+        for node, _ in piece.nodes(cls):
             body = node.body if isinstance(node, scenic.BehaviorDef) else node.setup or []
             for index, statement in enumerate(body):
                 yield from _misspelt(context, body, index, statement)

@@ -10,6 +10,7 @@ from scenic.compiler import tree as scenic
 from scenic.compiler.checks.arguments import kind_of
 from scenic.compiler.checks.blocks import position
 from scenic.compiler.checks.context import Context
+from scenic.compiler.checks.pieces import Piece
 from scenic.compiler.checks.places import word_span
 from scenic.compiler.checks.unfinished import alone_names, begun_word, text_before, unfinished
 from scenic.compiler.scopes import Binding, BindingKind, Reference, ScopeKind
@@ -18,7 +19,7 @@ from scenic.language.names import CONVERSIONS, NAMES, TRACKED, NameKind
 from scenic.language.properties import CLASSES
 from scenic.language.spelling import distance, nearest
 
-__all__ = ["NOTED", "check_names", "check_reserved"]
+__all__ = ["NOTED", "check_classes", "check_names", "check_reserved"]
 
 NOTED: Final = (scenic.ErrorStatement, scenic.New)
 
@@ -47,14 +48,12 @@ def check_reserved(context: Context, reserved: Iterable[tuple[str, ast.AST]]) ->
 
 
 def check_names(context: Context, provided: Collection[str]) -> Iterator[Diagnostic]:
-    """SC202: names that are read and that nothing binds; SC203: classes after ``new`` that are none."""
-    classes = {node.cls: scope for node, scope in context.nodes(scenic.New)}
-    for name in classes:
-        yield from _no_class(context, name)
+    """SC202: names that are read and that nothing binds; SC203 if they stand after ``new``."""
     resolution = context.resolution
     if resolution.wildcard:
         return
     skipped: set[str] | None = None
+    classes: set[ast.expr] = set()
     alone: set[ast.Name] = set()
     being_typed: set[str] = set()
     importing = False
@@ -74,6 +73,7 @@ def check_names(context: Context, provided: Collection[str]) -> Iterator[Diagnos
             continue
         if skipped is None:
             skipped = _skipped_words(context)
+            classes = {node.cls for node, _ in context.nodes(scenic.New)}
             alone = alone_names(context)
             words = {each.id for each in alone}
             importing = any(_is_import(word) for word in words) or _is_import_broken(context)
@@ -232,6 +232,12 @@ def _without_self(context: Context, reference: Reference) -> Diagnostic:
         f"write `self.{name}`",
         fix=context.replacement(f"Write `self.{name}`", reference.node, f"self.{name}"),
     )
+
+
+def check_classes(piece: Piece, context: Context) -> Iterator[Diagnostic]:
+    """SC203: classes after ``new`` that are none."""
+    for node, _ in piece.nodes(scenic.New):
+        yield from _no_class(context, node.cls)
 
 
 def _no_class(context: Context, name: ast.Name) -> Iterator[Diagnostic]:

@@ -6,7 +6,8 @@ from typing import Any, Final
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.blocks import DYNAMIC, Where, where_of
-from scenic.compiler.checks.context import Context
+from scenic.compiler.checks.context import HEADED, Context
+from scenic.compiler.checks.pieces import Piece
 from scenic.compiler.traversal import walk
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.names import TRACKED
@@ -21,19 +22,19 @@ NOTED: Final = (ast.Await, ast.Yield, ast.YieldFrom)
 """The expressions that cannot stand everywhere."""
 
 
-def check_placement(context: Context) -> Iterator[tuple[ast.AST, Diagnostic | None]]:
+def check_placement(piece: Piece, context: Context) -> Iterator[tuple[ast.AST, Diagnostic | None]]:
     """SC201: every node that stands where it must not, and what is to be said about it.
 
     Nothing is said where that follows from another mistake.
     """
-    for _, statements, where in context.blocks:
+    for number, (_, statements, where) in enumerate(piece.blocks):
         if where.broken:
             continue
-        header_before = False
+        header_before = piece.follows_error and not number
         for statement in statements:
             if statement.__class__ is scenic.ErrorStatement:
                 header_before = True
-            elif statement.__class__ in _DEFINITIONS:
+            elif isinstance(statement, HEADED):
                 header_before = False
             if statement.__class__ in _CHECKED:
                 if header_before and statement.__class__ in _OF_BEHAVIORS:
@@ -42,11 +43,11 @@ def check_placement(context: Context) -> Iterator[tuple[ast.AST, Diagnostic | No
                     continue
                 for message, help_ in _problems(statement, where):
                     yield statement, context.error("SC201", message, statement, help_)
-    if context.broken:
+    if not any(piece.nodes(cls) for cls in NOTED) or context.broken:
         return
-    later = _evaluated_later(context)
+    later = _evaluated_later(piece)
     for cls in NOTED:
-        for node, scope in context.nodes(cls):
+        for node, scope in piece.nodes(cls):
             if node in later:
                 message = "`await` cannot be used in what simulations ask for later, outside of the function"
                 yield node, context.error("SC201", message, node, "await the value before, and name it here")
@@ -55,14 +56,14 @@ def check_placement(context: Context) -> Iterator[tuple[ast.AST, Diagnostic | No
                 yield node, context.error("SC201", message, node, help_)
 
 
-def _evaluated_later(context: Context) -> set[ast.AST]:
+def _evaluated_later(piece: Piece) -> set[ast.AST]:
     """The expressions with ``await`` in conditions and values that become functions of their own."""
-    awaiting = {node for node, _ in context.nodes(ast.Await)}
+    awaiting = {node for node, _ in piece.nodes(ast.Await)}
     if not awaiting:
         return set()
     return {
         part
-        for block in context.blocks
+        for block in piece.blocks
         for statement in block.statements
         if isinstance(statement, _ASKED)
         for part in walk(statement)
@@ -136,10 +137,6 @@ def _misplaced_expression(node: Any, where: Where) -> Iterator[tuple[str, str]]:
     elif where.function is None:
         yield f"`yield` cannot be used {where.place}", "it belongs in a function"
 
-
-_DEFINITIONS: Final = frozenset(
-    {ast.ClassDef, ast.FunctionDef, scenic.BehaviorDef, scenic.Model, scenic.MonitorDef, scenic.ScenarioDef}
-)
 
 _OF_BEHAVIORS: Final = frozenset(
     getattr(scenic, statement.node) for statement in STATEMENTS.values() if statement.suspends

@@ -8,6 +8,7 @@ from scenic.compiler import tree as scenic
 from scenic.compiler.checks.blocks import in_compose, position
 from scenic.compiler.checks.context import Context
 from scenic.compiler.checks.instances import missing_new
+from scenic.compiler.checks.pieces import Piece
 from scenic.compiler.scopes import BindingKind, Scope, ScopeKind
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.keywords import TEMPORAL_OPERATORS
@@ -17,7 +18,7 @@ from scenic.language.properties import CLASSES
 from scenic.language.specifiers import SPECIFIERS
 from scenic.language.statements import STATEMENTS
 
-__all__ = ["NOTED", "check_support"]
+__all__ = ["NOTED", "check_support", "check_supported_names"]
 
 _STATEMENTS: Final = tuple(
     getattr(scenic, statement.node) for statement in STATEMENTS.values() if not statement.available
@@ -43,17 +44,16 @@ def _checked() -> frozenset[type[ast.AST]]:
 _CHECKED: Final = _checked()
 
 
-def check_support(context: Context, misplaced: Container[ast.AST]) -> Iterator[Diagnostic]:
+def check_support(piece: Piece, context: Context, misplaced: Container[ast.AST]) -> Iterator[Diagnostic]:
     """SC900: every use of a feature that is declared but not available, but for statements that are misplaced anyway.
 
     What only simulations run is refused when one comes to it; so may be what stands in a block whose beginning is wrong.
     """
-    resolution = context.resolution
-    gaps = [node for node, _ in context.nodes(scenic.ErrorStatement)]
+    gaps = [node for node, _ in piece.nodes(scenic.ErrorStatement)]
     for cls in NOTED:
         if cls not in _CHECKED:
             continue
-        for node, scope in context.nodes(cls):
+        for node, scope in piece.nodes(cls):
             if cls is scenic.Operation:
                 forgotten = _class_without_new(node, context)
                 if forgotten is not None:
@@ -68,7 +68,11 @@ def check_support(context: Context, misplaced: Container[ast.AST]) -> Iterator[D
                 and not any(_within(node, gap) for gap in gaps)
             ):
                 yield _refusal(feature, node, context)
-    if _NAMES and not resolution.wildcard:
+
+
+def check_supported_names(context: Context) -> Iterator[Diagnostic]:
+    """SC900: every use of a name that is declared but not available."""
+    if _NAMES and not context.resolution.wildcard:
         for reference in context.references.values():
             name = reference.node
             if name.id in _NAMES and reference.binding is None and not _carried(name, reference.scope):

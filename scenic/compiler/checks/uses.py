@@ -3,13 +3,14 @@
 import ast
 import sys
 from bisect import bisect_left
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Any, Final
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.arguments import kind_of
 from scenic.compiler.checks.blocks import position
 from scenic.compiler.checks.context import DEFINITIONS, Context
+from scenic.compiler.checks.pieces import Piece
 from scenic.compiler.checks.places import word_span
 from scenic.compiler.scopes import Binding, BindingKind, Scope, ScopeKind
 from scenic.language.diagnostics import Diagnostic, Edit, Fix, Label
@@ -17,7 +18,7 @@ from scenic.language.names import NAMES, NameKind
 from scenic.language.spans import Span
 from scenic.language.spelling import is_slip
 
-__all__ = ["check_uses"]
+__all__ = ["check_replaced", "check_uses"]
 
 _PYTHON_MODULES: Final = sys.stdlib_module_names | {"numpy", "scipy", "shapely", "trimesh"}
 """Modules that are certainly no Scenic modules: importing one of those has effects, used or not."""
@@ -52,7 +53,16 @@ def check_uses(context: Context) -> Iterator[Diagnostic]:
             if certain and binding not in loads:
                 yield from _unused(binding, scope, context)
     if certain:
-        yield from _replaced(context)
+        yield from _replaced(context, context.tree.body)
+
+
+def check_replaced(piece: Piece, context: Context) -> Iterator[Diagnostic]:
+    """SC208 in blocks."""
+    for _, statements, _ in piece.inner_blocks:
+        if sum(isinstance(statement, DEFINITIONS) for statement in statements) > 1:
+            if context.resolution.reflective or context.broken:
+                return
+            yield from _replaced(context, statements)
 
 
 def _hidden(binding: Binding, context: Context) -> Iterator[Diagnostic]:
@@ -183,28 +193,27 @@ def _exported(context: Context) -> set[str]:
     }
 
 
-def _replaced(context: Context) -> Iterator[Diagnostic]:
+def _replaced(context: Context, statements: Iterable[ast.stmt]) -> Iterator[Diagnostic]:
     """SC208: two definitions of one name in one block, without a use between them."""
-    for _, statements, _ in context.blocks:
-        last: dict[str, Any] = {}
-        for statement in statements:
-            if not isinstance(statement, DEFINITIONS):
-                continue
-            name = statement.name
-            first = last.get(name)
-            last[name] = statement
-            if first is None or name == "_":
-                continue
-            if any(getattr(node, "decorator_list", None) for node in (first, statement)):
-                continue
-            mentions = context.mentions.get(name, [])
-            following = bisect_left(mentions, position(first))
-            if following < len(mentions) and mentions[following] < position(statement):
-                continue
-            yield context.warning(
-                "SC208",
-                f"this replaces the {kind_of(first)} `{name}`, which has not been used",
-                word_span(context.source, statement, name),
-                "remove one of the definitions, or use another name",
-                labels=(Label(word_span(context.source, first, name), "first defined here"),),
-            )
+    last: dict[str, Any] = {}
+    for statement in statements:
+        if not isinstance(statement, DEFINITIONS):
+            continue
+        name = statement.name
+        first = last.get(name)
+        last[name] = statement
+        if first is None or name == "_":
+            continue
+        if any(getattr(node, "decorator_list", None) for node in (first, statement)):
+            continue
+        mentions = context.mentions.get(name, [])
+        following = bisect_left(mentions, position(first))
+        if following < len(mentions) and mentions[following] < position(statement):
+            continue
+        yield context.warning(
+            "SC208",
+            f"this replaces the {kind_of(first)} `{name}`, which has not been used",
+            word_span(context.source, statement, name),
+            "remove one of the definitions, or use another name",
+            labels=(Label(word_span(context.source, first, name), "first defined here"),),
+        )

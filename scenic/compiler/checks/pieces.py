@@ -1,0 +1,64 @@
+"""Rules that look at one stretch of the top level at a time, and are asked again only of what has changed."""
+
+import ast
+from collections.abc import Callable, Iterator, Sequence
+from functools import cached_property
+from typing import Any, TypeAlias
+
+from scenic.compiler.checks.blocks import Block, blocks
+from scenic.compiler.checks.context import Context
+from scenic.compiler.checks.kept import Said
+from scenic.compiler.scopes import Scope, Stretch
+from scenic.language.diagnostics import Diagnostic
+
+__all__ = ["Piece", "PieceRule", "piecewise"]
+
+
+class Piece:
+    """A stretch of a program under examination.
+
+    ``follows_error`` tells whether the last thing before it that could be the header of its first statements could not be
+    parsed.
+    """
+
+    def __init__(self, context: Context, stretch: Stretch, *, follows_error: bool = False) -> None:
+        self._tree = context.tree
+        self._stretch = stretch
+        self.follows_error = follows_error
+
+    def nodes(self, cls: type[ast.AST]) -> Sequence[tuple[Any, Scope]]:
+        """Its nodes of a class, with their scopes."""
+        return self._stretch.nodes.get(cls, ())
+
+    @cached_property
+    def blocks(self) -> tuple[Block, ...]:
+        """Its lists of statements, outer ones before those in them; the first is a part of the module's."""
+        return tuple(blocks(self._tree, self._stretch.statements))
+
+    @property
+    def inner_blocks(self) -> tuple[Block, ...]:
+        """Those that are whole."""
+        return self.blocks[1:]
+
+
+PieceRule: TypeAlias = Callable[[Piece, Context], Iterator[Diagnostic]]
+"""What is said about a piece of a program: nothing that depends on the statements around it but by names."""
+
+
+def piecewise(
+    context: Context, group: str, rules: Sequence[PieceRule], go_on: Callable[[], None]
+) -> Iterator[Diagnostic]:
+    """What a group of rules says of all pieces; of what has not changed, what it said before."""
+    before = context.before
+    for stretch in context.resolution.stretches:
+        go_on()
+        known = (
+            None if before is None or not context.is_unchanged(stretch) else before.said.get((group, stretch))
+        )
+        if known is None or any(context.fact(name) != value for name, value in known.facts):
+            context.asked.clear()
+            piece = Piece(context, stretch, follows_error=context.follows_error(stretch))
+            found = tuple(item for rule in rules for item in rule(piece, context))
+            known = Said(found, tuple((name, context.fact(name)) for name in sorted(context.asked)))
+        context.said[group, stretch] = known
+        yield from known.found

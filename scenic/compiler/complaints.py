@@ -1,0 +1,180 @@
+"""What Python's compiler may refuse or warn of in a program that is right by all other checks.
+
+Nearly every program has nothing of the kind, and lowering and compiling it takes longer than all other checks together: a
+check compiles only what is suspected here. What CPython (3.11 to 3.14) says while it compiles a tree depends on few things,
+most of which programs do not have: those are not looked at more closely.
+"""
+
+import ast
+import re
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any, Final
+
+from scenic.compiler import tree as scenic
+from scenic.compiler.scopes import BindingKind, Resolution, Stretch
+from scenic.language.source import Source
+
+__all__ = ["suspects"]
+
+_NAMES: Final = re.compile("__(?:class|debug|instance|scenic|value)")
+"""How names begin that cannot be bound, or that lowered code binds."""
+
+_LONGEST: Final = 500
+"""So many tokens of a logical line cannot be nested too deeply for any compiler: few nodes have less than one token."""
+
+_DEEPEST: Final = 12
+"""So many blocks in one another are allowed, whatever they become: CPython takes twenty loops."""
+
+_HARMLESS: Final = frozenset(
+    {
+        bool, float, int, str,  # plain values in fields
+        ast.Assign, ast.Attribute, ast.AugAssign, ast.BinOp, ast.BoolOp, ast.Break, ast.Call, ast.ClassDef,
+        ast.Compare, ast.Constant, ast.Continue, ast.Dict, ast.DictComp, ast.Expr, ast.For, ast.FormattedValue,
+        ast.FunctionDef, ast.GeneratorExp, ast.If, ast.IfExp, ast.Import, ast.ImportFrom, ast.JoinedStr,
+        ast.Lambda, ast.List, ast.ListComp, ast.Name, ast.Pass, ast.Raise, ast.Return, ast.Set, ast.SetComp,
+        ast.Slice, ast.Subscript, ast.Tuple, ast.UnaryOp, ast.While, ast.With, ast.alias, ast.arg,
+        ast.arguments, ast.comprehension, ast.keyword, ast.withitem,
+        *(
+            cls
+            for cls in vars(scenic).values()
+            if isinstance(cls, type)
+            and issubclass(cls, scenic.ScenicStatement | scenic.ScenicExpression | scenic.ScenicPart)
+            and cls not in (scenic.ErrorStatement, scenic.Interrupt, scenic.TryInterrupt)
+        ),
+    }
+)  # fmt: skip
+"""Nodes of which nothing is said but what is looked for here; mistakes of placement are found by our own check."""
+
+_VARIABLE: Final = (ast.Attribute, ast.Call, ast.Name, ast.Subscript)
+"""What may be anything: literals in its place are warned of where they are called, indexed or compared by identity."""
+
+
+def suspects(resolution: Resolution, source: Source, *, longest_line: int) -> list[ast.stmt]:
+    """The statements of the top level that have to be compiled to know what Python says of them, in order.
+
+    ``resolution`` are the names of a program without errors, ``longest_line`` is the number of tokens of its longest
+    logical line. Where what is said of one statement depends on others, they are all of them.
+    """
+    stretches = resolution.stretches
+    if longest_line > _LONGEST or any(_joins(each) for each in stretches):
+        return [statement for each in stretches for statement in each.statements]
+    return [
+        statement
+        for each in stretches
+        if not each.classes <= _HARMLESS
+        or _is_suspect(each)
+        or _has_suspect_words(each.statements, source)
+        or _is_deep(each.statements)
+        for statement in each.statements
+    ]
+
+
+def _joins(stretch: Stretch) -> bool:
+    """Whether what Python says of one statement of the top level depends on others."""
+    return any(
+        isinstance(node, ast.Global) or (isinstance(node, ast.ImportFrom) and node.module == "__future__")
+        for node in stretch.statements
+    )
+
+
+def _is_suspect(stretch: Stretch) -> bool:
+    """Whether there is a node of which something may be said."""
+    for cls, test in _TESTS.items():
+        if any(test(node) for node, _ in stretch.nodes.get(cls, ())):
+            return True
+    return any(
+        binding.kinds & _PARAMETERS and len(binding.sites) > 1 and _is_repeated(binding.sites)
+        for scope in stretch.scopes.values()
+        for binding in scope.bindings.values()
+    )
+
+
+_PARAMETERS: Final = frozenset({BindingKind.PARAMETER})
+
+
+def _is_repeated(sites: Iterable[ast.AST]) -> bool:
+    """Whether two parameters have a name; behaviors and monitors bind theirs, by their own node, to ``self``."""
+    return sum(isinstance(site, ast.arg | scenic.BehaviorDef | scenic.MonitorDef) for site in sites) > 1
+
+
+def _call(node: ast.Call) -> bool:
+    return not isinstance(node.func, _VARIABLE) or _repeats(node.keywords)
+
+
+def _class(node: Any) -> bool:
+    return bool(getattr(node, "type_params", None)) or _repeats(node.keywords)
+
+
+def _repeats(keywords: Sequence[ast.keyword]) -> bool:
+    """Whether a keyword is given twice."""
+    return len(keywords) > 1 and len({each.arg for each in keywords if each.arg is not None}) < sum(
+        each.arg is not None for each in keywords
+    )
+
+
+def _comparison(node: ast.Compare) -> bool:
+    return any(op.__class__ in (ast.Is, ast.IsNot) for op in node.ops) and not all(
+        isinstance(side, _VARIABLE)
+        or (isinstance(side, ast.Constant) and (side.value is None or isinstance(side.value, bool)))
+        for side in (node.left, *node.comparators)
+    )
+
+
+_TESTS: Final[Mapping[type[ast.AST], Callable[[Any], bool]]] = {
+    ast.Call: _call,
+    ast.ClassDef: _class,
+    ast.Compare: _comparison,
+    ast.FunctionDef: lambda node: bool(getattr(node, "type_params", None)),
+    ast.ImportFrom: lambda node: node.module == "__future__",
+    ast.Subscript: lambda node: not isinstance(node.value, _VARIABLE),
+    ast.UnaryOp: lambda node: isinstance(node.op, ast.Invert),
+}
+
+
+def _has_suspect_words(statements: Sequence[ast.stmt], source: Source) -> bool:
+    """Whether there are comprehensions that wait, indentation that is hidden, or special names, however spelt."""
+    if not statements:
+        return False
+    first, last = statements[0], statements[-1]
+    decorators = getattr(first, "decorator_list", None)
+    line = decorators[0].lineno if decorators else first.lineno
+    text = "\n".join(source.lines[line - 1 : last.end_lineno])
+    return (
+        not text.isascii()
+        or "async" in text
+        or "\f" in text
+        or ("__" in text and _NAMES.search(text) is not None)
+    )
+
+
+def _is_deep(statements: Iterable[ast.stmt]) -> bool:
+    """Whether blocks are nested deeply, those of ``elif`` included."""
+    level: list[Any] = list(statements)
+    for _ in range(_DEEPEST):
+        level = [
+            inner
+            for statement in level
+            if statement.__class__ not in _SIMPLE
+            for field in _BLOCKS
+            for inner in getattr(statement, field, None) or ()
+        ]
+        if not level:
+            return False
+    return True
+
+
+_BLOCKS: Final = ("body", "orelse", "guards", "setup", "compose")
+_SIMPLE: Final = frozenset(
+    {
+        ast.Assign,
+        ast.AugAssign,
+        ast.Expr,
+        ast.Pass,
+        ast.Raise,
+        ast.Return,
+        scenic.PropertyDef,
+        scenic.Require,
+        scenic.Take,
+    }
+)
+"""The most frequent statements that hold no others."""
