@@ -15,7 +15,14 @@ from typing import Any
 from scenic.compiler.actions import Problem
 from scenic.compiler.generated import WORDS
 from scenic.compiler.lexer import lex
-from scenic.compiler.parser import Parsed, ParseResult, Statements, parse_tokens, result_of
+from scenic.compiler.parser import (
+    Parsed,
+    ParseResult,
+    Statements,
+    parse_tokens,
+    result_of,
+    tokens_of_longest_line,
+)
 from scenic.compiler.tokens import DEDENT, ENDMARKER, INDENT, NEWLINE, Tokens
 from scenic.compiler.traversal import FIELDS
 from scenic.language.garbage import no_garbage_collection
@@ -60,6 +67,7 @@ def revise(text: str, before: Revision | None = None, *, filename: str = "<strin
     Never raises because of ``text``, and gives what `scenic.compiler.parser.parse` gives.
     """
     lines = tuple(text.split("\n"))
+    longest: int | None = None
     with no_garbage_collection():
         if before is None:
             tokens = lex(text, WORDS)
@@ -69,7 +77,10 @@ def revise(text: str, before: Revision | None = None, *, filename: str = "<strin
             splice = _lexed(text, lines, before, change)
             tokens = lex(text, WORDS) if splice is None else splice.tokens
             parsed = parse_tokens(tokens, lambda read: _known(read, before.parsed, change, splice))
-    return Revision(lines, tokens, parsed, result_of(parsed, filename))
+            if splice is not None and before.result.longest_line <= len(tokens.kinds):
+                fresh = tokens.kinds[splice.begin : splice.end + splice.moved]
+                longest = max(before.result.longest_line, tokens_of_longest_line(fresh))
+    return Revision(lines, tokens, parsed, result_of(parsed, filename, longest))
 
 
 def _difference(before: Sequence[str], after: Sequence[str]) -> _Change:

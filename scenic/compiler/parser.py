@@ -10,7 +10,7 @@ import threading
 from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any, Final, TypeAlias
 
 from scenic.compiler.actions import Actions, Problem
@@ -33,12 +33,12 @@ DEEPEST: Final = 1_000_000
 class ParseResult:
     """The tree of a text, as complete as it could be made, and what is wrong with the text, in order.
 
-    ``longest_line`` is the number of tokens of the longest logical line, if that has been counted.
+    ``longest_line`` is at least the number of tokens of the longest logical line, if they have been counted.
     """
 
     tree: ast.Module
     diagnostics: tuple[Diagnostic, ...]
-    longest_line: int = sys.maxsize
+    longest_line: int = field(default=sys.maxsize, compare=False)
 
 
 Statements: TypeAlias = Mapping[int, tuple[list[ast.stmt], int]]
@@ -72,18 +72,21 @@ def parse(text: str, *, filename: str = "<string>") -> ParseResult:
         return result_of(parsed, filename)
 
 
-def result_of(parsed: Parsed, filename: str) -> ParseResult:
-    """The tree, and what is wrong as diagnostics."""
+def result_of(parsed: Parsed, filename: str, longest_line: int | None = None) -> ParseResult:
+    """The tree, and what is wrong as diagnostics; ``longest_line`` is that of the result, if it is known."""
     tokens, problems = parsed.tokens, parsed.problems
     if not problems and not tokens.diagnostics:
-        return ParseResult(parsed.tree, (), _longest_line(tokens.kinds))
+        if longest_line is None:
+            longest_line = tokens_of_longest_line(tokens.kinds)
+        return ParseResult(parsed.tree, (), longest_line)
     source = Source(tokens.text, filename)
     diagnostics = {replace(each, filename=filename) for each in tokens.diagnostics}
     diagnostics.update(_diagnostic(each, source) for each in problems)
     return ParseResult(parsed.tree, tuple(sorted(diagnostics, key=_order)))
 
 
-def _longest_line(kinds: list[int]) -> int:
+def tokens_of_longest_line(kinds: list[int]) -> int:
+    """The number of tokens of the longest logical line."""
     longest = start = 0
     for _ in range(kinds.count(NEWLINE)):
         end = kinds.index(NEWLINE, start) + 1

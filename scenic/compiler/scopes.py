@@ -5,7 +5,7 @@ A scope is built once by `scenic.compiler.resolver` and only read afterwards. No
 
 import ast
 import builtins
-from bisect import bisect_right
+from bisect import bisect_left
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, field
@@ -144,12 +144,6 @@ class Reference:
     binding: Binding | None
 
 
-def _start(node: Any) -> tuple[int, int]:
-    """Where a statement begins, its decorators included, or another node."""
-    first = node.decorator_list[0] if getattr(node, "decorator_list", None) else node
-    return first.lineno, first.col_offset
-
-
 @dataclass(frozen=True, eq=False)
 class Stretch:
     """Successive statements of the top level, and all that can be said of their names without what stands around them.
@@ -174,20 +168,44 @@ class Stretch:
     wildcard: bool
 
     @cached_property
-    def reads(self) -> frozenset[str]:
-        """The names that are read or written here and may belong to the module."""
-        return frozenset(each.node.id for each in self.references.values() if each.binding is None)
+    def named(self) -> Mapping[str, Sequence[Reference]]:
+        """The uses of each name that no scope within the module binds."""
+        found: dict[str, list[Reference]] = {}
+        for each in self.references.values():
+            if each.binding is None:
+                found.setdefault(each.node.id, []).append(each)
+        return found
+
+    @cached_property
+    def loaded(self) -> frozenset[Binding | str]:
+        """What is read here: bindings, of what may belong to the module only the names."""
+        return frozenset(
+            each.binding or each.node.id
+            for each in self.references.values()
+            if each.node.ctx.__class__ is ast.Load
+        )
 
     @cached_property
     def needs(self) -> Mapping[str, frozenset[str]]:
-        """For each name of the module that is bound here: such names in the statements that bind it."""
-        starts = [_start(statement) for statement in self.statements]
-        named: list[set[str]] = [set() for _ in starts]
-        for each in self.references.values():
-            if each.binding is None:
-                named[bisect_right(starts, (each.node.lineno, each.node.col_offset)) - 1].add(each.node.id)
+        """For each name of the module that is bound here: such names in the definitions and values that it is bound to."""
+        values: dict[ast.AST, ast.AST] = {}
+        for node, _ in self.nodes.get(ast.Assign, ()):
+            values.update((target, node) for target in node.targets)
+        for node, _ in self.nodes.get(ast.AnnAssign, ()):
+            values[node.target] = node
+        used = sorted(
+            (use.node.lineno, use.node.col_offset, name) for name, uses in self.named.items() for use in uses
+        )
+
+        def within(site: Any) -> Iterator[str]:
+            node = values.get(site, site)
+            first = node.decorator_list[0] if getattr(node, "decorator_list", None) else node
+            begin = bisect_left(used, (first.lineno, first.col_offset))
+            end = bisect_left(used, (node.end_lineno, node.end_col_offset))
+            return (name for _, _, name in used[begin:end])
+
         return {
-            name: frozenset().union(*(named[bisect_right(starts, _start(site)) - 1] for _, site in sites))
+            name: frozenset(needed for _, site in sites for needed in within(site))
             for name, sites in self.bound.items()
         }
 
@@ -319,6 +337,24 @@ class Resolution:
         for stretch in self.stretches:
             for site, found in stretch.sites.items():
                 yield site, self.names[found] if isinstance(found, str) else found
+
+    def uses(self, name: str) -> Iterator[Reference]:
+        """Where a name is used that no scope within the module binds, in no particular order; without what it means."""
+        for stretch in self.stretches:
+            yield from stretch.named.get(name, ())
+
+    @cached_property
+    def used(self) -> Collection[str]:
+        """The names that are used and that no scope within the module binds."""
+        return frozenset().union(*(each.named for each in self.stretches))
+
+    @cached_property
+    def _loaded(self) -> Collection[Binding | str]:
+        return frozenset().union(*(each.loaded for each in self.stretches))
+
+    def is_read(self, binding: Binding) -> bool:
+        """Whether the value of a binding is read anywhere."""
+        return (binding.name if binding.scope is self.module else binding) in self._loaded
 
     # One of them
 

@@ -48,7 +48,7 @@ class Surroundings(Protocol):
 
     @property
     def state(self) -> object:
-        """What stands for all other modules: the same object as long as nothing of them has changed."""
+        """What stands for all other modules: equal as long as nothing of them has changed."""
 
     @property
     def complete(self) -> bool:

@@ -13,6 +13,9 @@ def distance(first: str, second: str, *, limit: int) -> int:
     """
     if abs(len(first) - len(second)) > limit:
         return limit + 1
+    # Each edit gets rid of one character that the other name does not have.
+    if len(set(first).difference(second)) > limit or len(set(second).difference(first)) > limit:
+        return limit + 1
     before_last: list[int] = []
     last = list(range(len(second) + 1))
     for i, a in enumerate(first, 1):
@@ -34,7 +37,9 @@ def is_slip(name: str, meant: str) -> bool:
     That is one letter too many, missing, or swapped with its neighbour, in names of four letters or more; or a wrong
     one, but not the first, in names of six or more. Digits tell names apart, so they must agree.
     """
-    if len(name) < 4 or _digits(name) != _digits(meant):
+    if len(name) < 4 or (abs(len(name) - len(meant)) > 1 and name.isascii() and meant.isascii()):
+        return False
+    if _digits(name) != _digits(meant):
         return False
     if name.lower() == meant.lower():
         return True

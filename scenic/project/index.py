@@ -114,8 +114,7 @@ class Project:
         self._compiled: dict[str, Exports] = {}
         self.derived: dict[object, Any] = {}
         """What others compute from the modules; emptied when any of them changes."""
-        self.state = object()
-        """Another object whenever any of the modules has changed."""
+        self._files = object()
 
     # Texts
 
@@ -145,6 +144,7 @@ class Project:
     def close(self, filename: str) -> None:
         """Take the text of a file from disk again."""
         if self._opened.pop(os.path.abspath(filename), None) is not None:
+            self._files = object()
             self._forget()
 
     def refresh(self) -> bool:
@@ -161,14 +161,19 @@ class Project:
                     self._entries[filename] = fresh
                     changed = True
         self.finder.forget()
+        self._files = object()
         self._forget()
         return changed
+
+    def state_beside(self, filename: str) -> object:
+        """What equals another such state as long as no module but the one in this file has changed."""
+        own = os.path.abspath(filename)
+        return self._files, tuple(module for name, module in sorted(self._opened.items()) if name != own)
 
     def _forget(self) -> None:
         """Forget what was computed from modules of which one has changed."""
         self._exports = {}
         self.derived = {}
-        self.state = object()
 
     def module(self, filename: str) -> Module | None:
         """The module in a file; ``None`` if it cannot be read, or is too large to look into."""

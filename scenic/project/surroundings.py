@@ -39,7 +39,7 @@ class _Surroundings:
     ) -> None:
         self._project = project
         self._imports = Imports(project, tree, source, resolution, verbose)
-        self.state = project.state
+        self.state = project.state_beside(source.filename)
 
     @cached_property
     def _stars(self) -> tuple[Exports, ...]:

@@ -65,7 +65,9 @@ class Context:
         self.source = source
         self.resolution = resolution
         self.surroundings = surroundings
-        self.references: Final = resolution.references
+        if before is None:
+            # All of them will be asked for: they are put together at once.
+            _ = resolution.references
         self.brought: Final[Collection[str]] = () if surroundings is None else surroundings.names
         """The names that star imports and the model are known to bring."""
         self.before: Final = before
@@ -119,7 +121,7 @@ class Context:
 
     def is_unchanged(self, stretch: Stretch) -> bool:
         """Whether all that a stretch that stood in the version before may depend on is as it was, but for `fact`."""
-        return self._changed is not None and stretch.reads.isdisjoint(self._changed)
+        return self._changed is not None and self._changed.isdisjoint(stretch.named)
 
     def follows_error(self, stretch: Stretch) -> bool:
         """Whether the last thing before a stretch that could be a header could not be parsed."""
@@ -191,15 +193,6 @@ class Context:
         return self.resolution.nodes(cls)
 
     @cached_property
-    def loads(self) -> Mapping[Binding, list[ast.Name]]:
-        """Where the value of each binding is read."""
-        found: dict[Binding, list[ast.Name]] = {}
-        for reference in self.references.values():
-            if reference.binding is not None and isinstance(reference.node.ctx, ast.Load):
-                found.setdefault(reference.binding, []).append(reference.node)
-        return found
-
-    @cached_property
     def _last_wildcard(self) -> tuple[int, int]:
         """The last place where names come in that the text does not show; they may replace those before."""
         stars = [
@@ -210,8 +203,7 @@ class Context:
 
     def binding(self, name: ast.Name) -> Binding | None:
         """What a name of the program means, as far as the text says."""
-        reference = self.references.get(name)
-        return None if reference is None else reference.binding
+        return self.resolution.binding(name)
 
     def definition(self, name: ast.expr | None) -> Definition | None:
         """The one definition that an expression can only mean; ``None`` if there may be others, or decorators."""
@@ -237,7 +229,7 @@ class Context:
             return None
         if isinstance(name, ast.Attribute):
             return self.surroundings.attribute(name)
-        reference = self.references.get(name) if isinstance(name, ast.Name) else None
+        reference = self.resolution.reference(name) if isinstance(name, ast.Name) else None
         if reference is None:
             return None
         binding = reference.binding
@@ -255,7 +247,7 @@ class Context:
         """The name that an expression is, if it means what the language provides under that name."""
         if not isinstance(name, ast.Name) or self.resolution.wildcard:
             return None
-        reference = self.references.get(name)
+        reference = self.resolution.reference(name)
         own = reference is not None and reference.binding is None and name.id not in self.brought
         return name.id if own else None
 
@@ -299,26 +291,19 @@ class Context:
         }
 
     @cached_property
-    def read_sites(self) -> frozenset[ast.AST]:
-        """The nodes that bind what is read somewhere."""
-        return frozenset(site for binding in self.loads for site in binding.sites)
-
-    @cached_property
     def unresolved(self) -> frozenset[str]:
         """The names that are read and mean nothing that is known."""
         return frozenset(
-            reference.node.id
-            for reference in self.references.values()
-            if reference.binding is None
-            and reference.node.id not in PROVIDED
-            and reference.node.id not in self.brought
+            name
+            for name in self.resolution.used
+            if name not in self.resolution.names and name not in PROVIDED and name not in self.brought
         )
 
     @cached_property
     def mentions(self) -> Mapping[str, list[tuple[int, int]]]:
         """Where each name is read or written, in order."""
         found: dict[str, list[tuple[int, int]]] = {}
-        for reference in self.references.values():
+        for reference in self.resolution.references.values():
             found.setdefault(reference.node.id, []).append(position(reference.node))
         for places in found.values():
             places.sort()

@@ -67,7 +67,7 @@ def _property(context: Context, node: scenic.PropertyDef) -> Iterator[Diagnostic
             )
     scope = context.resolution.scopes.get(node)
     own = None if scope is None else scope.bindings.get("self")
-    if own is None or own not in context.loads:
+    if own is None or not context.resolution.is_read(own):
         return
     read = {id(part.value) for part in walk(node.value) if isinstance(part, ast.Attribute)}
     for part in walk(node.value):

@@ -41,7 +41,8 @@ def changed_names(
     changed = before.keys() ^ after.keys()
     for name, binding in after.items():
         old = before.get(name)
-        if old is not None and old.sites != binding.sites:
+        # The nodes are in no particular order.
+        if old is not None and old.sites != binding.sites and {*old.sites} != {*binding.sites}:
             changed.add(name)
     if not changed:
         return frozenset()

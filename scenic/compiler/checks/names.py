@@ -61,10 +61,9 @@ def check_names(context: Context, provided: Collection[str]) -> Iterator[Diagnos
     elsewhere: dict[str, Binding] | None = None
     missing = [
         reference
-        for reference in context.references.values()
-        if reference.binding is None
-        and reference.node.id not in provided
-        and reference.node.id not in context.brought
+        for name in resolution.used
+        if name not in resolution.names and name not in provided and name not in context.brought
+        for reference in resolution.uses(name)
     ]
     for reference in sorted(missing, key=lambda each: position(each.node)):
         node = reference.node
@@ -172,7 +171,7 @@ def _missing_imports(context: Context) -> set[str]:
         binding.name
         for binding in context.resolution.names.values()
         if binding.kinds <= {BindingKind.MODULE, BindingKind.IMPORTED}
-        and binding not in context.loads
+        and not context.resolution.is_read(binding)
         and all(
             isinstance(site, ast.alias)
             and (context.surroundings is None or context.surroundings.is_missing(site))
@@ -248,7 +247,8 @@ def _no_class(context: Context, name: ast.Name) -> Iterator[Diagnostic]:
         yield context.error("SC203", what, name, f"leave out `new`: write `{NAMES[provided].signature}`")
         return
     if provided is not None and provided in _BUILTINS and provided not in NAMES:
-        meant = nearest(provided, _classes_in_reach(context.references[name], context))
+        reference = context.resolution.reference(name)
+        meant = None if reference is None else nearest(provided, _classes_in_reach(reference, context))
         # A warning: running the program raises the `TypeError` that scripts may expect.
         yield context.warning(
             "SC203",

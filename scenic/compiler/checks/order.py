@@ -65,13 +65,18 @@ def _names(context: Context, starts: list[tuple[int, int]]) -> Iterator[Diagnost
             site = min(binding.sites, key=position) if len(binding.sites) > 1 else binding.sites[0]
             index = first[binding.name] = _statement(starts, site)
             last_lines[binding.name] = getattr(body[index], "end_lineno", None) or 0
-    early = [
-        reference.node
-        for reference in context.references.values()
-        if reference.scope is module
-        and reference.node.lineno <= last_lines.get(reference.node.id, -1)
-        and isinstance(reference.node.ctx, ast.Load)
-    ]
+    early: list[ast.Name] = []
+    defined: set[str] = set()
+    for stretch in resolution.stretches:
+        for name in stretch.named.keys() - defined:
+            early += [
+                reference.node
+                for reference in stretch.named[name]
+                if reference.scope is module
+                and reference.node.lineno <= last_lines.get(name, -1)
+                and isinstance(reference.node.ctx, ast.Load)
+            ]
+        defined.update(stretch.bound)
     reported: set[str] = set()
     for node in sorted(early, key=position):
         name = node.id
@@ -113,8 +118,8 @@ def _ego(context: Context, starts: list[tuple[int, int]]) -> Iterator[Diagnostic
     module = context.resolution.module
     assignments = [
         (reference.node, reference.scope)
-        for reference in context.references.values()
-        if reference.node.id == "ego" and not isinstance(reference.node.ctx, ast.Load)
+        for reference in context.resolution.uses("ego")
+        if not isinstance(reference.node.ctx, ast.Load)
     ]
     end = len(context.tree.body)
     for statement, _ in (*context.nodes(ast.Import), *context.nodes(ast.ImportFrom)):
@@ -190,9 +195,9 @@ def _in_scenario(scope: Scope) -> bool:
 
 def _uses(context: Context) -> Iterator[tuple[ast.AST, Scope]]:
     """Everything that reads the ego, and the scope in which it stands."""
-    for reference in context.references.values():
+    for reference in context.resolution.uses("ego"):
         node = reference.node
-        if node.id == "ego" and isinstance(node.ctx, ast.Load) and node not in context.resolution.tolerated:
+        if isinstance(node.ctx, ast.Load) and node not in context.resolution.tolerated:
             yield node, reference.scope
     for node, scope in context.nodes(scenic.Operation):
         if node.operator in _OPERATORS and _implied(node, OPERATORS[node.operator].operands):

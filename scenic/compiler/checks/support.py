@@ -73,17 +73,17 @@ def check_support(piece: Piece, context: Context, misplaced: Container[ast.AST])
 def check_supported_names(context: Context) -> Iterator[Diagnostic]:
     """SC900: every use of a name that is declared but not available."""
     if _NAMES and not context.resolution.wildcard:
-        for reference in context.references.values():
-            name = reference.node
-            if name.id in _NAMES and reference.binding is None and not _carried(name, reference.scope):
-                yield _refusal(f"`{name.id}`", name, context)
+        for name in _NAMES.difference(context.resolution.names):
+            for reference in context.resolution.uses(name):
+                if not _carried(reference.node, reference.scope):
+                    yield _refusal(f"`{name}`", reference.node, context)
 
 
 def _class_without_new(node: scenic.Operation, context: Context) -> ast.Name | None:
     """The class in ``C at position``, which reads as the operator but can only be meant as a specifier."""
     match node:
         case scenic.Operation(operator="at", operands=[ast.Name(id=name) as cls, *_]):
-            reference = context.references.get(cls)
+            reference = context.resolution.reference(cls)
             binding = None if reference is None else reference.binding
             is_class = name in CLASSES if binding is None else binding.kinds == {BindingKind.CLASS}
             return cls if is_class else None

@@ -45,12 +45,12 @@ _HIDING: Final = frozenset(
 def check_uses(context: Context) -> Iterator[Diagnostic]:
     """SC205 to SC208."""
     certain = not (context.resolution.reflective or context.broken)
-    loads = context.loads
+    is_read = context.resolution.is_read
     for scope in context.resolution.scopes.values():
         for binding in context.resolution.bindings(scope).values():
             if binding.name in NAMES:
                 yield from _hidden(binding, context)
-            if certain and binding not in loads:
+            if certain and not is_read(binding):
                 yield from _unused(binding, scope, context)
     if certain:
         yield from _replaced(context, context.tree.body)
@@ -137,10 +137,7 @@ def _is_library(context: Context) -> bool:
     return any(isinstance(statement, DEFINITIONS) for statement in context.tree.body) and not (
         bool(context.nodes(scenic.ScenarioDef))
         or any(scope is module for _, scope in context.nodes(scenic.New))
-        or any(
-            reference.node.id == "ego" and not isinstance(reference.node.ctx, ast.Load)
-            for reference in context.references.values()
-        )
+        or any(not isinstance(reference.node.ctx, ast.Load) for reference in context.resolution.uses("ego"))
     )
 
 
@@ -154,7 +151,8 @@ def _has_no_effects(statement: Any, site: ast.alias, context: Context) -> bool:
     if not statement.level and module.partition(".")[0] in _PYTHON_MODULES:
         return True
     # The module is imported all the same for the sake of another name.
-    return any(other in context.read_sites for other in statement.names if other is not site)
+    others = (context.resolution.binding_at(other) for other in statement.names if other is not site)
+    return any(other is not None and context.resolution.is_read(other) for other in others)
 
 
 def _removal(statement: Any, site: ast.alias, span: Span, context: Context) -> Edit:
