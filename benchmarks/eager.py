@@ -40,10 +40,20 @@ EXPRESSIONS = (
     "self.corners",
     "u in region",
     "self in region",
+    "self in disc",
+    "self in polygon",
+    "self in box",
+    "distance from u to region",
     "self intersects other",
+    "self intersects region",
+    "self can see other",
+    "self can see hidden",
 )
 PROGRAM = """
 region = RectangularRegion((0, 0), 0, 40, 40)
+disc = CircularRegion((0, 0), 30)
+polygon = PolygonalRegion([(-20, -20), (20, -20), (25, 20), (0, 3), (-20, 20)])
+box = BoxRegion(dimensions=(40, 40, 10))
 behavior B():
     u = Vector(1, 2, 3)
     v = Vector(-1, 4, 2)
@@ -52,15 +62,19 @@ behavior B():
     wait
 ego = new Object with behavior B()
 other = new Object at (8, 8), facing 20 deg
+wall = new Object at (0, -5), with width 10, with height 5, with length 0.1
+hidden = new Object at (0, -8)
+for i in range(8):
+    new Object at (2 * i - 7, -14), with shape CylinderShape()
 scenario Sub():
     setup:
         begin()
         for i in range(100):
-            new Object at (3 * i, 9)
+            new Object at (3 * i, 1009)
         end('new Object at (x, y)', 100)
         begin()
         for i in range(100):
-            new Object at (3 * i, 19), facing 0.3, with width 2, with requireVisible False
+            new Object at (3 * i, 1019), facing 0.3, with width 2, with requireVisible False
         end('new Object at (x, y), facing a, with ...', 100)
         begin()
         for i in range(100):
@@ -115,7 +129,7 @@ def main() -> None:
     names = "\n".join(f"{name} = globalParameters.meter.{name}" for name in ("measure", "begin", "end"))
     scenario = scenic.scenarioFromString(names + text, params=parameters)
     (scene,) = scenario.sample(1, seed=0)
-    DummySimulator(drift=0.01).simulate(scene, maxSteps=5)
+    DummySimulator(drift=0.01).simulate(scene, maxSteps=5, stuck_after=1000)
     for name, microseconds in meter.found.items():
         print(f"{microseconds:8.2f}  {name}")
 

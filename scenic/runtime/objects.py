@@ -15,9 +15,12 @@ from typing import Any, ClassVar, Self
 from scenic.graph.kinds import Kind
 from scenic.language.errors import InvalidScenarioError
 from scenic.runtime.context import here
+from scenic.runtime.geometry.single import meet
 from scenic.runtime.mutators import OrientationMutator, PositionMutator
 from scenic.runtime.properties import Property, PropertyDefinition, combine
+from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.bodies import OccupiedSpace, SideSurface, bounding_corners, inradius
+from scenic.runtime.regions.stacked import placed_of
 from scenic.runtime.regions.views import ViewRegion
 from scenic.runtime.regions.volumes import BoxRegion
 from scenic.runtime.shapes import BoxShape
@@ -363,6 +366,16 @@ class Object(OrientedPoint):
 
     def intersects(self, other: Any) -> Any:
         """Whether the shape shares a point with another object or region."""
+        body = placed_of(self)
+        if body is not None:
+            met = None
+            if isinstance(other, Object):
+                other_body = placed_of(other)
+                met = None if other_body is None else meet(body, other_body)
+            elif isinstance(other, Region) and other.at_once is not None:
+                met = other.at_once.meets_body(body)
+            if met is not None:
+                return met
         return self.occupiedSpace.intersects(other)
 
     @property

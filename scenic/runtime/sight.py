@@ -6,7 +6,7 @@ Observers and targets are known by what they have, so that classes of objects ca
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, Final
+from typing import Any, Final, Literal
 
 import numpy as np
 
@@ -15,15 +15,18 @@ from scenic.graph.node import Graph, Node
 from scenic.graph.operation import Call, Operation, always
 from scenic.language.errors import ScenicTypeError
 from scenic.runtime.context import here
+from scenic.runtime.geometry.single import Placed, Triple, axes_of, is_near_way
 from scenic.runtime.geometry.visibility.bodies import sees_bodies
 from scenic.runtime.geometry.visibility.obstacles import Occluder
 from scenic.runtime.geometry.visibility.points import sees_points
 from scenic.runtime.geometry.visibility.proving import Proof, prove
+from scenic.runtime.geometry.visibility.single import View, sees_body, sees_point
 from scenic.runtime.geometry.visibility.views import Views
-from scenic.runtime.regions.stacked import body_of, body_operands
+from scenic.runtime.regions.stacked import body_of, body_operands, placed_of
 from scenic.runtime.values import (
     Orientation,
     Random,
+    Vector,
     apply,
     describe,
     operate,
@@ -50,6 +53,51 @@ def sees(observer: Any, target: Any, occluders: Iterable[Any], *, certain: bool 
 
 
 def _sees(observer: Any, target: Any, occluders: Sequence[Any], certain: bool) -> Any:
+    found = None if certain else _at_once(observer, target, occluders)
+    return _looked(observer, target, occluders, certain) if found is None else found
+
+
+def _at_once(observer: Any, target: Any, occluders: Sequence[Any]) -> bool | None:
+    """Whether it is seen, if that needs no closer look; ``None`` also where something is random."""
+    camera, orientation = camera_of(observer)
+    angles = observer.viewAngles if _is_turned(observer) else (2 * np.pi, np.pi)
+    distance = observer.visibleDistance
+    if not (type(camera) is Vector and type(orientation) is Orientation and type(distance) is float):
+        return None
+    if type(angles) is not tuple or not all(type(angle) is float for angle in angles):
+        return None
+    view = View(camera.row, axes_of(orientation.q), angles, distance)
+    seen = placed_of(target) if is_body(target) else None
+    place = target.position if is_body(target) else to_vector(target, "`can see`")
+    if type(place) is not Vector or (is_body(target) and seen is None):
+        return None
+    radius = 0.0 if seen is None else seen.radius
+    hiding = []
+    for thing in occluders:
+        if thing is observer or thing is target:
+            continue
+        hides = thing.occluding
+        if hides is True:
+            body = _in_the_way(thing, camera.row, place.row, radius)
+            if body is None:
+                return None
+            if body:
+                hiding.append(body)
+        elif hides is not False:
+            return None
+    return sees_point(view, place.row, hiding) if seen is None else sees_body(view, seen, hiding)
+
+
+def _in_the_way(thing: Any, start: Triple, end: Triple, radius: float) -> Placed | Literal[False] | None:
+    """The body of an object that may be between a camera and a ball; false if it is not, ``None`` if it is random."""
+    position, width, length, height = thing.position, thing.width, thing.length, thing.height
+    if type(position) is not Vector or not (type(width) is type(length) is type(height) is float):
+        return None
+    reach = radius + 0.5 * (width + length + height)
+    return placed_of(thing) if is_near_way(start, end, position.row, reach) else False
+
+
+def _looked(observer: Any, target: Any, occluders: Sequence[Any], certain: bool) -> Any:
     operands = list(view_operands(observer))
     is_object = is_body(target)
     operands += body_operands(target) if is_object else [to_vector(target, "`can see`")]

@@ -236,6 +236,11 @@ class Vector(VectorMethods, Hooks):
         return self
 
     @property
+    def row(self) -> tuple[float, float, float]:
+        """The three floats."""
+        return self._row
+
+    @property
     def x(self) -> float:
         return self._row[0]
 

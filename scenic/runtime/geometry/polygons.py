@@ -100,6 +100,30 @@ class Polygons:
         shapely.prepare(self.polygon)
         return np.asarray(shapely.intersects_xy(self.polygon, x, y), dtype=np.bool_)
 
+    def holds_point(self, x: float, y: float) -> bool:
+        """As `contains`, of one point."""
+        import shapely
+
+        if not shapely.is_prepared(self.polygon):
+            shapely.prepare(self.polygon)
+        return bool(shapely.intersects_xy(self.polygon, x, y))
+
+    def holds_disc(self, x: float, y: float, radius: float) -> bool:
+        """As `holds_discs`, of one disc."""
+        import shapely
+
+        return self.holds_point(x, y) and not bool(
+            shapely.dwithin(self._boundary, shapely.Point(x, y), radius)
+        )
+
+    @cached_property
+    def _boundary(self) -> Any:
+        import shapely
+
+        boundary = self.polygon.boundary
+        shapely.prepare(boundary)
+        return boundary
+
     def distances(self, x: Floats, y: Floats) -> Floats:
         """Distances of points of the plane from the polygons, ``(n,)``; 0 inside."""
         import shapely
@@ -125,9 +149,7 @@ class Polygons:
         """Which discs are quickly seen to lie inside, ``(n,)``; not all that do."""
         import shapely
 
-        boundary = self.polygon.boundary
-        shapely.prepare(boundary)
-        near = shapely.dwithin(boundary, shapely.points(x, y), radius)
+        near = shapely.dwithin(self._boundary, shapely.points(x, y), radius)
         return np.asarray(self.contains(x, y) & ~near, dtype=np.bool_)
 
     def covers_hulls(self, points: Floats) -> Booleans:

@@ -9,7 +9,7 @@ import random
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from copy import copy
-from typing import Any, ClassVar
+from typing import Any, ClassVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,9 +26,11 @@ from scenic.language.errors import (
 from scenic.runtime.context import here
 from scenic.runtime.geometry.collision import Body
 from scenic.runtime.regions.knowledge import Containment, containment_bounds, containment_inverse, payload_box
-from scenic.runtime.regions.stacked import Stack, body_operands
+from scenic.runtime.regions.single import Single
+from scenic.runtime.regions.stacked import Stack, body_operands, placed_of
 from scenic.runtime.values import (
     Random,
+    Vector,
     apply,
     as_node,
     is_random,
@@ -69,6 +71,20 @@ class Region(ABC):
     def __init__(self, *parameters: Any, name: str | None = None) -> None:
         self.parameters: tuple[Any, ...] = parameters
         self.name = name
+
+    # Of fixed regions, on plain floats
+
+    def single(self) -> Single | None:
+        """What answers for one point or body at a time; ``None`` where nothing does. Not for random regions."""
+        return None
+
+    @property
+    def at_once(self) -> Single | None:
+        """`single`, made once; ``None`` of random regions."""
+        known = self.__dict__.get("_single", self)
+        if known is self:
+            known = self.__dict__["_single"] = None if self.is_random else self.single()
+        return cast("Single | None", known)
 
     # Primitives over lanes; ``columns`` are those of ``parameters``, one row for each lane or a single one.
 
@@ -149,6 +165,7 @@ class Region(ABC):
         if not self.is_random:
             return self
         region = copy(self)
+        region.__dict__.pop("_single", None)
         region.parameters = tuple(sample.value(value) for value in self.parameters)
         if self.parameter_names:
             for name, value in zip(self.parameter_names, region.parameters, strict=True):
@@ -167,7 +184,12 @@ class Region(ABC):
 
     def distance_from(self, point: Any) -> Any:
         """Distance from a point to the nearest point of the region, in metres; 0 inside."""
-        return apply(_DISTANCE, to_vector(point), *self.parameters, payload=self)
+        place = to_vector(point)
+        if type(place) is Vector and (single := self.at_once) is not None:
+            distance = single.distance(place.row)
+            if distance is not None:
+                return distance
+        return apply(_DISTANCE, place, *self.parameters, payload=self)
 
     @property
     def is_random(self) -> bool:
@@ -181,10 +203,18 @@ class Region(ABC):
 
     def containsPoint(self, point: Any) -> Any:
         """Whether a point lies in the region: true or false, or a random truth value."""
+        if type(point) is Vector and (single := self.at_once) is not None:
+            held = single.holds_point(point.row)
+            if held is not None:
+                return held
         return apply(_CONTAINS_POINT, to_vector(point), *self.parameters, payload=self)
 
     def containsObject(self, thing: Any) -> Any:
         """Whether the region holds the whole of an object."""
+        if (single := self.at_once) is not None and (body := placed_of(thing)) is not None:
+            held = single.holds_body(body)
+            if held is not None:
+                return held
         operands = body_operands(thing)
         mesh = None if is_random(operands[3]) else operands[3].mesh
         return apply(_CONTAINS_BODY, *operands, *self.parameters, payload=Containment(self, mesh))
@@ -195,6 +225,11 @@ class Region(ABC):
 
     def intersects(self, other: Any) -> Any:
         """Whether the region shares a point with another, or with an object."""
+        if hasattr(type(other), "occupiedSpace") and (single := self.at_once) is not None:
+            body = placed_of(other)
+            met = None if body is None else single.meets_body(body)
+            if met is not None:
+                return met
         return self.algebra.intersects(self, other)
 
     def containsRegion(self, other: Any, tolerance: float = 0) -> Any:
@@ -441,6 +476,9 @@ class Workspace(Region):
         self.has_orientation, self.orientation = region.has_orientation, region.orientation
         self.dimension = region.dimension
         self.draws, self.may_find_none = region.draws, region.may_find_none
+
+    def single(self) -> Single | None:
+        return self.region.at_once
 
     def contains_points(self, points: Points, *columns: Column) -> Mask:
         return self.region.contains_points(points, *columns)

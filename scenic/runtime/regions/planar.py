@@ -19,6 +19,7 @@ from scenic.runtime.geometry import containment
 from scenic.runtime.geometry.collision import Body
 from scenic.runtime.geometry.polygons import Polygons
 from scenic.runtime.regions.base import Mask, Points, Region, unsupported
+from scenic.runtime.regions.single import Disc, Polygon, Rectangle, Single
 from scenic.runtime.values import (
     apply,
     is_number,
@@ -198,6 +199,9 @@ class CircularRegion(PlanarRegion):
     def sizes(self, *columns: Column) -> Column:
         return np.asarray(math.pi * columns[1] ** 2)
 
+    def single(self) -> Single | None:
+        return Disc(self.center.row, self.radius, 4 * self.resolution)
+
     def contains_points(self, points: Points, *columns: Column) -> Mask:
         center, radius = columns
         dx, dy = points[:, 0] - center[:, 0], points[:, 1] - center[:, 1]
@@ -297,6 +301,10 @@ class RectangularRegion(PlanarRegion):
     def sizes(self, *columns: Column) -> Column:
         return np.asarray(columns[2] * columns[3])
 
+    def single(self) -> Single | None:
+        cos, sin = float(np.cos(self.heading)), float(np.sin(self.heading))
+        return Rectangle(self.position.row, cos, sin, self.width, self.length)
+
     def contains_points(self, points: Points, *columns: Column) -> Mask:
         across, along = self._local(points, *columns)
         inside: Mask = (np.abs(across) <= columns[2] / 2) & (np.abs(along) <= columns[3] / 2)
@@ -384,6 +392,9 @@ class PolygonalRegion(PlanarRegion):
             raise ScenicTypeError("`unionAll` takes at least one polygonal region", span=here())
         merged = Polygons.union([Polygons(member.polygons) for member in members], buf)
         return PolygonalRegion(polygon=merged.polygon, z=float(members[0].height))
+
+    def single(self) -> Single | None:
+        return Polygon(self.outline, self._z)
 
     def contains_points(self, points: Points, *columns: Column) -> Mask:
         return self.outline.contains(points[:, 0], points[:, 1])

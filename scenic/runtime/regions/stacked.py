@@ -15,13 +15,26 @@ from scenic.graph.operation import Call
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.poses import Indices, Poses
-from scenic.runtime.values import to_scalar, vector
+from scenic.runtime.geometry.single import Placed, placed
+from scenic.runtime.shapes import Shape
+from scenic.runtime.values import Orientation, Vector, to_scalar, vector
 
 
 def body_operands(thing: Any) -> tuple[Any, Any, Any, Any]:
     """Position, orientation, size and shape of an object: the operands of operations on its body."""
     size = vector(to_scalar(thing.width), to_scalar(thing.length), to_scalar(thing.height))
     return thing.position, thing.orientation, size, thing.shape
+
+
+def placed_of(thing: Any) -> Placed | None:
+    """The body of an object on plain floats; ``None`` where something of it is random."""
+    position, orientation, shape = thing.position, thing.orientation, thing.shape
+    width, length, height = thing.width, thing.length, thing.height
+    if not (type(position) is Vector and type(orientation) is Orientation and isinstance(shape, Shape)):
+        return None
+    if not (type(width) is float and type(length) is float and type(height) is float):
+        return None
+    return placed(position.row, orientation.q, (width, length, height), shape.mesh)
 
 
 def body_of(position: Column, orientation: Column, size: Column, shape: Column) -> Body:

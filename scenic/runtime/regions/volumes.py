@@ -15,7 +15,9 @@ from scenic.runtime.context import here
 from scenic.runtime.geometry import containment, primitives
 from scenic.runtime.geometry.collision import Body, collide
 from scenic.runtime.geometry.poses import Poses
+from scenic.runtime.geometry.single import Placed, placed
 from scenic.runtime.regions.base import Mask, Points, Region
+from scenic.runtime.regions.single import Ball, Box, Single
 from scenic.runtime.values import (
     Orientation,
     apply,
@@ -93,6 +95,10 @@ class PlacedVolume(Region):
         """The region seen from above."""
         return self.algebra.outline_from_above(self)
 
+    def _as_body(self) -> Placed:
+        """The box about it, where nothing is random."""
+        return placed(self.position.row, self.rotation.q, self.dimensions.row, primitives.box())
+
     @property
     def isConvex(self) -> bool:
         """Boxes and ellipsoids are convex."""
@@ -129,6 +135,9 @@ def _local(points: Points, dimensions: Column, position: Column, rotation: Colum
 
 class BoxRegion(PlacedVolume):
     """A solid box."""
+
+    def single(self) -> Single | None:
+        return Box(self._as_body(), self.rotation.q, self.dimensions.row)
 
     def uniform_placement(self) -> tuple[Any, Any]:
         return self._placed(*(operate("subtract", uniform(), 0.5) for _ in range(3)))
@@ -195,6 +204,9 @@ class SpheroidRegion(PlacedVolume):
 
     def __init__(self, dimensions: Any = (2, 2, 2), *args: Any, **options: Any) -> None:
         super().__init__(dimensions, *args, **options)
+
+    def single(self) -> Single | None:
+        return Ball(self._as_body())
 
     def uniform_placement(self) -> tuple[Any, Any]:
         point = apply(BALL_POINT, uniform(), uniform(), uniform())

@@ -129,11 +129,12 @@ def box_distance(origin: Floats, size: Floats) -> Floats:
 
 
 def _holds_centre(placed: Placed) -> Booleans:
-    known = np.array([mesh.derived(_contains_own_centre) for mesh in placed.meshes], dtype=np.bool_)
+    known = np.array([mesh.derived(contains_own_centre) for mesh in placed.meshes], dtype=np.bool_)
     return known[placed.mesh]
 
 
-def _contains_own_centre(mesh: Mesh) -> bool:
+def contains_own_centre(mesh: Mesh) -> bool:
+    """Whether the solid of a mesh holds the middle of its box."""
     return mesh.is_box or bool(inside.contains_points(mesh, np.zeros((1, 3)))[0])
 
 
