@@ -1,4 +1,7 @@
-"""Affine maps from the unit frame of one body into that of another, as columns over entries."""
+"""Affine maps from the unit frame of one body into that of another, as columns over entries.
+
+All three coordinates are computed by each operation, since for few entries operations cost more than numbers.
+"""
 
 from dataclasses import dataclass
 
@@ -6,7 +9,8 @@ import numpy as np
 
 from scenic.runtime.geometry.poses import Floats, Indices, Poses
 
-Columns = tuple[Floats, Floats, Floats]
+Columns = tuple[Floats, Floats, Floats] | Floats
+"""Coordinates one by one, or as an array ``(3, ...)``."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -14,79 +18,69 @@ class AffineMaps:
     """The maps ``p -> matrix p + offset`` of n entries.
 
     Attributes:
-        matrix: ``matrix[i][j]`` is the column ``(n,)`` of one coefficient.
-        offset: three columns ``(n,)``.
+        matrix: the coefficients, ``(3, 3, n)``.
+        offset: ``(3, n)``.
 
     """
 
-    matrix: tuple[Columns, Columns, Columns]
-    offset: Columns
+    matrix: Floats
+    offset: Floats
 
-    def columns(self, points: Columns) -> Columns:
-        """The images of points whose coordinates are ``(k, n)`` or ``(k, 1)`` each, as ``(k, n)``."""
+    def columns(self, points: Columns) -> Floats:
+        """The images ``(3, ..., n)`` of points whose coordinates are ``(..., n)`` or ``(..., 1)`` each."""
         x, y, z = points
-        first, second, third = (
-            row[0] * x + row[1] * y + row[2] * z + shift
-            for row, shift in zip(self.matrix, self.offset, strict=True)
-        )
-        return first, second, third
+        shape = (1,) * (x.ndim - 1) + self.offset.shape[1:]
+        matrix = self.matrix.reshape(3, 3, *shape)
+        result: Floats = matrix[:, 0] * x + matrix[:, 1] * y + matrix[:, 2] * z
+        result += self.offset.reshape(3, *shape)
+        return result
 
-    def reaches(self, half: Columns) -> Columns:
-        """Half the extents of the boxes around the images of boxes of half extents ``(k, n)``."""
+    def reaches(self, half: Columns) -> Floats:
+        """Half the extents ``(3, ..., n)`` of the boxes around the images of boxes of half extents ``(..., n)``."""
         x, y, z = half
-        first, second, third = (
-            np.abs(row[0]) * x + np.abs(row[1]) * y + np.abs(row[2]) * z for row in self.matrix
-        )
-        return first, second, third
+        matrix = np.abs(self.matrix).reshape(3, 3, *(1,) * (x.ndim - 1), -1)
+        result: Floats = matrix[:, 0] * x + matrix[:, 1] * y + matrix[:, 2] * z
+        return result
 
     def take(self, entries: Indices) -> "AffineMaps":
         """The maps of these entries."""
-        rows = [taken(row, entries) for row in self.matrix]
-        return AffineMaps((rows[0], rows[1], rows[2]), taken(self.offset, entries))
+        return AffineMaps(self.matrix.take(entries, axis=2), self.offset.take(entries, axis=1))
 
     def followed_by(self, others: "AffineMaps") -> "AffineMaps":
         """These maps, then the others."""
-        rows = [_joined(mine, theirs) for mine, theirs in zip(self.matrix, others.matrix, strict=True)]
-        return AffineMaps((rows[0], rows[1], rows[2]), _joined(self.offset, others.offset))
+        return AffineMaps(
+            np.concatenate([self.matrix, others.matrix], axis=2),
+            np.concatenate([self.offset, others.offset], axis=1),
+        )
 
     def of_entry(self, entry: int, points: Floats) -> Floats:
         """Points ``(k, 3)`` under the map of one entry."""
         x, y, z = points[:, 0], points[:, 1], points[:, 2]
         result = np.empty((len(points), 3))
-        for i, row in enumerate(self.matrix):
-            result[:, i] = row[0][entry] * x + row[1][entry] * y + row[2][entry] * z + self.offset[i][entry]
+        for i, row in enumerate(self.matrix[:, :, entry]):
+            result[:, i] = row[0] * x + row[1] * y + row[2] * z + self.offset[i, entry]
         return result
 
 
 def taken(columns: Columns, chosen: Indices) -> Columns:
     """These elements of each column."""
+    if isinstance(columns, np.ndarray):
+        return columns.take(chosen, axis=1)
     x, y, z = columns
     return x[chosen], y[chosen], z[chosen]
-
-
-def _joined(first: Columns, second: Columns) -> Columns:
-    x, y, z = (np.concatenate(parts) for parts in zip(first, second, strict=True))
-    return x, y, z
 
 
 def relative_map(moving: Poses, still: Poses) -> AffineMaps:
     """The maps from the unit frame of ``moving`` to that of ``still``, at least one entry."""
     count = max(len(moving), len(still))
-    a, b = moving.matrix, still.matrix
-    size_a, size_b = moving.size, still.size
-    difference = [moving.position[:, i] - still.position[:, i] for i in range(3)]
-
-    def coefficient(i: int, j: int) -> Floats:
-        cosine = b[:, 0, i] * a[:, 0, j] + b[:, 1, i] * a[:, 1, j] + b[:, 2, i] * a[:, 2, j]
-        return _full(cosine * size_a[:, j] / size_b[:, i], count)
-
-    def shift(i: int) -> Floats:
-        along = b[:, 0, i] * difference[0] + b[:, 1, i] * difference[1] + b[:, 2, i] * difference[2]
-        return _full(along / size_b[:, i], count)
-
-    rows: list[Columns] = [(coefficient(i, 0), coefficient(i, 1), coefficient(i, 2)) for i in range(3)]
-    return AffineMaps((rows[0], rows[1], rows[2]), (shift(0), shift(1), shift(2)))
+    # Indexed by row of the world, axis of the body and entry.
+    a, b = (poses.matrix.transpose(1, 2, 0) for poses in (moving, still))
+    size_a, size_b = moving.size.T, still.size.T
+    x, y, z = moving.position.T - still.position.T
+    cosines = b[0][:, np.newaxis] * a[0] + b[1][:, np.newaxis] * a[1] + b[2][:, np.newaxis] * a[2]
+    along = b[0] * x + b[1] * y + b[2] * z
+    return AffineMaps(_full(cosines * size_a / size_b[:, np.newaxis], count), _full(along / size_b, count))
 
 
-def _full(column: Floats, count: int) -> Floats:
-    return column if len(column) == count else np.repeat(column, count)
+def _full(columns: Floats, count: int) -> Floats:
+    return columns if columns.shape[-1] == count else np.repeat(columns, count, axis=-1)

@@ -4,7 +4,7 @@ from typing import Final
 
 import numpy as np
 
-from scenic.runtime.geometry.affine import AffineMaps, Columns, relative_map
+from scenic.runtime.geometry.affine import AffineMaps, relative_map
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.containment import contains_points
 from scenic.runtime.geometry.facetree import Forest
@@ -150,16 +150,12 @@ class _Gaps:
             self._one_way(self._back.take(entry), *self._box(1, entry, two), *self._box(0, entry, one)),
         )
 
-    def _box(self, side: int, entry: Indices, node: Indices) -> tuple[Columns, Columns]:
+    def _box(self, side: int, entry: Indices, node: Indices) -> tuple[Floats, Floats]:
         size = self._sizes[side][entry].T
-        middle, half = (
-            tuple(column[node] * size[axis] for axis, column in enumerate(table))
-            for table in (self._forest.middle, self._forest.half)
-        )
-        return (middle[0], middle[1], middle[2]), (half[0], half[1], half[2])
+        return self._forest.middle[:, node] * size, self._forest.half[:, node] * size
 
     def _one_way(
-        self, maps: AffineMaps, middle: Columns, half: Columns, still_middle: Columns, still_half: Columns
+        self, maps: AffineMaps, middle: Floats, half: Floats, still_middle: Floats, still_half: Floats
     ) -> Floats:
         centre, reach = maps.columns(middle), maps.reaches(half)
         total = np.zeros(len(centre[0]))
@@ -175,13 +171,10 @@ class _Gaps:
             return
         entry, first, second = self._forest.faces_of(entry, one, two)
         a = [
-            np.stack(self._forth.take(entry).columns(_scaled(corner, first, self._sizes[0][entry])), axis=1)
+            self._forth.take(entry).columns(_scaled(corner, first, self._sizes[0][entry])).T
             for corner in self._forest.corners
         ]
-        b = [
-            np.stack(_scaled(corner, second, self._sizes[1][entry]), axis=1)
-            for corner in self._forest.corners
-        ]
+        b = [_scaled(corner, second, self._sizes[1][entry]).T for corner in self._forest.corners]
         np.minimum.at(self._squared, entry, squared_distances(a, b))
 
 
@@ -225,9 +218,8 @@ def _squared_between_lines(a: Floats, a_end: Floats, b: Floats, b_end: Floats) -
     return np.where(within, dot(gap, gap), np.inf)
 
 
-def _scaled(corner: Columns, faces: Indices, size: Floats) -> Columns:
-    x, y, z = corner
-    return x[faces] * size[:, 0], y[faces] * size[:, 1], z[faces] * size[:, 2]
+def _scaled(corner: Floats, faces: Indices, size: Floats) -> Floats:
+    return corner[:, faces] * size.T
 
 
 def _full(maps: AffineMaps, count: int) -> AffineMaps:

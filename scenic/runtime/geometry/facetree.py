@@ -11,13 +11,20 @@ from typing import Final
 
 import numpy as np
 
-from scenic.runtime.geometry.affine import AffineMaps, Columns, taken
+from scenic.runtime.geometry.affine import AffineMaps, taken
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.poses import Booleans, Floats, Indices
 from scenic.runtime.geometry.ragged import expand
+from scenic.runtime.geometry.store import kept
 
 _PADDING: Final = 1e-9
 """By how much boxes are widened, in the unit frame: far more than the rounding of coordinates."""
+
+_KIND: Final = "face tree 1"
+"""Names what is kept of a mesh."""
+
+_LARGE: Final = 2000
+"""Faces above which the order of the leaves is kept on disk."""
 
 _FRONT: Final = 1 << 14
 """Pairs of boxes compared together, so that the temporary columns stay in the processor's cache."""
@@ -46,21 +53,34 @@ class FaceTree:
 
 def face_tree(mesh: Mesh) -> FaceTree:
     """The tree of a mesh. Get it as ``mesh.derived(face_tree)``."""
-    return tree_of(mesh.triangles)
+    if len(mesh.faces) < _LARGE:
+        return tree_of(mesh.triangles)
+    corners = _corners(mesh.triangles)
+    found = kept(_KIND, (mesh.vertices, mesh.faces), lambda: {"faces": _sorted(*corners)})
+    return _boxed(*corners, found["faces"])
 
 
-def tree_of(corners: Floats) -> FaceTree:
+def tree_of(triangles: Floats) -> FaceTree:
     """The tree of triangles ``(f, 3, 3)``, at least one; they may have collapsed to segments or points."""
+    corners = _corners(triangles)
+    return _boxed(*corners, _sorted(*corners))
+
+
+def _corners(triangles: Floats) -> tuple[Floats, Floats]:
+    """The lowest and the highest corners of the boxes around triangles."""
     # Written out, since reductions over short axes are slow.
-    lowest = np.minimum(np.minimum(corners[:, 0], corners[:, 1]), corners[:, 2])
-    highest = np.maximum(np.maximum(corners[:, 0], corners[:, 1]), corners[:, 2])
+    a, b, c = triangles[:, 0], triangles[:, 1], triangles[:, 2]
+    return np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
+
+
+def _sorted(lowest: Floats, highest: Floats) -> Indices:
+    """The triangles in the order of the leaves: each part is cut evenly along the axis on which it is longest."""
     centre = lowest + highest
     extent = float(np.ptp(centre, axis=0).max())
     scaled = (centre - centre.min(axis=0)) / (extent or 1.0)
-    count = len(corners)
-    depth = count.bit_length() - 1
+    count = len(centre)
     faces = np.arange(count)
-    for level in range(depth):
+    for level in range(_depth(count)):
         starts = _starts(count, level)
         placed = scaled[faces]
         spread = np.maximum.reduceat(placed, starts[:-1]) - np.minimum.reduceat(placed, starts[:-1])
@@ -68,7 +88,13 @@ def tree_of(corners: Floats) -> FaceTree:
         along = placed[np.arange(count), np.argmax(spread, axis=1)[node]]
         # Coordinates from 0 to 1, so that one number sorts by node first.
         faces = faces[np.argsort(2.0 * node + along)]
-    starts = _starts(count, depth)
+    return faces
+
+
+def _boxed(lowest: Floats, highest: Floats, faces: Indices) -> FaceTree:
+    """The tree whose leaves have the triangles in this order."""
+    depth = _depth(len(faces))
+    starts = _starts(len(faces), depth)
     lower = [np.minimum.reduceat(lowest[faces], starts[:-1])]
     upper = [np.maximum.reduceat(highest[faces], starts[:-1])]
     for _ in range(depth):
@@ -76,6 +102,10 @@ def tree_of(corners: Floats) -> FaceTree:
         upper.append(np.maximum(upper[-1][::2], upper[-1][1::2]))
     low, high = np.concatenate(lower[::-1]), np.concatenate(upper[::-1])
     return FaceTree((low + high) / 2, (high - low) / 2 + _PADDING, starts, faces)
+
+
+def _depth(count: int) -> int:
+    return count.bit_length() - 1
 
 
 def _starts(count: int, level: int) -> Indices:
@@ -235,10 +265,9 @@ class _Maps:
 
     def __init__(self, maps: AffineMaps) -> None:
         self.matrix = maps.matrix
-        self.size = [[np.abs(column) for column in row] for row in maps.matrix]
+        self.size = np.abs(maps.matrix)
         self.offset = maps.offset
 
 
-def _columns(parts: Sequence[Floats]) -> Columns:
-    x, y, z = np.ascontiguousarray(np.concatenate(parts).T)
-    return x, y, z
+def _columns(parts: Sequence[Floats]) -> Floats:
+    return np.ascontiguousarray(np.concatenate(parts).T)

@@ -35,7 +35,7 @@ _MOST_LEAVES: Final = 1 << 14
 _CHUNK: Final = 1 << 17
 """Combinations of entry and probing point looked at together."""
 _TRIED: Final = 16
-"""Exact tests made together before it is asked again whether proofs pay."""
+"""Exact tests made together, at most, before it is asked again whether proofs pay; a few at first."""
 
 
 class Solids:
@@ -148,8 +148,10 @@ class Solids:
             return self._touch(first, first_poses, second, second_poses)
         result = np.zeros(len(first), dtype=np.bool_)
         left = np.arange(len(first))
+        count = 1
         while len(left) and not self._can_prove:
-            part, left = left[:_TRIED], left[_TRIED:]
+            part, left = left[:count], left[count:]
+            count = min(2 * count, _TRIED)
             begun = time.thread_time()
             result[part] = self._touch(
                 first[part], first_poses.take(part), second[part], second_poses.take(part)

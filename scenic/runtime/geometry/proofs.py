@@ -8,13 +8,15 @@ from typing import Final
 
 import numpy as np
 
-from scenic.runtime.geometry.affine import AffineMaps, Columns
+from scenic.runtime.geometry.affine import AffineMaps
 from scenic.runtime.geometry.cells import PADDING
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.poses import Booleans, Floats, Indices
 from scenic.runtime.geometry.voxels import COVER_BOXES, RESOLUTION, voxels
 
 _STEP: Final = RESOLUTION + 1
+_WEIGHTS: Final = np.array([[_STEP**2], [_STEP], [1]])
+"""What a step along each axis adds to the place in the table of counts."""
 
 
 class ProofTable:
@@ -51,47 +53,46 @@ class ProofTable:
         near: Booleans = np.logical_or.reduce(self.near_filled(still, centre, reach), axis=0)
         return ~near
 
-    def in_solid(self, still: Indices, points: Columns) -> Booleans:
-        """Whether points, of coordinates ``(..., n)`` in the frames of still meshes ``(n,)``, lie in solid cells."""
-        x, y, z = points
-        near = (np.abs(x) <= 0.5) & (np.abs(y) <= 0.5) & (np.abs(z) <= 0.5)
-        where = np.flatnonzero(near)
-        index = still[where % len(still)] if near.ndim > 1 else still[where]
-        for part in points:
-            cell = ((part.ravel()[where] + 0.5) * RESOLUTION).astype(np.intp)
-            index = index * RESOLUTION + np.minimum(cell, RESOLUTION - 1)
-        return _scattered(self._solid[index], where, near.shape)
+    def in_solid(self, still: Indices, points: Floats) -> Booleans:
+        """Whether points ``(3, ..., n)`` in the frames of still meshes ``(n,)`` lie in solid cells, ``(..., n)``."""
+        where = np.flatnonzero(_all_axes(np.abs(points) <= 0.5))
+        cell = ((points.reshape(3, -1).take(where, axis=1) + 0.5) * RESOLUTION).astype(np.intp)
+        x, y, z = np.minimum(cell, RESOLUTION - 1, out=cell)
+        index = ((still[where % len(still)] * RESOLUTION + x) * RESOLUTION + y) * RESOLUTION + z
+        return _scattered(self._solid[index], where, points.shape[1:])
 
-    def near_filled(self, still: Indices, centre: Columns, reach: Columns) -> Booleans:
-        """Whether boxes reach into cells of still meshes that are not empty.
+    def near_filled(self, still: Indices, centre: Floats, reach: Floats) -> Booleans:
+        """Whether boxes reach into cells of still meshes that are not empty, ``(..., n)``.
 
         Args:
             still: mesh numbers, ``(n,)``.
-            centre: the boxes' centres, of coordinates ``(..., n)``, in the frames of the still meshes.
+            centre: the boxes' centres in the frames of the still meshes, ``(3, ..., n)``.
             reach: half the boxes' extents, likewise.
 
         """
-        near: Booleans = np.abs(centre[0]) <= reach[0] + (0.5 + PADDING)
-        for axis in (1, 2):
-            near &= np.abs(centre[axis]) <= reach[axis] + (0.5 + PADDING)
-        where = np.flatnonzero(near)
-        low, high = [], []
-        for axis in range(3):
-            middle, half = centre[axis].ravel()[where], reach[axis].ravel()[where] + PADDING
-            weight = _STEP ** (2 - axis)
-            # Cells before the first and behind the last count as those.
-            below = np.clip((middle - half + 0.5) * RESOLUTION, 0, RESOLUTION - 1)
-            above = np.clip((middle + half + 0.5) * RESOLUTION, 0, RESOLUTION - 1)
-            low.append(below.astype(np.intp) * weight)
-            high.append((above.astype(np.intp) + 1) * weight)
-        owner = still[where % len(still)] if near.ndim > 1 else still[where]
-        base = owner * _STEP**3
-        count = np.zeros(len(where), dtype=np.int32)
-        for corner in np.ndindex(2, 2, 2):
-            x, y, z = ((high if top else low)[axis] for axis, top in enumerate(corner))
-            value = self._filled[base + x + y + z]
-            count += value if sum(corner) % 2 else -value
-        return _scattered(count > 0, where, near.shape)
+        where = np.flatnonzero(_all_axes(np.abs(centre) <= reach + (0.5 + PADDING)))
+        middle, half = (part.reshape(3, -1).take(where, axis=1) for part in (centre, reach))
+        middle += 0.5
+        half += PADDING
+        # Cells before the first and behind the last count as those. Indexed by end, axis and box.
+        ends = np.stack([middle - half, middle + half])
+        ends *= RESOLUTION
+        np.maximum(ends, 0, out=ends)
+        np.minimum(ends, RESOLUTION - 1, out=ends)
+        cells = ends.astype(np.intp)
+        cells[1] += 1
+        x, y, z = (cells * _WEIGHTS).transpose(1, 0, 2)
+        index = x[:, np.newaxis, np.newaxis] + (y[:, np.newaxis] + (z + still[where % len(still)] * _STEP**3))
+        counts = self._filled[index]
+        for _ in range(3):
+            counts = counts[1] - counts[0]
+        return _scattered(counts > 0, where, centre.shape[1:])
+
+
+def _all_axes(each: Booleans) -> Booleans:
+    x, y, z = each
+    result: Booleans = x & y & z
+    return result
 
 
 def _scattered(values: Booleans, where: Indices, shape: tuple[int, ...]) -> Booleans:
@@ -106,6 +107,6 @@ def _padded(items: Floats, length: int) -> Floats:
     return np.concatenate([items, np.repeat(items[:1], max(length - len(items), 0), axis=0)])[:length]
 
 
-def _gathered(table: Floats, numbers: Indices) -> Columns:
-    """The coordinates, each ``(k, n)``, of the members of each entry's mesh."""
-    return table[0][:, numbers], table[1][:, numbers], table[2][:, numbers]
+def _gathered(table: Floats, numbers: Indices) -> Floats:
+    """The coordinates ``(3, k, n)`` of the members of each entry's mesh."""
+    return table.take(numbers, axis=2)

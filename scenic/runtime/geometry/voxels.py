@@ -60,7 +60,12 @@ def voxels(mesh: Mesh) -> Voxels:
     found = kept(_KIND, (mesh.vertices, mesh.faces), lambda: _computed(mesh))
     solid, occupied = (_unpacked(found[name]) for name in ("solid", "occupied"))
     filled = np.zeros((RESOLUTION + 1,) * 3, dtype=np.int32)
-    filled[1:, 1:, 1:] = occupied.cumsum(axis=0).cumsum(axis=1).cumsum(axis=2)
+    np.cumsum(occupied, axis=2, dtype=np.int32, out=filled[1:, 1:, 1:])
+    # `cumsum` along the other axes is eight times slower than whole rows added.
+    for index in range(1, RESOLUTION + 1):
+        filled[:, index] += filled[:, index - 1]
+    for index in range(1, RESOLUTION + 1):
+        filled[index] += filled[index - 1]
     return Voxels(solid, filled, found["cover"], found["probes"])
 
 
@@ -69,7 +74,7 @@ def seconds_to_make(mesh: Mesh) -> float:
     if mesh.is_box:
         return 0.0
     if is_kept(_KIND, (mesh.vertices, mesh.faces)):
-        return 0.01
+        return 0.002
     return 0.04 + 4e-6 * len(mesh.faces)
 
 
