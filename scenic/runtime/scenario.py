@@ -2,7 +2,7 @@
 
 import random
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -86,7 +86,7 @@ class Scenario:
             )
         }
         self._engine = Engine(self.outline.plan())
-        self._foreseen = Foreseen()
+        self._foreseen = Foreseen(self._foresee)
         self._impossible: tuple[str, ...] = ()
         self._family = Family(
             program,
@@ -135,7 +135,7 @@ class Scenario:
         ``impossible`` names requirements that are proven to fail everywhere; then nothing is sampled at all.
         """
         self._engine = Engine(self.outline.plan(domain))
-        self._foreseen = Foreseen()
+        self._foreseen = Foreseen(self._foresee)
         self._impossible = tuple(impossible)
 
     def stream(
@@ -173,28 +173,44 @@ class Scenario:
 
     def _find(
         self,
-        tasks: Sequence[Task],
+        tasks: Iterable[Task],
         *,
         max_attempts: int | None = None,
         deadline: float | None = None,
         lanes: int | None = None,
         source: PointSet | None = None,
     ) -> Iterator[Scene | Exhausted]:
-        engine = self._engine_of(source)
         if self._impossible:
-            report = engine.report(tasks[0], PROOF_CANDIDATES)
-            for task in tasks:
-                yield Exhausted(task.seed, task.k, 0, "impossible", report)
-            return
-        limit = DEFAULT_ATTEMPTS if max_attempts is None else max_attempts
+            return self._not_found(tasks)
+        limit = self._most_attempts(max_attempts)
         if source is not None and not source.retries:
             limit = 1
-        nodes = engine.plan.graph.nodes
-        if not any(node.is_axis for node in nodes):
-            # Every attempt is the same, unless the program's own functions draw random numbers.
-            limit = min(limit, OPAQUE_ATTEMPTS if any(node.is_drawn for node in nodes) else 1)
+        results = self._engine_of(source).scenes(tasks, max_attempts=limit, deadline=deadline, lanes=lanes)
+        return self._scenes(results)
+
+    def _foresee(self, tasks: Iterable[Task], max_attempts: int) -> Iterator[Scene | Exhausted]:
+        """The same for tasks without end."""
+        if self._impossible:
+            return self._not_found(tasks)
+        return self._scenes(self._engine.foresee(tasks, max_attempts=self._most_attempts(max_attempts)))
+
+    def _not_found(self, tasks: Iterable[Task]) -> Iterator[Exhausted]:
+        report = None
+        for task in tasks:
+            report = report or self._engine.report(task, PROOF_CANDIDATES)
+            yield Exhausted(task.seed, task.k, 0, "impossible", report)
+
+    def _most_attempts(self, wanted: int | None) -> int:
+        limit = DEFAULT_ATTEMPTS if wanted is None else wanted
+        nodes = self._engine.plan.graph.nodes
+        if any(node.is_axis for node in nodes):
+            return limit
+        # Every attempt is the same, unless the program's own functions draw random numbers.
+        return min(limit, OPAQUE_ATTEMPTS if any(node.is_drawn for node in nodes) else 1)
+
+    def _scenes(self, results: Iterator[Accepted | Exhausted]) -> Iterator[Scene | Exhausted]:
         try:
-            for result in engine.scenes(tasks, max_attempts=limit, deadline=deadline, lanes=lanes):
+            for result in results:
                 if isinstance(result, Exhausted):
                     yield result
                 else:
@@ -247,28 +263,12 @@ class Scenario:
 
         """
         if seed is None:
-            seed = random.getrandbits(SEED_BITS)
-            return self._foreseen_scene(seed, maxIterations)
+            result = self._foreseen.take(random.getrandbits(SEED_BITS), maxIterations)
+            if isinstance(result, Exhausted):
+                raise RejectionException(exhaustion_message(result))
+            return result, result.attempts
         (scene,) = self.sample(1, seed=seed, max_attempts=maxIterations)
         return scene, scene.attempts
-
-    def _foreseen_scene(self, seed: int, limit: int) -> tuple[Scene, int]:
-        """Scene 0 of a seed just drawn from Python's ``random``.
-
-        A script that calls `generate` in a loop draws its seeds one after the other. They are foreseen and their scenes
-        sampled together, which costs as little as a batch; a foreseen scene is used only if its seed is really drawn.
-        """
-        result = self._foreseen.take(seed, limit)
-        if result is None:
-            tasks = [Task(seed, 0), *(Task(next_seed, 0) for next_seed in self._foreseen.seeds())]
-            begun = time.thread_time()
-            results = self._find(tasks, max_attempts=limit)
-            result = next(results)
-            others = list(_until_error(results))
-            self._foreseen.keep(others, limit, time.thread_time() - begun)
-        if isinstance(result, Exhausted):
-            raise RejectionException(exhaustion_message(result))
-        return result, result.attempts
 
     def generateBatch(
         self, n: int, maxIterations: int = DEFAULT_ATTEMPTS, verbosity: int = 0, feedback: Any = None
@@ -393,7 +393,7 @@ class Scenario:
             numbers, words = draws_of(scene.accepted, nodes)
             self._condition = ({**self._condition[0], **numbers}, {**self._condition[1], **words})
         self._engine = Engine(self.outline.plan(), self._conditioned(lambda lanes: Counter(lanes.keys)))
-        self._foreseen = Foreseen()
+        self._foreseen = Foreseen(self._foresee)
 
     def _conditioned(self, source: Callable[[Lanes], Source]) -> Callable[[Lanes], Source]:
         """A source in which what `conditionOn` says is fixed."""
@@ -409,14 +409,6 @@ class Scenario:
 
     def _scene(self, accepted: Accepted) -> Scene:
         return Scene(accepted, self._family)
-
-
-def _until_error(results: Iterator[Scene | Exhausted]) -> Iterator[Scene | Exhausted]:
-    """Scenes that nobody has asked for yet: an error of one is shown when it is asked for."""
-    try:
-        yield from results
-    except Exception:  # noqa: BLE001 - it comes up again, with its place, if the scene is wanted
-        return
 
 
 def exhaustion_message(exhausted: Exhausted) -> str:

@@ -32,6 +32,12 @@ from scenic.runtime.sampling.stages import Stages
 DEFAULT_LANES = 4096
 REPORT_CANDIDATES = 1000
 
+_MOST_FORESEEN = 256
+"""Scenes looked for at a time, at most, where it is not known how many are wanted."""
+
+_FORESIGHT_SECONDS = 0.05
+"""Processor time that looking for them may take."""
+
 BATCH_BYTES = 1 << 27
 """Lanes are bounded so that the columns of a batch take at most about this much memory."""
 
@@ -171,14 +177,43 @@ class Engine:
             CandidateError: a candidate failed that nothing rejects.
 
         """
+        most = self._pace.most if lanes is None else lanes
+        return self._results(tasks, max_attempts, most, lambda _: most, deadline)
+
+    def foresee(self, tasks: Iterable[Task], *, max_attempts: int) -> Iterator[Accepted | Exhausted]:
+        """The same as `scenes` for tasks without end, of which nobody knows how many are wanted.
+
+        One is looked for at first, then more at a time the more have been wanted, as long as that takes little time.
+        """
+
+        def window(given: int) -> int:
+            # A round costs mostly the same whatever its size.
+            return min(4 * given + 1, _MOST_FORESEEN, self._pace.scenes_within(_FORESIGHT_SECONDS))
+
+        return self._results(tasks, max_attempts, self._pace.most, window, None)
+
+    def _results(
+        self,
+        tasks: Iterable[Task],
+        max_attempts: int,
+        most: int,
+        window: Callable[[int], int],
+        deadline: float | None,
+    ) -> Iterator[Accepted | Exhausted]:
+        """Scenes in order; rounds have at most ``most`` lanes.
+
+        ``window`` says how many scenes are looked for at a time when so many have been given. Half as many more may have
+        been found, so that one that takes many attempts does not hold up the others at once.
+        """
         waiting = enumerate(tasks)
         pending: list[_Pending] = []
         done: dict[int, Accepted | Exhausted | CandidateError] = {}
         upcoming = 0
-        most = self._pace.most if lanes is None else lanes
         while True:
-            if len(pending) < most:
-                pending += self._start(list(islice(waiting, most - len(pending))))
+            wanted = window(upcoming)
+            missing = min(wanted, wanted * 3 // 2 - len(done)) - len(pending)
+            if missing > 0:
+                pending += self._start(list(islice(waiting, missing)))
             if not pending:
                 return
             if deadline is not None and time.monotonic() > deadline:

@@ -1,63 +1,89 @@
 """Scenes of seeds that a script will probably draw next.
 
 `Scenario.generate` takes its seed from Python's ``random``. A script that calls it in a loop, and draws nothing itself in
-between, gets the seeds that a copy of the generator gives now. Sampling those scenes together with the first one makes
-the loop as cheap as a batch. Nothing of it can be seen: a scene is a function of its seed.
+between, gets the seeds that a copy of the generator gives now. Sampling those scenes together makes the loop as cheap
+as a batch. Nothing of it can be seen: a scene is a function of its seed.
 """
 
 import random
-from collections.abc import Sequence
+import threading
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator
 from typing import Final
 
+from scenic.runtime.sampling.engine import Task
 from scenic.runtime.sampling.report import Exhausted
 from scenic.runtime.scene import Scene
 
 SEED_BITS: Final = 63
 
-_MOST: Final = 128
-"""Scenes foreseen at a time, at most."""
-
-_SECONDS: Final = 0.05
-"""Processor time that a refill may take before fewer scenes are foreseen."""
+Found = Iterator[Scene | Exhausted]
 
 
 class Foreseen:
-    """Scenes sampled ahead, and how many to sample next time."""
+    """The scenes of seeds drawn one after the other, as long as they are those that were to come.
 
-    def __init__(self) -> None:
-        self._scenes: dict[int, Scene | Exhausted] = {}
+    Args:
+        find: scenes of tasks without end, in order, each found among at most so many candidates or given up.
+
+    """
+
+    def __init__(self, find: Callable[[Iterable[Task], int], Found]) -> None:
+        self._find = find
+        self._lock = threading.Lock()
         self._limit = 0
-        self._count = 0
-        """How many seeds to foresee: twice as many after a success, none after a miss."""
-        self._used = False
-        self._foreseen = 0
-        self._seconds: float = 0.0
+        self._stream: Found | None = None
+        self._seeds: Iterator[int] = iter(())
+        self._expected: deque[int] = deque()
+        """The seeds of the scenes that come next in the stream."""
+        self._peeked: deque[int] = deque()
+        """Those of them that the stream has not asked for."""
 
-    def take(self, seed: int, limit: int) -> Scene | Exhausted | None:
-        """The scene of a seed, if it has been foreseen under the same limit of candidates."""
-        if limit != self._limit:
-            self._scenes.clear()
-        found = self._scenes.pop(seed, None)
-        self._used = self._used or found is not None
-        return found
+    def take(self, seed: int, limit: int) -> Scene | Exhausted:
+        """The scene of a seed that was drawn just now; raises what goes wrong in sampling it."""
+        if not self._lock.acquire(blocking=False):
+            # Another thread samples, or the program's own function has asked for a scene in the middle of another one.
+            return next(self._find([Task(seed, 0)], limit))
+        try:
+            if self._stream is None or limit != self._limit or self._next_seed() != seed:
+                self._begin(seed, limit)
+            self._expected.popleft()
+            assert self._stream is not None
+            return next(self._stream)
+        except BaseException:
+            self._stream = None  # it ends with what it raises
+            raise
+        finally:
+            self._lock.release()
 
-    def seeds(self) -> list[int]:
-        """The seeds that ``random`` will give next, as many as past success suggests."""
-        if self._used or not self._foreseen:
-            # The cost of a round is mostly the same whatever its size, so that only a long refill ends the growth.
-            self._count = min(_MOST, 2 * self._count + 1) if self._seconds < _SECONDS else self._count // 2
-        else:
-            self._count = 0
-        self._foreseen = self._count
-        if not self._count:
-            return []
-        copy = random.Random()
-        copy.setstate(random.getstate())
-        return [copy.getrandbits(SEED_BITS) for _ in range(self._count)]
-
-    def keep(self, scenes: Sequence[Scene | Exhausted], limit: int, seconds: float) -> None:
-        """Keep the scenes of the seeds foreseen last; ``seconds`` is the processor time that they took, with the first one."""
-        self._seconds = seconds
-        self._scenes = {scene.seed: scene for scene in scenes}
+    def _begin(self, seed: int, limit: int) -> None:
+        """Another stream, whose first seed is this one."""
         self._limit = limit
-        self._used = False
+        self._seeds = _seeds_after(random.getstate())
+        self._expected, self._peeked = deque([seed]), deque([seed])
+        self._stream = self._find(self._tasks(), limit)
+
+    def _next_seed(self) -> int:
+        if not self._expected:
+            seed = next(self._seeds)
+            self._expected.append(seed)
+            self._peeked.append(seed)
+        return self._expected[0]
+
+    def _tasks(self) -> Iterator[Task]:
+        expected, peeked, seeds = self._expected, self._peeked, self._seeds
+        while True:
+            if peeked:
+                yield Task(peeked.popleft(), 0)
+            else:
+                seed = next(seeds)
+                expected.append(seed)
+                yield Task(seed, 0)
+
+
+def _seeds_after(state: tuple[object, ...]) -> Iterator[int]:
+    """The seeds that ``random`` gives from a state on."""
+    copy = random.Random()
+    copy.setstate(state)
+    while True:
+        yield copy.getrandbits(SEED_BITS)

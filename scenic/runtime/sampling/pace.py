@@ -34,6 +34,7 @@ class Pace:
     most: int
     lanes: float = 0.0
     passed: float = 0.0
+    _rounds: int = 0
     _weight: float = 0.0
     _x: float = 0.0
     _y: float = 0.0
@@ -44,6 +45,9 @@ class Pace:
         """Take a finished round into account; ``passed`` lanes met every requirement."""
         self.lanes = _FADING * self.lanes + lanes
         self.passed = _FADING * self.passed + passed
+        # What the first round made, later ones find.
+        fading = 0.0 if self._rounds == 1 else _FADING
+        self._rounds += 1
         for name, value in (
             ("_weight", 1.0),
             ("_x", lanes),
@@ -51,7 +55,7 @@ class Pace:
             ("_xx", lanes * lanes),
             ("_xy", lanes * seconds),
         ):
-            setattr(self, name, _FADING * getattr(self, name) + value)
+            setattr(self, name, fading * getattr(self, name) + value)
 
     @property
     def acceptance(self) -> float:
@@ -70,6 +74,11 @@ class Pace:
             slope = 0.5 * mean_y / mean_x  # rounds of one size tell nothing of the two parts
         slope = min(max(slope, 1e-9), mean_y / mean_x)
         return max(mean_y - slope * mean_x, 1e-6), slope
+
+    def scenes_within(self, seconds: float) -> int:
+        """How many scenes are found in about that time together; at least one."""
+        fixed, lane = self.cost()
+        return max(1, int((seconds - fixed) * self.acceptance / lane))
 
     def choose(self, waiting: int, most: int) -> Round:
         """The round of at most ``most`` lanes that finds scenes at the least expected time each.
