@@ -7,12 +7,12 @@ as much to make, and then again as much to Python's search for garbage, which st
 from collections.abc import Iterable, Sequence
 from itertools import repeat
 from typing import Any, Final
-from weakref import WeakValueDictionary
 
 from scenic.graph.batch import Batch
 from scenic.language.garbage import no_garbage_collection
 from scenic.runtime.objects import Object, Point, put
 from scenic.runtime.samples import Globals, Sample, reachable
+from scenic.runtime.sampling.engine import Accepted
 
 _TOGETHER: Final = 512
 """Objects made at a time, about: below a millisecond, should nobody look at the other scenes."""
@@ -35,14 +35,13 @@ class Populations:
         self.objects = tuple(objects)
         self.names = names
         self._others = tuple(others)
-        self._known: WeakValueDictionary[int, Population] = WeakValueDictionary()
         self._linked: bool | None = None
 
-    def of(self, batch: Batch) -> "Population":
-        """The objects of the scenes of a batch."""
-        found = self._known.get(id(batch))  # which is its own as long as the population keeps the batch
+    def of(self, accepted: Accepted) -> "Population":
+        """The objects of a scene and of the others of its batch."""
+        found: Population | None = accepted.shared.get(self)
         if found is None:
-            found = self._known[id(batch)] = Population(self, batch)
+            found = accepted.shared[self] = Population(self, accepted.batch)
         return found
 
     @property
@@ -62,7 +61,7 @@ class Populations:
 class Population:
     """The objects of the scenes of one batch."""
 
-    __slots__ = ("__weakref__", "_batch", "_kept", "_makers", "_started")
+    __slots__ = ("_batch", "_kept", "_makers", "_started")
 
     def __init__(self, makers: Populations, batch: Batch) -> None:
         self._makers = makers

@@ -73,8 +73,8 @@ class Scene:
     def __init__(self, accepted: Accepted, family: Family) -> None:
         self.accepted = accepted
         self._family = family
-        # Kept by the scenes of a batch, so that they have their objects made together.
-        self._population = family.populations.of(accepted.batch)
+        # Scenes of a batch have their objects made together.
+        self._population = family.populations.of(accepted)
         self._sample: Copier | None = None
         self._objects: tuple[Any, ...] | None = None
         self._params: dict[str, Any] | None = None

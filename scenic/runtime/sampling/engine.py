@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from copy import copy
 from dataclasses import dataclass
 from itertools import islice
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -74,13 +74,18 @@ class Task(NamedTuple):
 
 
 class Accepted(NamedTuple):
-    """A scene's values: one lane of a finished batch. ``alone`` makes a batch of one attempt, to look at its draws."""
+    """A scene's values: one lane of a finished batch.
+
+    ``alone`` makes a batch of one attempt, to look at its draws. ``shared`` is for what is made of all scenes of the batch
+    together: it lives as long as one of them.
+    """
 
     task: Task
     attempts: int
     batch: Batch
     lane: int
     alone: Callable[[Task, int], Batch]
+    shared: dict[object, Any]
 
     def again(self) -> Batch:
         """A batch of that lane alone."""
@@ -278,11 +283,11 @@ class Engine:
         if len(good):
             batch.keep(good)
             batch.settle(self.plan.outputs)
-            alone = self._alone
+            alone, shared = self._alone, dict[object, Any]()
             for lane, row in enumerate(rows[good].tolist()):
                 scene = active[int(owner[row])]
                 attempt = int(attempts[row])
-                done[scene.number] = Accepted(scene.task, attempt + 1, batch, lane, alone)
+                done[scene.number] = Accepted(scene.task, attempt + 1, batch, lane, alone, shared)
         for scene in active:
             if scene.number not in done and scene.attempts >= max_attempts:
                 done[scene.number] = self._give_up(scene, "attempts")
@@ -296,7 +301,7 @@ class Engine:
         def alone(_task: Task, _attempt: int) -> Batch:
             return Batch(self._single, source, self.plan.codec, rejections=(RejectionException,))
 
-        return Accepted(task, attempts, batch, 0, alone)
+        return Accepted(task, attempts, batch, 0, alone, {})
 
     def _batch(self, source: Source, *, grouped: bool = True) -> Batch:
         return Batch(
