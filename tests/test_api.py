@@ -129,7 +129,7 @@ def test_imports_merge_into_the_program(folder: Any) -> None:
         assert scene.params["d"] == pytest.approx(scene.egoObject.x)
         assert scene.params["n"] == 3
         assert 0 < scene.params["p"] < 1
-    assert repr(folder.load().workspace.region) == "<CircularRegion>"
+    assert repr(folder.load().workspace.region) == "CircularRegion(Vector(0, 0, 0), 20)"
 
 
 def test_the_importer_keeps_its_own_ego_and_workspace(folder: Any) -> None:

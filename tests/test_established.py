@@ -1,8 +1,18 @@
 """Names of the established Python API lead to ours."""
 
+import contextlib
 import importlib
+import io
 
 import pytest
+from scenic.core.regions import (
+    BoxRegion,
+    PolygonalRegion,
+    PolylineRegion,
+    RectangularRegion,
+    SpheroidRegion,
+    everywhere,
+)
 
 import scenic
 from scenic.established import MODULES, lookup
@@ -86,3 +96,62 @@ def test_what_is_found_early_has_the_type_that_python_would_raise(text: str, kin
         scenic.scenarioFromString(text)
     assert isinstance(caught.value, scenic.language.errors.ScenicSyntaxError)
     assert caught.value.lineno == 1
+
+
+def test_values_are_shown_as_programs_write_them() -> None:
+    text = (
+        'print(Vector(1, 2.5, 3), 1 @ 2, new Point, new Object with name "box")\n'
+        "print(CircularRegion((1, 2), 3), repr(CircularRegion((1, 2), 3)), PointSetRegion('a', [(0, 0)]), everywhere)\n"
+        "param x = [Vector(1, 2, 3)]"
+    )
+    with contextlib.redirect_stdout(io.StringIO()) as shown:
+        found = params(text)
+    assert shown.getvalue().splitlines() == [
+        "Vector(1, 2.5, 3) Vector(1, 2, 0) unnamed Point box",
+        "<CircularRegion> CircularRegion(Vector(1, 2, 0), 3) <PointSetRegion a> everywhere",
+    ]
+    assert str(found["x"]) == "[Vector(1, 2, 3)]"
+
+
+@pytest.mark.parametrize(
+    ("text", "shown"),
+    [
+        ("Range(1, 2.5)", "Range(1, 2.5)"),
+        ("Normal(Range(0, 1), 1) + 2", "(Normal(Range(0, 1), 1) + 2)"),
+        ("TruncatedNormal(0, 1, -1, 1)", "TruncatedNormal(0, 1, -1, 1)"),
+        ("DiscreteRange(0, 3)", "DiscreteRange(0, 3)"),
+        ("Uniform(1, 2)", "Uniform(1, 2)"),
+        ("Uniform('a', 2)", "Uniform('a', 2)"),
+        ("Discrete({1: 2, 3: 4})", "Discrete({1: 0.333333, 3: 0.666667})"),
+        ("Range(0, 1) @ 2", "Vector(Range(0, 1), 2, 0)"),
+        ("Range(0, 1).real", "<random other: attribute>"),
+        ("Uniform(*range(20))", "Uniform(0, 1, 2, 3, 4, 5, 6, 7, ...)"),
+    ],
+)
+def test_random_values_are_shown_as_expressions(text: str, shown: str) -> None:
+    with contextlib.redirect_stdout(io.StringIO()) as found:
+        scenic.scenarioFromString(f"print(repr({text}))")
+    assert found.getvalue().strip() == shown
+
+
+def test_what_scripts_ask_scenarios() -> None:
+    text = "workspace = Workspace(BoxRegion(dimensions=(9, 9, 9)))\nego = new Object\nnew Object at (2, 2), with regionContainedIn everywhere\nrequire True"
+    program = scenic.scenarioFromString(text)
+    program.validate()
+    program.setSampleChecker(None)
+    assert program.containerOfObject(program.objects[0]) is program.workspace.region
+    assert program.containerOfObject(program.objects[1]) is everywhere
+    assert program.userRequirements == program.requirements
+
+
+def test_what_scripts_ask_regions() -> None:
+    assert RectangularRegion((1, 2), 0.5, 3, 4).circumcircle == ((1, 2, 0), 2.5)
+    assert RectangularRegion((1, 2), 0.5, 3, 4).inradius == 1.5
+    middle, radius = PolygonalRegion([(0, 0), (2, 0), (2, 2)]).circumcircle
+    assert (tuple(middle), radius) == (pytest.approx((1, 1, 0)), pytest.approx(2**0.5))
+    assert BoxRegion(dimensions=(1, 2, 3), position=(1, 1, 1)).circumcircle == (
+        (1, 1, 1),
+        pytest.approx(14**0.5 / 2),
+    )
+    assert SpheroidRegion(dimensions=(1, 2, 3)).inradius == 0.5
+    assert PolylineRegion([(0, 0), (3, 4), (3, 5)]).cumulativeLengths == pytest.approx([5, 6])

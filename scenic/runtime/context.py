@@ -57,6 +57,10 @@ class Context:
         """The objects of the scenario so far, in order of creation: what may stand in the way of a look."""
         self.calls: list[tuple[Any, list[Any]]] = []
         """The nodes of calls that are made on samples, each with the instances that it sees."""
+        self.mutates = False
+        """Whether some module may mutate instances."""
+        self.stand_ins: dict[int, tuple[Any, Any]] = {}
+        """Instances that choices draw and what stands for them until they are mutated, by their identities."""
         self.sample: Any = None
         """The sample on which Python code is being called."""
         self.looks = False

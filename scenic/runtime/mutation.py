@@ -15,6 +15,7 @@ from scenic.runtime.objects import Point
 from scenic.runtime.opaque import call_later, see_mutated
 from scenic.runtime.program import Program
 from scenic.runtime.properties import update
+from scenic.runtime.standing import complete
 from scenic.runtime.values import (
     Orientation,
     Vector,
@@ -50,6 +51,8 @@ def apply_noise(program: Program) -> None:
         if is_random(scale) or scale != 0:
             mutated |= _mutate(instance, scale)
     context = current.get()
+    if context is not None:
+        complete(context)
     if mutated and context is not None:
         see_mutated(context)
     if mutated:

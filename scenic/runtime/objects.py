@@ -196,8 +196,19 @@ class Point:
         """The places in its view, as far as nothing hides them."""
         return ViewRegion.of(self)
 
+    def __str__(self) -> str:
+        name = (
+            getattr(self, "name", None) if "name" in self.scenic_properties or "name" in self._all() else None
+        )
+        return name if isinstance(name, str) else f"unnamed {type(self).__name__}"
+
     def __repr__(self) -> str:
-        return f"<{type(self).__name__}>"
+        return f"<{self}>"
+
+    def _all(self) -> Mapping[str, Any]:
+        """What is stored of the instance, or of what it is a sample of."""
+        stored: Mapping[str, Any] = self.__dict__.get("_source", self).__dict__
+        return stored
 
 
 class OrientedPoint(Point):

@@ -46,6 +46,7 @@ from scenic.runtime.samples import Sample
 from scenic.runtime.sight import sees
 from scenic.runtime.specifiers import BUILDERS, Specifier, UserSpecifier, specify
 from scenic.runtime.spreading import spread
+from scenic.runtime.standing import may_mutate
 from scenic.runtime.temporal.formulas import is_temporal
 from scenic.runtime.values import (
     Random,
@@ -481,6 +482,7 @@ class Loader:
         scope["__builtins__"] = names.builtin_names(
             self._program, state.filename, lambda *args: self._import(state, *args)
         )
+        self._context.mutates |= may_mutate(code)
         exec(code, scope)
 
     def _import(

@@ -295,6 +295,22 @@ class Scenario:
         annotate(cause, found.diagnostic(), f"{found} (attempt {error.attempt} at scene {error.k})")
         return cause
 
+    @property
+    def userRequirements(self) -> tuple[Any, ...]:
+        """The same as `requirements`."""
+        return self.requirements
+
+    def containerOfObject(self, obj: Object) -> Region:
+        """The region that must hold an object: its own, else the workspace."""
+        own = obj.regionContainedIn
+        return self.workspace.region if own is None else own
+
+    def validate(self) -> None:
+        """Nothing to do: whatever is fixed is checked when the program is loaded."""
+
+    def setSampleChecker(self, checker: Any) -> None:
+        """Nothing to do: in which order requirements are checked follows what they cost and reject."""
+
     def resetExternalSampler(self) -> None:
         """Nothing to do: there are no external samplers."""
 

@@ -36,6 +36,7 @@ from scenic.language.errors import (
 from scenic.runtime.context import here, next_address, uniform_draw
 from scenic.runtime.lazy import Lazy, defer
 from scenic.runtime.methods import Arithmetic, Operand, OrientationMethods, VectorMethods
+from scenic.runtime.spelling import plain_number, spelled
 
 LARGEST_INTEGER = 2**62
 """Integers beyond this are kept as Python objects."""
@@ -98,6 +99,8 @@ class Random(Arithmetic, Hooks):
     supported: ClassVar[Callable[[Any], tuple[float | None, float | None]]]
     __array_priority__ = 1000  # NumPy scalars on the left defer to the methods below.
 
+    stand_in: ClassVar[Callable[[Any], Any]]
+    """What stands for an instance that a choice draws; `scenic.runtime.standing`, which stands on this module, gives it."""
     later: ClassVar[Callable[..., Any]]
     """A call of Python code that is made on each sample; `scenic.runtime.opaque`, which stands on this module, gives it."""
 
@@ -190,7 +193,7 @@ class Random(Arithmetic, Hooks):
     __hash__ = object.__hash__
 
     def __repr__(self) -> str:
-        return f"<random {self.node.kind.value}: {self.node.operation.name}>"
+        return spelled(self.node)
 
     def __format__(self, spec: str) -> str:
         warnings.warn("a random value formatted as text shows no sample", stacklevel=2)
@@ -289,7 +292,7 @@ class Vector(VectorMethods, Hooks):
         return hash(self._row)
 
     def __repr__(self) -> str:
-        return f"({self._row[0]:g}, {self._row[1]:g}, {self._row[2]:g})"
+        return "Vector({}, {}, {})".format(*map(plain_number, self._row))
 
     def __array__(self, dtype: Any = None, copy: Any = None) -> Any:
         return np.array(self._row, dtype=dtype)
@@ -408,7 +411,7 @@ class Orientation(OrientationMethods, Hooks):
         return quaternions.euler_angles(self._row)
 
     def __repr__(self) -> str:
-        return "Orientation.fromEuler({:g}, {:g}, {:g})".format(*self.eulerAngles)
+        return "Orientation.fromEuler({}, {}, {})".format(*map(plain_number, self.eulerAngles))
 
 
 class RandomVector(VectorMethods, Random):
@@ -825,7 +828,7 @@ def _call_in_lanes(function: Node, args: Sequence[Any], kwargs: dict[str, Any]) 
 def _attribute_of_option(option: Node, name: str) -> Node:
     if option.operation is _MISSING:
         return option
-    value = as_value(option)
+    value = drawn_option(option)
     if kind_of(value) is Kind.OBJECT and _is_computed(type(value), name):  # type: ignore[arg-type] # classes are hashable
         return as_node(Random.later(getattr, value, name))
     try:
@@ -1058,11 +1061,17 @@ def vector(x: Any, y: Any, z: Any = 0) -> Any:
     return operate("vector", to_scalar(x), to_scalar(y), to_scalar(z))
 
 
+def drawn_option(option: Node) -> Any:
+    """The value of an option of a choice, as the choice draws it: an instance after mutation."""
+    value = as_value(option)
+    return Random.stand_in(value) if kind_of(value) is Kind.OBJECT else value
+
+
 def per_option(value: Any, function: Callable[[Any], Any]) -> Any:
     """``function`` of a value; of each option where the value is a random choice, and the choice among the results."""
     if isinstance(value, Random) and value.node.operation is TABLE["select"]:
         index, *options = value.node.operands
-        return _select(index, [as_node(function(as_value(option))) for option in options])
+        return _select(index, [as_node(function(drawn_option(option))) for option in options])
     return function(value)
 
 
@@ -1070,7 +1079,7 @@ def _coerce_boxed(value: Random, kind: Kind, function: Callable[..., Any], what:
     """Coerce option by option where ``value`` is a choice, else when it is sampled."""
     if value.node.operation is TABLE["select"]:
         index, *options = value.node.operands
-        return _select(index, [as_node(function(as_value(option), what)) for option in options])
+        return _select(index, [as_node(function(drawn_option(option), what)) for option in options])
     return _coerce_later(value, kind, function, what)
 
 

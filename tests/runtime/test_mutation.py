@@ -168,3 +168,33 @@ def test_a_mutator_sees_the_instance_as_it_was() -> None:
 def test_whether_to_be_visible_may_be_drawn_without_an_ego() -> None:
     text = "seen = Uniform(True, False)\nnew Object with requireVisible seen\nparam seen = seen\n"
     assert [item.params["seen"] for item in scenario(text).sample(6, seed=1)] == [False] * 6
+
+
+@pytest.mark.parametrize(
+    ("text", "drawn"),
+    [
+        ("a.position", False),
+        ("Uniform(a, a).position", True),
+        ("Uniform(a, a).toVector()", True),
+        ("Uniform([a], [a])[0].position", True),
+        ("Uniform(a, a) offset by (0, 0, 0)", True),
+        ("(relative position of Uniform(a, a) from (0, 0, 0))", True),
+        ("(back of Uniform(a, a)) offset by (0, 0.5, 0)", True),
+    ],
+)
+def test_a_choice_draws_instances_as_mutated(text: str, drawn: bool) -> None:
+    program = scenario(
+        f"a = new Object at (3, 4), with orientationStdDev (0, 0, 0)\nego = a\nx = {text}\nparam x = x\nmutate a"
+    )
+    for item in program.sample(5, seed=2):
+        found = item.params["x"]
+        place = tuple(getattr(found, "position", found))
+        assert place == pytest.approx(tuple(item.egoObject.position) if drawn else (3, 4, 0))
+
+
+def test_what_is_specified_by_a_choice_follows_the_mutated_instance() -> None:
+    text = "a = new Object at (3, 4)\nego = a\nb = new Object left of Uniform(a, a) by 1\nmutate a"
+    for item in scenario(text).sample(5, seed=2):
+        one, other = item.objects
+        gap = tuple(p - q for p, q in zip(one.position, other.position, strict=True))
+        assert sum(part * part for part in gap) == pytest.approx(4)

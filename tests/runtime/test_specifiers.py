@@ -170,7 +170,7 @@ def test_in_a_region() -> None:
         assert np.all(np.abs(across) <= [4, 2, 0])
         solid = thing(REGION + "new Object contained in b, with width 0.01, with length 0.01, with height 0.01", seed=seed)  # fmt: skip
         assert np.all(np.abs(local.apply(np.array(solid.position) - [50, 60, 70])) <= [1, 2, 3])
-        assert repr(solid.regionContainedIn) == "<BoxRegion>"
+        assert str(solid.regionContainedIn) == "<BoxRegion>"
 
 
 def test_on_a_region_draws_and_rests() -> None:

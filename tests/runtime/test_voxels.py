@@ -210,3 +210,57 @@ def test_views_of_no_observer() -> None:
     )
     with pytest.raises(ScenicValueError, match="greater than 0"):
         ViewRegion(10, (0, 1))
+
+
+def test_cells_hold_objects_exactly() -> None:
+    cells = SpheroidRegion(dimensions=(4, 4, 4)).voxelized(0.25)
+    text = "new Object at {}, facing {}, with shape SpheroidShape(), with width 2, with length 2, with height 3.9"
+    upright = scenic.scenarioFromString(text.format("(0, 0, 0)", 0)).sample(1, seed=0)[0].objects[0]
+    assert cells.containsObject(upright)  # though its box reaches empty cells
+    moved = scenic.scenarioFromString(text.format("(0.6, 0, 0.3)", 0)).sample(1, seed=0)[0].objects[0]
+    assert not cells.containsObject(moved)
+    tilted = (
+        scenic.scenarioFromString(text.format("(0, 0, 0)", "(0, 45 deg, 0)")).sample(1, seed=0)[0].objects[0]
+    )
+    assert cells.containsObject(tilted)
+
+
+def test_objects_in_cells_agree_with_their_points() -> None:
+    rng = np.random.default_rng(4)
+    cells = VoxelRegion(trimesh.voxel.VoxelGrid(rng.random((4, 4, 4)) < 0.8))
+    text = "new Object at (Range(0, 3), Range(0, 3), Range(0, 3)), facing (Range(0, 3), Range(0, 3), 0), with width 0.4, with length 0.7, with height 0.3"
+    answers = set()
+    for scene in scenic.scenarioFromString(text).sample(60, seed=1):
+        (item,) = scene.objects
+        points = np.array([tuple(item.occupiedSpace.uniformPointInner()) for _ in range(60)])
+        corners = np.array([tuple(corner) for corner in item.corners])
+        held = cells.containsObject(item)
+        if held:
+            assert cells.contains_points(np.concatenate([points, corners])).all()
+        else:
+            # Most of what sticks out of cells is hit by some point of a fine grid of the body.
+            assert not cells.contains_points(_grid(item)).all()
+        answers.add(held)
+    assert answers == {True, False}
+
+
+def _grid(item: object) -> np.ndarray:
+    steps = np.stack(np.meshgrid(*[np.linspace(-0.5, 0.5, 33)] * 3), axis=-1).reshape(-1, 3)
+    box = item.occupiedSpace.mesh  # type: ignore[attr-defined] # an object of a scene
+    one, two, three = (np.array(tuple(getattr(item, side).position)) for side in ("right", "front", "top"))
+    middle = np.array(tuple(item.position))  # type: ignore[attr-defined] # likewise
+    assert box.is_watertight
+    return middle + 2 * steps @ np.array([one - middle, two - middle, three - middle])
+
+
+def test_the_mesh_of_cells() -> None:
+    region = VoxelRegion(trimesh.voxel.VoxelGrid(FILLED))
+    mesh = region.mesh
+    assert isinstance(mesh, MeshVolumeRegion)
+    assert mesh.size == pytest.approx(region.size)
+    assert mesh.AABB == region.AABB
+    points = np.random.default_rng(1).uniform(-0.7, 1.7, (500, 3))
+    held = mesh.contains_points(points, *mesh.fixed_columns("points"))
+    assert (held == region.contains_points(points)).all()
+    assert region.voxel_points.shape == (4, 3)
+    assert region.kdTree.query(region.voxel_points[0])[0] == 0

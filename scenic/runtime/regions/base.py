@@ -28,6 +28,7 @@ from scenic.runtime.geometry.collision import Body
 from scenic.runtime.regions.knowledge import Containment, containment_bounds, containment_inverse, payload_box
 from scenic.runtime.regions.single import Single
 from scenic.runtime.regions.stacked import Stack, body_operands, placed_of
+from scenic.runtime.spelling import plain_number
 from scenic.runtime.values import (
     Random,
     Vector,
@@ -312,8 +313,15 @@ class Region(ABC):
     def __contains__(self, item: Any) -> Any:
         return self.containsObject(item) if hasattr(item, "occupiedSpace") else self.containsPoint(item)
 
+    def __str__(self) -> str:
+        return f"<{type(self).__name__}{'' if self.name is None else f' {self.name}'}>"
+
     def __repr__(self) -> str:
-        return self.name or f"<{type(self).__name__}>"
+        """As a program would make it, where a few numbers do that."""
+        if self.is_random or not 0 < len(self.parameter_names) == len(self.parameters):
+            return str(self)
+        shown = [plain_number(value) if type(value) is float else repr(value) for value in self.parameters]
+        return f"{type(self).__name__}({', '.join(shown)})"
 
 
 def _contains_point(call: Call, points: Points, *columns: Column) -> Column:
@@ -400,6 +408,11 @@ class Everywhere(Region):
 
     dimension = np.inf
 
+    def __repr__(self) -> str:
+        return self.name or "everywhere"
+
+    __str__ = __repr__
+
     def contains_points(self, points: Points, *columns: Column) -> Mask:
         return np.ones(len(points), dtype=np.bool_)
 
@@ -427,6 +440,11 @@ class Nowhere(Region):
     """The empty region."""
 
     dimension = 0
+
+    def __repr__(self) -> str:
+        return self.name or "nowhere"
+
+    __str__ = __repr__
 
     def contains_points(self, points: Points, *columns: Column) -> Mask:
         return np.zeros(len(points), dtype=np.bool_)

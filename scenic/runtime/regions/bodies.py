@@ -14,7 +14,7 @@ from scenic.runtime.geometry.collision import Body, collide
 from scenic.runtime.geometry.surface import Side
 from scenic.runtime.regions.base import Mask, Points, Region, unsupported
 from scenic.runtime.regions.stacked import Stack, body_of, body_operands
-from scenic.runtime.values import Random, apply, to_vector, uniform, vector
+from scenic.runtime.values import Random, apply, operate, to_vector, uniform, vector
 
 SIDES: Mapping[str, Side] = MappingProxyType(
     {
@@ -87,6 +87,17 @@ class OccupiedSpace(Region):
     def boundingPolygon(self) -> Any:
         """The region seen from above."""
         return self.algebra.outline_from_above(self)
+
+    @property
+    def inradius(self) -> Any:
+        """The radius of a ball about the middle that it holds, in metres; 0 where the middle is outside."""
+        return apply(_INRADIUS, *self.parameters)
+
+    @property
+    def circumcircle(self) -> tuple[Any, Any]:
+        """Centre and radius of the ball around the box of its dimensions."""
+        position, _, size, _ = self.parameters
+        return position, operate("divide", operate("norm", size), 2)
 
     @property
     def isConvex(self) -> bool:

@@ -1,5 +1,7 @@
 """Lines: in the plane, and in space (section 9.2 of the specification)."""
 
+import itertools
+import math
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any, Final
 
@@ -66,6 +68,15 @@ class LineRegion(Region):
     def length(self) -> float:
         """Metres."""
         return self.pieces.length
+
+    @property
+    def cumulativeLengths(self) -> list[float]:
+        """The lengths up to the end of each segment, in metres."""
+        return list(
+            itertools.accumulate(
+                math.dist(start, end) for start, end in zip(self.pieces.starts, self.pieces.ends, strict=True)
+            )
+        )
 
 
 def _fixed_points(points: Iterable[Any], what: str) -> list[tuple[float, float, float]]:

@@ -71,6 +71,15 @@ class PlanarRegion(Region):
         return float(self.sizes(*self.fixed_columns("the area"))[0])
 
     @property
+    def circumcircle(self) -> tuple[Any, float]:
+        """Centre and radius of the smallest circle around the region."""
+        import shapely
+
+        circle = shapely.minimum_bounding_circle(self.polygons)
+        middle = circle.centroid
+        return vector(middle.x, middle.y, self.height), float(shapely.minimum_bounding_radius(self.polygons))
+
+    @property
     def boundary(self) -> Any:
         """The outline, as a line."""
         return self.algebra.boundary(self)
@@ -174,6 +183,15 @@ class CircularRegion(PlanarRegion):
     def height(self) -> Any:
         return self.center.z
 
+    @property
+    def circumcircle(self) -> tuple[Any, Any]:
+        return self.center, self.radius
+
+    @property
+    def inradius(self) -> Any:
+        """The radius of the largest disc about the middle that it holds, in metres."""
+        return self.radius
+
     def uniform_placement(self) -> tuple[Any, Any]:
         offset = apply(DISC_POINT, uniform(), uniform())
         return operate("add", self.center, operate("multiply", offset, self.radius)), None
@@ -247,6 +265,30 @@ class RectangularRegion(PlanarRegion):
     @property
     def height(self) -> Any:
         return self.position.z
+
+    @property
+    def hw(self) -> Any:
+        """Half the width, in metres."""
+        return operate("divide", self.width, 2)
+
+    @property
+    def hl(self) -> Any:
+        """Half the length, in metres."""
+        return operate("divide", self.length, 2)
+
+    @property
+    def radius(self) -> Any:
+        """Half the diagonal, in metres."""
+        return operate("norm", vector(self.hw, self.hl, 0))
+
+    @property
+    def circumcircle(self) -> tuple[Any, Any]:
+        return self.position, self.radius
+
+    @property
+    def inradius(self) -> Any:
+        """The radius of the largest disc about the middle that it holds, in metres."""
+        return operate("minimum", self.hw, self.hl)
 
     def uniform_placement(self) -> tuple[Any, Any]:
         x = operate("multiply", operate("subtract", uniform(), 0.5), self.width)

@@ -58,6 +58,7 @@ class PlacedVolume(Region):
         self.orientation = orientation
         self.has_orientation = orientation is not None
         self.onDirection = onDirection
+        self.tolerance = tolerance
         sizes = list(to_vector(dimensions, f"{what} dimensions"))
         if any(is_number(size) and not size > 0 for size in sizes):
             raise ScenicValueError(f"{what} needs three positive dimensions, not {dimensions!r}", span=here())
@@ -103,6 +104,16 @@ class PlacedVolume(Region):
     def isConvex(self) -> bool:
         """Boxes and ellipsoids are convex."""
         return True
+
+    @property
+    def inradius(self) -> Any:
+        """The radius of the largest ball about the middle that it holds, in metres."""
+        return operate("divide", operate("minimum", *self.dimensions), 2)
+
+    @property
+    def circumcircle(self) -> tuple[Any, Any]:
+        """Centre and radius of the ball around the box of its dimensions."""
+        return self.position, operate("divide", operate("norm", self.dimensions), 2)
 
     @abstractmethod
     def unit_points(self, uniforms: Column) -> Points:

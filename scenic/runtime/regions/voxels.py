@@ -13,7 +13,11 @@ from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.body_points import bounds
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.regions.base import Mask, Points, Region
+from scenic.runtime.regions.meshes import MeshVolumeRegion
 from scenic.runtime.regions.volumes import BoxRegion
+
+_INNER = 1 - 1e-9
+"""Part of the edge of an empty cell that nothing inside the others may meet: a face belongs to both cells at it."""
 
 _MOST_CELLS = 1 << 27
 """Cells of a grid up to which it is made."""
@@ -70,6 +74,23 @@ class VoxelRegion(Region):
         self._cells = np.argwhere(filled)
 
     @property
+    def scale(self) -> Points:
+        """The edges of a cell, ``(3,)`` in metres."""
+        return self.pitch
+
+    @property
+    def voxel_points(self) -> Points:
+        """The middles of the filled cells, ``(n, 3)``."""
+        return self.corner + (self._cells + 0.5) * self.pitch
+
+    @property
+    def kdTree(self) -> Any:
+        """SciPy's search tree over the middles of the filled cells."""
+        from scipy.spatial import KDTree
+
+        return KDTree(self.voxel_points)
+
+    @property
     def voxelGrid(self) -> Any:
         """The grid, trimesh's."""
         from trimesh.voxel import VoxelGrid
@@ -110,24 +131,70 @@ class VoxelRegion(Region):
             yield BoxRegion(dimensions=self.pitch.tolist(), position=middle)
 
     def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
-        """Where no empty cell of the grid, and nothing outside it, meets the body's box: sure, though not complete.
-
-        A body whose box alone reaches an empty cell is not found to be inside.
-        """
+        """Where no empty cell, and nothing outside the grid, meets the body."""
         lower, upper = bounds(body)
         first = np.floor((lower - self.corner) / self.pitch).astype(np.int64)
         last = np.ceil((upper - self.corner) / self.pitch).astype(np.int64)
         shape = np.array(self.filled.shape)
-        within = (first >= 0).all(axis=1) & (last <= shape).all(axis=1)
-        sums = np.zeros(shape + 1, dtype=np.int64)
+        inside: Mask = np.asarray((first >= 0).all(axis=1) & (last <= shape).all(axis=1))
+        first, last = np.clip(first, 0, shape), np.clip(last, 0, shape)
+        # Only lanes whose box reaches an empty cell need the body itself.
+        doubtful = np.flatnonzero(inside & (self._filled_cells(first, last) < (last - first).prod(axis=1)))
+        if len(doubtful):
+            inside[doubtful] = self._free_of_empty(
+                body if len(body) == 1 else body.take(doubtful), first[doubtful], last[doubtful]
+            )
+        return np.asarray(np.broadcast_to(inside, lanes))
+
+    def _filled_cells(self, first: NDArray[np.int64], last: NDArray[np.int64]) -> NDArray[np.int64]:
+        """How many cells are filled from ``first`` (included) to ``last`` (not included), ``(n, 3)`` each."""
+        sums = np.zeros(np.array(self.filled.shape) + 1, dtype=np.int64)
         sums[1:, 1:, 1:] = self.filled.cumsum(0).cumsum(1).cumsum(2)
-        (a, b, c), (d, e, f) = np.clip(first, 0, shape).T, np.clip(last, 0, shape).T
-        full = (
+        (a, b, c), (d, e, f) = first.T, last.T
+        return np.asarray(
             sums[d, e, f] - sums[a, e, f] - sums[d, b, f] - sums[d, e, c]
             + sums[a, b, f] + sums[a, e, c] + sums[d, b, c] - sums[a, b, c]
         )  # fmt: skip
-        count = (np.minimum(last, shape) - np.maximum(first, 0)).prod(axis=1)
-        return np.asarray(np.broadcast_to(within & (full == count), lanes))
+
+    def _free_of_empty(self, body: Body, first: NDArray[np.int64], last: NDArray[np.int64]) -> Mask:
+        """Where the body meets the inside of no empty cell, of those that its box reaches: ``(n,)``."""
+        free = np.ones(len(first), dtype=np.bool_)
+        empty = np.argwhere(~self.filled)
+        reached = ((first.min(axis=0) <= empty) & (empty < last.max(axis=0))).all(axis=1)
+        for cell in empty[reached]:
+            lanes = np.flatnonzero(free & (first <= cell).all(axis=1) & (cell < last).all(axis=1))
+            if not len(lanes):
+                continue
+            middle = self.corner + (cell + 0.5) * self.pitch
+            part = body if len(body) == 1 else body.take(lanes)
+            inner = BoxRegion(dimensions=(self.pitch * _INNER).tolist(), position=middle.tolist())
+            columns = inner.fixed_columns("a cell")
+            free[lanes] = ~np.broadcast_to(inner.meets_bodies(part, len(lanes), *columns), len(lanes))
+        return free
+
+    @property
+    def mesh(self) -> MeshVolumeRegion:
+        """The cells as a volume bounded by a mesh: the faces between filled cells and empty ones."""
+        padded = np.pad(self.filled, 1)
+        corners: list[NDArray[np.int64]] = []
+        for axis in range(3):
+            across, along = (axis + 1) % 3, (axis + 2) % 3
+            for side in (0, 1):
+                beyond = np.roll(padded, 1 - 2 * side, axis=axis)
+                cells = np.argwhere(padded & ~beyond) - 1
+                steps = [(0, 0), (1, 0), (1, 1), (0, 1)][:: 1 if side else -1]
+                quads = np.repeat(cells[:, np.newaxis], 4, axis=1)
+                quads[:, :, axis] += side
+                for place, (one, two) in enumerate(steps):
+                    quads[:, place, across] += one
+                    quads[:, place, along] += two
+                corners.append(quads)
+        quads = np.concatenate(corners).reshape(-1, 3)
+        vertices, numbers = np.unique(quads, axis=0, return_inverse=True)
+        numbers = numbers.reshape(-1, 4)
+        faces = np.concatenate([numbers[:, [0, 1, 2]], numbers[:, [0, 2, 3]]])
+        surface = Mesh(self.corner + vertices * self.pitch, faces)
+        return MeshVolumeRegion(surface, centerMesh=False, orientation=self.orientation, name=self.name)
 
     def distances(self, points: Points, *columns: Column) -> NDArray[np.float64]:
         """To the nearest filled cell: among those whose centres are nearest, by at most a cell's diagonal."""
