@@ -193,7 +193,7 @@ class Engine:
 
         def window(given: int) -> int:
             # A round costs mostly the same whatever its size.
-            return min(4 * given + 1, _MOST_FORESEEN, self._pace.scenes_within(_FORESIGHT_SECONDS))
+            return min(16 * given + 1, _MOST_FORESEEN, self._pace.scenes_within(_FORESIGHT_SECONDS))
 
         return self._results(tasks, max_attempts, self._pace.most, window, None)
 
