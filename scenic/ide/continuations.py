@@ -20,7 +20,7 @@ from scenic.language.operators import OPERATORS
 from scenic.language.specifiers import SPECIFIERS
 from scenic.language.statements import STATEMENTS
 
-__all__ = ["Continuation", "Continuations", "PhraseKind", "continuations"]
+__all__ = ["Continuation", "Continuations", "PhraseKind", "continuations", "prepare"]
 
 
 class PhraseKind(StrEnum):
@@ -112,6 +112,11 @@ def continuations(text: str, line: int, column: int) -> Continuations:
         return _NOWHERE
     found = dict.fromkeys(_find(wanted))
     return Continuations(tuple(found), wanted.labels, wanted.kinds, wanted.before)
+
+
+def prepare() -> None:
+    """Load and make what `continuations` needs for any text."""
+    continuations("x = ", 1, 4)
 
 
 def _find(wanted: Wanted) -> Iterator[Continuation]:

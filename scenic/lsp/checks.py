@@ -10,6 +10,7 @@ import time
 from collections.abc import Callable, Sequence
 from typing import Final, TypeAlias
 
+from scenic.ide.continuations import prepare
 from scenic.ide.diagnostics import found_in
 from scenic.ide.snapshot import Cancelled
 from scenic.language.diagnostics import Diagnostic
@@ -51,6 +52,7 @@ class Checks:
         self._others: Timer | None = None
         self._troubled: dict[str, tuple[Diagnostic, ...]] = {}
         """By document: the problems of its settings that are shown."""
+        self._is_prepared = False
 
     # What makes a check necessary
 
@@ -151,6 +153,10 @@ class Checks:
         if present is not document:
             self.changed(uri)
         self._session.garbage.checked()
+        if not self._is_prepared:
+            # The first completion should not have to wait for the tables that it reads.
+            self._is_prepared = True
+            self._session.checker.put(Job(lambda _job: prepare(), self._session.loop))
 
     def _stop_timer(self, uri: str) -> None:
         timer = self._timers.pop(uri, None)

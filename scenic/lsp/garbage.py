@@ -11,8 +11,11 @@ __all__ = ["Garbage"]
 _PAUSE: Final = 3.0
 """Seconds without a message after which all garbage is looked for."""
 
-_MANY: Final = 300_000
+_MANY: Final = 60_000
 """So many objects may be made before the young ones are looked at in any case."""
+
+_BREATH: Final = 0.05
+"""Seconds after a check without a message after which the young objects are looked at."""
 
 _OFTEN: Final = 100
 """After so many checks, all garbage is looked for."""
@@ -42,10 +45,15 @@ class Garbage:
     def checked(self) -> None:
         """A check is done, and its result is sent."""
         self._checks += 1
-        if self._checks % _OFTEN:
-            gc.collect(0)
-        else:
+        if self._checks % _OFTEN == 0:
             gc.collect()
+        else:
+            # What is asked about the new version comes first.
+            self._loop.call_later(_BREATH, self._look_at_young)
+
+    def _look_at_young(self) -> None:
+        if time.monotonic() - self._last >= _BREATH:
+            gc.collect(0)
 
     def _look(self) -> None:
         rest = self._last + _PAUSE - time.monotonic()

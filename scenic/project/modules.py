@@ -163,10 +163,8 @@ class Module:
     def sets_ego(self) -> bool:
         """Whether running the module may set the ego (that of a scenario in it does not count)."""
         return any(
-            reference.node.id == "ego"
-            and not isinstance(reference.node.ctx, ast.Load)
-            and not _in_scenario(reference.scope)
-            for reference in self.resolution.references.values()
+            not isinstance(reference.node.ctx, ast.Load) and not _in_scenario(reference.scope)
+            for reference in self.resolution.uses("ego")
         )
 
 

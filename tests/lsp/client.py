@@ -9,9 +9,10 @@ import queue
 import subprocess
 import sys
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import cache
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, BinaryIO
 
 from lsprotocol import converters, types
@@ -57,15 +58,25 @@ class Refused(Exception):
 
 
 class Client:
-    """Starts a server, and waits for no message longer than `PATIENCE`."""
+    """Starts a server, and waits for no message longer than `PATIENCE`.
+
+    Unless ``strict``, it believes what it is told, as editors do: holding a long answer against the protocol takes longer
+    than making it. ``environment`` is what the server finds in its environment besides.
+    """
 
     def __init__(
-        self, *, cwd: Path = ROOT, program: tuple[str, ...] = ("-m", "scenic.cli.main", "lsp")
+        self,
+        *,
+        cwd: Path = ROOT,
+        program: tuple[str, ...] = ("-m", "scenic.cli.main", "lsp"),
+        strict: bool = True,
+        environment: Mapping[str, str] = MappingProxyType({}),
     ) -> None:
+        self._strict = strict
         self.process = subprocess.Popen(
             [sys.executable, *program],
             cwd=cwd,
-            env={**os.environ, "PYTHONPATH": str(ROOT)},
+            env={**os.environ, "PYTHONPATH": str(ROOT), **environment},
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
@@ -119,7 +130,7 @@ class Client:
         if "error" in message:
             raise Refused(message["error"])
         response = types.METHOD_TO_TYPES.get(self.methods[number])
-        if response is not None and response[1] is not None:
+        if self._strict and response is not None and response[1] is not None:
             _converter().structure(message, response[1])
         return message["result"]
 
@@ -156,7 +167,8 @@ class Client:
                 and (version is None or each["params"].get("version") == version)
             )
         )
-        _converter().structure(message, types.PublishDiagnosticsNotification)
+        if self._strict:
+            _converter().structure(message, types.PublishDiagnosticsNotification)
         found: list[dict[str, Any]] = message["params"]["diagnostics"]
         return found
 

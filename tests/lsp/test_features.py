@@ -220,6 +220,27 @@ def test_completion(project: Project, text: str, first: set[str], absent: set[st
     assert uri not in client.versions
 
 
+def test_completion_says_the_place_once_to_clients_that_know_of_that() -> None:
+    client = Client()
+    completion = {
+        "completionItem": {"snippetSupport": True},
+        "completionList": {"itemDefaults": ["editRange"]},
+    }
+    try:
+        client.start({"textDocument": {"completion": completion}})
+        client.open("untitled:defaults", "ego = new Object\nreq")
+        place = {"textDocument": {"uri": "untitled:defaults"}, "position": {"line": 1, "character": 3}}
+        found = client.request("textDocument/completion", place)
+        start = {"line": 1, "character": 0}
+        assert found["itemDefaults"] == {"editRange": {"start": start, "end": place["position"]}}
+        texts = {item["label"]: item.get("textEditText", item["label"]) for item in found["items"]}
+        assert texts["require"].startswith("require ${")
+        assert texts["repr"] == "repr"
+        assert not any("textEdit" in item for item in found["items"])
+    finally:
+        client.end()
+
+
 # Navigation
 
 

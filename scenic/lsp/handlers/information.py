@@ -66,25 +66,35 @@ def _completion(session: Session, params: Any) -> Json:
         return {"isIncomplete": False, "items": []}
     found = completions(session.project_with(document), document.snapshot, line, column)
     snippets = session.client.can("textDocument", "completion", "completionItem", "snippetSupport")
+    # The place is the same for all, and need be said but once to clients that know of that.
+    once = "editRange" in session.client.lists("textDocument", "completion", "completionList", "itemDefaults")
+    place = document.lines.to_range(found.span)
     items = []
     for item in found.items:
+        snippet = item.snippet if snippets else None
+        text = item.text if snippet is None else snippet
         shown: dict[str, Json] = {
             "label": item.label,
             "kind": _KINDS[item.kind],
             "sortText": f"{item.rank}{item.label}",
-            "textEdit": {"range": document.lines.to_range(found.span), "newText": item.text},
         }
+        if not once:
+            shown["textEdit"] = {"range": place, "newText": text}
+        elif text != item.label:
+            shown["textEditText"] = text
         if item.text != item.label:
             shown["filterText"] = item.label
         if item.detail:
             shown["detail"] = item.detail
-        if snippets and item.snippet is not None:
+        if snippet is not None:
             shown["insertTextFormat"] = _SNIPPET
-            shown["textEdit"]["newText"] = item.snippet
         if item.key:
             shown["data"] = {"uri": document.uri, "key": list(item.key)}
         items.append(shown)
-    return {"isIncomplete": False, "items": items}
+    answer: dict[str, Json] = {"isIncomplete": False, "items": items}
+    if once:
+        answer["itemDefaults"] = {"editRange": place}
+    return answer
 
 
 def _resolve(session: Session, params: Any) -> Json:
