@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from types import MappingProxyType
 from typing import Any
 
@@ -12,7 +13,9 @@ from scenic.graph.operation import Call, Operation, always
 from scenic.runtime.geometry import body_points, containment, distance, projection, surface
 from scenic.runtime.geometry.collision import Body, collide
 from scenic.runtime.geometry.surface import Side
+from scenic.runtime.lazy import is_lazy
 from scenic.runtime.regions.base import Mask, Points, Region, unsupported
+from scenic.runtime.regions.fixed_sides import FixedSide
 from scenic.runtime.regions.stacked import Stack, body_of, body_operands
 from scenic.runtime.values import Random, apply, operate, to_vector, uniform, vector
 
@@ -240,7 +243,17 @@ class SideSurface(Region):
             lower, upper = thresholds[axis]
             self.facing = Facing((axis, sign), float(upper if sign > 0 else -lower))
 
+    @cached_property
+    def _fixed(self) -> FixedSide | None:
+        """The faces, where the object is the same in every scene."""
+        if self.is_random or is_lazy(self.parameters):
+            return None
+        body = body_of(*self.fixed_columns("the side"))
+        return FixedSide.of(body, self.facing.side, self.facing.threshold)
+
     def uniform_placement(self) -> tuple[Any, Any]:
+        if self._fixed is not None:
+            return self._fixed.placement()
         face = apply(_FACE, uniform(), *self.parameters, payload=self.facing)
         point = apply(_FACE_POINT, face, uniform(), uniform(), *self.parameters)
         return point, apply(_FACE_ORIENTATION, face, *self.parameters)
@@ -253,7 +266,8 @@ class SideSurface(Region):
             way = to_vector(direction, "`onDirection`")
         face = apply(_LANDING_FACE, place, way, *self.parameters, payload=self.facing)
         landed = apply(_LANDING_POINT, face, place, way, *self.parameters)
-        return landed, apply(_FACE_ORIENTATION, face, *self.parameters)
+        common = None if self._fixed is None else self._fixed.orientation
+        return landed, apply(_FACE_ORIENTATION, face, *self.parameters) if common is None else common
 
     def contains_points(self, points: Points, *columns: Column) -> Mask:
         body = body_of(*columns)

@@ -1,0 +1,127 @@
+"""Sides of bodies that are the same in every scene: their faces are a table, which needs no geometry to draw from.
+
+Most things stand on something that does not move. Analysis sees where they may be, and where all faces look the same way,
+as on a box, the orientation on the side is fixed, too.
+"""
+
+from dataclasses import dataclass
+from itertools import accumulate
+from typing import Any, Final
+
+import numpy as np
+
+from scenic.graph import quaternions
+from scenic.graph.bounds import Bounds
+from scenic.graph.intervals import EPSILON
+from scenic.graph.kinds import Column, Kind
+from scenic.graph.operation import Call, Operation, always
+from scenic.graph.operations.distributions import LOOKUP, Table
+from scenic.runtime.distributions import primitive
+from scenic.runtime.geometry.bodies import Body
+from scenic.runtime.geometry.poses import Floats
+from scenic.runtime.geometry.surface import Side, face_orientations, side_contains
+from scenic.runtime.values import Orientation, apply, uniform
+
+_MOST_FACES: Final = 4096
+"""Larger meshes are left to the geometry: the table is made whenever a program places something there."""
+
+
+class Triangles:
+    """The payload of a point on triangles: their corners in the world, ``(f, 3 corners, 3)``."""
+
+    __slots__ = ("_key", "parts")
+
+    def __init__(self, corners: Floats) -> None:
+        self.parts: Final = np.ascontiguousarray(corners.transpose(1, 2, 0))
+        """By corner, component and triangle."""
+        self._key = self.parts.tobytes()
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Triangles) and self._key == other._key
+
+    def __hash__(self) -> int:
+        return hash(self._key)
+
+
+def _point(call: Call, face: Column, first: Column, second: Column) -> Column:
+    a, b, c = call.payload.parts[:, :, face]
+    # The square root makes a strip parallel to the edge opposite the first corner as likely as it is long.
+    root = np.sqrt(first)
+    return quaternions.components_last((1 - root) * a + root * (1 - second) * b + root * second * c)
+
+
+def _point_bounds(payload: Triangles, face: Bounds, *_uniforms: Bounds) -> Bounds:
+    """The box around all triangles; weights that sum to 1 but for rounding leave it by little."""
+    slack = 8 * EPSILON * np.abs(payload.parts).max()
+    count = len(face.lower)
+    return Bounds(
+        np.tile(payload.parts.min(axis=(0, 2)) - slack, (count, 1)),
+        np.tile(payload.parts.max(axis=(0, 2)) + slack, (count, 1)),
+    )
+
+
+_POINT: Final = Operation(
+    "point of triangles",
+    always(Kind.VECTOR),
+    _point,
+    "A uniform point of the triangle of a table that an index draws.",
+    bounds=_point_bounds,
+    stacks=True,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class FixedSide:
+    """The faces of a side of a fixed body.
+
+    Attributes:
+        areas: of the faces in the world, ``(f,)``, none of them 0.
+        corners: of the faces in the world, ``(f, 3, 3)``.
+        orientations: preferred on the faces, quaternions ``(f, 4)``.
+
+    """
+
+    areas: Floats
+    corners: Floats
+    orientations: Floats
+
+    @classmethod
+    def of(cls, body: Body, side: Side, threshold: float) -> "FixedSide | None":
+        """The side of a body of one lane; ``None`` where it has no faces, or the mesh too many."""
+        (mesh,) = body.meshes
+        count = len(mesh.faces)
+        if count > _MOST_FACES:
+            return None
+        corners = body.poses.to_world(mesh.triangles[np.newaxis])[0]
+        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        areas = np.sqrt((normals * normals).sum(axis=1)) / 2
+        members = side_contains(
+            mesh, body.poses, side, threshold, np.zeros(count, dtype=np.intp), np.arange(count)
+        )
+        faces = np.flatnonzero(members & (areas > 0))
+        if not len(faces):
+            return None
+        # Nought has no sign here, so that faces which look the same way compare equal.
+        return cls(areas[faces], corners[faces], face_orientations(body, faces) + 0.0)
+
+    def placement(self) -> tuple[Any, Any]:
+        """A uniform random point, and the preferred orientation there."""
+        total = self.areas.sum()
+        shares = tuple(accumulate((self.areas / total).tolist()))
+        face = primitive("choice", payload=(*shares[:-1], 1.0))
+        point = apply(_POINT, face, uniform(), uniform(), payload=Triangles(self.corners))
+        common = self.orientation
+        if common is None:
+            common = apply(LOOKUP, face, payload=Table(Kind.ORIENTATION, self.orientations))
+        return point, common
+
+    @property
+    def orientation(self) -> Any:
+        """The preferred orientation on all faces; ``None`` where they differ."""
+        first = self.orientations[0]
+        if not (self.orientations == first).all():
+            return None
+        return Orientation.of(first.tolist())
+
+
+__all__ = ["FixedSide"]
