@@ -67,8 +67,9 @@ def read_scenes(path: str | Path) -> Iterator[ReadScene]:
 
     """
     try:
-        with Path(path).open(encoding="utf-8") as lines:
-            yield from scenes_of(lines, str(path))
+        with Path(path).open("rb") as file:
+            # Line by line, so that the one that is no text is known.
+            yield from scenes_of((line.decode() for line in file), str(path))
     except OSError as error:
         raise MissingFileError(f"cannot read '{path}': {(error.strerror or str(error)).lower()}") from error
 

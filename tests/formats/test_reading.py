@@ -1,12 +1,14 @@
 """What is written as JSON Lines is read back."""
 
+import json
 import math
 from pathlib import Path
 
 import pytest
 
 import scenic
-from scenic.formats.json_lines import scene_line
+from scenic.formats.json_lines import SceneLines, scene_line
+from scenic.formats.revival import Revival
 from scenic.language.errors import Located
 
 PROGRAM = (
@@ -42,3 +44,54 @@ def test_other_files_are_refused(tmp_path: Path, text: str) -> None:
         list(scenic.read_scenes(file))
     with pytest.raises(Located, match="cannot read"):
         list(scenic.read_scenes(tmp_path / "none.jsonl"))
+
+
+def test_no_number_is_a_negative_zero() -> None:
+    text = "ego = new Object at (-0.0, 0, 0), facing -0.0, with tag -0.0, with tags (-0.0, 1)\nparam p = -0.0, q = Range(-1, 1) * 0\n"
+    (scene,) = scenic.scenarioFromString(text).sample(1, seed=2)
+    assert "-0.0" not in scene_line(scene)
+
+
+def test_the_program_is_told_apart_from_its_digest(tmp_path: Path) -> None:
+    (scene,) = scenic.scenarioFromString("ego = new Object\n").sample(1, seed=2)
+    file = tmp_path / "scenes.jsonl"
+    file.write_text(SceneLines(("a.scenic", "0123")).line(scene) + "\n" + scene_line(scene) + "\n")
+    told = [(read.program, read.digest) for read in scenic.read_scenes(file)]
+    assert told == [("a.scenic", "0123"), (None, None)]
+
+
+def test_the_line_that_is_no_text_is_told(tmp_path: Path) -> None:
+    (scene,) = scenic.scenarioFromString("ego = new Object\n").sample(1, seed=2)
+    line = scene_line(scene).encode()
+    file = tmp_path / "scenes.jsonl"
+    file.write_bytes(line + b"\r\n" + line + b"\n\xff\n")
+    read = scenic.read_scenes(file)
+    assert next(read).k == next(read).k == 0
+    with pytest.raises(Located, match=r"line 3 .* holds no scene"):
+        next(read)
+
+
+def test_revived_scenes_are_as_they_were(tmp_path: Path) -> None:
+    """Shapes with their parameters, turned parts, and the ego even where another object is its equal."""
+    text = (
+        "ego = new Object at (1, 2, 3), facing (0.5, 0.4, 0.3), with color (0.1, 0.2, 0.3), with allowCollisions True\n"
+        "new Object at (9, 9, 9), with shape CylinderShape(sections=5, initial_rotation=(0.1, 0.2, 0.3))\n"
+        "new Object at (-9, 9, 9), with shape CylinderShape(sections=7), with width 2\n"
+    )
+    (scene,) = scenic.scenarioFromString(text).sample(1, seed=2)
+    data = json.loads(scene_line(scene))
+    data["objects"].insert(0, data["objects"][0])
+    data["ego"] = 1
+    file = tmp_path / "scenes.jsonl"
+    file.write_text(json.dumps(data) + "\n")
+    (read,) = scenic.read_scenes(file)
+    assert read.ego is read.objects[1]
+    revived = Revival().revive(read)
+    assert revived.egoObject is revived.objects[1]
+    for before, after in zip(scene.objects, revived.objects[1:], strict=True):
+        assert tuple(after.position) == pytest.approx(tuple(before.position))
+        assert after.orientation.approxEq(before.orientation)
+        assert (after.yaw, after.pitch, after.roll) == pytest.approx((before.yaw, before.pitch, before.roll))
+        assert (after.width, after.length, after.height) == (before.width, before.length, before.height)
+        assert after.shape.mesh.vertices == pytest.approx(before.shape.mesh.vertices)
+    assert [thing.color for thing in revived.objects[1:]] == [(0.1, 0.2, 0.3), None, None]

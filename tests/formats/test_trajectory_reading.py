@@ -11,9 +11,11 @@ import numpy as np
 import pytest
 
 import scenic
-from scenic.formats.trajectory_reading import TrajectoryFileError
+from scenic.formats.trajectories import course_document, step_documents
+from scenic.formats.trajectory_reading import Trajectory, TrajectoryFileError
 from scenic.formats.trajectory_tables import parquet_bytes, parquet_steps
 from scenic.language.errors import MissingFileError
+from scenic.simulators.dummy import DummySimulator
 from tests.cli.commands import run_here
 
 needs_parquet = pytest.mark.skipif(
@@ -150,3 +152,26 @@ def test_without_the_library_the_extra_is_named(folder: Path, monkeypatch: pytes
     assert "error[SC900]: Parquet files need the package pyarrow" in done.stderr
     assert "scenic-lang[parquet]" in done.stderr
     assert not (folder / "none").exists()
+
+
+def test_a_document_holds_what_the_simulation_did() -> None:
+    text = (
+        "behavior B():\n    while True:\n        take simulation().currentTime, 'go'\n"
+        "ego = new Object with behavior B\n"
+        "require always ego.position.y < 10 as near\nrequire ego.position.x == 0 as there\n"
+        "record final [[1, 2, 3], [4, 5, 6]] as rows\n"
+    )
+    scene = scenic.scenarioFromString(text).sample(1, seed=1)[0]
+    simulator = DummySimulator(drift=1, timestep=0.5)
+    done = simulator.simulate(scene, maxSteps=3, keep_poses=True, robustness=True)
+    about, steps = course_document(done, k=4, tries=2), list(step_documents(done))
+    assert (about["k"], about["tries"], about["steps"], about["timestep"]) == (4, 2, 3, 0.5)
+    assert [step["actions"] for step in steps] == [{"0": [0, "go"]}, {"0": [1, "go"]}, {"0": [2, "go"]}, {}]
+    assert [step["time"] for step in steps] == [0, 0.5, 1, 1.5]
+    assert [step["positions"][0][1] for step in steps] == [0, 1, 2, 3]
+    near, there = about["requirements"]
+    assert (near["label"], near["line"], near["verdict"]) == ("near", 5, "PRESUMABLY_TRUE")
+    assert near["robustness"] == 7
+    assert there["robustness"] == {"$float": "inf"}
+    read = Trajectory(about, *(np.empty(0),) * 3, [])
+    assert read.record("rows") == [[1, 2, 3], [4, 5, 6]]

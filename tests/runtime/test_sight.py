@@ -235,3 +235,63 @@ without = floor.difference(ego.visibleRegion)
         assert (inside["floor"] == (inside["seen"] | inside["unseen"])).all()
         assert not (inside["seen"] & inside["unseen"]).any()
         assert 20 < inside["seen"].sum() < inside["unseen"].sum()
+
+
+def answers(text: str) -> dict[str, object]:
+    """The parameters of the one scene of a program."""
+    return dict(scenic.scenarioFromString(text).sample(1, seed=1)[0].params)
+
+
+def test_a_camera_is_mounted_in_the_frame_of_its_object() -> None:
+    """Turned to look along -X, an object looks from ahead of itself, so farther along -X."""
+    text = (
+        "ego = new Object facing 90 deg, with cameraOffset (0, 3, 1), with visibleDistance 5, with viewAngles (60 deg, 60 deg)\n"
+        "param far = ego.canSee((-7.9, 0, 1)), beyond = ego.canSee((-8.1, 0, 1)), beside = ego.canSee((-4, 0.6, 1)), "
+        "behind = ego.canSee((-2, 0, 1)), region = ego.visibleRegion.containsPoint((-7.9, 0, 1)), "
+        "near = ego.visibleRegion.containsPoint((-2.9, 0, 1))\n"
+    )
+    assert answers(text) == {
+        "far": True,
+        "beyond": False,
+        "beside": False,
+        "behind": False,
+        "region": True,
+        "near": False,
+    }
+
+
+def test_points_look_around_whatever_their_angles() -> None:
+    text = (
+        "p = new Point with viewAngles (10 deg, 10 deg), with visibleDistance 5\n"
+        "o = new OrientedPoint with viewAngles (10 deg, 10 deg), with visibleDistance 5\n"
+        "param point = p.canSee((1, -4, 1)), oriented = o.canSee((1, -4, 1))\n"
+    )
+    assert answers(text) == {"point": True, "oriented": False}
+
+
+@pytest.mark.parametrize(("count", "seen"), [("(1, 2)", True), ("(2, 1)", False)])
+def test_rays_are_counted_across_and_then_upward(count: str, seen: bool) -> None:
+    """Of a pole whose middle is hidden, two rays one above the other meet what is above and below."""
+    text = (
+        f"ego = new Object with viewAngles (60 deg, 60 deg), with viewRayCount {count}, with width 0.1\n"
+        "pole = new Object at (0, 10, 0), with height 8\n"
+        "wall = new Object at (0, 5, 0), with height 2, with length 0.1, with width 1\n"
+        "param seen = ego.canSee(pole, [wall])\n"
+    )
+    assert answers(text) == {"seen": seen}
+
+
+@pytest.mark.parametrize("hides", ["True", "False"])
+def test_what_only_sometimes_hides_hides_only_then(hides: str) -> None:
+    text = (
+        "ego = new Object\nbox = new Object at (0, 9, 0)\n"
+        "wall = new Object at (0, 4, 0), with width 5, with height 5, with occluding Uniform(True, False)\n"
+        f"require wall.occluding == {hides}\nrequire {'not ' * (hides == 'True')}(ego can see box)\n"
+    )
+    assert len(scenic.scenarioFromString(text).sample(5, seed=1)) == 5
+
+
+def test_a_workspace_of_a_workspace_is_what_it_is_made_of() -> None:
+    text = "workspace = Workspace(Workspace(everywhere))\nego = new Object\nnew Object not visible\n"
+    with pytest.raises(scenic.InvalidScenarioError, match="needs to know where"):
+        scenic.scenarioFromString(text)

@@ -11,6 +11,7 @@ SCENE = """
 zone = RectangularRegion((0, 2), 0, 10, 10)
 shelf = RectangularRegion((0, 2, 0.4), 0, 10, 10)
 room = BoxRegion(dimensions=(20, 20, 20), position=(0, 0, 0))
+far = RectangularRegion((0, 20), 0, 10, 10)
 row = PointSetRegion('row', [(0, 0, 0), (0, 1, 0), (0, 2, 0), (0, 3, 0)])
 ego = new Object with name 'ego'
 wall = new Object at (0, 6), with shape SpheroidShape()
@@ -48,6 +49,7 @@ def robustness(condition: str, steps: int) -> float:
         ("always ego in room", 6.5),
         ("always ego.position in row", math.inf),
         ("always wall in room", math.inf),
+        ("always ego not in far", 12.5),  # by its corner that is farthest from there
         ("always not (ego intersects wall)", 5),
         ("always ego.name == 'ego'", math.inf),
     ],

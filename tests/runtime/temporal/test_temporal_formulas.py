@@ -137,6 +137,14 @@ def test_an_exception_counts_only_where_nothing_else_decides() -> None:
         Monitor(Operation("or", (Atom(0), Atom(2)))).add(evaluate)
 
 
+def test_of_several_exceptions_the_first_is_raised() -> None:
+    def evaluate(index: int) -> bool:
+        raise (ZeroDivisionError, KeyError)[index]
+
+    with pytest.raises(ZeroDivisionError):
+        Monitor(Operation("or", (Atom(0), Atom(1)))).add(evaluate)
+
+
 def test_operations_are_checked() -> None:
     with pytest.raises(ValueError, match="unknown operator"):
         Operation("sometimes", (Atom(0),))

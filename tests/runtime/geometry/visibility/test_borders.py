@@ -1,0 +1,229 @@
+"""What is seen at the borders of views, where one ray more or less decides, against casting every ray at every triangle."""
+
+import math
+
+import numpy as np
+import pytest
+
+from scenic.runtime.geometry.bodies import Body
+from scenic.runtime.geometry.poses import Poses
+from scenic.runtime.geometry.visibility.bodies import sees_bodies
+from scenic.runtime.geometry.visibility.obstacles import Occluder
+from scenic.runtime.geometry.visibility.points import sees_points
+from scenic.runtime.geometry.visibility.views import Views
+from tests.runtime.geometry.visibility import reference
+from tests.runtime.geometry.visibility.test_bodies import BOX, CONE, FRAME, quaternions
+
+ANGLES = [
+    (0.6, 0.5),
+    (0.6, np.pi),
+    (3.0, 0.9),
+    (4.5, np.pi),
+    (2 * np.pi - 0.3, 0.7),
+    (2 * np.pi - 0.01, np.pi - 0.01),
+]
+"""View angles, some so wide that what is behind touches both borders, and such as count as all around."""
+
+
+def direction(azimuth: np.ndarray, altitude: np.ndarray) -> np.ndarray:
+    """Unit vectors ``(n, 3)`` in the frame of a view."""
+    level = np.cos(altitude)
+    return np.stack([-np.sin(azimuth) * level, np.cos(azimuth) * level, np.sin(altitude)], axis=-1)
+
+
+def to_world(observers: Views, offsets: np.ndarray) -> np.ndarray:
+    return observers.camera + reference.Rotation.from_quat(observers.orientation).apply(offsets)
+
+
+def watching(rng: np.random.Generator, count: int, *, rays: int, reach: float) -> Views:
+    """Turned observers with few rays, half of which are counted and half so dense, and some by distance."""
+    explicit = rng.random((count, 1)) < 0.5
+    return Views(
+        rng.uniform(-1, 1, (count, 3)),
+        quaternions(rng, count),
+        np.array(ANGLES)[rng.integers(0, len(ANGLES), count)],
+        np.full(count, reach),
+        rng.uniform(0.02, 0.15, count),
+        np.where(explicit, rng.integers(1, rays, (count, 2)), 0).astype(float),
+        rng.random(count) < 0.3,
+    )
+
+
+def border(rng: np.random.Generator, observers: Views, where: str) -> np.ndarray:
+    """Directions a little within or beyond a border of each view, in its frame."""
+    count = len(observers.camera)
+    half = observers.angles / 2
+    side, off = rng.choice([-1.0, 1.0], count), rng.normal(size=count) * 0.15
+    azimuth = rng.uniform(-1, 1, count) * half[:, 0]
+    altitude = rng.uniform(-1, 1, count) * half[:, 1] * 0.8
+    if where == "side":
+        azimuth = side * half[:, 0] + off
+    elif where == "top":
+        altitude = np.clip(side * half[:, 1] + off, -1.55, 1.55)
+    elif where == "behind":
+        azimuth = np.pi + off
+    elif where == "pole":
+        altitude = side * (np.pi / 2 - np.abs(off))
+    return direction(azimuth, altitude)
+
+
+@pytest.mark.parametrize("where", ["side", "top", "behind", "pole", "reach"])
+def test_bodies_at_borders_are_seen_as_when_every_ray_is_cast(where: str) -> None:
+    count = 120
+    rng = np.random.default_rng(["side", "top", "behind", "pole", "reach"].index(where))
+    observers = watching(rng, count, rays=9, reach=4.0)
+    away = rng.uniform(1.0, 3.0, count)
+    size = rng.uniform(0.1, 2.5, (count, 3))
+    if where == "reach":
+        # The nearest side of some boxes lies just within reach, and their middles beyond it.
+        away = 4.0 + 0.5 * size[:, 1] * rng.uniform(0.5, 1.1, count)
+    places = to_world(observers, away[:, None] * border(rng, observers, where))
+    target = Body((BOX, CONE, FRAME), rng.integers(0, 3, count), Poses(places, quaternions(rng, count), size))
+    seen = sees_bodies(observers, target, (), count)
+    expected = [reference.sees_body(observers, target, [], lane) for lane in range(count)]
+    assert seen.tolist() == expected
+    assert 10 < seen.sum() < count - 10
+
+
+@pytest.mark.parametrize("angles", ANGLES)
+def test_points_at_borders_are_seen_up_to_them(angles: tuple[float, float]) -> None:
+    h, v = angles
+    inside, outside = 1 - 1e-7, 1 + 1e-7
+    rows = []
+    for part in (inside, outside):
+        rows += [(side * h / 2 * part, 0.1, 1.0) for side in (-1, 1)]
+        rows += [(0.2, side * v / 2 * part, 1.0) for side in (-1, 1)]
+        rows += [(0.1, -0.1, part)]
+    rows += [(np.pi, 0.1, 0.5), (-np.pi + 0.006, 0.1, 0.5), (0.0, 0.0, 1.0)]
+    azimuth, altitude, distance = np.array(rows).T
+    kept = np.abs(altitude) <= np.pi / 2
+    turn = [0.3, -0.2, 0.5, 0.8]
+    turn = np.array(turn) / np.linalg.norm(turn)
+    count = int(kept.sum())
+    observers = Views.fixed((1, -2, 3), turn, angles=angles, distance=7.0).spread(count)
+    points = to_world(observers, (7.0 * distance[:, None] * direction(azimuth, altitude))[kept])
+    expected = [reference.sees_point(observers, points[lane], [], lane) for lane in range(count)]
+    assert sees_points(observers, points, (), count).tolist() == expected
+    assert True in expected
+
+
+@pytest.mark.parametrize("vertical", [np.pi, 1.0])
+@pytest.mark.parametrize("height", [2.0, -2.0])
+def test_straight_above_is_in_every_direction(vertical: float, height: float) -> None:
+    """A rounding error beside the axis decides nothing."""
+    observer = Views.fixed((0, 0, 0), angles=(0.5, vertical)).spread(2)
+    points = np.array([[0.0, 0.0, height], [1e-10, -1e-10, height]])
+    assert sees_points(observer, points, (), 2).tolist() == [vertical == np.pi] * 2
+
+
+@pytest.mark.parametrize("side", [-1, 1])
+def test_what_lies_behind_reaches_into_a_wide_view_from_either_side(side: int) -> None:
+    """Of a plank that leads away almost behind, only its near end is in view, on the side where its middle is not."""
+    near, far = (
+        length * np.array([-math.sin(azimuth), math.cos(azimuth), 0.0])
+        for azimuth, length in ((side * (math.pi + 0.3), 0.5), (side * (math.pi - 0.02), 6.0))
+    )
+    along = far - near
+    heading = math.atan2(-along[0], along[1])
+    pose = Poses.fixed(
+        (near + far) / 2,
+        [0, 0, math.sin(heading / 2), math.cos(heading / 2)],
+        [0.01, float(np.linalg.norm(along)), 0.2],
+    )
+    plank = Body((BOX,), None, pose)
+    for gap, seen in ((0.05, True), (0.8, False)):
+        observer = Views.fixed((0, 0, 0), angles=(2 * math.pi - gap, 1.0), count=(720, 41))
+        assert sees_bodies(observer, plank, (), 1).tolist() == [seen]
+        assert reference.sees_body(observer, plank, [], 0) is seen
+
+
+def test_below_the_view_is_not_in_it() -> None:
+    """Views are as narrow downward as upward."""
+    points = np.array([[0.0, math.cos(a), math.sin(a)] for a in (-0.6, -0.4, 0.4, 0.6)])
+    assert sees_points(Views.fixed((0, 0, 0), angles=(1.0, 1.0)).spread(4), points, (), 4).tolist() == [
+        False,
+        True,
+        True,
+        False,
+    ]
+
+
+@pytest.mark.parametrize(("gap", "seen"), [(0.0, False), (1e-6, True), (-1e-6, False)])
+def test_what_touches_a_point_from_behind_hides_it(gap: float, seen: bool) -> None:
+    """An occluder at the distance of the point blocks the view of it, one a little farther does not (section 11.3)."""
+    wall = Occluder(Body((BOX,), None, Poses.fixed([0, 5.5 + gap, 0], [0, 0, 0, 1], [4, 1, 4])))
+    assert sees_points(Views.fixed((0, 0, 0)), np.array([[0.0, 5.0, 0.0]]), [wall], 1).tolist() == [seen]
+
+
+@pytest.mark.parametrize(("gap", "seen"), [(0.0, False), (1e-4, True)])
+def test_of_surfaces_at_one_distance_the_occluder_counts(gap: float, seen: bool) -> None:
+    body, around = (
+        Body((BOX,), None, Poses.fixed([0, y, 0], [0, 0, 0, 1], [size, 1, size]))
+        for y, size in ((5, 1), (5 + gap, 3))
+    )
+    observer = Views.fixed((0, 0, 0), count=(31, 31), angles=(0.5, 0.5))
+    assert sees_bodies(observer, body, [Occluder(around)], 1).tolist() == [seen]
+
+
+def test_occluders_of_some_lanes_hide_in_those() -> None:
+    """Long obstacles that are thin and turned, active in lanes that are not the first ones, close to the target."""
+    count = 6
+    hides = np.array([False, True, False, False, True, True])
+    targets = Body(
+        (BOX,),
+        None,
+        Poses(
+            np.tile([[0.0, 9.0, 0.0]], (count, 1)), np.tile([[0.0, 0, 0, 1]], (count, 1)), np.ones((count, 3))
+        ),
+    )
+    half = math.sqrt(0.5)
+    # Its own X axis points to the right after a quarter turn of its longest side.
+    plank = Body((BOX,), None, Poses.fixed([5, 8.2, 0], [0, 0, half, half], [0.1, 14, 3]))
+    observers = Views.fixed((0, 0, 0), count=(41, 41), angles=(0.4, 0.4)).spread(count)
+    seen = sees_bodies(observers, targets, [Occluder(plank, hides)], count)
+    assert seen.tolist() == (~hides).tolist()
+    points = sees_points(observers, targets.poses.position, [Occluder(plank, hides)], count)
+    assert points.tolist() == (~hides).tolist()
+
+
+def test_a_camera_in_a_body_sees_it_and_one_in_its_hole_looks_for_it() -> None:
+    narrow = Views.fixed((0.1, 0, 0.2), angles=(0.3, 0.3), count=(3, 3))
+    assert sees_bodies(
+        narrow, Body((BOX,), None, Poses.fixed([0, 0, 0], [0, 0, 0, 1], [2, 2, 2])), (), 1
+    ).all()
+    # Along its hole, a frame is not in view; toward its rim it is.
+    frame = Body((FRAME,), None, Poses.fixed([0, 0, 0], [0, 0, 0, 1], [2, 2, 2]))
+    assert not sees_bodies(narrow, frame, (), 1).any()
+    assert sees_bodies(Views.fixed((0.1, 0, 0.2), angles=(0.3, 2.8), count=(3, 31)), frame, (), 1).all()
+    # From in front, its middle is in view but not of it.
+    before = Views.fixed((0, -4, 0), angles=(0.1, 0.1), count=(5, 5))
+    assert not sees_bodies(before, frame, (), 1).any()
+
+
+@pytest.mark.parametrize(("gap", "seen"), [(0.0, True), (1e-6, False)])
+def test_a_body_that_begins_where_sight_ends_is_seen(gap: float, seen: bool) -> None:
+    body = Body((BOX,), None, Poses.fixed([0, 5.5 + gap, 0], [0, 0, 0, 1], [3, 1, 3]))
+    observer = Views.fixed((0, 0, 0), angles=(0.3, 0.3), count=(3, 3), distance=5.0)
+    assert sees_bodies(observer, body, (), 1).tolist() == [seen]
+
+
+def test_small_obstacles_before_the_ends_of_wide_bodies_hide_them() -> None:
+    """What is in view is one end of a body, and a small box stands before it."""
+    turn = -math.atan2(2.8, 10)
+    orientation = [0, 0, math.sin(turn / 2), math.cos(turn / 2)]
+    observer = Views.fixed((0, 0, 0), orientation, angles=(0.02, 0.02), count=(5, 5))
+    body = Body((BOX,), None, Poses.fixed([0, 10, 0], [0, 0, 0, 1], [6, 1, 1]))
+    for side, hidden in ((1, True), (-1, False)):
+        small = Body((BOX,), None, Poses.fixed([side * 1.4, 5, 0], [0, 0, 0, 1], [0.3, 0.3, 0.3]))
+        assert sees_bodies(observer, body, [Occluder(small)], 1).tolist() == [not hidden]
+
+
+@pytest.mark.parametrize(("turn", "seen"), [(math.pi / 4, False), (0.0, True)])
+def test_the_corner_of_a_turned_obstacle_hides(turn: float, seen: bool) -> None:
+    """The corner reaches farther from the middle than any side does."""
+    obstacle = Poses.fixed([0.6, 5, 0], [0, 0, math.sin(turn / 2), math.cos(turn / 2)], [1, 1, 1])
+    observer = Views.fixed((0, 0, 0))
+    occluders = [Occluder(Body((BOX,), None, obstacle))]
+    assert sees_points(observer, np.array([[0.0, 9.0, 0.0]]), occluders, 1).tolist() == [seen]
+    spot = Body((BOX,), None, Poses.fixed([0, 9, 0], [0, 0, 0, 1], [0.01, 0.01, 0.01]))
+    assert sees_bodies(observer, spot, occluders, 1).tolist() == [seen]

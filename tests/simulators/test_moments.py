@@ -1,0 +1,237 @@
+"""When things happen in a simulation, where a step more or less, or a value kept too long, would be seen."""
+
+import math
+from collections import Counter
+from typing import Any
+
+import pytest
+
+import scenic
+from scenic.simulators.dummy import DummySimulation, DummySimulator
+from scenic.simulators.results import TerminationType
+from tests.simulators.test_simulations import scene_of, simulate, taken
+
+
+def recorded(done: Any, name: str) -> list[Any]:
+    return [value for _, value in done.records[name]]
+
+
+# Records
+
+
+@pytest.mark.parametrize(
+    ("selection", "steps"),
+    [
+        ("every 0.25 seconds", [0, 2, 4, 6, 8]),  # two whole steps of a tenth of a second
+        ("every 0.3 seconds", [0, 3, 6]),
+        ("every 0.05 seconds", [0, 1, 2, 3, 4, 5, 6, 7, 8]),  # a step at least
+        ("after 0.55 seconds", [5, 6, 7, 8]),
+        ("every 3 steps after 4 steps", [6]),  # the period counts from the beginning, not from the delay
+    ],
+)
+def test_periods_and_delays_are_whole_steps(selection: str, steps: list[int]) -> None:
+    done = simulate(f"ego = new Object\nrecord 1 {selection} as one\n", 8, timestep=0.1)
+    assert [step for step, _ in done.records["one"]] == steps
+
+
+# Draws among what may start
+
+CHOICES = """
+behavior Never():
+    precondition: False
+    take "never"
+behavior Take(what):
+    take what
+behavior B():
+    while True:
+        do choose {{{weights}}}
+ego = new Object with behavior B
+"""
+
+
+def test_weights_of_what_may_not_start_do_not_count() -> None:
+    text = CHOICES.format(weights='Take("a"): 1, Never(): 30, Take("b"): 2, Take("c"): 0')
+    counts = Counter(action for (action,) in taken(simulate(text, 300, key=b"1")))
+    assert counts.keys() == {"a", "b"}
+    assert 70 < counts["a"] < 130
+
+
+def test_nothing_of_weight_zero_may_start() -> None:
+    text = CHOICES.format(weights='Take("a"): 0, Take("b"): 0')
+    assert DummySimulator().simulate(scene_of(text), maxSteps=2) is None
+
+
+# Overrides
+
+
+def test_what_follows_from_an_overridden_property_follows_at_once_and_back() -> None:
+    program = """
+scenario Main():
+    setup:
+        ego = new Object
+        record ego.heading as heading
+    compose:
+        do Sub()
+        wait
+scenario Sub():
+    setup:
+        override ego with parentOrientation 90 deg
+    compose:
+        require abs(ego.heading - 90 deg) < 1e-9
+        wait
+"""
+    done = DummySimulator().simulate(scene_of(program), maxSteps=4)
+    assert done is not None
+    assert recorded(done, "heading") == pytest.approx([math.pi / 2, 0, 0])
+
+
+def test_what_was_computed_of_an_object_is_computed_again_after_an_override() -> None:
+    program = """
+behavior B():
+    take ego.corners[0].x, ego.occupiedSpace.containsPoint((0.9, 0, 0))
+    take ego.corners[0].x, ego.occupiedSpace.containsPoint((0.9, 0, 0))
+    take ego.corners[0].x, ego.occupiedSpace.containsPoint((0.9, 0, 0))
+scenario Main():
+    setup:
+        ego = new Object with behavior B
+    compose:
+        wait
+        do Sub() for 1 steps
+        wait
+scenario Sub():
+    setup:
+        override ego with width 4
+    compose:
+        while True:
+            wait
+"""
+    done = DummySimulator().simulate(scene_of(program), maxSteps=3)
+    assert done is not None
+    assert taken(done) == [(0.5, False), (2.0, True), (0.5, False)]
+
+
+def test_a_final_property_that_is_not_dynamic_stays() -> None:
+    text = """
+class Car:
+    token[final]: Range(0, 1)
+scenario Main():
+    setup:
+        ego = new Car with foo 1
+        record ego.token as token
+    compose:
+        wait
+        do Sub() for 1 steps
+        wait
+scenario Sub():
+    setup:
+        override ego with foo 2
+    compose:
+        wait
+        wait
+"""
+    done = DummySimulator(drift=1).simulate(scene_of(text), maxSteps=4)
+    assert done is not None
+    assert len(set(recorded(done, "token"))) == 1
+
+
+REUSED = """
+log = []
+behavior First():
+    while True:
+        take 1
+behavior Other(what):
+    try:
+        while True:
+            take what
+    finally:
+        log.append(what)
+second, third = Other(2), Other(3)
+scenario Main():
+    setup:
+        ego = new Object with behavior First
+        record final tuple(log) as ended
+    compose:
+        do Sub() for 2 steps
+        wait
+        do Sub() for 2 steps
+        wait
+scenario Sub():
+    setup:
+        override ego with behavior second
+        {again}
+    compose:
+        while True:
+            wait
+"""
+
+
+@pytest.mark.parametrize(
+    ("again", "actions", "ended"),
+    [
+        ("pass", [2, 2, 1, 2, 2, 1], (2, 2)),
+        ("override ego with behavior third", [3, 3, 1, 3, 3, 1], (3, 3)),
+    ],
+)
+def test_behaviors_of_overrides_end_with_them_and_may_run_again(
+    again: str, actions: list[int], ended: tuple[int, ...]
+) -> None:
+    done = DummySimulator().simulate(scene_of(REUSED.format(again=again)), maxSteps=6)
+    assert done is not None
+    assert [action for (action,) in taken(done)] == actions
+    assert done.records["ended"] == ended
+
+
+def test_a_monitor_ends_with_its_scenario_and_may_run_again() -> None:
+    text = """
+monitor M():
+    while True:
+        wait
+m = M()
+scenario Main():
+    setup:
+        ego = new Object
+    compose:
+        do Sub()
+        do Sub()
+scenario Sub():
+    setup:
+        require monitor m
+    compose:
+        wait
+"""
+    done = DummySimulator().simulate(scene_of(text), maxSteps=5)
+    assert done is not None
+    assert done.currentTime == 2
+
+
+# The order within a step
+
+
+def test_an_end_that_a_monitor_brings_about_comes_in_the_next_step() -> None:
+    text = """
+flag = [False]
+monitor M():
+    wait
+    flag[0] = True
+    wait
+ego = new Object
+require monitor M()
+terminate when flag[0] as raised
+"""
+    done = simulate(text, 9)
+    assert done.result is not None
+    assert (done.currentTime, done.result.terminationReason) == (2, "raised")
+    assert done.result.terminationType is TerminationType.scenarioComplete
+
+
+def test_actions_are_done_in_the_order_of_agents_whatever_the_schedule() -> None:
+    class Backwards(DummySimulation):
+        def scheduleForAgents(self) -> Any:
+            return reversed(self.agents)
+
+    text = "log = []\nbehavior B(n):\n    while True:\n        log.append(n)\n        take n, tuple(log)\n"
+    text += "ego = new Object with behavior B(0)\nnew Object at (5, 0), with behavior B(1)\n"
+    scene = scenic.scenarioFromString(text).sample(1, seed=0)[0]
+    done = Backwards(scene, maxSteps=1, name="x", timestep=1)
+    assert done.result is not None
+    assert list(done.result.actions[0].values()) == [(0, (1, 0)), (1, (1,))]
