@@ -1,5 +1,7 @@
 """Contraction keeps every solution, changes no law, and finds what it should."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from graph.programs import CODEC, batch_at, make, one_of, source, uniform
@@ -55,6 +57,29 @@ def test_an_impossible_requirement_is_named():
     found = contract(Graph([item.node for item in items]), items)
     assert [item.label for item in found.impossible] == ["impossible"]
     assert found.domain.is_whole
+
+
+def test_all_requirements_that_are_impossible_alone_are_named():
+    items = [Fact(example(9), "first"), Fact(example(2), "possible"), Fact(example(10), "second")]
+    found = contract(Graph([item.node for item in items]), items)
+    assert [item.label for item in found.impossible] == ["first", "second"]
+
+
+@pytest.mark.parametrize("backwards", [False, True])
+def test_what_follows_along_a_chain_is_followed_to_its_end(backwards):
+    """In one of the two orders each round tells only the next link."""
+    numbers = [uniform(0, 1) for _ in range(9)]
+    chain = [make("less", low, high) for low, high in pairwise(numbers)]
+    chain.append(make("less", numbers[-1], 0.125))
+    domain = check(*(reversed(chain) if backwards else chain))
+    assert domain.upper.max(axis=0) == pytest.approx([0.125] * 9, abs=1e-6)
+
+
+@pytest.mark.parametrize(("name", "border"), [("greater or equal", 1), ("less or equal", 0), ("equal", 0.5)])
+def test_a_requirement_that_a_single_number_meets_leaves_a_box(name, border):
+    domain = check(make(name, uniform(0, 1), border))
+    assert (domain.lower < domain.upper).all()
+    assert domain.volume < 1e-6
 
 
 def test_requirements_impossible_together_are_all_named():

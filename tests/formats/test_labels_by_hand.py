@@ -1,12 +1,14 @@
 """Labels of scenes so simple that every number is known: axes, borders of boxes, what hides and what does not."""
 
+import json
 import math
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
-from scenic.formats.coco import millimetres
+from scenic.formats.coco import LabelledImages, millimetres
 from scenic.formats.labels import Observation, document, observe
 from scenic.formats.sensors import viewpoint
 from scenic.runtime.sensors import RGBSensor
@@ -163,3 +165,31 @@ def test_an_object_looks_from_its_camera_with_its_angles() -> None:
 def test_depths_are_rounded_to_millimetres() -> None:
     stored = millimetres(np.array([1.2346, 1.2344, 65.5354, 65.536], np.float32))
     assert stored.tolist() == [1235, 1234, 65535, 65535]
+
+
+def test_the_index_of_a_folder_says_what_is_in_its_images(tmp_path: Path) -> None:
+    class Post(Object):
+        pass
+
+    post = Post(POST.position, width=POST.width, length=POST.length, height=POST.height)
+    made = LabelledImages(tmp_path, "front", None)
+    for k, things in enumerate(([CRATE, POST], [post, CRATE])):
+        _, scene = seen(*things)
+        scene.k = k
+        made.add(scene)
+    made.finish()
+    index = json.loads((tmp_path / "annotations.json").read_text())
+    assert [(image["id"], image["k"]) for image in index["images"]] == [(1, 0), (2, 1)]
+    assert index["categories"] == [{"id": 1, "name": "Object"}, {"id": 2, "name": "Post"}]
+    found = index["annotations"]
+    assert [item["id"] for item in found] == [1, 2, 3, 4]
+    assert [(item["image_id"], item["object"], item["category_id"]) for item in found] == [
+        (1, 1, 1),
+        (1, 2, 1),
+        (2, 1, 2),
+        (2, 2, 1),
+    ]
+    crate = found[0]
+    assert (crate["bbox"], crate["area"], crate["occluded"]) == ([21, 6, 7, 5], 35, pytest.approx(0.3))
+    # Down the columns: 21 of 20 pixels before the first, then 5 of 20 each.
+    assert crate["segmentation"] == {"size": [20, 40], "counts": [21 * 20 + 6, *[5, 15] * 6, 5, 12 * 20 + 9]}

@@ -95,3 +95,23 @@ def test_revived_scenes_are_as_they_were(tmp_path: Path) -> None:
         assert (after.width, after.length, after.height) == (before.width, before.length, before.height)
         assert after.shape.mesh.vertices == pytest.approx(before.shape.mesh.vertices)
     assert [thing.color for thing in revived.objects[1:]] == [(0.1, 0.2, 0.3), None, None]
+
+
+def test_what_one_scene_has_is_not_told_of_another(tmp_path: Path) -> None:
+    """What is the same in all scenes is put into words once; these properties are not."""
+    text = (
+        "ego = new Object with tag Range(0, 1), with kind Uniform('a', 'b', 'c'), with fixed 3\n"
+        "new Object at (9, 9), with shape Uniform(BoxShape(), ConeShape(), CylinderShape(sections=5))\n"
+        "new Object at (-9, 9), with shape CylinderShape(), with width Range(1, 2)\n"
+    )
+    scenes = scenic.scenarioFromString(text).sample(8, seed=2)
+    for changed in (False, True):
+        lines = SceneLines(changed=changed)
+        for scene in scenes:
+            first, second, third = json.loads(lines.line(scene))["objects"]
+            thing = scene.objects[0]
+            told = first["properties"]
+            assert (told["tag"], told["kind"], told["fixed"]) == (thing.tag, thing.kind, 3)
+            assert second["shape"] == scene.objects[1].shape.source.as_dict()
+            assert third["size"][0] == scene.objects[2].width
+    assert len({scene.objects[0].tag for scene in scenes}) == 8

@@ -81,6 +81,14 @@ def test_points_stay_inside(box, u):
     assert ((points > 0) & (points < 1)).all()
 
 
+@pytest.mark.parametrize("domain", [union([[0.5, 1.0]]), TWO])
+def test_no_point_rounds_to_the_end_of_the_cube(domain):
+    """The middle between the last number below 1 and 1 itself would round up."""
+    last = np.nextafter(1, 0)
+    rows = np.array([[last] * (domain.dimension + 1)])
+    assert (place(domain, rows) < 1).all()
+
+
 def test_many_axes_do_not_underflow():
     lower, upper = np.zeros((2, 3000)), np.full((2, 3000), 0.5)
     lower[1, 0], upper[1, 0] = 0.5, 0.75

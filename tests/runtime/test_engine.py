@@ -240,6 +240,21 @@ def test_generate_counts_and_gives_up() -> None:
         impossible.generate(maxIterations=50)
 
 
+def test_time_is_a_limit_only_when_it_is_up() -> None:
+    program = scenario("x = Range(0, 1)\ndef same(v): return v\nrequire same(x < 0.5)\n")
+    assert all(hasattr(scene, "objects") for scene in program.stream(3, seed=1, time_limit=600))
+    late = list(program.stream(3, seed=1, time_limit=-1))
+    assert [(item.k, item.reason) for item in late] == [(0, "time"), (1, "time"), (2, "time")]
+
+
+@pytest.mark.parametrize("attempts", [3, 1100])
+def test_a_report_is_made_of_as_many_candidates_as_were_tried(attempts: int) -> None:
+    program = scenario("x = Range(0, 1)\ndef same(v): return v\nrequire same(x < 0)\n")
+    (given_up,) = program.stream(1, seed=1, max_attempts=attempts)
+    assert given_up.attempts == attempts
+    assert given_up.report.candidates == min(attempts, 1000)
+
+
 def test_generate_batch() -> None:
     program = scenario("x = Range(0, 1)\ndef same(v): return v\nrequire same(x < 0.3)\n")
     random.seed(0)

@@ -121,6 +121,20 @@ def test_mutators_of_the_program_come_first(cls: str) -> None:
         assert_same_rotation(ego.orientation, euler(ego.yaw))
 
 
+def test_beside_mutators_of_the_program_each_angle_has_its_own_noise() -> None:
+    """The built-in mutators, too, are then called on each sample."""
+    text = (
+        CUSTOM.format(go_on="")
+        + "ego = new C with orientationStdDev ({}), with positionStdDev (0, 0, 0)\nmutate ego\n"
+    )
+    for place, name in enumerate(("yaw", "pitch", "roll")):
+        deviations = ", ".join("0.2" if number == place else "0" for number in range(3))
+        egos = [item.egoObject for item in scenario(text.format(deviations)).sample(200, seed=1)]
+        assert normal([getattr(ego, name) for ego in egos], 0.2)
+        for other in {"yaw", "pitch", "roll"} - {name}:
+            assert {getattr(ego, other) for ego in egos} == {0}
+
+
 def test_a_mutator_may_stop_the_others() -> None:
     text = (
         CUSTOM.format(go_on=", False")

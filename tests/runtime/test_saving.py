@@ -9,7 +9,9 @@ import pytest
 import scenic
 from scenic.language.errors import SerializationError
 from scenic.pipeline import diagnose
+from scenic.runtime.dumping import program_of
 from tests.runtime.programs import fingerprint, scenario
+from tests.runtime.programs import scene as scene_of
 
 PROGRAM = """
 import random
@@ -91,6 +93,52 @@ def test_a_dumped_scene_compiles_back_to_itself() -> None:
             assert tuple(new.position) == tuple(old.position)
             assert new.orientation.approxEq(old.orientation)
             assert repr(new.shape) == repr(old.shape)
+
+
+def test_all_that_is_said_of_an_object_is_in_the_dump() -> None:
+    text = """
+spot = new OrientedPoint at (4, 5, 6), facing (0.3, 0.2, 0.1)
+def pillar(x):
+    return new Object at (x, 9, 0), with shape CylinderShape(sections=5, initial_rotation=(0.1, 0.2, 0.3))
+ego = new Object with viewAngles (90 deg, 40 deg), with far -1e400, with near 1e400, with one (1,), with beside spot
+for x in (3, 6):
+    post = pillar(x)
+param low = -1e400, single = ('a',)
+"""
+    before = scene_of(text)
+    again = scene_of(before.dump())
+    assert again.params == before.params
+    ego = again.egoObject
+    assert tuple(ego.viewAngles) == pytest.approx(tuple(before.egoObject.viewAngles))
+    assert (ego.far, ego.near, ego.one) == (float("-inf"), float("inf"), (1,))
+    assert tuple(ego.beside.position) == (4, 5, 6)
+    assert ego.beside.orientation.approxEq(before.egoObject.beside.orientation)
+    for old, new in zip(before.objects, again.objects, strict=True):
+        assert new.shape.mesh.vertices == pytest.approx(old.shape.mesh.vertices)
+        assert (new.width, new.length, new.height) == (old.width, old.length, old.height)
+
+
+def test_two_objects_of_one_name_have_two_in_the_dump() -> None:
+    (first, second, third) = scene_of(
+        "ego = new Object\nnew Object at (3, 0)\nnew Object at (6, 0)\n"
+    ).objects
+    text = program_of((first, second, third), first, {}, {second: "post", third: "post"})
+    names = [line.split(" = ")[0] for line in text.splitlines() if " = new " in line]
+    assert names == ["ego", "post", "object_2"]
+
+
+def test_a_saved_scene_has_all_draws_of_the_program_and_no_other() -> None:
+    loaded = scenario("ego = new Object at (Range(0, 1), Range(0, 1))\nparam x = Range(0, 1)\n")
+    data = json.loads(loaded.sceneToBytes(loaded.sample(1, seed=0)[0]))
+    address, number = data["numbers"].popitem()
+    for numbers, words in (({}, {}), ({address: number, "01": number}, {}), ({address: number}, {"01": "0"})):
+        changed = data | {"numbers": data["numbers"] | numbers, "words": words}
+        with pytest.raises(SerializationError, match="other random values"):
+            loaded.sceneFromBytes(json.dumps(changed).encode())
+    for outside in (0.0, 1.0):
+        changed = data | {"numbers": data["numbers"] | {address: outside.hex()}}
+        with pytest.raises(SerializationError, match="outside of the unit interval"):
+            loaded.sceneFromBytes(json.dumps(changed).encode())
 
 
 def test_scenes_conditioned_on_one_keep_what_was_named() -> None:

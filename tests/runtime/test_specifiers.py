@@ -248,3 +248,31 @@ def test_specifiers_that_need_an_ego(specifier: str) -> None:
     found = failure("new Object " + specifier)
     assert type(found) is InvalidScenarioError
     assert "ego" in str(found)
+
+
+@pytest.mark.parametrize("options", ["ego, (7, 8, 9)", "(7, 8, 9), ego"])
+def test_beside_an_object_or_a_place_is_beside_a_place(options: str) -> None:
+    """What may be either is read as what both are: the object's size and orientation count for nothing (section 8.1)."""
+    text = f"{EGO}{NEW}left of Uniform({options}) by 1, facing 90 deg, with allowCollisions True\n"
+    offset = euler(math.pi / 2).apply([-1.5, 0, 0])
+    found = {tuple(np.round(item.objects[-1].position, 9)) for item in scenario(text).sample(12, seed=1)}
+    assert found == {tuple(np.round(at + offset, 9)) for at in (EGO_AT, np.array([7.0, 8, 9]))}
+
+
+def test_the_box_round_an_object_is_where_the_object_is() -> None:
+    found = thing("new Object at (5, 6, 7), facing 45 deg, with width 2, with length 4, with height 1\n")
+    box, half = found.boundingBox, 3 / math.sqrt(2)
+    for inside, part in ((True, 0.999), (False, 1.001)):
+        for offset in ((half, 0, 0), (-half, 0, 0), (0, half, 0), (0, -half, 0), (0, 0, 0.5), (0, 0, -0.5)):
+            assert box.containsPoint(tuple(np.array([5, 6, 7]) + part * np.array(offset))) is inside
+    assert found.planarInradius == 1
+    assert found.inradius == 0.5
+
+
+def test_visible_needs_the_size_before_it_places() -> None:
+    text = (
+        "class Tower:\n    height: self.base * 2\n    length: self.base + 1\n    base: self.kind + 0\n    kind: 3\n"
+        "ego = new Object with visibleDistance 20\nnew Tower visible\n"
+    )
+    found = thing(text)
+    assert (found.height, found.length) == (6, 4)

@@ -204,6 +204,47 @@ scenario Sub():
     assert done.currentTime == 2
 
 
+# Objects that come later
+
+LATER = """
+class Up(Mutator):
+    def appliedTo(self, thing):
+        thing.position = thing.position + (0, 0, 5)
+        return thing, False
+class Post:
+    mutator[additive]: Up()
+scenario Main():
+    setup:
+        ego = new Object
+        record final simulation().objects[1].position as place
+    compose:
+        do Sub()
+scenario Sub():
+    setup:
+        post = new {cls} at (9, 0, 0)
+        mutate post by {scale}
+    compose:
+        wait
+"""
+
+
+@pytest.mark.parametrize("scale", [0.5, 1])
+def test_objects_of_invoked_scenarios_are_mutated_too(scale: float) -> None:
+    done = DummySimulator().simulate(scene_of(LATER.format(cls="Object", scale=scale)), maxSteps=2)
+    assert done is not None
+    x, y, z = done.records["place"]
+    assert x != 9
+    assert y != 0
+    assert z == 0
+    assert abs(x - 9) < 6 * scale
+
+
+def test_a_mutator_of_the_program_may_stop_the_others_there_too() -> None:
+    done = DummySimulator().simulate(scene_of(LATER.format(cls="Post", scale=1)), maxSteps=2)
+    assert done is not None
+    assert tuple(done.records["place"]) == (9, 0, 5)
+
+
 # The order within a step
 
 

@@ -1,0 +1,72 @@
+"""What is evaluated together, and what is not: groups, runs of members, and what is there already."""
+
+import numpy as np
+import pytest
+
+from scenic.graph.node import Graph, axis
+from scenic.graph.operation import FAULT, OK
+from scenic.graph.schedule import Gathered, Place, Run, Scheduler, _run
+from tests.graph.programs import batch_at, make
+
+
+@pytest.mark.parametrize(
+    ("members", "run"),
+    [
+        ([2], slice(2, 3)),
+        ([0, 1, 2], slice(0, 3, 1)),
+        ([1, 3, 5], slice(1, 6, 2)),
+        ([4, 4, 4], slice(4, 5)),
+        ([0, 1, 1, 3], None),  # its ends are as far apart as those of a run
+        ([0, 2, 2, 6], None),
+        ([3, 2, 1], None),
+    ],
+)
+def test_runs_are_steps_of_one_length(members: list[int], run: slice | None) -> None:
+    found = _run([Place(7, member) for member in members])
+    assert found == (None if run is None else Run(7, run))
+    assert _run([*(Place(7, member) for member in members), Place(8, members[-1] + 1)]) is None
+
+
+def test_members_in_any_order_keep_their_own_operands() -> None:
+    """Alike operations over operands that lie together, apart, twice, and backwards."""
+    x = [axis(None, number) for number in range(6)]
+    sums = [make("add", number, 1.0) for number in x]
+    pairs = [(0, 1), (1, 1), (5, 4), (2, 0), (3, 5), (4, 4), (2, 3)]
+    differences = [make("subtract", sums[i], sums[j]) for i, j in pairs]
+    graph = Graph(differences)
+    points = np.random.default_rng(1).random((5, graph.dimension))
+    of = {node: points[:, place] for node, place in graph.axes.items()}
+    for grouped in (True, False):
+        batch = batch_at(graph, points, grouped=grouped)
+        for (i, j), node in zip(pairs, differences, strict=True):
+            np.testing.assert_array_equal(batch.column(node), (of[x[i]] + 1) - (of[x[j]] + 1))
+
+
+def test_one_member_that_may_fail_is_enough() -> None:
+    """Alike divisions: by a number that is never 0, and by one that may be."""
+    dividends = [axis(None, number) for number in range(4)]
+    divisor = axis(None, 9)
+    safe = [make("divide", number, 2.0) for number in dividends]
+    risky = make("divide", dividends[0], make("subtract", divisor, 0.25))
+    graph = Graph([*safe, risky])
+    points = np.full((2, graph.dimension), 0.75)
+    points[0, graph.axes[divisor]] = 0.25
+    batch = batch_at(graph, points)
+    batch.need([*safe, risky])
+    assert [batch.status(risky)[lane] for lane in (0, 1)] == [FAULT, OK]
+    for node in safe:
+        assert batch.column(node).tolist() == [0.375, 0.375]
+
+
+def test_what_is_there_is_not_evaluated_again() -> None:
+    x = axis(None, 1)
+    first, second = make("add", x, 1.0), make("multiply", x, 3.0)
+    scheduler = Scheduler(Graph([first, second]))
+    before = scheduler.after(scheduler.start, (first,))
+    assert before.steps
+    assert scheduler.after(before, (first, x)).steps == ()
+    (step,) = scheduler.after(before, (first, second)).steps
+    assert step.nodes == (second,)
+    both = scheduler.after(before, (second,))
+    gathered = scheduler.gather(both, (first, second, first))
+    assert gathered == Gathered((before.places[first], both.places[second], before.places[first]))
