@@ -47,7 +47,7 @@ def test_other_files_are_refused(tmp_path: Path, text: str) -> None:
 
 
 def test_no_number_is_a_negative_zero() -> None:
-    text = "ego = new Object at (-0.0, 0, 0), facing -0.0, with tag -0.0, with tags (-0.0, 1)\nparam p = -0.0, q = Range(-1, 1) * 0\n"
+    text = "ego = new Object at (-0.0, 0, 0), facing -0.0, with tag -0.0, with tags (-0.0, 1), with drawn Range(-2, -1) * 0.0\nparam p = -0.0, q = Range(-1, 1) * 0\n"
     (scene,) = scenic.scenarioFromString(text).sample(1, seed=2)
     assert "-0.0" not in scene_line(scene)
 

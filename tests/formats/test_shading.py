@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import trimesh
 
 from scenic.formats.buffers import Lens, look
 from scenic.formats.camera import Camera
@@ -10,13 +11,15 @@ from scenic.formats.instances import picture
 from scenic.formats.lighting import own_light
 from scenic.formats.render import paint
 from scenic.formats.stage import SKY, Stage
-from tests.formats.stand_ins import BALL, Mesh, Object, Scene, Shape, Source, Turn
+from tests.formats.stand_ins import BALL, Mesh, Object, Scene, Shape, Source, Turn, unit
 
 SUN = np.array([-0.55, -0.33, 0.77]) / np.linalg.norm([-0.55, -0.33, 0.77])
 SUN_COLOR = np.array([1.0, 0.96, 0.9]) * 0.95
 SKY_COLOR = np.array([0.86, 0.93, 1.0]) * 0.62
 BOUNCE_COLOR = np.array([1.0, 0.95, 0.88]) * 0.34
 GREY = (0.6, 0.5, 0.4)
+COARSE = Shape(unit(trimesh.creation.icosphere(1)), Source({"kind": "mesh"}))
+"""Eighty triangles: within each, the normals of its corners decide."""
 HIGH = 1000.0
 """So far above everything else nothing shades an object."""
 
@@ -38,14 +41,21 @@ def shaded(normals: np.ndarray) -> np.ndarray:
 
 
 @pytest.mark.parametrize(
-    ("size", "turn"), [((4.0, 1.5, 3.0), Turn.by(0.7, 0.3, 0.4)), ((2.0, 2.0, 2.0), Turn())]
+    ("shape", "size", "turn", "most"),
+    [
+        (BALL, (4.0, 1.5, 3.0), Turn.by(0.7, 0.3, 0.4), 0.018),
+        (BALL, (2.0, 2.0, 2.0), Turn(), 0.018),
+        (COARSE, (3.0, 3.0, 3.0), Turn.by(0.2), 0.045),
+    ],
 )
-def test_round_things_are_lit_by_their_true_normals(size: tuple[float, float, float], turn: Turn) -> None:
+def test_round_things_are_lit_by_their_true_normals(
+    shape: Shape, size: tuple[float, float, float], turn: Turn, most: float
+) -> None:
     from scipy.spatial.transform import Rotation
 
     place = np.array([0.0, 0.0, HIGH])
     width, length, height = size
-    ball = Object(tuple(place), turn, width, length, height, BALL, GREY)
+    ball = Object(tuple(place), turn, width, length, height, shape, GREY)
     drawn = picture([Scene([ball, Object()])])
     stage = Stage(drawn.surfaces, drawn.scenes[0])
     camera = towards(place, 12 * (SUN + np.array([0.5, -0.6, 0.0])), 0.15)
@@ -60,8 +70,8 @@ def test_round_things_are_lit_by_their_true_normals(size: tuple[float, float, fl
     inner = (seen.triangle >= 0) & (normals @ SUN > 0.35) & (normals @ -camera.ahead > 0.4)
     assert inner.sum() > 150
     away = np.abs(image[inner] - shaded(normals[inner])).max(axis=1)
-    assert np.quantile(away, 0.95) < 0.03
-    assert away.mean() < 0.012
+    assert np.quantile(away, 0.95) < most
+    assert away.mean() < 0.4 * most
 
 
 SHEET = Shape(

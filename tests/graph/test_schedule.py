@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+import scenic
 from scenic.graph.node import Graph, axis
 from scenic.graph.operation import FAULT, OK
 from scenic.graph.schedule import Gathered, Place, Run, Scheduler, _run
@@ -44,7 +45,7 @@ def test_members_in_any_order_keep_their_own_operands() -> None:
 
 def test_one_member_that_may_fail_is_enough() -> None:
     """Alike divisions: by a number that is never 0, and by one that may be."""
-    dividends = [axis(None, number) for number in range(4)]
+    dividends = [make("add", axis(None, number), 1.0) for number in range(4)]
     divisor = axis(None, 9)
     safe = [make("divide", number, 2.0) for number in dividends]
     risky = make("divide", dividends[0], make("subtract", divisor, 0.25))
@@ -55,7 +56,7 @@ def test_one_member_that_may_fail_is_enough() -> None:
     batch.need([*safe, risky])
     assert [batch.status(risky)[lane] for lane in (0, 1)] == [FAULT, OK]
     for node in safe:
-        assert batch.column(node).tolist() == [0.375, 0.375]
+        assert batch.column(node).tolist() == [0.875, 0.875]
 
 
 def test_what_is_there_is_not_evaluated_again() -> None:
@@ -70,3 +71,16 @@ def test_what_is_there_is_not_evaluated_again() -> None:
     both = scheduler.after(before, (second,))
     gathered = scheduler.gather(both, (first, second, first))
     assert gathered == Gathered((before.places[first], both.places[second], before.places[first]))
+
+
+def test_alike_products_of_small_and_of_large_integers_are_kept_apart() -> None:
+    """Those that fit into machine integers from those that need Python's."""
+    text = (
+        "a, b = DiscreteRange(0, 1), DiscreteRange(0, 1)\n"
+        "c, d = DiscreteRange(2**51, 2**52), DiscreteRange(2**51, 2**52)\n"
+        "param parts = [a, b, c, d], small = a * b, large = c * d\n"
+    )
+    for scene in scenic.scenarioFromString(text).sample(20, seed=1):
+        a, b, c, d = scene.params["parts"]
+        assert (scene.params["small"], scene.params["large"]) == (a * b, c * d)
+        assert type(scene.params["large"]) is int

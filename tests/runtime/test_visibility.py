@@ -135,3 +135,57 @@ def test_what_occludes_in_2d_mode_hides() -> None:
     scenic.scenarioFromString(text.format(False), mode2D=True).sample(3, seed=1)
     with pytest.raises(scenic.RejectionException):
         scenic.scenarioFromString(text.format(True), mode2D=True).generate(maxIterations=50)
+
+
+def answers(text: str) -> dict[str, object]:
+    return dict(scenic.scenarioFromString(text, mode2D=True).sample(1, seed=1)[0].params)
+
+
+def test_borders_of_views_in_the_plane_belong_to_them() -> None:
+    text = (
+        "ego = new Object facing 90 deg, with viewAngle 60 deg, with visibleDistance 10\n"
+        "round = new OrientedPoint at (0, 0), with viewAngle (359.5 deg), with visibleDistance 10\n"
+        "param end = ego.canSee((-10, 0)), beyond = ego.canSee((-10.001, 0)), here = ego.canSee((0, 0)), "
+        "behind = round.canSee((0, -5)), beside = ego.canSee((-5, 5 * 0.58)), within = ego.canSee((-5, 5 * 0.57))\n"
+    )
+    assert answers(text) == {
+        "end": True,
+        "beyond": False,
+        "here": True,
+        "behind": True,
+        "beside": False,
+        "within": True,
+    }
+
+
+def test_a_camera_within_an_outline_sees_it() -> None:
+    text = (
+        "ego = new Object with viewAngle 10 deg, with visibleDistance 1, with width 0.1, with length 0.1, with allowCollisions True\n"
+        "big = new Object at (0.5, 0.5), with width 30, with length 20, facing 20 deg, with allowCollisions True, with requireVisible False\n"
+        "param seen = ego.canSee(big)\n"
+    )
+    assert answers(text) == {"seen": True}
+
+
+def test_what_does_not_occlude_leaves_the_answer_to_the_plane() -> None:
+    """Of an object only a corner is in view, between any rays; something that hides nothing stands elsewhere."""
+    text = (
+        "ego = new Object with viewAngle 60 deg, with visibleDistance 10, with viewRayDensity 0.02\n"
+        "box = new Object at (4.2, 6), with requireVisible True\n"
+        "other = new Object at (-2, 5)\n"
+    )
+    assert len(scenic.scenarioFromString(text, mode2D=True).sample(1, seed=1)[0].objects) == 3
+
+
+def test_defaults_in_the_plane() -> None:
+    text = (
+        "ego = new Object with width 2, with length 5\n"
+        "param height = ego.height, base = ego.baseOffset, gap = ego.contactTolerance, hides = ego.occluding, asked = ego.requireVisible\n"
+    )
+    assert answers(text) == {"height": 5, "base": (0, 0, 0), "gap": 0, "hides": False, "asked": True}
+
+
+def test_large_things_are_placed_visibly_wherever_a_part_is_in_view() -> None:
+    text = "ego = new Object with viewAngle 90 deg, with visibleDistance 5\nnew Object visible, with width 6, with length 8\n"
+    scenes = scenic.scenarioFromString(text, mode2D=True).sample(200, seed=1)
+    assert max(math.hypot(*tuple(scene.objects[1].position)[:2]) for scene in scenes) > 8

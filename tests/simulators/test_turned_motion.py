@@ -173,3 +173,5 @@ def test_quadrotors_have_drag_and_turn_about_the_vertical() -> None:
         ground=None,
     )
     np.testing.assert_allclose(mujoco.records(turning, "w")[-1], (0, 0, 1), atol=0.02)
+    turn = mujoco.last(turning)[1]
+    assert (turn.pitch, turn.roll) == pytest.approx((0, 0.6), abs=0.02), "it does not lag behind"

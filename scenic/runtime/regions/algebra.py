@@ -30,6 +30,7 @@ from scenic.runtime.regions.lines import LineRegion, PathRegion, PolylineRegion
 from scenic.runtime.regions.meshes import MeshSurfaceRegion, MeshVolumeRegion, solid_in_world, world_mesh
 from scenic.runtime.regions.planar import Footprint, PlanarRegion, PolygonalFootprintRegion, PolygonalRegion
 from scenic.runtime.regions.scattered import PointSetRegion
+from scenic.runtime.regions.views import ViewRegion
 from scenic.runtime.regions.volumes import BoxRegion, PlacedVolume
 from scenic.runtime.regions.voxels import VoxelRegion
 from scenic.runtime.regions.voxels import voxelized as cells_of
@@ -275,6 +276,9 @@ def intersects(first: Any, second: Any) -> Any:
         return False
     if isinstance(a, Everywhere) or isinstance(b, Everywhere):
         return True
+    for view, space in ((a, b), (b, a)):
+        if isinstance(view, ViewRegion) and isinstance(space, OccupiedSpace):
+            return view.meets(space)
     if a.is_random or b.is_random:
         return as_value(later(_MEET, _meet, (a, b)))
     return _meet(a, b)
@@ -293,7 +297,7 @@ def _meet(a: Region, b: Region) -> bool:
     if flat_a is not None and flat_b is not None:
         same = flat_a[1] is None or flat_b[1] is None or flat_a[1] == flat_b[1]
         return same and bool(flat_a[0].intersects(flat_b[0]))
-    solid_a, solid_b = _solid(a), _solid(b)
+    solid_a, solid_b = (one.solid() if isinstance(one, ViewRegion) else _solid(one) for one in (a, b))
     if solid_a is not None and solid_b is not None:
         return _solids_meet(solid_a, solid_b)
     for solid, flat, other in ((solid_a, flat_b, b), (solid_b, flat_a, a)):

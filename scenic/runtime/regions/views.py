@@ -15,6 +15,7 @@ from scenic.language.errors import ScenicValueError
 from scenic.runtime.context import here
 from scenic.runtime.geometry import containment, distance
 from scenic.runtime.geometry.bodies import Body
+from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.poses import Indices, Poses
 from scenic.runtime.geometry.visibility.proving import Proof, prove
 from scenic.runtime.geometry.visibility.regions import (
@@ -118,11 +119,15 @@ class ViewRegion(Region):
         """A body reaches into the view if it could be seen were nothing in the way."""
         return np.asarray(prove(views_over(columns), body, (), lanes) != Proof.HIDDEN)
 
-    def intersects(self, other: Any) -> Any:
-        """Whether an object, or another region, shares a point with the view."""
-        if isinstance(other, OccupiedSpace):
-            return apply(_TOUCHES, *other.parameters, *self.parameters, payload=self)
-        return super().intersects(other)
+    def meets(self, space: OccupiedSpace) -> Any:
+        """Whether an object's space reaches into the view."""
+        return apply(_TOUCHES, *space.parameters, *self.parameters, payload=self)
+
+    def solid(self) -> Mesh:
+        """The mesh of a view without random parameters, in the world; see `distances`."""
+        ((_, body),) = _solids(views_over(self.fixed_columns("the view")))
+        (unit,) = body.meshes
+        return Mesh(body.poses.to_world(unit.vertices[np.newaxis])[0], unit.faces)
 
     def box(self, *columns: Column) -> tuple[Points, Points]:
         camera, reach = columns[0], columns[4][:, None]

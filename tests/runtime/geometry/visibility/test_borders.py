@@ -121,7 +121,7 @@ def test_what_lies_behind_reaches_into_a_wide_view_from_either_side(side: int) -
     """Of a plank that leads away almost behind, only its near end is in view, on the side where its middle is not."""
     near, far = (
         length * np.array([-math.sin(azimuth), math.cos(azimuth), 0.0])
-        for azimuth, length in ((side * (math.pi + 0.3), 0.5), (side * (math.pi - 0.02), 6.0))
+        for azimuth, length in ((side * (math.pi + 0.25), 0.5), (side * (math.pi - 0.023), 6.0))
     )
     along = far - near
     heading = math.atan2(-along[0], along[1])
@@ -135,6 +135,15 @@ def test_what_lies_behind_reaches_into_a_wide_view_from_either_side(side: int) -
         observer = Views.fixed((0, 0, 0), angles=(2 * math.pi - gap, 1.0), count=(720, 41))
         assert sees_bodies(observer, plank, (), 1).tolist() == [seen]
         assert reference.sees_body(observer, plank, [], 0) is seen
+
+
+@pytest.mark.parametrize("up", [-1, 1])
+def test_what_lies_over_the_camera_is_in_every_direction(up: int) -> None:
+    """A plate of which the middle lies behind reaches over the camera into a narrow view ahead."""
+    plate = Body((BOX,), None, Poses.fixed([0, -0.2, up], [0, 0, 0, 1], [2, 2, 0.1]))
+    for angles, seen in (((0.6, np.pi), True), ((0.6, 1.0), False)):
+        observer = Views.fixed((0, 0, 0), angles=angles, count=(9, 61))
+        assert sees_bodies(observer, plate, (), 1).tolist() == [seen]
 
 
 def test_below_the_view_is_not_in_it() -> None:

@@ -6,7 +6,13 @@ import numpy as np
 import pytest
 
 from scenic.runtime.geometry.inside import contains_points
-from scenic.runtime.geometry.visibility.regions import draw_near, draw_places, near_volume, view_mesh
+from scenic.runtime.geometry.visibility.regions import (
+    draw_near,
+    draw_places,
+    near_volume,
+    view_mesh,
+    view_volume,
+)
 from scenic.runtime.geometry.visibility.views import Views, extents
 
 ANGLES = [
@@ -26,6 +32,8 @@ def test_the_mesh_is_a_solid_with_the_volume_of_the_region(horizontal: float, ve
     h, v = max(horizontal, 0.017), max(vertical, 0.017)
     assert mesh.is_volume
     assert mesh.volume == pytest.approx(h * 2 * math.sin(v / 2) / 3, rel=3e-3)
+    view = Views.fixed((1, 2, 3), angles=(horizontal, vertical), distance=2)
+    assert view_volume(view) == pytest.approx(8 * mesh.volume, rel=3e-3)
 
 
 @pytest.mark.parametrize(("horizontal", "vertical"), ANGLES[:-1])
@@ -104,3 +112,36 @@ def test_balls_that_meet_the_view_have_their_middles_among_what_is_drawn(
     assert inside.max() <= expected + 6 * math.sqrt(expected) + 6
     assert inside.mean() > 0.2 * expected
     assert (inside > 0).all() or expected < 8
+
+
+@pytest.mark.parametrize(("horizontal", "vertical"), [(1.0, 0.7), (1.0, 2.5), (5.5, 1.2)])
+def test_middles_near_a_view_are_drawn_as_densely_close_by_as_far_off(
+    horizontal: float, vertical: float
+) -> None:
+    """Close to the camera all directions count, farther off those of a wider view: one density, no gap, no overlap."""
+    count, radius, reach = 200_000, 0.05, 2.0
+    view = Views.fixed((0, 0, 0), angles=(horizontal, vertical), distance=reach).spread(count)
+    drawn = draw_near(view, np.full(count, radius), np.random.default_rng(6).random((count, 4)))
+    x, y, z = drawn.T
+    distance = np.sqrt(x * x + y * y + z * z)
+    azimuth, altitude = np.arctan2(-x, y), np.arctan2(z, np.hypot(x, y))
+    core = 8 * radius
+    assert distance.max() <= reach + radius
+    # Shares of the core and of two shells in the middle of the view, by their volumes.
+    volume = near_volume(view.take(np.arange(1)), np.full(1, radius))[0]
+    middle = (np.abs(azimuth) < horizontal / 2) & (np.abs(altitude) < vertical / 2)
+    part = horizontal * 2 * math.sin(vertical / 2) / 3
+    for inside, expected in (
+        (distance < core, 4 / 3 * math.pi * core**3),
+        (distance < core / 2, 4 / 3 * math.pi * (core / 2) ** 3),
+        (middle & (distance > core) & (distance < 1), part * (1 - core**3)),
+        (middle & (distance > 1) & (distance < reach), part * (reach**3 - 1)),
+    ):
+        share = expected / volume
+        assert inside.mean() == pytest.approx(share, abs=5 * math.sqrt(share * (1 - share) / count))
+    # Where the view ends above, a ball beside it may touch it from farther round than in the middle.
+    far = distance > core
+    wider = math.asin(min(1.0, radius / core / math.cos(vertical / 2)))
+    assert np.abs(azimuth[far]).max() == pytest.approx(min(math.pi, horizontal / 2 + wider), abs=1e-3)
+    higher = math.asin(radius / core)
+    assert np.abs(altitude[far]).max() == pytest.approx(min(math.pi / 2, vertical / 2 + higher), abs=2e-2)
