@@ -26,6 +26,7 @@ from scenic.runtime.regions.volumes import BoxRegion
 from scenic.runtime.shapes import BoxShape
 from scenic.runtime.sight import sees
 from scenic.runtime.values import Orientation, operate, to_orientation, to_scalar, to_vector, vector
+from scenic.runtime.visibility import sees_in_plane
 
 
 def builtin(
@@ -189,6 +190,9 @@ class Point:
         Rays may miss what shows between them. With ``certain`` they are not used: an object counts as seen if that is
         proved, however little of it shows.
         """
+        stored: Mapping[str, Any] = self.__dict__.get("_source", self).__dict__
+        if "_planar" in stored and not certain:
+            return sees_in_plane(self, other, occludingObjects)
         return sees(self, other, occludingObjects, certain=certain)
 
     @property

@@ -131,6 +131,8 @@ def build(cls: type[Point], specifiers: Sequence[Specifier], *, mode_2d: bool = 
     values.pop(MEMO, None)
     values["_names"] = resolution.names
     values["_given"] = resolution.given
+    if mode_2d:
+        values["_planar"] = True  # how it sees
     if issubclass(cls, Object) and mode_2d:
         position = values["position"]
         values["position"] = normalised("position", (position.x, position.y, 0))

@@ -1,13 +1,16 @@
 """What decides how much is done at once, ahead, and first: each by its own rules, without a clock."""
 
 import random
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from itertools import islice
 from typing import Any
 
 import pytest
 
 from scenic.graph.node import Graph, Node, axis
 from scenic.graph.schedule import Scheduler
+from scenic.runtime.sampling.engine import Task
 from scenic.runtime.sampling.foresight import SEED_BITS, Foreseen
 from scenic.runtime.sampling.pace import Pace
 from scenic.runtime.sampling.stages import Stages
@@ -16,60 +19,63 @@ from tests.graph.programs import make
 # Foresight
 
 
-@dataclass(frozen=True)
-class Foretold:
-    """A scene, of which foresight knows the seed."""
+class Finding:
+    """Finds a scene for each task, which is named by its seed, a few at a time; remembers what it was asked for."""
 
-    seed: int
+    def __init__(self, ahead: int = 3) -> None:
+        self.begun: list[tuple[int, list[int]]] = []
+        self._ahead = ahead
 
-
-def look_ahead(foreseen: Foreseen, *, seconds: float = 0.01, limit: int = 10) -> list[int]:
-    seeds = foreseen.seeds()
-    foreseen.keep([Foretold(seed) for seed in seeds], limit, seconds)  # type: ignore[misc] # all that it looks at
-    return seeds
+    def __call__(self, tasks: Iterable[Task], limit: int) -> Iterator[Any]:
+        seeds: list[int] = []
+        self.begun.append((limit, seeds))
+        waiting = iter(tasks)
+        while some := list(islice(waiting, self._ahead)):
+            seeds += [task.seed for task in some]
+            for task in some:
+                if task.seed == 13:
+                    raise LookupError(task.seed)
+                yield task.seed
 
 
 def test_the_seeds_that_python_would_draw_are_foreseen() -> None:
     random.seed(5)
-    foreseen = Foreseen()
-    (seed,) = look_ahead(foreseen)
-    assert random.getrandbits(SEED_BITS) == seed
-    foreseen._used = True
-    seeds = look_ahead(foreseen)
-    assert [random.getrandbits(SEED_BITS) for _ in range(3)] == seeds
+    find = Finding()
+    foreseen = Foreseen(find)
+    drawn = [random.getrandbits(SEED_BITS) for _ in range(5)]
+    random.seed(5)
+    assert [foreseen.take(random.getrandbits(SEED_BITS), 10) for _ in range(5)] == drawn
+    ((limit, asked),) = find.begun
+    assert (limit, asked[:5]) == (10, drawn)
 
 
-def test_what_is_used_doubles_what_is_foreseen_and_a_miss_begins_anew() -> None:
-    foreseen = Foreseen()
-    counts = []
-    for _ in range(11):
-        seeds = look_ahead(foreseen)
-        counts.append(len(seeds))
-        foreseen._used = True
-    assert counts == [1, 3, 7, 15, 31, 63, 127, 255, 256, 256, 256]
-    foreseen._used = False
-    assert look_ahead(foreseen) == []
-    assert len(look_ahead(foreseen)) == 1
+def test_another_seed_or_limit_begins_anew() -> None:
+    random.seed(5)
+    find = Finding()
+    foreseen = Foreseen(find)
+    first = random.getrandbits(SEED_BITS)
+    assert foreseen.take(first, 10) == first
+    second = random.getrandbits(SEED_BITS)
+    assert foreseen.take(second, 11) == second
+    random.random()
+    third = random.getrandbits(SEED_BITS)
+    assert foreseen.take(third, 11) == third
+    assert foreseen.take(third, 11) == third, "one that was given already"
+    assert [(limit, seeds[0]) for limit, seeds in find.begun] == [
+        (10, first),
+        (11, second),
+        (11, third),
+        (11, third),
+    ]
 
 
-def test_slow_scenes_are_foreseen_less() -> None:
-    foreseen = Foreseen()
-    for _ in range(4):
-        look_ahead(foreseen)
-        foreseen._used = True
-    look_ahead(foreseen, seconds=1.0)
-    foreseen._used = True
-    assert len(look_ahead(foreseen)) == 15
-
-
-def test_a_foreseen_scene_is_given_once_and_for_its_limit_alone() -> None:
-    foreseen = Foreseen()
-    scenes: Any = [Foretold(1), Foretold(2)]
-    foreseen.keep(scenes, 10, 0.01)
-    assert foreseen.take(1, 10) is scenes[0]
-    assert foreseen.take(1, 10) is None
-    assert foreseen.take(2, 11) is None
-    assert foreseen.take(2, 10) is None, "it was thrown away"
+def test_a_stream_that_failed_is_not_asked_again() -> None:
+    find = Finding()
+    foreseen = Foreseen(find)
+    with pytest.raises(LookupError):
+        foreseen.take(13, 10)
+    assert foreseen.take(14, 10) == 14
+    assert len(find.begun) == 2
 
 
 # Rounds

@@ -173,8 +173,14 @@ def test_what_does_not_occlude_leaves_the_answer_to_the_plane() -> None:
         "ego = new Object with viewAngle 60 deg, with visibleDistance 10, with viewRayDensity 0.02\n"
         "box = new Object at (4.2, 6), with requireVisible True\n"
         "other = new Object at (-2, 5)\n"
+        "out = new Object at (4.8, 7.2), with length 0.2, with requireVisible False\n"
+        "param seen = ego.canSee(box), beside = ego.canSee(box, [other]), out = ego.canSee(out)\n"
+        "param random = ego.canSee(Uniform(box, box))\n"
     )
-    assert len(scenic.scenarioFromString(text, mode2D=True).sample(1, seed=1)[0].objects) == 3
+    (scene,) = scenic.scenarioFromString(text, mode2D=True).sample(1, seed=1)
+    assert scene.params == {"seen": True, "beside": True, "out": False, "random": True}
+    ego, box, _, out = scene.objects
+    assert (ego.canSee(box), ego.canSee(out)) == (True, False)
 
 
 def test_defaults_in_the_plane() -> None:
