@@ -211,6 +211,8 @@ class Calls:
             self.each(function, self.present, [rows[lane] for lane in self.present], results)
             return results
         seeds = self.lanes.values[code.operands[0]]
+        same = [self._is_same(item) for item in code.args]
+        always_function = self._is_same(code.function)
         for lane in self.present:
             sample = Sample(self.lanes, lane, code.names)
             if context is not None:
@@ -218,9 +220,12 @@ class Calls:
             if self.seeding:
                 seed_globals(seeds[lane])
             try:
-                args = [sample.value(item) for item in code.args]
+                args = [
+                    item if fixed else sample.value(item) for item, fixed in zip(code.args, same, strict=True)
+                ]
                 keywords = {name: sample.value(item) for name, item in code.keywords.items()}
-                results[lane] = sample.value(code.function)(*args, **keywords)
+                function = code.function if always_function else sample.value(code.function)
+                results[lane] = function(*args, **keywords)
             except (Exception, SystemExit) as problem:  # noqa: BLE001 - whatever the program raises is that lane's fault
                 self.mark(lane, problem)
         return results

@@ -5,12 +5,13 @@ from typing import Final
 import numpy as np
 
 from scenic.graph.draws import mix, open_unit
-from scenic.runtime.geometry import containment, inside
+from scenic.runtime.geometry import inside
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.distance import to_surface
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.nearest import nearest_on_triangles
 from scenic.runtime.geometry.poses import Booleans, Floats, Indices, Poses
+from scenic.runtime.geometry.ragged import rows
 from scenic.runtime.geometry.surface import Side, side_contains
 
 CHUNK: Final = 1 << 18
@@ -96,14 +97,21 @@ def distances_from_box(body: Body, points: Floats) -> Floats:
     return np.asarray(np.sqrt((beside * beside).sum(axis=-1)))
 
 
+_CORNERS: Final = 1 << 18
+"""Corners in all lanes that are placed at a time."""
+
+
 def bounds(body: Body) -> tuple[Floats, Floats]:
     """Corners ``(n | 1, 3)`` of the boxes along the axes of the world around solids, exact up to rounding."""
     lanes = len(body)
     lower, upper = np.empty((lanes, 3)), np.empty((lanes, 3))
     for mesh, chosen in body.by_mesh(lanes):
-        corners = containment.extreme_corners(mesh)
-        world = body.poses.take(chosen).to_world(corners[np.newaxis])
-        lower[chosen], upper[chosen] = world.min(axis=1), world.max(axis=1)
+        # Which corner of the hull is farthest depends on how the body is turned.
+        corners = mesh.hull.vertices
+        for some in rows(len(chosen), len(corners), _CORNERS):
+            part = chosen[some]
+            world = body.poses.take(part).to_world(corners[np.newaxis])
+            lower[part], upper[part] = world.min(axis=1), world.max(axis=1)
     return lower, upper
 
 

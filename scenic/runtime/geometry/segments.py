@@ -65,10 +65,14 @@ class Segments:
         yaw, pitch = np.arctan2(-x, y), np.arctan2(z, np.hypot(x, y))
         return quaternions.from_euler(yaw, pitch, np.zeros_like(yaw))
 
+    def number_at(self, ways: Floats) -> Indices:
+        """The segments ``(n,)`` at lengths ``(n,)`` along the line."""
+        return np.minimum(np.searchsorted(self._sums, ways, side="left"), len(self._sums) - 1)
+
     def at(self, ways: Floats) -> Floats:
         """The points ``(n, 3)`` at lengths ``(n,)`` along the line."""
         sums = self._sums
-        chosen = np.minimum(np.searchsorted(sums, ways, side="left"), len(sums) - 1)
+        chosen = self.number_at(ways)
         before = np.where(chosen > 0, sums[chosen - 1], 0.0)
         part = np.clip((ways - before) / (sums[chosen] - before), 0, 1)[:, np.newaxis]
         return np.asarray(self.starts[chosen] * (1 - part) + self.ends[chosen] * part)

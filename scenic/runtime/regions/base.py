@@ -145,7 +145,11 @@ class Region(ABC):
         """A uniform random point, and its preferred orientation (``None`` if the region has none)."""
         numbers = [uniform() for _ in range(self.draws)]
         point = apply(_DRAW, *numbers, random_key(), *self.parameters, payload=self)
-        return point, self.orientation_at(point)
+        return point, self.orientation_drawn(point, numbers)
+
+    def orientation_drawn(self, point: Any, numbers: Sequence[Any]) -> Any:
+        """`orientation_at` a point that uniform numbers drew."""
+        return self.orientation_at(point)
 
     def orientation_at(self, point: Any) -> Any:
         """The preferred orientation at a point of the region; ``None`` if the region has none."""

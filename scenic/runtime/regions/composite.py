@@ -56,6 +56,18 @@ class Composite(Region):
         region: Region = self.algebra.in_lane(self, lane, columns)
         return region
 
+    def distances(self, points: Points, *columns: Column) -> NDArray[np.float64]:
+        """By the closed form that each lane has; `UnsupportedError` where there is none, as with points and lines."""
+        if not self.is_random:
+            return super().distances(points, *columns)
+        lanes = max(len(points), *map(len, columns))
+        result = np.empty(lanes)
+        for lane in range(lanes):
+            region = self.in_lane(lane, columns)
+            place = points[lane : lane + 1] if len(points) > 1 else points
+            result[lane] = region.distances(place, *region.fixed_columns("the distance"))[0]
+        return result
+
     @abstractmethod
     def combined(self, members: Sequence[Region]) -> Region:
         """The same combination of other members."""

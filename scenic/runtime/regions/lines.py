@@ -8,7 +8,8 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from scenic.graph.kinds import Column
+from scenic.graph.kinds import Column, Kind
+from scenic.graph.operation import Call, Operation, always
 from scenic.language.errors import ScenicTypeError, ScenicValueError
 from scenic.runtime.context import here
 from scenic.runtime.fields import RegionField, VectorField
@@ -16,7 +17,7 @@ from scenic.runtime.geometry.collision import Body
 from scenic.runtime.geometry.segments import Segments
 from scenic.runtime.objects import OrientedPoint, oriented_point
 from scenic.runtime.regions.base import Mask, Points, Region
-from scenic.runtime.values import Orientation, Vector, is_random, to_vector
+from scenic.runtime.values import Orientation, Vector, apply, is_random, to_vector
 
 TOUCH: Final = 1e-6
 """Metres within which a point counts as lying on a line of the plane."""
@@ -40,6 +41,11 @@ class LineRegion(Region):
 
     def draw_points(self, uniforms: Column, keys: Column, *columns: Column) -> tuple[Points, Mask | None]:
         return self.pieces.at(uniforms[0] * self.pieces.length), None
+
+    def orientation_drawn(self, point: Any, numbers: Sequence[Any]) -> Any:
+        if isinstance(self.orientation, RegionField) and self.orientation.region is self:
+            return apply(_ALONG, *numbers, payload=self.pieces)
+        return super().orientation_drawn(point, numbers)
 
     def contains_points(self, points: Points, *columns: Column) -> Mask:
         return np.asarray(self.distances(points) <= self.tolerance)
@@ -77,6 +83,19 @@ class LineRegion(Region):
                 math.dist(start, end) for start, end in zip(self.pieces.starts, self.pieces.ends, strict=True)
             )
         )
+
+
+def _along(call: Call, uniforms: Column) -> Column:
+    pieces: Segments = call.payload
+    return pieces.frames[pieces.number_at(uniforms * pieces.length)]
+
+
+_ALONG = Operation(
+    "direction of a line",
+    always(Kind.ORIENTATION),
+    _along,
+    "The direction of the segment on which a uniform number draws a point; payload the segments.",
+)
 
 
 def _fixed_points(points: Iterable[Any], what: str) -> list[tuple[float, float, float]]:

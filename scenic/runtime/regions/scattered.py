@@ -129,6 +129,12 @@ class GridRegion(PointSetRegion):
         )
         return np.asarray(inside & free)
 
+    def container_box(self, *columns: Column) -> tuple[Points, Points]:
+        """Of the whole cells, at every height: a point is held by the cell in which it lies."""
+        lower, upper = self.box(*columns)
+        half = np.array([abs(self.Ax) / 2, abs(self.Ay) / 2, np.inf])
+        return lower - half, upper + half
+
     def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
         """Where all corners of the bounding box, seen from above, are in free cells, and no obstacle's point is below."""
         import shapely
