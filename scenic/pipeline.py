@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from types import CodeType, FrameType, ModuleType, TracebackType
-from typing import Any
+from typing import Any, Final
 
 from scenic.analysis.contraction import contract
 from scenic.analysis.facts import Fact
@@ -76,6 +76,9 @@ def load(
     )
 
 
+_EXTENSIONS: Final = (".scenic", ".sc")
+
+
 def scenarioFromFile(
     path: str | Path,
     params: Mapping[str, Any] | None = None,
@@ -87,8 +90,14 @@ def scenarioFromFile(
     """The scenario of a file; the established name of `load`.
 
     Parameters that the program does not use are accepted, and appear among the parameters of its scenes.
+
+    Raises:
+        RuntimeError: if the file's name ends otherwise than in ``.scenic`` or ``.sc``.
+
     """
     source = read_source(Path(path))
+    if Path(path).suffix not in _EXTENSIONS:
+        raise RuntimeError(f"'{path}' is no Scenic program by its name: it ends in neither .scenic nor .sc")
     return _scenario(source.text, str(path), params or {}, model, scenario, mode2D, prune=_pruning_wanted())
 
 

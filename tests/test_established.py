@@ -3,6 +3,7 @@
 import contextlib
 import importlib
 import io
+from pathlib import Path
 
 import pytest
 from scenic.core.regions import (
@@ -155,3 +156,19 @@ def test_what_scripts_ask_regions() -> None:
     )
     assert SpheroidRegion(dimensions=(1, 2, 3)).inradius == 0.5
     assert PolylineRegion([(0, 0), (3, 4), (3, 5)]).cumulativeLengths == pytest.approx([5, 6])
+
+
+def test_programs_are_told_by_their_names(tmp_path: Path) -> None:
+    (tmp_path / "x.foo").write_text("ego = new Object")
+    with pytest.raises(RuntimeError, match=r"neither \.scenic nor \.sc"):
+        scenic.scenarioFromFile(tmp_path / "x.foo")
+    with pytest.raises(FileNotFoundError):
+        scenic.scenarioFromFile(tmp_path / "missing.scenic")
+    (tmp_path / "x.sc").write_text("ego = new Object")
+    assert scenic.scenarioFromFile(tmp_path / "x.sc").egoObject is not None
+
+
+@pytest.mark.parametrize("text", ["beyond 3 by 4", "offset by 3", "offset along 3 by 4"])
+def test_wrong_operands_are_told_before_a_missing_ego(text: str) -> None:
+    with pytest.raises(TypeError):
+        scenic.scenarioFromString(f"new Object {text}")

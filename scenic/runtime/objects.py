@@ -25,7 +25,15 @@ from scenic.runtime.regions.views import ViewRegion
 from scenic.runtime.regions.volumes import BoxRegion
 from scenic.runtime.shapes import BoxShape
 from scenic.runtime.sight import sees
-from scenic.runtime.values import Orientation, operate, to_orientation, to_scalar, to_vector, vector
+from scenic.runtime.values import (
+    Orientation,
+    operate,
+    per_option,
+    to_orientation,
+    to_scalar,
+    to_vector,
+    vector,
+)
 from scenic.runtime.visibility import sees_in_plane
 
 
@@ -412,7 +420,9 @@ class Object(OrientedPoint):
         """Called when the object is created in a simulation; does nothing unless a class overrides it."""
 
     def _side(self, name: str) -> Any:
-        return SideSurface(self, name)
+        return per_option(
+            self.sideComponentThresholds, lambda thresholds: SideSurface(self, name, thresholds)
+        )
 
 
 _NOT_KEPT = frozenset({"behavior", "mutator", "sensors", "observations", "lastActions"})

@@ -166,7 +166,7 @@ def on(_ego: Ego, target: Any) -> Specifier:
 
 
 def offset_by(ego: Ego, offset: Any) -> Specifier:
-    origin, step = ego(), to_vector(offset, "`offset by`")
+    step, origin = to_vector(offset, "`offset by`"), ego()
 
     def evaluate(_: Any) -> Mapping[str, Any]:
         return {"position": origin.relativePosition(step), "parentOrientation": origin.orientation}
@@ -175,7 +175,7 @@ def offset_by(ego: Ego, offset: Any) -> Specifier:
 
 
 def offset_along(ego: Ego, direction: Any, offset: Any) -> Specifier:
-    origin, step = ego(), to_vector(offset, "`offset along`")
+    step, origin = to_vector(offset, "`offset along`"), ego()
     frame = frame_at(direction, origin.position, "`offset along`")
 
     def evaluate(_: Any) -> Mapping[str, Any]:
@@ -186,9 +186,9 @@ def offset_along(ego: Ego, direction: Any, offset: Any) -> Specifier:
 
 
 def beyond(ego: Ego, target: Any, offset: Any, origin: Any) -> Specifier:
-    observer = ego() if origin is None else origin
     place = to_vector(target, "`beyond`")
     step = scalar_or_vector(offset, "`beyond`", axis=1)
+    observer = ego() if origin is None else origin
     line = operate("subtract", place, to_vector(observer, "`beyond ... from`"))
     frame = operate("from euler", operate("azimuth", line), operate("altitude", line), 0)
     orientation = observer.orientation if is_kind(observer, OrientedPoint) else Orientation()

@@ -3,11 +3,22 @@
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
+from scenic.graph.node import Node
+from scenic.graph.operations import TABLE
 from scenic.language.errors import RejectionException
 from scenic.runtime.distributions import Uniform
 from scenic.runtime.opaque import call_later
 from scenic.runtime.purity import is_pure
-from scenic.runtime.values import NOTHING, Random, as_node, element_of, over_options, uniform
+from scenic.runtime.values import (
+    NOTHING,
+    Random,
+    as_node,
+    element_of,
+    elements_of,
+    holds_instances,
+    over_options,
+    uniform,
+)
 
 Parts = Sequence[tuple[bool, Any]]
 """Positional arguments, each with whether it is starred."""
@@ -42,11 +53,25 @@ def _for_each_option(parts: Parts, function: Callable[..., Any]) -> Any:
 
 def _one_of(parts: Parts) -> Any:
     draw = uniform()
-    if isinstance(draw, Random):
-        lists = _for_each_option(parts, lambda *elements: list(elements))
-        if lists is not None:
-            return element_of(lists, draw)
+    chosen = [value for is_starred, value in parts if is_starred and isinstance(value, Random)]
+    if isinstance(draw, Random) and len(chosen) == 1 and chosen[0].node.operation is TABLE["select"]:
+        index, *options = chosen[0].node.operands
+        lists = [elements_of(option) for option in options]
+        # Of instances among them it is not known before the sample that they are some (section 8.1 of the specification).
+        if all(elements is not None for elements in lists) and not holds_instances(chosen[0].node):
+            return element_of(index, [_with(parts, elements or ()) for elements in lists], draw)
     return call_later(_element, draw, parts)
+
+
+def _with(parts: Parts, elements: Sequence[Node]) -> list[Node]:
+    """All arguments as nodes, those of the starred random list ``elements``."""
+    nodes: list[Node] = []
+    for is_starred, value in parts:
+        if is_starred and isinstance(value, Random):
+            nodes += elements
+        else:
+            nodes += map(as_node, value if is_starred else (value,))
+    return nodes
 
 
 def _arguments(parts: Parts) -> Iterator[Any]:

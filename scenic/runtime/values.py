@@ -112,8 +112,10 @@ class Random(Arithmetic, Hooks):
 
     def __getitem__(self, index: Any) -> Any:
         if holds_instances(self.node):
-            return Random.later(operator.getitem, self, index)  # instances as they are in the sample
-        return operate("getitem", self, index)
+            # Instances as they are in the sample; that they are instances is not known before (section 8.1).
+            return Random.later(operator.getitem, self, index)
+        element = element_at(self.node, index)
+        return operate("getitem", self, index) if element is None else element
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("__") and name.endswith("__"):
@@ -633,22 +635,49 @@ def over_options(operands: Sequence[Node], function: Callable[..., Any]) -> Any:
 NOTHING = "there is nothing to choose from"
 
 
-def element_of(lists: Random, draw: Random) -> Any:
-    """The element of a list at the share ``draw`` of its length; ``lists`` is a choice among constant lists.
+def element_of(index: Node, lists: Sequence[Sequence[Node]], draw: Random) -> Any:
+    """The element at the share ``draw`` of the length of one of several lists, which ``index`` draws.
 
     Samples in which the list is empty are rejected.
     """
-    index, *options = lists.node.operands
+    results = []
+    for elements in lists:
+        if elements:
+            place = apply(_PLACE, draw, payload=len(elements))
+            results.append(as_node(_select(as_node(place), elements)))
+        else:
+            results.append(construction.make_node(_NOTHING, (), span=here()))
+    return _select(index, results)
+
+
+def elements_of(node: Node) -> Sequence[Node] | None:
+    """The elements of a list or tuple of fixed length, as nodes; ``None`` for anything else."""
+    if node.operation in (_LIST, _TUPLE):
+        return node.operands
+    if node.is_constant and type(node.value) in (list, tuple):
+        return [as_node(item) for item in node.value]
+    return None
+
+
+def element_at(node: Node, index: Any) -> Any:
+    """An element of a choice among containers: the choice among their elements. ``None`` for other operands."""
+    if node.operation is not TABLE["select"] or type(index) not in (int, str):
+        return None
+    draw, *options = node.operands
+    if len(options) > MOST_OPTIONS:
+        return None
     results = []
     for option in options:
-        if not option.is_constant:
-            results.append(option)  # an error where it is drawn
-        elif not option.value:
-            results.append(construction.make_node(_NOTHING, (), span=here()))
-        else:
-            place = apply(_PLACE, draw, payload=len(option.value))
-            results.append(as_node(_select(as_node(place), [as_node(item) for item in option.value])))
-    return _select(index, results)
+        try:
+            if option.operation in (_LIST, _TUPLE) and type(index) is int:
+                results.append(option.operands[index])
+            elif option.is_constant and type(option.value) in (list, tuple, dict):
+                results.append(as_node(option.value[index]))
+            else:
+                return None
+        except LookupError as error:
+            results.append(construction.make_node(_MISSING, (), error, here()))
+    return _select(draw, results)
 
 
 def _is_choice_of_data(node: Node) -> bool:

@@ -290,3 +290,40 @@ def test_view_angles_are_at_most_all_around() -> None:
     ]
     assert all(angles == (min(x, math.tau), min(x / 2, math.pi)) for x, angles in found)
     assert len({x > math.tau for x, _ in found}) == 2
+
+
+CHOSEN = "a = new Object at (0, 0), with width 2\nb = new Object at (10, 0), with foo 3\nego = a\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "values"),
+    [
+        ("Uniform([a, b], [b])[0].width", {1, 2}),
+        ("Uniform({'x': a}, {'x': b})['x'].position.x", {0, 10}),
+        ("Uniform(*Uniform([a, b], [b])).width", {1, 2}),
+        ("Uniform([Range(0, 1), 5], [7, 8])[1]", {5, 8}),
+        ("Uniform(*Uniform([1, 2], (3,)), 4)", {1, 2, 3, 4}),
+        ("Uniform([CircularRegion((0, 0), 1)], [CircularRegion((0, 0), 2)])[0].radius", {1, 2}),
+    ],
+)
+def test_elements_of_chosen_containers_are_choices(text: str, values: set[float]) -> None:
+    program = scenario(f"{CHOSEN}param x = {text}")
+    assert {item.params["x"] for item in program.sample(60, seed=1)} == values
+
+
+def test_regions_of_chosen_containers_are_places() -> None:
+    text = (
+        f"{CHOSEN}d = new Object in Uniform([CircularRegion((50, 50), 1)], [CircularRegion((90, 50), 1)])[0]\n"
+        "e = new Object at (40, 80), with regionContainedIn Uniform([CircularRegion((40, 80), 9)], [everywhere])[0]\n"
+    )
+    scenes = scenario(text).sample(20, seed=1)
+    assert {round(item.objects[2].position.x, -1) for item in scenes} == {50, 90}
+
+
+def test_thresholds_of_sides_may_be_chosen() -> None:
+    text = (
+        "ego = new Object at (0, 0), facing (0, 0, 30 deg), "
+        "with sideComponentThresholds Uniform(((-0.4, 0.4),) * 3, ((-0.9, 0.9),) * 3)\n"
+        "param x = ego.topSurface.size"
+    )
+    assert len({round(item.params["x"], 6) for item in scenario(text).sample(20, seed=1)}) == 2

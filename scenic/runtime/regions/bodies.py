@@ -17,7 +17,7 @@ from scenic.runtime.lazy import is_lazy
 from scenic.runtime.regions.base import Mask, Points, Region, unsupported
 from scenic.runtime.regions.fixed_sides import FixedSide
 from scenic.runtime.regions.stacked import Stack, body_of, body_operands
-from scenic.runtime.values import Random, apply, operate, to_vector, uniform, vector
+from scenic.runtime.values import apply, is_random, operate, to_vector, uniform, vector
 
 SIDES: Mapping[str, Side] = MappingProxyType(
     {
@@ -232,10 +232,9 @@ class SideSurface(Region):
     has_orientation = True
     may_find_none = True
 
-    def __init__(self, thing: Any, side: str) -> None:
-        thresholds = thing.sideComponentThresholds
-        if isinstance(thresholds, Random):
-            raise unsupported("a random `sideComponentThresholds`")
+    def __init__(self, thing: Any, side: str, thresholds: Any) -> None:
+        if is_random(thresholds):
+            raise unsupported("a `sideComponentThresholds` that is no choice among constants")
         super().__init__(*body_operands(thing), name=f"{side} surface" if SIDES[side] else side)
         self.facing = Facing(SIDES[side])
         if self.facing.side is not None:
