@@ -43,6 +43,9 @@ LARGEST_PAVING: Final = 64
 SPLITS: Final = 16
 """How often all boxes of a paving are split, at most."""
 
+PATIENCE: Final = 4
+"""Splits after which a paving ends that has lost nothing: most programs gain nothing by it, and shall not pay for all of it."""
+
 SPLIT_AXES: Final = 8
 """Conditions on more axes than these are not paved: too few boxes would fall to each."""
 
@@ -106,6 +109,11 @@ class _Boxes:
     lower: Floats
     upper: Floats
 
+    @property
+    def volume(self) -> float:
+        """The volume of all of them together."""
+        return float((self.upper - self.lower).prod(axis=1).sum())
+
 
 def _moved(before: _Boxes, after: _Boxes, alive: Mask) -> bool:
     """Whether some axis of a box that is still alive lost enough to go on."""
@@ -124,8 +132,8 @@ class _Network:
         self.inner = [node for node in self.order if not node.is_axis and not node.is_constant]
         self._visits = VISITS
 
-    def contract(self, boxes: _Boxes) -> _Boxes:
-        """The boxes narrowed; those that hold no solution are left out."""
+    def contract(self, boxes: _Boxes, first: int = FIRST_ROUNDS) -> _Boxes:
+        """The boxes narrowed, in more than ``first`` passes at least; those that hold no solution are left out."""
         rounds = max(FIRST_ROUNDS, min(ROUNDS, self._visits // max(1, len(self.inner))))
         state = _State(self, boxes)
         for number in range(rounds):
@@ -137,7 +145,7 @@ class _Network:
             boxes = state.boxes(before)
             if not state.alive.any():
                 break
-            if number >= FIRST_ROUNDS and not _moved(before, boxes, state.alive):
+            if number >= first and not _moved(before, boxes, state.alive):
                 break
         return _Boxes(boxes.lower[state.alive], boxes.upper[state.alive])
 
@@ -146,8 +154,11 @@ class _Network:
         axes = np.array(sorted(self.axes.values()))
         if not 0 < len(axes) <= SPLIT_AXES:
             return boxes
-        for _ in range(SPLITS):
+        volume = boxes.volume
+        for number in range(SPLITS):
             if not 0 < len(boxes.lower) <= LARGEST_PAVING // 2 or self._visits <= 0:
+                break
+            if number == PATIENCE and boxes.volume > (1 - PROGRESS) * volume:
                 break
             widths = boxes.upper[:, axes] - boxes.lower[:, axes]
             rows, widest = np.arange(len(widths)), axes[widths.argmax(axis=1)]
@@ -156,7 +167,7 @@ class _Network:
             left[rows, widest] = middle
             right[rows, widest] = middle
             boxes = self.contract(
-                _Boxes(np.concatenate([boxes.lower, right]), np.concatenate([left, boxes.upper]))
+                _Boxes(np.concatenate([boxes.lower, right]), np.concatenate([left, boxes.upper])), first=0
             )
         return boxes
 

@@ -8,6 +8,7 @@ from graph.programs import CODEC, batch_at, make, one_of, source, uniform
 from scipy import stats
 
 from analysis.random_programs import accepted, conditions
+from scenic.analysis import contraction
 from scenic.analysis.contraction import contract, prune
 from scenic.analysis.facts import Fact
 from scenic.graph import construction
@@ -157,6 +158,22 @@ def test_a_union_of_boxes_where_it_pays():
     domain = check(make("greater", make("absolute", make("subtract", x, 5.0)), 4.5))
     assert domain.boxes > 1
     assert domain.volume == pytest.approx(0.1, abs=0.02)
+
+
+def test_a_paving_that_loses_nothing_ends_soon(monkeypatch):
+    sets = []
+    narrow = contraction._Network.contract
+    monkeypatch.setattr(
+        contraction._Network,
+        "contract",
+        lambda self, boxes, *rest, **more: (
+            sets.append(len(boxes.lower)) or narrow(self, boxes, *rest, **more)
+        ),
+    )
+    x, y, z, w = (uniform(-10, 10) for _ in range(4))
+    total = make("add", make("absolute", make("subtract", x, y)), make("absolute", make("subtract", z, w)))
+    assert check(make("less", total, 35.0)).is_whole
+    assert max(sets) == 2**contraction.PATIENCE
 
 
 def test_what_may_not_be_evaluated_narrows_nothing():

@@ -1,0 +1,106 @@
+"""Choices among thousands of constants, and regions of thousands of cells: ``python -m benchmarks.tables``.
+
+Tells the processor time of loading each program (nothing is imported any more then), what a candidate costs with 4,096 lanes in a
+round, what a scene that is read costs beyond that, and the most memory that a process takes which samples 4,096 scenes. Each
+program beside the same one with a single place, or a single cell. Nothing here is a test.
+"""
+
+import argparse
+import json
+import statistics
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+PLACES = """\
+import random
+rng = random.Random(3)
+def place():
+    return new OrientedPoint at (rng.uniform(-500, 500), rng.uniform(-500, 500)), facing rng.uniform(-3, 3)
+ego = new Object at Uniform(*[place() for _ in range({count})])
+"""
+CELLS = """\
+import random
+import shapely
+rng = random.Random(3)
+def cell(x, y):
+    return shapely.box(x, y, x + 4, y + 4), rng.uniform(-3, 3)
+cells = [cell(5 * (i % 100), 5 * (i // 100)) for i in range({count})]
+field = PolygonalVectorField("streets", cells)
+map = PolygonalRegion(polygon=shapely.MultiPolygon([polygon for polygon, _ in cells]), orientation=field)
+for _ in range({objects}):
+    new Object in map, with width 0.5, with length 0.5, with allowCollisions True
+"""
+REGIONS = """\
+import random
+rng = random.Random(3)
+def cell(x, y):
+    return PolygonalRegion([(x, y), (x + 4, y), (x + 4, y + 4), (x, y + 4)], orientation=rng.uniform(-3, 3))
+map = PolygonalRegion.unionAll([cell(5 * (i % 100), 5 * (i // 100)) for i in range({count})])
+new Object in map, with width 0.5, with length 0.5
+"""
+PROGRAMS = {
+    "1 place": PLACES.format(count=1),
+    "3,000 places": PLACES.format(count=3000),
+    "5,000 regions joined": REGIONS.format(count=5000),
+    "1 cell": CELLS.format(count=1, objects=1),
+    "5,000 cells": CELLS.format(count=5000, objects=1),
+    "5,000 cells, 4 objects": CELLS.format(count=5000, objects=4),
+}
+LANES = 4096
+
+
+def child(name: str) -> None:
+    """Measure one program in this fresh process: prints JSON."""
+    import scenic
+
+    scenic.scenarioFromString("new Object at (Range(0, 1), 0)").sample(2, seed=1)
+    clock = time.process_time
+    begun = clock()
+    scenario = scenic.scenarioFromString(PROGRAMS[name])
+    load = clock() - begun
+
+    def sampled(seed: int) -> Any:
+        return scenario.sample(LANES, seed=seed, lanes=LANES)
+
+    sampled(0)
+    memory = int(
+        next(row for row in Path("/proc/self/status").read_text().splitlines() if "VmHWM" in row).split()[1]
+    )
+    sampling, reading = [], []
+    for seed in range(1, 6):
+        begun = clock()
+        scenes = sampled(seed)
+        sampling.append((clock() - begun) / sum(scene.attempts for scene in scenes))
+        begun = clock()
+        for scene in scenes:
+            for item in scene.objects:
+                tuple(item.position), item.yaw, item.pitch, item.roll, item.width, item.length, item.height
+        reading.append((clock() - begun) / LANES)
+    figures = (load, statistics.median(sampling) * 1e6, statistics.median(reading) * 1e6, memory / 1024)
+    print(json.dumps(figures))
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--child", help=argparse.SUPPRESS)
+    parser.add_argument("--turns", type=int, default=3)
+    arguments = parser.parse_args()
+    if arguments.child:
+        child(arguments.child)
+        return
+    print(f"{'program':24} {'load, s':>8} {'us a candidate':>15} {'us to read':>11} {'MiB':>6}")
+    for name in PROGRAMS:
+        command = [sys.executable, "-m", "benchmarks.tables", "--child", name]
+        runs = [
+            json.loads(subprocess.run(command, capture_output=True, text=True, check=True).stdout)
+            for _ in range(arguments.turns)
+        ]
+        load, candidate, read, memory = map(statistics.median, zip(*runs, strict=True))
+        print(f"{name:24} {load:8.2f} {candidate:15.1f} {read:11.1f} {memory:6.0f}")
+
+
+if __name__ == "__main__":
+    main()
