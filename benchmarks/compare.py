@@ -51,16 +51,16 @@ class Case:
 
 
 CASES = {
-    "room_with_toys": Case("room_with_toys", 1),
-    "chairs_at_table": Case("chairs_at_table", 3),
-    "overtaking": Case("overtaking", 8),
-    "vacuum-0": Case("vacuum", 4, (("toys", 0),), 50),
-    "vacuum-1": Case("vacuum", 4, (("toys", 1),), 50),
-    "vacuum-4": Case("vacuum", 3, (("toys", 4),), 50),
+    "room_with_toys": Case("room_with_toys", 20),
+    "chairs_at_table": Case("chairs_at_table", 100),
+    "overtaking": Case("overtaking", 100),
+    "vacuum-0": Case("vacuum", 20, (("toys", 0),), 50),
+    "vacuum-1": Case("vacuum", 20, (("toys", 1),), 50),
+    "vacuum-4": Case("vacuum", 20, (("toys", 4),), 50),
     "vacuum-16": Case("vacuum", 1, (("toys", 16),), 1000),
-    "hidden": Case("hidden", 10, (), 100),
-    "hollow": Case("hollow", 30, (), 100),
-    "large_meshes": Case("loops/large_meshes", 30, (("folder", None),), 50),
+    "hidden": Case("hidden", 200, (), 100),
+    "hollow": Case("hollow", 400, (), 100),
+    "large_meshes": Case("loops/large_meshes", 400, (("folder", None),), 50),
 }
 
 
