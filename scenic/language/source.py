@@ -8,6 +8,7 @@ from typing import Final
 
 from scenic.language.errors import MissingFileError, ScenicError
 from scenic.language.spans import Span
+from scenic.language.spelling import nearest
 
 __all__ = ["Source", "read_source"]
 
@@ -95,7 +96,7 @@ def read_source(path: str | os.PathLike[str]) -> Source:
         data = Path(filename).read_bytes()
     except FileNotFoundError:
         raise MissingFileError(
-            "there is no such file", code="SC600", filename=filename, help="check the path"
+            "there is no such file", code="SC600", filename=filename, help=_whereabouts(Path(filename))
         ) from None
     except IsADirectoryError:
         raise _unreadable(filename, "this is a directory, not a file", "name the files in it") from None
@@ -105,6 +106,24 @@ def read_source(path: str | os.PathLike[str]) -> Source:
         reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
         raise _unreadable(filename, f"the file cannot be read: {reason}", "check the path") from None
     return Source(Source.decode(data, filename), filename)
+
+
+def _whereabouts(path: Path) -> str:
+    """What to do about a file that does not exist: a name like it, or how far the path leads."""
+    there = path.parent
+    while not there.is_dir() and there != there.parent:
+        there = there.parent
+    missing = path.relative_to(there).parts[0] if path.is_relative_to(there) else path.name
+    try:
+        near = nearest(missing, (item.name for item in there.iterdir()))
+    except OSError:
+        near = None
+    if near is not None:
+        return f"did you mean `{there / near}`?"
+    if there == path.parent:
+        return "check the path"
+    where = "the working directory" if there == Path() else f"`{there}`"
+    return f"check the path: {where} has no `{missing}`"
 
 
 def _unreadable(filename: str, message: str, advice: str) -> ScenicError:

@@ -95,3 +95,25 @@ def test_files_that_cannot_be_read(tmp_path: Path) -> None:
         assert caught.value.code == "SC600"
         assert caught.value.help
         assert caught.value.filename == str(path)
+
+
+@pytest.mark.parametrize(
+    ("path", "advice"),
+    [
+        ("desl.scenic", "did you mean `desk.scenic`?"),
+        ("programms/desk.scenic", "did you mean `programs`?"),
+        ("programs/chair.scenic", "check the path"),
+        ("programs/deep/er/chair.scenic", "check the path: `programs` has no `deep`"),
+        ("elsewhere/chair.scenic", "check the path: the working directory has no `elsewhere`"),
+        ("desk.scenic/x", "the file cannot be read"),
+    ],
+)
+def test_a_missing_file_is_looked_for(
+    path: str, advice: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "programs").mkdir()
+    (tmp_path / "desk.scenic").touch()
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(ScenicError) as caught:
+        read_source(path)
+    assert advice in f"{caught.value}: {caught.value.help}"
