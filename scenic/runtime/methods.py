@@ -4,55 +4,33 @@ The methods are written once for definite and random values alike. How an operat
 the graph, is the business of `scenic.runtime.values`, which fills the hooks in.
 """
 
-from abc import abstractmethod
 from collections.abc import Iterator
-from typing import Any
+from typing import Any, ClassVar
 
 
 class Operand:
-    """What the methods below are made of."""
+    """What the methods below are made of: hooks that `scenic.runtime.values` fills in."""
 
     __slots__ = ()
 
-    @staticmethod
-    @abstractmethod
-    def _operate(name: str, *operands: Any, payload: Any = None) -> Any:
-        """Apply an operation of the table."""
-
-    @staticmethod
-    @abstractmethod
-    def _vector(x: Any, y: Any, z: Any = 0) -> Any:
-        """The vector of three numbers."""
-
-    @staticmethod
-    @abstractmethod
-    def _to_vector(value: Any) -> Any:
-        """A value as a vector (section 4.3 of the specification)."""
-
-    @staticmethod
-    @abstractmethod
-    def _to_orientation(value: Any) -> Any:
-        """A value as an orientation."""
-
-    @staticmethod
-    @abstractmethod
-    def _is_vector(value: Any) -> bool:
-        """Whether a value is a vector, or a pair or triple that stands for one."""
-
-    @staticmethod
-    @abstractmethod
-    def _is_orientation(value: Any) -> bool:
-        """Whether a value is an orientation."""
-
-    @staticmethod
-    @abstractmethod
-    def _with_vector(name: str, left: Any, right: Any) -> Any:
-        """Apply an operation to two values read as vectors; ``NotImplemented`` where one is none."""
-
-    @staticmethod
-    @abstractmethod
-    def _with_number(name: str, left: Any, right: Any) -> Any:
-        """Apply an operation to a vector and a number; ``NotImplemented`` where it is none."""
+    _operate: ClassVar["staticmethod[..., Any]"]
+    """Apply an operation of the table, by name, to operands; ``payload`` is its data."""
+    _vector: ClassVar["staticmethod[..., Any]"]
+    """The vector of three numbers."""
+    _to_scalar: ClassVar["staticmethod[[Any], Any]"]
+    """A value as a number (section 4.3 of the specification)."""
+    _to_vector: ClassVar["staticmethod[[Any], Any]"]
+    """A value as a vector."""
+    _to_orientation: ClassVar["staticmethod[[Any], Any]"]
+    """A value as an orientation."""
+    _is_vector: ClassVar["staticmethod[[Any], bool]"]
+    """Whether a value is a vector, or a pair or triple that stands for one."""
+    _is_orientation: ClassVar["staticmethod[[Any], bool]"]
+    """Whether a value is an orientation."""
+    _with_vector: ClassVar["staticmethod[[str, Any, Any], Any]"]
+    """Apply an operation to two values read as vectors; ``NotImplemented`` where one is none."""
+    _with_number: ClassVar["staticmethod[[str, Any, Any], Any]"]
+    """Apply an operation to a vector and a number; ``NotImplemented`` where it is none."""
 
 
 class Arithmetic(Operand):
