@@ -234,7 +234,8 @@ class GuardViolation(Exception):
     violationType = "guard"
 
     def __init__(self, behavior: object, lineno: int | None) -> None:
-        super().__init__(f"violated {self.violationType} of {behavior} on line {lineno}")
+        self.behaviorName = str(behavior).partition("(")[0]
+        super().__init__(f"violated {self.violationType} of {self.behaviorName} on line {lineno}")
         self.behavior = behavior
         self.lineno = lineno
 

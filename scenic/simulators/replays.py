@@ -149,6 +149,8 @@ class Tape:
         if not self._go_on:
             raise DivergenceError(f"the replay diverged at step {self._step}: {what}")
         self.replaying = False
+        # What follows has nothing to do with the earlier simulation, whose key would go on giving its numbers.
+        self._others = Seeded(fresh_key())
 
     # States
 

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from enum import Enum
 from typing import Any
 
-__all__ = ["SimulationResult", "TerminationType"]
+__all__ = ["ActionsTaken", "SimulationResult", "TerminationType"]
 
 
 class TerminationType(Enum):
@@ -15,7 +15,14 @@ class TerminationType(Enum):
     simulationTerminationCondition = "a simulation termination condition was met"
     terminatedByMonitor = "a monitor terminated the simulation"
     terminatedByBehavior = "a behavior terminated the simulation"
-    terminatedByUser = "the user terminated the simulation"
+    terminatedByUser = "manually terminated by user"
+
+
+class ActionsTaken(dict[Any, tuple[Any, ...]]):
+    """What each agent did in a step; whatever else is asked for, an object without a behavior perhaps, did nothing."""
+
+    def __missing__(self, key: Any) -> tuple[Any, ...]:
+        return ()
 
 
 class SimulationResult:

@@ -24,7 +24,7 @@ from scenic.runtime.randomness import preserved, restore, seed_globals, states
 from scenic.runtime.scene import Scene
 from scenic.runtime.values import describe, kind_of
 from scenic.simulators.replays import Replay, Tape, fresh_key
-from scenic.simulators.results import SimulationResult, TerminationType
+from scenic.simulators.results import ActionsTaken, SimulationResult, TerminationType
 from scenic.simulators.watching import Watch
 
 __all__ = ["Simulation"]
@@ -47,7 +47,7 @@ class Simulation(ABC):
         enableDivergenceCheck: whether to keep the dynamic properties of all steps, and to compare with those of a replay.
         divergenceTolerance: by how much numbers may differ.
         continueAfterDivergence: whether to go on with other draws then, rather than to raise `DivergenceError`.
-        verbosity: what to print, 3 for actions.
+        verbosity: what to print, 3 for objects, steps and actions.
         key: decides all random draws; drawn from Python's ``random`` if ``None``.
         source: what random numbers come from, given the source that hashes with the key; that one if ``None``.
         robustness: whether to compute by how much requirements hold.
@@ -98,7 +98,7 @@ class Simulation(ABC):
         self.agents: list[Any] = []
         self.trajectory: list[Any] = []
         self.poses: list[tuple[tuple[Any, Any], ...]] | None = [] if keep_poses else None
-        self.actionSequence: list[dict[Any, Any]] = []
+        self.actionSequence: list[ActionsTaken] = []
         self.records: dict[str, Any] = {}
         self.currentTime = 0
         self.timestep = 1 if timestep is None else timestep
@@ -108,6 +108,7 @@ class Simulation(ABC):
         self.worker_num = 0
         self._max_steps = maxSteps
         self._keep_course = keep_course
+        self._enable_replay = enableReplay
         self._original = scene
         self._copies = Copies(scene.accepted.batch, scene.accepted.lane)
         self._properties: dict[type, tuple[str, ...]] = {}
@@ -267,7 +268,7 @@ class Simulation(ABC):
         self.objects = [back.get(id(item), item) for item in self.objects]
         self.agents = [back.get(id(item), item) for item in self.agents]
         self.actionSequence = [
-            {back.get(id(agent), agent): taken for agent, taken in step.items()}
+            ActionsTaken({back.get(id(agent), agent): taken for agent, taken in step.items()})
             for step in self.actionSequence
         ]
         self.scene = self._original
@@ -325,6 +326,8 @@ class Simulation(ABC):
 
     def add(self, obj: Any) -> None:
         """Create an object in the simulator, and let it take part."""
+        if self.verbosity >= 3:
+            self._tell(f"      Creating object {obj!r}")
         self.objects.append(obj)
         try:
             self.createObjectInSimulator(obj)
@@ -340,6 +343,9 @@ class Simulation(ABC):
             self._update(obj, first=False)
 
     _createObject = add
+
+    def _tell(self, line: str) -> None:
+        print(line)  # noqa: T201 - asked for by the user
 
     def sense(self) -> None:
         """Let every object with sensors observe."""
@@ -371,10 +377,11 @@ class Simulation(ABC):
         """Log and execute the actions of a step."""
         if not self._keep_course:
             self.actionSequence.clear()
-        self.actionSequence.append(dict(actions))
+        self.actionSequence.append(ActionsTaken(actions))
         if self.verbosity >= 3:
+            self._tell(f"    Time step {self.currentTime}:")
             for agent, taken in actions.items():
-                print(f"      Agent {agent!r} takes action(s) {taken!r}")  # noqa: T201 - asked for by the user
+                self._tell(f"      Agent {agent!r} takes action(s) {taken!r}")
         self.executeActions(actions)
 
     def advance(self) -> None:
@@ -437,7 +444,7 @@ class Simulation(ABC):
         """The value as the object stores it; raises ``RuntimeError`` for one of another type than before."""
         kind, wanted = kind_of(value), kind_of(old)
         if wanted.is_number and wanted is not Kind.BOOLEAN and kind.is_number and kind is not Kind.BOOLEAN:
-            return value
+            return float(value) if type(old) is float else value
         if wanted is kind and (not kind.is_boxed or old is None or isinstance(value, type(old))):
             return value
         if old is None:
@@ -452,7 +459,14 @@ class Simulation(ABC):
     # Replay
 
     def getReplay(self) -> bytes:
-        """The random draws of the simulation, and what is needed to notice another course, as bytes."""
+        """The random draws of the simulation, and what is needed to notice another course, as bytes.
+
+        Raises:
+            RuntimeError: the simulation ran with ``enableReplay=False``.
+
+        """
+        if not self._enable_replay:
+            raise RuntimeError("there is no replay of a simulation that ran with enableReplay=False")
         return self._tape.replay().encoded()
 
     @property

@@ -46,7 +46,7 @@ class Simulator(ABC):
             maxSteps: steps of a simulation at most.
             maxIterations: simulations tried.
             timestep: seconds in a step; the simulator's own if ``None``.
-            name: of the simulations; the number of the one tried is appended.
+            name: of the simulation; where several may be tried the number of the try is appended.
             verbosity: what to print, from 0 (the default) to 3.
             raiseGuardViolations: let a violated guard that nothing catches be raised, rather than reject the simulation.
             replay: bytes of an earlier simulation's `getReplay`.
@@ -64,13 +64,17 @@ class Simulator(ABC):
         if getattr(self, "_destroyed", False):
             raise RuntimeError("the simulator has been destroyed")
         for iteration in range(1, maxIterations + 1):
+            label = str(iteration) if name is None else name if maxIterations == 1 else f"{name}.{iteration}"
+            tells = verbosity is not None and verbosity >= 2
+            if tells:
+                print(f"  Starting simulation {label}...")  # noqa: T201 - asked for by the user
             if source is not None:
                 options["source"] = _sourcing(source, scene, iteration - 1)
             try:
-                return self._runSingleSimulation(
+                done = self._runSingleSimulation(
                     scene,
                     maxSteps,
-                    name=str(iteration) if name is None else f"{name}.{iteration}",
+                    name=label,
                     verbosity=0 if verbosity is None else verbosity,
                     raiseGuardViolations=raiseGuardViolations,
                     timestep=timestep,
@@ -87,8 +91,15 @@ class Simulator(ABC):
                     raise
                 if onRejection is not None:
                     onRejection(error)
-                if verbosity is not None and verbosity >= 2:
-                    print(f"  Rejected simulation {iteration}: {error}")  # noqa: T201 - asked for by the user
+                if tells:
+                    print(f"  Rejected simulation {label} because: {error}")  # noqa: T201 - asked for by the user
+                continue
+            if tells and done.result is not None:
+                print(  # noqa: T201 - asked for by the user
+                    f"  Simulation {label} ended successfully at time step {done.currentTime} because: "
+                    f"{done.result.terminationReason}"
+                )
+            return done
         return None
 
     def replay(self, scene: Scene, replay: bytes, **options: Any) -> Simulation | None:

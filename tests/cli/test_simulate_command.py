@@ -128,7 +128,7 @@ def test_what_rejected_simulations_is_counted(folder: Path) -> None:
     assert sum(int(line.rpartition(": ")[2].split()[0]) for line in reasons) == 9
     assert sorted(line.rpartition(":")[0].strip() for line in reasons) == [
         "requirement on line 3 is violated",
-        "violated precondition of C() on line 6",
+        "violated precondition of C on line 6",
     ]
 
 

@@ -56,7 +56,7 @@ def kept(folder: Path) -> dict[str, str]:
 
 
 def whole(*numbers: int) -> set[str]:
-    return {f"simulation-000{k}.jsonl" for k in numbers} | {f"place-{k}.1.jsonl" for k in numbers}
+    return {f"simulation-000{k}.jsonl" for k in numbers} | {f"place-{k}.jsonl" for k in numbers}
 
 
 def check_resumed(folder: Path, before: dict[str, str], *arguments: object) -> None:

@@ -357,7 +357,7 @@ def recording(folder: Path, target: str, value: str = "simulation().currentTime"
 
 def test_series_are_written(tmp_path: Path) -> None:
     simulate(recording(tmp_path, "deep/{simulation}.jsonl"), 2, name="run", timestep=0.5)
-    rows = [json.loads(line) for line in (tmp_path / "deep" / "run.1.jsonl").read_text().splitlines()]
+    rows = [json.loads(line) for line in (tmp_path / "deep" / "run.jsonl").read_text().splitlines()]
     assert rows == [{"step": step, "time": step / 2, "value": step} for step in range(3)]
     simulate(recording(tmp_path, "{simulation}.npz", "ego.position"), 2)
     found = np.load(tmp_path / "1.npz")
