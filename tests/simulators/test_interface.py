@@ -158,7 +158,7 @@ def test_what_simulations_tell() -> None:
     whole = told(AGENTS, 3)
     assert sum("Creating object" in line for line in whole) == 3
     assert "    Time step 0:" in whole
-    assert "      Agent <Object> takes action(s) (2,)" in whole
+    assert any("Agent" in line and line.endswith("takes action(s) (2,)") for line in whole)
 
 
 def test_kinds_of_ends() -> None:
