@@ -19,7 +19,13 @@ from scenic.runtime.geometry.single import meet
 from scenic.runtime.mutators import OrientationMutator, PositionMutator
 from scenic.runtime.properties import Property, PropertyDefinition, combine
 from scenic.runtime.regions.base import Region
-from scenic.runtime.regions.bodies import OccupiedSpace, SideSurface, bounding_corners, inradius
+from scenic.runtime.regions.bodies import (
+    OccupiedSpace,
+    SideSurface,
+    bounding_corners,
+    inradius,
+    planar_inradius,
+)
 from scenic.runtime.regions.stacked import placed_of
 from scenic.runtime.regions.views import ViewRegion
 from scenic.runtime.regions.volumes import BoxRegion
@@ -377,7 +383,7 @@ class Object(OrientedPoint):
         """The radius of a disc about the position within which everything is inside seen from above, in metres."""
         if isinstance(self.shape, BoxShape):
             return operate("minimum", self.hw, self.hl)
-        return inradius(self)
+        return planar_inradius(self)
 
     def distanceTo(self, point: Any) -> Any:
         """Distance from the space that it fills to a point; 0 inside."""

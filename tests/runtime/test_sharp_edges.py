@@ -217,3 +217,20 @@ def test_primitive_solids() -> None:
         assert solid.is_volume
         assert low - 1e-12 <= solid.volume <= high + 1e-12
         np.testing.assert_allclose(solid.bounds, [[-0.5] * 3, [0.5] * 3], atol=1e-12)
+
+
+def test_planar_inradii_are_those_seen_from_above() -> None:
+    text = (
+        "import trimesh\nego = new Object with shape ConeShape(), with width 2, with length 4, with height 6\n"
+        "ring = new Object at (30, 0), with shape MeshShape(trimesh.creation.annulus(1, 2, 1))\n"
+        "param r = ego.inradius, q = ego.planarInradius, hollow = ring.planarInradius\n"
+    )
+    assert params(text) == pytest.approx({"r": 0.492616, "q": 0.99879, "hollow": 0}, abs=1e-5)
+
+
+def test_boxes_of_sides_hold_their_faces_alone() -> None:
+    found = params(
+        "ego = new Object with width 2\nparam x = ego.bottomSurface.AABB, y = ego.leftSurface.AABB"
+    )
+    np.testing.assert_allclose(found["x"], [(-1, -0.5, -0.5), (1, 0.5, -0.5)])
+    np.testing.assert_allclose(found["y"], [(-1, -0.5, -0.5), (-1, 0.5, 0.5)])

@@ -11,6 +11,7 @@ from scenic.runtime.geometry.distance import to_surface
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.nearest import nearest_on_triangles
 from scenic.runtime.geometry.poses import Booleans, Floats, Indices, Poses
+from scenic.runtime.geometry.prisms import shadow
 from scenic.runtime.geometry.ragged import rows
 from scenic.runtime.geometry.surface import Side, side_contains
 
@@ -115,6 +116,18 @@ def bounds(body: Body) -> tuple[Floats, Floats]:
     return lower, upper
 
 
+def side_bounds(body: Body, side: Side, threshold: float) -> tuple[Floats, Floats]:
+    """Corners ``(1, 3)`` of the box around the faces of a side of one solid; of the whole solid where there are none."""
+    ((mesh, _),) = body.by_mesh(1)
+    count = len(mesh.faces)
+    mine = side_contains(mesh, body.poses, side, threshold, np.zeros(count, dtype=np.intp), np.arange(count))
+    if not mine.any():
+        return bounds(body)
+    corners = mesh.triangles[mine].reshape(1, -1, 3)
+    world = body.poses.to_world(corners)
+    return world.min(axis=1), world.max(axis=1)
+
+
 def volumes(body: Body) -> Floats:
     """Volumes ``(n | 1,)`` of solids."""
     result = np.empty(len(body))
@@ -138,6 +151,32 @@ def areas(body: Body, side: Side, threshold: float) -> Floats:
             )
             result[lane] = (np.sqrt((normal * normal).sum(axis=1)) / 2)[mine].sum()
     return result
+
+
+def planar_inradii(body: Body) -> Floats:
+    """Radii ``(n | 1,)`` of the largest discs about the positions within the solids seen along their own z; 0 where a position is outside."""
+    result = np.empty(len(body))
+    for mesh, chosen in body.by_mesh(len(body)):
+        edges, is_inside = mesh.derived(_silhouette)
+        size = body.poses.take(chosen).size[:, np.newaxis, :2]
+        start, end = edges[:, 0] * size, edges[:, 1] * size
+        along = end - start
+        squares = np.maximum((along * along).sum(axis=2), np.finfo(float).tiny)
+        share = np.clip(-(start * along).sum(axis=2) / squares, 0, 1)[..., np.newaxis]
+        nearest = start + share * along
+        gaps = np.sqrt((nearest * nearest).sum(axis=2)).min(axis=1)
+        result[chosen] = gaps if is_inside else 0.0
+    return result
+
+
+def _silhouette(mesh: Mesh) -> tuple[Floats, bool]:
+    """The edges ``(k, 2, 2)`` of a mesh seen from above, and whether the origin lies within them."""
+    import shapely
+
+    outline = shadow(mesh)
+    rings = [np.asarray(ring.coords) for ring in shapely.get_rings(outline)]
+    edges = np.concatenate([np.stack([ring[:-1], ring[1:]], axis=1) for ring in rings])
+    return edges, bool(outline.covers(shapely.Point(0, 0)))
 
 
 def inradii(body: Body) -> Floats:

@@ -164,6 +164,14 @@ _INRADIUS = Operation(
 )
 
 
+_PLANAR_INRADIUS = Operation(
+    "planar inradius",
+    always(Kind.SCALAR),
+    lambda _call, *columns: body_points.planar_inradii(body_of(*columns)),
+    "The radius of a disc about the position that a body holds, seen along its own z.",
+)
+
+
 _GAP = Operation(
     "distance of bodies",
     always(Kind.SCALAR),
@@ -186,6 +194,11 @@ def bounding_corners(thing: Any) -> tuple[Any, Any]:
 def inradius(thing: Any) -> Any:
     """The radius of a ball about the position of an object that it holds; 0 where the position is outside."""
     return apply(_INRADIUS, *body_operands(thing))
+
+
+def planar_inradius(thing: Any) -> Any:
+    """The radius of a disc about the position that an object holds seen along its own z; 0 where the position is outside."""
+    return apply(_PLANAR_INRADIUS, *body_operands(thing))
 
 
 def _intersect(
@@ -293,7 +306,10 @@ class SideSurface(Region):
         )
 
     def box(self, *columns: Column) -> tuple[Points, Points]:
-        return body_points.bounds(body_of(*columns))
+        body = body_of(*columns)
+        if len(body) > 1 or self.facing.side is None:
+            return body_points.bounds(body)
+        return body_points.side_bounds(body, self.facing.side, self.facing.threshold)
 
     def sizes(self, *columns: Column) -> Column:
         return body_points.areas(body_of(*columns), self.facing.side, self.facing.threshold)
