@@ -260,8 +260,8 @@ class SideSurface(Region):
         """The faces, where the object is the same in every scene."""
         if self.is_random or is_lazy(self.parameters):
             return None
-        body = body_of(*self.fixed_columns("the side"))
-        return FixedSide.of(body, self.facing.side, self.facing.threshold)
+        *placement, shape = self.parameters
+        return FixedSide.of(shape.mesh, tuple(placement), self.facing.side, self.facing.threshold)
 
     def uniform_placement(self) -> tuple[Any, Any]:
         if self._fixed is not None:

@@ -5,6 +5,7 @@ as on a box, the orientation on the side is fixed, too.
 """
 
 from dataclasses import dataclass
+from functools import cached_property, lru_cache
 from itertools import accumulate
 from typing import Any, Final
 
@@ -18,7 +19,8 @@ from scenic.graph.operation import Call, Operation, always
 from scenic.graph.operations.distributions import LOOKUP, Table
 from scenic.runtime.distributions import primitive
 from scenic.runtime.geometry.bodies import Body
-from scenic.runtime.geometry.poses import Floats
+from scenic.runtime.geometry.mesh import Mesh
+from scenic.runtime.geometry.poses import Floats, Poses
 from scenic.runtime.geometry.surface import Side, face_orientations, side_contains
 from scenic.runtime.values import Orientation, apply, uniform
 
@@ -70,7 +72,7 @@ _POINT: Final = Operation(
 )
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, eq=False)
 class FixedSide:
     """The faces of a side of a fixed body.
 
@@ -85,10 +87,23 @@ class FixedSide:
     corners: Floats
     orientations: Floats
 
-    @classmethod
-    def of(cls, body: Body, side: Side, threshold: float) -> "FixedSide | None":
-        """The side of a body of one lane; ``None`` where it has no faces, or the mesh too many."""
-        (mesh,) = body.meshes
+    @staticmethod
+    @lru_cache(maxsize=16)
+    def of(mesh: Mesh, placement: tuple[Any, Any, Any], side: Side, threshold: float) -> "FixedSide | None":
+        """The side of a body; ``None`` where it has no faces, or the mesh too many.
+
+        Kept for a while: one thing after the other is placed on the same table.
+
+        Args:
+            mesh: its mesh.
+            placement: its position, orientation and size.
+            side: axis and sign.
+            threshold: as of `side_contains`.
+
+        """
+        position, orientation, size = placement
+        row = (orientation.x, orientation.y, orientation.z, orientation.w)
+        body = Body((mesh,), None, Poses.fixed(tuple(position), row, tuple(size)))
         count = len(mesh.faces)
         if count > _MOST_FACES:
             return None
@@ -102,26 +117,35 @@ class FixedSide:
         if not len(faces):
             return None
         # Nought has no sign here, so that faces which look the same way compare equal.
-        return cls(areas[faces], corners[faces], face_orientations(body, faces) + 0.0)
+        return FixedSide(areas[faces], corners[faces], face_orientations(body, faces) + 0.0)
 
     def placement(self) -> tuple[Any, Any]:
         """A uniform random point, and the preferred orientation there."""
-        total = self.areas.sum()
-        shares = tuple(accumulate((self.areas / total).tolist()))
-        face = primitive("choice", payload=(*shares[:-1], 1.0))
-        point = apply(_POINT, face, uniform(), uniform(), payload=Triangles(self.corners))
-        common = self.orientation
-        if common is None:
-            common = apply(LOOKUP, face, payload=Table(Kind.ORIENTATION, self.orientations))
-        return point, common
+        face = primitive("choice", payload=self._shares)
+        point = apply(_POINT, face, uniform(), uniform(), payload=self._triangles)
+        if self.orientation is not None:
+            return point, self.orientation
+        return point, apply(LOOKUP, face, payload=self._table)
 
-    @property
+    @cached_property
     def orientation(self) -> Any:
         """The preferred orientation on all faces; ``None`` where they differ."""
         first = self.orientations[0]
-        if not (self.orientations == first).all():
-            return None
-        return Orientation.of(first.tolist())
+        return Orientation.of(first.tolist()) if (self.orientations == first).all() else None
+
+    @cached_property
+    def _shares(self) -> tuple[float, ...]:
+        """Cumulative probabilities of the faces; the last is exactly 1."""
+        shares = accumulate((self.areas / self.areas.sum()).tolist())
+        return (*tuple(shares)[:-1], 1.0)
+
+    @cached_property
+    def _triangles(self) -> Triangles:
+        return Triangles(self.corners)
+
+    @cached_property
+    def _table(self) -> Table:
+        return Table(Kind.ORIENTATION, self.orientations)
 
 
 __all__ = ["FixedSide"]
