@@ -150,8 +150,8 @@ FAULTS: Final = (
         (
             Change(
                 _GRAMMAR,
-                'Specifier(specifier="beyond", property=None, operands=[a, b, c]) }',
-                'Specifier(specifier="beyond", property=None, operands=[a, c or b, c and b]) }',
+                'SpecifierPhrase(specifier="beyond", property=None, operands=[a, b, c]) }',
+                'SpecifierPhrase(specifier="beyond", property=None, operands=[a, c or b, c and b]) }',
             ),
         ),
     ),

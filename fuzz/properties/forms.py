@@ -21,7 +21,7 @@ _OPERATORS: Final = (
     ast.IfExp,
     ast.UnaryOp,
     scenic.Operation,
-    scenic.Specifier,
+    scenic.SpecifierPhrase,
     scenic.Temporal,
 )
 
@@ -149,7 +149,7 @@ def _check(
 
 def _forms(node: Any, ladder: Ladder) -> tuple[Form, ...]:
     name = type(node).__name__
-    if isinstance(node, scenic.Specifier):
+    if isinstance(node, scenic.SpecifierPhrase):
         return forms_of(name, node.specifier, Ladder.SPECIFIER)
     operator = getattr(node, "op", None) or getattr(node, "operator", None)
     operator = operator if isinstance(operator, str) or operator is None else type(operator).__name__

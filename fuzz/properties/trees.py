@@ -28,7 +28,7 @@ if hasattr(ast, "TypeAlias"):
 _PASSED_ON: Final = frozenset({(ast.Tuple, "elts"), (ast.List, "elts"), (ast.Starred, "value")})
 """Fields that have the context of the node that they are in."""
 
-_ANY_ORDER: Final = frozenset({"Operation.operands", "Specifier.operands"})
+_ANY_ORDER: Final = frozenset({"Operation.operands", "SpecifierPhrase.operands"})
 """Lists whose elements are in the order of their meaning, not of the text."""
 
 _INTERLEAVED: Final = frozenset(

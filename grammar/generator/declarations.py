@@ -22,7 +22,11 @@ __all__ = ["check_declarations"]
 
 _TABLES = {
     "Operation": ("operator", "operators", {name: each.operands for name, each in OPERATORS.items()}),
-    "Specifier": ("specifier", "specifiers", {name: each.operands for name, each in SPECIFIERS.items()}),
+    "SpecifierPhrase": (
+        "specifier",
+        "specifiers",
+        {name: each.operands for name, each in SPECIFIERS.items()},
+    ),
     "Temporal": (
         "temporal operator",
         "keywords",

@@ -32,7 +32,7 @@ class DeclaredForm:
 def declared_forms() -> Iterator[DeclaredForm]:
     """All of them, in the order of the declarations: specifiers, operators, temporal operators."""
     for node, forms in (
-        ("Specifier", {name: each.forms for name, each in specifiers.SPECIFIERS.items()}),
+        ("SpecifierPhrase", {name: each.forms for name, each in specifiers.SPECIFIERS.items()}),
         ("Operation", {name: each.forms for name, each in operators.OPERATORS.items()}),
         ("Temporal", {name: each.forms for name, each in TEMPORAL_OPERATORS.items()}),
     ):

@@ -23,7 +23,7 @@ __all__ = [
     "words_before",
 ]
 
-_OF_SCENIC: Final = frozenset({"Operation", "Specifier", "Temporal"})
+_OF_SCENIC: Final = frozenset({"Operation", "SpecifierPhrase", "Temporal"})
 
 SCENIC_FORMS: Final = tuple(form for form in (*FORMS, *SPECIFIERS) if form.node in _OF_SCENIC)
 """The forms of the operators and specifiers that Scenic adds."""

@@ -258,7 +258,7 @@ def form_of(node: ast.AST, ladder: Ladder = Ladder.ORDINARY) -> Form | None:
         operator = type(operator).__name__
     name = type(node).__name__
     forms = forms_of(name, operator if isinstance(operator, str) else None, ladder)
-    if not forms and name == "Specifier":
+    if not forms and name == "SpecifierPhrase":
         forms = forms_of(name, fields.specifier, Ladder.SPECIFIER)
     if isinstance(node, ast.Call):
         given = bool(node.args or node.keywords)

@@ -3,7 +3,7 @@
 All derive from ``ast.AST``, so ``ast.NodeVisitor``, ``ast.walk`` and ``ast.dump`` work on every tree. Positions
 are those of ``ast``: lines from 1, columns in UTF-8 bytes from 0.
 
-Operators and specifiers are deliberately generic (`Operation`, `Specifier`): which ones exist, and what their
+Operators and specifiers are deliberately generic (`Operation`, `SpecifierPhrase`): which ones exist, and what their
 operands are called, is declared in `scenic.language.operators` and `scenic.language.specifiers`. Adding one
 changes the grammar and its declaration, never the tree or the passes over it.
 
@@ -38,7 +38,7 @@ __all__ = [
     "RequireMonitor",
     "ScenarioDef",
     "Simulator",
-    "Specifier",
+    "SpecifierPhrase",
     "Take",
     "Temporal",
     "Terminate",
@@ -98,7 +98,7 @@ class New(ScenicExpression):
     """``new C specifier, ...``; ``cls`` is the class's name."""
 
     cls: ast.Name
-    specifiers: list["Specifier"]
+    specifiers: list["SpecifierPhrase"]
     _fields = ("cls", "specifiers")
 
 
@@ -110,7 +110,7 @@ class Temporal(ScenicExpression):
     _fields = ("operator", "operands")
 
 
-class Specifier(ScenicPart):
+class SpecifierPhrase(ScenicPart):
     """One specifier of ``new`` or ``override``.
 
     ``specifier`` is a name declared in `scenic.language.specifiers`; ``property`` is the property's name for
@@ -293,7 +293,7 @@ class Override(ScenicStatement):
     """``override target specifier, ...``."""
 
     target: ast.expr
-    specifiers: list[Specifier]
+    specifiers: list[SpecifierPhrase]
     _fields = ("target", "specifiers")
 
 

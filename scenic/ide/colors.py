@@ -40,7 +40,7 @@ def presentation(red: float, green: float, blue: float, opacity: float) -> str:
 def _find(snapshot: Snapshot) -> Iterator[Color]:
     for node in walk(snapshot.tree):
         value: ast.expr | None = None
-        if isinstance(node, scenic.Specifier) and node.property == _PROPERTY:
+        if isinstance(node, scenic.SpecifierPhrase) and node.property == _PROPERTY:
             value = node.operands[0]
         elif isinstance(node, scenic.PropertyDef) and node.name == _PROPERTY:
             value = node.value

@@ -164,7 +164,7 @@ def _continuation(phrase: _Phrase, count: int) -> Continuation:
 
 
 _KINDS: Final = {
-    "Specifier": PhraseKind.SPECIFIER,
+    "SpecifierPhrase": PhraseKind.SPECIFIER,
     "Operation": PhraseKind.OPERATOR,
     "Temporal": PhraseKind.TEMPORAL,
 }

@@ -74,7 +74,7 @@ def _explain(word: str, kind: int, node: ast.AST) -> str | None:
         return documentation.of_name(word)
     if isinstance(node, ast.Attribute):
         return documentation.of_property(word)
-    if isinstance(node, scenic.Specifier):
+    if isinstance(node, scenic.SpecifierPhrase):
         if word == node.property:
             return documentation.of_property(word)
         declared = SPECIFIERS.get(node.specifier)

@@ -71,7 +71,7 @@ def _find(snapshot: Snapshot) -> Iterator[Hint]:
     for node in walk(snapshot.tree):
         if isinstance(node, scenic.New):
             yield from _priorities(snapshot, node)
-        if isinstance(node, scenic.Specifier):
+        if isinstance(node, scenic.SpecifierPhrase):
             declared = SPECIFIERS.get(node.specifier)
             if node.property is not None:
                 yield from _unit_of_property(snapshot, node.property, node.operands[0], angles)
@@ -87,7 +87,7 @@ def _find(snapshot: Snapshot) -> Iterator[Hint]:
 
 def _operands(
     snapshot: Snapshot,
-    node: ast.expr | scenic.Specifier,
+    node: ast.expr | scenic.SpecifierPhrase,
     declared: tuple[Operand, ...],
     given: list[ast.expr | None],
 ) -> Iterator[Hint]:

@@ -33,7 +33,7 @@ def _find(snapshot: Snapshot) -> Iterator[Lens]:
         return
     dynamic = any(
         isinstance(node, scenic.BehaviorDef | scenic.MonitorDef | scenic.Simulator | scenic.RequireMonitor)
-        or (isinstance(node, scenic.Specifier) and node.property == "behavior")
+        or (isinstance(node, scenic.SpecifierPhrase) and node.property == "behavior")
         or (isinstance(node, scenic.ScenarioDef) and node.compose is not None)
         for node in walk(tree)
     )

@@ -200,7 +200,7 @@ def _names(snapshot: Snapshot, imported: Callable[[str], str | None]) -> dict[tu
             found[node.lineno, node.col_offset] = ("parameter", none)
         elif isinstance(node, scenic.PropertyDef | scenic.ParamItem):
             found[node.lineno, node.col_offset] = ("property", frozenset({"definition"}))
-        elif isinstance(node, scenic.Specifier) and node.property is not None:
+        elif isinstance(node, scenic.SpecifierPhrase) and node.property is not None:
             put(node, "property", name=node.property)
         elif isinstance(node, ast.Import | ast.ImportFrom | scenic.Model):
             _of_import(snapshot, node, found)

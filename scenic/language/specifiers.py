@@ -1,6 +1,6 @@
 """The specifiers of ``new`` and ``override``, as data (section 6.2 of the specification).
 
-The names are those of ``Specifier.specifier`` in the tree and of the first argument of the prelude's ``specifier``;
+The names are those of ``SpecifierPhrase.specifier`` in the tree and of the first argument of the prelude's ``specifier``;
 the operands stand in the order declared here. How a specifier computes its values is the runtime's business; what it
 specifies, and how strongly, is declared here once for all.
 """

@@ -41,7 +41,7 @@ _WITH_WORDS: Final = (
     ast.keyword,
     scenic.Model,
     scenic.PropertyDef,
-    scenic.Specifier,
+    scenic.SpecifierPhrase,
 )
 """Nodes that hold names as plain texts."""
 
@@ -110,7 +110,7 @@ def _words(node: Any, module: Module) -> Iterator[Occurrence]:
             yield Occurrence(node.attr, module.attribute_span(node), not isinstance(node.ctx, ast.Load), node)
         case ast.keyword(arg=str(name)):
             yield Occurrence(name, module.word_span(node, name), False, node)
-        case scenic.Specifier(property=str(name)):
+        case scenic.SpecifierPhrase(property=str(name)):
             yield Occurrence(name, module.word_span(node, name), False, node)
         case scenic.PropertyDef():
             yield Occurrence(node.name, module.word_span(node, node.name), True, node)
@@ -204,7 +204,7 @@ def symbol_of(project: Project, module: Module, occurrence: Occurrence) -> Symbo
             return meaning(project, module, node)
         case ast.keyword():
             return _keyword(project, module, node)
-        case scenic.Specifier():
+        case scenic.SpecifierPhrase():
             return _property(project, module, node)
         case scenic.PropertyDef():
             return _own_property(project, module, node)
@@ -250,7 +250,7 @@ def _alias(project: Project, module: Module, alias: ast.alias, occurrence: Occur
     return symbol_of_module(target) if isinstance(target, Found) else symbol_of_exported(project, target)
 
 
-def _property(project: Project, module: Module, node: scenic.Specifier) -> Symbol | None:
+def _property(project: Project, module: Module, node: scenic.SpecifierPhrase) -> Symbol | None:
     """The property after ``with``: that of the class which is made."""
     owner = module.owner_of_specifier.get(node)
     if not isinstance(owner, scenic.New):

@@ -141,7 +141,7 @@ def alone(lines: list[bytes], node: ast.AST) -> Iterator[tuple[str, str]]:
     """Programs that hold the text of a node alone where such a node stands, and how to get there from a statement."""
     text = segment(lines, node)
     match node:
-        case tree.Specifier():
+        case tree.SpecifierPhrase():
             yield f"(new X {text})\n", "value.specifiers"
         case tree.Duration():
             yield f"wait for {text}\n", "duration"

@@ -159,7 +159,7 @@ def uses(word: str) -> Iterator[ast.expr]:
     yield tree.Operation(operator="deg", operands=[name(word)])
     yield tree.Operation(operator="distance", operands=[name(word), name(word)])
     yield tree.Operation(operator="distance past", operands=[name(word), called])
-    at = tree.Specifier(specifier="at", property=None, operands=[name(word)])
+    at = tree.SpecifierPhrase(specifier="at", property=None, operands=[name(word)])
     yield ast.List(elts=[tree.New(cls=x, specifiers=[at]), name(word), called], ctx=trees.LOAD)
 
 
@@ -203,7 +203,7 @@ def statements_with(value: ast.expr) -> Iterator[ast.stmt]:
     yield tree.WaitFor(duration=seconds)
     yield tree.TerminateWhen(simulation=False, condition=value, name=None)
     yield tree.Override(
-        target=value, specifiers=[tree.Specifier(specifier="visible", property=None, operands=[None])]
+        target=value, specifiers=[tree.SpecifierPhrase(specifier="visible", property=None, operands=[None])]
     )
     if isinstance(value, ast.Name | ast.Subscript):
         for targets in (

@@ -23,14 +23,14 @@ def parameters(**fields: Any) -> ast.arguments:
     return ast.arguments(**{"vararg": None, "kwarg": None, **empty, **fields})
 
 
-def specifier(form: Form, operands: Sequence[ast.expr]) -> tree.Specifier:
+def specifier(form: Form, operands: Sequence[ast.expr]) -> tree.SpecifierPhrase:
     """A specifier with as many of ``operands`` as it takes."""
     slots = [slot.target.index for slot in form.slots if slot.target is not None]
     found: list[ast.expr | None] = [None] * (len(slots) + len(form.absent))
     for index, operand in zip(slots, operands, strict=False):
         found[index or 0] = operand
     given = "heading" if form.operator == "with" else None
-    return tree.Specifier(specifier=form.operator, property=given, operands=found)
+    return tree.SpecifierPhrase(specifier=form.operator, property=given, operands=found)
 
 
 def build(form: Form, operands: Sequence[ast.expr]) -> ast.expr:
@@ -111,7 +111,7 @@ def in_specifiers(inner: Sequence[ast.expr]) -> Iterator[ast.expr]:
             for operand in inner:
                 operands: list[ast.expr] = [name(x) for x in "abc"[: len(form.slots)]]
                 operands[place] = operand
-                last = tree.Specifier(specifier="on", property=None, operands=[name("o")])
+                last = tree.SpecifierPhrase(specifier="on", property=None, operands=[name("o")])
                 yield tree.New(cls=name("C"), specifiers=[specifier(form, operands)])
                 yield tree.New(cls=name("C"), specifiers=[specifier(form, operands), last])
 
@@ -227,7 +227,7 @@ def _operator(draw: DrawFn, inner: SearchStrategy[ast.expr]) -> ast.expr:
 
 
 @st.composite
-def _specifiers(draw: DrawFn, inner: SearchStrategy[ast.expr], least: int = 0) -> list[tree.Specifier]:
+def _specifiers(draw: DrawFn, inner: SearchStrategy[ast.expr], least: int = 0) -> list[tree.SpecifierPhrase]:
     forms = draw(st.lists(st.sampled_from(SPECIFIERS), min_size=least, max_size=2))
     return [specifier(form, [draw(inner) for _ in form.slots]) for form in forms]
 

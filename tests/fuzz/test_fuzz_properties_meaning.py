@@ -190,7 +190,7 @@ def swap(node: Any) -> None:
     ("case", "message"),
     [
         (changed("x = distance to a from b\n", scenic.Operation, swap), "no form"),
-        (changed("x = new C beyond a by b from c\n", scenic.Specifier, swap), "no form"),
+        (changed("x = new C beyond a by b from c\n", scenic.SpecifierPhrase, swap), "no form"),
         (changed("x = a - b\n", ast.BinOp, lambda node: setattr(node, "op", ast.Add())), "no form"),
         (read_as("x =  a + b * c\n", "x = (a + b)* c\n"), "needs parentheses"),
         (read_as("x = a -  b - c\n", "x = a - (b - c)\n"), "needs parentheses"),

@@ -67,7 +67,7 @@ def test_what_once_failed_is_right_now(entry: corpus.Entry):
 
 def lambda_in_a_specifier(case: Case) -> None:
     for node in ast.walk(case.result.tree):
-        if isinstance(node, scenic.Specifier) and any(
+        if isinstance(node, scenic.SpecifierPhrase) and any(
             isinstance(part, ast.Lambda) for part in ast.walk(node)
         ):
             raise Violation("there is a lambda in a specifier")

@@ -24,7 +24,7 @@ ADDED: Mapping[str, tuple[tuple[str, str], ...]] = {
         (
             """    | "behind" a=expression""",
             """    | "beside" a=expression b=by_clause? {
-        Specifier(specifier="beside", property=None, operands=[a, b]) }
+        SpecifierPhrase(specifier="beside", property=None, operands=[a, b]) }
 """,
         ),
         ("""    | "abort" { Abort() }""", """    | "announce" a=expression { Announce(value=a) }\n"""),
@@ -174,7 +174,7 @@ def found(tmp_path_factory: pytest.TempPathFactory) -> Any:
 
 
 def test_the_parser_has_them(found: Any) -> None:
-    assert {"Operation:gap between", "Specifier:beside", "Announce:"} <= set(found["nodes"])
+    assert {"Operation:gap between", "SpecifierPhrase:beside", "Announce:"} <= set(found["nodes"])
 
 
 def test_checks_know_them(found: Any) -> None:

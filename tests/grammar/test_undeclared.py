@@ -36,7 +36,7 @@ def test_an_operator_with_another_number_of_operands() -> None:
 
 def test_a_specifier() -> None:
     old = """    | "behind" a=expression"""
-    new = """    | "inside" a=expression { Specifier(specifier="inside", property=None, operands=[a]) }\n"""
+    new = """    | "inside" a=expression { SpecifierPhrase(specifier="inside", property=None, operands=[a]) }\n"""
     check_refused(old, new + old, "'inside'", "specifiers.py")
 
 

@@ -1,51 +1,25 @@
 """The playground as its user meets it, in headless Chromium."""
 
-import shutil
 import time
 from collections.abc import Callable, Iterator
 from typing import Any
 
 import pytest
 from selenium import webdriver
-from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 
-BROWSER = shutil.which("chromium") or shutil.which("google-chrome")
-DRIVER = shutil.which("chromedriver")
+from tests.formats.browsers import MARKS, opened
 
-pytestmark = [
-    pytest.mark.slow,
-    pytest.mark.skipif(
-        not (BROWSER and DRIVER), reason="needs Chromium: apt-get install chromium chromium-driver"
-    ),
-]
+pytestmark = MARKS
 
 
 @pytest.fixture
 def page(playground: Callable[..., Any]) -> Iterator[webdriver.Chrome]:
-    options = webdriver.ChromeOptions()
-    options.binary_location = str(BROWSER)
-    for argument in (
-        "--headless=new",
-        "--no-sandbox",
-        "--disable-dev-shm-usage",
-        "--disable-background-networking",
-        "--disable-component-update",
-        "--enable-unsafe-swiftshader",
-        "--window-size=1300,900",
-    ):
-        options.add_argument(argument)
-    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
-    with playground() as address:
-        driver = webdriver.Chrome(options=options, service=Service(DRIVER))
-        try:
-            driver.get(address)
-            until(lambda: driver.execute_script("return document.body.dataset.server") == "ready")
-            yield driver
-        finally:
-            driver.quit()
+    with playground() as address, opened(address) as driver:
+        until(lambda: driver.execute_script("return document.body.dataset.server") == "ready")
+        yield driver
 
 
 def until(holds: Callable[[], Any], seconds: float = 40) -> Any:

@@ -29,7 +29,7 @@ _COMPOSING: Final = frozenset({"relative to", "offset by"})
 """Operators whose operands are angles where the result is one."""
 
 
-def _specifier(node: scenic.Specifier, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _specifier(node: scenic.SpecifierPhrase, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
     if node.property is not None:
         if node.property in _PROPERTIES:
             yield from _found(context, node.operands[0], f"`{node.property}` is")
@@ -166,5 +166,5 @@ RULES: Final[dict[type[ast.AST], NodeRule]] = {
     ast.Compare: _comparison,
     scenic.Operation: _operation,
     scenic.PropertyDef: _property,
-    scenic.Specifier: _specifier,
+    scenic.SpecifierPhrase: _specifier,
 }

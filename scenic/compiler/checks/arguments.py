@@ -200,7 +200,7 @@ def _own_method(function: ast.expr, context: Context) -> Any:
     return found if found.args.args and not found.args.posonlyargs and not abstract else None
 
 
-def _specifier(node: scenic.Specifier, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _specifier(node: scenic.SpecifierPhrase, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
     """``with behavior B``: the behavior is then made without arguments."""
     if node.property == "behavior" and node.operands:
         yield from _uncalled(node.operands[0], context)
@@ -264,5 +264,5 @@ def _listed(names: list[str]) -> str:
 RULES: Final[dict[type[ast.AST], NodeRule]] = {
     ast.Call: _call,
     scenic.Do: _do,
-    scenic.Specifier: _specifier,
+    scenic.SpecifierPhrase: _specifier,
 }

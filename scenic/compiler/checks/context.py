@@ -386,7 +386,7 @@ def _stored_attributes(context: Context) -> frozenset[str]:
 
 
 def _given(context: Context) -> frozenset[str]:
-    return frozenset(node.property for node, _ in context.nodes(scenic.Specifier))
+    return frozenset(node.property for node, _ in context.nodes(scenic.SpecifierPhrase))
 
 
 def _owners(context: Context) -> dict[str, list[Scope]]:

@@ -163,7 +163,7 @@ def _require_monitor(node: scenic.RequireMonitor, _scope: Scope, context: Contex
     yield from _wrong(node.monitor, ("monitor",), "require monitor", context)
 
 
-def _specifier(node: scenic.Specifier, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _specifier(node: scenic.SpecifierPhrase, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
     """SC314: ``with behavior`` with something else than a behavior."""
     if node.specifier == "with" and node.property == "behavior":
         for value in filter(None, node.operands[:1]):
@@ -215,5 +215,5 @@ RULES: Final[dict[type[ast.AST], NodeRule]] = {
     scenic.DoChoose: _do,
     scenic.DoShuffle: _do,
     scenic.RequireMonitor: _require_monitor,
-    scenic.Specifier: _specifier,
+    scenic.SpecifierPhrase: _specifier,
 }

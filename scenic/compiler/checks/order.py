@@ -202,7 +202,7 @@ def _uses(context: Context) -> Iterator[tuple[ast.AST, Scope]]:
     for node, scope in context.nodes(scenic.Operation):
         if node.operator in _OPERATORS and _implied(node, OPERATORS[node.operator].operands):
             yield node, scope
-    for node, scope in context.nodes(scenic.Specifier):
+    for node, scope in context.nodes(scenic.SpecifierPhrase):
         if node.specifier in _SPECIFIERS:
             declared = SPECIFIERS[node.specifier]
             if declared.reads_ego or _implied(node, declared.operands):

@@ -17,14 +17,14 @@ from scenic.language.specifiers import SPECIFIERS, Specified
 __all__ = ["RULES"]
 
 
-def _specified(node: scenic.Specifier) -> tuple[Specified, ...]:
+def _specified(node: scenic.SpecifierPhrase) -> tuple[Specified, ...]:
     """What a specifier gives a value."""
     if node.property is not None:
         return (Specified(node.property, 1),)
     return SPECIFIERS[node.specifier].specifies if node.specifier in SPECIFIERS else ()
 
 
-def _title(node: scenic.Specifier) -> str:
+def _title(node: scenic.SpecifierPhrase) -> str:
     return f"with {node.property}" if node.property is not None else node.specifier
 
 
@@ -44,15 +44,15 @@ def _new(node: scenic.New, _scope: Scope, context: Context) -> Iterator[Diagnost
         yield from _cycle(node, properties, context)
 
 
-def _conflicts(specifiers: list[scenic.Specifier], context: Context) -> Iterator[Diagnostic]:
+def _conflicts(specifiers: list[scenic.SpecifierPhrase], context: Context) -> Iterator[Diagnostic]:
     """SC301: the same specifier twice, or two that give one property with the same priority."""
     strongest: dict[str, int] = {}
     for specifier in specifiers:
         for item in _specified(specifier):
             if item.when is None:
                 strongest[item.property] = min(item.priority, strongest.get(item.property, item.priority))
-    given: dict[str, scenic.Specifier] = {}
-    kinds: dict[str, scenic.Specifier] = {}
+    given: dict[str, scenic.SpecifierPhrase] = {}
+    kinds: dict[str, scenic.SpecifierPhrase] = {}
     for specifier in specifiers:
         title = _title(specifier)
         if title in kinds:
@@ -121,7 +121,7 @@ def _finals(node: scenic.New, properties: Mapping[str, Property], context: Conte
 # Properties that need one another
 
 
-def _needs(specifier: scenic.Specifier) -> tuple[str, ...]:
+def _needs(specifier: scenic.SpecifierPhrase) -> tuple[str, ...]:
     """The properties that the value of a specifier certainly depends on."""
     declared = SPECIFIERS.get(specifier.specifier)
     if declared is None:
@@ -142,7 +142,7 @@ def _cycle(node: scenic.New, properties: Mapping[str, Property], context: Contex
     providers: dict[str, Any] = {}
     uncertain: set[str] = set()
     strength: dict[str, int] = {}
-    modifier: scenic.Specifier | None = None
+    modifier: scenic.SpecifierPhrase | None = None
     for specifier in node.specifiers:
         declared = SPECIFIERS.get(specifier.specifier)
         if declared is None:

@@ -23,7 +23,7 @@ __all__ = ["NOTED", "check_support", "check_supported_names"]
 _STATEMENTS: Final = tuple(
     getattr(scenic, statement.node) for statement in STATEMENTS.values() if not statement.available
 )
-NOTED: Final = (scenic.Operation, scenic.Specifier, scenic.Temporal, *_STATEMENTS)
+NOTED: Final = (scenic.Operation, scenic.SpecifierPhrase, scenic.Temporal, *_STATEMENTS)
 """The nodes that a feature can belong to, beside names."""
 
 _INSTEAD: Final = (
@@ -36,7 +36,7 @@ _NAMES: Final = frozenset(name.name for name in NAMES.values() if not name.avail
 
 def _checked() -> frozenset[type[ast.AST]]:
     """Of these, those of which there is any that may have to be refused."""
-    tables = ((scenic.Specifier, SPECIFIERS), (scenic.Temporal, TEMPORAL_OPERATORS))
+    tables = ((scenic.SpecifierPhrase, SPECIFIERS), (scenic.Temporal, TEMPORAL_OPERATORS))
     found = {cls for cls, table in tables if not all(each.available for each in table.values())}
     return frozenset({scenic.Operation, *_STATEMENTS, *found})
 
@@ -99,7 +99,7 @@ def _refused(node: Any) -> str | None:
     match node:
         case scenic.Operation(operator=name):
             return None if OPERATORS[name].available else f"the operator `{name}`"
-        case scenic.Specifier(specifier=name):
+        case scenic.SpecifierPhrase(specifier=name):
             return None if SPECIFIERS[name].available else f"the specifier `{name}`"
         case scenic.Temporal(operator=name):
             return None if TEMPORAL_OPERATORS[name].available else f"the temporal operator `{name}`"

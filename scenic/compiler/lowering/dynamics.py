@@ -52,7 +52,7 @@ class Lowerer(Protocol):
     def handlers(self, nodes: Sequence[ast.ExceptHandler]) -> list[ast.ExceptHandler]:
         """Lowered ``except`` clauses."""
 
-    def specifier(self, node: scenic.Specifier) -> ast.expr:
+    def specifier(self, node: scenic.SpecifierPhrase) -> ast.expr:
         """A lowered specifier."""
 
     def conditions(self) -> Conditions:

@@ -166,7 +166,7 @@ class _Program:
         cls = self.expression(node.cls)
         return prelude_call("new", [cls, *[self.specifier(part) for part in node.specifiers]], node)
 
-    def specifier(self, node: scenic.Specifier) -> ast.expr:
+    def specifier(self, node: scenic.SpecifierPhrase) -> ast.expr:
         args = [constant(node.specifier, node), *self._operands(node.operands, node)]
         options = {} if node.property is None else {"property": node.property}
         return prelude_call("specifier", args, node, options=options)

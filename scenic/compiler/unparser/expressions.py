@@ -535,7 +535,7 @@ class ExpressionWriter:
             return self.in_parentheses(node, lead)
         return f"new {node.cls.id} {self.specifiers(node.specifiers, after, closer)}"
 
-    def specifiers(self, nodes: Sequence[tree.Specifier], after: After, closer: str) -> str:
+    def specifiers(self, nodes: Sequence[tree.SpecifierPhrase], after: After, closer: str) -> str:
         """A list of specifiers."""
         texts = []
         last = len(nodes) - 1

@@ -195,7 +195,7 @@ def _plans(node: str, forms: tuple[Form, ...]) -> Mapping[tuple[str, tuple[int, 
 OPERATIONS: Final = _plans("Operation", FORMS)
 """How Scenic's operators are written, by name and operands left out."""
 CONDITIONS: Final = _plans("Temporal", FORMS)
-SPECIFIER_PLANS: Final = _plans("Specifier", SPECIFIERS)
+SPECIFIER_PLANS: Final = _plans("SpecifierPhrase", SPECIFIERS)
 
 
 @dataclass(frozen=True, slots=True)

@@ -321,6 +321,11 @@ class SideSurface(Region):
 def _face(call: Call, *columns: Column) -> Column:
     stack, facing = Stack(call, columns), call.payload
     faces = surface.draw_faces(stack.body(1), facing.side, facing.threshold, stack.column(0), stack.rows)
+    return _found(call, stack, faces)
+
+
+def _found(call: Call, stack: Stack, faces: Column) -> Column:
+    """The numbers of faces; a candidate is rejected where there is none."""
     result = stack.restored(faces.astype(np.int64))
     call.reject(result < 0)
     return result
@@ -375,9 +380,7 @@ def _landing_face(call: Call, *columns: Column) -> Column:
     stack, facing = Stack(call, columns), call.payload
     point, direction = stack.column(0), stack.column(1)
     faces, _ = projection.project(stack.body(2), facing.side, facing.threshold, point, direction, stack.rows)
-    result = stack.restored(faces.astype(np.int64))
-    call.reject(result < 0)
-    return result
+    return _found(call, stack, faces)
 
 
 def _landing_point(call: Call, *columns: Column) -> Column:
