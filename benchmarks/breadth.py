@@ -26,7 +26,8 @@ from typing import Any
 HERE = Path(__file__).parent
 PROGRAMS = tuple(sorted(path.stem for path in (HERE / "breadth").glob("*.scenic")))
 BATCH = 1000
-LOOP = 300
+LOOP = 3000
+"""Long enough for several of the times at which a loop samples ahead."""
 THEIRS = 200
 CROWD = "".join(
     f"thing{i} = new Object at (Range({4 * (i % 20)}, {4 * (i % 20) + 2}), Range({4 * (i // 20)}, {4 * (i // 20) + 2})),"
