@@ -79,7 +79,7 @@ _STATEMENT: Final = re.compile(
     # Words that start nothing but statements,
     rf"{_any_of(sorted(STATEMENT_WORDS | {'from'}))}(?=[ \t:(\n\[])"
     # those that start other things as well, if their line ends as it must,
-    rf"|{_any_of(sorted(_WITH_OPERAND))}\b[^\n]*+(?<=:)(?:[ \t]*+(?:\#[^\n]*+)?+)(?=\n)"
+    rf"|{_any_of(sorted(_WITH_OPERAND))}\b[^\n]*+(?<=[:(\[{{])(?:[ \t]*+(?:\#[^\n]*+)?+)(?=\n)"
     rf"|{_any_of(_soft_start(form) for form in STATEMENT_FORMS if form.is_soft and form.start not in _WITH_OPERAND)}"
     r"|new[ \t]++[A-Z]|@[A-Za-z_]"
     # and assignments.
@@ -97,7 +97,7 @@ _AFTER_TEXT: Final = re.compile(
 """A line of a text that is never closed which starts so is hardly prose."""
 
 _CALL: Final = re.compile(
-    r"[A-Za-z_][\w.]*+\([^\n]*+(?<=\))[ \t]*+(?=\n)|[a-z]\w*+(?:\[[a-z, ]++\])?+:[ \t]++\S"
+    r"[A-Za-z_][\w.]*+\((?:[^\n]*+(?<=\)))?+[ \t]*+(?=\n)|[a-z]\w*+(?:\[[a-z, ]++\])?+:[ \t]++\S"
 )
 """So is one that starts so, in a bracket but not in a string: a call on a line of its own, a property."""
 

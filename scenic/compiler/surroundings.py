@@ -70,6 +70,9 @@ class Surroundings(Protocol):
     def is_missing(self, alias: ast.alias) -> bool:
         """Whether nothing is known that an import of a name could mean."""
 
+    def is_begun(self, alias: ast.alias) -> bool:
+        """Whether what an import names is missing, and the beginning of something that is there."""
+
     def sets_ego(self, statement: ast.Import | ast.ImportFrom | scenic.Model) -> bool:
         """Whether an import may bring an ego along."""
 

@@ -104,8 +104,11 @@ class Checks:
                 self._begin(uri)
 
     def pulled(self, uri: str) -> None:
-        """The client asks for a document's problems: they are no longer sent as well, or it would show them twice."""
-        if uri not in self._pulled:
+        """The client asks for a document's problems: they are no longer sent as well, or it would show them twice.
+
+        A client that does not say that it can ask goes by what it is sent, whatever it tries besides.
+        """
+        if uri not in self._pulled and self._session.client.has("textDocument", "diagnostic"):
             self._pulled.add(uri)
             if uri in self._told:
                 self._told.discard(uri)

@@ -2,7 +2,7 @@
 
 import ast
 import os
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from functools import cached_property
 from typing import Any, Final
 
@@ -97,6 +97,21 @@ class Imports:
         if statement is None:
             return self._project.find(alias.name, importer=self._source.filename).is_missing
         return self.member(alias) is None
+
+    def is_begun(self, alias: ast.alias) -> bool:
+        """Whether what an import names is missing, and the beginning of something that is there."""
+        if not self.is_missing(alias):
+            return False
+        importer = self._source.filename
+        statement = self._statements.get(alias)
+        if statement is None:
+            home, _, beginning = alias.name.rpartition(".")
+            names: Collection[str] = self._project.finder.importable(os.path.dirname(importer), home)
+            if home:
+                names = {*names, *self._project.exports_of(self._project.find(home, importer=importer)).names}
+        else:
+            beginning, names = alias.name, self._project.exports_of(self.found(statement)).names
+        return any(name.startswith(beginning) for name in names)
 
     def attribute(self, node: ast.Attribute) -> Exported | Found | None:
         """What ``m.name`` means, where ``m`` is a module that the program imports."""

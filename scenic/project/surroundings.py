@@ -78,6 +78,9 @@ class _Surroundings:
     def is_missing(self, alias: ast.alias) -> bool:
         return self._imports.is_missing(alias)
 
+    def is_begun(self, alias: ast.alias) -> bool:
+        return self._imports.is_begun(alias)
+
     def sets_ego(self, statement: ast.Import | ast.ImportFrom | scenic.Model) -> bool:
         return any(self._may_set_ego(found) for found in self._imports.modules(statement))
 

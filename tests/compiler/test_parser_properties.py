@@ -60,13 +60,14 @@ def test_words_in_any_order(pieces: list[str]) -> None:
     check("".join(pieces))
 
 
-@settings(max_examples=200)
+@settings(max_examples=200, deadline=None)
 @given(st.sampled_from(PROGRAMS), st.integers(0, 10_000), st.integers(0, 10), st.sampled_from(PIECES))
 def test_programs_with_a_change(program: str, place: int, length: int, piece: str) -> None:
     place %= len(program)
     check(program[:place] + piece + program[place + length :])
 
 
+@settings(deadline=None)
 @given(st.sampled_from(PROGRAMS), st.integers(0, 10_000))
 def test_programs_cut_short(program: str, place: int) -> None:
     check(program[: place % len(program)])

@@ -334,3 +334,17 @@ def test_a_mistake_after_else_leaves_the_statement_whole(header: str) -> None:
     [node] = result.tree.body
     assert isinstance(node, ast.For | ast.AsyncFor | ast.While | ast.If)
     assert statements(node.orelse) == ["Pass", "ErrorStatement", "Pass"]
+
+
+def test_a_guard_that_is_half_typed_accuses_itself_and_no_other() -> None:
+    assert lines("behavior B():\n    prec\n    invariant: True\n    take 1\n") == [2]
+    assert lines("behavior B():\n    'text'\n    precondition\n    precondition: True\n    wait\n") == [3]
+    assert lines("behavior B():\n    wait\n    precondition: True\n") == [3]
+
+
+def test_what_keeps_the_parts_of_a_scenario_from_being_read_is_accused() -> None:
+    text = "scenario S():\n    precondition: True\n    preconition: True\n    setup: mutate\n"
+    assert lines(text) == [3]
+    assert "did you mean `precondition`?" in (parse(text).diagnostics[0].help or "")
+    assert lines("scenario S():\n    invariant: True\n    mutate\n    compose: wait\n") == [3]
+    assert lines("scenario S():\n    precondition: True\n    mutate\n") == [2]

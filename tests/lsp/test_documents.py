@@ -165,7 +165,7 @@ def test_settings_and_ignore_comments_hold(client: Client, tmp_path: Path) -> No
 
 
 def test_problems_are_sent_or_asked_for_but_not_both(client: Client, tmp_path: Path) -> None:
-    client.start()
+    client.start({**FULL, "textDocument": {**FULL["textDocument"], "diagnostic": {}}})
     uri = (tmp_path / "a.scenic").as_uri()
     client.open(uri, "x = undefined_name\n")
     sent = client.published(uri, version=1)
@@ -182,6 +182,17 @@ def test_problems_are_sent_or_asked_for_but_not_both(client: Client, tmp_path: P
         "textDocument/diagnostic", {"textDocument": {"uri": uri}, "previousResultId": report["resultId"]}
     )
     assert changed["items"][0]["range"]["start"] == {"line": 0, "character": 5}
+
+
+def test_a_client_that_does_not_say_that_it_asks_is_told_all_the_same(client: Client, tmp_path: Path) -> None:
+    client.start()
+    uri = (tmp_path / "a.scenic").as_uri()
+    client.open(uri, "x = undefined_name\n")
+    sent = client.published(uri, version=1)
+    report = client.request("textDocument/diagnostic", {"textDocument": {"uri": uri}})
+    assert report["items"] == sent
+    assert client.published(uri, version=client.change(uri, "x = 1\n")) == []
+    assert len(client.published(uri, version=client.change(uri, "x = undefined_name\n"))) == 1
 
 
 def test_the_whole_workspace(client: Client, tmp_path: Path) -> None:

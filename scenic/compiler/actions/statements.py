@@ -2,12 +2,16 @@
 
 import ast
 from collections.abc import Iterable, Sequence
-from typing import Any
+from typing import Any, Final
 
 from scenic.compiler import tree
 from scenic.compiler.actions.common import Place, make, place_of
 from scenic.compiler.actions.definitions import DefinitionActions
 from scenic.compiler.actions.expressions import ExpressionActions
+from scenic.language.spelling import nearest
+
+_PARTS: Final = frozenset({"setup", "compose"})
+"""The words that the parts of a scenario begin with."""
 
 
 class StatementActions(DefinitionActions, ExpressionActions):
@@ -16,13 +20,26 @@ class StatementActions(DefinitionActions, ExpressionActions):
     def _no_guards(self, body: Iterable[Any], message: str, help: str) -> None:
         """Report statements that read like guards; where they stand, they would be annotations."""
         beginning = True
+        before: list[tuple[ast.stmt, str]] = []
         for statement in body:
             word = _guard_word(statement)
             if word is None:
+                if isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Name):
+                    before.append((statement, statement.value.id))
                 beginning = beginning and self._may_precede_guards(statement)
                 continue
             if beginning and statement.value is None and "stand before" in message:
-                continue  # What stands before it is a guard that is being typed.
+                # What stands before it is a guard that is being typed.
+                for half, begun in before:
+                    meant = next((guard for guard in tree.GUARDS if guard.startswith(begun)), word)
+                    self._report(
+                        place_of(half),
+                        f"`{begun}` is no guard without a condition, and only guards stand before `{word}`",
+                        help=f"write `{meant}: condition`",
+                        code="SC132",
+                    )
+                before = []
+                continue
             if statement.value is None:
                 self._report(place_of(statement), message.format(word), help=help, code="SC132")
             else:
@@ -62,11 +79,28 @@ class StatementActions(DefinitionActions, ExpressionActions):
 
     def one_block(self, body: list[ast.stmt]) -> tuple[Any, ...]:
         """The parts of a scenario that is all set-up."""
-        self._no_guards(
-            body,
-            "a scenario without `setup` and `compose` has no `{}`",
-            "put the other statements into `setup:`",
+        part = next((index for index, each in enumerate(body) if _annotated(each) in _PARTS), None)
+        before = body[: part or 0]
+        odd = next(
+            (each for each in before if not tree.is_documentation(each) and _guard_word(each) is None), None
         )
+        if part is not None and odd is not None:
+            # It keeps the part after it, and the guards before it, from being read as such.
+            name = _annotated(odd)
+            guard = None if name is None else nearest(name, tree.GUARDS)
+            if not isinstance(odd, tree.ErrorStatement):
+                self._report(
+                    place_of(odd),
+                    f"only guards may stand before `{_annotated(body[part])}`",
+                    help=f"did you mean `{guard}`?" if guard else "move it into `setup:`",
+                    code="SC132",
+                )
+        else:
+            self._no_guards(
+                body,
+                "a scenario without `setup` and `compose` has no `{}`",
+                "put the other statements into `setup:`",
+            )
         if _docstring(body[0]) is not None:
             return (body[0], [], body[1:], None)
         return (None, [], body, None)
@@ -194,16 +228,17 @@ class StatementActions(DefinitionActions, ExpressionActions):
                     stack += [each for each in value if isinstance(each, ast.AST)]
 
 
-def _guard_word(statement: Any) -> str | None:
-    """The word of what reads like a guard."""
-    if (
-        isinstance(statement, ast.AnnAssign)
-        and statement.simple
-        and isinstance(statement.target, ast.Name)
-        and statement.target.id in tree.GUARDS
-    ):
+def _annotated(statement: Any) -> str | None:
+    """The name that a statement annotates: the word before its colon."""
+    if isinstance(statement, ast.AnnAssign) and statement.simple and isinstance(statement.target, ast.Name):
         return statement.target.id
     return None
+
+
+def _guard_word(statement: Any) -> str | None:
+    """The word of what reads like a guard."""
+    name = _annotated(statement)
+    return name if name in tree.GUARDS else None
 
 
 def _docstring(statement: ast.stmt) -> str | None:

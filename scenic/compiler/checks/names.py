@@ -12,7 +12,7 @@ from scenic.compiler.checks.blocks import position
 from scenic.compiler.checks.context import Context
 from scenic.compiler.checks.pieces import Piece
 from scenic.compiler.checks.places import word_span
-from scenic.compiler.checks.unfinished import alone_names, begun_word, text_before, unfinished
+from scenic.compiler.checks.unfinished import alone_names, begun_word, may_bind_more, text_before, unfinished
 from scenic.compiler.scopes import Binding, BindingKind, Reference, ScopeKind
 from scenic.language.diagnostics import Diagnostic, Label
 from scenic.language.names import CONVERSIONS, NAMES, TRACKED, NameKind
@@ -25,6 +25,9 @@ NOTED: Final = (scenic.ErrorStatement, scenic.New)
 
 MOST_SUGGESTIONS: Final = 100
 """Names for which a similar one is looked for: a file full of undefined names must not take long."""
+
+_IMPORTS: Final = ("import", "from", "model")
+"""What statements begin with that bring names of other modules."""
 
 _BUILTINS: Final = frozenset(dir(builtins))
 
@@ -56,7 +59,7 @@ def check_names(context: Context, provided: Collection[str]) -> Iterator[Diagnos
     classes: set[ast.expr] = set()
     alone: set[ast.Name] = set()
     being_typed: set[str] = set()
-    importing = False
+    importing = half_typed = False
     suggestions: dict[str, str | None] = {}
     elsewhere: dict[str, Binding] | None = None
     missing = [
@@ -76,7 +79,14 @@ def check_names(context: Context, provided: Collection[str]) -> Iterator[Diagnos
             alone = alone_names(context)
             words = {each.id for each in alone}
             importing = any(_is_import(word) for word in words) or _is_import_broken(context)
-            being_typed = words | _last_words(context) | _missing_imports(context)
+            missing_imports = _missing_imports(context)
+            half_typed = may_bind_more(context) or any(
+                context.surroundings is not None and context.surroundings.is_begun(site)
+                for binding in missing_imports
+                for site in binding.sites
+                if isinstance(site, ast.alias)
+            )
+            being_typed = words | _last_words(context) | {each.name for each in missing_imports}
             elsewhere = _bound_somewhere(context)
         if name in skipped:
             continue
@@ -88,6 +98,8 @@ def check_names(context: Context, provided: Collection[str]) -> Iterator[Diagnos
         if node in classes:
             if name not in suggestions and len(suggestions) < MOST_SUGGESTIONS:
                 suggestions[name] = nearest(name, _classes_in_reach(reference, context))
+            if half_typed and suggestions.get(name) is None:
+                continue
             yield _unknown_class(context, reference, suggestions.get(name))
             continue
         keyword = unfinished(context, node)
@@ -108,6 +120,9 @@ def check_names(context: Context, provided: Collection[str]) -> Iterator[Diagnos
                 or _only_one(each for each in own.union(TRACKED) if len(name) > 1 and each.startswith(name))
             )
         suggestion = suggestions.get(name)
+        if half_typed and suggestion is None and node not in alone:
+            # No slip of another name: what is being typed may bind it.
+            continue
         yield context.error(
             "SC202",
             f"the name `{name}` is not defined",
@@ -156,19 +171,19 @@ def _may_become(word: str, name: str) -> bool:
 
 def _is_import(word: str) -> bool:
     """Whether a word is the beginning of an import."""
-    return any(keyword.startswith(word) for keyword in ("import", "from"))
+    return any(keyword.startswith(word) for keyword in _IMPORTS)
 
 
 def _is_import_broken(context: Context) -> bool:
     """Whether an import could not be parsed, which may bind anything."""
     lines = (context.source.line(node.lineno).split() for node, _ in context.nodes(scenic.ErrorStatement))
-    return any(words and words[0] in ("import", "from") for words in lines)
+    return any(words and words[0] in _IMPORTS for words in lines)
 
 
-def _missing_imports(context: Context) -> set[str]:
+def _missing_imports(context: Context) -> list[Binding]:
     """Names that are imported from where they are not, and not used: they may be the beginnings of others."""
-    return {
-        binding.name
+    return [
+        binding
         for binding in context.resolution.names.values()
         if binding.kinds <= {BindingKind.MODULE, BindingKind.IMPORTED}
         and not context.resolution.is_read(binding)
@@ -177,7 +192,7 @@ def _missing_imports(context: Context) -> set[str]:
             and (context.surroundings is None or context.surroundings.is_missing(site))
             for site in binding.sites
         )
-    }
+    ]
 
 
 def _bound_somewhere(context: Context) -> dict[str, Binding]:

@@ -78,10 +78,14 @@ def _names(context: Context, starts: list[tuple[int, int]]) -> Iterator[Diagnost
             ]
         defined.update(stretch.bound)
     reported: set[str] = set()
+    half_typed = min(map(position, alone_names(context)), default=None)
     for node in sorted(early, key=position):
         name = node.id
         if name in reported or node in resolution.tolerated:
             continue
+        if half_typed is not None and half_typed < position(node):
+            # Names that stand alone are about to be targets, and this may be one that comes after them.
+            break
         here = _statement(starts, node)
         if here < 0 or here > first[name] or isinstance(body[here], _DEFERRED):
             continue

@@ -1,22 +1,31 @@
 """Names that are words of the language in what is not finished: ``facing toward``, ``require always``, ``do choose``."""
 
 import ast
+import re
 from collections.abc import Iterator, Mapping
 from functools import cache
 from itertools import pairwise
 from types import MappingProxyType
 from typing import Final
 
+from scenic.compiler import tree as scenic
 from scenic.compiler.checks.context import Context
 from scenic.compiler.forms import declared_forms
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.keywords import SOFT_KEYWORDS, TEMPORAL_OPERATORS
 from scenic.language.statements import STATEMENTS
 
-__all__ = ["alone_names", "begun_word", "text_before", "unfinished"]
+__all__ = ["alone_names", "begun_word", "may_bind_more", "text_before", "unfinished"]
 
 _ENDS: Final = ("", ",", ")", "]", "}", ";", ":", "#")
 """What may follow where something is missing: the end of the line, or one of these."""
+
+
+_HALF_BOUND: Final = re.compile(
+    r"[^=]*[^=<>!]=(?:(?!=).*[=([{])?\s*$"
+    r"|(?=.*[,(\[*])\s*(?:[*(\[ ]{0,9}+[^\W\d]\w*+[)\] ]{0,9}+,)*[*(\[ ]{0,9}+\w*+$"
+)
+"""An assignment that ends with ``=`` or an open bracket, or the beginning of its targets."""
 
 
 @cache
@@ -102,8 +111,37 @@ def unfinished(context: Context, node: ast.Name) -> Diagnostic | None:
 
 
 def alone_names(context: Context) -> set[ast.Name]:
-    """The names that are whole statements, as all are that have just begun to be typed."""
-    return {node.value for node, _ in context.nodes(ast.Expr) if isinstance(node.value, ast.Name)}
+    """The names that nothing binds and that are whole statements, alone or in a row: all have just begun to be typed."""
+    return {
+        name
+        for node, _ in context.nodes(ast.Expr)
+        for name in _names_in_row(node.value)
+        if (reference := context.resolution.reference(name)) is not None and reference.binding is None
+    }
+
+
+def _names_in_row(value: ast.expr) -> Iterator[ast.Name]:
+    """The names of a value that are targets as soon as ``=`` follows; none if it could not be assigned to."""
+    if isinstance(value, ast.Name):
+        yield value
+    elif isinstance(value, ast.Starred):
+        yield from _names_in_row(value.value)
+    elif isinstance(value, ast.Tuple | ast.List):
+        for each in value.elts:
+            yield from _names_in_row(each)
+
+
+def may_bind_more(context: Context) -> bool:
+    """Whether a statement is half typed, so that any name may be one that the rest of it binds.
+
+    Such are names that nothing binds and that are whole statements, assignments that end with ``=`` or an open bracket, and beginnings of targets.
+    """
+    if alone_names(context):
+        return True
+    return any(
+        _HALF_BOUND.match(context.source.line(node.lineno))
+        for node, _ in context.nodes(scenic.ErrorStatement)
+    )
 
 
 def begun_word(context: Context, node: ast.Name) -> str | None:

@@ -1,0 +1,1 @@
+behavior B(** p: Range): self

@@ -1,0 +1,3 @@
+match Range:
+    case 0 as d: pass
+    case 0: d

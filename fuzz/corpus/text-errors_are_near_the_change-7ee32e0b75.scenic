@@ -1,0 +1,1 @@
+async def g() -> 0:	scenario Main(p = [], q = True): pass;  # commentdef offset(): return; yield Discrete[lambda: g] relative to g & g offset by Uniform; pass  # commentscenario next:	''  # comment	precondition: ''	precondition: g	precondition: next  # comment	preconition: next == next	setup: mutate

@@ -1,0 +1,1 @@
+behavior B(): 	precondition 	precondition:self 	pass
