@@ -10,6 +10,7 @@ from scenic.compiler.check import check_again
 from scenic.compiler.compile import Checked
 from scenic.compiler.generated import WORDS
 from scenic.compiler.incremental import Revision, revise
+from scenic.compiler.lexer import lex
 from scenic.compiler.parser import DEEPEST, ParseResult, recursion_limit
 from scenic.compiler.resolver import bind_again
 from scenic.compiler.scopes import Resolution, Scope
@@ -20,7 +21,7 @@ from scenic.language.diagnostics import Diagnostic
 from scenic.language.source import Source
 from scenic.language.spans import Span
 
-__all__ = ["Cancelled", "Snapshot"]
+__all__ = ["Cancelled", "PythonSnapshot", "Snapshot"]
 
 _T = TypeVar("_T")
 
@@ -211,6 +212,24 @@ class Snapshot:
             resolution = bind_again(tree, self._before_names)
         self._before_names = None
         return resolution
+
+
+class PythonSnapshot(Snapshot):
+    """A module of Python, of which there are only the tokens and the tree, which Python's own parser has made."""
+
+    def __init__(self, source: Source, tree: ast.Module) -> None:
+        super().__init__(source.text, source.filename)
+        self._tree = tree
+
+    @property
+    def tokens(self) -> Tokens:
+        """The tokens of the text."""
+        return self._once("tokens", lambda: lex(self.text, WORDS))
+
+    @property
+    def tree(self) -> ast.Module:
+        """The tree; empty if the text is no Python."""
+        return self._tree
 
 
 def _placed(node: ast.AST) -> Iterator[ast.AST]:

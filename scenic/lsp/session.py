@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, Final
 
 from scenic.configuration.project import Configurations
-from scenic.ide.snapshot import Snapshot
+from scenic.ide.snapshot import PythonSnapshot, Snapshot
 from scenic.language.errors import ScenicError
 from scenic.language.selection import Rules
 from scenic.language.source import Source, read_source
@@ -222,9 +222,11 @@ class Session:
         return self.project
 
     def workspace_snapshots(self) -> list[tuple[str, Callable[[], Snapshot]]]:
-        """The Scenic files of the workspace, each with what gives its snapshot: made when it is first asked for."""
-        opened = {each.snapshot.filename: each.snapshot for each in self.documents.values()}
-        names = dict.fromkeys([*opened, *(name for name in self.project.files() if name.endswith(SUFFIXES))])
+        """The files of the workspace, each with what gives its snapshot: made when it is first asked for."""
+        opened = {
+            each.snapshot.filename: each.snapshot for each in self.documents.values() if each.is_program
+        }
+        names = dict.fromkeys([*opened, *self.project.files()])
         return [(name, self._snapshot_of(name, opened.get(name))) for name in names]
 
     def _snapshot_of(self, filename: str, opened: Snapshot | None) -> Callable[[], Snapshot]:
@@ -238,7 +240,12 @@ class Session:
                 return Snapshot("", filename)
             kept = known.get(filename)
             if kept is None or kept[0] is not module:
-                kept = known[filename] = (module, Snapshot(module.source.text, filename))
+                own = (
+                    Snapshot(module.source.text, filename)
+                    if module.is_scenic
+                    else PythonSnapshot(module.source, module.tree)
+                )
+                kept = known[filename] = (module, own)
             return kept[1]
 
         return make

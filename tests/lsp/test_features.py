@@ -360,6 +360,26 @@ def test_symbols_of_the_workspace(project: Project) -> None:
     assert len(project.client.request("workspace/symbol", {"query": ""})) > 10
 
 
+def test_symbols_of_python_modules(tmp_path: Path) -> None:
+    (tmp_path / "tools.py").write_text("# new\nnew = 3\n\n@cache\nclass Hammer:\n    def hit(self): pass\n")
+    (tmp_path / "broken.py").write_text("def (:")
+    client = Client()
+    try:
+        client.start(FULL, tmp_path)
+        found = client.request("workspace/symbol", {"query": ""})
+        places = {each["name"]: (each["location"]["range"], each.get("containerName")) for each in found}
+        assert {
+            name: (place["start"]["line"], place["start"]["character"]) for name, (place, _) in places.items()
+        } == {
+            "new": (1, 0),
+            "Hammer": (4, 6),
+            "hit": (5, 8),
+        }
+        assert places["hit"][1] == "Hammer"
+    finally:
+        client.end()
+
+
 # Structure
 
 
