@@ -8,7 +8,7 @@ follows goes on with it, which is looked at each time.
 
 import ast
 from bisect import bisect_left, bisect_right
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -85,13 +85,26 @@ def revise(text: str, before: Revision | None = None, *, filename: str = "<strin
 
 def _difference(before: Sequence[str], after: Sequence[str]) -> _Change:
     most = min(len(before), len(after))
-    first = 0
-    while first < most and before[first] == after[first]:
-        first += 1
-    last = 0
-    while last < most - first and before[-1 - last] == after[-1 - last]:
-        last += 1
+    first = _same(lambda begin, end: before[begin:end] == after[begin:end], most)
+    last = _same(
+        lambda begin, end: (
+            before[len(before) - end : len(before) - begin] == after[len(after) - end : len(after) - begin]
+        ),
+        most - first,
+    )
     return _Change(first, last, len(before), len(after))
+
+
+def _same(agree: Callable[[int, int], bool], most: int) -> int:
+    """How many items are the same, of at most so many: found by halves, each of which is compared at once."""
+    found = 0
+    while most > found:
+        half = (most - found + 1) // 2
+        if agree(found, found + half):
+            found += half
+        else:
+            most = found + half - 1
+    return found
 
 
 # Tokens
@@ -192,13 +205,16 @@ def _known(tokens: Tokens, before: Parsed, change: _Change, splice: _Splice | No
     if splice is not None and not (splice.tokens is tokens and splice.old is old and not wrong):
         splice = None
     found: dict[int, tuple[list[ast.stmt], int]] = {}
-    for start, (statements, stop) in before.statements.items():
+    for start, known in before.statements.items():
+        statements, stop = known
         if splice is not None and (stop <= splice.begin or start >= splice.end):
             # There is no need to compare tokens that have been taken over.
-            moved = splice.moved if start >= splice.end else 0
-            if start >= splice.end and change.shift:
+            if start < splice.end or not (splice.moved or change.shift):
+                found[start] = known
+                continue
+            if change.shift:
                 statements = [_shifted(each, change.shift) for each in statements]
-            found[start + moved] = (statements, stop + moved)
+            found[start + splice.moved] = (statements, stop + splice.moved)
             continue
         line, last_line = old.lines[start], old.end_lines[stop - 1]
         if old.kinds[stop - 1] == DEDENT:

@@ -6,7 +6,6 @@ running the program. It uses an explicit stack, so that no depth of nesting is t
 
 import ast
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from itertools import islice
 from types import MappingProxyType
 from typing import Any, Final, NamedTuple
 
@@ -109,9 +108,8 @@ def bind_again(tree: ast.Module, before: Resolution | None) -> Resolution:
 def _stands(stretch: Stretch, body: list[ast.stmt], begin: int) -> bool:
     """Whether the statements of a stretch are these very ones."""
     own = stretch.statements
-    return len(body) - begin >= len(own) and all(
-        one is other for one, other in zip(own, islice(body, begin, begin + len(own)), strict=True)
-    )
+    # Nodes are equal only to themselves.
+    return own == tuple(body[begin : begin + len(own)])
 
 
 def _in_stretches(body: list[ast.stmt], module: Scope) -> list[Stretch]:

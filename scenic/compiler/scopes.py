@@ -7,7 +7,6 @@ import ast
 import builtins
 from bisect import bisect_left
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from copy import copy
 from dataclasses import dataclass, field
 from enum import StrEnum
 from functools import cached_property
@@ -265,16 +264,21 @@ class Resolution:
                     binding.kinds.add(kind)
         return names
 
+    def _copy(self) -> "Resolution":
+        new = Resolution.__new__(Resolution)
+        new.__dict__.update(self.__dict__)
+        return new
+
     def with_findings(self, diagnostics: tuple[Diagnostic, ...], *, wildcard: bool) -> "Resolution":
         """The same names, with what was found out about them."""
-        new = copy(self)
+        new = self._copy()
         new.diagnostics = diagnostics
         new.wildcard = wildcard
         return new
 
     def with_references(self, more: Mapping[ast.AST, Reference]) -> "Resolution":
         """The same names, with some more nodes that mean one of them."""
-        new = copy(self)
+        new = self._copy()
         new._more = {**self._more, **more}
         new.__dict__.pop("references", None)
         return new

@@ -115,6 +115,7 @@ class Project:
         self.derived: dict[object, Any] = {}
         """What others compute from the modules; emptied when any of them changes."""
         self._files = object()
+        self._absolute: dict[str, str] = {}
 
     # Texts
 
@@ -177,7 +178,10 @@ class Project:
 
     def module(self, filename: str) -> Module | None:
         """The module in a file; ``None`` if it cannot be read, or is too large to look into."""
-        filename = os.path.abspath(filename)
+        own = self._absolute.get(filename)
+        if own is None:
+            own = self._absolute[filename] = os.path.abspath(filename)
+        filename = own
         opened = self._opened.get(filename)
         if opened is not None:
             return opened

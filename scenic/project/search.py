@@ -80,6 +80,7 @@ class Finder:
         self._entries: dict[str, frozenset[str]] = {}
         self._found: dict[tuple[str, str, int], Found] = {}
         self._folders: dict[str, tuple[str, ...]] = {}
+        self._folder_of: dict[str, str] = {}
 
     def forget(self) -> None:
         """Look at the folders again from now on."""
@@ -88,7 +89,9 @@ class Finder:
 
     def find(self, name: str, *, importer: str, level: int = 0) -> Found:
         """The module that ``name`` means in the file ``importer``; ``level`` counts the dots before it."""
-        folder = os.path.dirname(os.path.abspath(importer))
+        folder = self._folder_of.get(importer)
+        if folder is None:
+            folder = self._folder_of[importer] = os.path.dirname(os.path.abspath(importer))
         key = (folder, name, level)
         found = self._found.get(key)
         if found is None:

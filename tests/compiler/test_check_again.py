@@ -170,6 +170,10 @@ def h(a): yield a
 del x
 global x
 x is 3
+w = new list
+w = new dict
+class List: width: 1
+class Lists(Object): pass
 """.splitlines()
 """Statements of which what is said depends on others, with ``\\n`` for line ends."""
 
@@ -227,3 +231,42 @@ def test_little_is_looked_at_again() -> None:
     assert after.kept is not None
     fresh = [key for key, said in after.kept.said.items() if before.kept.said.get(key) is not said]
     assert 0 < len(fresh) <= 6
+
+
+@pytest.mark.parametrize(
+    ("first", "last"),
+    [
+        ("w = new list", "class Lists(Object): pass"),
+        ("class A(Object): lenght: 4", "w.lenght = 3"),
+        ("class A(Object): lenght: 4", "w = new Object with lenght 3"),
+        (
+            "class A:\n    def f(self): self.g(1)\n    def g(self): return 3",
+            "class B:\n    def g(self, a): return 4",
+        ),
+        ("class A:\n    def f(self): self.g(1)\n    def g(self): return 3", "w.g = 3"),
+        ("behavior B():\n    while True:\n        pass", "w = = 3"),
+        ("w = new Objct", "from m import *"),
+        ("x = A(1)", "class A(Object): pass"),
+        ("x = A(1)\nclass C(B): pass", "class B(Object): pass\nA = C"),
+    ],
+)
+def test_what_is_said_follows_what_stands_far_away(first: str, last: str) -> None:
+    lines = [
+        first,
+        "A = B = w = 1" if "A(1)" not in first else "w = 1",
+        *(f"x{index} = {index}" for index in range(60)),
+    ]
+    texts = ["\n".join([*lines, end]) for end in ("y = 1", last, "y = 1")]
+    revision, names, checked = None, None, None
+    said = []
+    for text in texts:
+        revision = revise(text, revision, filename="f")
+        names = bind_again(revision.result.tree, names)
+        checked = check_again(revision.result, Source(text, "f"), resolution=names, before=checked)
+        assert checked.diagnostics == check_text(text, filename="f")
+        last_line = len(lines)
+        said.append(
+            [item for item in checked.diagnostics if item.span is None or item.span.line <= last_line]
+        )
+    assert said[0] == said[2]
+    assert said[0] != said[1]

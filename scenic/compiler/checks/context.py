@@ -76,6 +76,7 @@ class Context:
         self.asked: Final[set[str]] = set()
         """The facts about the whole program that rules have asked for."""
         self._facts: Final[dict[str, Any]] = {}
+        self._foreign: Final[dict[ast.expr, Foreign | None]] = {}
 
     # What the program is
 
@@ -181,6 +182,12 @@ class Context:
         return found
 
     @property
+    def class_names(self) -> frozenset[str]:
+        """The names of the classes that are defined at the top level."""
+        found: frozenset[str] = self.fact("class names")
+        return found
+
+    @property
     def returning(self) -> frozenset[Scope | None]:
         """The scopes of the functions whose calls may give anything else than ``None``."""
         found: frozenset[Scope | None] = self.fact("returning")
@@ -225,23 +232,29 @@ class Context:
 
     def foreign(self, name: ast.expr | None) -> Foreign | None:
         """What an expression means, if that is something that another module certainly defines."""
-        if self.surroundings is None or self.resolution.reflective:
+        if self.surroundings is None or self.resolution.reflective or name is None:
             return None
+        # Several rules ask about each name.
+        if name not in self._foreign:
+            self._foreign[name] = self._foreign_of(name, self.surroundings)
+        return self._foreign[name]
+
+    def _foreign_of(self, name: ast.expr, surroundings: Surroundings) -> Foreign | None:
         if isinstance(name, ast.Attribute):
-            return self.surroundings.attribute(name)
+            return surroundings.attribute(name)
         reference = self.resolution.reference(name) if isinstance(name, ast.Name) else None
         if reference is None:
             return None
         binding = reference.binding
         if binding is None:
             known = reference.node.id in self.brought and not self.resolution.wildcard
-            return self.surroundings.brought(reference.node.id) if known else None
+            return surroundings.brought(reference.node.id) if known else None
         if len(binding.sites) != 1 or binding.kinds != {BindingKind.IMPORTED}:
             return None
         [site] = binding.sites
         if not isinstance(site, ast.alias) or not self._stands(binding.name, site):
             return None
-        return self.surroundings.imported(site)
+        return surroundings.imported(site)
 
     def provided(self, name: ast.expr | None) -> str | None:
         """The name that an expression is, if it means what the language provides under that name."""
@@ -407,9 +420,18 @@ def _returning(context: Context) -> frozenset[Scope | None]:
     )
 
 
+def _class_names(context: Context) -> frozenset[str]:
+    return frozenset(
+        name
+        for name, binding in context.resolution.names.items()
+        if any(isinstance(site, ast.ClassDef) for site in binding.sites)
+    )
+
+
 _FACTS: Final[Mapping[str, Callable[[Context], Any]]] = {
     "attributes": _attributes,
     "broken": lambda context: bool(context.nodes(scenic.ErrorStatement)),
+    "class names": _class_names,
     "given": _given,
     "owners": _owners,
     "returning": _returning,

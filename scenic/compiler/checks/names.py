@@ -291,15 +291,15 @@ def _no_class(context: Context, name: ast.Name) -> Iterator[Diagnostic]:
 
 def _classes_in_reach(reference: Reference, context: Context) -> set[str]:
     brought = {name for name in context.brought if name[:1].isupper()}
-    return (
-        brought
-        | set(CLASSES)
-        | {
-            binding.name
+    return brought.union(
+        CLASSES,
+        context.class_names,
+        (
+            name
             for scope in reference.scope.ancestors()
-            for binding in context.resolution.bindings(scope).values()
+            for name, binding in scope.bindings.items()
             if any(isinstance(site, ast.ClassDef) for site in binding.sites)
-        }
+        ),
     )
 
 
