@@ -1,7 +1,8 @@
 """By how much a condition holds: the atoms of quantitative robustness (`scenic.runtime.temporal.robustness`).
 
 A margin is in the unit of what is compared, positive where the condition holds and negative where it does not. It is infinite
-where there is nothing to measure: for an equality that holds, or inside something of which no depth is known.
+where there is nothing to measure: for an equality that holds, inside something of which no depth is known, or for what is
+seen, which is a matter of yes and no: what hides can be moved in any direction, and the rays that decide change by leaps.
 """
 
 import math
@@ -9,10 +10,13 @@ from collections.abc import Sequence
 from typing import Any
 
 from scenic.language.errors import ScenicError
+from scenic.runtime.geometry.poses import Poses
+from scenic.runtime.geometry.single import overlap
 from scenic.runtime.objects import Object, Point
 from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.bodies import gap_between
 from scenic.runtime.regions.planar import PlanarRegion
+from scenic.runtime.regions.stacked import placed_of
 from scenic.runtime.shapes import BoxShape
 from scenic.runtime.values import Vector, is_number, is_vector, to_vector
 
@@ -64,7 +68,7 @@ def _equality(left: Any, right: Any) -> float | None:
 
 
 def _membership(item: Any, region: Any) -> float | None:
-    """The signed distance of a point, or of the corner of a box that is least inside."""
+    """The signed distance of a point, or of the corner of an object that is least inside."""
     if not isinstance(region, Region):
         return None
     try:
@@ -78,14 +82,21 @@ def _membership(item: Any, region: Any) -> float | None:
 
 
 def _clearance(item: Object, region: Region) -> float:
-    inside = bool(region.containsObject(item))
-    if not isinstance(item.shape, BoxShape):
-        return math.inf if inside else -math.inf
-    if inside:
-        return max(0.0, min(_depth(corner, region) for corner in item.corners))
-    # A box may stick out between its corners, over a hole; then it is not known by how much.
-    outside = max(_distance(corner, region) for corner in item.corners)
+    corners = _corners(item)
+    if region.containsObject(item):
+        return max(0.0, min(_depth(corner, region) for corner in corners))
+    # It may stick out between its corners, over a hole; then it is not known by how much.
+    outside = max(_distance(corner, region) for corner in corners)
     return -outside if outside > 0 else -math.inf
+
+
+def _corners(item: Object) -> Sequence[Vector]:
+    """The corners of the convex hull of an object."""
+    if isinstance(item.shape, BoxShape):
+        return item.corners
+    size = (item.width, item.length, item.height)
+    poses = Poses.fixed(item.position, item.orientation.q, size)
+    return [Vector.of(row) for row in poses.to_world(item.shape.mesh.hull.vertices[None])[0].tolist()]
 
 
 def _signed_distance(point: Vector, region: Region) -> float:
@@ -109,7 +120,13 @@ def _depth(point: Vector, region: Region) -> float:
 
 
 def _overlap(left: Any, right: Any) -> float | None:
-    """The gap between two objects, negative; how deep one is in the other is not known."""
+    """How deep one of two boxes is in the other, or the gap between two objects, negative; no depth is known of other shapes."""
     if not (isinstance(left, Object) and isinstance(right, Object)):
         return None
-    return math.inf if left.intersects(right) else -float(gap_between(left, right))
+    if not left.intersects(right):
+        return -float(gap_between(left, right))
+    if isinstance(left.shape, BoxShape) and isinstance(right.shape, BoxShape):
+        one, other = placed_of(left), placed_of(right)
+        if one is not None and other is not None:
+            return overlap(one, other)
+    return math.inf

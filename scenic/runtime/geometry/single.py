@@ -118,6 +118,15 @@ def meet(one: Placed, other: Placed) -> bool | None:
     return None
 
 
+def overlap(one: Placed, other: Placed) -> float:
+    """How far one of two boxes that meet has to be moved, in metres, until they only touch; 0 if they are apart.
+
+    Exact for boxes: the least way out of a body that is the sum of two boxes is across one of its faces, whose normals are the
+    axes of the separation.
+    """
+    return max(0.0, -_separation(one, other))
+
+
 def _separation(one: Placed, other: Placed) -> float:
     """The largest gap between the boxes' projections on an axis that may separate them; negative if they overlap on all.
 

@@ -2,9 +2,15 @@
 
 import math
 
+import numpy as np
 import pytest
 
 import scenic
+from scenic.runtime.geometry import primitives
+from scenic.runtime.geometry.broadphase import boxes_overlap
+from scenic.runtime.geometry.poses import Poses
+from scenic.runtime.geometry.single import Placed, overlap, placed
+from scenic.runtime.values import Orientation
 from scenic.simulators.dummy import DummySimulator
 
 SCENE = """
@@ -15,6 +21,8 @@ far = RectangularRegion((0, 20), 0, 10, 10)
 row = PointSetRegion('row', [(0, 0, 0), (0, 1, 0), (0, 2, 0), (0, 3, 0)])
 ego = new Object with name 'ego'
 wall = new Object at (0, 6), with shape SpheroidShape()
+block = new Object at (0.7, 0.4), with allowCollisions True
+cone = new Object at (0.7, 0.4), with allowCollisions True, with shape ConeShape()
 """
 
 
@@ -48,7 +56,11 @@ def robustness(condition: str, steps: int) -> float:
         ("always ego.position in room", 7),
         ("always ego in room", 6.5),
         ("always ego.position in row", math.inf),
-        ("always wall in room", math.inf),
+        ("always wall in room", 0.5),
+        ("eventually wall not in zone", 2.5),
+        ("always ego intersects block", 0.3),
+        ("always cone intersects block", math.inf),
+        ("always ego can see block", math.inf),
         ("always ego not in far", 12.5),  # by its corner that is farthest from there
         ("always not (ego intersects wall)", 5),
         ("always ego.name == 'ego'", math.inf),
@@ -60,3 +72,37 @@ def test_margins(condition: str, margin: float) -> None:
 
 def test_the_margin_of_the_first_state_decides_outside_of_temporal_operators() -> None:
     assert robustness("ego.position in zone", steps=3) == pytest.approx(3)
+
+
+def test_boxes_are_as_deep_in_each_other_as_one_has_to_move() -> None:
+    random = np.random.default_rng(0)
+    checked = 0
+    for _ in range(300):
+        turns = [Orientation.fromEuler(*random.uniform(-3, 3, 3).tolist()) for _ in range(2)]
+        sizes = random.uniform(0.5, 2, (2, 3))
+        where = random.uniform(-0.8, 0.8, 3)
+        one, other = (
+            placed(tuple(place), turn.q, tuple(size), primitives.box())
+            for place, turn, size in zip(([0.0] * 3, where.tolist()), turns, sizes.tolist(), strict=True)
+        )
+        depth = overlap(one, other)
+        if depth < 0.05:
+            continue
+        checked += 1
+        ways = random.normal(size=(400, 3))
+        ways /= np.linalg.norm(ways, axis=1)[:, None]
+        for share, parts in ((0.98, False), (1.02, True)):
+            moved = where + share * depth * np.vstack([ways, _normals(one, other)])
+            pose = Poses(moved, np.array([turns[1].q]), sizes[1:])
+            meet = boxes_overlap(Poses.fixed((0, 0, 0), turns[0].q, sizes[0]), pose)
+            # By less than the depth no way leads out, by a little more one does, across a face or two edges.
+            assert bool((~meet).any()) is parts
+    assert checked > 100
+
+
+def _normals(one: Placed, other: Placed) -> np.ndarray:
+    faces = [*one.axes, *other.axes]
+    edges = [np.cross(a, b) for a in one.axes for b in other.axes]
+    ways = np.array([*faces, *edges])
+    ways /= np.linalg.norm(ways, axis=1)[:, None]
+    return np.vstack([ways, -ways])
