@@ -1,9 +1,5 @@
 """``scenic sample``: scenes from a program, as text, 3D files, a page or images."""
 
-import json
-import math
-import os
-import re
 import secrets
 import signal
 import sys
@@ -11,111 +7,22 @@ import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
-from types import FrameType, MappingProxyType
+from types import FrameType
 from typing import Any, Final
 
 import click
 
 from scenic.cli import sinks
+from scenic.cli.options import image_size_option, outlook_option, program_options, seconds
 from scenic.cli.output import CLEAN, has_colours
 from scenic.formats.files import OutputError
 from scenic.formats.growing import GrowingFile
 from scenic.language.errors import Located
 
-__all__ = ["NOT_ALL", "image_size_option", "outlook_option", "parameter_value", "sample"]
+__all__ = ["NOT_ALL", "sample"]
 
 NOT_ALL: Final = 3
 """Exit code: some scenes were not found within the limits."""
-
-_INTEGER: Final = re.compile(r"[+-]?\d+")
-_REAL: Final = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
-_MOST_PIXELS: Final = 16384
-_WORDS: Final = MappingProxyType({"true": True, "True": True, "false": False, "False": False})
-
-
-def parameter_value(text: str) -> int | float | bool | str:
-    """A parameter's value as it is meant: an integer, a real number, true or false, or else text.
-
-    Text that would be read as one of these can be quoted as in JSON: ``"5"``.
-    """
-    if text in _WORDS:
-        return _WORDS[text]
-    if _INTEGER.fullmatch(text) and len(text) < 1000:
-        return int(text)
-    if _REAL.fullmatch(text):
-        return float(text)
-    if len(text) >= 2 and text[0] == text[-1] == '"':
-        try:
-            value = json.loads(text)
-        except ValueError:
-            return text
-        if isinstance(value, str):
-            return value
-    return text
-
-
-def _parameters(_context: click.Context, _option: click.Parameter, given: tuple[str, ...]) -> dict[str, Any]:
-    parameters = {}
-    for item in given:
-        name, equals, value = item.partition("=")
-        if not equals or not name:
-            raise click.BadParameter(f"{item!r} is not of the form NAME=VALUE")
-        parameters[name] = parameter_value(value)
-    return parameters
-
-
-def _seconds(_context: click.Context, _option: click.Parameter, given: float | None) -> float | None:
-    if given is not None and not (math.isfinite(given) and given > 0):
-        raise click.BadParameter("the time must be a positive number of seconds")
-    return given
-
-
-def image_size_option(
-    _context: click.Context, _option: click.Parameter, given: str | None
-) -> tuple[int, int] | None:
-    """Columns and rows of an image."""
-    if given is None:
-        return None
-    match = re.fullmatch(r"(\d{1,5})[xX](\d{1,5})", given)
-    if match is None or not all(1 <= int(part) <= _MOST_PIXELS for part in match.groups()):
-        raise click.BadParameter(
-            f"{given!r} is not of the form WIDTHxHEIGHT, in pixels up to {_MOST_PIXELS}: 640x480"
-        )
-    return int(match[1]), int(match[2])
-
-
-def outlook_option(
-    _context: click.Context, _option: click.Parameter, given: str | None
-) -> Mapping[str, float]:
-    """Azimuth and elevation of a camera, as an `Outlook` takes them."""
-    if given is None:
-        return {}
-    if given == "above":
-        return {"azimuth": 0.0, "elevation": 90.0}
-    try:
-        azimuth, elevation = (float(part) for part in given.split(","))
-    except ValueError:
-        azimuth = elevation = math.nan
-    if not (math.isfinite(azimuth) and -89.9 <= elevation <= 90):
-        raise click.BadParameter(
-            f"{given!r} is neither 'above' nor AZIMUTH,ELEVATION in degrees, such as -35,33"
-        )
-    return {"azimuth": azimuth, "elevation": elevation}
-
-
-def _without_store(_context: click.Context, _parameter: click.Parameter, given: bool) -> None:
-    # Workers inherit the environment.
-    if given:
-        os.environ["SCENIC_CACHE"] = "off"
-
-
-no_cache_option = click.option(
-    "--no-cache",
-    is_flag=True,
-    expose_value=False,
-    callback=_without_store,
-    help="Neither read nor keep on disk what is computed of meshes.",
-)
 
 
 @click.command()
@@ -156,29 +63,17 @@ no_cache_option = click.option(
     type=int,
     help="Scenes of one seed are always the same. Without it, one is drawn and shown.",
 )
-@click.option(
-    "-p",
-    "--param",
-    "parameters",
-    metavar="NAME=VALUE",
-    multiple=True,
-    callback=_parameters,
-    help="A value for a global parameter: a number, true, false, or text. Repeatable.",
-)
-@click.option("--scenario", metavar="NAME", help="Which scenario of the file, where it defines several.")
-@click.option("--model", metavar="MODULE", help="A world model to use in place of the program's.")
-@click.option("--2d", "mode_2d", is_flag=True, help="Use the 2D compatibility mode.")
+@program_options
 @click.option(
     "--no-prune", is_flag=True, help="Do not narrow the distributions first. The same scenes are as likely."
 )
-@no_cache_option
 @click.option(
     "--max-attempts",
     metavar="M",
     type=click.IntRange(min=1),
     help="Give a scene up after so many candidates.",
 )
-@click.option("--time-limit", metavar="T", type=float, callback=_seconds, help="Stop after so many seconds.")
+@click.option("--time-limit", metavar="T", type=float, callback=seconds, help="Stop after so many seconds.")
 @click.option(
     "-o",
     "--output",

@@ -11,15 +11,9 @@ from typing import Any, Final
 import click
 
 from scenic.cli import workers
+from scenic.cli.options import program_options, seconds
 from scenic.cli.output import CLEAN, FINDINGS, show_diagnostics
-from scenic.cli.sample import (
-    NOT_ALL,
-    _ended_by_signals,
-    _parameters,
-    _progress,
-    _seconds,
-    no_cache_option,
-)
+from scenic.cli.sample import NOT_ALL, _ended_by_signals, _progress
 from scenic.language.diagnostics import Diagnostic
 
 __all__ = ["simulate"]
@@ -185,7 +179,7 @@ class _Work:
     "--timestep",
     metavar="T",
     type=float,
-    callback=_seconds,
+    callback=seconds,
     help="Seconds in a step.  [default: the simulator's]",
 )
 @click.option(
@@ -204,23 +198,11 @@ class _Work:
     "--step-limit",
     metavar="T",
     type=float,
-    callback=_seconds,
+    callback=seconds,
     default=10.0,
     help="Seconds that the program may run within one step.  [default: 10]",
 )
-@click.option(
-    "-p",
-    "--param",
-    "parameters",
-    metavar="NAME=VALUE",
-    multiple=True,
-    callback=_parameters,
-    help="A value for a global parameter. Repeatable.",
-)
-@click.option("--scenario", metavar="NAME", help="Which scenario of the file, where it defines several.")
-@click.option("--model", metavar="MODULE", help="A world model to use in place of the program's.")
-@click.option("--2d", "mode_2d", is_flag=True, help="Use the 2D compatibility mode.")
-@no_cache_option
+@program_options
 @click.option(
     "-j", "jobs", metavar="J", type=click.IntRange(min=1), default=1, help="Processes.  [default: 1]"
 )

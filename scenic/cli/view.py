@@ -10,8 +10,8 @@ from typing import Final
 import click
 
 from scenic.cli import sinks
+from scenic.cli.options import image_size_option, outlook_option
 from scenic.cli.output import CLEAN
-from scenic.cli.sample import image_size_option, outlook_option
 from scenic.formats.reading import ReadScene, SceneFileError, read_scenes, scenes_of
 
 __all__ = ["view"]

@@ -13,7 +13,8 @@ from click.testing import CliRunner, Result
 from hypothesis import given
 from hypothesis import strategies as st
 
-from scenic.cli.sample import parameter_value, sample
+from scenic.cli.options import parameter_value
+from scenic.cli.sample import sample
 from scenic.formats.files import OutputError
 from scenic.language.errors import Located
 from scenic.language.spans import Span
