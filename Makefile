@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
-.PHONY: demo test test-fast test-slow lint types fuzz generate playground extension clean
+.PHONY: demo test test-fast test-slow lint types fuzz generate playground extension pythons clean
 
 $(STAMP): pyproject.toml hatch_build.py
 	$(PYTHON) -c 'import sys; sys.exit("Scenic needs Python 3.11 or newer; this is " + sys.version.split()[0]) if sys.version_info < (3, 11) else None'
@@ -49,6 +49,10 @@ $(PAGE): editors/playground/package-lock.json editors/playground/build.mjs $(wil
 # The extension for Visual Studio Code, editors/vscode/scenic.vsix; needs npm.
 extension:
 	cd editors/vscode && npm ci --silent && npm run --silent package
+
+# Later versions of CPython as WebAssembly, for tests/test_pythons.py; needs npm.
+pythons:
+	cd tests/pythons && npm ci --silent
 
 clean:
 	rm -rf $(VENV) build dist out scenic/compiler/_generated scenic/playground/static .mypy_cache .ruff_cache .pytest_cache .hypothesis
