@@ -19,11 +19,14 @@ TURNED = (
 def test_distances_are_to_the_view_and_nothing_within_it() -> None:
     text = TURNED + (
         "view = ego.visibleRegion\n"
+        # Between the corners of the mesh by which distances are measured.
+        "a, r = 1.5 deg, 4.999\n"
+        "param edge = view.distanceTo((1 - r * cos(a) * cos(a), 2 - r * sin(a) * cos(a), 3 + r * sin(a)))\n"
         "param within = view.distanceTo((-3.999, 2, 3)), before = view.distanceTo((-7, 2, 3)), "
         "behind = view.distanceTo((9, 2, 3)), beside = view.distanceTo((1, 6, 3))\n"
     )
     found = answers(text)
-    assert found.pop("within") == 0
+    assert (found.pop("within"), found.pop("edge")) == (0, 0)
     assert found == pytest.approx(
         {"before": 3, "behind": 8, "beside": 4 * math.cos(math.radians(30))}, abs=0.02
     )
