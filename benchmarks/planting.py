@@ -1,5 +1,7 @@
 """Plants mistakes in programs, as people make them, and knows on which lines each of them may be reported.
 
+This is the material of ``python -m benchmarks.recovery``, which measures and prints; here nothing is run.
+
 The programs are those in ``tests/data/recovery``. A mistake is planted only where it makes the program wrong: with this one
 alone, the parser must not accept it. Those of one program are independent: between the logical lines that two of them touch,
 at least one other is untouched.
