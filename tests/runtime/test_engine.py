@@ -185,7 +185,7 @@ def test_a_limit_of_attempts_is_exact(lanes: int) -> None:
 
 def test_a_limit_of_time() -> None:
     text = "x = Range(0, 1)\ndef same(v): return v\nrequire same(x < 1e-9) as rare\n"
-    results = list(scenario(text).stream(3, seed=0, time_limit=0.2))
+    results = list(scenario(text).stream(3, seed=0, max_attempts=10**9, time_limit=0.2))
     assert [(item.reason, item.k) for item in results if isinstance(item, Exhausted)] == [("time", 0), ("time", 1), ("time", 2)]  # fmt: skip
     assert "rare" in str(results[0].report)
 

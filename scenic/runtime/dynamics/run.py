@@ -395,10 +395,8 @@ class Run:
         for agent in simulation.agents:
             agent.__dict__["lastActions"] = ()
         chosen: dict[int, tuple[Any, ...]] = {}
-        schedule = simulation.scheduleForAgents()
-        if schedule is not simulation.agents and {id(agent) for agent in schedule} != {
-            id(agent) for agent in simulation.agents
-        }:
+        schedule = list(simulation.scheduleForAgents())
+        if sorted(map(id, schedule)) != sorted(map(id, simulation.agents)):
             raise RuntimeError("the simulator's schedule does not hold all agents, and nothing else")
         for agent in schedule:
             actions = self._turn(agent)
