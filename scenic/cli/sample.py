@@ -330,12 +330,16 @@ def _progress(count: int, *, shown: bool) -> Iterator[Callable[[int, int], None]
         yield advance
 
 
+class _Terminated(BaseException):
+    """SIGTERM has come. `SystemExit` would count as the program's own where its functions are being called."""
+
+
 @contextmanager
 def _ended_by_signals() -> Iterator[None]:
     """Makes a polite request to end (SIGTERM) leave no half-written file behind, as Ctrl-C does not."""
 
-    def end(number: int, _frame: FrameType | None) -> None:
-        raise SystemExit(128 + number)
+    def end(_number: int, _frame: FrameType | None) -> None:
+        raise _Terminated
 
     try:
         before = signal.signal(signal.SIGTERM, end)
@@ -344,5 +348,7 @@ def _ended_by_signals() -> Iterator[None]:
         return
     try:
         yield
+    except _Terminated:
+        raise SystemExit(128 + signal.SIGTERM) from None
     finally:
         signal.signal(signal.SIGTERM, before)
