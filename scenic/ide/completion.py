@@ -7,6 +7,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from enum import StrEnum
+from keyword import iskeyword
 from typing import Any, Final
 
 from scenic.compiler.generated import WORDS
@@ -42,6 +43,7 @@ class CompletionKind(StrEnum):
     FUNCTION = "function"
     METHOD = "method"
     BEHAVIOR = "behavior"
+    MONITOR = "monitor"
     SCENARIO = "scenario"
     PROPERTY = "property"
     ATTRIBUTE = "attribute"
@@ -82,6 +84,8 @@ _EXPRESSIONS: Final = frozenset(
     {"an expression", "a condition", "an argument", "a subscript", "a target", "a statement"}
 )
 _RUNNING: Final = frozenset({"do", "choose", "shuffle"})
+_TARGETS: Final = (CompletionKind.BEHAVIOR, CompletionKind.SCENARIO)
+_MONITORS: Final = (CompletionKind.MONITOR,)
 _BEGUN: Final = re.compile(r"\w*$")
 
 _BLOCKS: Final[Mapping[str, str]] = {
@@ -266,8 +270,9 @@ def _find(
         begun.add(item.words)
     if found.labels & _EXPRESSIONS or "a name" in found.labels:
         running = last in _RUNNING or (last == "," and first == "do")
+        fitting = _TARGETS if running else _MONITORS if before[-2:] == ("require", "monitor") else ()
         for each in _names(project, module, snapshot, line, column):
-            if running and each.kind in (CompletionKind.BEHAVIOR, CompletionKind.SCENARIO):
+            if each.kind in fitting:
                 yield Completion(each.label, each.kind, each.text, 0, each.detail, each.snippet, each.key)
             else:
                 yield each
@@ -394,7 +399,7 @@ def _names(
                 name, kind, name, 6, declared.kind.value, _call(declared.signature), ("provided", name)
             )
     for name, value in vars(builtins).items():
-        if name not in seen and name not in NAMES and not name.startswith("_"):
+        if name not in seen and name not in NAMES and not name.startswith("_") and not iskeyword(name):
             kind = CompletionKind.CLASS if isinstance(value, type) else CompletionKind.FUNCTION
             yield Completion(name, kind, name, 9, "Python", key=("provided", name))
 
@@ -416,7 +421,7 @@ def _kind_of_binding(project: Project, module: Module, binding: Binding) -> tupl
         (BindingKind.CLASS, CompletionKind.CLASS),
         (BindingKind.FUNCTION, CompletionKind.FUNCTION),
         (BindingKind.BEHAVIOR, CompletionKind.BEHAVIOR),
-        (BindingKind.MONITOR, CompletionKind.BEHAVIOR),
+        (BindingKind.MONITOR, CompletionKind.MONITOR),
         (BindingKind.SCENARIO, CompletionKind.SCENARIO),
         (BindingKind.MODULE, CompletionKind.MODULE),
         (BindingKind.PARAMETER, CompletionKind.PARAMETER),
@@ -437,7 +442,7 @@ def _kind_of_symbol(symbol: Symbol) -> CompletionKind:
         SymbolKind.FUNCTION: CompletionKind.FUNCTION,
         SymbolKind.METHOD: CompletionKind.METHOD,
         SymbolKind.BEHAVIOR: CompletionKind.BEHAVIOR,
-        SymbolKind.MONITOR: CompletionKind.BEHAVIOR,
+        SymbolKind.MONITOR: CompletionKind.MONITOR,
         SymbolKind.SCENARIO: CompletionKind.SCENARIO,
         SymbolKind.MODULE: CompletionKind.MODULE,
         SymbolKind.PROPERTY: CompletionKind.PROPERTY,

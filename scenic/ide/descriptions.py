@@ -1,5 +1,6 @@
 """What a reader should know of something that has a name, as Markdown: its header, its documentation, its place."""
 
+import ast
 import builtins
 import inspect
 import os
@@ -31,7 +32,7 @@ def describe(project: Project, symbol: Symbol) -> str:
         if known is not None:
             return known
     parts = [f"```scenic\n{header(project, symbol)}\n```"]
-    text = symbol.documentation
+    text = _of_module(project, symbol) if symbol.kind is SymbolKind.MODULE else symbol.documentation
     if text:
         parts.append(text)
     if symbol.kind is SymbolKind.CLASS:
@@ -73,6 +74,12 @@ def of_python(name: str) -> str | None:
     if not text:
         return None
     return f"```python\n{name}\n```\n\n{text.partition(chr(10) + chr(10))[0]}"
+
+
+def _of_module(project: Project, symbol: Symbol) -> str | None:
+    """The docstring of a module."""
+    module = None if symbol.filename is None else project.module(symbol.filename)
+    return None if module is None else ast.get_docstring(module.tree)
 
 
 def _text(symbol: Symbol) -> str:

@@ -121,16 +121,22 @@ def _edited(text: str, edits: Sequence[Edit]) -> str:
 
 def _changes(old: Sequence[str], new: Sequence[str]) -> Iterator[tuple[int, int, int, int]]:
     """Where two texts differ: lines of the one, and those of the other that take their place, as few as can be."""
-    for tag, *change in difflib.SequenceMatcher(None, old, new, autojunk=False).get_opcodes():
-        if tag == "equal":
-            continue
-        start, end, new_start, new_end = change
-        # Lines that say the same are changed one by one.
-        while start < end and new_start < new_end and _said(old[start]) == _said(new[new_start]):
-            yield start, start + 1, new_start, new_start + 1
-            start, new_start = start + 1, new_start + 1
-        if start < end or new_start < new_end:
-            yield start, end, new_start, new_end
+    # Lines that say the same are changed one by one; those that say nothing are like all others of their kind.
+    said = [_said(line) for line in old], [_said(line) for line in new]
+    matcher = difflib.SequenceMatcher(lambda words: not words, *said, autojunk=False)
+    done, new_done = 0, 0
+    for index, other, size in matcher.get_matching_blocks():
+        for at, new_at in zip(range(index, index + size), range(other, other + size), strict=True):
+            stays = old[at] == new[new_at]
+            if at > done or (new_at > new_done and stays):
+                yield done, at, new_done, new_at
+                done, new_done = at, new_at
+            if not stays:
+                # With what is inserted before it, if anything is: no two changes begin at one place.
+                yield at, at + 1, new_done, new_at + 1
+            done, new_done = at + 1, new_at + 1
+    if done < len(old) or new_done < len(new):
+        yield done, len(old), new_done, len(new)
 
 
 def _said(line: str) -> str:

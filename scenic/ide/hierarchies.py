@@ -7,7 +7,7 @@ from typing import Any
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.traversal import walk
-from scenic.ide.navigation import subclasses
+from scenic.ide.inheritance import subclasses
 from scenic.language.spans import Span
 from scenic.project.classes import class_of_symbol, meaning
 from scenic.project.index import Project

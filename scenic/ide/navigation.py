@@ -3,12 +3,12 @@
 import ast
 import keyword
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 from scenic.compiler.generated import HARD_KEYWORDS
 from scenic.compiler.scopes import ScopeKind
+from scenic.ide.inheritance import family, own_member, owner_of, subclasses
 from scenic.ide.snapshot import Snapshot
 from scenic.language.names import RESERVED, TRACKED
 from scenic.language.spans import Span
@@ -16,7 +16,7 @@ from scenic.project.classes import class_of, class_of_symbol
 from scenic.project.index import Project
 from scenic.project.modules import Module
 from scenic.project.queries import Occurrence, Place, occurrence_at, occurrences, references, symbol_of
-from scenic.project.symbols import Symbol, SymbolKind, symbol_of_binding, symbols_of
+from scenic.project.symbols import Symbol, SymbolKind, symbol_of_binding
 
 __all__ = [
     "Highlight",
@@ -139,30 +139,38 @@ def implementations(project: Project, snapshot: Snapshot, line: int, column: int
     members = (SymbolKind.METHOD, SymbolKind.PROPERTY, SymbolKind.ATTRIBUTE)
     targets = list(_targets(symbol, found.span))
     if symbol.kind in members and symbol.container is not None:
-        owner = _owner(symbol)
+        owner = owner_of(symbol)
         for each in () if owner is None else subclasses(project, owner, deep=True):
             cls = class_of_symbol(project, each)
-            member = None if cls is None else cls.member(symbol.name)
-            if member is not None and member.owner == each.name and member.symbol is not None:
-                targets += _targets(member.symbol, found.span)
+            member = None if cls is None else own_member(cls, symbol.name)
+            if member is not None:
+                targets += _targets(member, found.span)
     return tuple(targets)
 
 
 def usages(
-    project: Project, snapshot: Snapshot, line: int, column: int, *, with_definitions: bool
-) -> tuple[Place, ...]:
-    """Every place of the workspace that names the same as the name at a place."""
+    project: Project,
+    snapshot: Snapshot,
+    line: int,
+    column: int,
+    *,
+    with_definitions: bool,
+    go_on: Callable[[], None] = lambda: None,
+) -> Iterator[Place]:
+    """Every place of the workspace that names the same as the name at a place, file by file.
+
+    ``go_on`` is called before each file, and may raise.
+    """
     module, found = _occurrence(project, snapshot, line, column)
     if module is None or found is None:
-        return ()
+        return
     symbol = symbol_of(project, module, found)
+    places: Iterable[Place]
     if symbol is None or symbol.is_builtin:
-        places = tuple(
-            Place(module.filename, each.span, each.defines) for each in _same(project, module, found)
-        )
+        places = (Place(module.filename, each.span, each.defines) for each in _same(project, module, found))
     else:
-        places = references(project, symbol)
-    return tuple(place for place in places if with_definitions or not place.defines)
+        places = references(project, *family(project, symbol).definitions, go_on=go_on)
+    yield from (place for place in places if with_definitions or not place.defines)
 
 
 def highlights(project: Project, snapshot: Snapshot, line: int, column: int) -> tuple[Highlight, ...]:
@@ -204,6 +212,14 @@ def prepare_rename(project: Project, snapshot: Snapshot, line: int, column: int)
         raise RenameError("rename the file of a module to give it another name")
     if symbol.filename is not None and not _is_own(project, symbol.filename, snapshot.filename):
         raise RenameError(f"`{found.name}` is defined outside the workspace, in {symbol.filename}")
+    related = family(project, symbol)
+    if related.provider is not None:
+        raise RenameError(
+            f"`{symbol.name}` is defined by `{related.provider}`, which belongs to the language"
+        )
+    for each in related.definitions:
+        if not _is_own(project, each.filename, snapshot.filename):
+            raise RenameError(f"`{symbol.name}` is also defined outside the workspace, in {each.filename}")
     return found.span, found.name
 
 
@@ -232,7 +248,10 @@ def rename(
     names = (symbol.module or module).resolution
     if name != found.name and binding is not None and name in names.bindings(binding.scope):
         raise RenameError(f"there is a `{name}` already in the same scope")
-    places = references(project, symbol) if symbol.filename is not None else ()
+    related = family(project, symbol)
+    if name != found.name:
+        _refuse_clash(project, related.definitions, name)
+    places = references(project, *related.definitions)
     # A place that names it differently (`import a as b`) keeps its own name.
     changed = [(place, name) for place in places if _text(project, place) == symbol.name]
     if found.name != symbol.name:
@@ -245,35 +264,16 @@ def rename(
     return tuple(changed)
 
 
-def subclasses(project: Project, symbol: Symbol, *, deep: bool) -> tuple[Symbol, ...]:
-    """The classes of the workspace that derive from a class: directly, or if ``deep``, also through others."""
-    found: list[Symbol] = []
-    for filename in project.files():
-        module = project.module(filename)
-        for each in () if module is None else symbols_of(module):
-            if each.kind is not SymbolKind.CLASS or each.filename != filename or each == symbol:
-                continue
-            if is_derived(project, each, symbol, deep=deep):
-                found.append(each)
-    return tuple(found)
-
-
-def is_derived(project: Project, symbol: Symbol, base: Symbol, *, deep: bool) -> bool:
-    """Whether a class derives from another one."""
-    seen: set[Symbol] = set()
-    pending = [symbol]
-    while pending:
-        cls = class_of_symbol(project, pending.pop())
-        for each in () if cls is None else cls.bases:
-            if each == base:
-                return True
-            if deep and each not in seen:
-                seen.add(each)
-                pending.append(each)
-    return False
-
-
 # Helpers
+
+
+def _refuse_clash(project: Project, members: Sequence[Symbol], name: str) -> None:
+    """Raise `RenameError` if a class that defines one of the members has one of another name already."""
+    for each in members:
+        owner = owner_of(each)
+        cls = None if owner is None else class_of_symbol(project, owner)
+        if cls is not None and cls.member(name) is not None:
+            raise RenameError(f"`{cls.symbol.name}` has a `{name}` already")
 
 
 def _occurrence(
@@ -315,22 +315,7 @@ def _ego(module: Module | None, found: Occurrence | None) -> tuple[Target, ...]:
     )
 
 
-def _owner(symbol: Symbol) -> Symbol | None:
-    """The class that a member is defined in."""
-    module: Any = symbol.module
-    if module is None:
-        return None
-    return next(
-        (
-            each
-            for each in symbols_of(module)
-            if each.kind is SymbolKind.CLASS and each.name == symbol.container
-        ),
-        None,
-    )
-
-
-def _is_own(project: Project, filename: str, beside: str) -> bool:
+def _is_own(project: Project, filename: str | None, beside: str) -> bool:
     """Whether a file belongs to the workspace; without one, whether it is the document itself."""
     return filename == beside or filename in set(project.files())
 

@@ -1,10 +1,11 @@
 """One version of a document, and all that is known of it: made once, whichever features ask, in any thread."""
 
 import ast
+import re
 import threading
 from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Iterator
-from typing import Any, TypeVar
+from typing import Any, Final, TypeVar
 
 from scenic.compiler.check import check_again
 from scenic.compiler.compile import Checked
@@ -13,7 +14,7 @@ from scenic.compiler.incremental import Revision, revise
 from scenic.compiler.lexer import lex
 from scenic.compiler.parser import DEEPEST, ParseResult, recursion_limit
 from scenic.compiler.resolver import bind_again
-from scenic.compiler.scopes import Resolution, Scope
+from scenic.compiler.scopes import Binding, BindingKind, Resolution, Scope, ScopeKind
 from scenic.compiler.surroundings import SurroundingsOf
 from scenic.compiler.tokens import NAME, Tokens
 from scenic.compiler.traversal import parts
@@ -24,6 +25,9 @@ from scenic.language.spans import Span
 __all__ = ["Cancelled", "PythonSnapshot", "Snapshot"]
 
 _T = TypeVar("_T")
+
+_PROPERTY: Final = re.compile(r"\s*\w+\s*(?:\[[^\]]*\])?\s*:")
+"""The beginning of a line that gives a property its default."""
 
 
 class Cancelled(Exception):
@@ -156,12 +160,31 @@ class Snapshot:
             path.append(inner)
 
     def scope_at(self, line: int, column: int) -> Scope:
-        """The innermost scope at a place."""
+        """The innermost scope at a place; after the last statement of a block, the one that the indentation tells."""
         resolution = self.resolution
         found = resolution.module
-        for node in self.path_to(line, column):
+        path = self.path_to(line, column)
+        for node in [*path, *self._blocks_after(path[-1], line, column)]:
             found = resolution.scope(node) or found
+        if found.kind is ScopeKind.CLASS and _PROPERTY.match(self.source.line(line)[:column]):
+            # A property whose default is still to be written is not in the tree yet.
+            return _scope_of_default(found)
         return found
+
+    def _blocks_after(self, node: ast.AST, line: int, column: int) -> Iterator[ast.AST]:
+        """The blocks within a node that end before a place, though its line is indented as one of theirs."""
+        content = self.source.line(line)[:column]
+        indentation = len(content) - len(content.lstrip())
+        while True:
+            before = [
+                each
+                for each in _placed(node)
+                if isinstance(each, ast.stmt) and each.lineno < line and each.col_offset < indentation
+            ]
+            if not before:
+                return
+            node = before[-1]
+            yield node
 
     # How things are made
 
@@ -230,6 +253,13 @@ class PythonSnapshot(Snapshot):
     def tree(self) -> ast.Module:
         """The tree; empty if the text is no Python."""
         return self._tree
+
+
+def _scope_of_default(cls: Scope) -> Scope:
+    """The scope of the default of a property of a class."""
+    scope = Scope(ScopeKind.PROPERTY, cls.name, cls.node, cls)
+    scope.bindings["self"] = Binding("self", scope, [cls.node], {BindingKind.SELF})
+    return scope
 
 
 def _placed(node: ast.AST) -> Iterator[ast.AST]:

@@ -69,17 +69,17 @@ class Checks:
             self._begin(uri)
         else:
             self._timers[uri] = self._session.loop.call_later(PAUSE, lambda: self._begin(uri))
-        if self._others is not None:
-            self._others.cancel()
-        self._others = self._session.loop.call_later(LONG_PAUSE, lambda: self._check_others(uri))
+        self._await_others(uri)
 
     def opened(self, uri: str) -> None:
         """A document has been opened: it is checked at once."""
         self._since[uri] = time.monotonic()
         self._begin(uri)
+        if not self._session.documents[uri].is_saved():
+            self._await_others(uri)
 
     def closed(self, uri: str) -> None:
-        """A document has been closed: nothing is shown of it any more."""
+        """A document has been closed: nothing is shown of it any more, and its file is what others import."""
         self._stop_timer(uri)
         job = self._running.pop(uri, None)
         if job is not None:
@@ -89,19 +89,33 @@ class Checks:
         self._told.discard(uri)
         self._publish(uri, [], None)
         self._show_problems(uri, ())
+        self._await_others(uri)
 
     def everything(self) -> None:
         """Settings or files on the disk have changed: every open document may have other problems now."""
         for uri in self._session.documents:
             self.changed(uri)
 
+    def _await_others(self, changed: str) -> None:
+        """Check what may import a document that has another text now, once nothing changes for a while."""
+        if self._others is not None:
+            self._others.cancel()
+        self._others = self._session.loop.call_later(LONG_PAUSE, lambda: self._check_others(changed))
+
     def _check_others(self, changed: str) -> None:
         """Other documents may import the one that has changed."""
         self._others = None
-        for uri, document in self._session.documents.items():
-            if uri != changed and uri not in self._running and _IMPORTS.search(document.text):
+        importing = [
+            uri
+            for uri, document in self._session.documents.items()
+            if uri != changed and _IMPORTS.search(document.text)
+        ]
+        for uri in importing:
+            if uri not in self._running:
                 self._since.setdefault(uri, time.monotonic())
                 self._begin(uri)
+        if not self._pulled.isdisjoint(importing):
+            self._session.have_asked_again("diagnostics")
 
     def pulled(self, uri: str) -> None:
         """The client asks for a document's problems: they are no longer sent as well, or it would show them twice.

@@ -8,6 +8,8 @@ from functools import cached_property
 from typing import Any, Final
 
 from scenic.ide.snapshot import Snapshot
+from scenic.language.errors import ScenicError
+from scenic.language.source import read_source
 from scenic.lsp import reading
 from scenic.lsp.convert import Encoding, Lines, units
 from scenic.lsp.uris import to_path
@@ -48,6 +50,13 @@ class Document:
     def line_end(self) -> str:
         """How its lines end."""
         return "\r\n" if "\r\n" in self.text else "\n"
+
+    def is_saved(self) -> bool:
+        """Whether its file holds its present text."""
+        try:
+            return read_source(self.snapshot.filename).text == self.snapshot.text
+        except ScenicError:
+            return False
 
 
 def snapshot_of(text: str, uri: str, before: Snapshot | None = None) -> Snapshot:

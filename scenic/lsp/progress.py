@@ -1,11 +1,31 @@
 """Telling the client how far something is that takes long."""
 
+from collections.abc import Callable
 from types import TracebackType
 from typing import Any, Self
 
 from scenic.lsp.session import Session
 
-__all__ = ["Progress"]
+__all__ = ["Partial", "Progress"]
+
+
+class Partial:
+    """Sends parts of an answer as soon as they are known, to a client that gave a ``token`` for that.
+
+    What has been sent so must not be in the answer again: `rest` is what still belongs there.
+    """
+
+    def __init__(self, session: Session, token: Any) -> None:
+        self._session = session
+        self._token = token if isinstance(token, int | str) and not isinstance(token, bool) else None
+        self.rest: list[Any] = []
+
+    def add(self, items: list[Any], wrap: Callable[[list[Any]], Any] = lambda items: items) -> None:
+        """Some more of the answer; ``wrap`` makes of a list what is sent."""
+        if self._token is None:
+            self.rest += items
+        elif items:
+            self._session.notify("$/progress", {"token": self._token, "value": wrap(items)})
 
 
 class Progress:

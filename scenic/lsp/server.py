@@ -97,6 +97,8 @@ class Server:
             self._refuse(None, wrong)
             return
         method, name = message.get("method"), message.get("id")
+        if method is not None:
+            self._session.trace.received(method, name, message.get("params"))
         is_named = isinstance(name, int | str) and not isinstance(name, bool)
         if message.get("jsonrpc") != "2.0" or ("method" in message and not isinstance(method, str)):
             wrong = ProtocolError(ErrorCode.INVALID_REQUEST, "this is no message of JSON-RPC 2.0")
@@ -243,9 +245,11 @@ class Server:
 
     def _answer(self, name: Any, result: Any) -> None:
         self._writer.write({"jsonrpc": "2.0", "id": name, "result": result})
+        self._session.trace.answered(name, result)
 
     def _refuse(self, name: Any, error: ProtocolError) -> None:
         self._writer.write({"jsonrpc": "2.0", "id": name, "error": error.as_json()})
+        self._session.trace.answered(name, error.as_json())
 
     def _internal(self, method: str, error: Exception) -> ProtocolError:
         sys.stderr.write("".join(traceback.format_exception(error)[-12:]))

@@ -16,6 +16,7 @@ from scenic.lsp.documents import Document, snapshot_of
 from scenic.lsp.errors import ErrorCode, ProtocolError
 from scenic.lsp.garbage import Garbage
 from scenic.lsp.loop import Loop, Worker
+from scenic.lsp.trace import Trace
 from scenic.lsp.uris import to_path, to_uri
 from scenic.lsp.wire import Writer
 from scenic.project.index import Project
@@ -124,6 +125,7 @@ class Session:
         """Whether programs may be run; ``None`` if the client did not say."""
         self.settings: Mapping[str, Any] = {}
         self.garbage = Garbage(loop)
+        self.trace = Trace(writer)
         self.checker = Worker("checks")
         self.checks: Checks
         self.tokens = Results()
@@ -198,7 +200,11 @@ class Session:
         self.generation += 1
         self.project.refresh()
         self.checks.everything()
-        for what in ("diagnostics", "semanticTokens", "inlayHint", "codeLens"):
+        self.have_asked_again("diagnostics", "semanticTokens", "inlayHint", "codeLens")
+
+    def have_asked_again(self, *features: str) -> None:
+        """Tell the client, if it can be told, that answers about some features may be others now."""
+        for what in features:
             if self.client.can("workspace", what, "refreshSupport"):
                 method = "diagnostic" if what == "diagnostics" else what
                 self.ask(f"workspace/{method}/refresh", None, lambda _result: None)
@@ -250,25 +256,31 @@ class Session:
 
         return make
 
+    # From here on: also called by work beside the loop.
+
     def uri_of(self, filename: str) -> str:
         """The address of a file, as the client has it if it is open."""
-        for uri, document in self.documents.items():
-            if document.snapshot.filename == filename:
-                return uri
-        return to_uri(filename)
+        opened = self._opened_as(filename)
+        return to_uri(filename) if opened is None else opened.uri
 
     def lines_of(self, filename: str) -> Lines:
         """The lines of a file, as the project knows it."""
-        for document in self.documents.values():
-            if document.snapshot.filename == filename:
-                return document.lines
+        opened = self._opened_as(filename)
+        if opened is not None:
+            return opened.lines
         module = self.project.module(filename)
         return Lines(Source("", filename) if module is None else module.source, self.encoding)
 
     def lines_of_source(self, filename: str, source: Source) -> Lines:
         """The lines of a file of which the source is at hand."""
-        opened = next((each for each in self.documents.values() if each.snapshot.filename == filename), None)
+        opened = self._opened_as(filename)
         return Lines(source, self.encoding) if opened is None else opened.lines
+
+    def _opened_as(self, filename: str) -> Document | None:
+        # The list is made at once, whatever the loop does to the documents meanwhile.
+        return next(
+            (each for each in list(self.documents.values()) if each.snapshot.filename == filename), None
+        )
 
     def workspace_edit(self, changes: Mapping[str, list[Json]]) -> Json:
         """Changes of documents, with their versions if the client knows of such."""

@@ -2,7 +2,7 @@
 
 import ast
 from bisect import bisect_right
-from collections.abc import Container, Iterator, Mapping, Sequence
+from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Final
 
@@ -306,27 +306,29 @@ def exported(project: Project, filename: str) -> dict[str, Symbol]:
     }
 
 
-def references(project: Project, symbol: Symbol, *, files: Sequence[str] | None = None) -> tuple[Place, ...]:
-    """Every place that names a symbol, its definitions among them, in all files of the workspace (or in ``files``)."""
-    if symbol.is_builtin:
-        candidates: list[str] = []
-    else:
-        candidates = [symbol.filename] if symbol.filename is not None else []
-        candidates += [
-            each for each in (project.files() if files is None else files) if each != symbol.filename
-        ]
-    found: dict[tuple[str, Span], Place] = {}
-    for filename in candidates:
+def references(
+    project: Project, *symbols: Symbol, go_on: Callable[[], None] = lambda: None
+) -> Iterator[Place]:
+    """Every place that names one of some symbols, their definitions among them, in all files of the workspace.
+
+    The symbols have one name. The files that define them come first; ``go_on`` is called before each, and may raise.
+    """
+    wanted = {each for each in symbols if not each.is_builtin}
+    if not wanted:
+        return
+    name = symbols[0].name
+    homes = [each.filename for each in symbols if each.filename is not None]
+    for filename in dict.fromkeys([*homes, *project.files()]):
+        go_on()
         module = project.module(filename)
-        if module is None or symbol.name not in module.source.text:
+        if module is None or name not in module.source.text:
             continue
-        names = {symbol.name} | {
-            alias.asname
-            for alias in module.import_of
-            if alias.asname and symbol.name in alias.name.split(".")
+        names = {name} | {
+            alias.asname for alias in module.import_of if alias.asname and name in alias.name.split(".")
         }
-        for each in occurrences(module):
-            if each.name in names and symbol_of(project, module, each) == symbol:
-                place = Place(module.filename, each.span, each.defines)
-                found.setdefault((module.filename, each.span), place)
-    return tuple(found.values())
+        spans = {
+            each.span: each.defines
+            for each in occurrences(module)
+            if each.name in names and symbol_of(project, module, each) in wanted
+        }
+        yield from (Place(module.filename, span, defines) for span, defines in spans.items())

@@ -203,6 +203,8 @@ def _formatted(text: str, first: int, last: int) -> str:
     ("text", "first", "last", "expected"),
     [
         ("x=1\ny=2\n", 1, 1, "x = 1\ny=2\n"),
+        # Neither blank lines before it nor the line before it belong to a line.
+        ("x=1\n\n\n\n\n\ny=2\nz=3\n", 8, 8, "x=1\n\n\n\n\n\ny=2\nz = 3\n"),
         # The first line of what is written in its place would be the only one in the range.
         ("import a\ndef f(x): return x\n", 1, 3, "import a\n\n\ndef f(x):\n    return x\n"),
         # The rest of a block stays with a part that is indented otherwise.

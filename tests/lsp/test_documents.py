@@ -211,6 +211,10 @@ def test_the_whole_workspace(client: Client, tmp_path: Path) -> None:
     previous = [{"uri": item["uri"], "value": item["resultId"]} for item in report["items"]]
     again = client.request("workspace/diagnostic", {"previousResultIds": previous})
     assert {item["kind"] for item in again["items"]} == {"unchanged"}
+    parts = {"previousResultIds": [], "partialResultToken": 7}
+    assert client.request("workspace/diagnostic", parts) == {"items": []}
+    sent = [each["params"] for each in client.kept if each.get("method") == "$/progress"]
+    assert [item for each in sent if each["token"] == 7 for item in each["value"]["items"]] == report["items"]
 
 
 def test_what_one_file_says_changes_what_is_said_of_another(client: Client, tmp_path: Path) -> None:
@@ -230,9 +234,44 @@ def test_what_one_file_says_changes_what_is_said_of_another(client: Client, tmp_
     (found,) = client.published(uri)
     assert "Chair" in found["message"]
     # What an editor holds counts more than what is on the disk.
-    client.open(library.as_uri(), "class Table: pass\n")
-    client.change(library.as_uri(), "class Chair: pass\n")
+    client.open(library.as_uri(), "class Chair: pass\n")
     assert client.published(uri) == []
+    client.change(library.as_uri(), "class Table: pass\n")
+    assert len(client.published(uri)) == 1
+    library.write_text("class Chair: pass\n")
+    client.send("workspace/didChangeWatchedFiles", {"changes": [{"uri": library.as_uri(), "type": 2}]})
+    client.send("textDocument/didClose", {"textDocument": {"uri": library.as_uri()}})
+    client.wait(
+        lambda each: (
+            each.get("method") == "textDocument/publishDiagnostics"
+            and each["params"]["uri"] == uri
+            and each["params"]["diagnostics"] == []
+        )
+    )
+
+
+def test_a_client_that_watches_no_files_tells_by_saving(client: Client, tmp_path: Path) -> None:
+    client.start(FULL, tmp_path)
+    uri = (tmp_path / "main.scenic").as_uri()
+    client.open(uri, "from library import Chair\nego = new Chair\n")
+    assert len(client.published(uri)) == 1
+    library = tmp_path / "library.scenic"
+    library.write_text("class Chair: pass\n")
+    client.send("textDocument/didSave", {"textDocument": {"uri": library.as_uri()}})
+    assert client.published(uri) == []
+
+
+def test_who_asks_for_problems_is_told_to_ask_again(client: Client, tmp_path: Path) -> None:
+    workspace = {"diagnostics": {"refreshSupport": True}}
+    client.start({"textDocument": {"diagnostic": {}}, "workspace": workspace}, tmp_path)
+    main, library = ((tmp_path / name).as_uri() for name in ("main.scenic", "library.scenic"))
+    (tmp_path / "library.scenic").write_text("class Chair: pass\n")
+    client.open(library, "class Chair: pass\n")
+    client.open(main, "from library import Chair\nego = new Chair\n")
+    assert client.request("textDocument/diagnostic", {"textDocument": {"uri": main}})["items"] == []
+    client.change(library, "class Table: pass\n")
+    client.wait(lambda each: each.get("method") == "workspace/diagnostic/refresh")
+    assert len(client.request("textDocument/diagnostic", {"textDocument": {"uri": main}})["items"]) == 1
 
 
 def test_python_modules_are_not_checked(client: Client, tmp_path: Path) -> None:

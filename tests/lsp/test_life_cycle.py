@@ -247,3 +247,25 @@ def test_a_hostile_folder_runs_nothing(tmp_path: Path, start: str) -> None:
         client.end()
     assert not (tmp_path / "ran").exists()
     assert os.listdir(tmp_path)
+
+
+def test_a_client_can_follow_the_conversation(client: Client) -> None:
+    client.start()
+    client.open("untitled:1", "x = 1\n")
+
+    def traced() -> list[dict[str, str]]:
+        client.request("textDocument/documentSymbol", {"textDocument": {"uri": "untitled:1"}})
+        client.refused("no/method")  # What was told of the request before has arrived by now.
+        found = [each["params"] for each in client.kept if each.get("method") == "$/logTrace"]
+        client.kept.clear()
+        return [each for each in found if "documentSymbol" in each["message"]]
+
+    assert traced() == []
+    client.send("$/setTrace", {"value": "messages"})
+    received, answered = traced()
+    assert received.keys() == answered.keys() == {"message"}
+    client.send("$/setTrace", {"value": "verbose"})
+    received, answered = traced()
+    assert ("untitled:1" in received["verbose"], '"x"' in answered["verbose"]) == (True, True)
+    client.send("$/setTrace", {"value": "off"})
+    assert traced() == []

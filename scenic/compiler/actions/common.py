@@ -58,8 +58,16 @@ class CommonActions:
         if self.failure is None:
             self.failure = Problem(code, place, message, help)
 
-    def _report(self, place: Place, message: str, *, help: str | None = None, code: str = "SC110") -> None:
-        self.problems.setdefault((code, place), Problem(code, place, message, help))
+    def _report(
+        self,
+        place: Place,
+        message: str,
+        *,
+        help: str | None = None,
+        code: str = "SC110",
+        labels: tuple[tuple[Place, str], ...] = (),
+    ) -> None:
+        self.problems.setdefault((code, place), Problem(code, place, message, help, labels))
 
     def place_of_token(self, index: int) -> Place:
         """The place of a token."""

@@ -131,16 +131,17 @@ class StatementActions(DefinitionActions, ExpressionActions):
 
     def distinct(self, items: Sequence[tree.ParamItem]) -> bool:
         """Report parameters that are set twice in one statement."""
-        seen: set[str] = set()
+        seen: dict[str, tree.ParamItem] = {}
         for item in items:
-            if item.name in seen:
+            first = seen.setdefault(item.name, item)
+            if first is not item:
                 self._report(
                     place_of(item),
                     f"the parameter `{item.name}` is set twice in one statement",
                     help="remove one of the settings",
                     code="SC210",
+                    labels=((place_of(first), "set here first"),),
                 )
-            seen.add(item.name)
         return True
 
     def parameter_setting(self, name: int, value: ast.expr, place: Place) -> tree.ParamItem | None:

@@ -9,7 +9,7 @@ from scenic.configuration.project import Configurations
 from scenic.lsp import reading
 from scenic.lsp.checks import finder, found_in_document
 from scenic.lsp.convert import Json
-from scenic.lsp.progress import Progress
+from scenic.lsp.progress import Partial, Progress
 from scenic.lsp.session import SUFFIXES, Deferred, Session
 from scenic.lsp.uris import to_uri
 from scenic.project.index import Project
@@ -41,9 +41,9 @@ def _workspace(session: Session, params: Any) -> Deferred:
     documents = dict(session.documents)
     project, stamp = session.project_beside(None), session.generation
     progress = Progress(session, reading.lookup(params, "workDoneToken"), "Checking the workspace")
+    partial = Partial(session, reading.lookup(params, "partialResultToken"))
 
     def work(go_on: Callable[[], None]) -> Json:
-        items = []
         with progress:
             named = {to_uri(path): path for path in _programs(project)}
             for done, uri in enumerate(sorted(named.keys() | documents.keys())):
@@ -52,9 +52,10 @@ def _workspace(session: Session, params: Any) -> Deferred:
                 if document is None:
                     continue
                 found, _ = found_in_document(session, document, project, stamp, go_on)
-                items.append({"uri": uri, "version": document.version, **_report(found, previous.get(uri))})
+                report = {"uri": uri, "version": document.version, **_report(found, previous.get(uri))}
+                partial.add([report], lambda items: {"items": items})
                 progress.report(done + 1, len(named))
-        return {"items": items}
+        return {"items": partial.rest}
 
     return Deferred(work)
 

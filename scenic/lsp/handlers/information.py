@@ -21,6 +21,7 @@ _KINDS: Final = {
     CompletionKind.FUNCTION: 3,
     CompletionKind.METHOD: 2,
     CompletionKind.BEHAVIOR: 23,
+    CompletionKind.MONITOR: 23,
     CompletionKind.SCENARIO: 9,
     CompletionKind.PROPERTY: 10,
     CompletionKind.ATTRIBUTE: 5,

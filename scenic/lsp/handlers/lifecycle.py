@@ -22,6 +22,7 @@ def initialize(session: Session, params: Any) -> Json:
     client = session.client = Client(params.get("capabilities"))
     session.encoding = client.encoding
     session.set_folders(_folders(params))
+    session.trace.set(params.get("trace"))
     options = params.get("initializationOptions")
     take_settings(session, options)
     return {
@@ -49,8 +50,9 @@ def _initialized(session: Session, _params: Any) -> None:
     read_settings(session)
 
 
-def _trace(_session: Session, _params: Any) -> None:
-    """The client would like to hear more or less; all there is to say is in its log already."""
+def _trace(session: Session, params: Any) -> None:
+    """The client would like to hear more or less."""
+    session.trace.set(reading.lookup(params, "value"))
 
 
 NOTIFICATIONS: Final = {"initialized": _initialized, "$/setTrace": _trace}

@@ -1,6 +1,7 @@
 """Going from place to place: definitions, uses, hierarchies, symbols of the workspace."""
 
 from collections.abc import Callable, Sequence
+from itertools import groupby
 from typing import Any, Final
 
 from scenic.ide import hierarchies, navigation
@@ -10,7 +11,7 @@ from scenic.lsp import reading
 from scenic.lsp.convert import Json
 from scenic.lsp.errors import ErrorCode, ProtocolError
 from scenic.lsp.handlers.information import place_of
-from scenic.lsp.progress import Progress
+from scenic.lsp.progress import Partial, Progress
 from scenic.lsp.session import Deferred, Session
 from scenic.lsp.uris import to_path
 from scenic.project.symbols import Symbol, SymbolKind
@@ -79,18 +80,24 @@ def _goto(find: Callable[..., Sequence[Target]], name: str) -> Callable[[Session
     return handler
 
 
-def _references(session: Session, params: Any) -> Json:
+def _references(session: Session, params: Any) -> Deferred:
     document, line, column = place_of(session, params)
     with_definitions = reading.flag(params, "context", "includeDeclaration")
     project = session.project_with(document)
-    with Progress(session, reading.lookup(params, "workDoneToken"), "Finding references"):
-        places = navigation.usages(
-            project, document.snapshot, line, column, with_definitions=with_definitions
-        )
-    return [
-        {"uri": session.uri_of(each.filename), "range": session.lines_of(each.filename).to_range(each.span)}
-        for each in places
-    ]
+    progress = Progress(session, reading.lookup(params, "workDoneToken"), "Finding references")
+    partial = Partial(session, reading.lookup(params, "partialResultToken"))
+
+    def work(go_on: Callable[[], None]) -> Json:
+        with progress:
+            found = navigation.usages(
+                project, document.snapshot, line, column, with_definitions=with_definitions, go_on=go_on
+            )
+            for filename, places in groupby(found, lambda each: each.filename):
+                uri, lines = session.uri_of(filename), session.lines_of(filename)
+                partial.add([{"uri": uri, "range": lines.to_range(each.span)} for each in places])
+        return partial.rest
+
+    return Deferred(work)
 
 
 def _highlights(session: Session, params: Any) -> Json:
@@ -185,6 +192,7 @@ def _workspace_symbols(session: Session, params: Any) -> Deferred:
     query = reading.text(params, "query")
     snapshots = session.workspace_snapshots()
     progress = Progress(session, reading.lookup(params, "workDoneToken"), "Searching symbols")
+    partial = Partial(session, reading.lookup(params, "partialResultToken"))
     lazy = session.client.has("workspace", "symbol", "resolveSupport")
 
     def work(go_on: Callable[[], None]) -> Json:
@@ -210,7 +218,8 @@ def _workspace_symbols(session: Session, params: Any) -> Deferred:
                     found.append(item)
         query_name = query.lower()
         found.sort(key=lambda item: (not item["name"].lower().startswith(query_name), item["name"].lower()))
-        return found[:_MOST]
+        partial.add(found[:_MOST])
+        return partial.rest
 
     return Deferred(work)
 

@@ -5,8 +5,6 @@ from collections.abc import Callable
 from typing import Any, Final
 
 from scenic.ide.running import RunError, sample_page, simulation_page
-from scenic.language.errors import ScenicError
-from scenic.language.source import read_source
 from scenic.lsp import reading
 from scenic.lsp.capabilities import SAMPLE, SIMULATE
 from scenic.lsp.convert import Json
@@ -34,7 +32,7 @@ def _execute(session: Session, params: Any) -> Deferred:
     options = reading.lookup(params, "arguments", 1)
     document = session.document(uri)
     simulates = command == SIMULATE
-    if simulates and not _is_saved(document):
+    if simulates and not document.is_saved():
         raise ProtocolError(ErrorCode.REQUEST_FAILED, "save the program first: its file is what is simulated")
     title = "Simulating" if simulates else "Sampling a scene"
     progress = Progress(session, reading.lookup(params, "workDoneToken"), title)
@@ -57,14 +55,6 @@ def _execute(session: Session, params: Any) -> Deferred:
                 raise ProtocolError(ErrorCode.REQUEST_FAILED, str(error)) from None
 
     return Deferred(work, own_thread=True)
-
-
-def _is_saved(document: Document) -> bool:
-    """Whether the file of a document holds its present text."""
-    try:
-        return read_source(document.snapshot.filename).text == document.snapshot.text
-    except ScenicError:
-        return False
 
 
 def _permission(session: Session, document: Document) -> Callable[[Callable[[], None]], None]:

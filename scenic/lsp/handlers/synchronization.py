@@ -33,9 +33,12 @@ def _changed(session: Session, params: Any) -> None:
 
 
 def _saved(session: Session, params: Any) -> None:
-    document = session.documents.get(reading.uri_of(params))
-    if document is not None:
-        session.checks.changed(document.uri)
+    uri = reading.uri_of(params)
+    if not session.client.can("workspace", "didChangeWatchedFiles", "dynamicRegistration"):
+        # Nobody else will tell us that a file may be new.
+        session.files_changed()
+    elif uri in session.documents:
+        session.checks.changed(uri)
 
 
 def _closed(session: Session, params: Any) -> None:

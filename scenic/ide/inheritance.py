@@ -1,0 +1,106 @@
+"""Which classes derive from which, and which definitions of a member take each other's place."""
+
+from dataclasses import dataclass
+from typing import Any
+
+from scenic.project.classes import Class, class_of_symbol
+from scenic.project.index import Project
+from scenic.project.symbols import Symbol, SymbolKind, symbols_of
+
+__all__ = ["Family", "family", "is_derived", "own_member", "owner_of", "subclasses"]
+
+_MEMBERS = (SymbolKind.METHOD, SymbolKind.PROPERTY, SymbolKind.ATTRIBUTE)
+
+
+@dataclass(frozen=True, slots=True)
+class Family:
+    """The definitions of a member by classes that derive from each other: they have one name, or none overrides another.
+
+    ``provider`` is the class of the language that also defines it, if one does. What is no member of a class is a family
+    of its own.
+    """
+
+    definitions: tuple[Symbol, ...]
+    provider: str | None = None
+
+
+def family(project: Project, symbol: Symbol) -> Family:
+    """The family of a symbol."""
+    owner = owner_of(symbol) if symbol.kind in _MEMBERS else None
+    if owner is None:
+        return Family((symbol,))
+    provider = None
+    found = {symbol: symbol}
+    seen = {owner}
+    pending = [owner]
+    while pending:
+        cls = class_of_symbol(project, pending.pop())
+        if cls is None:
+            continue
+        member = own_member(cls, symbol.name)
+        related = list(cls.bases)
+        if member is not None:
+            found.setdefault(member, member)
+            related += subclasses(project, cls.symbol, deep=True)
+        for each in related:
+            known = class_of_symbol(project, each)
+            if each in seen or known is None or known.member(symbol.name) is None:
+                continue
+            seen.add(each)
+            if each.is_builtin:
+                provider = each.name
+            else:
+                pending.append(each)
+    return Family(tuple(found), provider)
+
+
+def own_member(cls: Class, name: str) -> Symbol | None:
+    """What a class itself defines under a name."""
+    member = cls.member(name)
+    symbol = None if member is None else member.symbol
+    if member is None or symbol is None or symbol.filename != cls.symbol.filename:
+        return None
+    return symbol if member.owner == cls.symbol.name else None
+
+
+def subclasses(project: Project, symbol: Symbol, *, deep: bool) -> tuple[Symbol, ...]:
+    """The classes of the workspace that derive from a class: directly, or if ``deep``, also through others."""
+    found: list[Symbol] = []
+    for filename in project.files():
+        module = project.module(filename)
+        for each in () if module is None else symbols_of(module):
+            if each.kind is not SymbolKind.CLASS or each.filename != filename or each == symbol:
+                continue
+            if is_derived(project, each, symbol, deep=deep):
+                found.append(each)
+    return tuple(found)
+
+
+def is_derived(project: Project, symbol: Symbol, base: Symbol, *, deep: bool) -> bool:
+    """Whether a class derives from another one."""
+    seen: set[Symbol] = set()
+    pending = [symbol]
+    while pending:
+        cls = class_of_symbol(project, pending.pop())
+        for each in () if cls is None else cls.bases:
+            if each == base:
+                return True
+            if deep and each not in seen:
+                seen.add(each)
+                pending.append(each)
+    return False
+
+
+def owner_of(symbol: Symbol) -> Symbol | None:
+    """The class that a member is defined in."""
+    module: Any = symbol.module
+    if module is None:
+        return None
+    return next(
+        (
+            each
+            for each in symbols_of(module)
+            if each.kind is SymbolKind.CLASS and each.name == symbol.container
+        ),
+        None,
+    )
