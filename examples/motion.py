@@ -86,7 +86,13 @@ def shown(name: str) -> bytes:
     shot = SHOTS[name]
     scenario = load(HERE / f"{name}.scenic")
     done = simulate_number(
-        scenario, choose_simulator(None, scenario), seed=1, k=shot.k, tries=20, maxSteps=shot.steps
+        scenario,
+        choose_simulator(None, scenario),
+        seed=1,
+        k=shot.k,
+        tries=20,
+        maxSteps=shot.steps,
+        keep_poses=True,
     )
     if done.simulation is None:
         raise SystemExit(f"{name}: simulation {shot.k} is rejected")

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 import scenic
-from scenic.runtime.dynamics.recorders import plain
+from scenic.runtime.dynamics.recorded import plain
 from scenic.simulators.dummy import DummySimulator
 from tests.dynamic_programs import FOLDER, Traced, programs, recorded, reviewed
 

@@ -6,7 +6,7 @@ import sys
 from collections.abc import Generator, Mapping
 from contextlib import closing
 from pathlib import Path
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import click
 
@@ -15,6 +15,11 @@ from scenic.cli.options import program_options, seconds
 from scenic.cli.output import CLEAN, FINDINGS, show_diagnostics
 from scenic.cli.sample import NOT_ALL, _ended_by_signals, _progress
 from scenic.language.diagnostics import Diagnostic
+
+if TYPE_CHECKING:
+    from scenic.formats.course_page import PoseTape
+    from scenic.formats.trajectories import TrajectoryFile
+    from scenic.simulators.simulation import OnState, Poses, Simulation
 
 __all__ = ["simulate"]
 
@@ -111,32 +116,84 @@ class _Work:
             return {"k": k, "error": found or Diagnostic("SC503", message, help=hint)}
 
     def _one(self, k: int) -> dict[str, Any]:
-        from scenic.formats.course_page import course_data
-        from scenic.formats.files import write
-        from scenic.formats.trajectories import course_document, step_documents
+        from scenic.formats.trajectories import course_document
         from scenic.simulators.batch import simulate_number
 
         scenario, simulator = self.load()
-        numbered = simulate_number(scenario, simulator, k=k, stuck_is_error=True, **self._running)
-        if numbered.simulation is None:
-            what = f"rejected ({numbered.tries} tried)" if numbered.has_scene else "no scene found"
-            return {"k": k, "missing": what, "rejections": numbered.rejections}
-        about = {
-            **course_document(numbered.simulation, k=k, tries=numbered.tries),
-            "settings": self.settings(),
-        }
-        path = self.file(k)
-        if path is not None:
-            write(path, self._file_bytes(about, list(step_documents(numbered.simulation))))
-        return {"k": k, "about": about, "page": course_data(numbered.simulation) if self._whole else None}
+        with closing(_Kept(self.file(k), self._form, self._whole)) as kept:
+            numbered = simulate_number(
+                scenario,
+                simulator,
+                k=k,
+                stuck_is_error=True,
+                beginning=kept.begin,
+                enableReplay=False,
+                keep_course=self._looks_back(),
+                **self._running,
+            )
+            done = numbered.simulation
+            if done is None:
+                what = f"rejected ({numbered.tries} tried)" if numbered.has_scene else "no scene found"
+                return {"k": k, "missing": what, "rejections": numbered.rejections}
+            about = {**course_document(done, k=k, tries=numbered.tries), "settings": self.settings()}
+            return {"k": k, "about": about, "page": kept.finish(done, about)}
 
-    def _file_bytes(self, about: dict[str, Any], steps: list[dict[str, Any]]) -> bytes:
-        if self._form == "parquet":
-            from scenic.formats.trajectory_tables import parquet_bytes
+    def _looks_back(self) -> bool:
+        """Whether the program may ask a running simulation for all of its course."""
+        text = self._loading["path"].read_bytes()
+        return b"trajectory" in text or b"actionSequence" in text
 
-            return parquet_bytes(about, steps)
-        lines = (json.dumps(row, allow_nan=False, separators=(",", ":")) + "\n" for row in (about, *steps))
-        return "".join(lines).encode()
+
+class _Kept:
+    """What is kept of a simulation while it runs, and again from the beginning when it is tried again.
+
+    Args:
+        path: the file of its trajectory, if there is to be one.
+        form: of that file, ``jsonl`` or ``parquet``.
+        shown: whether it goes onto a page.
+
+    """
+
+    def __init__(self, path: Path | None, form: str, shown: bool) -> None:
+        self._path = path
+        self._form = form
+        self._shown = shown
+        self._file: TrajectoryFile | None = None
+        self._tape: PoseTape | None = None
+
+    def begin(self) -> "OnState":
+        """What is to be called with each state of a try."""
+        from scenic.formats.course_page import PoseTape
+        from scenic.formats.trajectories import LinesFile
+        from scenic.formats.trajectory_tables import ParquetFile
+
+        self.close()
+        if self._path is not None:
+            self._file = ParquetFile(self._path) if self._form == "parquet" else LinesFile(self._path)
+        self._tape = PoseTape() if self._shown else None
+        return self._add
+
+    def _add(self, simulation: "Simulation", poses: "Poses", actions: Mapping[Any, Any]) -> None:
+        from scenic.formats.trajectories import step_document
+
+        if self._file is not None:
+            self._file.add(step_document(simulation, poses, actions))
+        if self._tape is not None:
+            self._tape.add(poses)
+
+    def finish(self, simulation: "Simulation", about: Mapping[str, Any]) -> dict[str, Any] | None:
+        """Complete the file; what the page needs."""
+        from scenic.formats.course_page import course_data
+
+        if self._file is not None:
+            self._file.finish(about)
+        return None if self._tape is None else course_data(simulation, self._tape)
+
+    def close(self) -> None:
+        """Give up what is not finished."""
+        if self._file is not None:
+            self._file.close()
+            self._file = None
 
 
 @click.command()

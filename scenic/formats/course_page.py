@@ -1,25 +1,40 @@
 """A page that plays simulations in three dimensions: the page of scenes, with a line for the time."""
 
 import json
+from array import array
 from collections.abc import Mapping, Sequence
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from scenic.formats.html import Page, packed, page_text
 from scenic.formats.json_lines import number
+from scenic.formats.trajectories import Course
 
-__all__ = ["Course", "course_data", "course_page"]
+__all__ = ["PoseTape", "course_data", "course_page"]
 
 
-class Course(Protocol):
-    """A simulation that has run (`scenic.simulators.simulation.Simulation`, with its poses kept)."""
+class PoseTape:
+    """Collects the poses of a running simulation, state by state."""
 
-    objects: Any
-    scene: Any
-    result: Any
-    poses: Any
-    timestep: float
+    def __init__(self) -> None:
+        self._numbers = array("f")
+        self._counts = array("l")
+
+    def add(self, poses: Sequence[tuple[Any, Any]]) -> None:
+        """The next state: position and orientation of each object."""
+        for position, turn in poses:
+            self._numbers.extend((*position, turn.x, turn.y, turn.z, turn.w))
+        self._counts.append(len(poses))
+
+    def poses(self) -> npt.NDArray[np.float32]:
+        """Position (metres) and quaternion x, y, z, w, ``(states, objects, 7)``; NaN before an object was created."""
+        counts = np.array(self._counts)
+        present = np.arange(counts.max(initial=0)) < counts[:, np.newaxis]
+        poses = np.full((*present.shape, 7), np.nan, dtype="<f4")
+        poses[present] = np.frombuffer(self._numbers, dtype=np.float32).reshape(-1, 7)
+        return poses
 
 
 class _Shown:
@@ -35,22 +50,19 @@ class _Shown:
         self.origin = scene.origin
 
 
-def course_data(course: Course) -> dict[str, Any]:
-    """What the page needs of a simulation, as plain data."""
+def course_data(course: Course, tape: PoseTape) -> dict[str, Any]:
+    """What the page needs of a simulation, all of whose states are on the tape, as plain data."""
     page = Page("")
     instances = page.add(_Shown(course))
     data = page.data()
     (scene,) = data["scenes"]
     indices = {id(thing): index for index, thing in enumerate(course.objects)}
     drawn = [indices[id(instance.thing)] for instance in instances]
-    poses = np.full((len(course.poses), len(course.objects), 7), np.nan, dtype="<f4")
-    for step, state in enumerate(course.poses):
-        for index, (position, turn) in enumerate(state):
-            poses[step, index] = (*position, turn.x, turn.y, turn.z, turn.w)
+    poses = tape.poses()
     result = course.result
     scene["course"] = {
         "timestep": number(course.timestep),
-        "steps": len(course.poses) - 1,
+        "steps": len(poses) - 1,
         "poses": packed(poses[:, drawn]),
         "reason": result.terminationReason,
         "requirements": [

@@ -7,7 +7,9 @@ any error, Ctrl-C included, the temporary file is removed and what had the name 
 import contextlib
 import os
 import secrets
+import shutil
 import stat
+import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 from typing import BinaryIO
@@ -110,6 +112,40 @@ def writing(path: Path) -> Iterator[BinaryIO]:
         with contextlib.suppress(OSError):
             os.unlink(temporary)
         raise
+
+
+class Waiting:
+    """What is to be in the file ``path``, in a file without a name in the same folder; raises ``OutputError``."""
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        with refusing(path):
+            self.stream: BinaryIO = tempfile.TemporaryFile(dir=path.resolve().parent)  # noqa: SIM115 - `close` does
+
+    def write(self, content: bytes) -> None:
+        """Append to it."""
+        with refusing(self._path):
+            self.stream.write(content)
+
+    def copy(self, target: BinaryIO) -> None:
+        """Write all of it to a file."""
+        with refusing(self._path):
+            self.stream.seek(0)
+            shutil.copyfileobj(self.stream, target)
+
+    def close(self) -> None:
+        """Forget it."""
+        with contextlib.suppress(OSError):  # it may be what could not be written
+            self.stream.close()
+
+
+@contextlib.contextmanager
+def refusing(path: Path) -> Iterator[None]:
+    """Errors of the system within this become an ``OutputError`` of the file ``path``."""
+    try:
+        yield
+    except OSError as error:
+        raise _refusal(path, _reason(error)) from error
 
 
 def write(path: Path, content: bytes) -> None:

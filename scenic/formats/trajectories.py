@@ -1,25 +1,42 @@
 """Simulations as JSON Lines: a line about the simulation, then one for each step."""
 
 import json
-from collections.abc import Iterator
+from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any, Final, Protocol
 
+from scenic.formats.files import Waiting, writing
 from scenic.formats.json_lines import number, plain
+from scenic.runtime.dynamics.recorders import Filed
 
-__all__ = ["FORMAT", "VERSION", "Course", "course_document", "step_documents", "trajectory_lines"]
+__all__ = [
+    "FORMAT",
+    "VERSION",
+    "Course",
+    "LinesFile",
+    "Running",
+    "TrajectoryFile",
+    "course_document",
+    "step_document",
+]
 
 FORMAT: Final = "scenic-simulation"
 VERSION: Final = 1
 
 
-class Course(Protocol):
-    """A simulation that has run (`scenic.simulators.simulation.Simulation`, with its poses kept)."""
+class Running(Protocol):
+    """A simulation (`scenic.simulators.simulation.Simulation`)."""
 
     objects: Any
+    currentTime: int
+    timestep: float
+
+
+class Course(Running, Protocol):
+    """A simulation that has run."""
+
     scene: Any
     result: Any
-    poses: Any
-    timestep: float
 
 
 def course_document(course: Course, *, k: int, tries: int) -> dict[str, Any]:
@@ -34,7 +51,7 @@ def course_document(course: Course, *, k: int, tries: int) -> dict[str, Any]:
         "k": k,
         "tries": tries,
         "timestep": number(course.timestep),
-        "steps": len(result.actions),
+        "steps": course.currentTime,
         "ended": result.terminationType.name,
         "reason": result.terminationReason,
         "objects": [
@@ -55,30 +72,72 @@ def course_document(course: Course, *, k: int, tries: int) -> dict[str, Any]:
             }
             for item in result.requirements
         ],
-        "records": {name: plain(value, numbers) for name, value in result.records.items()},
+        "records": {name: _record(value, numbers) for name, value in result.records.items()},
     }
 
 
-def step_documents(course: Course) -> Iterator[dict[str, Any]]:
-    """Each state: positions in metres, orientations as quaternions x, y, z, w, and the actions then taken."""
+def _record(value: Any, numbers: Mapping[int, int]) -> Any:
+    """What was recorded; of what is in a file of its own, that file's name."""
+    return {"$file": value.name} if isinstance(value, Filed) else plain(value, numbers)
+
+
+def step_document(
+    course: Running, poses: Sequence[tuple[Any, Any]], actions: Mapping[Any, Any]
+) -> dict[str, Any]:
+    """The present state: positions in metres, orientations as quaternions x, y, z, w, and the actions then taken."""
     numbers = {id(thing): index for index, thing in enumerate(course.objects)}
-    actions = course.result.actions
-    for step, poses in enumerate(course.poses):
-        taken = actions[step] if step < len(actions) else {}
-        yield {
-            "step": step,
-            "time": number(step * course.timestep),
-            "positions": [[number(part) for part in position] for position, _ in poses],
-            "orientations": [[number(value) for value in (o.x, o.y, o.z, o.w)] for _, o in poses],
-            "actions": {
-                str(numbers[id(agent)]): [plain(action, numbers) for action in some]
-                for agent, some in taken.items()
-                if some
-            },
-        }
+    step = course.currentTime
+    return {
+        "step": step,
+        "time": number(step * course.timestep),
+        "positions": [[number(part) for part in position] for position, _ in poses],
+        "orientations": [[number(value) for value in (o.x, o.y, o.z, o.w)] for _, o in poses],
+        "actions": {
+            str(numbers[id(agent)]): [plain(action, numbers) for action in some]
+            for agent, some in actions.items()
+            if some
+        },
+    }
 
 
-def trajectory_lines(course: Course, *, k: int, tries: int) -> Iterator[str]:
-    """The lines of the file of a simulation, without their ends; equal simulations give equal text."""
-    for document in (course_document(course, k=k, tries=tries), *step_documents(course)):
-        yield json.dumps(document, allow_nan=False, separators=(",", ":"))
+class TrajectoryFile(Protocol):
+    """A file of a simulation, into which states are put while it runs; there is no file before it is finished."""
+
+    def add(self, state: Mapping[str, Any]) -> None:
+        """The next state, as `step_document` gives it."""
+
+    def finish(self, about: Mapping[str, Any]) -> None:
+        """Complete the file with what `course_document` says of the whole."""
+
+    def close(self) -> None:
+        """Give up what is not finished."""
+
+
+class LinesFile:
+    """A file of JSON Lines at ``path``: a line about the simulation, then one for each state.
+
+    What is in the first line is known last. So states wait in a file without a name, of which nothing remains however the
+    process ends. Raises ``OutputError`` where files cannot be written.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self._waiting = Waiting(path)
+
+    def add(self, state: Mapping[str, Any]) -> None:
+        """The next state."""
+        self._waiting.write(_line(state))
+
+    def finish(self, about: Mapping[str, Any]) -> None:
+        """Complete the file."""
+        with writing(self._path) as stream:
+            stream.write(_line(about))
+            self._waiting.copy(stream)
+
+    def close(self) -> None:
+        """Give up what is not finished."""
+        self._waiting.close()
+
+
+def _line(document: Mapping[str, Any]) -> bytes:
+    return json.dumps(document, allow_nan=False, separators=(",", ":")).encode() + b"\n"

@@ -4,17 +4,22 @@ The column ``actions`` is the JSON of what the object then did, as in JSON Lines
 """
 
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, Final
 
+from scenic.formats.files import Waiting, refusing, writing
 from scenic.formats.json_lines import number
 from scenic.language.errors import UnsupportedError
 
-__all__ = ["KEY", "parquet_about", "parquet_bytes", "parquet_steps", "parquet_support"]
+__all__ = ["GROUP", "KEY", "ParquetFile", "parquet_about", "parquet_steps", "parquet_support"]
 
 KEY: Final = b"scenic-simulation"
 """Of the metadata: a JSON object with the fields of the first line of JSON Lines."""
+
+GROUP: Final = 1 << 15
+"""About so many rows are kept in memory until they are written."""
 
 _PLACES: Final = ("x", "y", "z")
 _TURNS: Final = ("qx", "qy", "qz", "qw")
@@ -33,35 +38,60 @@ def parquet_support() -> tuple[Any, Any]:
     return pyarrow, pyarrow.parquet
 
 
-def parquet_bytes(about: Mapping[str, Any], steps: Iterable[Mapping[str, Any]]) -> bytes:
-    """The file of a simulation: of `course_document` and `step_documents`; equal simulations give equal bytes."""
-    pyarrow, parquet = parquet_support()
-    columns: dict[str, list[Any]] = {
-        name: [] for name in ("step", "time", "object", *_PLACES, *_TURNS, "actions")
-    }
-    for row in steps:
-        poses = zip(row["positions"], row["orientations"], strict=True)
+class ParquetFile:
+    """A Parquet file at ``path``, in groups of rows; equal simulations give equal files.
+
+    Groups wait in a file without a name until all is known. Raises ``OutputError`` where files cannot be written.
+    """
+
+    def __init__(self, path: Path) -> None:
+        pyarrow, parquet = parquet_support()
+        whole, real = pyarrow.int32(), pyarrow.float64()
+        kinds = {"step": whole, "object": whole, "actions": pyarrow.string()}
+        names = ("step", "time", "object", *_PLACES, *_TURNS, "actions")
+        self._path = path
+        self._arrow = pyarrow
+        self._schema = pyarrow.schema([(name, kinds.get(name, real)) for name in names])
+        self._columns: dict[str, list[Any]] = {name: [] for name in names}
+        self._waiting = Waiting(path)
+        self._writer = parquet.ParquetWriter(
+            self._waiting.stream, self._schema, compression="zstd", store_schema=False
+        )
+
+    def add(self, state: Mapping[str, Any]) -> None:
+        """The next state."""
+        poses = zip(state["positions"], state["orientations"], strict=True)
         for index, (position, turn) in enumerate(poses):
-            done = row["actions"].get(str(index))
-            values = (
-                row["step"],
-                row["time"],
-                index,
-                *position,
-                *turn,
-                None if done is None else _text(done),
-            )
-            for column, value in zip(columns.values(), values, strict=True):
+            done = state["actions"].get(str(index))
+            taken = None if done is None else _text(done)
+            values = (state["step"], state["time"], index, *position, *turn, taken)
+            for column, value in zip(self._columns.values(), values, strict=True):
                 column.append(_number(value))
-    whole, real = pyarrow.int32(), pyarrow.float64()
-    kinds = {"step": whole, "object": whole, "actions": pyarrow.string()}
-    schema = pyarrow.schema(
-        [(name, kinds.get(name, real)) for name in columns], metadata={KEY: _text(about).encode()}
-    )
-    sink = pyarrow.BufferOutputStream()
-    parquet.write_table(pyarrow.table(columns, schema=schema), sink, compression="zstd")
-    data: bytes = sink.getvalue().to_pybytes()
-    return data
+        if len(self._columns["step"]) >= GROUP:
+            self._flush()
+
+    def _flush(self) -> None:
+        if not self._columns["step"]:
+            return
+        with refusing(self._path):
+            self._writer.write_table(self._arrow.table(self._columns, schema=self._schema))
+        for column in self._columns.values():
+            column.clear()
+
+    def finish(self, about: Mapping[str, Any]) -> None:
+        """Complete the file."""
+        self._flush()
+        with refusing(self._path):
+            self._writer.add_key_value_metadata({KEY: _text(about).encode()})
+            self._writer.close()
+        with writing(self._path) as stream:
+            self._waiting.copy(stream)
+
+    def close(self) -> None:
+        """Give up what is not finished."""
+        with suppress(OSError):
+            self._writer.close()
+        self._waiting.close()
 
 
 def parquet_about(path: Path) -> dict[str, Any]:
@@ -78,7 +108,7 @@ def parquet_about(path: Path) -> dict[str, Any]:
 
 
 def parquet_steps(path: Path) -> list[dict[str, Any]]:
-    """The states, as `step_documents` gives them."""
+    """The states, as `step_document` gives them."""
     _, parquet = parquet_support()
     about = parquet_about(path)
     rows: list[dict[str, Any]] = [

@@ -1,6 +1,7 @@
 """Many simulations of a scenario, each a function of seed and number alone."""
 
 from collections import Counter
+from collections.abc import Callable
 from dataclasses import dataclass
 from importlib import import_module
 from typing import Any
@@ -10,7 +11,7 @@ from scenic.language.errors import Located
 from scenic.runtime.dynamics.driving import driven
 from scenic.runtime.sampling.report import Exhausted
 from scenic.runtime.scenario import Scenario
-from scenic.simulators.simulation import Simulation
+from scenic.simulators.simulation import OnState, Simulation
 from scenic.simulators.simulator import Simulator
 
 __all__ = ["Numbered", "SimulatorChoiceError", "choose_simulator", "simulate_number"]
@@ -72,11 +73,13 @@ def simulate_number(
     tries: int = 1,
     max_attempts: int | None = None,
     sobol: bool = False,
+    beginning: Callable[[], OnState | None] = lambda: None,
     **options: Any,
 ) -> Numbered:
     """Simulate scene ``k`` of a seed, again with other draws while it is rejected; ``options`` are those of `simulate`.
 
-    ``sobol`` says that scenes and simulations are rows of Sobol's sequence.
+    ``sobol`` says that scenes and simulations are rows of Sobol's sequence. ``beginning`` is called before each try, and gives what
+    is then called with its states.
     """
     points = Sobol() if sobol else None
     (scene,) = scenario.stream(1, seed=seed, first=k, max_attempts=max_attempts, source=points)
@@ -91,7 +94,7 @@ def simulate_number(
             scene,
             name=f"{k}",
             key=key,
-            keep_poses=True,
+            on_state=beginning(),
             robustness=True,
             onRejection=lambda error: reasons.update([_reason(error)]),
             **options,

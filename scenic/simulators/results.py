@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from enum import Enum
 from typing import Any
 
-__all__ = ["ActionsTaken", "SimulationResult", "TerminationType"]
+__all__ = ["ActionsTaken", "Latest", "SimulationResult", "TerminationType", "kept"]
 
 
 class TerminationType(Enum):
@@ -23,6 +23,42 @@ class ActionsTaken(dict[Any, tuple[Any, ...]]):
 
     def __missing__(self, key: Any) -> tuple[Any, ...]:
         return ()
+
+
+class Latest(Sequence[Any]):
+    """A series of which only the newest member is kept.
+
+    Args:
+        what: its members are, for messages.
+
+    """
+
+    def __init__(self, what: str) -> None:
+        self._what = what
+        self._count = 0
+        self.newest: list[Any] = []
+        """The newest member, if there is one."""
+
+    def append(self, value: Any) -> None:
+        """The next member."""
+        self.newest = [value]
+        self._count += 1
+
+    def __len__(self) -> int:
+        """How many there have been."""
+        return self._count
+
+    def __getitem__(self, place: Any) -> Any:
+        if self.newest and place in (-1, self._count - 1):
+            return self.newest[0]
+        raise LookupError(
+            f"of the {self._what} of this simulation only the newest is kept; `keep_course=True` keeps all"
+        )
+
+
+def kept(series: Sequence[Any]) -> Sequence[Any]:
+    """What there is of a series."""
+    return series.newest if isinstance(series, Latest) else series
 
 
 class SimulationResult:

@@ -1,9 +1,9 @@
 """One simulation: the part of the interface that a simulator fills in, and what joins it to the running program."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Generator, Mapping, Sequence
+from collections.abc import Callable, Generator, Mapping, Sequence
 from contextlib import ExitStack
-from typing import Any
+from typing import Any, TypeAlias
 
 from scenic.graph.kinds import Kind
 from scenic.language.diagnostics import Diagnostic
@@ -24,10 +24,16 @@ from scenic.runtime.randomness import preserved, restore, seed_globals, states
 from scenic.runtime.scene import Scene
 from scenic.runtime.values import describe, kind_of
 from scenic.simulators.replays import Replay, Tape, fresh_key
-from scenic.simulators.results import ActionsTaken, SimulationResult, TerminationType
+from scenic.simulators.results import ActionsTaken, Latest, SimulationResult, TerminationType, kept
 from scenic.simulators.watching import Watch
 
-__all__ = ["Simulation"]
+__all__ = ["OnState", "Poses", "Simulation"]
+
+Poses: TypeAlias = tuple[tuple[Any, Any], ...]
+"""Position (metres) and orientation of each object in one state."""
+
+OnState: TypeAlias = Callable[["Simulation", Poses, ActionsTaken], None]
+"""Called for each state of a simulation with what was then done, before the simulator advances."""
 
 
 class Simulation(ABC):
@@ -53,9 +59,10 @@ class Simulation(ABC):
         robustness: whether to compute by how much requirements hold.
         stuck_after: seconds that the program's code may run in one step before `StuckBehaviorWarning` names its line.
         stuck_is_error: raise `StuckBehaviorError` then.
-        keep_course: keep all states and actions; if not, memory does not grow with the steps, and the result holds the last
-            state and the last actions.
+        keep_course: keep all states and actions, and what is recorded to files; if not, memory does not grow with the steps but
+            by other records, and the result holds the last state and the last actions.
         keep_poses: keep position and orientation of every object at every step in `poses`.
+        on_state: called for each state.
         deferred: do not run now: the caller calls `begin`, then `advanceOnce` until it returns false.
 
     Attributes:
@@ -90,15 +97,16 @@ class Simulation(ABC):
         stuck_is_error: bool = False,
         keep_course: bool = True,
         keep_poses: bool = False,
+        on_state: OnState | None = None,
         deferred: bool = False,
     ) -> None:
         self.result: SimulationResult | None = None
         self.scene = scene
         self.objects: list[Any] = []
         self.agents: list[Any] = []
-        self.trajectory: list[Any] = []
-        self.poses: list[tuple[tuple[Any, Any], ...]] | None = [] if keep_poses else None
-        self.actionSequence: list[ActionsTaken] = []
+        self.trajectory: list[Any] | Latest = [] if keep_course else Latest("state")
+        self.poses: list[Poses] | None = [] if keep_poses else None
+        self.actionSequence: list[ActionsTaken] | Latest = [] if keep_course else Latest("actions")
         self.records: dict[str, Any] = {}
         self.currentTime = 0
         self.timestep = 1 if timestep is None else timestep
@@ -107,7 +115,8 @@ class Simulation(ABC):
         self.screen: Any = None
         self.worker_num = 0
         self._max_steps = maxSteps
-        self._keep_course = keep_course
+        self._on_state = on_state
+        self._now: Poses = ()
         self._enable_replay = enableReplay
         self._original = scene
         self._copies = Copies(scene.accepted.batch, scene.accepted.lane)
@@ -137,6 +146,7 @@ class Simulation(ABC):
             mode_2d=program.context.mode_2d,
             robustness=robustness,
             keep_draws=enableReplay,
+            keep_files=keep_course,
         )
         self._tape.draws = self._run.draws
         self._isolated = _Isolated(self._run)
@@ -205,13 +215,15 @@ class Simulation(ABC):
                 if not going:
                     break
                 yield True
+                self._tell_state(self.actionSequence[-1])
                 self.advance()
+            self._tell_state(ActionsTaken())
             run.finish()
             assert run.ending is not None
             self._restore()
             self.result = SimulationResult(
-                self.trajectory,
-                self.actionSequence,
+                kept(self.trajectory),
+                kept(self.actionSequence),
                 TerminationType[run.ending.kind],
                 run.ending.reason,
                 self.records,
@@ -267,10 +279,10 @@ class Simulation(ABC):
         back = {id(copy): item for copy, item in zip(copied, self._original.objects, strict=False)}
         self.objects = [back.get(id(item), item) for item in self.objects]
         self.agents = [back.get(id(item), item) for item in self.agents]
-        self.actionSequence = [
-            ActionsTaken({back.get(id(agent), agent): taken for agent, taken in step.items()})
-            for step in self.actionSequence
-        ]
+        for step in kept(self.actionSequence):
+            taken = {back.get(id(agent), agent): actions for agent, actions in step.items()}
+            step.clear()
+            step.update(taken)
         self.scene = self._original
 
     # What a simulator provides
@@ -358,11 +370,15 @@ class Simulation(ABC):
 
     def recordCurrentState(self) -> None:
         """Append the state to the trajectory."""
-        if not self._keep_course:
-            self.trajectory.clear()
         self.trajectory.append(self.currentState())
+        if self.poses is not None or self._on_state is not None:
+            self._now = tuple((obj.position, obj.orientation) for obj in self.objects)
         if self.poses is not None:
-            self.poses.append(tuple((obj.position, obj.orientation) for obj in self.objects))
+            self.poses.append(self._now)
+
+    def _tell_state(self, actions: ActionsTaken) -> None:
+        if self._on_state is not None:
+            self._on_state(self, self._now, actions)
 
     def check_actions(self, agent: Any, actions: tuple[Any, ...]) -> None:
         """Raise `InvalidScenarioError` for actions that cannot be taken together."""
@@ -375,8 +391,6 @@ class Simulation(ABC):
 
     def act(self, actions: Mapping[Any, tuple[Any, ...]]) -> None:
         """Log and execute the actions of a step."""
-        if not self._keep_course:
-            self.actionSequence.clear()
         self.actionSequence.append(ActionsTaken(actions))
         if self.verbosity >= 3:
             self._tell(f"    Time step {self.currentTime}:")

@@ -55,9 +55,9 @@ def test_other_trajectories_are_found_out(tmp_path: Path) -> None:
 
 def test_pictures_show_objects_at_several_moments() -> None:
     scenario = load(EXAMPLES / "overtaking.scenic")
-    done = simulate_number(
-        scenario, choose_simulator(None, scenario), seed=1, k=0, tries=20, maxSteps=SHOTS["overtaking"].steps
-    )
+    simulator = choose_simulator(None, scenario)
+    steps = SHOTS["overtaking"].steps
+    done = simulate_number(scenario, simulator, seed=1, k=0, tries=20, maxSteps=steps, keep_poses=True)
     assert done.simulation is not None
     drawn = exposed(done.simulation, (0, 0.5, 1)).scenes[0]
     assert [each.label for each in drawn].count("ego") == 3

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 import scenic
-from scenic.formats.course_page import course_data, course_page
+from scenic.formats.course_page import PoseTape, course_data, course_page
 from scenic.simulators.kinematic import KinematicSimulator
 
 PROGRAM = """
@@ -42,9 +42,16 @@ def simulated(steps: int = 80) -> Any:
     return done
 
 
+def data_of(simulation: Any) -> dict[str, Any]:
+    tape = PoseTape()
+    for state in simulation.poses:
+        tape.add(state)
+    return course_data(simulation, tape)
+
+
 def test_every_pose_is_on_the_page() -> None:
     done = simulated()
-    (scene,) = course_data(done)["scenes"]
+    (scene,) = data_of(done)["scenes"]
     course = scene["course"]
     poses = np.frombuffer(base64.b64decode(course["poses"]), dtype="<f4").reshape(81, 2, 7)
     assert (course["steps"], course["timestep"]) == (80, 0.1)
@@ -57,8 +64,15 @@ def test_every_pose_is_on_the_page() -> None:
     assert [thing["class"] for thing in scene["objects"]] == ["Object", "Object"]
 
 
+def test_a_tape_without_objects_or_states() -> None:
+    assert PoseTape().poses().shape == (0, 0, 7)
+    tape = PoseTape()
+    tape.add(())
+    assert tape.poses().shape == (1, 0, 7)
+
+
 def test_what_is_the_same_is_on_the_page_once() -> None:
-    one = course_data(simulated(15))
+    one = data_of(simulated(15))
     text = course_page("a <page>", [one, one, one])
     held = re.search(r'<script id="data" type="application/json">(.*?)</script>', text, re.DOTALL)
     assert held is not None

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from selenium import webdriver
 
-from scenic.formats.course_page import course_data, course_page
+from scenic.formats.course_page import course_page
 from tests.formats.browsers import MARKS, count, opened, picture
-from tests.formats.test_course_page import simulated
+from tests.formats.test_course_page import data_of, simulated
 
 pytestmark = MARKS
 
@@ -17,7 +17,7 @@ pytestmark = MARKS
 @pytest.fixture(scope="module")
 def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[webdriver.Chrome]:
     target = tmp_path_factory.mktemp("page") / "page.html"
-    target.write_text(course_page("page", [course_data(simulated()), course_data(simulated(20))]))
+    target.write_text(course_page("page", [data_of(simulated()), data_of(simulated(20))]))
     with opened(target.as_uri() + "#k=0&t=1.5") as driver:
         yield driver
 

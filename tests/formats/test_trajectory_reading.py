@@ -4,6 +4,7 @@ import importlib.util
 import json
 import math
 import sys
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
@@ -11,9 +12,10 @@ import numpy as np
 import pytest
 
 import scenic
-from scenic.formats.trajectories import course_document, step_documents
+from scenic.formats import trajectory_tables
+from scenic.formats.trajectories import LinesFile, TrajectoryFile, course_document, step_document
 from scenic.formats.trajectory_reading import Trajectory, TrajectoryFileError
-from scenic.formats.trajectory_tables import parquet_bytes, parquet_steps
+from scenic.formats.trajectory_tables import ParquetFile, parquet_steps
 from scenic.language.errors import MissingFileError
 from scenic.simulators.dummy import DummySimulator
 from tests.cli.commands import run_here
@@ -56,6 +58,13 @@ def simulated(folder: Path, form: str, *arguments: object) -> list[Path]:
     return sorted((folder / form).glob(f"*.{form}"))
 
 
+def write(file: TrajectoryFile, about: dict[str, Any], steps: list[dict[str, Any]]) -> None:
+    with closing(file):
+        for step in steps:
+            file.add(step)
+        file.finish(about)
+
+
 def test_arrays_are_what_the_lines_say(folder: Path) -> None:
     (path, _) = simulated(folder, "jsonl")
     read = scenic.read_trajectory(path)
@@ -90,7 +99,24 @@ def test_both_forms_hold_the_same(folder: Path) -> None:
         assert first.actions == second.actions
         for name in ("times", "positions", "orientations"):
             np.testing.assert_array_equal(getattr(first, name), getattr(second, name))
-        assert parquet_bytes(about, steps) == table.read_bytes()
+        again = folder / "again.parquet"
+        write(ParquetFile(again), about, steps)
+        assert again.read_bytes() == table.read_bytes()
+
+
+@needs_parquet
+def test_rows_are_written_in_groups(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from pyarrow import parquet
+
+    (lines, _) = simulated(folder, "jsonl")
+    about, *steps = (json.loads(line) for line in lines.read_text().splitlines())
+    monkeypatch.setattr(trajectory_tables, "GROUP", 4)
+    write(ParquetFile(folder / "groups.parquet"), about, steps)
+    found = parquet.ParquetFile(folder / "groups.parquet")
+    sizes = [found.metadata.row_group(group).num_rows for group in range(found.num_row_groups)]
+    assert sizes == [4, 6, 6, 3]
+    assert parquet_steps(folder / "groups.parquet") == steps
+    assert trajectory_tables.parquet_about(folder / "groups.parquet") == about
 
 
 @needs_parquet
@@ -126,8 +152,8 @@ def test_numbers_that_are_not_finite(tmp_path: Path) -> None:
     about["objects"] = [{"name": None}]
     state = {"step": 0, "time": 0.0, "actions": {}, "orientations": [[0, 0, 0, 1]]}
     state["positions"] = [[{"$float": "inf"}, {"$float": "nan"}, -1.5]]
-    (tmp_path / "a.parquet").write_bytes(parquet_bytes(about, [state]))
-    (tmp_path / "a.jsonl").write_text(f"{json.dumps(about)}\n{json.dumps(state)}\n")
+    write(ParquetFile(tmp_path / "a.parquet"), about, [state])
+    write(LinesFile(tmp_path / "a.jsonl"), about, [state])
     for name in ("a.parquet", "a.jsonl"):
         np.testing.assert_array_equal(
             scenic.read_trajectory(tmp_path / name).positions, [[[math.inf, math.nan, -1.5]]]
@@ -163,8 +189,15 @@ def test_a_document_holds_what_the_simulation_did() -> None:
     )
     scene = scenic.scenarioFromString(text).sample(1, seed=1)[0]
     simulator = DummySimulator(drift=1, timestep=0.5)
-    done = simulator.simulate(scene, maxSteps=3, keep_poses=True, robustness=True)
-    about, steps = course_document(done, k=4, tries=2), list(step_documents(done))
+    steps: list[dict[str, Any]] = []
+    done = simulator.simulate(
+        scene,
+        maxSteps=3,
+        on_state=lambda *state: steps.append(step_document(*state)),
+        robustness=True,
+        keep_course=False,
+    )
+    about = course_document(done, k=4, tries=2)
     assert (about["k"], about["tries"], about["steps"], about["timestep"]) == (4, 2, 3, 0.5)
     assert [step["actions"] for step in steps] == [{"0": [0, "go"]}, {"0": [1, "go"]}, {"0": [2, "go"]}, {}]
     assert [step["time"] for step in steps] == [0, 0.5, 1, 1.5]

@@ -385,12 +385,12 @@ def test_nothing_is_left_of_a_rejected_simulation(tmp_path: Path, target: str, e
 
 
 def test_a_disk_that_is_full_leaves_no_half_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from scenic.runtime.dynamics import recorders
+    from scenic.runtime.dynamics import series
 
     def full(*_: Any) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(recorders.os, "fsync", full)
+    monkeypatch.setattr(series.os, "fsync", full)
     with pytest.raises(OSError, match="No space left"):
         simulate(recording(tmp_path, "{step}.npy", "[1, 2]"), 2)
     assert list(tmp_path.iterdir()) == []

@@ -113,7 +113,7 @@ class Draws:
         self._source = source
         self._where = where
         self._now = now
-        self._counts: dict[Hashable, int] = {}
+        self._counts: dict[int, dict[Hashable, int]] = {}
         self._keep = keep
         self.made: list[tuple[int, float]] = []
         """Addresses and numbers so far, in order, if they are kept."""
@@ -121,15 +121,20 @@ class Draws:
     def random(self) -> float:
         """The next number, from (0, 1)."""
         where = self._where()
-        count = self._counts.get(where, 0)
-        self._counts[where] = count + 1
-        place = address(where, count)
         scenario, agent, name = where
+        counts = self._counts.setdefault(scenario, {})
+        count = counts.get(where, 0)
+        counts[where] = count + 1
+        place = address(where, count)
         what = Draw(scenario, agent, *(name or ("", 0)), count, self._now())
         number = self._source.draw(place, what)
         if self._keep:
             self.made.append((place, number))
         return number
+
+    def forget(self, scenario: int) -> None:
+        """The scenario of this number will draw no more."""
+        self._counts.pop(scenario, None)
 
     def seed(self, purpose: str) -> int:
         """64 bits for something else than a distribution, not among what was drawn."""

@@ -26,8 +26,8 @@ from scenic.runtime.dynamics.definitions import (
 from scenic.runtime.dynamics.recording import check_duration, check_target
 from scenic.runtime.dynamics.run import Run, RunContext
 from scenic.runtime.dynamics.scenarios import not_a_monitor
-from scenic.runtime.temporal.formulas import Monitor as Follower
 from scenic.runtime.temporal.formulas import is_temporal
+from scenic.runtime.temporal.monitors import Monitor as Follower
 from scenic.runtime.values import describe, is_number
 
 if TYPE_CHECKING:

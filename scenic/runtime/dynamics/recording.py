@@ -29,8 +29,8 @@ class Recording:
         self._ended = False
         self.begun = False
         """Whether there is a value."""
-        run.recordings.append(self)
         if use.to is not None:
+            run.recordings.append(self)
             recorder = use.to if isinstance(use.to, Recorder) else for_pattern(use.to)
             simulation = run.simulation
             recorder.beginRecording(use, simulation.name, simulation.timestep, run.parameters)
@@ -51,7 +51,12 @@ class Recording:
         with self._run.condition():
             value = self.use.value()
         self.begun = True
-        if moment is not None:
+        if self._recorder is not None:
+            self._recorder.recordValue(value, step)
+        if isinstance(self._recorder, File | Files) and not self._run.keeps_files:
+            if name not in records:
+                records[name] = self._recorder.written
+        elif moment is not None:
             records[name] = value
         else:
             series = records.setdefault(name, [])
@@ -59,8 +64,6 @@ class Recording:
                 series[-1] = (step, value)
             else:
                 series.append((step, value))
-        if self._recorder is not None:
-            self._recorder.recordValue(value, step)
 
     def finish(self) -> None:
         """The scenario has stopped."""

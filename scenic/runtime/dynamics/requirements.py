@@ -1,11 +1,12 @@
 """Requirements that a running simulation follows, with their verdicts and by how much they hold."""
 
+import math
 from typing import TYPE_CHECKING, Any
 
 from scenic.language.errors import RejectSimulationException
 from scenic.runtime.dynamics.declarations import Required
-from scenic.runtime.temporal.formulas import Monitor, Verdict
-from scenic.runtime.temporal.robustness import robustness
+from scenic.runtime.temporal.monitors import Monitor, Verdict
+from scenic.runtime.temporal.robustness import Robustness
 
 if TYPE_CHECKING:
     from scenic.runtime.dynamics.run import Run
@@ -37,32 +38,42 @@ class Outcome:
 class Followed:
     """One requirement along the steps of its scenario."""
 
-    __slots__ = ("_monitor", "_required", "_run", "_signals")
+    __slots__ = ("_monitor", "_outcome", "_required", "_robustness", "_run")
 
     def __init__(self, requirement: Required, run: "Run") -> None:
         self._required = requirement
         self._monitor = Monitor(requirement.formula)
+        self._robustness = Robustness(requirement.formula) if run.wants_robustness else None
         self._run = run
-        self._signals: list[list[float]] = []
+        self._outcome: Outcome | None = None
         run.followed.append(self)
 
     def follow(self) -> None:
         """Add the present state. Raises `RejectSimulationException` if no continuation can meet the requirement."""
         run = self._run
         with run.condition():
-            if run.wants_robustness:
-                self._signals.append([margin(atom) for atom in self._required.atoms])
             verdict = self._monitor.add(self._holds)
+            if self._robustness is not None:
+                self._robustness.add(self._margin)
         if verdict is Verdict.FALSE:
             raise RejectSimulationException(f"{self._words} is violated")
 
     def _holds(self, index: int) -> bool:
         return bool(self._required.atoms[index]())
 
+    def _margin(self, index: int) -> float:
+        try:
+            return margin(self._required.atoms[index])
+        except Exception:  # noqa: BLE001 - had it counted, the verdict would have raised it
+            return math.nan
+
     def finish(self) -> None:
         """The trace ends. Raises `RejectSimulationException` if the requirement does not hold on it."""
         if self._monitor.verdict is not None and not self._monitor.verdict:
             raise RejectSimulationException(f"{self._words} does not hold at the end")
+        self._outcome = self.outcome
+        # A simulation may start very many scenarios.
+        del self._monitor, self._required, self._robustness, self._run
 
     @property
     def _words(self) -> str:
@@ -73,7 +84,9 @@ class Followed:
     @property
     def outcome(self) -> Outcome:
         """What has become of it so far."""
-        value = robustness(self._required.formula, self._signals) if self._signals else None
+        if self._outcome is not None:
+            return self._outcome
+        value = None if self._robustness is None else self._robustness.value
         span = self._required.span
         line = None if span is None else span.line
         return Outcome(self._required.label, line, self._monitor.verdict, value)
@@ -83,6 +96,6 @@ def margin(atom: Any) -> float:
     """By how much an atom holds: a distance where there is one, else an infinity."""
     if atom.margin is not None:
         value = atom.margin(*atom.captured)
-        if value is not None:
+        if value is not None and not math.isnan(value):
             return float(value)
-    return float("inf") if atom() else float("-inf")
+    return math.inf if atom() else -math.inf

@@ -94,6 +94,7 @@ class Run:
         mode_2d: whether the 2D compatibility mode is on.
         robustness: whether to follow by how much requirements hold, which needs memory for every step.
         keep_draws: whether to remember what was drawn.
+        keep_files: whether to keep in memory, too, what is recorded to files.
 
     """
 
@@ -109,6 +110,7 @@ class Run:
         mode_2d: bool = False,
         robustness: bool = False,
         keep_draws: bool = True,
+        keep_files: bool = True,
     ) -> None:
         self.simulation = simulation
         self.program = program
@@ -116,6 +118,7 @@ class Run:
         self.draws = Draws(source, self._where, lambda: simulation.currentTime, keep=keep_draws)
         self.context = RunContext(self, locate, name, mode_2d=mode_2d)
         self.wants_robustness = robustness
+        self.keeps_files = keep_files
         self.scenarios: list[ScenarioActivation] = []
         """Those that run, in the order in which they started."""
         self.followed: list[Followed] = []
@@ -131,7 +134,7 @@ class Run:
         self._new_agents: list[Any] = []
         self._numbers: dict[int, int] = {}
         self.recordings: list[Recording] = []
-        """All that have begun."""
+        """Those to files that have begun."""
         self.top = ScenarioActivation(self, None, None)
         self.current: ScenarioActivation = self.top
 

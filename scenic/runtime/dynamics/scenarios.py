@@ -237,6 +237,8 @@ class ScenarioActivation:
         for requirement in self.followed:
             requirement.finish()
         self.run.finish_records(self)
+        if not self.agents:
+            self.run.draws.forget(self.number)
 
 
 def not_a_monitor(value: Any) -> Exception:

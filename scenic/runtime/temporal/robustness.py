@@ -1,61 +1,124 @@
-"""Quantitative robustness: by how much a formula holds on a finished trace.
+"""Quantitative robustness: by how much a formula holds on the states seen so far.
 
 The value of an atom in a state is a number, positive where it holds (by how much a comparison holds, a signed distance, or
 an infinity where there is only a truth value). Operators take minima and maxima over the trace (Fainekos and
 Pappas, "Robustness of temporal logic specifications for continuous-time signals", 2009), with the finite-trace values of
 section 12.6 of the specification at the end: where the robustness is positive, the verdict is true, where negative, false.
+
+No states are kept: as a function of what the next state will give its obligations, the robustness is a maximum of minima of
+some of them and a constant, and minima distribute over maxima. So there is one constant for each clause of obligations, and what
+is kept is bounded by the formula, as in a `Monitor`, of which this is the reading by numbers.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping
+from typing import Final, TypeAlias
 
-from scenic.runtime.temporal.formulas import Atom, Formula
+from scenic.runtime.temporal.formulas import Formula
+from scenic.runtime.temporal.normal import Junction, Literal, Next, Normal, Obligation, Until, normal
 
-__all__ = ["robustness"]
+__all__ = ["Robustness"]
+
+_Clauses: TypeAlias = Mapping[frozenset[Obligation], float]
+"""A maximum over clauses, each the minimum of its number and of its obligations."""
+
+_NOW: Final[frozenset[Obligation]] = frozenset()
 
 
-def robustness(formula: Formula, trace: Sequence[Sequence[float]]) -> float:
-    """The robustness at the first state.
+class Robustness:
+    """Follows one formula along a trace.
 
     Args:
-        formula: the formula.
-        trace: for each state the values of the atoms by their numbers; at least one state.
+        formula: what is to hold from the first state on.
 
     """
-    if not trace:
-        raise ValueError("the trace is empty")
-    return _signal(formula, trace)[0]
+
+    __slots__ = ("_left", "_start")
+
+    def __init__(self, formula: Formula) -> None:
+        self._start: Normal | None = normal(formula)
+        self._left: _Clauses = {}
+
+    def add(self, margin: Callable[[int], float]) -> None:
+        """Go on by a state, in which ``margin`` gives by how much atoms hold, by their number.
+
+        NaN says that an atom has no value there; neither it nor its negation holds then.
+        """
+        known: dict[Normal, _Clauses] = {}
+        if self._start is not None:
+            self._left = _progressed(self._start, margin, known)
+            self._start = None
+            return
+        left: _Clauses = {}
+        for obligations, value in self._left.items():
+            clause: _Clauses = {_NOW: value}
+            for _, part in obligations:
+                clause = _lower(clause, _progressed(part, margin, known))
+            left = _higher(left, clause)
+        self._left = left
+
+    @property
+    def value(self) -> float | None:
+        """The robustness if the trace ends here; ``None`` before the first state."""
+        if self._start is not None:
+            return None
+        ended = (value for clause, value in self._left.items() if all(weak for weak, _ in clause))
+        return max(ended, default=-math.inf)
 
 
-def _signal(formula: Formula, trace: Sequence[Sequence[float]]) -> list[float]:
-    """The robustness at every state."""
-    if isinstance(formula, Atom):
-        return [state[formula.index] for state in trace]
-    signals = [_signal(operand, trace) for operand in formula.operands]
-    match formula.operator:
-        case "not":
-            return [-value for value in signals[0]]
-        case "and":
-            return [min(values) for values in zip(*signals, strict=True)]
-        case "or":
-            return [max(values) for values in zip(*signals, strict=True)]
-        case "implies":
-            return [max(-premise, conclusion) for premise, conclusion in zip(*signals, strict=True)]
-        case "next":
-            return [*signals[0][1:], -math.inf]
-        case "always":
-            return _backwards(signals[0], [-math.inf] * len(trace), strong=False)
-        case "eventually":
-            return _backwards([math.inf] * len(trace), signals[0], strong=True)
-        case _:  # until
-            return _backwards(signals[0], signals[1], strong=True)
+def _progressed(part: Normal, margin: Callable[[int], float], known: dict[Normal, _Clauses]) -> _Clauses:
+    """The robustness of a part at a state, in terms of what comes after it."""
+    found = known.get(part)
+    if found is None:
+        found = known[part] = _made(part, margin, known)
+    return found
 
 
-def _backwards(held: Sequence[float], goal: Sequence[float], *, strong: bool) -> list[float]:
-    """``goal or (held and this at the next state)`` at every state, from the last one back."""
-    later = -math.inf if strong else math.inf
-    values: list[float] = []
-    for now, reached in zip(reversed(held), reversed(goal), strict=True):
-        later = max(reached, min(now, later))
-        values.append(later)
-    return values[::-1]
+def _made(part: Normal, margin: Callable[[int], float], known: dict[Normal, _Clauses]) -> _Clauses:
+    match part:
+        case Literal(index, wanted):
+            value = margin(index)
+            return {} if math.isnan(value) else {_NOW: value if wanted else -value}
+        case Junction(conjunction, parts):
+            join = _lower if conjunction else _higher
+            first, *others = (_progressed(each, margin, known) for each in parts)
+            for other in others:
+                first = join(first, other)
+            return first
+        case Next(weak, later):
+            return {frozenset([(weak, later)]): math.inf}
+        case Until(weak, held, goal):
+            again: _Clauses = {frozenset([(weak, part)]): math.inf}
+            inner, outer = (_higher, _lower) if weak else (_lower, _higher)
+            if held is not None:
+                again = inner(_progressed(held, margin, known), again)
+            return outer(_progressed(goal, margin, known), again)
+
+
+def _higher(left: _Clauses, right: _Clauses) -> _Clauses:
+    """The maximum of two."""
+    joined = dict(left)
+    for clause, value in right.items():
+        joined[clause] = max(value, joined.get(clause, -math.inf))
+    return _needed(joined)
+
+
+def _lower(left: _Clauses, right: _Clauses) -> _Clauses:
+    """The minimum of two."""
+    joined: dict[frozenset[Obligation], float] = {}
+    for one, first in left.items():
+        for other, second in right.items():
+            clause = one | other
+            joined[clause] = max(min(first, second), joined.get(clause, -math.inf))
+    return _needed(joined)
+
+
+def _needed(clauses: _Clauses) -> _Clauses:
+    """Without the clauses that are never above another one."""
+    if len(clauses) < 2:
+        return clauses
+    kept: dict[frozenset[Obligation], float] = {}
+    for clause, value in sorted(clauses.items(), key=lambda item: len(item[0])):
+        if not any(other <= clause and least >= value for other, least in kept.items()):
+            kept[clause] = value
+    return kept

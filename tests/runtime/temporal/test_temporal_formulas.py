@@ -3,6 +3,7 @@
 import itertools
 import math
 import random
+from collections.abc import Sequence
 from typing import Any
 
 import pytest
@@ -10,8 +11,9 @@ import rv_ltl
 
 from fuzz.traces import Formula as Tree
 from fuzz.traces import verdict
-from scenic.runtime.temporal.formulas import Atom, Formula, Monitor, Operation, Verdict, is_temporal
-from scenic.runtime.temporal.robustness import robustness
+from scenic.runtime.temporal.formulas import Atom, Formula, Operation, is_temporal
+from scenic.runtime.temporal.monitors import Monitor, Verdict
+from scenic.runtime.temporal.robustness import Robustness
 
 ATOMS = "abc"
 WORDS = ("not", "and", "or", "implies", "next", "always", "eventually", "until")
@@ -52,6 +54,39 @@ def of_package(tree: Tree, trace: list[frozenset[str]]) -> bool:
     for state in trace:
         monitor.update({atom: atom in state for atom in ATOMS})
     return bool(monitor.evaluate().value > 2)
+
+
+def robustness(form: Formula, trace: Sequence[Sequence[float]]) -> float:
+    followed = Robustness(form)
+    for state in trace:
+        followed.add(lambda index, state=state: state[index])  # type: ignore[misc]
+    assert followed.value is not None
+    return followed.value
+
+
+def by_definition(tree: Tree, trace: Sequence[Sequence[float]]) -> list[float]:
+    """The robustness at every state, from the values of the operands at all states."""
+    if isinstance(tree, str):
+        return [state[ATOMS.index(tree)] for state in trace]
+    first, *others = (by_definition(part, trace) for part in tree[1:])
+    places = range(len(trace))
+    match tree[0]:
+        case "not":
+            return [-value for value in first]
+        case "and":
+            return [min(first[i], others[0][i]) for i in places]
+        case "or":
+            return [max(first[i], others[0][i]) for i in places]
+        case "implies":
+            return [max(-first[i], others[0][i]) for i in places]
+        case "next":
+            return [*first[1:], -math.inf]
+        case "always":
+            return [min(first[i:]) for i in places]
+        case "eventually":
+            return [max(first[i:]) for i in places]
+    (goal,) = others
+    return [max(min([goal[j], *first[i:j]]) for j in places[i:]) for i in places]
 
 
 def pairs(count: int, seed: int) -> Any:
@@ -152,6 +187,36 @@ def test_operations_are_checked() -> None:
         Operation("until", (Atom(0),))
     assert not is_temporal(Operation("implies", (Atom(0), Atom(1))))
     assert is_temporal(Operation("not", (Operation("next", (Atom(0),)),)))
+
+
+def test_robustness_is_that_of_the_definition() -> None:
+    rng = random.Random(6)
+    for tree, states in pairs(4_000, 6):
+        # Few different numbers, so that many are equal, and some that are not finite.
+        trace = [
+            [rng.choice([-math.inf, -2.0, -1.0, 1.0, 2.0, 3.0, math.inf]) for _ in ATOMS] for _ in states
+        ]
+        assert robustness(formula(tree), trace) == by_definition(tree, trace)[0], (tree, trace)
+
+
+def test_what_robustness_keeps_does_not_grow() -> None:
+    a, b, c = Atom(0), Atom(1), Atom(2)
+    inner = Operation("until", (Operation("eventually", (a,)), Operation("always", (b,))))
+    followed = Robustness(Operation("always", (Operation("or", (inner, Operation("next", (c,)))),)))
+    rng = random.Random(5)
+    sizes = []
+    for _ in range(400):
+        state = [rng.gauss() for _ in range(3)]
+        followed.add(lambda index, state=state: state[index])  # type: ignore[misc]
+        sizes.append(len(followed._left))
+    assert max(sizes[200:]) <= max(sizes[:200])
+
+
+def test_an_atom_without_a_value_holds_neither_as_it_is_nor_negated() -> None:
+    a, b = Atom(0), Atom(1)
+    for operator, value in (("or", 2.0), ("and", -math.inf)):
+        for part in (a, Operation("not", (a,))):
+            assert robustness(Operation(operator, (part, b)), [[math.nan, 2.0]]) == value
 
 
 def test_robustness_of_each_operator() -> None:

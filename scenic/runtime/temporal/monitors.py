@@ -1,0 +1,175 @@
+"""Verdicts of temporal formulas on the states seen so far (section 12.6 of the specification).
+
+A `Monitor` holds what has yet to come true, not the states: what it costs to add a state is bounded by the formula. What is
+left to hold is kept as a disjunction of conjunctions of *obligations*: subformulas that the next state has to meet.
+Since clauses absorb each other, what is left is one of finitely many.
+
+The verdicts are those of RV-LTL (Bauer, Leucker and Schallhart, "Comparing LTL semantics for runtime verification", 2010).
+That a formula which its operands do not decide is valid, as ``always (a or not a)`` is, goes unnoticed.
+"""
+
+from collections.abc import Callable, Sequence
+from enum import IntEnum
+from functools import partial
+from typing import Final, TypeAlias
+
+from scenic.runtime.temporal.formulas import Formula
+from scenic.runtime.temporal.normal import Junction, Literal, Next, Normal, Obligation, Until, normal
+
+__all__ = ["Monitor", "Verdict"]
+
+
+class Verdict(IntEnum):
+    """What is known of a formula after a finite trace; true if it holds as far as the trace goes."""
+
+    FALSE = 1
+    PRESUMABLY_FALSE = 2
+    PRESUMABLY_TRUE = 3
+    TRUE = 4
+
+    def __bool__(self) -> bool:
+        return self.value > 2
+
+    @property
+    def is_certain(self) -> bool:
+        """Whether no further state can change it."""
+        return self in (Verdict.FALSE, Verdict.TRUE)
+
+
+_Clauses: TypeAlias = frozenset[frozenset[Obligation]]
+
+_FALSE: Final[_Clauses] = frozenset()
+_TRUE: Final[_Clauses] = frozenset([frozenset()])
+
+
+def _either(left: _Clauses, right: _Clauses) -> _Clauses:
+    if not left or right == _TRUE or left == right:
+        return right
+    if not right or left == _TRUE:
+        return left
+    return _absorbed(left | right)
+
+
+def _both(left: _Clauses, right: _Clauses) -> _Clauses:
+    if not left or not right:
+        return _FALSE
+    if left in (_TRUE, right):
+        return right
+    if right == _TRUE:
+        return left
+    return _absorbed(frozenset(one | other for one in left for other in right))
+
+
+def _absorbed(clauses: _Clauses) -> _Clauses:
+    """Without the clauses that another one implies."""
+    if len(clauses) == 1:
+        return clauses
+    kept: list[frozenset[Obligation]] = []
+    for clause in sorted(clauses, key=len):
+        if not any(other <= clause for other in kept):
+            kept.append(clause)
+    return frozenset(kept)
+
+
+class Monitor:
+    """Follows one formula along a trace.
+
+    Args:
+        formula: what is to hold from the first state on.
+
+    """
+
+    __slots__ = ("_left", "_start", "verdict")
+
+    def __init__(self, formula: Formula) -> None:
+        self._start: Normal | None = normal(formula)
+        self._left: _Clauses = _FALSE
+        self.verdict: Verdict | None = None
+        """The verdict on the states so far; ``None`` before the first."""
+
+    def add(self, evaluate: Callable[[int], bool]) -> Verdict:
+        """The verdict after one more state, in which ``evaluate`` gives the truth of atoms by their number.
+
+        Only atoms that still matter are evaluated, and none once the verdict is certain. An exception of an atom counts
+        only where the others do not decide; then it is raised.
+        """
+        if self._start is not None:
+            left = _progressed(self._start, evaluate)
+            self._start = None
+        elif self._left == _TRUE or not self._left:
+            assert self.verdict is not None
+            return self.verdict
+        else:
+            left = self._next(evaluate)
+        self._left = left
+        if not left:
+            self.verdict = Verdict.FALSE
+        elif left == _TRUE:
+            self.verdict = Verdict.TRUE
+        elif any(all(weak for weak, _ in clause) for clause in left):
+            self.verdict = Verdict.PRESUMABLY_TRUE
+        else:
+            self.verdict = Verdict.PRESUMABLY_FALSE
+        return self.verdict
+
+    def _next(self, evaluate: Callable[[int], bool]) -> _Clauses:
+        known: dict[Normal, _Clauses | Exception] = {}
+
+        def clause(parts: frozenset[Obligation]) -> _Clauses:
+            return _decided(True, [partial(_once, part, evaluate, known) for _, part in parts])
+
+        clauses = [partial(clause, parts) for parts in self._left]
+        return clauses[0]() if len(clauses) == 1 else _decided(False, clauses)
+
+
+def _once(
+    part: Normal, evaluate: Callable[[int], bool], known: dict[Normal, "_Clauses | Exception"]
+) -> _Clauses:
+    """What is left of an obligation, which several clauses may share."""
+    found = known.get(part)
+    if found is None:
+        try:
+            found = _progressed(part, evaluate)
+        except Exception as error:  # noqa: BLE001 - it may not count
+            found = error
+        known[part] = found
+    if isinstance(found, Exception):
+        raise found
+    return found
+
+
+def _progressed(part: Normal, evaluate: Callable[[int], bool]) -> _Clauses:
+    """What is left to hold after one more state."""
+    match part:
+        case Literal(index, wanted):
+            return _TRUE if evaluate(index) is wanted else _FALSE
+        case Junction(conjunction, parts):
+            return _decided(conjunction, [partial(_progressed, each, evaluate) for each in parts])
+        case Next(weak, later):
+            return frozenset([frozenset([(weak, later)])])
+        case Until(weak, held, goal):
+            again: _Clauses = frozenset([frozenset([(weak, part)])])
+
+            def go_on() -> _Clauses:
+                if held is None:
+                    return again
+                return _decided(not weak, [lambda: _progressed(held, evaluate), lambda: again])
+
+            return _decided(weak, [lambda: _progressed(goal, evaluate), go_on])
+
+
+def _decided(conjunction: bool, parts: Sequence[Callable[[], _Clauses]]) -> _Clauses:
+    """The parts joined; raises the first exception of one only if the others do not decide."""
+    join, neutral, deciding = (_both, _TRUE, _FALSE) if conjunction else (_either, _FALSE, _TRUE)
+    result = neutral
+    error: Exception | None = None
+    for part in parts:
+        try:
+            result = join(result, part())
+        except Exception as problem:  # noqa: BLE001 - whatever the program raises
+            error = problem if error is None else error
+        if result == deciding:
+            return result
+    if error is not None:
+        raise error
+    return result
