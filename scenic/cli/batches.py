@@ -7,12 +7,13 @@ is a function of the seed and its number. A worker that dies is replaced, and it
 import json
 import time
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Final
 
 from scenic.formats.growing import GrowingFile
 from scenic.formats.json_lines import SceneLines
+from scenic.graph.points import Sobol
 from scenic.language.errors import Located
 from scenic.runtime.sampling.report import Exhausted
 from scenic.runtime.scenario import Scenario
@@ -49,7 +50,7 @@ class WorkerDiedError(Located):
 class Job:
     """What to sample: scenes ``first`` to ``last`` (exclusive) of a seed, within limits.
 
-    ``deadline`` is a time of `time.monotonic`.
+    ``deadline`` is a time of `time.monotonic`; ``sobol`` says that the scenes are rows of Sobol's sequence.
     """
 
     seed: int
@@ -57,6 +58,7 @@ class Job:
     last: int
     max_attempts: int | None
     deadline: float | None
+    sobol: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,15 +83,16 @@ def results_of(scenario: Scenario, job: Job) -> Iterator[Scene | Exhausted]:
         first=job.first,
         max_attempts=job.max_attempts,
         time_limit=limit,
+        source=Sobol() if job.sobol else None,
     )
 
 
 def continued(
-    grown: GrowingFile, digest: str, seed: int | None, first: int, count: int
+    grown: GrowingFile, digest: str, seed: int | None, first: int, count: int, *, points: str | None = None
 ) -> tuple[int | None, int]:
     """The seed of the run that is resumed, and how many of its scenes are done.
 
-    Raises `ResumeError` where the lines are of another program, of other options or of another run.
+    ``points`` is what scenes are made of, if not of random numbers. Raises `ResumeError` where the lines are of another program, of other options or of another run.
     """
     kept = grown.kept()
     if not kept:
@@ -98,12 +101,18 @@ def continued(
         head, last = (json.loads(line) for line in (kept[0], kept[-1]))
         made, begun, reached = (head["digest"], int(head["seed"])), int(head["k"]), int(last["k"])
         same = made == (last["digest"], int(last["seed"]))
+        alike = head.get("points") == last.get("points") == points
     except (ValueError, KeyError, TypeError) as error:
         raise ResumeError(f"'{grown.path}' does not hold scenes of an earlier run ({error})") from error
     if made[0] != digest:
         raise ResumeError(
             f"'{grown.path}' holds scenes of another program, or of the same with other options",
             help="the program has changed since: sample to a new file",
+        )
+    if not alike:
+        raise ResumeError(
+            f"'{grown.path}' holds scenes of other random numbers",
+            help="give --sobol as in the run that is resumed, or leave it away as there",
         )
     if not same or (seed is not None and seed != made[1]) or not first <= begun or reached >= first + count:
         raise ResumeError(
@@ -150,7 +159,7 @@ class _Pieces:
             left = job.last - first
             fair = -(-left // (2 * self._jobs))
             last = first + min(left, self._size, max(fair, self._usual // _SMALLEST))
-            yield Job(job.seed, first, last, job.max_attempts, job.deadline)
+            yield replace(job, first=first, last=last)
             first = last
 
     def learn(self, made: Made) -> None:

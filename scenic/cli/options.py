@@ -17,6 +17,7 @@ __all__ = [
     "parameter_value",
     "program_options",
     "seconds",
+    "sobol_option",
 ]
 
 _Command = TypeVar("_Command", bound=Callable[..., Any])
@@ -109,6 +110,13 @@ no_cache_option = click.option(
     expose_value=False,
     callback=_without_store,
     help="Neither read nor keep on disk what is computed of meshes.",
+)
+
+
+sobol_option = click.option(
+    "--sobol",
+    is_flag=True,
+    help="Spread scenes, and what happens in them, evenly: rows of Sobol's sequence rather than random points.",
 )
 
 

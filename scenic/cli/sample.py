@@ -13,7 +13,7 @@ from typing import Any, Final
 import click
 
 from scenic.cli import sinks
-from scenic.cli.options import image_size_option, outlook_option, program_options, seconds
+from scenic.cli.options import image_size_option, outlook_option, program_options, seconds, sobol_option
 from scenic.cli.output import CLEAN, has_colours
 from scenic.formats.files import OutputError
 from scenic.formats.growing import GrowingFile
@@ -63,6 +63,7 @@ NOT_ALL: Final = 3
     type=int,
     help="Scenes of one seed are always the same. Without it, one is drawn and shown.",
 )
+@sobol_option
 @program_options
 @click.option(
     "--no-prune", is_flag=True, help="Do not narrow the distributions first. The same scenes are as likely."
@@ -120,6 +121,7 @@ def sample(
     resume: bool,
     properties: str,
     seed: int | None,
+    sobol: bool,
     parameters: Mapping[str, Any],
     scenario: str | None,
     model: str | None,
@@ -186,13 +188,14 @@ def sample(
             path, params=parameters, model=model, scenario=scenario, mode2D=mode_2d, prune=not no_prune
         )
     done = 0
+    points = "sobol" if sobol else None
     if grown is not None and resume:
-        seed, done = batches.continued(grown, loaded.digest, seed, first, count)
+        seed, done = batches.continued(grown, loaded.digest, seed, first, count, points=points)
     if seed is None:
         seed = secrets.randbits(32)
         sys.stderr.write(f"seed {seed} (the same scenes again: --seed {seed})\n")
-    lines = SceneLines((path.name, loaded.digest), changed=properties == "changed")
-    job = batches.Job(seed, first + done, first + count, max_attempts, deadline)
+    lines = SceneLines((path.name, loaded.digest), changed=properties == "changed", points=points)
+    job = batches.Job(seed, first + done, first + count, max_attempts, deadline, sobol)
     missing: list[Exhausted] = []
     to_terminal = target == sinks.STANDARD_OUTPUT and sys.stdout.isatty()
     left = None if deadline is None else max(0.0, deadline - time.monotonic()) + PATIENCE

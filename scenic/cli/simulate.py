@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 import click
 
 from scenic.cli import workers
-from scenic.cli.options import program_options, seconds
+from scenic.cli.options import program_options, seconds, sobol_option
 from scenic.cli.output import CLEAN, FINDINGS, show_diagnostics
 from scenic.cli.sample import NOT_ALL, _ended_by_signals, _progress
 from scenic.language.diagnostics import Diagnostic
@@ -246,11 +246,7 @@ class _Kept:
     default=20,
     help="Simulate a scene so often before giving it up as rejected.  [default: 20]",
 )
-@click.option(
-    "--sobol",
-    is_flag=True,
-    help="Spread scenes and simulations evenly: rows of Sobol's sequence rather than random points.",
-)
+@sobol_option
 @click.option(
     "--step-limit",
     metavar="T",

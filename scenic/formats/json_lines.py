@@ -40,14 +40,19 @@ class SceneLines:
     Args:
         program: the name of the program's file and the digest of its text and options; told in every line.
         changed: whether to tell only properties that the program gives, not those at the defaults of the language.
+        points: what the scenes are made of, if not of random numbers: ``sobol``.
 
     """
 
-    def __init__(self, program: tuple[str, str] | None = None, *, changed: bool = False) -> None:
+    def __init__(
+        self, program: tuple[str, str] | None = None, *, changed: bool = False, points: str | None = None
+    ) -> None:
         self._changed = changed
         self._head = {"format": FORMAT, "version": VERSION}
         if program is not None:
             self._head["program"], self._head["digest"] = program
+        if points is not None:
+            self._head["points"] = points
         self._templates: dict[int, _Template] = {}
 
     def line(self, scene: Scene) -> str:

@@ -11,6 +11,9 @@ from pathlib import Path
 
 import pytest
 
+import scenic
+from tests.cli.commands import run_here
+
 PROGRAM = """
 workspace = Workspace(RectangularRegion((0, 0, 0), 0, 30, 30))
 for _ in range(6):
@@ -146,6 +149,30 @@ def test_other_lines_are_not_gone_on_with(
     assert "SC609" in result.stderr
     assert words in " ".join(result.stderr.split())
     assert target.read_text() == content
+
+
+def test_scenes_by_rows_of_a_sequence(folder: Path) -> None:
+    """They are those of the API, evenly spread, whatever the number of processes, and not mixed with others."""
+    target = folder / "even.jsonl"
+    assert run(folder, "-n", 32, "--sobol", "-o", target.name).returncode == 0
+    lines = target.read_bytes()
+    scenario = scenic.load(folder / "room.scenic")
+    rows = [json.loads(line) for line in lines.splitlines()]
+    for row, scene in zip(rows, scenario.sample(32, seed=5, source=scenic.Sobol()), strict=True):
+        assert [thing["position"] for thing in row["objects"]] == [
+            [*thing.position] for thing in scene.objects
+        ]
+        assert row["points"] == "sobol"
+    target.write_bytes(b"".join(lines.splitlines(keepends=True)[:9]))
+    wrong = run(folder, "-n", 32, "--resume", "-o", target.name)
+    assert "holds scenes of other random numbers" in " ".join(wrong.stderr.split())
+    assert run(folder, "-n", 32, "--sobol", "-j", 2, "--resume", "-o", target.name).returncode == 0
+    assert target.read_bytes() == lines
+    # One coordinate of 32 rows: a number in each 32nd of its range.
+    (folder / "one.scenic").write_text("ego = new Object with foo Range(0, 32)\n")
+    shown = run_here(["sample", "one.scenic", "-n", 32, "--seed", 1, "--sobol"], folder=folder)
+    numbers = [json.loads(line)["objects"][0]["properties"]["foo"] for line in shown.stdout.splitlines()]
+    assert sorted(map(int, numbers)) == list(range(32))
 
 
 def test_what_the_program_gives_can_be_told_alone(folder: Path) -> None:
