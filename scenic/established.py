@@ -8,7 +8,7 @@ import sys
 from collections.abc import Mapping
 from importlib import import_module
 from types import MappingProxyType, ModuleType
-from typing import Any, Final
+from typing import Any, Final, NoReturn
 
 _LANGUAGE: Final = "the language"
 """Home of names that every program finds in scope."""
@@ -23,6 +23,23 @@ _LAWS: Final = "scenic.runtime.laws"
 _FUNCTIONS: Final = "scenic.runtime.functions"
 _OBJECTS: Final = "scenic.runtime.objects"
 _MUTATORS: Final = "scenic.runtime.mutators"
+_VENEER: Final = "scenic.runtime.veneer"
+_SENSORS: Final = "scenic.runtime.sensors"
+_LAZY: Final = "scenic.runtime.lazy"
+_INSIDE: Final = "the inside"
+"""Home of names of what is within the established implementation, and has no counterpart here."""
+
+
+_VENEER_FUNCTIONS: Final = (
+    "Above Ahead AltitudeFrom AltitudeTo AngleFrom AngleTo ApparentHeading ApparentlyFacing At Back BackLeft BackRight Behind"
+    " Below Beyond Bottom BottomBackLeft BottomBackRight BottomFrontLeft BottomFrontRight CanSee ContainedIn DistanceFrom"
+    " DistancePast Facing FacingAwayFrom FacingDirectlyAwayFrom FacingDirectlyToward FacingToward FieldAt Follow Following"
+    " Front FrontLeft FrontRight In Intersects Left LeftSpec NotVisible NotVisibleFrom NotVisibleFromOp NotVisibleSpec"
+    " OffsetAlong OffsetAlongSpec OffsetBy On RelativeHeading RelativePosition RelativeTo Right RightSpec Top TopBackLeft"
+    " TopBackRight TopFrontLeft TopFrontRight Visible VisibleFrom VisibleFromOp VisibleSpec With ego globalParameters"
+    " in_initial_scenario isActive localPath mutate new param simulationInProgress workspace"
+)
+"""Operators, specifiers and statements as functions."""
 
 
 def _homes(*groups: tuple[str, str]) -> Mapping[str, str]:
@@ -45,6 +62,15 @@ MODULES: Final[Mapping[str, Mapping[str, str]]] = MappingProxyType(
             (_VALUES, "Samplable=Random"),
             (_ESTABLISHED, "needsSampling toDistribution"),
             (_FUNCTIONS, "monotonicDistributionFunction=distributionFunction"),
+            (
+                _INSIDE,
+                (
+                    "AttributeDistribution ConstantSamplable FunctionDistribution MethodDistribution MultiplexerDistribution"
+                    " OperatorDistribution SliceDistribution StarredDistribution TupleDistribution UniformDistribution"
+                    " addSupports canUnpackDistributions makeOperatorHandler supmax supmin underlyingFunction unionOfSupports"
+                    " unpacksDistributions"
+                ),
+            ),
         ),
         "scenic.core.dynamics": _homes(
             ("scenic.simulators.actions", "Action"),
@@ -75,9 +101,17 @@ MODULES: Final[Mapping[str, Mapping[str, str]]] = MappingProxyType(
                 ),
             ),
             (_ESTABLISHED, "setDebuggingOptions"),
+            (
+                _INSIDE,
+                (
+                    "callBeginningScenicTrace displayScenicException excepthook getText includeFrame optionallyDebugRejection"
+                    " saveErrorLocation"
+                ),
+            ),
         ),
         "scenic.core.external_params": _homes(
             (_LANGUAGE, "VerifaiRange VerifaiDiscreteRange VerifaiOptions VerifaiParameter"),
+            (_INSIDE, "ExternalParameter ExternalSampler VerifaiSampler"),
         ),
         "scenic.core.geometry": _homes(
             (_LANGUAGE, "sin cos hypot max min"),
@@ -86,18 +120,54 @@ MODULES: Final[Mapping[str, Mapping[str, str]]] = MappingProxyType(
                 (
                     "normalizeAngle averageVectors rotateVector headingOfSegment viewAngleToPoint"
                     " apparentHeadingAtPoint polygonUnion pointIsInCone distanceToLine findMinMax removeHoles"
-                    " triangulatePolygon"
+                    " triangulatePolygon plotPolygon"
+                ),
+            ),
+            (
+                _INSIDE,
+                (
+                    "TriangulationError allChains cleanChain cleanPolygon splitSelfIntersections"
+                    " triangulatePolygon_mapbox"
                 ),
             ),
         ),
         "scenic.core.lazy_eval": _homes(
             (_ESTABLISHED, "DelayedArgument valueInContext needsLazyEvaluation needsSampling"),
-            ("scenic.runtime.lazy", "isLazy=is_lazy requiredProperties=reads_of LazilyEvaluable=Lazy"),
+            (_LAZY, "isLazy=is_lazy requiredProperties=reads_of LazilyEvaluable=Lazy"),
+            (_ESTABLISHED, "makeDelayedFunctionCall"),
+            (_INSIDE, "dependencies makeDelayedOperatorHandler toLazyValue"),
         ),
         "scenic.core.object_types": _homes(
             (_LANGUAGE, "Point OrientedPoint Object Mutator"),
             (_MUTATORS, "PositionMutator OrientationMutator"),
             (_OBJECTS, "Constructible=Point Point2D=Point OrientedPoint2D=OrientedPoint Object2D=Object"),
+            (
+                _INSIDE,
+                (
+                    "defaultSideSurface disableDynamicProxyFor enableDynamicProxyFor precomputed_property"
+                    " setDynamicProxyFor"
+                ),
+            ),
+        ),
+        "scenic.core.propositions": _homes(
+            (
+                _INSIDE,
+                (
+                    "Always And Atomic Eventually Implies Next Not Or PropositionMonitor PropositionNode UnaryProposition"
+                    " Until"
+                ),
+            ),
+        ),
+        "scenic.core.pruning": _homes(
+            (
+                _INSIDE,
+                (
+                    "checkConditionedCycle conditionedDeps conditionedVal currentPropValue feasibleRHPolygon"
+                    " isFunctionCall isMethodCall matchInRegion matchPolygonalField maxDistanceBetween percentagePruned"
+                    " prune pruneContainment pruneRelativeHeading pruneVisibility relativeHeadingRange unpackWorkspace"
+                    " visibilityBound"
+                ),
+            ),
         ),
         "scenic.core.regions": _homes(
             (
@@ -112,8 +182,30 @@ MODULES: Final[Mapping[str, Mapping[str, str]]] = MappingProxyType(
             ("scenic.runtime.regions.composite", "IntersectionRegion UnionRegion DifferenceRegion"),
             ("scenic.runtime.regions.voxels", "VoxelRegion"),
             ("scenic.runtime.regions.views", "ViewRegion"),
+            ("scenic.runtime.regions.meshes", "MeshRegion"),
             (_ERRORS, "UndefinedSamplingException"),
             (_ESTABLISHED, "regionFromShapelyObject convertToFootprint toPolygon"),
+            (
+                _INSIDE,
+                (
+                    "CylinderSectionRegion PointInRegionDistribution SurfaceCollisionTrimesh ViewSectionRegion"
+                    " orientationFor"
+                ),
+            ),
+        ),
+        "scenic.core.requirements": _homes(
+            (
+                _INSIDE,
+                (
+                    "BlanketCollisionRequirement BoundRequirement CompiledRequirement ContainmentRequirement"
+                    " DynamicMonitorRequirement DynamicRequirement IntersectionRequirement MonitorRequirement"
+                    " NonVisibilityRequirement PendingRequirement RequirementType SamplingRequirement"
+                    " VisibilityRequirement getNameBindings"
+                ),
+            ),
+        ),
+        "scenic.core.sample_checking": _homes(
+            (_ESTABLISHED, "SampleChecker BasicChecker WeightedAcceptanceChecker")
         ),
         "scenic.core.scenarios": _homes(
             ("scenic.runtime.scenario", "Scenario"), ("scenic.runtime.scene", "Scene")
@@ -123,10 +215,27 @@ MODULES: Final[Mapping[str, Mapping[str, str]]] = MappingProxyType(
             ("scenic.runtime.shapes", "Shape"),
         ),
         "scenic.core.sensors": _homes(
-            ("scenic.runtime.sensors", "Sensor RGBSensor SSSensor"),
+            (_SENSORS, "Sensor RGBSensor SSSensor CallbackSensor GroundTruthSensor"),
             (_RECORDERS, "Recorder File Files"),
+            (
+                _INSIDE,
+                (
+                    "AccumulatingRecorder RecordingConfiguration fileHandler npyHandler npzHandler pickleHandler pilHandler"
+                    " prepareImageData videoHandler"
+                ),
+            ),
         ),
-        "scenic.core.serialization": _homes((_ERRORS, "SerializationError")),
+        "scenic.core.serialization": _homes(
+            (_ERRORS, "SerializationError"),
+            (_ESTABLISHED, "dumpAsScenicCode scenicToJSON"),
+            (
+                _INSIDE,
+                (
+                    "Serializer deterministicHash readBool readBytes readFloat readInt readStr writeBool writeBytes writeFloat"
+                    " writeInt writeStr"
+                ),
+            ),
+        ),
         "scenic.core.simulators": _homes(
             ("scenic.simulators.simulator", "Simulator"),
             ("scenic.simulators.simulation", "Simulation"),
@@ -134,26 +243,94 @@ MODULES: Final[Mapping[str, Mapping[str, str]]] = MappingProxyType(
             ("scenic.simulators.dummy", "DummySimulator DummySimulation"),
             ("scenic.simulators.actions", "Action"),
             (_ERRORS, "SimulationCreationError DivergenceError GuardViolation RejectSimulationException"),
+            (_ESTABLISHED, "SimulatorInterfaceWarning"),
+            (_INSIDE, "ReplayMode"),
         ),
-        "scenic.core.specifiers": _homes(("scenic.runtime.specifiers", "Specifier")),
+        "scenic.core.specifiers": _homes(
+            ("scenic.runtime.specifiers", "Specifier"), (_INSIDE, "ModifyingSpecifier PropertyDefault")
+        ),
         "scenic.core.type_support": _homes(
             (
                 _ESTABLISHED,
-                "Heading underlyingType isA canCoerce coerce toTypes toType toScalar toHeading toOrientation toVector",
+                (
+                    "Heading underlyingType isA canCoerce coerce toTypes toType toScalar toHeading toOrientation toVector"
+                    " coerceToAny=toTypes"
+                ),
+            ),
+            (_ERRORS, "CoercionFailure=ScenicTypeError"),
+            (
+                _INSIDE,
+                (
+                    "TypeChecker TypeEqualityChecker TypecheckedDistribution canCoerceType coerceToFloat coerceToHeading"
+                    " evaluateRequiringEqualTypes is_typing_generic unifierOfTypes unifyingType"
+                ),
             ),
         ),
-        "scenic.core.utils": _homes((_ESTABLISHED, "cached cached_method cached_property argsToString")),
+        "scenic.core.utils": _homes(
+            (
+                _ESTABLISHED,
+                "cached cached_method cached_property argsToString batched repairMesh=proper_mesh unifyMesh=united_mesh",
+            ),
+            (_INSIDE, "DefaultIdentityDict alarm findMeshInteriorPoint"),
+        ),
         "scenic.core.vectors": _homes(
             (_LANGUAGE, "Vector Orientation VectorField PolygonalVectorField"),
             (_FIELDS, "PiecewiseVectorField PolyhedronVectorField"),
             (_ESTABLISHED, "alwaysGlobalOrientation globalOrientation"),
+            ("scenic.runtime.randoms", "VectorDistribution=RandomVector"),
+            (
+                _INSIDE,
+                (
+                    "OrientedVector VectorMethodDistribution VectorOperatorDistribution makeVectorOperatorHandler scalarOperator"
+                    " vectorDistributionMethod vectorOperator zeroIdentityVectorOperator zeroPreservingVectorOperator"
+                ),
+            ),
+        ),
+        "scenic.core.visibility": _homes(
+            (
+                _INSIDE,
+                ("canSee"),
+            ),
         ),
         "scenic.core.workspaces": _homes((_LANGUAGE, "Workspace")),
+        "scenic.syntax.relations": _homes(
+            (
+                _INSIDE,
+                (
+                    "BoundRelation DistanceRelation RelativeHeadingRelation RequirementMatcher inferDistanceRelations"
+                    " inferRelationsFrom inferRelativeHeadingRelations"
+                ),
+            ),
+        ),
         "scenic.syntax.translator": _homes(
             ("scenic.pipeline", "scenarioFromFile scenarioFromString"),
             (_ERRORS, "InvalidScenarioError ScenicSyntaxError"),
+            (
+                _INSIDE,
+                (
+                    "CompileOptions ScenicFileFinder ScenicLoader ScenicModule astToSource compileStream compileTranslatedTree"
+                    " constructScenarioFrom dump executeCodeIn gatherBehaviorNamespacesFrom purgeModulesUnsafeToCache"
+                    " scenic_path_hook storeScenarioStateIn topLevelNamespace"
+                ),
+            ),
         ),
-        "scenic.syntax.veneer": _homes((_ERRORS, "InvalidScenarioError")),
+        "scenic.syntax.veneer": _homes(
+            (_ERRORS, "InvalidScenarioError"),
+            (_VENEER, _VENEER_FUNCTIONS),
+            (
+                _INSIDE,
+                (
+                    "Always AtomicProposition Eventually Implies Modifier Next ParameterTableProxy PropositionAnd PropositionNot"
+                    " PropositionOr Until activate alwaysProvidesOrientation beginSimulation callWithStarArgs deactivate"
+                    " directionalSpecHelper endScenario endSimulation executeInBehavior executeInGuard executeInRequirement"
+                    " executeInScenario finishScenarioSetup instantiateSimulator makeRequirement model override prepareScenario"
+                    " projectVectorHelper record record_final record_initial registerDynamicScenarioClass"
+                    " registerExternalParameter registerInstance registerObject require require_always require_eventually"
+                    " require_monitor simulator startScenario terminate_after terminate_simulation_when terminate_when"
+                    " wrapStarredValue"
+                ),
+            ),
+        ),
     }
 )
 """The established modules, and where each of their names lives here."""
@@ -180,12 +357,49 @@ def _homes_by_name(module: str) -> dict[str, tuple[str, str]]:
 
 def lookup(module: str, name: str) -> Any:
     """The object of a name of an established module; raises ``AttributeError`` for unknown ones."""
-    home, ours = _homes_by_name(module).get(name, (None, name))
+    home, ours = _homes_by_name(module).get(name) or _home_elsewhere(name)
     if home is None:
         raise AttributeError(f"module {module!r} has no attribute {name!r}")
+    if home == _INSIDE:
+        return _Inside(f"{module}.{name}")
     if home == _LANGUAGE:
         return _provided()[ours]
     return getattr(import_module(home), ours)
+
+
+def _home_elsewhere(name: str) -> tuple[str | None, str]:
+    """The home of a name of some other module: scripts import from a module what it has imported itself."""
+    if name in _provided():
+        return _LANGUAGE, name
+    homes = (_homes_by_name(module).get(name) for module in MODULES)
+    return next((home for home in homes if home is not None and home[0] != _INSIDE), (None, name))
+
+
+class _Inside:
+    """A name of the established implementation that has no counterpart here: it can be imported, but not used."""
+
+    def __init__(self, name: str) -> None:
+        self.__name = name
+
+    def __refuse(self) -> NoReturn:
+        raise import_module(_ERRORS).UnsupportedError(
+            f"`{self.__name}` belongs to the inside of the established implementation and is not supported",
+            help="docs/moving.md says what of the Python API is here",
+        )
+
+    def __call__(self, *_args: Any, **_keywords: Any) -> NoReturn:
+        self.__refuse()
+
+    def __getattr__(self, attribute: str) -> NoReturn:
+        if attribute.startswith("__"):
+            raise AttributeError(attribute)
+        self.__refuse()
+
+    def __mro_entries__(self, _bases: Any) -> NoReturn:
+        self.__refuse()
+
+    def __instancecheck__(self, _instance: Any) -> bool:
+        return False
 
 
 class _Established(ModuleType):
@@ -193,7 +407,7 @@ class _Established(ModuleType):
 
     def __getattr__(self, name: str) -> Any:
         if name == "__all__":
-            return sorted(_homes_by_name(self.__name__))
+            return sorted(key for key, home in _homes_by_name(self.__name__).items() if home[0] != _INSIDE)
         if name.startswith("__"):
             raise AttributeError(name)
         return lookup(self.__name__, name)

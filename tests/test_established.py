@@ -3,14 +3,23 @@
 import contextlib
 import importlib
 import io
+import json
+import math
+import types
 from pathlib import Path
 
 import pytest
 from scenic.core.regions import (
     BoxRegion,
+    CircularRegion,
+    MeshRegion,
+    MeshSurfaceRegion,
+    MeshVolumeRegion,
+    PolygonalFootprintRegion,
     PolygonalRegion,
     PolylineRegion,
     RectangularRegion,
+    SectorRegion,
     SpheroidRegion,
     everywhere,
 )
@@ -24,9 +33,9 @@ from tests.runtime.programs import params
 @pytest.mark.parametrize("name", list(MODULES))
 def test_every_name_of_every_module_is_found(name: str) -> None:
     module = importlib.import_module(name)
-    assert module.__all__
     for entry in module.__all__:
         assert getattr(module, entry) is lookup(name, entry)
+    assert {*module.__all__} <= {*dir(module)}
     with pytest.raises(AttributeError):
         _ = module.nothing_of_this_name
 
@@ -172,3 +181,197 @@ def test_programs_are_told_by_their_names(tmp_path: Path) -> None:
 def test_wrong_operands_are_told_before_a_missing_ego(text: str) -> None:
     with pytest.raises(TypeError):
         scenic.scenarioFromString(f"new Object {text}")
+
+
+HELPERS = """
+import scenic.syntax.veneer as v
+from scenic.core.vectors import Vector
+
+def made(x):
+    return v.new(v.Object, [v.At(Vector(x, 0, 0)), v.With("tag", x), v.Facing(0.3)])
+
+def beside(thing):
+    return v.new(v.Object, [v.LeftSpec(thing, dist=3)])
+
+def ahead(thing):
+    return v.new(v.OrientedPoint, [v.Ahead(thing, (1, 2, 3)), v.With("roll", 0.1)])
+
+def seen():
+    return [v.DistanceFrom((4, 6)), v.RelativePosition((5, 5, 5)), v.AngleTo((1, 9)), v.AngleFrom((3, 2)), v.ego().position]
+
+def set_up():
+    v.param({"q": v.globalParameters().p + 2})
+    v.mutate(v.ego(), scale=0)
+    return v.isActive(), v.simulationInProgress(), v.in_initial_scenario(), v.localPath("a").name
+"""
+
+USE_OF_HELPERS = """
+import helpers_of_veneer as h
+param p = 5
+workspace = Workspace(CircularRegion((0, 0), 100))
+ego = new Object at (1, 2)
+there = h.made(20)
+beside = h.beside(there)
+ahead = h.ahead(ego)
+param made = (there.position, there.tag, there.yaw), beside = beside.position, ahead = (ahead.position, ahead.roll)
+param seen = h.seen(), set_up = h.set_up(), same = h.v.ego() is ego, space = h.v.workspace() is workspace
+require h.v.DistanceFrom(there, (20, 0)) < 1
+"""
+
+
+def test_python_modules_call_the_language(tmp_path: Path) -> None:
+    (tmp_path / "helpers_of_veneer.py").write_text(HELPERS)
+    (tmp_path / "use.scenic").write_text(USE_OF_HELPERS)
+    scenario = scenic.scenarioFromFile(tmp_path / "use.scenic")
+    found = scenario.generate()[0].params
+    assert len(scenario.objects) == 3
+    assert found["made"] == ((20, 0, 0), 20, 0.3)
+    assert tuple(found["beside"]) == pytest.approx((20 - 4 * math.cos(0.3), -4 * math.sin(0.3), 0))
+    assert tuple(found["ahead"][0]) == pytest.approx((1 + 1, 2 + 0.5 + 2, 3))
+    assert found["seen"] == [5, (4, 3, 5), 0, pytest.approx(math.pi / 2), (1, 2, 0)]
+    assert found["q"] == 7
+    assert found["set_up"] == (True, False, True, "a")
+    assert found["same"]
+    assert found["space"]
+
+
+def test_operators_are_functions_outside_of_programs() -> None:
+    import scenic.syntax.veneer as v
+
+    first, second = (
+        scenic.scenarioFromString("ego = new Object at (1, 2, 3)\nnew Object at (1, 5, 3)")
+        .generate()[0]
+        .objects
+    )
+    assert v.DistanceFrom(first, second) == 3
+    assert v.RelativeHeading(1.5, Y=0.5) == 1
+    assert v.FieldAt(v.VectorField("f", lambda point: point.x), (1, 2)).yaw == pytest.approx(1)
+    assert v.Front(first).position == (1, 2.5, 3)
+    assert v.CanSee(first, second)
+    assert not v.isActive()
+    for call in (v.ego, v.globalParameters, lambda: v.DistanceFrom(first), lambda: v.param({"a": 1})):
+        with pytest.raises(scenic.language.errors.InvalidScenarioError, match="no program is running"):
+            call()
+    with pytest.raises(TypeError):
+        v.RelativeTo(first)
+
+
+def test_what_has_no_counterpart_says_so_when_it_is_used() -> None:
+    import scenic.core.pruning
+    from scenic.core.distributions import FunctionDistribution
+    from scenic.syntax.veneer import beginSimulation
+
+    assert not isinstance(3, FunctionDistribution)
+    assert not hasattr(beginSimulation, "__wrapped__")
+    for use in (
+        lambda: beginSimulation(None),
+        lambda: scenic.core.pruning.prune(None),
+        lambda: scenic.core.pruning.prune.anything,
+        lambda: types.new_class("Mine", (FunctionDistribution,)),
+    ):
+        with pytest.raises(scenic.language.errors.UnsupportedError, match="belongs to the inside"):
+            use()
+
+
+def test_names_that_a_module_had_imported_itself_are_found() -> None:
+    from scenic.core.object_types import Vector, toVector
+    from scenic.core.simulators import RejectionException
+
+    assert toVector((1, 2)) == Vector(1, 2, 0)
+    assert issubclass(RejectionException, Exception)
+
+
+def test_kinds_of_regions_are_those_that_scripts_ask_for() -> None:
+    thing = (
+        scenic.scenarioFromString(
+            "ego = new Object facing (0.1, 0.2, 0.3), with width 2, with length 3, with viewAngles (1, 1)"
+        )
+        .generate()[0]
+        .egoObject
+    )
+    disc = CircularRegion((0, 0), 1)
+    footprint = disc.footprint
+    flat = (disc, RectangularRegion((0, 0), 0, 1, 1), SectorRegion((0, 0), 1, 0, 1))
+    volumes = (thing.occupiedSpace, thing.boundingBox, thing.visibleRegion, BoxRegion(), SpheroidRegion())
+    surfaces = (thing.surface, thing.topSurface, BoxRegion().getSurfaceRegion())
+    for kind, members in (
+        (PolygonalRegion, flat),
+        (MeshVolumeRegion, volumes),
+        (MeshSurfaceRegion, surfaces),
+        (MeshRegion, volumes + surfaces),
+        (PolygonalFootprintRegion, (footprint,)),
+    ):
+        others = {*flat, *volumes, *surfaces, footprint, everywhere} - {*members}
+        assert all(isinstance(member, kind) for member in members), kind
+        assert not any(isinstance(other, kind) for other in others), kind
+    assert not isinstance(BoxRegion(), SpheroidRegion)
+
+
+def test_surfaces_and_views_have_meshes() -> None:
+    thing = (
+        scenic.scenarioFromString(
+            "ego = new Object at (1, 2, 3), facing 90 deg, with width 2, with length 3, with height 4,"
+            " with viewAngles (1, 1), with visibleDistance 10"
+        )
+        .generate()[0]
+        .egoObject
+    )
+    assert thing.surface.mesh.area == pytest.approx(52)
+    assert thing.topSurface.mesh.area == pytest.approx(6)
+    assert thing.topSurface.mesh.bounds[:, 2] == pytest.approx((5, 5))
+    view = thing.visibleRegion
+    assert view.mesh.volume == pytest.approx(view.size, rel=0.01)
+    assert view.getVolumeRegion().containsPoint((-3, 2, 3))
+    assert not view.boundingPolygon.containsPoint((3, 2, 0))
+    above, below = (BoxRegion(dimensions=(9, 9, 1), position=(1, 2, z)) for z in (5, 2))
+    assert thing.topSurface.intersects(above)
+    assert not thing.topSurface.intersects(below)
+    assert thing.surface.intersects(below)
+
+
+def test_vectors_are_sequences() -> None:
+    from collections.abc import Sequence
+
+    from scenic.core.vectors import Vector
+
+    vector = Vector(1, 2, 1)
+    assert isinstance(vector, Sequence)
+    assert (vector.index(2), vector.count(1)) == (1, 2)
+    match vector:
+        case (x, y, z):
+            assert (x, y, z) == (1, 2, 1)
+        case _:
+            raise AssertionError
+
+
+def test_small_helpers_of_the_established_modules() -> None:
+    import trimesh
+    from scenic.core.sensors import CallbackSensor, GroundTruthSensor
+    from scenic.core.serialization import dumpAsScenicCode, scenicToJSON
+    from scenic.core.utils import batched, repairMesh, unifyMesh
+    from scenic.core.vectors import Vector
+
+    assert list(batched(range(5), 2)) == [(0, 1), (2, 3), (4,)]
+    assert json.dumps({"a": Vector(1, 2, 3)}, default=scenicToJSON) == '{"a": [1.0, 2.0, 3.0]}'
+    with pytest.raises(TypeError):
+        scenicToJSON(3)
+    stream = io.StringIO()
+    dumpAsScenicCode([1, "b", Vector(1, 2, 3)], stream)
+    assert stream.getvalue() == "[1, 'b', (1.0, 2.0, 3.0)]"
+    boxes = [trimesh.creation.box((1, 1, 1)), trimesh.creation.box((1, 1, 1)).apply_translation((0.5, 0, 0))]
+    assert unifyMesh(trimesh.util.concatenate(boxes)).volume == pytest.approx(1.5)
+    inverted = boxes[0].copy()
+    inverted.invert()
+    assert repairMesh(inverted).volume == pytest.approx(1)
+
+    class Doubled(CallbackSensor):
+        def process(self, data: int) -> int:
+            return 2 * data
+
+    sensor = Doubled(defaultValue=0)
+    assert sensor.getObservation() == 0
+    sensor.onData(4)
+    assert sensor.getObservation() == 8
+    with pytest.raises(NotImplementedError):
+        CallbackSensor().onData(1)
+    assert GroundTruthSensor(lambda: 5).getObservation() == 5

@@ -100,6 +100,14 @@ class Vector(VectorMethods):
     def __hash__(self) -> int:
         return hash(self._row)
 
+    def index(self, value: Any) -> int:
+        """The axis of the first coordinate that is equal to a number; raises ``ValueError`` where none is."""
+        return self._row.index(value)
+
+    def count(self, value: Any) -> int:
+        """How many coordinates are equal to a number."""
+        return self._row.count(value)
+
     def __repr__(self) -> str:
         return "Vector({}, {}, {})".format(*map(plain_number, self._row))
 
@@ -114,6 +122,10 @@ class Vector(VectorMethods):
 
     def __copy__(self) -> Self:
         return self
+
+
+# So that ``case (x, y, z)`` fits a vector.
+Sequence.register(Vector)
 
 
 class Orientation(OrientationMethods):

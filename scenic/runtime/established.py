@@ -4,14 +4,20 @@ Signatures are those that existing scripts use; `scenic.established` maps the na
 """
 
 import functools
+import itertools
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from types import MappingProxyType
-from typing import Any
+from typing import Any, TextIO
+
+import numpy as np
 
 from scenic.language.errors import ScenicTypeError
 from scenic.runtime.context import verbosity as verbosity_now
-from scenic.runtime.lazy import Lazy, is_lazy
+from scenic.runtime.dumping import NoLiteralError, literal
+from scenic.runtime.geometry.mesh import Mesh
+from scenic.runtime.geometry.solids import proper_volume
+from scenic.runtime.lazy import Lazy, defer, is_lazy
 from scenic.runtime.lazy import resolve as valueInContext  # noqa: N812 - the established name
 from scenic.runtime.objects import Point
 from scenic.runtime.regions.base import Region
@@ -242,6 +248,79 @@ def argsToString(args: Sequence[Any], kwargs: Mapping[str, Any] = MappingProxyTy
     return ", ".join([*map(repr, args), *(f"{name}={value!r}" for name, value in kwargs.items())])
 
 
+def batched(iterable: Iterable[Any], n: int) -> Iterator[tuple[Any, ...]]:
+    """Tuples of ``n`` successive items; the last may be shorter."""
+    items = iter(iterable)
+    while part := tuple(itertools.islice(items, n)):
+        yield part
+
+
+def proper_mesh(mesh: Any, pitch: float = 1 / 64, verbose: bool = True) -> Any:  # noqa: ARG001 - of the established call
+    """A trimesh mesh as one that bounds a volume: vertices merged, normals outwards. Raises ``ValueError`` where it has holes."""
+    return _solid_of(mesh, unify=False)
+
+
+def united_mesh(mesh: Any, verbose: bool = False) -> Any:  # noqa: ARG001 - of the established call
+    """A trimesh mesh with its overlapping bodies united."""
+    return _solid_of(mesh, unify=True)
+
+
+def _solid_of(mesh: Any, *, unify: bool) -> Any:
+    import trimesh
+
+    solid = proper_volume(Mesh(mesh.vertices, mesh.faces), unify=unify)
+    return trimesh.Trimesh(np.array(solid.vertices), np.array(solid.faces), process=False)
+
+
+def plotPolygon(polygon: Any, plt: Any, style: str = "r-", **options: Any) -> None:
+    """Draw the outlines of a shapely polygon or multipolygon with a ``matplotlib.pyplot``."""
+    for part in getattr(polygon, "geoms", [polygon]):
+        for ring in (part.exterior, *part.interiors):
+            x, y = ring.xy
+            plt.plot(x, y, style, **options)
+
+
+def makeDelayedFunctionCall(
+    func: Callable[..., Any], args: Sequence[Any], kwargs: Mapping[str, Any] = MappingProxyType({})
+) -> Any:
+    """A call that is made when the object that its arguments depend on is being specified."""
+    return defer(func, *args, **kwargs)
+
+
+def dumpAsScenicCode(value: Any, stream: TextIO) -> None:
+    """Write a value as an expression of the language."""
+    try:
+        stream.write(literal(value))
+    except NoLiteralError:
+        stream.write(repr(value))
+
+
+def scenicToJSON(obj: Any) -> Any:
+    """Vectors as lists, for ``json.dumps(..., default=scenicToJSON)``."""
+    if isinstance(obj, Vector):
+        return list(obj)
+    raise TypeError(f"Object of type {type(obj).__name__} is not JSON serializable")
+
+
+class SimulatorInterfaceWarning(UserWarning):
+    """A warning of an interface to a simulator."""
+
+
+class SampleChecker:
+    """How requirements are ordered there; here their order follows what was measured, and never changes results."""
+
+    def __init__(self, *_arguments: Any, **_options: Any) -> None:
+        pass
+
+
+class BasicChecker(SampleChecker):
+    """As `SampleChecker`."""
+
+
+class WeightedAcceptanceChecker(SampleChecker):
+    """As `SampleChecker`."""
+
+
 cached_property = functools.cached_property
 
 
@@ -283,12 +362,17 @@ def setDebuggingOptions(
 
 
 __all__ = [
+    "BasicChecker",
     "DelayedArgument",
     "Heading",
+    "SampleChecker",
+    "SimulatorInterfaceWarning",
+    "WeightedAcceptanceChecker",
     "alwaysGlobalOrientation",
     "apparentHeadingAtPoint",
     "argsToString",
     "averageVectors",
+    "batched",
     "cached",
     "cached_method",
     "cached_property",
@@ -296,18 +380,23 @@ __all__ = [
     "coerce",
     "convertToFootprint",
     "distanceToLine",
+    "dumpAsScenicCode",
     "findMinMax",
     "globalOrientation",
     "headingOfSegment",
     "isA",
+    "makeDelayedFunctionCall",
     "needsLazyEvaluation",
     "needsSampling",
     "normalizeAngle",
+    "plotPolygon",
     "pointIsInCone",
     "polygonUnion",
+    "proper_mesh",
     "regionFromShapelyObject",
     "removeHoles",
     "rotateVector",
+    "scenicToJSON",
     "setDebuggingOptions",
     "toDistribution",
     "toHeading",
@@ -319,6 +408,7 @@ __all__ = [
     "toVector",
     "triangulatePolygon",
     "underlyingType",
+    "united_mesh",
     "valueInContext",
     "viewAngleToPoint",
 ]

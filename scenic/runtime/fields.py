@@ -96,7 +96,7 @@ class VectorField:
         return PiecewiseVectorField("union", members)
 
     def __repr__(self) -> str:
-        return f"<{type(self).__name__} {self.name!r}>"
+        return f"<{type(self).__name__} {self.name}>"
 
 
 class PolygonalVectorField(VectorField):

@@ -10,7 +10,7 @@ from scenic.runtime.context import here, verbosity
 from scenic.runtime.lazy import Lazy, defer, is_lazy
 from scenic.runtime.opaque import call_later, is_later
 from scenic.runtime.purity import is_pure
-from scenic.runtime.values import Random, as_node, is_random, operate, over_options
+from scenic.runtime.values import Random, as_node, is_number, is_random, operate, over_options, wrong_type
 
 
 def _for_python(function: Callable[..., Any]) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
@@ -38,6 +38,9 @@ def cos(x: Any) -> Any:
 @_for_python(math.hypot)
 def hypot(*coordinates: Any) -> Any:
     """Euclidean length of a vector given by its coordinates."""
+    for item in coordinates:
+        if not (is_number(item) or isinstance(item, Random | Lazy)):
+            raise wrong_type("numbers", item, "`hypot`")
     return operate("hypot", *coordinates)
 
 

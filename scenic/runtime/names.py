@@ -127,6 +127,8 @@ class Unsupported:
         raise unsupported(f"`{self._name}`")
 
     def __getattr__(self, attribute: str) -> Any:
+        if attribute.startswith("__"):
+            raise AttributeError(attribute)
         raise unsupported(f"`{self._name}.{attribute}`")
 
     def __mro_entries__(self, _bases: Any) -> Any:

@@ -125,8 +125,15 @@ def _relative_position(ego: Ego, target: Any, origin: Any) -> Any:
 
 
 def _relative_heading(ego: Ego, target: Any, origin: Any) -> Any:
-    start = to_heading(ego() if origin is None else origin, "`relative heading`")
-    return _normal(_minus(to_heading(target, "`relative heading`"), start))
+    start = _global_yaw(ego() if origin is None else origin)
+    return _normal(_minus(_global_yaw(target), start))
+
+
+def _global_yaw(value: Any) -> Any:
+    """A heading; here three numbers are Euler angles, as wherever an orientation is wanted."""
+    if is_vector(value) and not is_kind(value, Point):
+        value = to_orientation(value, "`relative heading`")
+    return to_heading(value, "`relative heading`")
 
 
 def _apparent_heading(ego: Ego, target: Any, origin: Any) -> Any:
@@ -187,7 +194,8 @@ def _intersects(_ego: Ego, left: Any, right: Any) -> Any:
 
 def _can_see(_ego: Ego, viewer: Any, target: Any) -> Any:
     context = current.get()
-    assert context is not None
+    if context is None:
+        return sees(viewer, target, ())
     if context.judging:
         context.looks = True
     elif context.is_symbolic and context.sample is None:

@@ -87,6 +87,37 @@ class SSSensor(CameraSensor):
     outputs = ("semantic", "instance")
 
 
+class GroundTruthSensor(Sensor):
+    """Observes a value as it is at each step: a function is called, anything else is taken as it stands."""
+
+    def __init__(self, value: Any) -> None:
+        self.value = value
+
+    def getObservation(self) -> Any:
+        """The value now."""
+        return self.value() if callable(self.value) else self.value
+
+
+class CallbackSensor(Sensor):
+    """A sensor whose data a simulator delivers when it has them: it calls `onData`, and `process` makes observations of them.
+
+    Args:
+        defaultValue: the observation until there are data.
+
+    """
+
+    def __init__(self, defaultValue: Any = None) -> None:
+        self._observation = defaultValue
+
+    def process(self, data: Any) -> Any:
+        """The observation that data come to."""
+        raise NotImplementedError(f"{type(self).__name__} does not say how data are processed (`process`)")
+
+    def onData(self, data: Any) -> None:
+        """Take new data."""
+        self.deliver(self.process(data))
+
+
 def _three(value: Any, name: str) -> tuple[float, float, float]:
     try:
         x, y, z = (float(item) for item in value)

@@ -23,11 +23,17 @@ from scenic.runtime.geometry.poses import Poses
 from scenic.runtime.geometry.prisms import prism, shadow, slice_at
 from scenic.runtime.opaque import evaluated, later
 from scenic.runtime.regions.base import Everywhere, Mask, Nowhere, Region, Workspace, nowhere
-from scenic.runtime.regions.bodies import OccupiedSpace
+from scenic.runtime.regions.bodies import OccupiedSpace, SideSurface
 from scenic.runtime.regions.choice import as_region
 from scenic.runtime.regions.composite import DifferenceRegion, IntersectionRegion, UnionRegion
 from scenic.runtime.regions.lines import LineRegion, PathRegion, PolylineRegion
-from scenic.runtime.regions.meshes import MeshSurfaceRegion, MeshVolumeRegion, solid_in_world, world_mesh
+from scenic.runtime.regions.meshes import (
+    MeshSurfaceRegion,
+    MeshVolumeRegion,
+    solid_in_world,
+    surface_in_world,
+    world_mesh,
+)
 from scenic.runtime.regions.planar import Footprint, PlanarRegion, PolygonalFootprintRegion, PolygonalRegion
 from scenic.runtime.regions.scattered import PointSetRegion
 from scenic.runtime.regions.views import ViewRegion
@@ -322,12 +328,14 @@ def _meet(a: Region, b: Region) -> bool:
     for line, other in ((a, b), (b, a)):
         if isinstance(line, PathRegion) and isinstance(other, PlanarRegion):
             return _crosses_plane(line, other)
-        if isinstance(line, MeshSurfaceRegion):
-            shell = solid_in_world(line.fixed_columns("the surface"))
+        if isinstance(line, SideSurface):
+            shell = surface_in_world(line)
+            if not len(shell.faces):
+                return False
             if isinstance(other, Footprint):
                 return bool(other.polygons.intersects(shadow(shell)))
-            if isinstance(other, MeshSurfaceRegion):
-                return _edges_cross(shell, solid_in_world(other.fixed_columns("the surface")))
+            if isinstance(other, SideSurface):
+                return _edges_cross(shell, surface_in_world(other))
             solid = _solid(other)
             if solid is not None:
                 return any(_inside(solid, vertex) for vertex in shell.vertices) or _edges_cross(shell, solid)
@@ -454,8 +462,10 @@ def outline_from_above(region: Region) -> PolygonalRegion:
     return PolygonalRegion(polygon=shadow(solid))
 
 
-def volume_of(region: PlacedVolume) -> MeshVolumeRegion:
-    """A box or ellipsoid as the volume of a mesh, with the same parameters."""
+def volume_of(region: PlacedVolume | ViewRegion) -> MeshVolumeRegion:
+    """A box or ellipsoid as the volume of a mesh, with the same parameters; a view as that of its mesh."""
+    if isinstance(region, ViewRegion):
+        return MeshVolumeRegion(region.solid(), centerMesh=False)
     unit = primitives.box() if isinstance(region, BoxRegion) else primitives.spheroid()
     return MeshVolumeRegion(
         unit,

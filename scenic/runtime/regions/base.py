@@ -66,12 +66,20 @@ class Region(ABC):
     """Whether every point has a preferred orientation."""
     orientation: Any = None
     """The vector field of the preferred orientations, where there is one."""
+    kindred: ClassVar[tuple[str, ...]] = ()
+    """Names of further classes whose instances are, to a program that asks with ``isinstance``, of this class."""
     algebra: ClassVar[Any] = None
     """What combines regions: `scenic.runtime.regions.algebra`, which knows all kinds of them, puts itself here."""
 
     def __init__(self, *parameters: Any, name: str | None = None) -> None:
         self.parameters: tuple[Any, ...] = parameters
         self.name = name
+
+    @classmethod
+    def __subclasshook__(cls, other: type) -> bool:
+        # Always a definite answer: else kindred of a subclass would count as of this class. `kindred` is not inherited.
+        kindred = cls.__dict__.get("kindred", ())
+        return any(base is cls or base.__name__ in kindred for base in other.__mro__)
 
     # Of fixed regions, on plain floats
 

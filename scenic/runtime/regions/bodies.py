@@ -314,6 +314,11 @@ class SideSurface(Region):
     def sizes(self, *columns: Column) -> Column:
         return body_points.areas(body_of(*columns), self.facing.side, self.facing.threshold)
 
+    @property
+    def mesh(self) -> Any:
+        """Its faces in the world as a mesh, trimesh's; of a surface without random parameters."""
+        return self.algebra.world_mesh(self)
+
     def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
         return np.zeros(lanes, dtype=np.bool_)
 

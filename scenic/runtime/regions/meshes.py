@@ -13,6 +13,7 @@ from scenic.runtime.geometry import body_points, distance
 from scenic.runtime.geometry.loading import load_mesh
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.solids import proper_volume
+from scenic.runtime.geometry.surface import side_contains
 from scenic.runtime.regions.base import Mask, Points, Region
 from scenic.runtime.regions.bodies import Facing, OccupiedSpace, SideSurface
 from scenic.runtime.regions.stacked import body_of
@@ -71,6 +72,12 @@ def _mesh(mesh: Any, what: str) -> Mesh:
         ) from None
 
 
+class MeshRegion(Region):
+    """What volumes and surfaces are, for programs that ask for either."""
+
+    kindred = ("OccupiedSpace", "PlacedVolume", "SideSurface", "ViewRegion")
+
+
 class MeshVolumeRegion(OccupiedSpace):
     """The inside of a closed mesh: centred, scaled to dimensions, turned and moved.
 
@@ -88,6 +95,7 @@ class MeshVolumeRegion(OccupiedSpace):
 
     """
 
+    kindred = ("OccupiedSpace", "PlacedVolume", "ViewRegion")
     draws = 3
 
     def __init__(
@@ -149,6 +157,8 @@ class MeshSurfaceRegion(SideSurface):
     whose local Z is the normal of the face, and whose yaw is as near to North as possible.
     """
 
+    kindred = ("SideSurface",)
+
     def __init__(
         self,
         mesh: Any,
@@ -208,11 +218,6 @@ class MeshSurfaceRegion(SideSurface):
         """The surface itself."""
         return self
 
-    @property
-    def mesh(self) -> Any:
-        """The mesh in the world, trimesh's; of a region without random parameters."""
-        return world_mesh(self)
-
 
 def solid_in_world(operands: list[Column]) -> Mesh:
     """The mesh of a body in its one placement, in the world."""
@@ -222,12 +227,37 @@ def solid_in_world(operands: list[Column]) -> Mesh:
     return Mesh(vertices, unit.faces)
 
 
+def surface_in_world(region: SideSurface) -> Mesh:
+    """The faces of a surface without random parameters, in the world; perhaps none."""
+    columns = region.fixed_columns("the surface")
+    body, mesh = body_of(*columns), solid_in_world(columns)
+    side, threshold = region.facing.side, region.facing.threshold
+    if side is None:
+        return mesh
+    unit = body.meshes[0 if body.choice is None else int(body.choice[0])]
+    faces = np.arange(len(unit.faces))
+    return Mesh(
+        mesh.vertices,
+        mesh.faces[side_contains(unit, body.poses, side, threshold, np.zeros_like(faces), faces)],
+    )
+
+
 def world_mesh(region: Region) -> Any:
     """The mesh of a region of a body in the world, as a `trimesh.Trimesh`."""
     import trimesh
 
-    mesh = solid_in_world(region.fixed_columns("the mesh"))
+    if isinstance(region, SideSurface):
+        mesh = surface_in_world(region)
+    else:
+        mesh = solid_in_world(region.fixed_columns("the mesh"))
     return trimesh.Trimesh(np.array(mesh.vertices), np.array(mesh.faces), process=False)
 
 
-__all__ = ["MeshSurfaceRegion", "MeshVolumeRegion", "solid_in_world", "world_mesh"]
+__all__ = [
+    "MeshRegion",
+    "MeshSurfaceRegion",
+    "MeshVolumeRegion",
+    "solid_in_world",
+    "surface_in_world",
+    "world_mesh",
+]

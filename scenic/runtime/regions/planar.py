@@ -389,6 +389,8 @@ class PolygonalRegion(PlanarRegion):
 
     """
 
+    kindred = ("CircularRegion", "RectangularRegion", "SectorRegion")
+
     def __init__(
         self,
         points: Sequence[Any] = (),
@@ -637,6 +639,8 @@ class PolygonalFootprintRegion(Footprint):
         polygon: a shapely polygon or multipolygon, or a polygonal region.
 
     """
+
+    kindred = ("Footprint",)
 
     def __init__(self, polygon: Any, name: str | None = None) -> None:
         region = polygon if isinstance(polygon, PlanarRegion) else PolygonalRegion(polygon=polygon)

@@ -129,6 +129,26 @@ class ViewRegion(Region):
         (unit,) = body.meshes
         return Mesh(body.poses.to_world(unit.vertices[np.newaxis])[0], unit.faces)
 
+    def getVolumeRegion(self) -> Region:
+        """The volume of its mesh, without random parameters."""
+        volume: Region = self.algebra.volume_of(self)
+        return volume
+
+    def getSurfaceRegion(self) -> Region:
+        """The surface of its mesh, without random parameters."""
+        surface: Region = self.algebra.volume_of(self).getSurfaceRegion()
+        return surface
+
+    @property
+    def mesh(self) -> Any:
+        """A mesh of it in the world, trimesh's, without random parameters; see `distances`."""
+        return self.algebra.volume_of(self).mesh
+
+    @property
+    def boundingPolygon(self) -> Any:
+        """Its mesh seen from above."""
+        return self.algebra.volume_of(self).boundingPolygon
+
     def box(self, *columns: Column) -> tuple[Points, Points]:
         camera, reach = columns[0], columns[4][:, None]
         return camera - reach, camera + reach
