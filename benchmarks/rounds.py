@@ -13,8 +13,9 @@ import time
 from pathlib import Path
 from typing import Any
 
-from scenic.runtime.sampling.engine import Engine, Task
+from scenic.runtime.sampling.engine import Engine
 from scenic.runtime.sampling.pace import Round
+from scenic.runtime.sampling.pending import Task
 
 HERE = Path(__file__).parent
 LANES = (16, 64, 256, 4096)

@@ -15,7 +15,8 @@ MEASURE = """
 import sys
 import numpy as np
 import scenic
-from scenic.runtime.sampling.engine import Engine, Task
+from scenic.runtime.sampling.engine import Engine
+from scenic.runtime.sampling.pending import Task
 
 scenario = scenic.load(sys.argv[1])
 engine = Engine(scenario.outline.plan(scenario.domain))

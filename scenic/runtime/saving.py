@@ -15,7 +15,8 @@ import numpy as np
 from scenic.graph.draws import Counter, Points, Source
 from scenic.graph.node import Graph, Node
 from scenic.language.errors import SerializationError
-from scenic.runtime.sampling.engine import Accepted, Task
+from scenic.runtime.sampling.engine import Accepted
+from scenic.runtime.sampling.pending import Task
 
 FORMAT: Final = "scenic scene"
 VERSION: Final = 1

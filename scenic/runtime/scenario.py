@@ -19,8 +19,9 @@ from scenic.runtime.program import Program
 from scenic.runtime.regions.base import Region, Workspace, everywhere
 from scenic.runtime.samples import dependencies
 from scenic.runtime.sampling.driving import driven
-from scenic.runtime.sampling.engine import Accepted, CandidateError, Engine, Task
+from scenic.runtime.sampling.engine import Accepted, CandidateError, Engine
 from scenic.runtime.sampling.foresight import SEED_BITS, Foreseen
+from scenic.runtime.sampling.pending import Task
 from scenic.runtime.sampling.planning import Outline, outline
 from scenic.runtime.sampling.report import Exhausted
 from scenic.runtime.saving import SavedScene, draws_of, fixed_draws, source_of
@@ -167,7 +168,7 @@ class Scenario:
                 its type, and tells the place in a note.
 
         """
-        tasks = [Task(seed, k) for k in range(first, first + n)]
+        tasks = (Task(seed, k) for k in range(first, first + n))
         deadline = None if time_limit is None else time.monotonic() + time_limit
         yield from self._find(tasks, max_attempts=max_attempts, deadline=deadline, lanes=lanes, source=source)
 
@@ -209,12 +210,10 @@ class Scenario:
         return min(limit, OPAQUE_ATTEMPTS if any(node.is_drawn for node in nodes) else 1)
 
     def _scenes(self, results: Iterator[Accepted | Exhausted]) -> Iterator[Scene | Exhausted]:
+        family = self._family
         try:
             for result in results:
-                if isinstance(result, Exhausted):
-                    yield result
-                else:
-                    yield self._scene(result)
+                yield result if isinstance(result, Exhausted) else Scene(result, family)
         except CandidateError as error:
             failure = error
         else:
@@ -347,7 +346,7 @@ class Scenario:
                 help="load the program, parameters and options with which it was saved",
             )
         source = source_of(saved, self._engine.plan.graph)
-        return self._scene(self._engine.replay(source, saved.task, saved.attempts))
+        return Scene(self._engine.replay(source, saved.task, saved.attempts), self._family)
 
     def replay(self, path: str | Path) -> Scene:
         """The scene that `Scene.save` has written; raises `SerializationError` as `sceneFromBytes` does."""
@@ -422,9 +421,6 @@ class Scenario:
         if points is None:
             return self._engine
         return self._engine.driven(self._conditioned(driven(points, self._engine.plan.graph)))
-
-    def _scene(self, accepted: Accepted) -> Scene:
-        return Scene(accepted, self._family)
 
 
 def exhaustion_message(exhausted: Exhausted) -> str:

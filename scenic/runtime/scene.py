@@ -70,14 +70,13 @@ class Scene:
     Made for every scene, so of few attributes; what all scenes of a scenario share is in its ``family``.
     """
 
+    _sample: Copier | None = None
+    _objects: tuple[Any, ...] | None = None
+    _params: dict[str, Any] | None = None
+
     def __init__(self, accepted: Accepted, family: Family) -> None:
         self.accepted = accepted
         self._family = family
-        # Scenes of a batch have their objects made together.
-        self._population = family.populations.of(accepted)
-        self._sample: Copier | None = None
-        self._objects: tuple[Any, ...] | None = None
-        self._params: dict[str, Any] | None = None
 
     @property
     def seed(self) -> int:
@@ -146,7 +145,9 @@ class Scene:
     def _values(self) -> Copier:
         """The values of the program in this scene."""
         if self._sample is None:
-            self._sample, self._objects = self._population.take(self.accepted.lane)
+            # Scenes of a batch have their objects made together.
+            population = self._family.populations.of(self.accepted)
+            self._sample, self._objects = population.take(self.accepted.lane)
         return self._sample
 
     def place(self, number: int) -> tuple[Span | None, str | None]:

@@ -8,7 +8,8 @@ from typing import Any
 import pytest
 
 from runtime.programs import scenario
-from scenic.runtime.sampling.engine import Engine, Task
+from scenic.runtime.sampling.engine import Engine
+from scenic.runtime.sampling.pending import Task
 from scenic.runtime.sampling.report import Exhausted
 from scenic.runtime.scenario import Scenario
 

@@ -10,9 +10,9 @@ import pytest
 
 from scenic.graph.node import Graph, Node, axis
 from scenic.graph.schedule import Scheduler
-from scenic.runtime.sampling.engine import Task
 from scenic.runtime.sampling.foresight import SEED_BITS, Foreseen
 from scenic.runtime.sampling.pace import Pace
+from scenic.runtime.sampling.pending import Task
 from scenic.runtime.sampling.stages import Stages
 from tests.graph.programs import make
 

@@ -10,10 +10,11 @@ from typing import Final
 import numpy as np
 
 from scenic.runtime.geometry.affine import AffineMaps
-from scenic.runtime.geometry.facetree import Forest, Meeting
-from scenic.runtime.geometry.poses import Booleans, Indices
-from scenic.runtime.geometry.ragged import Groups, expand, pieces
-from scenic.runtime.geometry.triangles import Corners, separated_by_edges, taken_corners
+from scenic.runtime.geometry.facetree import Forest
+from scenic.runtime.geometry.fronts import Front
+from scenic.runtime.geometry.poses import Booleans, Floats, Indices
+from scenic.runtime.geometry.ragged import expand, pieces
+from scenic.runtime.geometry.triangles import Corners, separated_by_edges
 
 _FIRST: Final = 4
 """Pairs of faces of an entry compared first; each further turn takes four times as many, until one pair touches."""
@@ -49,29 +50,30 @@ class Surfaces:
             self._settle(result, *faces, forth, back)
         return result
 
-    def touch_among(
-        self, leaves: Indices, first: Groups, second: Groups, forth: AffineMaps, back: AffineMaps
-    ) -> Booleans:
-        """Which surfaces share a point, ``(n,)``, where it is known which of their leaves may.
+    def touch_among(self, front: Front, chosen: Indices, forth: AffineMaps, back: AffineMaps) -> Booleans:
+        """Which surfaces of pairs share a point, ``(n,)``, where it is known which of their leaves may.
 
         Args:
-            leaves: nodes of the forest.
-            first: where those of the first surface begin in ``leaves``, and how many there are, ``(n,)`` each.
-            second: those of the second surface, likewise.
+            front: those leaves.
+            chosen: the pairs that are looked at; the others count as apart.
             forth: as in `touch`.
             back: the maps the other way.
 
         """
-        result = np.zeros(len(first.counts), dtype=np.bool_)
-        meet = Meeting(self._forest, forth, back)
+        result = np.zeros(len(front.touching), dtype=np.bool_)
+        first, second = (groups.take(chosen) for groups in front.leaves())
         pairs = first.counts * second.counts
+        own = self._forest.middle.take(front.leaf, axis=1), self._forest.half.take(front.leaf, axis=1)
+        images = front.centre, front.reach
         for part in pieces(pairs, _PAIRS):
             owner, offset = expand(pairs[part])
-            entry = owner + part.start
-            width = second.counts[entry]
-            one = leaves[first.starts[entry] + offset // width]
-            two = leaves[second.starts[entry] + offset % width]
-            self._settle(result, *self._forest.faces_of(*meet(entry, one, two)), forth, back)
+            owner += part.start
+            width = second.counts[owner]
+            one, two = first.starts[owner] + offset // width, second.starts[owner] + offset % width
+            near = _near(images, one, own, two)
+            near = near[_near(images, two[near], own, one[near])]
+            leaves = front.leaf[one[near]], front.leaf[two[near]]
+            self._settle(result, *self._forest.faces_of(chosen[owner[near]], *leaves), forth, back)
         return result
 
     def _settle(
@@ -93,38 +95,47 @@ class Surfaces:
         self, entry: Indices, one: Indices, two: Indices, forth: AffineMaps, back: AffineMaps
     ) -> Indices:
         """Which of the pairs of faces share a point."""
-        first, second = taken_corners(self._forest.corners, one), taken_corners(self._forest.corners, two)
+        first, second = (self._forest.corners.take(faces, axis=2) for faces in (one, two))
         left = self._cut_plane(first, two, second, forth, entry)
-        entry, first, second = entry[left], taken_corners(first, left), taken_corners(second, left)
+        entry, first, second = entry[left], first.take(left, axis=2), second.take(left, axis=2)
         more = self._cut_plane(second, one[left], first, back, entry)
         left, entry, first, second = (
             left[more],
             entry[more],
-            taken_corners(first, more),
-            taken_corners(second, more),
+            first.take(more, axis=2),
+            second.take(more, axis=2),
         )
-        images = [forth.take(entry).columns(corner) for corner in first]
+        images = forth.take(entry).columns(first.swapaxes(0, 1)).swapaxes(0, 1)
         return left[~separated_by_edges(images, second)]
 
     def _cut_plane(
         self, corners: Corners, other: Indices, on_plane: Corners, maps: AffineMaps, entry: Indices
     ) -> Indices:
         """The pairs in which the corners, taken through the maps, are not all on one side of the other face's plane."""
-        x, y, z = (column[other] for column in self._forest.normals)
+        x, y, z = sides = self._forest.normals.take(other, axis=1)
         map_ = maps.take(entry)
         # The plane is taken back through the map: n (M p + o - q) = (M^T n) p + n (o - q).
-        normal = [x * map_.matrix[0][i] + y * map_.matrix[1][i] + z * map_.matrix[2][i] for i in range(3)]
-        origin = on_plane[0]
-        offset = [map_.offset[i] - origin[i] for i in range(3)]
+        normal = x * map_.matrix[0] + y * map_.matrix[1] + z * map_.matrix[2]
+        offset = map_.offset - on_plane[0]
         height = x * offset[0] + y * offset[1] + z * offset[2]
-        sizes = [np.abs(column) for column in (x, y, z)]
-        slack = sizes[0] * np.abs(offset[0]) + sizes[1] * np.abs(offset[1]) + sizes[2] * np.abs(offset[2])
+        sizes, far = np.abs(sides), np.abs(offset)
+        slack = sizes[0] * far[0] + sizes[1] * far[1] + sizes[2] * far[2]
         slack += np.abs(normal[0]) + np.abs(normal[1]) + np.abs(normal[2])
         slack *= _SLACK
-        a, b, c = (normal[0] * px + normal[1] * py + normal[2] * pz + height for px, py, pz in corners)
+        a, b, c = normal[0] * corners[:, 0] + normal[1] * corners[:, 1] + normal[2] * corners[:, 2] + height
         highest = np.maximum(np.maximum(a, b), c)
         lowest = np.minimum(np.minimum(a, b), c)
         return np.flatnonzero((lowest <= slack) & (highest >= -slack))
+
+
+def _near(moving: tuple[Floats, Floats], one: Indices, still: tuple[Floats, Floats], two: Indices) -> Indices:
+    """Which boxes ``one`` of some meet boxes ``two`` of others; of each there are the middles and half the extents, ``(3, k)``."""
+    (centre, reach), (middle, half) = moving, still
+    x, y, z = (
+        np.abs(centre[axis][one] - middle[axis][two]) <= reach[axis][one] + half[axis][two]
+        for axis in range(3)
+    )
+    return np.flatnonzero(x & y & z)
 
 
 def _turns(entry: Indices) -> Iterator[Indices]:

@@ -143,10 +143,10 @@ class Forest:
         """The first child of each node, the second comes next; -1 for leaves."""
         self.start, self.count = np.concatenate(start), np.concatenate(end) - np.concatenate(start)
         ordered = [(mesh, tree.faces) for mesh, tree in zip(meshes, trees, strict=True)]
-        self.corners: Final = [
-            _columns([mesh.triangles[faces, number] for mesh, faces in ordered]) for number in range(3)
-        ]
-        """The three corners of all faces as columns ``(f,)``, in the unit frames of their meshes."""
+        self.corners: Final = np.stack(
+            [_columns([mesh.triangles[faces, number] for mesh, faces in ordered]) for number in range(3)]
+        )
+        """The three corners of all faces, ``(3, 3, f)`` by corner and coordinate, in the unit frames of their meshes."""
         self.normals: Final = _columns([mesh.area_vectors[faces] for mesh, faces in ordered])
         """Area vectors of all faces, likewise."""
         self._leaves = np.array([len(tree.starts) - 1 for tree in trees])

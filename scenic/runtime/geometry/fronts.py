@@ -11,9 +11,9 @@ import numpy as np
 
 from scenic.runtime.geometry.affine import AffineMaps, taken
 from scenic.runtime.geometry.facetree import Forest
-from scenic.runtime.geometry.poses import Booleans, Indices
+from scenic.runtime.geometry.poses import Booleans, Floats, Indices
 from scenic.runtime.geometry.proofs import ProofTable
-from scenic.runtime.geometry.ragged import expand
+from scenic.runtime.geometry.ragged import Groups, expand, group_starts
 
 _LEVEL: Final = 4
 """Where the search begins: of the boxes above, one nearly always comes near."""
@@ -23,15 +23,26 @@ class Front(NamedTuple):
     """What comes near.
 
     Attributes:
-        touching: entries that are seen to touch, ``(n,)``.
-        entry: the entry of each leaf that comes near, ascending, ``(k,)``; none of entries that touch.
+        touching: pairs that are seen to touch, ``(n,)``.
+        entry: the entry of each leaf that comes near, ascending, ``(k,)``; none of pairs that touch.
         leaf: the node of the forest, ``(k,)``.
+        centre: the middle of the box around the leaf's image in the frame of the other solid, ``(3, k)``.
+        reach: half that box's extents, ``(3, k)``.
 
     """
 
     touching: Booleans
     entry: Indices
     leaf: Indices
+    centre: Floats
+    reach: Floats
+
+    def leaves(self) -> tuple[Groups, Groups]:
+        """Where the leaves of the first solid of each pair lie, and those of the second one."""
+        count = len(self.touching)
+        starts = group_starts(self.entry, 2 * count)
+        starts, counts = starts[:-1], np.diff(starts)
+        return Groups(starts[:count], counts[:count]), Groups(starts[count:], counts[count:])
 
 
 class Fronts:
@@ -46,28 +57,30 @@ class Fronts:
         """The leaves of surfaces that reach into cells of solids.
 
         Args:
-            moving: mesh numbers of the surfaces, ``(n,)``.
-            still: mesh numbers of the solids, ``(n,)``.
+            moving: mesh numbers of the surfaces, ``(2 n,)``: those of the first solids of n pairs, then of the second ones.
+            still: mesh numbers of the solids, ``(2 n,)``: the others of the pairs.
             maps: from the unit frames of the surfaces into those of the solids.
 
         """
         forest, proofs = self._forest, self._proofs
-        touching = np.zeros(len(moving), dtype=np.bool_)
-        entries, leaves = [], []
+        pairs = len(moving) // 2
+        touching = np.zeros(pairs, dtype=np.bool_)
+        found: list[tuple[Indices, Indices, Floats, Floats]] = []
         entry, offset = expand(self._counts[moving])
         node = self._first[moving][entry] + offset
         while len(entry):
             map_, there = maps.take(entry), still[entry]
             corner = map_.columns(taken(forest.corners[0], forest.face[node]))
-            touching[entry[proofs.in_solid(there, corner)]] = True
+            touching[entry[proofs.in_solid(there, corner)] % pairs] = True
             centre, reach = map_.columns(taken(forest.middle, node)), map_.reaches(taken(forest.half, node))
-            left = np.flatnonzero(proofs.near_filled(there, centre, reach) & ~touching[entry])
-            entry, node = entry[left], node[left]
-            inner = forest.child[node] >= 0
-            entries.append(entry[~inner])
-            leaves.append(node[~inner])
-            entry, node = forest.parts(*forest.parts(entry[inner], node[inner]))
-        entry, leaf = np.concatenate(entries), np.concatenate(leaves)
+            left = np.flatnonzero(proofs.near_filled(there, centre, reach) & ~touching[entry % pairs])
+            inner = forest.child[node[left]] >= 0
+            ends, left = left[~inner], left[inner]
+            found.append((entry[ends], node[ends], centre.take(ends, axis=1), reach.take(ends, axis=1)))
+            entry, node = forest.parts(*forest.parts(entry[left], node[left]))
+        entry, leaf, centre, reach = (np.concatenate(parts, axis=-1) for parts in zip(*found, strict=True))
         order = np.argsort(entry, kind="stable")
-        order = order[~touching[entry[order]]]
-        return Front(touching, entry[order], leaf[order])
+        order = order[~touching[entry[order] % pairs]]
+        return Front(
+            touching, entry[order], leaf[order], centre.take(order, axis=1), reach.take(order, axis=1)
+        )

@@ -23,7 +23,7 @@ from scenic.runtime.geometry.inside import contains_points
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.poses import Booleans, Floats, Indices, Poses
 from scenic.runtime.geometry.proofs import ProofTable
-from scenic.runtime.geometry.ragged import Groups, distinct, expand, group_starts, rows
+from scenic.runtime.geometry.ragged import distinct, expand, rows
 from scenic.runtime.geometry.voxels import PROBES, seconds_to_make
 
 _STAGES: Final = (slice(3), slice(3, 16), None, slice(16, None))
@@ -177,18 +177,12 @@ class Solids:
     def _meet(self, pairs: "_Pairs") -> Booleans:
         """Entries whose surfaces share a point, and some of those where one solid reaches into the other."""
         front = self._fronts.find(*pairs.ways)
-        result = _either(front.touching)
-        starts = group_starts(front.entry, 2 * len(result))
-        leaves = Groups(starts[:-1], np.diff(starts))
-        every = np.arange(len(result))
-        first, second = leaves.take(every), leaves.take(every + len(result))
+        result = front.touching
+        first, second = front.leaves()
         products = np.where(result, 0, first.counts * second.counts)
         few = np.flatnonzero((products > 0) & (products <= _MOST_LEAVES))
         if len(few):
-            some = pairs.take(few)
-            result[few] = self._surfaces.touch_among(
-                front.leaf, first.take(few), second.take(few), some.forth, some.back
-            )
+            result |= self._surfaces.touch_among(front, few, pairs.forth, pairs.back)
         many = np.flatnonzero(products > _MOST_LEAVES)
         if len(many):
             result[many] = self._surfaces_touch(pairs.take(many))
@@ -218,6 +212,10 @@ class Solids:
         for column in images:
             near &= np.abs(column) <= 0.5
         which = np.flatnonzero(near)
+        if self._can_prove and len(which):
+            # Rays are dear: what lies in an empty cell needs none.
+            there = np.stack([column[which] for column in images])
+            which = which[self._proofs.near_filled(outer[entry[which]], there, np.zeros_like(there))]
         points = np.stack([column[which] for column in images], axis=1)
         result = np.zeros(len(inner), dtype=np.bool_)
         numbers = outer[entry[which]]

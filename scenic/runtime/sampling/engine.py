@@ -18,14 +18,15 @@ from numpy.typing import NDArray
 
 from scenic.graph.batch import Batch
 from scenic.graph.domain import Domain
-from scenic.graph.draws import Counter, Lanes, Source, address, attempt_keys, scene_keys, seed_word
+from scenic.graph.draws import Counter, Lanes, Source, attempt_keys, scene_keys, seed_word
 from scenic.graph.kinds import Codec
 from scenic.graph.node import Graph, Node
 from scenic.graph.schedule import Scheduler
 from scenic.language.errors import RejectionException
-from scenic.runtime.geometry.ragged import first_of_each
+from scenic.runtime.geometry.ragged import expand, first_of_each
 from scenic.runtime.sampling.checks import Check, Verdict
 from scenic.runtime.sampling.pace import Pace
+from scenic.runtime.sampling.pending import Pending, Task, soft_address
 from scenic.runtime.sampling.report import Exhausted, RejectionReport, RejectionRow
 from scenic.runtime.sampling.stages import Stages
 
@@ -66,13 +67,6 @@ class Plan:
         return 8 * numbers + BODY_BYTES * self.bodies
 
 
-class Task(NamedTuple):
-    """Which scene to find: scene ``k`` of a seed."""
-
-    seed: int
-    k: int
-
-
 class Accepted(NamedTuple):
     """A scene's values: one lane of a finished batch.
 
@@ -95,13 +89,8 @@ class Accepted(NamedTuple):
         """Whether a soft requirement, number ``place`` among those that are checked, had to hold in the scene."""
         seeds = np.array([seed_word(self.task.seed)], dtype=np.uint64)
         keys = scene_keys(seeds, np.array([self.task.k], dtype=np.int64))
-        where = np.array([_soft_address(place)], dtype=np.uint64)
+        where = np.array([soft_address(place)], dtype=np.uint64)
         return bool(Counter(keys).uniforms(where)[0, 0] < probability)
-
-
-def _soft_address(place: int) -> int:
-    """The address of the draw that decides whether a soft requirement has to hold."""
-    return address("soft requirement", place)
 
 
 class CandidateError(Exception):
@@ -115,18 +104,6 @@ class CandidateError(Exception):
         self.check = check
         self.k = k
         self.attempt = attempt
-
-
-@dataclass(slots=True)
-class _Pending:
-    """A scene under way: how many of its attempts have been made, and which soft requirements hold for it."""
-
-    number: int
-    task: Task
-    seed: np.uint64
-    key: np.uint64
-    attempts: int = 0
-    inactive: NDArray[np.bool_] | None = None
 
 
 class Engine:
@@ -158,9 +135,6 @@ class Engine:
         self._stages = Stages(plan.checks, self._scheduler)
         self._soft = [index for index, check in enumerate(plan.checks) if check.probability < 1]
         self._chances = np.array([plan.checks[index].probability for index in self._soft])
-        self._soft_addresses = np.array(
-            [_soft_address(place) for place in range(len(self._soft))], dtype=np.uint64
-        )
 
     def scenes(
         self,
@@ -210,26 +184,24 @@ class Engine:
         ``window`` says how many scenes are looked for at a time when so many have been given. Half as many more may have
         been found, so that one that takes many attempts does not hold up the others at once.
         """
-        waiting = enumerate(tasks)
-        pending: list[_Pending] = []
+        waiting = iter(tasks)
+        pending = Pending(self._chances)
         done: dict[int, Accepted | Exhausted | CandidateError] = {}
         upcoming = 0
         while True:
             wanted = window(upcoming)
             missing = min(wanted, wanted * 3 // 2 - len(done)) - len(pending)
             if missing > 0:
-                pending += self._start(list(islice(waiting, missing)))
-            if not pending:
+                pending.add(list(islice(waiting, missing)))
+            if not len(pending):
                 return
             if deadline is not None and time.monotonic() > deadline:
-                for scene in pending:
-                    done[scene.number] = self._give_up(scene, "time")
-                pending = []
+                every = np.ones(len(pending), dtype=np.bool_)
+                self._give_up(pending, every, "time", done)
+                pending.leave(every)
             else:
                 self._round(pending, done, max_attempts, most)
-                pending = [scene for scene in pending if scene.number not in done]
-            while upcoming in done:
-                result = done.pop(upcoming)
+            while (result := done.pop(upcoming, None)) is not None:
                 if isinstance(result, CandidateError):
                     raise result
                 yield result
@@ -245,52 +217,45 @@ class Engine:
 
     def _round(
         self,
-        pending: Sequence[_Pending],
+        pending: Pending,
         done: dict[int, Accepted | Exhausted | CandidateError],
         max_attempts: int,
         most: int,
     ) -> None:
         begun = time.thread_time()
         chosen = self._pace.choose(min(len(pending), most), most)
-        active = pending[: chosen.scenes]
-        counts = [min(chosen.ahead, max_attempts - scene.attempts) for scene in active]
-        owner = np.repeat(np.arange(len(active)), counts)
-        firsts = np.cumsum([0, *counts[:-1]])
-        starts = np.array([scene.attempts for scene in active], dtype=np.int64)
-        attempts = starts[owner] + np.arange(len(owner)) - firsts[owner]
-        keys = np.array([scene.key for scene in active], dtype=np.uint64)
-        seeds = np.array([scene.seed for scene in active], dtype=np.uint64)
-        numbers = np.array([scene.task.k for scene in active], dtype=np.int64)
-        lanes = Lanes(seeds[owner], numbers[owner], attempts, attempt_keys(keys[owner], attempts))
-        batch = self._batch(self._source(lanes))
-        inactive = None
-        if self._soft:
-            inactive = np.array([scene.inactive for scene in active], dtype=np.bool_)[owner]
-        failures = self._judge(batch, inactive)
-        for scene, made in zip(active, counts, strict=True):
-            scene.attempts += made
+        active = slice(chosen.scenes)
+        counts = np.minimum(chosen.ahead, max_attempts - pending.attempts[active])
+        owner, offset = expand(counts)
+        attempts = pending.attempts[owner] + offset
+        keys = attempt_keys(pending.key[owner], attempts)
+        batch = self._batch(self._source(Lanes(pending.seed[owner], pending.k[owner], attempts, keys)))
+        failures = self._judge(batch, pending.inactive[owner] if self._soft else None)
+        pending.attempts[active] += counts
         rows = batch.rows
         first = first_of_each(owner[rows])
         failed = failures[rows]
         self.candidates += len(owner)
         passed = int((failed < 0).sum())
         self.passed += passed
-        for place in first[failed[first] >= 0].tolist():
-            row = int(rows[place])
-            scene, check = active[int(owner[row])], self.plan.checks[int(failures[row])]
-            done[scene.number] = self._error(check, scene, int(attempts[row]))
+        finished = np.zeros(len(pending), dtype=np.bool_)
+        finished[owner[rows[first]]] = True
+        for row in rows[first[failed[first] >= 0]].tolist():
+            number = int(pending.number[owner[row]])
+            check = self.plan.checks[int(failures[row])]
+            done[number] = self._error(check, pending.task(number), int(attempts[row]))
         good = first[failed[first] < 0]
         if len(good):
             batch.keep(good)
             batch.settle(self.plan.outputs)
             alone, shared = self._alone, dict[object, Any]()
-            for lane, row in enumerate(rows[good].tolist()):
-                scene = active[int(owner[row])]
-                attempt = int(attempts[row])
-                done[scene.number] = Accepted(scene.task, attempt + 1, batch, lane, alone, shared)
-        for scene in active:
-            if scene.number not in done and scene.attempts >= max_attempts:
-                done[scene.number] = self._give_up(scene, "attempts")
+            found = rows[good]
+            numbers, tries = pending.number[owner[found]].tolist(), (attempts[found] + 1).tolist()
+            for lane, (number, tried) in enumerate(zip(numbers, tries, strict=True)):
+                done[number] = Accepted(pending.task(number), tried, batch, lane, alone, shared)
+        hopeless = ~finished & (pending.attempts >= max_attempts)
+        self._give_up(pending, hopeless, "attempts", done)
+        pending.leave(finished | hopeless)
         self._pace.add(len(owner), passed, time.thread_time() - begun)
 
     def replay(self, source: Source, task: Task, attempts: int) -> Accepted:
@@ -349,20 +314,6 @@ class Engine:
 
     # Scenes, errors, reports
 
-    def _start(self, tasks: Sequence[tuple[int, Task]]) -> list[_Pending]:
-        words = {seed: seed_word(seed) for seed in {task.seed for _, task in tasks}}
-        seeds = np.array([words[task.seed] for _, task in tasks], dtype=np.uint64)
-        keys = scene_keys(seeds, np.array([task.k for _, task in tasks], dtype=np.int64))
-        scenes = [
-            _Pending(number, task, seed, key)
-            for (number, task), seed, key in zip(tasks, seeds, keys, strict=True)
-        ]
-        if self._soft and scenes:
-            inactive = Counter(keys).uniforms(self._soft_addresses) >= self._chances[:, np.newaxis]
-            for lane, scene in enumerate(scenes):
-                scene.inactive = inactive[:, lane]
-        return scenes
-
     def _alone(self, task: Task, attempt: int) -> Batch:
         return self._batch(self.source(task, attempt), grouped=False)
 
@@ -370,17 +321,26 @@ class Engine:
         """The random numbers of one attempt at a scene."""
         return self._source(Lanes.of(task.seed, task.k, attempt))
 
-    def _error(self, check: Check, scene: _Pending, attempt: int) -> CandidateError:
+    def _error(self, check: Check, task: Task, attempt: int) -> CandidateError:
         """The error of a lane, found by evaluating it alone."""
-        batch = self._alone(scene.task, attempt)
+        batch = self._alone(task, attempt)
         check.test(batch)
-        error = CandidateError(check, scene.task.k, attempt)
+        error = CandidateError(check, task.k, attempt)
         error.__cause__ = next((batch.errors[node] for node in check.nodes if node in batch.errors), None)
         return error
 
-    def _give_up(self, scene: _Pending, reason: str) -> Exhausted:
-        report = self.report(scene.task, scene.attempts)
-        return Exhausted(scene.task.seed, scene.task.k, scene.attempts, reason, report)
+    def _give_up(
+        self,
+        pending: Pending,
+        which: NDArray[np.bool_],
+        reason: str,
+        done: dict[int, Accepted | Exhausted | CandidateError],
+    ) -> None:
+        for number, attempts in zip(
+            pending.number[which].tolist(), pending.attempts[which].tolist(), strict=True
+        ):
+            task = pending.task(number)
+            done[number] = Exhausted(task.seed, task.k, attempts, reason, self.report(task, attempts))
 
     def report(self, task: Task, attempts: int) -> RejectionReport:
         """Each check's share in the rejections among the first attempts at a scene.

@@ -11,7 +11,7 @@ from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from typing import Final
 
-from scenic.runtime.sampling.engine import Task
+from scenic.runtime.sampling.pending import Task
 from scenic.runtime.sampling.report import Exhausted
 from scenic.runtime.scene import Scene
 

@@ -1,0 +1,96 @@
+"""Scenes that are being looked for, as columns: one by one they would cost more than their candidates."""
+
+from collections.abc import Sequence
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from scenic.graph.draws import Counter, Words, address, scene_keys, seed_word
+
+
+class Task(NamedTuple):
+    """Which scene to find: scene ``k`` of a seed."""
+
+    seed: int
+    k: int
+
+
+def soft_address(place: int) -> int:
+    """The address of the draw that decides whether a soft requirement has to hold, the number ``place`` among them."""
+    return address("soft requirement", place)
+
+
+class Pending:
+    """Scenes under way, in order.
+
+    Args:
+        chances: the probabilities with which soft requirements have to hold, ``(s,)``.
+
+    Attributes:
+        number: which of all scenes that are looked for each one is, ``(n,)``.
+        seed: words that the seeds stand for, ``(n,)``.
+        k: their numbers in the runs of those seeds, ``(n,)``.
+        key: words that their draws follow from, ``(n,)``.
+        attempts: how many candidates have been tried, ``(n,)``.
+        inactive: which soft requirements need not hold, ``(n, s)``.
+
+    """
+
+    def __init__(self, chances: NDArray[np.float64]) -> None:
+        self._chances: Final = chances
+        self._addresses: Final = np.array(
+            [soft_address(place) for place in range(len(chances))], dtype=np.uint64
+        )
+        self._tasks: Final[dict[int, Task]] = {}
+        self._next = 0
+        self.number = np.empty(0, dtype=np.int64)
+        self.seed: Words = np.empty(0, dtype=np.uint64)
+        self.k = np.empty(0, dtype=np.int64)
+        self.key: Words = np.empty(0, dtype=np.uint64)
+        self.attempts = np.empty(0, dtype=np.int64)
+        self.inactive = np.empty((0, len(chances)), dtype=np.bool_)
+
+    def __len__(self) -> int:
+        return len(self.number)
+
+    def task(self, number: int) -> Task:
+        """Which scene that is."""
+        return self._tasks[number]
+
+    def add(self, tasks: Sequence[Task]) -> None:
+        """Look for more scenes."""
+        if not tasks:
+            return
+        numbers = range(self._next, self._next + len(tasks))
+        self._next = numbers.stop
+        self._tasks.update(zip(numbers, tasks, strict=True))
+        seeds, ks = [task.seed for task in tasks], [task.k for task in tasks]
+        words = {seed: seed_word(seed) for seed in set(seeds)}
+        seed = (
+            np.array([words[seed] for seed in seeds], dtype=np.uint64)
+            if len(words) > 1
+            else np.full(len(tasks), words[seeds[0]], dtype=np.uint64)
+        )
+        k = np.array(ks, dtype=np.int64)
+        key = scene_keys(seed, k)
+        inactive = Counter(key).uniforms(self._addresses) >= self._chances[:, np.newaxis]
+        self.number = np.concatenate([self.number, np.arange(numbers.start, numbers.stop)])
+        self.seed = np.concatenate([self.seed, seed])
+        self.k = np.concatenate([self.k, k])
+        self.key = np.concatenate([self.key, key])
+        self.attempts = np.concatenate([self.attempts, np.zeros(len(tasks), dtype=np.int64)])
+        self.inactive = np.concatenate([self.inactive, inactive.T])
+
+    def leave(self, finished: NDArray[np.bool_]) -> None:
+        """Those scenes ``(n,)`` are found, or given up."""
+        if not finished.any():
+            return
+        for number in self.number[finished].tolist():
+            del self._tasks[number]
+        left = np.flatnonzero(~finished)
+        for name in ("number", "seed", "k", "key", "attempts", "inactive"):
+            setattr(self, name, getattr(self, name)[left])
+
+
+__all__ = ["Pending", "Task", "soft_address"]
