@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 from scenic.language.spans import Span
-from scenic.runtime.temporal.formulas import Atom, Formula, Operation
+from scenic.runtime.temporal.formulas import Atom, Compound, Formula
 
 __all__ = ["Copier", "Declared", "End", "Kept", "MonitorUse", "RecordUse", "Required", "Tree", "required"]
 
@@ -76,7 +76,7 @@ def required(tree: Tree, label: str, span: Span | None, filename: str | None) ->
             atoms.append(part)
             return Atom(len(atoms) - 1)
         operator, *operands = part
-        return Operation(operator, tuple(formula(operand) for operand in operands))
+        return Compound(operator, tuple(formula(operand) for operand in operands))
 
     return Required(formula(tree), atoms, label, span, filename)
 

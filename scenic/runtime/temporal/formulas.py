@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Final, TypeAlias
 
-__all__ = ["ARITY", "Atom", "Formula", "Operation", "atoms", "is_temporal"]
+__all__ = ["ARITY", "Atom", "Formula", "Compound", "atoms", "is_temporal"]
 
 ARITY: Final = {"not": 1, "next": 1, "always": 1, "eventually": 1, "until": 2, "implies": 2}
 """Operands of each operator; ``and`` and ``or`` have any number."""
@@ -17,7 +17,7 @@ class Atom:
 
 
 @dataclass(frozen=True, slots=True)
-class Operation:
+class Compound:
     """``operator`` is ``and``, ``or`` or a key of `ARITY`."""
 
     operator: str
@@ -31,7 +31,7 @@ class Operation:
             raise ValueError(f"`{self.operator}` takes {count} operands, not {len(self.operands)}")
 
 
-Formula: TypeAlias = "Atom | Operation"
+Formula: TypeAlias = "Atom | Compound"
 
 
 def is_temporal(formula: Formula) -> bool:

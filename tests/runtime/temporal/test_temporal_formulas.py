@@ -11,7 +11,7 @@ import rv_ltl
 
 from fuzz.traces import Formula as Tree
 from fuzz.traces import verdict
-from scenic.runtime.temporal.formulas import Atom, Formula, Operation, is_temporal
+from scenic.runtime.temporal.formulas import Atom, Formula, Compound, is_temporal
 from scenic.runtime.temporal.monitors import Monitor, Verdict
 from scenic.runtime.temporal.robustness import Robustness
 
@@ -41,7 +41,7 @@ def formula(tree: Tree) -> Formula:
     if isinstance(tree, str):
         return Atom(ATOMS.index(tree))
     assert isinstance(tree, tuple)
-    return Operation(tree[0], tuple(map(formula, tree[1:])))
+    return Compound(tree[0], tuple(map(formula, tree[1:])))
 
 
 def of_package(tree: Tree, trace: list[frozenset[str]]) -> bool:
@@ -130,8 +130,8 @@ def test_certain_verdicts_stay() -> None:
 
 def test_what_is_left_does_not_grow() -> None:
     a, b, c = Atom(0), Atom(1), Atom(2)
-    inner = Operation("until", (Operation("eventually", (a,)), Operation("always", (b,))))
-    hard = Operation("always", (Operation("or", (inner, Operation("next", (Operation("next", (c,)),)))),))
+    inner = Compound("until", (Compound("eventually", (a,)), Compound("always", (b,))))
+    hard = Compound("always", (Compound("or", (inner, Compound("next", (Compound("next", (c,)),)))),))
     monitor = Monitor(hard)
     rng = random.Random(5)
     sizes = []
@@ -149,7 +149,7 @@ def test_atoms_outside_temporal_operators_are_read_once() -> None:
         asked.append(index)
         return True
 
-    monitor = Monitor(Operation("and", (Atom(0), Operation("always", (Atom(1),)))))
+    monitor = Monitor(Compound("and", (Atom(0), Compound("always", (Atom(1),)))))
     for _ in range(3):
         monitor.add(evaluate)
     assert asked == [0, 1, 1, 1]
@@ -162,14 +162,14 @@ def test_an_exception_counts_only_where_nothing_else_decides() -> None:
         return index == 1
 
     for tree, decided in (
-        (Operation("or", (Atom(0), Atom(1))), Verdict.TRUE),
-        (Operation("and", (Atom(0), Atom(2))), Verdict.FALSE),
-        (Operation("implies", (Atom(2), Atom(0))), Verdict.TRUE),
-        (Operation("until", (Atom(0), Atom(1))), Verdict.TRUE),
+        (Compound("or", (Atom(0), Atom(1))), Verdict.TRUE),
+        (Compound("and", (Atom(0), Atom(2))), Verdict.FALSE),
+        (Compound("implies", (Atom(2), Atom(0))), Verdict.TRUE),
+        (Compound("until", (Atom(0), Atom(1))), Verdict.TRUE),
     ):
         assert Monitor(tree).add(evaluate) is decided
     with pytest.raises(ZeroDivisionError):
-        Monitor(Operation("or", (Atom(0), Atom(2)))).add(evaluate)
+        Monitor(Compound("or", (Atom(0), Atom(2)))).add(evaluate)
 
 
 def test_of_several_exceptions_the_first_is_raised() -> None:
@@ -177,16 +177,16 @@ def test_of_several_exceptions_the_first_is_raised() -> None:
         raise (ZeroDivisionError, KeyError)[index]
 
     with pytest.raises(ZeroDivisionError):
-        Monitor(Operation("or", (Atom(0), Atom(1)))).add(evaluate)
+        Monitor(Compound("or", (Atom(0), Atom(1)))).add(evaluate)
 
 
 def test_operations_are_checked() -> None:
     with pytest.raises(ValueError, match="unknown operator"):
-        Operation("sometimes", (Atom(0),))
+        Compound("sometimes", (Atom(0),))
     with pytest.raises(ValueError, match="takes 2 operands"):
-        Operation("until", (Atom(0),))
-    assert not is_temporal(Operation("implies", (Atom(0), Atom(1))))
-    assert is_temporal(Operation("not", (Operation("next", (Atom(0),)),)))
+        Compound("until", (Atom(0),))
+    assert not is_temporal(Compound("implies", (Atom(0), Atom(1))))
+    assert is_temporal(Compound("not", (Compound("next", (Atom(0),)),)))
 
 
 def test_robustness_is_that_of_the_definition() -> None:
@@ -201,8 +201,8 @@ def test_robustness_is_that_of_the_definition() -> None:
 
 def test_what_robustness_keeps_does_not_grow() -> None:
     a, b, c = Atom(0), Atom(1), Atom(2)
-    inner = Operation("until", (Operation("eventually", (a,)), Operation("always", (b,))))
-    followed = Robustness(Operation("always", (Operation("or", (inner, Operation("next", (c,)))),)))
+    inner = Compound("until", (Compound("eventually", (a,)), Compound("always", (b,))))
+    followed = Robustness(Compound("always", (Compound("or", (inner, Compound("next", (c,)))),)))
     rng = random.Random(5)
     sizes = []
     for _ in range(400):
@@ -215,8 +215,8 @@ def test_what_robustness_keeps_does_not_grow() -> None:
 def test_an_atom_without_a_value_holds_neither_as_it_is_nor_negated() -> None:
     a, b = Atom(0), Atom(1)
     for operator, value in (("or", 2.0), ("and", -math.inf)):
-        for part in (a, Operation("not", (a,))):
-            assert robustness(Operation(operator, (part, b)), [[math.nan, 2.0]]) == value
+        for part in (a, Compound("not", (a,))):
+            assert robustness(Compound(operator, (part, b)), [[math.nan, 2.0]]) == value
 
 
 def test_robustness_of_each_operator() -> None:
@@ -229,7 +229,7 @@ def test_robustness_of_each_operator() -> None:
         "not": -1.0,
     }
     for operator, value in expected.items():
-        assert robustness(Operation(operator, (a,)), trace) == value
-    assert robustness(Operation("until", (a, b)), trace) == 1.0
-    assert robustness(Operation("implies", (a, b)), trace) == -1.0
-    assert robustness(Operation("next", (a,)), trace[:1]) == -math.inf
+        assert robustness(Compound(operator, (a,)), trace) == value
+    assert robustness(Compound("until", (a, b)), trace) == 1.0
+    assert robustness(Compound("implies", (a, b)), trace) == -1.0
+    assert robustness(Compound("next", (a,)), trace[:1]) == -math.inf
