@@ -37,6 +37,17 @@ def test_values_are_equal_again(again: Any) -> None:
 
 
 @pytest.mark.parametrize("again", COPIES)
+def test_shapes_that_were_looked_at_can_be_copied(again: Any) -> None:
+    scene = scenario(
+        "ego = new Object\nwall = new Object at (0, 2), with shape ConeShape()\n"
+        "target = new Object at (0, 4), with height 3\nrequire ego can see target\n"
+    ).sample(1, seed=0)[0]
+    same = again(scene.objects[1].shape)
+    assert (same.mesh.vertices == scene.objects[1].shape.mesh.vertices).all()
+    assert not same.mesh.vertices.flags.writeable
+
+
+@pytest.mark.parametrize("again", COPIES)
 def test_objects_keep_their_properties(again: Any) -> None:
     car = whole().egoObject
     same = again(car)

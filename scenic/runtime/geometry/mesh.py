@@ -74,6 +74,16 @@ class Mesh:
         object.__setattr__(self, "vertices", vertices)
         object.__setattr__(self, "faces", faces)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        # What is derived stays behind: it is computed again where it is needed, and some of it cannot be pickled.
+        return Mesh, (self.vertices, self.faces)
+
+    def __copy__(self) -> "Mesh":
+        return self
+
+    def __deepcopy__(self, _memo: Any) -> "Mesh":
+        return self
+
     def __repr__(self) -> str:
         return f"<Mesh of {len(self.vertices)} vertices, {len(self.faces)} faces>"
 

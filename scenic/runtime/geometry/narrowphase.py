@@ -29,7 +29,7 @@ from scenic.runtime.geometry.voxels import PROBES, seconds_to_make
 _STAGES: Final = (slice(3), slice(3, 16), None, slice(16, None))
 """Probing points looked at one group after the other; ``None`` is the proof that solids are apart."""
 
-_MOST_LEAVES: Final = 1 << 14
+_MOST_LEAVES: Final = 1 << 16
 """Pairs of near leaves of an entry up to which each is looked at; for more of them the trees are descended together."""
 
 _CHUNK: Final = 1 << 17
