@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Final, TypeAlias
 
-__all__ = ["ARITY", "Atom", "Formula", "Compound", "atoms", "is_temporal"]
+__all__ = ["ARITY", "Atom", "Compound", "Formula", "atoms", "is_temporal"]
 
 ARITY: Final = {"not": 1, "next": 1, "always": 1, "eventually": 1, "until": 2, "implies": 2}
 """Operands of each operator; ``and`` and ``or`` have any number."""

@@ -11,7 +11,7 @@ import rv_ltl
 
 from fuzz.traces import Formula as Tree
 from fuzz.traces import verdict
-from scenic.runtime.temporal.formulas import Atom, Formula, Compound, is_temporal
+from scenic.runtime.temporal.formulas import Atom, Compound, Formula, is_temporal
 from scenic.runtime.temporal.monitors import Monitor, Verdict
 from scenic.runtime.temporal.robustness import Robustness
 
