@@ -1,8 +1,10 @@
 """Hatchling build hook: generate the parser and its tables from ``grammar/scenic.gram``.
 
-Runs for wheels, source distributions and editable installs alike.
+Runs for wheels, source distributions and editable installs alike. For editable installs it compiles the package, too, as
+installers do with the modules of a wheel: where Python may not keep byte code by itself, each start would take a second more.
 """
 
+import compileall
 import sys
 from pathlib import Path
 from typing import Any
@@ -21,3 +23,5 @@ class GenerateParser(BuildHookInterface):  # type: ignore[type-arg] # the builde
         finally:
             sys.path.pop(0)
         generate(root / "grammar" / "scenic.gram", root / "scenic" / "compiler" / "_generated")
+        if version == "editable":
+            compileall.compile_dir(root / "scenic", quiet=2)
