@@ -7,6 +7,7 @@ import math
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from graphlib import TopologicalSorter
 from types import MappingProxyType
 from typing import Any
 
@@ -70,6 +71,32 @@ class Property:
         if self.additive:
             return tuple(definition.compute(instance) for definition in self.definitions)
         return self.definitions[0].compute(instance)
+
+
+@dataclass(frozen=True, slots=True)
+class Finals:
+    """The properties of a class that follow from others while a simulation runs, each after those that it reads.
+
+    Attributes:
+        builtin: those of the language itself.
+        inputs: all that these read.
+        own: those of the program, whose defaults may depend on anything.
+
+    """
+
+    builtin: tuple[Property, ...]
+    inputs: tuple[str, ...]
+    own: tuple[Property, ...]
+
+    @classmethod
+    def of(cls, properties: Mapping[str, Property]) -> "Finals":
+        """Those among the properties of a class."""
+        found = {name: entry for name, entry in properties.items() if entry.dynamic and entry.final}
+        reads = {name: entry.dependencies & found.keys() for name, entry in found.items()}
+        ordered = [found[name] for name in TopologicalSorter(reads).static_order()]
+        builtin = tuple(entry for entry in ordered if entry.definitions[0].is_builtin)
+        inputs = {name for entry in builtin for name in entry.dependencies} - found.keys()
+        return cls(builtin, tuple(sorted(inputs)), tuple(entry for entry in ordered if entry not in builtin))
 
 
 def combine(chain: Sequence[Mapping[str, PropertyDefinition]]) -> dict[str, Property]:

@@ -20,6 +20,7 @@ from scenic.runtime.dynamics.copies import Copies
 from scenic.runtime.dynamics.driving import Sourcing
 from scenic.runtime.dynamics.run import Run
 from scenic.runtime.ownership import PRELUDE
+from scenic.runtime.properties import Finals
 from scenic.runtime.randomness import preserved, restore, seed_globals, states
 from scenic.runtime.scene import Scene
 from scenic.runtime.values import describe, kind_of
@@ -122,7 +123,8 @@ class Simulation(ABC):
         self._copies = Copies(scene.accepted.batch, scene.accepted.lane)
         self._properties: dict[type, tuple[str, ...]] = {}
         self._sets: dict[type, frozenset[str]] = {}
-        self._finals: dict[type, tuple[Any, ...]] = {}
+        self._finals: dict[type, Finals] = {}
+        self._inputs: dict[int, tuple[Any, ...]] = {}
         self._adopted: dict[tuple[int, str], Any] = {}
         self._destroyed = False
         earlier = None if replay is None else Replay.decoded(replay)
@@ -414,9 +416,7 @@ class Simulation(ABC):
             names = tuple(name for name, entry in entries if entry.dynamic and not entry.final)
             self._properties[cls] = names
             self._sets[cls] = frozenset(names)
-            self._finals[cls] = tuple(
-                (name, entry) for name, entry in entries if entry.dynamic and entry.final
-            )
+            self._finals[cls] = Finals.of(cls.scenic_properties)  # type: ignore[attr-defined] # as above
         return names
 
     def _check_objects(self) -> None:
@@ -442,16 +442,19 @@ class Simulation(ABC):
                 f"simulator gave other properties of {obj!r} than it was asked for: {', '.join(sorted(wrong))}"
             )
         stored = obj.__dict__
-        changed = first
         for name in names:
             value, old = values[name], stored[name]
             if value is not old:
                 stored[name] = self._checked(obj, name, old, value)
-                changed = True
-        if changed:
+        finals = self._finals[cls]
+        inputs = tuple([stored[name] for name in finals.inputs])
+        if first or inputs != self._inputs.get(id(obj)):
             # The simulator's angles are global where the object's own frame is turned.
-            for name, entry in self._finals[cls]:
-                stored[name] = entry.default(obj)
+            self._inputs[id(obj)] = inputs
+            for entry in finals.builtin:
+                stored[entry.name] = entry.default(obj)
+        for entry in finals.own:
+            stored[entry.name] = entry.default(obj)
         self._tape.note(self, obj, names)
 
     def _checked(self, obj: Any, name: str, old: Any, value: Any) -> Any:

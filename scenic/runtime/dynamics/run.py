@@ -17,6 +17,7 @@ from scenic.runtime.dynamics.scenarios import ScenarioActivation
 from scenic.runtime.mutation import mutate_now
 from scenic.runtime.objects import Object
 from scenic.runtime.program import Program
+from scenic.runtime.properties import Finals
 
 __all__ = ["Ending", "Run", "RunContext", "Simulated"]
 
@@ -272,9 +273,9 @@ class Run:
 
     def refresh(self, obj: Any) -> None:
         """Compute again what a dynamic final property is made of."""
-        for name, entry in type(obj).scenic_properties.items():
-            if entry.dynamic and entry.final:
-                obj.__dict__[name] = entry.default(obj)
+        finals = Finals.of(type(obj).scenic_properties)
+        for entry in (*finals.builtin, *finals.own):
+            obj.__dict__[entry.name] = entry.default(obj)
 
     # The procedure
 
