@@ -1,17 +1,18 @@
 """What decides how much is done at once, ahead, and first: each by its own rules, without a clock."""
 
 import random
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from itertools import islice
 from typing import Any
 
+import numpy as np
 import pytest
 
 from scenic.graph.node import Graph, Node, axis
 from scenic.graph.schedule import Scheduler
 from scenic.runtime.sampling.foresight import SEED_BITS, Foreseen
-from scenic.runtime.sampling.pace import Pace
+from scenic.runtime.sampling.pace import Pace, Round
 from scenic.runtime.sampling.pending import Task
 from scenic.runtime.sampling.stages import Stages
 from tests.graph.programs import make
@@ -100,19 +101,46 @@ def test_what_never_passed_may_pass() -> None:
 
 def test_a_round_costs_least_for_what_it_finds() -> None:
     # A thousand scenes that nearly all pass: one attempt each. One scene that passes rarely: as many attempts as pay.
-    assert (paced(100, 99).choose(1000, 4096).ahead, paced(100, 99).choose(1000, 4096).scenes) == (1, 1000)
-    rare = paced(100, 1).choose(1, 4096)
+    assert paced(100, 99).choose(1000, 4096, more=True) == Round(1000, 1)
+    rare = paced(100, 1).choose(1, 4096, more=True)
     assert rare.scenes == 1
     assert 64 <= rare.ahead <= 1024
 
 
 @pytest.mark.parametrize("most", [1, 7, 64, 4096])
 @pytest.mark.parametrize("passed", [0, 1, 50])
-def test_no_round_has_more_lanes_than_allowed(most: int, passed: int) -> None:
+@pytest.mark.parametrize("more", [False, True])
+def test_no_round_has_more_lanes_than_allowed(most: int, passed: int, more: bool) -> None:
     for waiting in (1, 3, 5000):
-        chosen = paced(100, passed).choose(waiting, most)
+        chosen = paced(100, passed).choose(waiting, most, more=more)
         assert 1 <= chosen.scenes <= waiting
         assert chosen.scenes * chosen.ahead <= most
+
+
+@pytest.mark.parametrize(("passed", "waiting"), [(20, 5), (50, 3), (60, 400), (85, 60), (95, 1000)])
+def test_the_last_rounds_take_least_time_together(passed: int, waiting: int) -> None:
+    pace = paced(100, passed)
+    fixed, lane = pace.cost()
+    pass_chance = pace.acceptance
+    generator = np.random.default_rng(0)
+
+    def seconds(ahead: Callable[[int], int]) -> float:
+        """Until the last of the scenes is found, on average."""
+        total = 0.0
+        for left in [waiting] * 200:
+            while left:
+                tried = ahead(left)
+                total += fixed + lane * left * tried
+                left = generator.binomial(left, (1 - pass_chance) ** tried)
+        return total
+
+    planned = seconds(lambda left: pace.choose(left, 1 << 20, more=False).ahead)
+    others = [
+        seconds(lambda left: pace.choose(left, 1 << 20, more=True).ahead),
+        *(seconds(lambda left, tried=tried: tried) for tried in (1, 2, 3, 5, 9)),
+    ]
+    assert planned < 1.05 * min(others)
+    assert planned < 0.8 * max(others)
 
 
 # The order of checks

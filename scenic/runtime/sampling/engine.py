@@ -188,11 +188,14 @@ class Engine:
         pending = Pending(self._chances)
         done: dict[int, Accepted | Exhausted | CandidateError] = {}
         upcoming = 0
+        more = True
         while True:
             wanted = window(upcoming)
             missing = min(wanted, wanted * 3 // 2 - len(done)) - len(pending)
-            if missing > 0:
-                pending.add(list(islice(waiting, missing)))
+            if missing > 0 and more:
+                added = list(islice(waiting, missing))
+                pending.add(added)
+                more = len(added) == missing
             if not len(pending):
                 return
             if deadline is not None and time.monotonic() > deadline:
@@ -200,7 +203,7 @@ class Engine:
                 self._give_up(pending, every, "time", done)
                 pending.leave(every)
             else:
-                self._round(pending, done, max_attempts, most)
+                self._round(pending, done, max_attempts, most, more=more)
             while (result := done.pop(upcoming, None)) is not None:
                 if isinstance(result, CandidateError):
                     raise result
@@ -221,9 +224,11 @@ class Engine:
         done: dict[int, Accepted | Exhausted | CandidateError],
         max_attempts: int,
         most: int,
+        *,
+        more: bool,
     ) -> None:
         begun = time.thread_time()
-        chosen = self._pace.choose(min(len(pending), most), most)
+        chosen = self._pace.choose(min(len(pending), most), most, more=more)
         active = slice(chosen.scenes)
         counts = np.minimum(chosen.ahead, max_attempts - pending.attempts[active])
         owner, offset = expand(counts)

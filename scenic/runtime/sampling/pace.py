@@ -1,5 +1,6 @@
 """How many candidates to try at a time: measured, and without influence on what comes out."""
 
+import math
 from dataclasses import dataclass
 from typing import Final
 
@@ -12,6 +13,15 @@ _LIKELY_LANE: Final = 5e-6
 
 _ROUND_SECONDS: Final = 2.0
 """Rounds are cut to about this time, so that limits and interrupts are noticed soon."""
+
+_AHEAD: Final = (1, 2, 3, 4, 6, 8, 12, 16)
+"""Attempts ahead that are weighed where all rounds to come are looked at."""
+
+_FEW: Final = 0.02
+"""So many scenes left, in expectation, count as none."""
+
+_MOST_LEVELS: Final = 64
+"""Attempts, at most, within which all scenes but those few have to be found for that."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,14 +90,19 @@ class Pace:
         fixed, lane = self.cost()
         return max(1, int((seconds - fixed) * self.acceptance / lane))
 
-    def choose(self, waiting: int, most: int) -> Round:
-        """The round of at most ``most`` lanes that finds scenes at the least expected time each.
+    def choose(self, waiting: int, most: int, *, more: bool) -> Round:
+        """The round of at most ``most`` lanes with which finding ``waiting`` scenes takes least time.
 
-        ``waiting`` scenes are being looked for.
+        ``more`` says whether others will take the places of those that are found. Then what counts is the time for each that
+        is found now; otherwise the last ones of them may take as many rounds as all before, and those count, too.
         """
         fixed, lane = self.cost()
         most = max(1, min(self.most, most, int((_ROUND_SECONDS - fixed) / lane)))
         rejected = 1 - self.acceptance
+        if not more:
+            ahead = _until_all_are_found(waiting, most, fixed, lane, rejected)
+            if ahead is not None:
+                return Round(waiting, ahead)
         best, price = Round(1, 1), float("inf")
         ahead = 1
         while ahead <= most:
@@ -98,3 +113,29 @@ class Pace:
                 best, price = Round(scenes, ahead), this
             ahead *= 2
         return best
+
+
+def _until_all_are_found(waiting: int, most: int, fixed: float, lane: float, rejected: float) -> int | None:
+    """The attempts ahead of the first of the rounds that find all scenes in the least expected time.
+
+    By dynamic programming over the attempts that have been made at those which are left. ``None`` where that takes too many,
+    or rounds cannot hold all scenes.
+    """
+    if waiting > most or waiting * rejected**_MOST_LEVELS > _FEW:
+        return None
+    left = [float(waiting)]
+    while left[-1] > _FEW:
+        left.append(left[-1] * rejected)
+    times = [0.0] * len(left)
+    first = 1
+    for level in reversed(range(len(left) - 1)):
+        scenes = left[level]
+        start = fixed * (1 - (1 - scenes / waiting) ** waiting)
+        times[level] = math.inf
+        for ahead in _AHEAD:
+            if ahead > 1 and scenes * ahead > most:
+                break
+            time = start + lane * scenes * ahead + times[min(level + ahead, len(left) - 1)]
+            if time < times[level]:
+                times[level], first = time, ahead
+    return first
