@@ -54,9 +54,9 @@ def test_rounds_are_shared(monkeypatch: pytest.MonkeyPatch) -> None:
     rounds: list[int] = []
     real = Engine._round
 
-    def counted(self: Engine, pending: Any, *others: Any) -> None:
+    def counted(self: Engine, pending: Any, *others: Any, **more: Any) -> None:
         rounds.append(len(pending))
-        real(self, pending, *others)
+        real(self, pending, *others, **more)
 
     monkeypatch.setattr(Engine, "_round", counted)
     program = scenario(PROGRAM)
@@ -117,12 +117,12 @@ def test_an_interrupt_loses_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     program = scenario(PROGRAM)
     real, calls = Engine._round, 0
 
-    def interrupted(self: Engine, *arguments: Any) -> None:
+    def interrupted(self: Engine, *arguments: Any, **more: Any) -> None:
         nonlocal calls
         calls += 1
         if calls == 3:
             raise KeyboardInterrupt
-        real(self, *arguments)
+        real(self, *arguments, **more)
 
     monkeypatch.setattr(Engine, "_round", interrupted)
     random.seed(6)
