@@ -1,10 +1,12 @@
 """``scenic simulate``: simulations of a program, their trajectories, and what became of its requirements."""
 
+import faulthandler
 import json
 import secrets
 import sys
 from collections.abc import Generator, Mapping
 from contextlib import closing
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -14,6 +16,7 @@ from scenic.cli import workers
 from scenic.cli.options import program_options, seconds, sobol_option
 from scenic.cli.output import CLEAN, FINDINGS, show_diagnostics
 from scenic.cli.sample import NOT_ALL, _ended_by_signals, _progress
+from scenic.formats.files import OutputError
 from scenic.language.diagnostics import Diagnostic
 
 if TYPE_CHECKING:
@@ -25,6 +28,9 @@ __all__ = ["simulate"]
 
 _FIRST_LINE: Final = 1 << 24
 """The longest first line of a file of ours that is looked at."""
+
+
+_NOTHING_KEPT: Final = "nothing of this simulation is kept; make room, and give the same command again"
 
 
 class _Work:
@@ -105,15 +111,21 @@ class _Work:
         """Make simulation ``k`` and its file; says what came of it. Raises nothing but interruptions."""
         try:
             return self._one(k)
+        except SystemExit as error:
+            message = (
+                f"the simulator or the program has asked for the end of the process (exit code {error.code})"
+            )
+            return {"k": k, "error": Diagnostic("SC503", message, help="raise an exception instead")}
         except Exception as error:  # noqa: BLE001 - it is reported, and the other simulations go on
             from scenic.pipeline import diagnose
 
             found = diagnose(error)
-            message = f"{type(error).__name__}: {error}"
-            hint = "the simulator raised this"
-            if isinstance(error, OSError) and error.filename is not None:
-                hint = "nothing of this simulation is kept; make room, and give the same command again"
-            return {"k": k, "error": found or Diagnostic("SC503", message, help=hint)}
+            if found is None:
+                message = f"{type(error).__name__}: {error}"
+                found = Diagnostic("SC503", message, help="the simulator raised this")
+            if isinstance(error, OutputError) or (isinstance(error, OSError) and error.filename is not None):
+                found = replace(found, help=_NOTHING_KEPT)
+            return {"k": k, "error": found}
 
     def _one(self, k: int) -> dict[str, Any]:
         from scenic.formats.trajectories import course_document
@@ -308,8 +320,11 @@ def simulate(
     Exit codes: 0 success, 1 the program has errors, 2 wrong usage, 3 some simulations were rejected (the others are
     there), 130 interrupted.
     """
-    from scenic.formats.files import check_writable, write
+    from scenic.formats.files import check_writable, make_folder, write
 
+    # What a library of a simulator does may end the process without a word.
+    if not faulthandler.is_enabled() and sys.stderr is sys.__stderr__:
+        faulthandler.enable()
     if view is not None:
         check_writable(view)
     if form == "parquet":
@@ -317,10 +332,9 @@ def simulate(
 
         parquet_support()
     if output is not None:
-        output.mkdir(parents=True, exist_ok=True)
-    if seed is None:
-        seed = secrets.randbits(32)
-        sys.stderr.write(f"seed {seed} (the same simulations again: --seed {seed})\n")
+        make_folder(output)
+    is_drawn = seed is None
+    seed = secrets.randbits(32) if seed is None else seed
     loading = {
         "path": Path(file),
         "params": parameters,
@@ -338,6 +352,8 @@ def simulate(
     }
     work = _Work(loading, simulator, running, output, form, view is not None)
     work.load()
+    if is_drawn:
+        sys.stderr.write(f"seed {seed} (the same simulations again: --seed {seed})\n")
     numbers = range(first, first + count)
     found: dict[int, dict[str, Any]] = {
         k: {"k": k, "about": about, "page": None} for k in numbers if (about := work.known(k)) is not None

@@ -68,6 +68,17 @@ def check_folder(folder: Path) -> None:
         raise OutputError(f"no file can be made in the folder '{folder}': permission denied")
 
 
+def make_folder(folder: Path) -> None:
+    """Make a folder, and those that it is to be in, unless it is there; raises ``OutputError``."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except FileExistsError:
+        raise OutputError(f"'{folder}' is not a folder", help="give the name of a folder") from None
+    except OSError as error:
+        raise OutputError(f"cannot make the folder '{folder}': {_reason(error)}") from error
+    check_folder(folder)
+
+
 @contextlib.contextmanager
 def writing(path: Path) -> Iterator[BinaryIO]:
     """A binary file that gets the name ``path`` when the block ends well and vanishes when it does not.

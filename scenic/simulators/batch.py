@@ -4,13 +4,16 @@ from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass
 from importlib import import_module
-from typing import Any
+from types import MappingProxyType
+from typing import Any, Final
 
 from scenic.graph.points import Sobol
 from scenic.language.errors import Located
+from scenic.language.spelling import nearest
 from scenic.runtime.dynamics.driving import driven
 from scenic.runtime.sampling.report import Exhausted
 from scenic.runtime.scenario import Scenario
+from scenic.runtime.values import describe
 from scenic.simulators.simulation import OnState, Simulation
 from scenic.simulators.simulator import Simulator
 
@@ -41,26 +44,43 @@ def choose_simulator(name: str | None, scenario: Scenario) -> Simulator:
 
     Raises `SimulatorChoiceError`.
     """
-    if name is None:
-        if scenario.has_simulator:
-            own: Simulator = scenario.getSimulator()
-            return own
-        name = "kinematic"
-    places = {
+    if name is None and scenario.has_simulator:
+        return _checked(scenario.getSimulator(), "what the program names")
+    name = name or "kinematic"
+    module, colon, cls = _PLACES.get(name, name).partition(":")
+    if not (module and colon and cls):
+        meant = nearest(name.lower(), _PLACES)
+        own = "or MODULE:CLASS for one of your own"
+        raise SimulatorChoiceError(
+            f"there is no simulator {name!r}",
+            help=f"did you mean {meant}?" if meant else f"use {', '.join(_PLACES)}, {own}",
+        )
+    try:
+        made = getattr(import_module(module), cls)()
+    except Located:
+        raise
+    except Exception as error:  # whatever a simulator does when it begins
+        words = str(error) or type(error).__name__
+        raise SimulatorChoiceError(f"the simulator {name!r} cannot be made: {words}") from error
+    return _checked(made, repr(name))
+
+
+_PLACES: Final = MappingProxyType(
+    {
         "kinematic": "scenic.simulators.kinematic:KinematicSimulator",
         "mujoco": "scenic.simulators.mujoco:MujocoSimulator",
         "dummy": "scenic.simulators.dummy:DummySimulator",
     }
-    module, colon, cls = places.get(name, name).partition(":")
-    if not colon:
+)
+
+
+def _checked(made: Any, what: str) -> Simulator:
+    if not callable(getattr(made, "simulate", None)):
         raise SimulatorChoiceError(
-            f"there is no simulator {name!r}",
-            help="use kinematic, mujoco, dummy, or MODULE:CLASS for one of your own",
+            f"{what} is no simulator, but {describe(made)}",
+            help="simulators derive from `scenic.simulators.simulator.Simulator`",
         )
-    try:
-        simulator: Simulator = getattr(import_module(module), cls)()
-    except (ImportError, AttributeError, TypeError) as error:
-        raise SimulatorChoiceError(f"the simulator {name!r} cannot be made: {error}") from error
+    simulator: Simulator = made
     return simulator
 
 

@@ -14,6 +14,7 @@ from scenic.language.errors import (
     Located,
     RejectSimulationException,
     SimulationCreationError,
+    StuckBehaviorError,
     annotate,
 )
 from scenic.runtime.dynamics.copies import Copies
@@ -264,13 +265,13 @@ class Simulation(ABC):
             error.span = error.span or place
             error.filename = error.filename or filename
         elif place is not None and not isinstance(error, RejectSimulationException | GuardViolation):
-            found = Diagnostic(
-                "SC400",
+            words, hint = (
                 f"{type(error).__name__}: {error}",
-                place,
-                filename=filename,
-                help="the program raised this exception during a simulation",
+                "the program raised this exception during a simulation",
             )
+            if isinstance(error, StuckBehaviorError):
+                words, help = str(error), "if it only computes for long, allow it more time (`--step-limit`)"
+            found = Diagnostic("SC400", words, place, filename=filename, help=help)
             annotate(
                 error, found, f"{filename}:{place.line}: raised at step {self.currentTime} of a simulation"
             )

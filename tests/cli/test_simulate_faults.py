@@ -27,6 +27,8 @@ class Failing(DummySimulation):
         if self.currentTime == 3 and self.name.startswith("1") and (how := Path(__file__).with_name("how")).exists():
             if how.read_text() == "dies":
                 os._exit(7)
+            if how.read_text() == "exits":
+                raise SystemExit(3)
             raise ConnectionResetError("the server has gone")
         super().step()
 
@@ -79,6 +81,67 @@ def test_a_simulator_that_fails_costs_one_simulation(folder: Path) -> None:
     before = kept(folder)
     assert set(before) == whole(0, 2)
     check_resumed(folder, before, "--simulator", "fragile_simulator:Fragile")
+
+
+def test_a_simulator_that_asks_for_the_end_costs_one_simulation(folder: Path) -> None:
+    (folder / "how").write_text("exits")
+    result = run(folder, "--simulator", "fragile_simulator:Fragile")
+    assert result.returncode == 1
+    assert "has asked for the end of the process (exit code 3)" in result.stderr
+    assert set(kept(folder)) == whole(0, 2)
+
+
+@pytest.mark.parametrize(
+    ("name", "words", "help"),
+    [
+        ("fragile_simulator:Unreachable", "cannot be made: no server at port 2000", ""),
+        ("fragile_simulator:Other", "'fragile_simulator:Other' is no simulator", "derive from"),
+        ("Kinematics", "there is no simulator 'Kinematics'", "did you mean kinematic?"),
+        (":", "there is no simulator ':'", "kinematic, mujoco, dummy, or MODULE:CLASS"),
+    ],
+)
+def test_simulators_that_cannot_be_had(folder: Path, name: str, words: str, help: str) -> None:
+    with (folder / "fragile_simulator.py").open("a") as file:
+        file.write("class Other:\n    pass\nclass Unreachable:\n    def __init__(self):\n")
+        file.write("        raise ConnectionRefusedError('no server at port 2000')\n")
+    result = run(folder, "--simulator", name)
+    assert result.returncode == 2
+    assert "error[SC604]: " in result.stderr
+    shown = " ".join(result.stderr.split())
+    assert words in shown
+    assert help in shown
+
+
+def test_a_program_that_names_something_else_as_its_simulator(folder: Path) -> None:
+    (folder / "program.scenic").write_text("simulator 3\nego = new Object\n")
+    result = run(folder)
+    assert result.returncode == 2
+    assert "error[SC604]: what the program names is no simulator" in result.stderr
+
+
+@pytest.mark.parametrize(
+    ("output", "words"),
+    [("program.scenic", "is not a folder"), ("program.scenic/a", "cannot make the folder")],
+)
+def test_folders_that_cannot_be_made(folder: Path, output: str, words: str) -> None:
+    result = run(folder, "-o", output)
+    assert result.returncode == 2
+    assert "error[SC601]: " in result.stderr
+    assert words in " ".join(result.stderr.split())
+
+
+def test_a_trajectory_that_does_not_fit_is_told(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from scenic.formats import files
+
+    def full(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(files.shutil, "copyfileobj", full)
+    (folder / "program.scenic").write_text("ego = new Object\n")
+    result = run(folder)
+    assert result.returncode == 1
+    assert result.stderr.count("no space left on device\n  = help: nothing of this simulation is kept") == 3
+    assert kept(folder) == {}
 
 
 @pytest.mark.slow
