@@ -270,8 +270,8 @@ class Simulation(ABC):
                 "the program raised this exception during a simulation",
             )
             if isinstance(error, StuckBehaviorError):
-                words, help = str(error), "if it only computes for long, allow it more time (`--step-limit`)"
-            found = Diagnostic("SC400", words, place, filename=filename, help=help)
+                words, hint = str(error), "if it only computes for long, allow it more time (`--step-limit`)"
+            found = Diagnostic("SC400", words, place, filename=filename, help=hint)
             annotate(
                 error, found, f"{filename}:{place.line}: raised at step {self.currentTime} of a simulation"
             )

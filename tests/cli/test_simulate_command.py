@@ -161,6 +161,7 @@ def test_code_that_spins_is_named(folder: Path) -> None:
     result = run(folder, "spinning.scenic", "--seed", 3, "--step-limit", 0.1)
     assert result.returncode == 1
     assert "has run for 0.1 s within one step" in result.stderr
+    assert "allow it more time (`--step-limit`)" in result.stderr
     assert "spinning.scenic:" in result.stderr
 
 
