@@ -7,6 +7,7 @@ import sys
 from collections.abc import Generator, Mapping
 from contextlib import closing
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -22,6 +23,7 @@ from scenic.language.diagnostics import Diagnostic
 if TYPE_CHECKING:
     from scenic.formats.course_page import PoseTape
     from scenic.formats.trajectories import TrajectoryFile
+    from scenic.simulators.batch import Numbered
     from scenic.simulators.simulation import OnState, Poses, Simulation
 
 __all__ = ["simulate"]
@@ -129,20 +131,9 @@ class _Work:
 
     def _one(self, k: int) -> dict[str, Any]:
         from scenic.formats.trajectories import course_document
-        from scenic.simulators.batch import simulate_number
 
-        scenario, simulator = self.load()
         with closing(_Kept(self.file(k), self._form, self._whole)) as kept:
-            numbered = simulate_number(
-                scenario,
-                simulator,
-                k=k,
-                stuck_is_error=True,
-                beginning=kept.begin,
-                enableReplay=False,
-                keep_course=self._looks_back(),
-                **self._running,
-            )
+            numbered = self._simulated(k, kept)
             done = numbered.simulation
             if done is None:
                 what = f"rejected ({numbered.tries} tried)" if numbered.has_scene else "no scene found"
@@ -150,10 +141,34 @@ class _Work:
             about = {**course_document(done, k=k, tries=numbered.tries), "settings": self.settings()}
             return {"k": k, "about": about, "page": kept.finish(done, about)}
 
-    def _looks_back(self) -> bool:
-        """Whether the program may ask a running simulation for all of its course."""
-        text = self._loading["path"].read_bytes()
-        return b"trajectory" in text or b"actionSequence" in text
+    def _simulated(self, k: int, kept: "_Kept") -> "Numbered":
+        """Simulation ``k``; again, with its whole course in memory, if the program looked back at that.
+
+        Each decides for itself, so that files do not depend on which simulations a process makes.
+        """
+        from scenic.simulators.batch import simulate_number
+        from scenic.simulators.results import NotKeptError
+
+        scenario, simulator = self.load()
+        simulate = partial(
+            simulate_number,
+            scenario,
+            simulator,
+            k=k,
+            stuck_is_error=True,
+            beginning=kept.begin,
+            enableReplay=False,
+            **self._running,
+        )
+        try:
+            numbered = simulate(keep_course=False)
+        except Exception as error:
+            if not (kept.looked_back() or NotKeptError.behind(error)):
+                raise
+        else:
+            if not kept.looked_back():
+                return numbered
+        return simulate(keep_course=True)
 
 
 class _Kept:
@@ -172,6 +187,8 @@ class _Kept:
         self._shown = shown
         self._file: TrajectoryFile | None = None
         self._tape: PoseTape | None = None
+        self._simulation: Simulation | None = None
+        self._looked_back = False
 
     def begin(self) -> "OnState":
         """What is to be called with each state of a try."""
@@ -180,6 +197,7 @@ class _Kept:
         from scenic.formats.trajectory_tables import ParquetFile
 
         self.close()
+        self.looked_back()
         if self._path is not None:
             self._file = ParquetFile(self._path) if self._form == "parquet" else LinesFile(self._path)
         self._tape = PoseTape() if self._shown else None
@@ -188,10 +206,20 @@ class _Kept:
     def _add(self, simulation: "Simulation", poses: "Poses", actions: Mapping[Any, Any]) -> None:
         from scenic.formats.trajectories import step_document
 
+        self._simulation = simulation
         if self._file is not None:
             self._file.add(step_document(simulation, poses, actions))
         if self._tape is not None:
             self._tape.add(poses)
+
+    def looked_back(self) -> bool:
+        """Whether a try asked for more of its course than was kept."""
+        from scenic.simulators.results import Latest
+
+        if self._simulation is not None:
+            courses = self._simulation.trajectory, self._simulation.actionSequence
+            self._looked_back |= any(isinstance(course, Latest) and course.missed for course in courses)
+        return self._looked_back
 
     def finish(self, simulation: "Simulation", about: Mapping[str, Any]) -> dict[str, Any] | None:
         """Complete the file; what the page needs."""

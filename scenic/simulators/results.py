@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from enum import Enum
 from typing import Any
 
-__all__ = ["ActionsTaken", "Latest", "SimulationResult", "TerminationType", "kept"]
+__all__ = ["ActionsTaken", "Latest", "NotKeptError", "SimulationResult", "TerminationType", "kept"]
 
 
 class TerminationType(Enum):
@@ -25,6 +25,19 @@ class ActionsTaken(dict[Any, tuple[Any, ...]]):
         return ()
 
 
+class NotKeptError(LookupError):
+    """Somebody asked for what a simulation does not keep of its course."""
+
+    @classmethod
+    def behind(cls, error: BaseException | None) -> bool:
+        """Whether that is why another error came up."""
+        while error is not None:
+            if isinstance(error, cls):
+                return True
+            error = error.__cause__ or error.__context__
+        return False
+
+
 class Latest(Sequence[Any]):
     """A series of which only the newest member is kept.
 
@@ -38,6 +51,8 @@ class Latest(Sequence[Any]):
         self._count = 0
         self.newest: list[Any] = []
         """The newest member, if there is one."""
+        self.missed = False
+        """Whether somebody asked for a member that is not kept."""
 
     def append(self, value: Any) -> None:
         """The next member."""
@@ -51,7 +66,8 @@ class Latest(Sequence[Any]):
     def __getitem__(self, place: Any) -> Any:
         if self.newest and place in (-1, self._count - 1):
             return self.newest[0]
-        raise LookupError(
+        self.missed = True
+        raise NotKeptError(
             f"of the {self._what} of this simulation only the newest is kept; `keep_course=True` keeps all"
         )
 

@@ -115,8 +115,11 @@ def test_only_the_newest_state_is_kept() -> None:
 
 
 def test_the_command_keeps_what_a_program_looks_back_at(tmp_path: Path) -> None:
+    (tmp_path / "course.py").write_text(
+        "def states(simulation):\n    return len(list(simulation.trajectory))\n"
+    )
     (tmp_path / "back.scenic").write_text(
-        "ego = new Object\nrecord len(list(simulation().trajectory)) as states\n"
+        "from course import states\nego = new Object\nrecord states(simulation()) as states\n"
         "record ego.position.x to 'x-{simulation}.npz'\nrecord ego.position.x to 'x-{simulation}-{step}.json'\n"
     )
     options = ["--seed", "1", "--simulator", "dummy", "--time", "3", "-o", "out"]
@@ -126,13 +129,13 @@ def test_the_command_keeps_what_a_program_looks_back_at(tmp_path: Path) -> None:
     records = scenic.read_trajectory(path).about["records"]
     assert [value for _, value in records["states"]] == [0, 1, 2, 3]
     # The numbers are there where the program itself looks back.
-    assert records["record3"] == [[step, 0.0] for step in range(4)]
-    text = (tmp_path / "back.scenic").read_text().replace("len(list(simulation().trajectory))", "1")
+    assert records["record4"] == [[step, 0.0] for step in range(4)]
+    text = (tmp_path / "back.scenic").read_text().replace("states(simulation())", "1")
     (tmp_path / "back.scenic").write_text(text)
     assert run_here(["simulate", "back.scenic", *options], folder=tmp_path).returncode == 0
     read = scenic.read_trajectory(path)
-    assert read.about["records"]["record3"] == {"$file": "x-0.npz"}
-    assert read.about["records"]["record4"] == {"$file": "x-{simulation}-{step}.json"}
+    assert read.about["records"]["record4"] == {"$file": "x-0.npz"}
+    assert read.about["records"]["record5"] == {"$file": "x-{simulation}-{step}.json"}
     assert sorted(item.name for item in tmp_path.glob("x*")) == [
         "x-0-0.json",
         "x-0-1.json",
