@@ -25,6 +25,9 @@ Floats = npt.NDArray[np.float64]
 ROUNDING = 1e-7
 """Metres: arrangements as close to the change as this may be answered either way."""
 
+HAIR = 1e-9
+CENTIMETRE = 1e-2
+
 
 def flip(answer: Callable[[float], bool], low: float, high: float, width: float = 1e-11) -> float:
     """Where an answer changes between two numbers for which it differs."""
@@ -47,6 +50,23 @@ def flips(answer: Callable[[float], bool], places: Sequence[float]) -> list[floa
         for index in range(len(places) - 1)
         if answers[index] != answers[index + 1]
     ]
+
+
+def compare(
+    answer: Callable[[float], bool | None],
+    truth: Callable[[float], bool],
+    change: float,
+    *,
+    certain: bool,
+) -> None:
+    """An answer where the truth changes, beside that, and far enough away to be certain."""
+    for off in (0.0, HAIR, -HAIR):
+        assert answer(change + off) is None
+    for off in (1e-4, -1e-4, CENTIMETRE, -CENTIMETRE):
+        found = answer(change + off)
+        assert found in (None, truth(change + off))
+        if certain and abs(off) == CENTIMETRE:
+            assert found is not None
 
 
 # Solids

@@ -25,7 +25,12 @@ from scenic.runtime.opaque import evaluated, later
 from scenic.runtime.regions.base import Everywhere, Mask, Nowhere, Region, Workspace, nowhere
 from scenic.runtime.regions.bodies import OccupiedSpace, SideSurface
 from scenic.runtime.regions.choice import as_region
-from scenic.runtime.regions.composite import DifferenceRegion, IntersectionRegion, UnionRegion
+from scenic.runtime.regions.composite import (
+    DifferenceRegion,
+    IntersectionRegion,
+    UnionRegion,
+    exactly_contains,
+)
 from scenic.runtime.regions.lines import LineRegion, PathRegion, PolylineRegion
 from scenic.runtime.regions.meshes import (
     MeshSurfaceRegion,
@@ -219,8 +224,9 @@ def _inside(solid: Mesh, point: Any) -> bool:
 
 
 def _holds(region: Region, point: Any) -> bool:
-    columns = region.fixed_columns("containment")
-    return bool(region.contains_points(np.asarray(point, dtype=np.float64).reshape(1, 3), *columns)[0])
+    """Whether a fixed region holds a point; one of the plane only what is at its height."""
+    place = np.asarray(point, dtype=np.float64).reshape(1, 3)
+    return bool(exactly_contains(region, place, region.fixed_columns("containment"))[0])
 
 
 def union(first: Any, second: Any) -> Region:

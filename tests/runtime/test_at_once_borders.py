@@ -1,0 +1,326 @@
+"""What is said of fixed regions, contacts and views on plain floats, right beside where it changes.
+
+Something moves along a line, and bisection with an oracle finds where the answer changes. There nothing is certain; a
+hair's breadth away every answer that is given is the oracle's; and a centimetre away boxes get one.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pytest
+import shapely
+from scipy.spatial.transform import Rotation
+
+from scenic.graph import quaternions
+from scenic.runtime.geometry import primitives
+from scenic.runtime.geometry.bodies import Body
+from scenic.runtime.geometry.collision import collide
+from scenic.runtime.geometry.mesh import Mesh
+from scenic.runtime.geometry.poses import Floats, Poses
+from scenic.runtime.geometry.single import Placed, is_near_way, meet, overlap, placed
+from scenic.runtime.regions.base import Region
+from scenic.runtime.regions.planar import CircularRegion, PolygonalRegion, RectangularRegion
+from scenic.runtime.regions.single import Single
+from scenic.runtime.regions.volumes import BoxRegion, SpheroidRegion
+from scenic.runtime.values import Orientation, Vector
+from tests.runtime.boundaries import CENTIMETRE, compare, flip
+from tests.runtime.geometry.samples import SHAPES
+
+ANGLES = (0.4, 0.2, -0.3)
+TURN = Orientation.fromEuler(*ANGLES)
+SIZE = np.array([5.0, 4.0, 3.0])
+CENTRE = np.array([0.5, -0.25, 1.0])
+CORNERS = [(-3, -2), (3, -2), (4, 3), (-3, 3)]
+NOTCHED = [(-4, -4), (4, -4), (4, 4), (0, 0.5), (-4, 4)]
+
+
+@dataclass(frozen=True)
+class Case:
+    """A region, which points it holds, and somewhere well inside."""
+
+    region: Region
+    holds: Callable[[Floats], bool]
+    middle: tuple[float, float, float]
+    exact: bool = True
+    """Whether boxes get an answer a centimetre from where it changes."""
+
+    @property
+    def single(self) -> Single:
+        single = self.region.at_once
+        assert single is not None
+        return single
+
+
+def rectangle(width: float, length: float, heading: float, x: float, y: float) -> Callable[[Floats], bool]:
+    turn = Rotation.from_euler("z", -heading)
+
+    def holds(points: Floats) -> bool:
+        local = np.abs(turn.apply(points - [x, y, 0])[:, :2])
+        return bool((local <= [width / 2, length / 2]).all())
+
+    return holds
+
+
+def polygon(corners: Any) -> Callable[[Floats], bool]:
+    outline = shapely.Polygon(corners)
+    shapely.prepare(outline)
+    return lambda points: bool(outline.covers(shapely.MultiPoint(points[:, :2]).convex_hull))
+
+
+def solid(inside: Callable[[Floats], Floats]) -> Callable[[Floats], bool]:
+    inverse = Rotation.from_quat(TURN.q).inv()
+    return lambda points: bool((inside(inverse.apply(points - CENTRE) / (SIZE / 2)) <= 1).all())
+
+
+ROUND = [
+    (3 * math.cos(part * math.pi / 64) + 1, 3 * math.sin(part * math.pi / 64) - 1) for part in range(128)
+]
+CASES = {
+    "rectangle": Case(RectangularRegion((1, 2, 0.5), 0.3, 7, 4), rectangle(7, 4, 0.3, 1, 2), (1.2, 1.9, 0.5)),
+    "upright rectangle": Case(
+        RectangularRegion((0, 0, -2), 0, 4, 6), rectangle(4, 6, 0, 0, 0), (0.1, -0.3, -2)
+    ),
+    "disc": Case(CircularRegion((1, -1, 0.25), 3), polygon(ROUND), (1.1, -0.8, 0.25)),
+    "convex polygon": Case(PolygonalRegion(CORNERS, z=1.5), polygon(CORNERS), (0.3, 0.4, 1.5)),
+    "notched polygon": Case(PolygonalRegion(NOTCHED), polygon(NOTCHED), (-1, -1.5, 0), exact=False),
+    "box": Case(
+        BoxRegion(dimensions=tuple(SIZE), position=tuple(CENTRE), rotation=TURN),
+        solid(lambda local: np.abs(local).max(axis=1)),
+        (0.4, -0.2, 1.1),
+    ),
+    "ball": Case(
+        SpheroidRegion(dimensions=tuple(SIZE), position=tuple(CENTRE), rotation=TURN),
+        solid(lambda local: np.sqrt((local**2).sum(axis=1))),
+        (0.4, -0.2, 1.1),
+    ),
+}
+
+
+@dataclass(frozen=True)
+class Moving:
+    """A body of unequal sizes that moves along a line from somewhere."""
+
+    shape: str
+    start: Floats
+    way: Floats
+    turn: Floats
+    size: tuple[float, float, float]
+
+    def at(self, along: float) -> Placed:
+        x, y, z, w = self.turn.tolist()
+        place = (self.start + along * self.way).tolist()
+        return placed((place[0], place[1], place[2]), (x, y, z, w), self.size, mesh_of(self.shape))
+
+    def vertices(self, along: float) -> Floats:
+        local = mesh_of(self.shape).vertices * self.size
+        corners: Floats = Rotation.from_quat(self.turn).apply(local) + self.start + along * self.way
+        return corners
+
+
+CORNER = Mesh(
+    np.array([(-0.5, -0.5, -0.5), (0.5, -0.5, -0.5), (-0.5, 0.5, -0.5), (-0.5, -0.5, 0.5)]),
+    np.array([(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]),
+)
+"""A corner of its box, which does not hold the middle of that."""
+
+
+def mesh_of(shape: str) -> Mesh:
+    return CORNER if shape == "corner" else SHAPES[shape]()
+
+
+def moving(count: int, start: Any, *, seed: int, largest: float = 1.6) -> list[Moving]:
+    """Bodies, every third of them upright, that move in all directions; one after the other of each shape."""
+    random = np.random.default_rng(seed)
+    made = []
+    for number in range(count):
+        way = random.normal(size=3)
+        turn = Rotation.random(random_state=random.integers(1 << 30)).as_quat()
+        if number % 3 == 0:
+            turn, way = np.array([0.0, 0.0, 0.0, 1.0]), np.eye(3)[number // 3 % 3] * (-1) ** (number // 9)
+        shape = [*SHAPES, "corner"][number // 2 % (len(SHAPES) + 1)] if number % 2 else "box"
+        a, b, c = random.uniform(0.2, largest, 3).tolist()
+        made.append(Moving(shape, np.asarray(start, float), way / np.linalg.norm(way), turn, (a, b, c)))
+    return made
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_bodies_that_nearly_leave(name: str) -> None:
+    case = CASES[name]
+    for item in moving(36, case.middle, seed=3, largest=1.2):
+
+        def truth(along: float, item: Moving = item) -> bool:
+            return case.holds(item.vertices(along))
+
+        def answer(along: float, item: Moving = item) -> bool | None:
+            return case.single.holds_body(item.at(along))
+
+        if truth(20):
+            continue  # straight up from a region of the plane
+        compare(answer, truth, flip(truth, 0, 20), certain=case.exact and item.shape == "box")
+
+
+@pytest.mark.parametrize("name", ["box", "ball"])
+def test_points_that_nearly_leave(name: str) -> None:
+    case = CASES[name]
+    for item in moving(24, case.middle, seed=4):
+
+        def truth(along: float, item: Moving = item) -> bool:
+            return case.holds((item.start + along * item.way)[np.newaxis])
+
+        def answer(along: float, item: Moving = item) -> bool | None:
+            x, y, z = (item.start + along * item.way).tolist()
+            return case.single.holds_point((x, y, z))
+
+        change = flip(truth, 0, 20)
+        for off in (1e-4, -1e-4):
+            assert answer(change + off) is truth(change + off)
+        if name == "ball":  # for boxes the comparison is the one that lanes make
+            assert answer(change) is None
+            # Whoever asks the region still gets an answer.
+            place = Vector(*(item.start + change * item.way).tolist())
+            assert case.region.containsPoint(place) in (True, False)
+
+
+def meets_plane(vertices: Floats, height: float, holds: shapely.Geometry) -> bool:
+    """Whether a convex body meets a region of the plane: by the polygon in which the plane cuts it."""
+    rise = vertices[:, 2] - height
+    above, below = vertices[rise >= 0], vertices[rise < 0]
+    if not len(above) or not len(below):
+        return False
+    part = (height - below[:, np.newaxis, 2]) / (above[:, 2] - below[:, np.newaxis, 2])
+    cut = below[:, np.newaxis] + part[..., np.newaxis] * (above - below[:, np.newaxis])
+    return bool(shapely.MultiPoint(cut.reshape(-1, 3)[:, :2]).convex_hull.intersects(holds))
+
+
+@pytest.mark.parametrize("name", [name for name in CASES if name not in ("box", "ball")])
+def test_boxes_that_nearly_leave_a_plane(name: str) -> None:
+    case = CASES[name]
+    region: Any = case.region
+    outline, height = region.polygons, float(region.height)
+    shapely.prepare(outline)
+    certain = 0
+    for item in moving(54, case.middle, seed=5, largest=3):
+        if item.shape != "box":
+            continue
+
+        def truth(along: float, item: Moving = item) -> bool:
+            return meets_plane(item.vertices(along), height, outline)
+
+        def answer(along: float, item: Moving = item) -> bool | None:
+            return case.single.meets_body(item.at(along))
+
+        assert answer(0) is True
+        change = flip(truth, 0, 20)
+        compare(answer, truth, change, certain=False)
+        assert answer(change + 4) is False
+        certain += answer(change + CENTIMETRE) is False
+        # Over the middle of the body it certainly is met, where the body is there at that height.
+        inside = flip(lambda along, item=item: answer(along) is True, 0, change)  # type: ignore[misc]
+        assert truth(inside - 1e-6)
+    assert certain > 7
+
+
+def test_a_ring_does_not_meet_what_lies_in_its_hole() -> None:
+    disc = CircularRegion((0, 0, 0), 0.1).at_once
+    assert disc is not None
+    frame = placed((0, 0, 0), (0, 0, 0, 1), (4, 4, 4), SHAPES["hollow"]())
+    assert disc.meets_body(frame) is None
+
+
+def test_a_box_at_the_corner_of_the_box_about_a_ball() -> None:
+    """Their boxes meet; they need not."""
+    single = CASES["ball"].single
+    for part, met in ((0.95, None), (1.2, False)):
+        x, y, z = (Rotation.from_quat(TURN.q).apply(part * SIZE / 2) + CENTRE).tolist()
+        assert single.meets_body(placed((x, y, z), TURN.q, (0.1, 0.1, 0.1), primitives.box())) is met
+
+
+def test_a_box_over_a_region_beside_its_middle() -> None:
+    """Its middle is beside the region; it may reach over it all the same."""
+    disc = CircularRegion((0, 0, 0), 1).at_once
+    assert disc is not None
+    for x, met in ((1.5, None), (2.5, False), (0.9, True)):
+        assert disc.meets_body(placed((x, 0, 0), (0, 0, 0, 1), (2, 2, 2), primitives.box())) is met
+
+
+def lanes(item: Moving, along: float) -> Body:
+    place, turn = item.start + along * item.way, item.turn
+    return Body((mesh_of(item.shape),), None, Poses.fixed(place.tolist(), turn.tolist(), item.size))
+
+
+def test_boxes_that_nearly_touch() -> None:
+    fixed, *others = moving(30, (0.3, 0.1, -0.2), seed=6)
+    standing = Moving(
+        "box", fixed.start, fixed.way, Rotation.from_euler("zxy", ANGLES).as_quat(), (1, 2, 0.5)
+    )
+    both = lanes(standing, 0)
+    for item in others:
+        if item.shape != "box":
+            continue
+
+        def truth(along: float, item: Moving = item) -> bool:
+            return not collide([lanes(item, along), both], np.array([[0, 1]]), lanes=1).free[0]
+
+        def answer(along: float, item: Moving = item) -> bool | None:
+            found = meet(item.at(along), standing.at(0))
+            assert meet(standing.at(0), item.at(along)) is found
+            return found
+
+        change = flip(truth, 0, 20, width=1e-9)
+        compare(answer, truth, change, certain=True)
+        # As deep as they are in each other, the second would have to be moved: then they touch.
+        for along in (change - 0.1, change - 0.3):
+            deep = overlap(item.at(along), standing.at(0))
+            assert 0 < deep <= change - along + 1e-7
+            assert deep == pytest.approx(depth(item, along, standing), abs=1e-9)
+
+
+def depth(one: Moving, along: float, other: Moving) -> float:
+    """How far one box has to be moved to leave another one: by the facets of the sum of both."""
+    from scipy.spatial import ConvexHull
+
+    apart = one.vertices(along)[:, np.newaxis] - other.vertices(0)
+    return float(-ConvexHull(apart.reshape(-1, 3)).equations[:, 3].max())
+
+
+def test_far_from_the_origin_less_is_certain() -> None:
+    """Where positions are kilometres upon kilometres, rounding is more than a millionth of a metre."""
+    body = placed((3e9, 0, 0), (0, 0, 0, 1), (2, 2, 2), primitives.box())
+    wide = RectangularRegion((3e9, 0), 0, 2 + 1e-5, 8).at_once
+    assert wide is not None
+    assert wide.holds_body(body) is None
+
+
+def test_what_is_near_a_way() -> None:
+    random = np.random.default_rng(7)
+    start, end, middle = random.uniform(-2, 2, (3, 300, 3))
+    way = end - start
+    part = np.clip(((middle - start) * way).sum(axis=1) / (way**2).sum(axis=1), 0, 1)
+    apart = np.linalg.norm(start + part[:, np.newaxis] * way - middle, axis=1)
+    for number in range(300):
+        ends = [tuple(point[number].tolist()) for point in (start, end, middle)]
+        assert is_near_way(ends[0], ends[1], ends[2], float(apart[number]))
+        assert is_near_way(ends[1], ends[0], ends[2], float(apart[number]) + 1e-3)
+        assert not is_near_way(ends[0], ends[1], ends[2], float(apart[number]) * 0.9 - 1e-4)
+    assert is_near_way((1, 1, 1), (1, 1, 1), (1, 1, 2), 1)
+    assert not is_near_way((1, 1, 1), (1, 1, 1), (1, 1, 2), 0.9)
+
+
+def test_the_measures_of_a_body() -> None:
+    for item in moving(40, (1, 2, 3), seed=8):
+        body = item.at(0)
+        local = (
+            np.array([(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)]) * item.size
+        )
+        corners = Rotation.from_quat(item.turn).apply(local) + item.start
+        found = np.array(body.corners())
+        assert np.allclose(np.sort(found, axis=0), np.sort(corners, axis=0))
+        assert np.allclose(body.extents(), np.abs(corners - item.start).max(axis=0))
+        way = item.way.tolist()
+        assert body.reach(*way) == pytest.approx(((corners - item.start) @ item.way).max())
+        radius = np.linalg.norm(corners - item.start, axis=1).max()
+        assert radius < body.radius < radius + 1e-4
+        assert np.allclose(body.axes, quaternions.to_matrix(item.turn[np.newaxis])[0].T)

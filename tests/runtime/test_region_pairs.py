@@ -1,0 +1,211 @@
+"""What two regions have in common, for every pair of kinds: against the distances between points of one and the other.
+
+One of two regions moves past the other. Where no drawn point of either is near the other one, they are apart; where one is in the
+other, also when that has moved a little, they meet. What they share and what is left of one holds the drawn points that
+it must, and has the share of the size that these say.
+"""
+
+import itertools
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+import scenic.core.regions as named
+import shapely
+import trimesh
+
+from scenic.runtime.geometry.poses import Floats
+from scenic.runtime.regions.base import Region, Workspace, nowhere
+from scenic.runtime.regions.composite import Composite, UnionRegion
+from scenic.runtime.regions.lines import LineRegion
+from scenic.runtime.regions.planar import Footprint, PlanarRegion
+from scenic.runtime.values import Orientation, Vector
+
+TILT = Orientation.fromEuler(0.7, 0.4, -0.3)
+FRAME = shapely.Polygon([(-2, -1.5), (2, -1.5), (2, 1.5), (-2, 1.5)], [[(-1, -1), (1, -1), (1, 1), (-1, 1)]])
+BEND = [(-2, -1), (0, 1), (1.5, -0.5)]
+PIPE = [(-2, -1, -1.2), (0.5, 1, 0.4), (1, 0.2, 0.4), (1.5, -1, 2)]
+SPOTS = [(0, 0, 0), (0.7, 0.1, 0.4), (-1.5, 1.2, 0), (0.2, -0.4, -0.9)]
+SHELL = trimesh.creation.box((1.5, 2.5, 2))
+HORSESHOE = trimesh.creation.extrude_polygon(
+    shapely.Polygon([(0, 0), (3, 0), (3, 2), (2, 2), (2, 1), (1, 1), (1, 2), (0, 2)]), 1
+)
+Make = Callable[[float, float, float], Region]
+
+
+def moved(points: Any, x: float, y: float, z: float = 0) -> list[Any]:
+    return (np.array(points) + [x, y, z][: len(points[0])]).tolist()
+
+
+KINDS: dict[str, Make] = {
+    "disc": lambda x, y, z: named.CircularRegion(Vector(x, y, z), 1.5),
+    "rectangle": lambda x, y, z: named.RectangularRegion(Vector(x, y, z), 0.5, 3, 1),
+    "frame": lambda x, y, z: named.PolygonalRegion(polygon=shapely.affinity.translate(FRAME, x, y), z=z),
+    "column": lambda x, y, z: named.RectangularRegion(Vector(x, y, z), 0.5, 3, 1).footprint,
+    "polyline": lambda x, y, z: named.PolylineRegion(moved(BEND, x, y)),
+    "path": lambda x, y, z: named.PathRegion(moved(PIPE, x, y, z)),
+    "points": lambda x, y, z: named.PointSetRegion("points", moved(SPOTS, x, y, z)),
+    "box": lambda x, y, z: named.BoxRegion((3, 1, 2), Vector(x, y, z), TILT),
+    "ball": lambda x, y, z: named.SpheroidRegion((3, 1.5, 2), Vector(x, y, z), TILT),
+    "mesh": lambda x, y, z: named.MeshVolumeRegion(HORSESHOE, position=Vector(x, y, z), rotation=TILT),
+    "shell": lambda x, y, z: named.MeshSurfaceRegion(SHELL, position=Vector(x, y, z), rotation=TILT),
+    "either": lambda x, y, z: UnionRegion(
+        named.BoxRegion((1, 1, 1), Vector(x - 1, y, z)), named.SpheroidRegion((1, 1, 1), Vector(x + 1, y, z))
+    ),
+    "cells": lambda x, y, z: named.BoxRegion((2, 1, 1.5), Vector(x, y, z)).voxelized(0.5),
+    "workspace": lambda x, y, z: Workspace(named.BoxRegion((2, 2, 1), Vector(x, y, z))),
+}
+FLAT = {"polyline"}
+"""Lie on the ground wherever they are moved."""
+PAIRS = list(itertools.combinations_with_replacement(KINDS, 2))
+WAYS = {
+    "aside": [(x, 0.4 * x, 0.0) for x in (-7, -2.6, -1.4, 0.2, 0.8, 2.7)],
+    "up": [(0.15, 0.1, z) for z in (-1.7, -0.8, 0.3, 1.1, 6)],
+}
+
+
+def columns_of(region: Region) -> list[Any]:
+    return region.fixed_columns("the region")
+
+
+def cloud(region: Region, count: int = 250) -> Floats:
+    """Points of a region; of a column, those near the ground."""
+    random = np.random.default_rng(1)
+    if isinstance(region, Footprint):
+        points = cloud(region.region, count).copy()
+        points[:, 2] = random.uniform(-9, 9, len(points))
+        return points
+    if isinstance(region, LineRegion):
+        return np.concatenate(
+            [
+                start + np.linspace(0, 1, count)[:, np.newaxis] * (end - start)
+                for start, end in zip(region.pieces.starts, region.pieces.ends, strict=True)
+            ]
+        )
+    numbers = random.random((region.draws, count))
+    keys = random.integers(0, 1 << 60, count).astype(np.uint64)
+    points, known = region.draw_points(numbers, keys, *columns_of(region))
+    return points if known is None else points[known]
+
+
+def gap(one: Region, other: Region) -> float:
+    """The distance between two regions, or more where points are few."""
+    found = [
+        float(np.min(first.distances(cloud(second), *columns_of(first))))
+        for first, second in ((one, other), (other, one))
+    ]
+    return min(found)
+
+
+def exactly(region: Region, points: Floats) -> Any:
+    return region.distances(points, *columns_of(region)) < 1e-9
+
+
+UNKNOWN = {
+    *(("disc", "shell"), ("rectangle", "shell"), ("frame", "shell")),
+    *(("polyline", "shell"), ("path", "shell"), ("path", "path"), ("polyline", "path")),
+}
+"""Of these it is not known whether they meet."""
+
+DENSE = {"ball", "shell", "either", "cells", "mesh"}
+"""Of these, only pairs with simpler ones are looked at: they are made of the same faces and parts."""
+
+
+@pytest.mark.parametrize(
+    ("first", "second"), [pair for pair in PAIRS if pair[0] == pair[1] or not DENSE.issuperset(pair)]
+)
+def test_regions_that_move_past_each_other(first: str, second: str) -> None:
+    standing, told = KINDS[first](0, 0, 0), 0
+    for place in itertools.chain(*WAYS.values()):
+        if second in FLAT and place[2]:
+            continue
+        one = KINDS[second](*place)
+        if (first, second) in UNKNOWN:
+            with pytest.raises(NotImplementedError):
+                standing.intersects(one)
+            return
+        found = standing.intersects(one)
+        assert one.intersects(standing) is found
+        least = gap(standing, one)
+        if least > (0.35 if standing.dimension >= 2 and one.dimension >= 2 else 0.05):
+            assert found is False
+            told += 1
+        elif least < 1e-9:
+            assert found is True
+            told += 1
+    assert told
+
+
+SHARED = [(0.6, 0.24, 0.0), (0.15, 0.1, 0.3), (0.15, 0.1, -0.25), (9.0, 0.0, 0.0)]
+COARSE = 0.08
+"""Metres: balls have flat faces, and discs corners, where they are combined."""
+NUDGES = [np.zeros(3), *(sign * 2 * COARSE * axis for axis in np.eye(3) for sign in (-1, 1))]
+
+
+def distances(region: Region, points: Floats) -> Any:
+    return region.distances(points, *columns_of(region))
+
+
+def deep(region: Region, points: Floats) -> Any:
+    """Which points are in a region and not near its border; of one of the plane, in it and not near its outline."""
+    flat = np.array([1, 1, 0 if isinstance(region, PlanarRegion) else 1])
+    return np.all([distances(region, points + nudge * flat) < 1e-9 for nudge in NUDGES], axis=0)
+
+
+@pytest.mark.parametrize(
+    ("first", "second"), [pair for pair in PAIRS if pair[0] != pair[1] and not DENSE.issuperset(pair)]
+)
+def test_what_regions_share(first: str, second: str) -> None:
+    for place in SHARED:
+        if second in FLAT and place[2]:
+            continue
+        one, other = KINDS[first](0, 0, 0), KINDS[second](*place)
+        for a, b in ((one, other), (other, one)):
+            points = cloud(a)
+            common, rest = a.intersect(b), a.difference(b)
+            if not isinstance(common, Composite) and a.dimension <= b.dimension:
+                inner = points[deep(b, points)]
+                if len(inner):
+                    assert (distances(common, inner) < COARSE).all()
+            if not isinstance(common, Composite | Footprint) and common is not nowhere:
+                drawn = cloud(common)
+                assert max(distances(a, drawn).max(), distances(b, drawn).max()) < 1e-6
+            if not isinstance(rest, Composite):
+                outer = points[distances(b, points) > 2 * COARSE]
+                if len(outer):
+                    assert (distances(rest, outer) < COARSE).all()
+                if rest is not nowhere:
+                    drawn = cloud(rest)
+                    assert distances(a, drawn).max() < 1e-6
+                    assert not deep(b, drawn).any()
+
+
+HOLDERS: dict[str, Region] = {
+    "disc": named.CircularRegion(Vector(0.2, 0, 0), 3.2),
+    "column": named.RectangularRegion(Vector(0, 0, 5), 0.3, 6, 7).footprint,
+    "box": named.BoxRegion((6, 7, 5), Vector(0.2, 0, 0), Orientation.fromEuler(0.3, 0.1, 0)),
+    "ball": named.SpheroidRegion((7, 8, 7)),
+}
+
+
+@pytest.mark.parametrize("holder", HOLDERS)
+@pytest.mark.parametrize("kind", KINDS)
+def test_regions_that_move_out_of_one(holder: str, kind: str) -> None:
+    whole = HOLDERS[holder]
+    answers = set()
+    for place in [(x, 0.4 * x, z) for x in (0, 0.5, 1.1, 1.7, 2.6, 5, 12) for z in (0.0, 0.4)]:
+        part = KINDS[kind](*place)
+        try:
+            found = whole.containsRegion(part)
+        except NotImplementedError:
+            answers.add(None)
+            continue
+        far = float(whole.distances(cloud(part), *columns_of(whole)).max())
+        if far > 1e-6:
+            assert found is False
+        elif kind not in ("frame", "shell"):  # of these few drawn points are at the ends
+            near = KINDS[kind](place[0] + 0.3, place[1] + 0.12, place[2])
+            if whole.distances(cloud(near), *columns_of(whole)).max() < 1e-9:
+                assert found is True
+        answers.add(found)
