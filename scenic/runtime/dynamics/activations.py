@@ -1,19 +1,14 @@
-"""Running behaviors and monitors, and what all that runs has in common: guards, and being resumed."""
+"""Running behaviors and monitors, and what all that runs yields."""
 
 import inspect
 from collections.abc import Generator
 from typing import TYPE_CHECKING, Any
 
-from scenic.language.errors import (
-    GuardViolation,
-    InvalidScenarioError,
-    InvariantViolation,
-    PreconditionViolation,
-    RejectionException,
-)
+from scenic.language.errors import InvalidScenarioError, InvariantViolation
 from scenic.language.spans import Span
 from scenic.runtime.context import here
 from scenic.runtime.dynamics.definitions import Guard, Invocable
+from scenic.runtime.dynamics.guards import Guarded
 
 if TYPE_CHECKING:
     from scenic.runtime.dynamics.run import Run
@@ -44,7 +39,7 @@ Yielded = tuple[Any, ...] | Termination
 """What running code yields to the simulation: actions (none for ``wait``), or a request to end something."""
 
 
-class Activation:
+class Activation(Guarded):
     """One run of a behavior or monitor.
 
     Args:
@@ -57,7 +52,7 @@ class Activation:
 
     composes = False
     """Whether it runs scenarios."""
-    __slots__ = ("agent", "direct", "generator", "instance", "invariants", "preconditions", "run", "scenario")
+    __slots__ = ("agent", "direct", "generator", "scenario")
 
     def __init__(self, run: "Run", instance: Invocable, agent: Any, scenario: "ScenarioActivation") -> None:
         if instance._activation is not None:
@@ -66,25 +61,19 @@ class Activation:
                 span=here(),
                 help=f"create one for each use: `{instance._definition.name}(...)`",
             )
-        definition = instance._definition
-        self.run = run
-        self.instance = instance
+        super().__init__(run, instance)
         self.agent = agent
         self.scenario = scenario
         self.direct = True
         """Whether the last yield was by a statement of its own, not by something that it does."""
         self.generator: Generator[Yielded, None, Any] | None = None
-        value = run.copies.value
-        self.preconditions: list[Guard] = [value(guard) for guard in definition.preconditions]
-        self.invariants: list[Guard] = [value(guard) for guard in definition.invariants]
 
     def start(self) -> None:
         """Check the guards and get ready; the code begins to run when it is first resumed."""
         self.check_all()
         arguments = self.instance._arguments
         body = self.run.copies.value(self.instance._definition.body)
-        own = (self.instance, self.agent) if self.instance._kind == "behavior" else (self.instance,)
-        self.generator = body(*own, *arguments.args, **arguments.kwargs)
+        self.generator = body(*self._own, *arguments.args, **arguments.kwargs)
         self.instance._activation = self
 
     def resume(self) -> Yielded | None:
@@ -118,33 +107,11 @@ class Activation:
             self.instance._activation = None
             generator.close()
 
-    # Guards
+    @property
+    def _own(self) -> tuple[Any, ...]:
+        """The first arguments of its code and of its guards."""
+        return (self.instance, self.agent) if self.instance._kind == "behavior" else (self.instance,)
 
-    def check_all(self) -> None:
-        """Raise `GuardViolation` unless all guards hold."""
-        for guard in self.preconditions:
-            self._check(guard, PreconditionViolation)
-        self.check_invariants()
-
-    def check_invariants(self) -> None:
-        """Raise `InvariantViolation` unless all invariants hold."""
-        for guard in self.invariants:
-            self._check(guard, InvariantViolation)
-
-    def _check(self, guard: Guard, violation: type[GuardViolation]) -> None:
-        own = (self.instance, self.agent) if self.instance._kind == "behavior" else (self.instance,)
-        try:
-            with self.run.guard():
-                holds = bool(guard(*own))
-        except RejectionException:
-            holds = False
-        if not holds:
-            raise violation(self.instance, guard.__code__.co_firstlineno)
-
-    def may_start(self) -> bool:
-        """Whether all guards hold."""
-        try:
-            self.check_all()
-        except GuardViolation:
-            return False
-        return True
+    def _ask(self, guard: Guard) -> Any:
+        with self.run.guard():
+            return guard(*self._own)

@@ -293,11 +293,8 @@ class Run:
                 obj.__dict__["behavior"] = obj.behavior()
         top.agents = [obj for obj in top.objects if obj.behavior is not None]
         if program.top is not None:
-            top.instance = copies.value(program.top)
+            top.become(copies.value(program.top))
             top.instance._activation = top
-            definition = top.instance._definition
-            top._preconditions = [copies.value(guard) for guard in definition.preconditions]
-            top._invariants = [copies.value(guard) for guard in definition.invariants]
         top.check_all()
         for requirement in program.requirements:
             if requirement.formula is not None and self.simulation.scene.enforces(requirement):

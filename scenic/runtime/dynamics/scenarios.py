@@ -5,17 +5,15 @@ from collections.abc import Generator
 from typing import TYPE_CHECKING, Any
 
 from scenic.language.errors import (
-    GuardViolation,
     InvalidScenarioError,
     InvariantViolation,
-    PreconditionViolation,
-    RejectionException,
     ScenicTypeError,
 )
 from scenic.runtime.context import here
 from scenic.runtime.dynamics.activations import Activation, Termination, Yielded
 from scenic.runtime.dynamics.declarations import Declared, End, MonitorUse, Required
 from scenic.runtime.dynamics.definitions import Guard, ModularScenario, Monitor
+from scenic.runtime.dynamics.guards import Guarded
 from scenic.runtime.dynamics.overriding import Overrides
 from scenic.runtime.dynamics.recording import Recording
 from scenic.runtime.dynamics.requirements import Followed
@@ -28,7 +26,7 @@ if TYPE_CHECKING:
 __all__ = ["ScenarioActivation"]
 
 
-class ScenarioActivation:
+class ScenarioActivation(Guarded):
     """One run of a scenario.
 
     Args:
@@ -49,8 +47,7 @@ class ScenarioActivation:
                 span=here(),
                 help=f"create one for each use: `{instance._definition.name}(...)`",
             )
-        self.run = run
-        self.instance = instance
+        super().__init__(run, instance)
         self.parent = parent
         self.ego: Any = None if parent is None else parent.ego
         self.workspace: Any = None if parent is None else parent.workspace
@@ -74,12 +71,6 @@ class ScenarioActivation:
         self._limit: float | None = None
         self._compose: Generator[Yielded, None, Any] | None = None
         self._resumed = False
-        self._preconditions: list[Guard] = []
-        self._invariants: list[Guard] = []
-        if instance is not None:
-            value = run.copies.value
-            self._preconditions = [value(guard) for guard in instance._definition.preconditions]
-            self._invariants = [value(guard) for guard in instance._definition.invariants]
 
     # Beginning
 
@@ -140,35 +131,9 @@ class ScenarioActivation:
         activation.start()
         self.monitors.append(activation)
 
-    # Guards
-
-    def check_all(self) -> None:
-        """Raise `GuardViolation` unless all guards hold."""
-        for guard in self._preconditions:
-            self._check(guard, PreconditionViolation)
-        self.check_invariants()
-
-    def check_invariants(self) -> None:
-        """Raise `InvariantViolation` unless all invariants hold."""
-        for guard in self._invariants:
-            self._check(guard, InvariantViolation)
-
-    def _check(self, guard: Guard, violation: type[GuardViolation]) -> None:
-        try:
-            with self.run.within(self), self.run.guard():
-                holds = bool(guard(self.instance))
-        except RejectionException:
-            holds = False
-        if not holds:
-            raise violation(self.instance, guard.__code__.co_firstlineno)
-
-    def may_start(self) -> bool:
-        """Whether all guards hold."""
-        try:
-            self.check_all()
-        except GuardViolation:
-            return False
-        return True
+    def _ask(self, guard: Guard) -> Any:
+        with self.run.within(self), self.run.guard():
+            return guard(self.instance)
 
     # Every step
 
@@ -184,7 +149,7 @@ class ScenarioActivation:
         self._elapsed += 1
         with run.within(self):
             violation: InvariantViolation | None = None
-            if self._invariants and self.direct and (self._resumed or self._compose is None):
+            if self.invariants and self.direct and (self._resumed or self._compose is None):
                 try:
                     self.check_invariants()
                 except InvariantViolation as found:
