@@ -121,7 +121,18 @@ def session(lines: int, edits: int, folder: Path) -> None:
 
         return wait
 
+    def line_end(_index: int) -> float:
+        start = time.perf_counter()
+        client.published(uri, version=edit("\n"))
+        return time.perf_counter() - start
+
     print(f"  diagnostics after a keystroke    {measured(client, edits, diagnostics)}")
+    client.change(uri, text)
+    print(f"  diagnostics after a new line     {measured(client, edits, line_end)}")
+    # Elsewhere a bracket is open.
+    client.published(uri, version=client.change(uri, text.replace("def f5(a, b=1)", "def f5(a, b=1")))
+    print(f"  the same in a broken text        {measured(client, edits, diagnostics)}")
+    client.published(uri, version=client.change(uri, text))
     for name, method, settled in (
         ("completion", "textDocument/completion", True),
         ("hover", "textDocument/hover", True),

@@ -49,6 +49,9 @@ _CLOSERS: Final = frozenset(OPERATORS[text] for text in ")]}")
 _COMMA: Final = OPERATORS[","]
 _COLON: Final = OPERATORS[":"]
 _SEMICOLON: Final = OPERATORS[";"]
+
+_SUSPECT: Final = (_FOLLOW, _NOT, _LAMBDA, _REQUIRE)
+_STATEMENT_ENDS: Final = frozenset({NEWLINE, _SEMICOLON})
 _ENDS: Final = frozenset({OPERATORS["="], OPERATORS[":="]})
 
 _CONNECTIVES: Final = frozenset({HARD_KEYWORDS["and"], HARD_KEYWORDS["or"]})
@@ -119,16 +122,33 @@ class _Frame:
 
 def closed_operands(tokens: Tokens) -> list[Operand]:
     """The operands in ``tokens`` that have to end before a closing word, although one within them could use it."""
-    scan = _Scan(tokens.kinds)
+    kinds, lines, columns = tokens.kinds, tokens.lines, tokens.columns
+    scan = _Scan(kinds)
     found: list[Operand] = []
-    lines, columns = tokens.lines, tokens.columns
     start = 0
-    for index, kind in enumerate(tokens.kinds):
-        if kind in (NEWLINE, _SEMICOLON):
-            places = (lines[start], columns[start]), (lines[index], columns[index])
-            found += (Operand(*each, *places) for each in scan.statement(start, index))
-            start = index + 1
+    done = -1
+    # What can be wrong here takes an operator that must have its words, or a condition with an instance.
+    for index in sorted(place for kind in _SUSPECT for place in _places(kinds, kind)):
+        if index < done:
+            continue
+        start = index
+        while start > 0 and kinds[start - 1] not in _STATEMENT_ENDS:
+            start -= 1
+        done = index
+        while done < len(kinds) and kinds[done] not in _STATEMENT_ENDS:
+            done += 1
+        if done < len(kinds):
+            places = (lines[start], columns[start]), (lines[done], columns[done])
+            found += (Operand(*each, *places) for each in scan.statement(start, done))
     return found
+
+
+def _places(kinds: list[int], kind: int) -> Iterator[int]:
+    """Where a kind stands."""
+    place = -1
+    for _ in range(kinds.count(kind)):
+        place = kinds.index(kind, place + 1)
+        yield place
 
 
 def in_parentheses(tokens: Tokens, operands: Iterable[Operand]) -> Tokens:
@@ -176,14 +196,11 @@ class _Scan:
         self._kinds = kinds
         self._found: list[tuple[int, int]] = []
 
-    def statement(self, start: int, end: int) -> Iterator[tuple[int, int]]:
+    def statement(self, start: int, end: int) -> list[tuple[int, int]]:
         """The operands in the tokens of one simple statement or header: their first tokens and those after them."""
-        kinds = self._kinds
-        # What can be wrong here takes an operator that must have its words, or a condition with an instance.
-        if not {_FOLLOW, _NOT, _LAMBDA, _REQUIRE}.isdisjoint(kinds[start:end]):
-            self._found = []
-            self._read(start, end)
-            yield from self._found
+        self._found = []
+        self._read(start, end)
+        return self._found
 
     def _read(self, start: int, end: int) -> None:
         kinds = self._kinds

@@ -1,9 +1,8 @@
 """Parsing a text again after a change: statements at the top level that are as before are neither lexed nor parsed.
 
-The result is the same as that of parsing the whole text. Two things make that so. The lexer is in the same state at every
-line that begins a statement at the top level of a text without lexical mistakes, so that a stretch of lines between two
-such can be replaced by itself. And what the parser makes of a statement depends on its tokens alone, and on whether what
-follows goes on with it, which is looked at each time.
+The result is the same as that of parsing the whole text. Two things make that so. Tokens are taken over where the lexers
+have nothing else in mind (`scenic.compiler.relexing`). And what the parser makes of a statement depends on its tokens alone,
+and on whether what follows goes on with it, which is looked at each time.
 """
 
 import ast
@@ -23,6 +22,7 @@ from scenic.compiler.parser import (
     result_of,
     tokens_of_longest_line,
 )
+from scenic.compiler.relexing import Change, Lexed, Splice, lex_again
 from scenic.compiler.tokens import DEDENT, ENDMARKER, INDENT, NEWLINE, Tokens
 from scenic.compiler.traversal import FIELDS
 from scenic.language.garbage import no_garbage_collection
@@ -30,35 +30,27 @@ from scenic.language.garbage import no_garbage_collection
 __all__ = ["Revision", "revise"]
 
 _LAYOUT = frozenset({NEWLINE, INDENT, DEDENT, ENDMARKER})
+_ENDS = frozenset({NEWLINE, DEDENT})
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Revision:
     """One version of a text with its tokens and tree, from which the next version takes what has not changed.
 
-    ``tokens`` are those of the plain lexer. ``parsed`` says where in the tokens that were parsed (which may be others, if
-    there are mistakes) the statements of the top level stand.
+    ``plain`` is what the plain lexer made of it, ``careful`` what the careful one made of the last version with a mistake,
+    after the lines of that. ``parsed`` says where in the tokens that were parsed the statements of the top level stand.
     """
 
     lines: tuple[str, ...]
-    tokens: Tokens
+    plain: Lexed
+    careful: tuple[tuple[str, ...], Lexed] | None
     parsed: Parsed
     result: ParseResult
 
-
-@dataclass(frozen=True, slots=True)
-class _Change:
-    """What has changed between two texts: ``first`` lines at the beginning are the same, and ``last`` at the end."""
-
-    first: int
-    last: int
-    before: int
-    after: int
-
     @property
-    def shift(self) -> int:
-        """By how much the lines at the end have moved."""
-        return self.after - self.before
+    def tokens(self) -> Tokens:
+        """The tokens of the plain lexer."""
+        return self.plain.tokens
 
 
 def revise(text: str, before: Revision | None = None, *, filename: str = "<string>") -> Revision:
@@ -68,22 +60,33 @@ def revise(text: str, before: Revision | None = None, *, filename: str = "<strin
     """
     lines = tuple(text.split("\n"))
     longest: int | None = None
+    careful = None if before is None else before.careful
+
+    def reread(text: str) -> Tokens:
+        nonlocal careful
+        again = None
+        if careful is not None:
+            again = lex_again(text, lines, careful[1], _difference(careful[0], lines), _carefully)
+        careful = lines, _carefully(text) if again is None else again[0]
+        return careful[1].tokens
+
     with no_garbage_collection():
         if before is None:
-            tokens = lex(text, WORDS)
-            parsed = parse_tokens(tokens)
+            plain = _plainly(text)
+            parsed = parse_tokens(plain.tokens, reread=reread)
         else:
             change = _difference(before.lines, lines)
-            splice = _lexed(text, lines, before, change)
-            tokens = lex(text, WORDS) if splice is None else splice.tokens
-            parsed = parse_tokens(tokens, lambda read: _known(read, before.parsed, change, splice))
+            again = lex_again(text, lines, before.plain, change, _plainly)
+            plain, splice = (_plainly(text), None) if again is None else again
+            tokens = plain.tokens
+            parsed = parse_tokens(tokens, lambda read: _known(read, before.parsed, change, splice), reread)
             if splice is not None and before.result.longest_line <= len(tokens.kinds):
                 fresh = tokens.kinds[splice.begin : splice.end + splice.moved]
                 longest = max(before.result.longest_line, tokens_of_longest_line(fresh))
-    return Revision(lines, tokens, parsed, result_of(parsed, filename, longest))
+    return Revision(lines, plain, careful, parsed, result_of(parsed, filename, longest))
 
 
-def _difference(before: Sequence[str], after: Sequence[str]) -> _Change:
+def _difference(before: Sequence[str], after: Sequence[str]) -> Change:
     most = min(len(before), len(after))
     first = _same(lambda begin, end: before[begin:end] == after[begin:end], most)
     last = _same(
@@ -92,7 +95,7 @@ def _difference(before: Sequence[str], after: Sequence[str]) -> _Change:
         ),
         most - first,
     )
-    return _Change(first, last, len(before), len(after))
+    return Change(first, last, len(before), len(after))
 
 
 def _same(agree: Callable[[int, int], bool], most: int) -> int:
@@ -110,95 +113,30 @@ def _same(agree: Callable[[int, int], bool], most: int) -> int:
 # Tokens
 
 
-@dataclass(frozen=True, slots=True)
-class _Splice:
-    """Tokens of which those before ``begin`` are as they were, and so are those that began at ``end``.
-
-    ``old`` are the tokens before; ``moved`` is by how many tokens the latter are further back.
-    """
-
-    tokens: Tokens
-    old: Tokens
-    begin: int
-    end: int
-    moved: int
-
-
-def _lexed(text: str, lines: Sequence[str], before: Revision, change: _Change) -> _Splice | None:
-    """The tokens of a text, those of unchanged lines taken over; ``None`` if lexical mistakes are in the way."""
-    old = before.tokens
-    if old.diagnostics:
-        return None
-    starts = _starts(old, before.parsed)
-    start_lines = [old.lines[index] for index in starts]
-    # The statement before the change may go on with what has changed.
-    head = bisect_left(start_lines, change.first + 1) - 1
-    begin, first_line = (starts[head], start_lines[head]) if head >= 0 else (0, 1)
-    tail = bisect_right(start_lines, change.before - change.last)
-    if tail < len(starts):
-        end, end_line = starts[tail], start_lines[tail] + change.shift
-    else:
-        end, end_line = len(old.kinds), len(lines) + 1
-    part = "\n".join(lines[first_line - 1 : end_line - 1])
-    if end_line <= len(lines):
-        part += "\n"
-    fresh = lex(part, WORDS)
-    if fresh.diagnostics:
-        return None
-    if end_line <= len(lines):
-        for column in (
-            fresh.kinds,
-            fresh.texts,
-            fresh.lines,
-            fresh.columns,
-            fresh.end_lines,
-            fresh.end_columns,
-        ):
-            column.pop()  # The end of the file, which is not here.
-    down, shift = first_line - 1, change.shift
-    if text and not text.endswith("\n"):
-        text += "\n"
-    tokens = Tokens(
-        text,
-        old.kinds[:begin] + fresh.kinds + old.kinds[end:],
-        old.texts[:begin] + fresh.texts + old.texts[end:],
-        old.lines[:begin] + _moved(fresh.lines, down) + _moved(old.lines[end:], shift),
-        old.columns[:begin] + fresh.columns + old.columns[end:],
-        old.end_lines[:begin] + _moved(fresh.end_lines, down) + _moved(old.end_lines[end:], shift),
-        old.end_columns[:begin] + fresh.end_columns + old.end_columns[end:],
-        [each for each in old.comments if each[0] < first_line]
-        + [(line + down, column, comment) for line, column, comment in fresh.comments]
-        + [
-            (line + shift, column, comment)
-            for line, column, comment in old.comments
-            if line + shift >= end_line and line > change.before - change.last
-        ],
-    )
-    return _Splice(tokens, old, begin, end, begin + len(fresh.kinds) - end)
-
-
-def _starts(tokens: Tokens, parsed: Parsed) -> list[int]:
-    """The tokens with which statements of the top level begin."""
+def _plainly(text: str) -> Lexed:
+    tokens = lex(text, WORDS)
     kinds, columns = tokens.kinds, tokens.columns
-    # Where these tokens were parsed, the statements are known already.
-    candidates = sorted(parsed.statements) if parsed.tokens is tokens else range(len(kinds))
-    return [
+    afresh = [
         index
-        for index in candidates
-        if columns[index] == 0
-        and kinds[index] not in _LAYOUT
-        and (index == 0 or kinds[index - 1] in (NEWLINE, DEDENT))
+        for index, column in enumerate(columns)
+        if not column and kinds[index] not in _LAYOUT and (not index or kinds[index - 1] in _ENDS)
     ]
+    return Lexed(tokens, afresh)
 
 
-def _moved(lines: list[int], by: int) -> list[int]:
-    return [line + by for line in lines] if by else lines
+def _carefully(text: str) -> Lexed:
+    # A text without mistakes does not wait for what reads another one.
+    from scenic.compiler.careful import lex_carefully
+
+    afresh: list[int] = []
+    tokens = lex_carefully(text, WORDS, afresh)
+    return Lexed(tokens, afresh)
 
 
 # Statements
 
 
-def _known(tokens: Tokens, before: Parsed, change: _Change, splice: _Splice | None) -> Statements:
+def _known(tokens: Tokens, before: Parsed, change: Change, splice: Splice | None) -> Statements:
     """The statements of the version before that stand in these tokens too: by their first token."""
     old = before.tokens
     wrong = _wrong_lines(before)

@@ -9,7 +9,7 @@ something is missing. Indentation is repaired instead, so that the blocks around
 """
 
 import unicodedata
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from itertools import islice
 from typing import ClassVar, Final, NamedTuple
@@ -41,7 +41,9 @@ def lex(text: str, words: Mapping[str, int]) -> Tokens:
     return prepared(text, words, Lexer)
 
 
-def prepared(text: str, words: Mapping[str, int], lexer: "type[Lexer]") -> Tokens:
+def prepared(
+    text: str, words: Mapping[str, int], lexer: "Callable[[str, Mapping[str, int]], Lexer]"
+) -> Tokens:
     """What ``lexer`` makes of a text, without its byte order mark and with line ends as it wants them."""
     text = text.lstrip("\ufeff")
     if "\r" in text:

@@ -61,6 +61,11 @@ def open_string(quote: str, span: Span) -> Diagnostic:
     return Diagnostic("SC101", "this string is never closed", span, help=f"add `{quote}`")
 
 
+def is_open_text(diagnostic: Diagnostic) -> bool:
+    """Whether it says that a string of several lines is not closed, which all of the text after it may change."""
+    return diagnostic.code == "SC101" and (diagnostic.help or "").endswith(('"""`', "'''`"))
+
+
 def unmatched_unindent(span: Span) -> Diagnostic:
     return Diagnostic(
         "SC102",

@@ -61,6 +61,10 @@ class Parsed:
     statements: Statements
 
 
+Reread: TypeAlias = Callable[[str], Tokens]
+"""Reads a text that is known to be wrong."""
+
+
 def parse(text: str, *, filename: str = "<string>") -> ParseResult:
     """Parse a Scenic program.
 
@@ -96,8 +100,11 @@ def tokens_of_longest_line(kinds: list[int]) -> int:
     return max(longest, len(kinds) - start)
 
 
-def parse_tokens(tokens: Tokens, known: Known = lambda _tokens: {}) -> Parsed:
-    """Parse the tokens of a text, as the plain lexer gives them; statements that are ``known`` are taken over."""
+def parse_tokens(tokens: Tokens, known: Known = lambda _tokens: {}, reread: Reread | None = None) -> Parsed:
+    """Parse the tokens of a text, as the plain lexer gives them; statements that are ``known`` are taken over.
+
+    ``reread`` is the careful lexer, or what gives the same.
+    """
     text = tokens.text
     parsed = _fast(tokens, known)
     if parsed is not None:
@@ -107,14 +114,14 @@ def parse_tokens(tokens: Tokens, known: Known = lambda _tokens: {}) -> Parsed:
     from scenic.compiler.closing_words import closed_operands, in_parentheses
 
     # Statements that are wrong because an operator took a closing word from another are read once more without that.
-    operands = closed_operands(tokens)
+    operands = None if tokens.diagnostics else closed_operands(tokens)
     if operands:
         parsed = _fast(in_parentheses(tokens, operands), known)
         if parsed is not None:
             return parsed
     # Now the text is known to be wrong.
-    tokens = lex_carefully(text, WORDS)
-    operands = closed_operands(tokens) if operands else []
+    tokens = lex_carefully(text, WORDS) if reread is None else reread(text)
+    operands = [] if operands == [] else closed_operands(tokens)
     for _ in range(2):
         if not operands:
             break

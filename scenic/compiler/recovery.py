@@ -108,7 +108,7 @@ class Recovery:
             if self._kinds[position] == ENDMARKER:
                 self._forget_guards()
                 module = self.actions.module(body)
-                set_contexts(module)
+                set_contexts(module, {node for nodes, _ in self._known.values() for node in nodes})
                 return module
             position += 1  # the end of a block that never began
 
@@ -145,7 +145,7 @@ class Recovery:
                 found, position, _ = self._clause(start)
                 node = self._error(start, position, found)
             elif rule in _OF_STATEMENTS and self._is_clause(start):
-                unfinished = self._unfinished_clause(start)
+                unfinished = self._unfinished_clause(start, previous)
                 node, position = self._stray_clause(start, previous, unfinished=unfinished is not None)
                 if unfinished is not None and unfinished == previous and isinstance(body[-1], ast.Expr):
                     body[-1] = self._error(previous, start, [])
@@ -239,7 +239,7 @@ class Recovery:
         if kind in _CLAUSES:
             return True
         if kind == _INTERRUPT:
-            return kinds[position + 1] == _WHEN
+            return kinds[position + 1] == _WHEN or self._has_block(position)
         if kind in (_SETUP, _COMPOSE):
             return kinds[position + 1 : position + 4] == [_COLON, NEWLINE, INDENT]
         return kind == _CASE and self._has_block(position)
@@ -251,15 +251,23 @@ class Recovery:
             position += 1
         return kinds[position] == NEWLINE and kinds[position + 1] == INDENT
 
-    def _unfinished_clause(self, position: int) -> int | None:
-        """The line before the one at ``position``, if it is the beginning of a clause that is being typed."""
+    def _unfinished_clause(self, position: int, previous: int | None) -> int | None:
+        """The line before the one at ``position``, if it is the beginning of a clause that is being typed.
+
+        If a block stands between them, that line is the one of the statement at ``previous``.
+        """
         kinds = self._kinds
-        if position < 2 or kinds[position - 1] != NEWLINE:
+        if position < 2:
             return None
-        start = position - 1
-        while start > 0 and kinds[start - 1] not in (NEWLINE, INDENT, DEDENT) and position - start < 4:
-            start -= 1
-        words = self.tokens.texts[start : position - 1]
+        if kinds[position - 1] == NEWLINE:
+            start, end = position - 1, position - 1
+            while start > 0 and kinds[start - 1] not in (NEWLINE, INDENT, DEDENT) and position - start < 4:
+                start -= 1
+        elif previous is not None and self._has_block(previous):
+            start, end = previous, self._line_end(previous)
+        else:
+            return None
+        words = self.tokens.texts[start:end]
         if not words or len(words) > 2 or (words[1:] and not "when".startswith(words[1])):
             return None
         return start if any(word.startswith(words[0]) for word in _CLAUSE_WORDS) else None
@@ -313,6 +321,10 @@ class Recovery:
         kind = kinds[start]
         if kind == _CASE:
             return self._clause_as("case_block", start, start, _CASE)
+        if kind == _INTERRUPT and kinds[start + 1] != _WHEN:
+            self._explain(start, start + 1, {_WHEN}, None)
+            body, end = self._skip_lines("statement", start, start + 1)
+            return body, end, False
         if kind == _INTERRUPT:
             return self._clause_as("statement", start, start + 1, _WHILE)
         if kind == _ELIF:
@@ -442,6 +454,13 @@ class Recovery:
             position += 1
         return position
 
+    def _line_start(self, position: int) -> int:
+        """The token that begins the line."""
+        kinds = self._kinds
+        while position > 0 and kinds[position - 1] not in (NEWLINE, INDENT, DEDENT):
+            position -= 1
+        return position
+
     def _skip_lines(self, rule: str, start: int, farthest: int) -> tuple[list[Any], int]:
         """Skip lines with their blocks until ``farthest`` is behind; what is in the blocks is returned."""
         position, body = self._skip_line(start, in_specifiers=rule == "specifier_line")
@@ -483,6 +502,11 @@ class Recovery:
         Also tells whether the line before is a header that is not complete.
         """
         first = position + 1
+        before = self._line_start(max(0, position - 2))
+        if before in self._reported and self._unfinished_clause(position, before) is not None:
+            # The block of a clause of which it has been said already that it is not complete.
+            body, end = self.statements(rule, first)
+            return body, end + (self._kinds[end] == DEDENT), True
         header = None
         specifiers = rule == "specifier_line" or self._is_specifier(first)
         if not self._lexical_between(first, first) and first not in self._reported:

@@ -251,6 +251,7 @@ class Resolution:
         self._tree = tree
         self._nodes: dict[type[ast.AST], list[tuple[Any, Scope]]] = {}
         self._more: Mapping[ast.AST, Reference] = {}
+        self._recent: Mapping[ast.AST, Reference] = {}
 
     def _names(self) -> dict[str, Binding]:
         names: dict[str, Binding] = {}
@@ -367,12 +368,18 @@ class Resolution:
         known: Mapping[ast.AST, Reference] | None = self.__dict__.get("references")
         if known is not None:
             return known.get(node)  # type: ignore[arg-type]
-        for references in (self._more, *(each.references for each in self.stretches)):
-            found = references.get(node)  # type: ignore[arg-type]
-            if found is not None:
-                binding = found.binding or self.names.get(found.node.id)
-                return found if binding is found.binding else Reference(found.node, found.scope, binding)
-        return None
+        if not isinstance(node, ast.Name):
+            return None
+        found = self._more.get(node) or self._recent.get(node)
+        if found is None:
+            # Who asks for one name asks for others near it.
+            around = next((each.references for each in self.stretches if node in each.references), None)
+            if around is None:
+                return None
+            self._recent = around
+            found = around[node]
+        binding = found.binding or self.names.get(found.node.id)
+        return found if binding is found.binding else Reference(found.node, found.scope, binding)
 
     def binding(self, name: ast.AST) -> Binding | None:
         """What a name of the program means, as far as the text says."""

@@ -91,7 +91,9 @@ NOTED: Final = frozenset(
         scenic.BehaviorDef,
         scenic.Model,
         scenic.MonitorDef,
+        scenic.Record,
         scenic.ScenarioDef,
+        scenic.TerminateWhen,
         *(cls for cls, _ in _NODE_RULES),
     }.union(declarations.NOTED, names.NOTED, placement.NOTED, support.NOTED)
 )

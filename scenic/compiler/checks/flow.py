@@ -57,7 +57,7 @@ def check_flow(piece: Piece, context: Context) -> Iterator[Diagnostic]:
                 if (
                     isinstance(statement, ast.While)
                     and truth(statement.test) is True
-                    and not _gives_way(statement)
+                    and not _gives_way(statement, context)
                     and not context.broken
                 ):
                     endless.add(statement)
@@ -74,10 +74,13 @@ def _after_end(statements: Sequence[Any], where: Where, context: Context) -> Ite
 
 
 def _unreachable(context: Context, ending: Any, rest: Sequence[Any]) -> Iterator[Diagnostic]:
-    # A lone `yield` or `wait` after `return` makes a generator or a behavior of what has nothing else to do.
+    # A lone `yield` or `wait` after `return` makes a generator or a behavior of what has nothing else to do; `terminate` is
+    # something to do.
     if len(rest) == 1:
         only = rest[0]
-        if isinstance(only, ast.Pass | scenic.Wait):
+        if isinstance(only, ast.Pass) or (
+            isinstance(only, scenic.Wait) and not isinstance(ending, scenic.Terminate)
+        ):
             return
         if isinstance(only, ast.Expr) and isinstance(only.value, ast.Yield | ast.YieldFrom | ast.Constant):
             return
@@ -136,7 +139,7 @@ def _breaks(loop: ast.While) -> bool:
     return False
 
 
-def _gives_way(loop: ast.While) -> bool:
+def _gives_way(loop: ast.While, context: Context) -> bool:
     """Whether a loop may let time pass or end."""
     if _breaks(loop):
         return True
@@ -144,6 +147,8 @@ def _gives_way(loop: ast.While) -> bool:
     while stack:
         node = stack.pop()
         if isinstance(node, (*_LASTING, *_LEAVING, scenic.TryInterrupt, ast.Yield, ast.YieldFrom, ast.Await)):
+            return True
+        if _is_forgotten(node, context):
             return True
         if not isinstance(node, _OWN_BODIES):
             stack.extend(parts(node))
@@ -163,7 +168,12 @@ def _timeless(piece: Piece, context: Context, endless: set[ast.AST]) -> Iterator
     for cls in (scenic.BehaviorDef, scenic.MonitorDef, scenic.ScenarioDef):
         for node, _ in piece.nodes(cls):
             body = node.compose if cls is scenic.ScenarioDef else node.body
-            if not body or _lasts(body) or any(loop in endless for loop in _loops(body)) or context.broken:
+            if (
+                not body
+                or _lasts(body, context)
+                or any(loop in endless for loop in _loops(body))
+                or context.broken
+            ):
                 continue
             kind = {scenic.BehaviorDef: "behavior", scenic.MonitorDef: "monitor"}.get(cls)
             if kind is None:
@@ -184,11 +194,11 @@ def _timeless(piece: Piece, context: Context, endless: set[ast.AST]) -> Iterator
             )
 
 
-def _lasts(body: list[Any]) -> bool:
+def _lasts(body: list[Any], context: Context) -> bool:
     stack: list[ast.AST] = [*body]
     while stack:
         node = stack.pop()
-        if isinstance(node, _LASTING) or _is_begun(node):
+        if isinstance(node, _LASTING) or _is_begun(node) or _is_forgotten(node, context):
             return True
         if not isinstance(node, (*_OWN_BODIES, ast.expr)):
             stack.extend(parts(node))
@@ -198,6 +208,16 @@ def _lasts(body: list[Any]) -> bool:
 def _is_begun(node: ast.AST) -> bool:
     """Whether a statement is a `take` of which only the word is written."""
     return isinstance(node, ast.Expr) and isinstance(node.value, ast.Name) and node.value.id == "take"
+
+
+def _is_forgotten(node: ast.AST, context: Context) -> bool:
+    """Whether a statement makes a behavior or scenario without `do`, of which SC312 tells."""
+    if not isinstance(node, ast.Expr) or not isinstance(node.value, ast.Call):
+        return False
+    function = node.value.func
+    foreign = context.foreign(function)
+    definition: Any = context.definition(function) if foreign is None else foreign.definition
+    return isinstance(definition, scenic.BehaviorDef | scenic.ScenarioDef)
 
 
 def _loops(body: list[Any]) -> Iterator[ast.AST]:

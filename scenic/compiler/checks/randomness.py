@@ -14,6 +14,9 @@ from scenic.language.statements import Place
 
 __all__ = ["RULES"]
 
+_LATER: Final = (scenic.Require, scenic.Record, scenic.TerminateWhen)
+"""Statements whose expressions are evaluated later, on samples."""
+
 _DEEPEST: Final = 20
 """How far values are looked into."""
 
@@ -59,6 +62,8 @@ def _decides(node: ast.If | ast.While | ast.IfExp, scope: Scope, context: Contex
     where = where_of(node, scope)
     if scope is not context.resolution.module or where.place is not Place.TOP:
         return
+    if isinstance(node.test, ast.UnaryOp) and isinstance(node.test.op, ast.Not):
+        return  # `_truth` tells.
     if _in_condition(node, context) or not _is_random(node.test, context):
         return
     what = "comparing" if isinstance(node.test, ast.Compare) else "deciding by"
@@ -71,21 +76,60 @@ def _decides(node: ast.If | ast.While | ast.IfExp, scope: Scope, context: Contex
     )
 
 
-def _in_condition(node: ast.AST, context: Context) -> bool:
-    """Whether a conditional expression is a part of what is evaluated later, on samples."""
-    if not isinstance(node, ast.IfExp):
+def _iterates(node: ast.For, scope: Scope, context: Context) -> Iterator[Diagnostic]:
+    """SC403: ``for i in range(x)`` with a random ``x``."""
+    where = where_of(node, scope)
+    if scope is not context.resolution.module or where.place is not Place.TOP:
+        return
+    counted = node.iter
+    is_range = isinstance(counted, ast.Call) and context.provided(counted.func) == "range"
+    values = counted.args if isinstance(counted, ast.Call) and is_range else [counted]
+    if not any(_is_random(each, context) for each in values):
+        return
+    yield context.error(
+        "SC403",
+        "a loop over a random value is not possible while the scenario is being built",
+        counted,
+        "its value is known only in a sampled scene; loop over all that it can be, or make each part random by itself",
+    )
+
+
+def _truth(node: ast.BoolOp | ast.UnaryOp, scope: Scope, context: Context) -> Iterator[Diagnostic]:
+    """SC403: ``x and y``, ``not x`` with a random ``x``."""
+    if scope is not context.resolution.module or where_of(node, scope).place is not Place.TOP:
+        return
+    if isinstance(node, ast.UnaryOp):
+        asked = [node.operand] if isinstance(node.op, ast.Not) else []
+    else:
+        asked = node.values[:-1]
+    wrong = next((each for each in asked if _is_random(each, context)), None)
+    if wrong is None or _in_condition(node, context):
+        return
+    yield context.error(
+        "SC403",
+        "asking whether a random value is true is not possible while the scenario is being built",
+        wrong,
+        "its value is known only in a sampled scene; use `require`, where `and`, `or` and `not` may stand",
+    )
+
+
+def _in_condition(node: ast.expr | ast.stmt, context: Context) -> bool:
+    """Whether an expression is a part of what is evaluated later, on samples."""
+    if not isinstance(node, ast.expr):
         return False
     place = (node.lineno, node.col_offset)
-    later = (scenic.Require, scenic.Record, scenic.TerminateWhen)
     return any(
         (statement.lineno, statement.col_offset) <= place < (statement.end_lineno, statement.end_col_offset)
-        for statement in context.tree.body
-        if isinstance(statement, later)
+        for cls in _LATER
+        for statement, _ in context.nodes(cls)
     )
 
 
 RULES: Final[dict[type[ast.AST], NodeRule]] = {
+    ast.BoolOp: _truth,
+    ast.For: _iterates,
     ast.If: _decides,
     ast.IfExp: _decides,
+    ast.UnaryOp: _truth,
     ast.While: _decides,
 }

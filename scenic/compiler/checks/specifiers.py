@@ -2,6 +2,7 @@
 
 import ast
 from collections.abc import Iterator, Mapping
+from types import MappingProxyType
 from typing import Any, Final
 
 from scenic.compiler import tree as scenic
@@ -11,10 +12,24 @@ from scenic.compiler.checks.places import word_span
 from scenic.compiler.scopes import Scope
 from scenic.compiler.surroundings import Property
 from scenic.language.diagnostics import Diagnostic
+from scenic.language.operators import OPERATORS
 from scenic.language.spans import Span
 from scenic.language.specifiers import SPECIFIERS, Specified
 
 __all__ = ["RULES"]
+
+
+_SPECIFIER_OF_SIDE: Final = MappingProxyType(
+    {
+        "front of": "ahead of",
+        "back of": "behind",
+        "left of": "left of",
+        "right of": "right of",
+        "top of": "above",
+        "bottom of": "below",
+    }
+)
+"""The specifier that places an object beyond a side."""
 
 
 def _specified(node: scenic.SpecifierPhrase) -> tuple[Specified, ...]:
@@ -33,6 +48,7 @@ def _override(node: scenic.Override, _scope: Scope, context: Context) -> Iterato
 
 
 def _new(node: scenic.New, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+    yield from _regions(node.specifiers, context)
     conflicts = list(_conflicts(node.specifiers, context))
     yield from conflicts
     properties = context.classes.properties(node.cls)
@@ -42,6 +58,27 @@ def _new(node: scenic.New, _scope: Scope, context: Context) -> Iterator[Diagnost
     yield from finals
     if not conflicts and not finals:
         yield from _cycle(node, properties, context)
+
+
+def _regions(specifiers: list[scenic.SpecifierPhrase], context: Context) -> Iterator[Diagnostic]:
+    """SC404: a point where a region is wanted: ``in front of x``."""
+    for specifier in specifiers:
+        declared = SPECIFIERS.get(specifier.specifier)
+        pairs = () if declared is None else zip(declared.operands, specifier.operands, strict=False)
+        for operand, value in pairs:
+            if operand.type != "region" or not isinstance(value, scenic.Operation):
+                continue
+            operator = OPERATORS.get(value.operator)
+            if operator is None or operator.result != "oriented point":
+                continue
+            side = _SPECIFIER_OF_SIDE.get(value.operator)
+            yield context.error(
+                "SC404",
+                f"`{specifier.specifier}` needs a region, and `{value.operator}` gives a point",
+                value,
+                f"write `at {value.operator} ...`"
+                + (f", or `{side} ...`, which leaves a gap" if side else ""),
+            )
 
 
 def _conflicts(specifiers: list[scenic.SpecifierPhrase], context: Context) -> Iterator[Diagnostic]:

@@ -221,6 +221,9 @@ _CLAUSES: Final = {
 """Clauses after which not every clause can come, and the order of clauses there."""
 
 
+_AFTER_TRY: Final = ("except", "finally", "interrupt")
+
+
 def try_alone(at: Situation) -> Problem | None:
     """`try` without any clause."""
     if not at.expects("`except`, `finally` or `interrupt when`"):
@@ -232,6 +235,15 @@ def try_alone(at: Situation) -> Problem | None:
         wrong = misspelt(clause) or first_word(clause)
         if wrong is not None:
             return wrong
+        if at.trials.line(at.token)[1] == at.token + 1 and any(
+            each.startswith(at.word(at.token)) for each in _AFTER_TRY
+        ):
+            return at.problem(
+                "SC110",
+                at.here(),
+                f"`{at.word(at.token)}` is no complete clause",
+                "write the whole clause, with a colon at its end",
+            )
     return at.problem(
         "SC134",
         at.here(),

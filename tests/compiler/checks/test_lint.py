@@ -106,6 +106,18 @@ def test_repairs_repair(case: Path) -> None:
         ("x = Range(0, 1)\nif x > 0.5:\n    y = 3\nego = new Object\n", [("SC403", 2, 3)]),
         ("x = Range(0, 1)\ny = 1 if abs(-x) > 0.5 else 2\nego = new Object\n", [("SC403", 2, 9)]),
         ("x = Uniform(1, 2)\nwhile x: pass\nego = new Object\n", [("SC403", 2, 6)]),
+        ("x = DiscreteRange(1, 4)\nfor i in range(x): pass\nego = new Object\n", [("SC403", 2, 9)]),
+        ("for i in Uniform([1], [2]): pass\nego = new Object\n", [("SC403", 1, 9)]),
+        ("for i in [Range(0, 1), 3]: new Object at (i, 0)\nego = new Object\n", []),
+        ("x = Range(0, 1)\ny = x and 3\nego = new Object\n", [("SC403", 2, 4)]),
+        ("x = Range(0, 1)\ny = 3 and x\nego = new Object\n", []),
+        ("x = Range(0, 1)\nif not x: y = 3\nego = new Object\n", [("SC403", 2, 7)]),
+        (
+            "x = Range(0, 1)\nego = new Object\nfor i in [1]:\n    require not (x and 5)\n    record (x or 3) as y\n",
+            [],
+        ),
+        ("x = new Object\nego = new Object in front of x\n", [("SC404", 2, 20)]),
+        ("x = new Object\nego = new Object at front of x, with requireVisible False\n", []),
         ("x = Range(0, 1)\nx = 3\nif x > 0.5:\n    y = 3\nego = new Object\n", []),
         ("x = Range(0, 1)\nif x is None:\n    y = 3\nego = new Object\n", []),
         (
@@ -154,6 +166,23 @@ def test_errors_of_other_kinds(text: str, expected: list[tuple[str, int, int]]) 
 def test_what_is_half_typed_accuses_no_other_line(text: str, line: int) -> None:
     found = [item for item in check_text(text, filename="f") if item.severity is Severity.ERROR]
     assert {item.span.line for item in found if item.span} <= {line}
+
+
+@pytest.mark.parametrize(
+    ("body", "expected"),
+    [
+        ("Go()", [("SC312", 4)]),
+        ("while True:\n        Go()", [("SC312", 5)]),
+        ("take 1\n    terminate\n    wait", [("SC303", 6)]),
+        ("return\n    wait", []),
+    ],
+)
+def test_one_mistake_in_a_behavior_is_told_once(body: str, expected: list[tuple[str, int]]) -> None:
+    text = (
+        f"behavior Go():\n    take 1\nbehavior Main():\n    {body}\nego = new Object with behavior Main()\n"
+    )
+    found = check_text(text, filename="f")
+    assert [(item.code, item.span.line) for item in found if item.span] == expected
 
 
 def test_a_monitor_is_not_required_as_a_condition() -> None:
