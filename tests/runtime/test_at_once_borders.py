@@ -230,6 +230,15 @@ def test_a_ring_does_not_meet_what_lies_in_its_hole() -> None:
     assert disc.meets_body(frame) is None
 
 
+def test_a_body_within_a_region_that_its_own_middle_is_beside() -> None:
+    turn = Rotation.align_vectors([[1, 0, 0]], [[1, 1, 1]])[0].as_quat().tolist()
+    single = RectangularRegion((0, 0), 0, 4, 4).at_once
+    assert single is not None
+    for x, held in ((2.1, None), (0.5, True), (5.0, False)):
+        body = placed((x, 0, 0), (turn[0], turn[1], turn[2], turn[3]), (1, 1, 1), CORNER)
+        assert single.holds_body(body) is held
+
+
 def test_a_box_at_the_corner_of_the_box_about_a_ball() -> None:
     """Their boxes meet; they need not."""
     single = CASES["ball"].single

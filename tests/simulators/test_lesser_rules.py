@@ -1,0 +1,304 @@
+"""Rules of simulations that show only in corners: who may create what, what is asked for, and what is told."""
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import pytest
+
+import scenic
+from scenic.language.errors import DivergenceError, InvalidScenarioError, SerializationError
+from scenic.runtime.dynamics.recorders import Recorder
+from scenic.simulators.batch import choose_simulator
+from scenic.simulators.dummy import DummySimulator
+from scenic.simulators.kinematic import KinematicSimulator
+from scenic.simulators.replays import Replay
+from scenic.simulators.simulator import Simulator
+
+from .test_interface import AGENTS, DRAWING, REJECTED, Plain, scene, simulator
+
+MAIN = "scenario Main():\n    setup:\n        ego = new Object\n"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "behavior B():\n    wait\n    new Object at (5, 5)\n    wait\nego = new Object with behavior B\n",
+        "monitor M():\n    wait\n    new Object at (5, 5)\n    wait\nego = new Object\nrequire monitor M()\n",
+        f"{MAIN}    compose:\n        wait\n        new Object at (5, 5)\n        wait\n",
+    ],
+)
+def test_objects_are_created_in_set_ups_alone(text: str) -> None:
+    with pytest.raises(InvalidScenarioError, match="only in the setup of a scenario"):
+        DummySimulator().simulate(scene(text), maxSteps=4)
+
+
+@pytest.mark.parametrize(
+    ("condition", "error"),
+    [("nothing_of_that_name > 1", NameError), ("self.position.nothing > 1", AttributeError)],
+)
+def test_mistakes_in_conditions_of_interrupts_are_raised(condition: str, error: type[Exception]) -> None:
+    text = (
+        "import builtins\nbehavior B():\n    try:\n        while True:\n            wait\n"
+        f"    interrupt when {condition}:\n        wait\nego = new Object with behavior B\n"
+    )
+    with pytest.raises(error):
+        DummySimulator().simulate(scene(text), maxSteps=4)
+
+
+def test_what_a_simulator_creates_is_mutated_already() -> None:
+    text = (
+        f"{MAIN}    compose:\n        do Sub()\n"
+        "scenario Sub():\n    setup:\n        thing = new Object at (20, 0)\n        mutate thing\n    compose:\n        wait\n"
+    )
+    created = []
+
+    class Seen(Plain):
+        def createObjectInSimulator(self, obj: Any) -> None:
+            created.append(tuple(obj.position))
+
+    done = simulator(Seen).simulate(scene(text), maxSteps=3)
+    assert done is not None
+    assert len(created) == 2
+    assert created[1] != (20, 0, 0)
+
+
+def test_recorders_are_told_whether_what_they_kept_counts() -> None:
+    told = []
+
+    class Telling(Recorder):
+        def beginRecording(self, *_arguments: Any) -> None:
+            pass
+
+        def recordValue(self, value: Any, step: int) -> None:
+            pass
+
+        def endRecording(self, canceled: bool) -> None:
+            told.append(canceled)
+
+    for more, canceled in (("", False), ("require eventually ego.position.x > 3\n", True)):
+        told.clear()
+        made = scenic.scenarioFromString(
+            f"ego = new Object\nrecord ego.position.x to globalParameters.telling\n{more}",
+            params={"telling": Telling()},
+        )
+        DummySimulator().simulate(made.sample(1, seed=0)[0], maxSteps=3)
+        assert told == [canceled]
+
+
+def test_arrays_that_a_simulation_changes_are_its_own() -> None:
+    text = (
+        "import numpy\ncounts = numpy.zeros(2)\nbehavior B():\n    while True:\n        counts[0] += 1\n        take counts[0]\n"
+        "ego = new Object with behavior B\n"
+    )
+    one = scene(text)
+    for _ in range(2):
+        done = DummySimulator().simulate(one, maxSteps=3)
+        assert done is not None
+        assert [step[done.agents[0]][0] for step in done.result.actions] == [1, 2, 3]
+
+
+def test_many_draws_of_a_row_are_different_numbers() -> None:
+    (one,) = scenic.scenarioFromString(DRAWING).sample(1, seed=1, source=scenic.Sobol())
+    done = DummySimulator().simulate(one, maxSteps=100, source=scenic.Sobol())
+    assert done is not None
+    drawn = [step[done.agents[0]][0] for step in done.result.actions]
+    assert len(set(drawn)) == 100
+    assert 0.3 < np.mean(drawn) < 0.7
+
+
+def test_actions_from_outside_are_among_the_last_ones() -> None:
+    class Open(Plain):
+        def __init__(self, scene: Any, **options: Any) -> None:
+            super().__init__(scene, maxSteps=3, name="1", timestep=1, deferred=True, **options)
+
+    open_ = Open(scene(AGENTS))
+    open_.begin()
+    open_.advanceOnce()
+    agent = open_.agents[0]
+    open_.take(agent, [7])
+    assert agent.lastActions == (1, 7)
+    open_.take(agent, [8, 9])
+    assert agent.lastActions == open_.actionSequence[-1][agent] == (1, 7, 8, 9)
+    open_.cancel()
+
+
+def test_a_simulation_cleans_up_once() -> None:
+    ends = []
+
+    class Counting(Plain):
+        def __init__(self, scene: Any, **options: Any) -> None:
+            super().__init__(scene, deferred=True, **options)
+
+        def destroy(self) -> None:
+            ends.append(self)
+
+    made = Counting(scene(AGENTS), maxSteps=2, name="1", timestep=1)
+    made.begin()
+    made.cancel()
+    made.cancel()
+    assert ends == [made]
+
+
+def test_all_actions_have_to_be_such_as_the_agent_can_take() -> None:
+    text = (
+        "from scenic.simulators.commands import SetVelocity, SetThrottle\n"
+        "behavior B():\n    take {}\nego = new Object with behavior B\n"
+    )
+    for actions in ("SetVelocity((1, 0, 0)), SetThrottle(1)", "SetThrottle(1), SetVelocity((1, 0, 0))", "3"):
+        with pytest.raises(InvalidScenarioError, match="cannot take these actions"):
+            KinematicSimulator().simulate(scene(text.format(actions)), maxSteps=2)
+
+
+def test_simulators_are_asked_for_what_they_decide_and_for_new_objects_at_once() -> None:
+    text = (
+        f"{MAIN}    compose:\n        do Sub()\n"
+        "scenario Sub():\n    setup:\n        thing = new Object at (20, 0)\n        record thing.position.x as x\n"
+        "    compose:\n        wait\n        wait\n"
+    )
+    asked: set[str] = set()
+
+    class Asked(Plain):
+        def getProperties(self, obj: Any, properties: Any) -> Mapping[str, Any]:
+            asked.update(properties)
+            found = {name: getattr(obj, name) for name in properties}
+            if obj.position.x >= 20:
+                found["position"] = scenic_vector(obj.position.x + 1)
+            return found
+
+    done = simulator(Asked).simulate(scene(text), maxSteps=6)
+    assert done is not None
+    # Read back when it was created, and after each step.
+    assert [x for _, x in done.result.records["x"]] == [21, 22]
+    assert "heading" not in asked
+    assert {"position", "yaw", "velocity"} <= asked
+
+
+def scenic_vector(x: float) -> Any:
+    from scenic.runtime.values import Vector
+
+    return Vector(x, 0, 0)
+
+
+@pytest.mark.parametrize("change", ["more", "less"])
+def test_simulators_give_exactly_what_they_are_asked_for(change: str) -> None:
+    class Wrong(Plain):
+        def getProperties(self, obj: Any, properties: Any) -> Mapping[str, Any]:
+            found = {name: getattr(obj, name) for name in properties}
+            if change == "more":
+                return {**found, "mood": 1}
+            del found["yaw"]
+            return found
+
+    with pytest.raises(RuntimeError, match="mood" if change == "more" else "yaw"):
+        simulator(Wrong).simulate(scene(AGENTS), maxSteps=2)
+
+
+def test_replays_with_something_behind_them_are_damaged() -> None:
+    data = Replay(b"key", [(1, 0.5)], [[1.0, 2.0], []]).encoded()
+    assert Replay.decoded(data) == Replay(b"key", [(1, 0.5)], [[1.0, 2.0], []])
+    for damaged in (data + b"\0", data[:-1], b"SCR2" + data[4:]):
+        with pytest.raises(SerializationError):
+            Replay.decoded(damaged)
+
+
+def test_other_draws_diverge_only_where_that_is_looked_for() -> None:
+    """Without the check, what was not drawn before is drawn anew."""
+    first = DummySimulator().simulate(scene(DRAWING), maxSteps=3)
+    assert first is not None
+    other = scene(DRAWING.replace("take Range(0, 1)", "take 0 + Range(0, 1)"))
+    again = DummySimulator().replay(other, first.getReplay(), maxSteps=3)
+    assert again is not None
+    assert again.replaying
+    with pytest.raises(DivergenceError, match="did not draw"):
+        DummySimulator().replay(other, first.getReplay(), maxSteps=3, enableDivergenceCheck=True)
+
+
+def test_every_rejection_is_told() -> None:
+    told: list[Exception] = []
+    assert (
+        DummySimulator().simulate(scene(REJECTED), maxSteps=1, maxIterations=3, onRejection=told.append)
+        is None
+    )
+    assert len(told) == 3
+
+
+def test_a_program_may_choose_its_simulator() -> None:
+    text = (
+        "from scenic.simulators.dummy import DummySimulator\nsimulator DummySimulator()\nego = new Object\n"
+    )
+    assert isinstance(choose_simulator(None, scenic.scenarioFromString(text)), DummySimulator)
+    plain = scenic.scenarioFromString("ego = new Object\n")
+    assert isinstance(choose_simulator(None, plain), KinematicSimulator)
+    assert isinstance(choose_simulator("dummy", plain), Simulator)
+
+
+# Kinematics
+
+
+def course(properties: str, actions: str = "wait", steps: int = 10, timestep: float = 0.1) -> Any:
+    text = (
+        "from scenic.simulators.commands import *\n"
+        f"behavior B():\n    {actions}\n    while True:\n        wait\nego = new Object with behavior B, {properties}\n"
+        "record ego.position as place\nrecord ego.yaw as yaw\nrecord ego.pitch as pitch\nrecord ego.roll as roll\n"
+    )
+    done = KinematicSimulator(timestep=timestep).simulate(scene(text), maxSteps=steps)
+    assert done is not None
+    return done
+
+
+def series(done: Any, name: str) -> Sequence[Any]:
+    return [value for _, value in done.result.records[name]]
+
+
+def test_a_quadrotor_that_gets_no_command_hovers() -> None:
+    places = series(course("at (0, 0, 5), with dynamics 'quadrotor'"), "place")
+    assert all(abs(place.z - 5) < 1e-9 for place in places)
+
+
+def test_own_angles_of_objects_whose_frame_is_turned() -> None:
+    """What moves straight on keeps the angles it had, whatever they are counted from."""
+    done = course(
+        "with parentOrientation Orientation.fromEuler(0.5, 0.4, 0.3), facing (0.2, -0.6, 0.1), with velocity (1, 2, 0)"
+    )
+    for name in ("yaw", "pitch", "roll"):
+        values = series(done, name)
+        first = getattr(done.scene.objects[0], name)
+        assert values == pytest.approx([first] * len(values), abs=1e-9)
+
+
+def test_a_bicycle_turns_by_its_mean_speed() -> None:
+    """The way along the arc, over the base, times the tangent of the steering angle, is by how much it has turned."""
+    done = course(
+        "with dynamics 'bicycle', with length 5, with velocity (0, 2, 0)",
+        "take SetThrottle(3), SetSteering(0.2)",
+        steps=10,
+    )
+    turned = series(done, "yaw")[-1]
+    way = 2 * 1.0 + 3 * 1.0**2 / 2
+    assert turned == pytest.approx(way / (0.6 * 5) * math.tan(0.2), abs=1e-6)
+
+
+@pytest.mark.parametrize("angle", [0.6, -0.6])
+def test_wheels_are_steered_so_far_and_no_farther(angle: float) -> None:
+    properties = "with dynamics 'bicycle', with velocity (0, 2, 0)"
+    most, more = (
+        series(course(properties, f"take SetSteering({value})", steps=4), "yaw")
+        for value in (angle, 3 * angle)
+    )
+    assert most == more
+    assert abs(most[-1]) > 0.3
+
+
+def test_headings_stay_within_half_a_turn() -> None:
+    """South itself is half a turn to the left."""
+    done = course(
+        "with dynamics 'differential', with width 1",
+        f"take SetWheelSpeeds({-math.pi / 4}, {math.pi / 4})",
+        steps=6,
+        timestep=1.0,
+    )
+    assert series(done, "yaw") == pytest.approx(
+        [0, math.pi / 2, math.pi, -math.pi / 2, 0, math.pi / 2, math.pi], abs=1e-9
+    )
