@@ -5,6 +5,7 @@ import json
 import math
 import multiprocessing
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -230,6 +231,89 @@ def test_meshes_have_their_own_volume_and_rest_on_their_hull(masses: dict[int, f
     # It has come to rest on something flat, not on a point.
     before = np.array(tuple(done.poses[-20][0][0]))
     assert np.linalg.norm(position - before) < 1e-3
+
+
+BIN = [((0, 0, 0.05), (1, 1, 0.1))] + [
+    (place, size)
+    for sign in (-1, 1)
+    for place, size in (
+        ((sign * 0.45, 0, 0.5), (0.1, 1, 0.8)),
+        ((0, sign * 0.45, 0.5), (0.8, 0.1, 0.8)),
+    )
+]
+
+
+@pytest.fixture(scope="module")
+def bin_file(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
+    """An open box with walls of 0.1 m, 1 m wide and 0.9 m high, whose parts are searched once for all tests."""
+    parts = []
+    for place, size in BIN:
+        part = trimesh.creation.box(size)
+        part.apply_translation(place)
+        parts.append(part)
+    path: Path = tmp_path_factory.mktemp("meshes") / "bin.obj"
+    trimesh.boolean.union(parts).export(path)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("SCENIC_CACHE", "on")
+        patch.setenv("SCENIC_CACHE_DIR", str(path.parent))
+        yield path
+
+
+@pytest.mark.parametrize("dynamics", ["static", "free"])
+@pytest.mark.parametrize("turn", ["0", "180 deg"])
+def test_what_falls_into_a_bin_lies_in_it(
+    bin_file: Path, masses: dict[int, float], dynamics: str, turn: str
+) -> None:
+    text = (
+        f"ego = new Object with shape MeshShape.fromFile({str(bin_file)!r}), at (0, 0, 0.45), with roll {turn}, "
+        f"with width 1, with length 1, with height 0.9, with dynamics '{dynamics}', with density 200\n"
+        "new Body at (0.1, 0.05, 1.4), with shape SpheroidShape(), with width 0.2, with length 0.2, with height 0.2\n"
+    )
+    done = run(text, 60)
+    height = last(done, 1)[0][2]
+    # The right way up it takes the ball in; upside down its bottom is above.
+    assert height == pytest.approx(0.2 if turn == "0" else 1.0, abs=2e-3)
+    assert last(done)[0][2] == pytest.approx(0.45, abs=2e-3)
+    if dynamics == "free":
+        MassReading(masses).simulate(scene_of(text), maxSteps=0)
+        volume = 1 * 1 * 0.9 - 0.8 * 0.8 * 0.8
+        assert masses[0] == pytest.approx(200 * volume, rel=1e-6)
+
+
+def test_what_does_not_collide_has_no_parts_that_do(bin_file: Path) -> None:
+    text = (
+        f"ego = new Object with shape MeshShape.fromFile({str(bin_file)!r}), at (0, 0, 0.45), with dynamics 'static', "
+        "with width 1, with length 1, with height 0.9, with collides False\n"
+        "new Body at (0.1, 0.05, 1.4), with shape SpheroidShape(), with width 0.2, with length 0.2, with height 0.2\n"
+    )
+    assert last(run(text, 60), 1)[0][2] == pytest.approx(0.1, abs=2e-3)
+
+
+def test_without_the_library_hulls_touch(bin_file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "coacd", None)
+    # Another mesh, whose parts nobody has asked for.
+    finer = bin_file.with_name("finer.obj")
+    trimesh.load_mesh(bin_file).subdivide().export(finer)
+    text = (
+        f"ego = new Object with shape MeshShape.fromFile({str(finer)!r}), at (0, 0, 0.45), with dynamics 'static', "
+        "with width 1, with length 1, with height 0.9\n"
+        "new Body at (0.1, 0.05, 1.4), with shape SpheroidShape(), with width 0.2, with length 0.2, with height 0.2\n"
+    )
+    with pytest.warns(UserWarning, match="the package coacd is missing"):
+        done = run(text, 60)
+    assert last(done, 1)[0][2] == pytest.approx(1.0, abs=2e-3)
+
+
+def test_a_hand_reaches_the_parts_of_what_it_holds(bin_file: Path) -> None:
+    """Not the hull: a hand within the bin, far from its walls, holds nothing."""
+    for x, holds in (("0", False), ("0.34", True)):
+        text = (
+            told("Grasp(bin)")
+            + f"ego = new Gripper at ({x}, 0, 0.6), with behavior B\n"
+            + f"bin = new Body with shape MeshShape.fromFile({str(bin_file)!r}), at (0, 0, 0.45), with width 1, "
+            "with length 1, with height 0.9\nrecord ego.holding as held\n"
+        )
+        assert records(run(text, 3), "held")[-1] is holds
 
 
 def test_turned_frames_are_kept() -> None:

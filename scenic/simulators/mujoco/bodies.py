@@ -1,7 +1,7 @@
 """Objects as bodies of a MuJoCo model.
 
 Boxes, ellipsoids and round cylinders are MuJoCo's own geoms, all other shapes meshes, which have the inertia of the whole mesh
-and touch others with their convex hull. The frame of a body is that of the object: its middle, its front along +Y.
+and touch others with its convex parts. The frame of a body is that of the object: its middle, its front along +Y.
 """
 
 import math
@@ -13,6 +13,7 @@ import numpy as np
 from scenic.language.errors import SimulationCreationError
 from scenic.simulators.cameras import carried
 from scenic.simulators.commands import model_of
+from scenic.simulators.mujoco.convex import convex_parts
 from scenic.simulators.mujoco.library import library
 
 __all__ = ["MODELS", "Builder", "Part"]
@@ -31,6 +32,8 @@ _STIFF: Final = (0.01, 1.0)
 """Time constant (seconds) and damping ratio of welds."""
 _HARD: Final = (0.005, 1.0)
 """The same of wheels on the ground, into which they sink the less the smaller the first is."""
+_NOT_DRAWN: Final = 3
+"""The group of geoms that MuJoCo does not draw unless asked to."""
 _COLOR: Final = (0.6, 0.62, 0.66)
 
 
@@ -45,6 +48,7 @@ class Part:
         mass: kilograms; 0 of a static one.
         radius: of its wheels, metres.
         command: what is in force, by name.
+        geoms: names of the geoms that touch others, if these are not the one of its name.
 
     """
 
@@ -54,6 +58,7 @@ class Part:
     mass: float
     radius: float = 0.0
     command: dict[str, float] = field(default_factory=dict)
+    geoms: list[str] = field(default_factory=list)
 
     @property
     def moves(self) -> bool:
@@ -94,6 +99,7 @@ class Builder:
         self.cameras: dict[tuple[int, str], str] = {}
         """Names of cameras in the model, by the identity of their owner and their own name."""
         self._meshes: dict[tuple[int, tuple[float, ...]], tuple[Any, str]] = {}
+        self._parted: dict[tuple[int, tuple[float, ...]], tuple[Any, tuple[str, ...]]] = {}
 
     def add_ground(self, height: float) -> None:
         """An endless plane at a height (metres)."""
@@ -177,8 +183,35 @@ class Builder:
             if source.kind == "cylinder" and half[0] == half[1] and _is_round(source):
                 sizes = [half[0], half[2], 0]
                 return body.add_geom(name=part.name, type=kinds.mjGEOM_CYLINDER, size=sizes, **common)
-        name = self._mesh(thing, size)
-        return body.add_geom(name=part.name, type=kinds.mjGEOM_MESH, meshname=name, **common)
+        whole = {**common, "type": kinds.mjGEOM_MESH, "meshname": self._mesh(thing, size)}
+        pieces = self._pieces(thing, size) if getattr(thing, "collides", True) else ()
+        if not pieces:
+            return body.add_geom(name=part.name, **whole)
+        for number, name in enumerate(pieces):
+            piece = f"{part.name} piece {number}"
+            part.geoms.append(piece)
+            weightless = {key: value for key, value in common.items() if key not in ("mass", "density")}
+            body.add_geom(
+                name=piece, type=kinds.mjGEOM_MESH, meshname=name, mass=0, group=_NOT_DRAWN, **weightless
+            )
+        # It is seen and has the inertia; its pieces touch.
+        return body.add_geom(name=part.name, **{**whole, "contype": 0, "conaffinity": 0})
+
+    def _pieces(self, thing: Any, size: tuple[float, ...]) -> tuple[str, ...]:
+        """The names of the meshes of the convex parts of an object's shape at a size, metres; none for convex ones."""
+        mesh = thing.shape.mesh
+        key = (id(mesh), size)
+        if key not in self._parted:
+            names: list[str] = []
+            for vertices in mesh.derived(convex_parts):
+                names.append(f"pieces {len(self._parted)}, {len(names)}")
+                self.spec.add_mesh(
+                    name=names[-1],
+                    uservert=(vertices * size).ravel().tolist(),
+                    inertia=self._mj.mjtMeshInertia.mjMESH_INERTIA_CONVEX,
+                )
+            self._parted[key] = (mesh, tuple(names))
+        return self._parted[key][1]
 
     def _surface(self, thing: Any) -> dict[str, Any]:
         """Friction, contacts and colour as arguments of a geom."""

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping
+from itertools import product
 from typing import Any, Final
 
 import numpy as np
@@ -154,10 +155,8 @@ class MujocoSimulation(Simulation):
         if held is None or not held.moves or held is hand:
             return
         mujoco.mj_kinematics(self.model, self.data)
-        ends = np.zeros(6)
-        geoms = [int(self.model.geom(part.name).id) for part in (hand, held)]
         reach = float(getattr(gripper, "reach", _REACH))
-        if mujoco.mj_geomDistance(self.model, self.data, *geoms, reach + 1e-6, ends) > reach:
+        if not any(self._within(reach, *pair) for pair in product(*map(self._geoms, (hand, held)))):
             return
         first, second = (self.data.body(part.name) for part in (hand, held))
         turn = first.xmat.reshape(3, 3)
@@ -169,6 +168,16 @@ class MujocoSimulation(Simulation):
         weld.data[3:6] = turn.T @ (second.xpos - first.xpos)
         weld.data[6:10] = between
         self.data.eq_active[weld.id] = True
+
+    def _geoms(self, part: Part) -> list[int]:
+        """Numbers of the geoms with which a part touches others."""
+        return [int(self.model.geom(name).id) for name in part.geoms or [part.name]]
+
+    def _within(self, reach: float, first: int, second: int) -> bool:
+        """Whether two geoms are at most so many metres apart."""
+        ends = np.zeros(6)
+        found: float = library().mj_geomDistance(self.model, self.data, first, second, reach + 1e-6, ends)
+        return found <= reach
 
     def release(self, gripper: Any) -> None:
         """Let a gripper open."""

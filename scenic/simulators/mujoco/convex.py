@@ -1,0 +1,74 @@
+"""Solids as convex parts, since physics knows contacts of convex things only."""
+
+import warnings
+from typing import Any, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from scenic.runtime.geometry.store import Arrays, kept
+
+__all__ = ["convex_parts"]
+
+_NEARLY: Final = 0.98
+"""A solid that fills so much of its convex hull is left to it."""
+_CONCAVITY: Final = 0.1
+"""By how much a part may differ from its hull, where the whole is two units long."""
+_SEARCH: Final = {"mcts_iterations": 40, "resolution": 1000, "seed": 0}
+"""A tenth of the library's own effort, which gives parts nearly as few."""
+_MANY_FACES: Final = 3000
+"""A finer mesh is made coarser first: the search takes time by its faces."""
+_FLAT: Final = 1e-7
+"""Of the parts of a mesh in its unit box, those of less volume are left out."""
+
+
+def convex_parts(mesh: Any) -> tuple[npt.NDArray[np.float64], ...]:
+    """Vertices ``(n, 3)`` of convex parts that make up a solid; none if its hull is as good.
+
+    Parts of a mesh serve all its sizes. Finding them takes seconds, and is kept on disk.
+
+    Args:
+        mesh: a `scenic.runtime.geometry.mesh.Mesh` in its unit box.
+
+    """
+    if not mesh.is_volume or mesh.is_convex or mesh.volume >= _NEARLY * mesh.hull.volume:
+        return ()
+    library = _library()
+    if library is None:
+        return ()
+
+    def compute() -> Arrays:
+        detail = {"preprocess_mode": "on" if len(mesh.faces) > _MANY_FACES else "off"}
+        library.set_log_level("error")
+        solid = library.Mesh(np.asarray(mesh.vertices, np.float64), np.asarray(mesh.faces, np.int32))
+        found = library.run_coacd(solid, threshold=_CONCAVITY, **detail, **_SEARCH)
+        parts = [np.asarray(vertices, np.float64) for vertices, _ in found]
+        return {"vertices": np.concatenate(parts), "ends": np.cumsum([len(part) for part in parts])}
+
+    arrays = kept("convex parts 1", (mesh.vertices, mesh.faces), compute)
+    parts = np.split(arrays["vertices"], arrays["ends"][:-1])
+    return tuple(part for part in parts if _volume(part) > _FLAT)
+
+
+def _library() -> Any:
+    """The package ``coacd``, if it is there. It has no types, hence ``Any``."""
+    try:
+        import coacd  # optional, and slow to import
+    except ImportError:
+        warnings.warn(
+            "meshes that are not convex touch with their convex hulls, since the package coacd is missing: "
+            "install scenic-lang[mujoco]",
+            stacklevel=2,
+        )
+        return None
+    return coacd
+
+
+def _volume(points: npt.NDArray[np.float64]) -> float:
+    """Of the convex hull of points."""
+    from scipy.spatial import ConvexHull, QhullError  # slow to import
+
+    try:
+        return float(ConvexHull(points).volume)
+    except QhullError:  # they lie in a plane
+        return 0.0
