@@ -10,7 +10,8 @@ from collections.abc import Sequence
 from typing import Any
 
 from scenic.language.errors import ScenicError
-from scenic.runtime.geometry.poses import Poses
+from scenic.runtime.geometry.depth import convex_depth
+from scenic.runtime.geometry.poses import Floats, Poses
 from scenic.runtime.geometry.single import overlap
 from scenic.runtime.objects import Object, Point
 from scenic.runtime.regions.base import Region
@@ -94,9 +95,14 @@ def _corners(item: Object) -> Sequence[Vector]:
     """The corners of the convex hull of an object."""
     if isinstance(item.shape, BoxShape):
         return item.corners
-    size = (item.width, item.length, item.height)
-    poses = Poses.fixed(item.position, item.orientation.q, size)
-    return [Vector.of(row) for row in poses.to_world(item.shape.mesh.hull.vertices[None])[0].tolist()]
+    return [Vector.of(row) for row in _hull(item).tolist()]
+
+
+def _hull(item: Object) -> Floats:
+    """The corners of the convex hull of an object, ``(n, 3)``."""
+    poses = Poses.fixed(item.position, item.orientation.q, (item.width, item.length, item.height))
+    corners: Floats = poses.to_world(item.shape.mesh.hull.vertices[None])[0]
+    return corners
 
 
 def _signed_distance(point: Vector, region: Region) -> float:
@@ -120,7 +126,7 @@ def _depth(point: Vector, region: Region) -> float:
 
 
 def _overlap(left: Any, right: Any) -> float | None:
-    """How deep one of two boxes is in the other, or the gap between two objects, negative; no depth is known of other shapes."""
+    """How deep one of two objects is in the other, or the gap between them, negative; no depth is known of concave shapes."""
     if not (isinstance(left, Object) and isinstance(right, Object)):
         return None
     if not left.intersects(right):
@@ -129,4 +135,6 @@ def _overlap(left: Any, right: Any) -> float | None:
         one, other = placed_of(left), placed_of(right)
         if one is not None and other is not None:
             return overlap(one, other)
+    if left.shape.mesh.is_convex and right.shape.mesh.is_convex:
+        return convex_depth(_hull(left), _hull(right))
     return math.inf

@@ -4,10 +4,12 @@ import math
 
 import numpy as np
 import pytest
+from scipy.spatial import ConvexHull
 
 import scenic
 from scenic.runtime.geometry import primitives
 from scenic.runtime.geometry.broadphase import boxes_overlap
+from scenic.runtime.geometry.depth import convex_depth
 from scenic.runtime.geometry.poses import Poses
 from scenic.runtime.geometry.single import Placed, overlap, placed
 from scenic.runtime.values import Orientation
@@ -59,7 +61,7 @@ def robustness(condition: str, steps: int) -> float:
         ("always wall in room", 0.5),
         ("eventually wall not in zone", 2.5),
         ("always ego intersects block", 0.3),
-        ("always cone intersects block", math.inf),
+        ("always cone intersects block", 2 / 5**0.5),  # along the normal of its side
         ("always ego can see block", math.inf),
         ("always ego not in far", 12.5),  # by its corner that is farthest from there
         ("always not (ego intersects wall)", 5),
@@ -98,6 +100,42 @@ def test_boxes_are_as_deep_in_each_other_as_one_has_to_move() -> None:
             # By less than the depth no way leads out, by a little more one does, across a face or two edges.
             assert bool((~meet).any()) is parts
     assert checked > 100
+
+
+@pytest.mark.parametrize(
+    "kinds", [("cylinder", "cone"), ("spheroid", "box"), ("cylinder", "cylinder"), ("box", "box")]
+)
+def test_convex_solids_are_as_deep_in_each_other_as_the_hull_of_all_differences_says(
+    kinds: tuple[str, str],
+) -> None:
+    random = np.random.default_rng(1)
+    corners = [getattr(primitives, kind)().vertices for kind in kinds]
+    checked = 0
+    for _ in range(12):
+        first, second = (
+            Orientation.fromEuler(*random.uniform(-3, 3, 3).tolist()).r.apply(
+                unit * random.uniform(0.3, 2, 3)
+            )
+            for unit in corners
+        )
+        second = second + random.uniform(-0.4, 0.4, 3)
+        differences = (first[:, None] - second[None]).reshape(-1, 3)
+        depth = -ConvexHull(differences).equations[:, 3].max()
+        if depth <= 0:
+            continue
+        checked += 1
+        assert convex_depth(first, second) == pytest.approx(depth, rel=1e-7, abs=1e-9)
+    assert checked > 5
+
+
+def test_solids_that_touch_or_are_one_in_the_other() -> None:
+    box = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], float)
+    assert convex_depth(box, box + np.array((2, 0.3, 0.2))) == pytest.approx(0, abs=1e-12)
+    assert convex_depth(box, box + np.array((0.5, 0, 0))) == pytest.approx(1.5)
+    flat = box * np.array((1, 1, 0))
+    assert convex_depth(flat, flat) == 0
+    assert convex_depth(0.1 * box, box) == pytest.approx(1.1)
+    assert convex_depth(1e-3 * box, 1e-3 * (box + np.array((1.5, 0, 0)))) == pytest.approx(5e-4)
 
 
 def _normals(one: Placed, other: Placed) -> np.ndarray:
