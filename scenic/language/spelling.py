@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 
-__all__ = ["distance", "is_slip", "nearest"]
+__all__ = ["distance", "is_slip", "nearest", "nearest_property"]
 
 
 def distance(first: str, second: str, *, limit: int) -> int:
@@ -68,3 +68,12 @@ def nearest(name: str, candidates: Iterable[str], *, limit: int | None = None) -
             if reach < 0:
                 break
     return found
+
+
+def nearest_property(name: str, known: Iterable[str]) -> str | None:
+    """The property that is probably meant by a name that is none: at most two edits away, unless the name is very short."""
+    return nearest(name, known, limit=2) if len(name) > _SHORTEST else None
+
+
+_SHORTEST = 3
+"""Names of so few letters are near to all others."""

@@ -20,6 +20,9 @@ from scenic.language.spelling import nearest
 
 __all__ = ["Finder", "Found", "ModuleKind"]
 
+_INITIAL: Final = (*SUFFIXES, ".py")
+"""The endings of ``__init__`` in packages."""
+
 _LIBRARY: Final = str(Path(language.__path__[0]).parent.parent)
 """The folder that holds the package ``scenic`` itself, and with it our own library."""
 
@@ -61,7 +64,8 @@ class Found:
 class Finder:
     """Finds modules. ``roots`` are the folders of the workspace, ``python_path`` those that the project's settings name.
 
-    A program finds the modules beside it, and those in the folders above it up to the innermost root; then those of
+    A program finds the modules beside it, and those in the folders above it up to the innermost root, or farther as long as
+    these are packages; then those of
     ``python_path``, of Python's own path (``interpreter_path``) and of our own library.
     """
 
@@ -173,7 +177,10 @@ class Finder:
         return Found(name, ModuleKind.MISSING, None, tuple(homes), beginning, within, near)
 
     def _beside(self, folder: str) -> tuple[str, ...]:
-        """A folder, and those above it up to the innermost root that holds it."""
+        """A folder, and those above it up to the innermost root that holds it.
+
+        Where that is a package, up to the one that holds the outermost package: what imports the package will find that.
+        """
         known = self._folders.get(folder)
         if known is None:
             inside = [root for root in self.roots if folder == root or folder.startswith(_closed(root))]
@@ -182,6 +189,8 @@ class Finder:
                 root = max(inside, key=len)
                 while chain[-1] != root:
                     chain.append(os.path.dirname(chain[-1]))
+            while self._initial(chain[-1], _INITIAL) is not None and os.path.dirname(chain[-1]) != chain[-1]:
+                chain.append(os.path.dirname(chain[-1]))
             known = self._folders[folder] = tuple(chain)
         return known
 

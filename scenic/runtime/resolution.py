@@ -8,7 +8,7 @@ from typing import Any
 
 from scenic.language.errors import InvalidScenarioError, Located, ScenicValueError, SpecifierError
 from scenic.language.spans import Span
-from scenic.language.spelling import nearest
+from scenic.language.spelling import nearest_property
 from scenic.runtime.context import here
 from scenic.runtime.lazy import MEMO, reads_of
 from scenic.runtime.lazy import resolve as settle
@@ -17,9 +17,6 @@ from scenic.runtime.properties import Property, normalised
 from scenic.runtime.shapes import BoxShape
 from scenic.runtime.specifiers import Specifier
 from scenic.runtime.values import Orientation, Vector, is_number
-
-MISSPELT = 3
-"""Names of at most so many letters are near to others by chance."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -254,7 +251,7 @@ def _check_property(
             )
     elif hasattr(cls, name):
         raise _clash(cls, name, specifier.span)
-    elif (meant := nearest(name, properties, limit=2)) is not None and len(name) > MISSPELT:
+    elif (meant := nearest_property(name, properties)) is not None:
         line = "" if specifier.span is None else f"line {specifier.span.line}: "
         warnings.warn(
             f"{line}{cls.__name__} has no property {name!r}, which is now created: did you mean {meant!r}?",

@@ -54,8 +54,20 @@ def test_modules_are_found(finder: Finder, tmp_path: Path, name: str, kind: Modu
 
 def test_modules_of_the_folders_above_are_found_up_to_the_root(finder: Finder, tmp_path: Path) -> None:
     assert finder.find("beside", importer=str(tmp_path / "lib" / "inner.scenic")).filename is not None
-    inner = Finder([str(tmp_path / "lib")], (), ())
-    assert inner.find("beside", importer=str(tmp_path / "lib" / "inner.scenic")).is_missing
+    inner = Finder([str(tmp_path / "spaces")], (), ())
+    assert inner.find("beside", importer=str(tmp_path / "spaces" / "main.scenic")).is_missing
+
+
+@pytest.mark.parametrize("roots", [(), ("package",)])
+def test_modules_of_a_package_find_it(tmp_path: Path, roots: tuple[str, ...]) -> None:
+    write(
+        tmp_path,
+        {"package/__init__.py": "", "package/part.scenic": "", "plain/one.scenic": "", "top.scenic": ""},
+    )
+    finder = Finder([str(tmp_path / root) for root in roots], (), ())
+    within = str(tmp_path / "package/main.scenic")
+    assert finder.find("package.part", importer=within).filename == str(tmp_path / "package/part.scenic")
+    assert finder.find("top", importer=str(tmp_path / "plain/one.scenic")).is_missing
 
 
 def test_dots_lead_to_the_folder_and_those_above(finder: Finder, tmp_path: Path) -> None:

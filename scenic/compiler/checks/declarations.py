@@ -12,12 +12,9 @@ from scenic.compiler.scopes import ScopeKind
 from scenic.compiler.traversal import walk
 from scenic.language.diagnostics import Diagnostic, Label
 from scenic.language.properties import PROPERTY_ATTRIBUTES
-from scenic.language.spelling import nearest
+from scenic.language.spelling import nearest_property
 
 __all__ = ["NOTED", "check_declarations"]
-
-_NEAR: Final = 2
-"""A name within so many edits of a property's is taken for a slip (section 6.1)."""
 
 NOTED: Final = (ast.ClassDef, scenic.New, scenic.Param, scenic.PropertyDef, scenic.Require)
 """The nodes that declare something."""
@@ -92,7 +89,7 @@ def _misspelt(context: Context, node: Any) -> Iterator[Diagnostic]:
         name = specifier.property
         if name is None or name in known:
             continue
-        suggestion = nearest(name, known, limit=_NEAR)
+        suggestion = nearest_property(name, known)
         if suggestion is not None:
             place = word_span(context.source, specifier, name)
             yield context.warning(

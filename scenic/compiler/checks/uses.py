@@ -13,6 +13,7 @@ from scenic.compiler.checks.context import DEFINITIONS, Context
 from scenic.compiler.checks.pieces import Piece
 from scenic.compiler.checks.places import word_span
 from scenic.compiler.scopes import Binding, BindingKind, Scope, ScopeKind
+from scenic.compiler.traversal import walk
 from scenic.language.diagnostics import Diagnostic, Edit, Fix, Label
 from scenic.language.names import NAMES, NameKind
 from scenic.language.spans import Span
@@ -191,6 +192,15 @@ def _exported(context: Context) -> set[str]:
     }
 
 
+def _names_read_first(statement: Any) -> frozenset[str]:
+    """The names that a definition reads before it binds its own: in bases and defaults."""
+    arguments = getattr(statement, "args", None)
+    values = [*getattr(statement, "bases", ()), *(each.value for each in getattr(statement, "keywords", ()))]
+    if arguments is not None:
+        values += [each for each in (*arguments.defaults, *arguments.kw_defaults) if each is not None]
+    return frozenset(part.id for value in values for part in walk(value) if isinstance(part, ast.Name))
+
+
 def _replaced(context: Context, statements: Iterable[ast.stmt]) -> Iterator[Diagnostic]:
     """SC208: two definitions of one name in one block, without a use between them."""
     last: dict[str, Any] = {}
@@ -207,6 +217,8 @@ def _replaced(context: Context, statements: Iterable[ast.stmt]) -> Iterator[Diag
         mentions = context.mentions.get(name, [])
         following = bisect_left(mentions, position(first))
         if following < len(mentions) and mentions[following] < position(statement):
+            continue
+        if name in _names_read_first(statement):
             continue
         yield context.warning(
             "SC208",

@@ -169,6 +169,19 @@ def test_what_is_half_typed_accuses_no_other_line(text: str, line: int) -> None:
 
 
 @pytest.mark.parametrize(
+    "text",
+    [
+        "class A:\n    v: 1\nclass A(A):\n    w: self.v + 1\nego = new A with w 3\n",
+        "def f(): return 1\ndef f(before=f): return before()\nego = new Object with width f()\n",
+        "ego = new Object with tag 3, with pid 4\n",
+        "ego = new Object\nif ego.width > 0.5 and not ego.allowCollisions:\n    new Object at (9, 9)\n",
+    ],
+)
+def test_nothing_is_said_of(text: str) -> None:
+    assert check_text(text, filename="f") == ()
+
+
+@pytest.mark.parametrize(
     ("body", "expected"),
     [
         ("Go()", [("SC312", 4)]),
