@@ -278,10 +278,11 @@ MODULES: Final[Mapping[str, Mapping[str, str]]] = MappingProxyType(
             (_FIELDS, "PiecewiseVectorField PolyhedronVectorField"),
             (_ESTABLISHED, "alwaysGlobalOrientation globalOrientation"),
             ("scenic.runtime.randoms", "VectorDistribution=RandomVector"),
+            ("scenic.runtime.definite", "OrientedVector"),
             (
                 _INSIDE,
                 (
-                    "OrientedVector VectorMethodDistribution VectorOperatorDistribution makeVectorOperatorHandler scalarOperator"
+                    "VectorMethodDistribution VectorOperatorDistribution makeVectorOperatorHandler scalarOperator"
                     " vectorDistributionMethod vectorOperator zeroIdentityVectorOperator zeroPreservingVectorOperator"
                 ),
             ),

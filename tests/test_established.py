@@ -5,6 +5,7 @@ import importlib
 import io
 import json
 import math
+import pickle
 import types
 from pathlib import Path
 
@@ -375,3 +376,32 @@ def test_small_helpers_of_the_established_modules() -> None:
     with pytest.raises(NotImplementedError):
         CallbackSensor().onData(1)
     assert GroundTruthSensor(lambda: 5).getObservation() == 5
+
+
+def test_points_carry_the_heading_of_their_region() -> None:
+    from scenic.core.type_support import toHeading
+    from scenic.core.vectors import OrientedVector, Vector
+
+    line = PolylineRegion([(0, 0), (3, 3)])
+    point = line.uniformPointInner()
+    assert isinstance(point, Vector)
+    assert point.heading == toHeading(point) == pytest.approx(-math.pi / 4)
+    assert line.orient(Vector(1, 1)).heading == pytest.approx(-math.pi / 4)
+    assert type(CircularRegion((0, 0), 1).uniformPointInner()) is Vector
+    assert type(point + point) is Vector
+    made = OrientedVector(1, 2, 3, 0.5)
+    assert made == Vector(1, 2, 3)
+    restored = pickle.loads(pickle.dumps(made))
+    assert (restored, restored.heading) == (made, 0.5)
+
+
+def test_what_regions_hold_and_where_things_land() -> None:
+    disc = CircularRegion((1, 2), 3)
+    assert disc.containsRegion(SectorRegion((1, 2), 3, 0.5, 1.2))
+    assert not disc.containsRegion(SectorRegion((1, 2), 3.001, 0.5, 1.2))
+    assert not disc.containsRegion(SectorRegion((1.001, 2), 3, -1, 0.5))
+    assert disc.containsRegion(SectorRegion((1.001, 2), 3, -1, 0.5), tolerance=0.001)
+    assert not BoxRegion().containsRegion(disc.footprint)
+    assert {*RectangularRegion((0, 0), 0, 2, 4).points} == {(x, y, 0) for x in (-1, 1) for y in (-2, 2)}
+    assert BoxRegion().projectVector((0.1, 0.2, 5), (0, 0, 1)) == (0.1, 0.2, pytest.approx(0.5))
+    assert BoxRegion().projectVector((7, 0, 5), (0, 0, 1)) is None

@@ -85,6 +85,13 @@ def drawn_option(option: Node) -> Any:
     return Random.stand_in(value) if kind_of(value) is Kind.OBJECT else value
 
 
+def options_of(value: Any) -> tuple[Any, ...]:
+    """The options of a random choice; none of any other value."""
+    if isinstance(value, Random) and value.node.operation is TABLE["select"]:
+        return tuple(as_value(option) for option in value.node.operands[1:])
+    return ()
+
+
 def per_option(value: Any, function: Callable[[Any], Any]) -> Any:
     """``function`` of a value; of each option where the value is a random choice, and the choice among the results."""
     if isinstance(value, Random) and value.node.operation is TABLE["select"]:

@@ -124,6 +124,30 @@ class Vector(VectorMethods):
         return self
 
 
+class OrientedVector(Vector):
+    """A vector with the heading, in radians, that a region prefers there."""
+
+    __slots__ = ("heading",)
+    heading: float
+
+    def __new__(cls, x: Any, y: Any, z: Any, heading: float) -> Self:
+        return cls.make((x, y, z), heading)
+
+    @classmethod
+    def make(cls, position: Iterable[float], heading: float) -> Self:
+        """The vector of three numbers, with a heading."""
+        self = cls.of(float(part) for part in position)
+        self.heading = heading
+        return self
+
+    def toHeading(self) -> float:
+        """The heading."""
+        return self.heading
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return OrientedVector, (*self._row, self.heading)
+
+
 # So that ``case (x, y, z)`` fits a vector.
 Sequence.register(Vector)
 

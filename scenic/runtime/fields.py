@@ -28,6 +28,8 @@ from scenic.runtime.values import (
     as_value,
     describe,
     operate,
+    options_of,
+    per_option,
     to_orientation,
     to_scalar,
     to_vector,
@@ -260,15 +262,47 @@ def _polygon(cell: Any) -> Any:
     return getattr(cell, "polygons", cell)
 
 
+class FieldChoice(VectorField):
+    """One of several fields, drawn at random."""
+
+    def __init__(self, choice: Random) -> None:
+        super().__init__("chosen at random", self.__getitem__)
+        self._choice = choice
+
+    def __getitem__(self, position: Any) -> Any:
+        place = to_vector(position, "a field")
+        if isinstance(place, Lazy):
+            return defer(self.__getitem__, place)
+        return per_option(self._choice, lambda field: field_of(field, "a field")[place])
+
+    def followFrom(
+        self, position: Any, distance: Any, steps: int | None = None, stepSize: float | None = None
+    ) -> Any:
+        place, length = to_vector(position, "`follow ... from`"), to_scalar(distance, "`follow ... for`")
+        if isinstance(place, Lazy) or isinstance(length, Lazy):
+            return defer(self.followFrom, place, length, steps, stepSize)
+        return per_option(
+            self._choice, lambda field: field_of(field, "a field").followFrom(place, length, steps, stepSize)
+        )
+
+
 def is_field(value: Any) -> bool:
-    """Whether a value is certainly a field."""
-    return isinstance(value, VectorField)
+    """Whether a value is a field, or a random choice of which some option is one."""
+    return isinstance(value, VectorField) or any(map(is_field, options_of(value)))
+
+
+def is_certainly_field(value: Any) -> bool:
+    """Whether a value is a field, or a random choice among fields."""
+    options = options_of(value)
+    return isinstance(value, VectorField) or (bool(options) and all(map(is_certainly_field, options)))
 
 
 def field_of(value: Any, what: str) -> VectorField:
     """A field; raises `ScenicTypeError` for anything else."""
     if isinstance(value, VectorField):
         return value
+    if is_certainly_field(value):
+        return FieldChoice(value)
     hint = None
     if isinstance(value, type):
         hint = f"to create an instance write `new {value.__name__} at ...`"
@@ -277,7 +311,14 @@ def field_of(value: Any, what: str) -> VectorField:
 
 def frame_at(direction: Any, position: Any, what: str) -> Any:
     """A direction as an orientation; a field's is that at a point."""
-    return direction[position] if is_field(direction) else to_orientation(direction, what)
+    if isinstance(direction, VectorField):
+        return direction[position]
+    if not is_field(direction):
+        return to_orientation(direction, what)
+    place = to_vector(position, what)
+    if isinstance(place, Lazy):
+        return defer(frame_at, direction, place, what)
+    return per_option(direction, lambda option: frame_at(option, place, what))
 
 
 def relative_to(value: Any, frame: Any) -> Lazy:

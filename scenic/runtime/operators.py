@@ -8,7 +8,6 @@ from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import Any
 
-from scenic.graph.kinds import Kind
 from scenic.language.errors import InvalidScenarioError, ScenicTypeError
 from scenic.runtime.context import current, here
 from scenic.runtime.fields import field_of, frame_at, is_field, relative_to
@@ -29,7 +28,7 @@ from scenic.runtime.values import (
     is_orientation,
     is_vector,
     operate,
-    per_option,
+    options_of,
     to_heading,
     to_orientation,
     to_scalar,
@@ -61,9 +60,15 @@ def _vector(_ego: Ego, x: Any, y: Any) -> Any:
 
 def _is_frame(value: Any) -> bool:
     """A number or an orientation."""
-    if isinstance(value, Random):
-        return value.node.kind.is_number or value.node.kind is Kind.ORIENTATION
-    return is_number(value) or is_orientation(value)
+    return _is_scalar(value) or is_orientation(value)
+
+
+def _is_scalar(value: Any) -> bool:
+    """A number, or a random choice among numbers."""
+    if isinstance(value, Random) and not value.node.kind.is_number:
+        options = options_of(value)
+        return bool(options) and all(map(_is_scalar, options))
+    return is_number(value) or isinstance(value, Random)
 
 
 def _relative_to(_ego: Ego, value: Any, frame: Any) -> Any:
@@ -81,7 +86,7 @@ def _relative_to(_ego: Ego, value: Any, frame: Any) -> Any:
         )
     if any(oriented):
         point, other = (value, frame) if oriented[0] else (frame, value)
-        if is_number(other) or (isinstance(other, Random) and other.node.kind.is_number):
+        if _is_scalar(other):
             return _add(point.heading, to_scalar(other))
         if is_orientation(other):
             return _compose(to_orientation(frame), to_orientation(value))
@@ -109,7 +114,7 @@ def _offset_along(_ego: Ego, base: Any, direction: Any, offset: Any) -> Any:
 
 def _field_at(_ego: Ego, field: Any, position: Any) -> Any:
     place = to_vector(position, "`at`")
-    return per_option(field, lambda option: field_of(option, "`at`")[place])
+    return field_of(field, "`at`")[place]
 
 
 def _follow(ego: Ego, field: Any, origin: Any, distance: Any) -> Any:

@@ -7,6 +7,7 @@ methods of the program's classes, plain Python classes of the program and their 
 
 import abc
 import copy as shallow
+import dis
 from collections.abc import Iterable, Iterator
 from functools import cached_property, lru_cache, partial
 from types import CellType, CodeType, FunctionType, MethodType, ModuleType
@@ -53,6 +54,7 @@ class Globals:
 
     def __init__(self) -> None:
         self._values: dict[tuple[int, str], Any] = {}
+        self._loads: dict[CodeType, tuple[str, ...]] = {}
         self._fixed: dict[int, tuple[Any, bool]] = {}
         self._methods: dict[type, tuple[tuple[str, FunctionType], ...]] = {}
         self._varying: dict[type, tuple[tuple[str, FunctionType], ...]] = {}
@@ -68,7 +70,7 @@ class Globals:
         codes = [function.__code__]
         while codes:
             code = codes.pop()
-            for name in code.co_names:
+            for name in self._global_names(code):
                 key = (id(names), name)
                 if key not in self._values and name in names:
                     value = names[name]
@@ -77,6 +79,18 @@ class Globals:
                     found[name] = self._values[key]
             codes.extend(item for item in code.co_consts if isinstance(item, CodeType))
         return list(found.items())
+
+    def _global_names(self, code: CodeType) -> tuple[str, ...]:
+        """The names that code looks up among globals: not those of attributes, which the program may use for others."""
+        found = self._loads.get(code)
+        if found is None:
+            loads = (
+                step.argval
+                for step in dis.get_instructions(code)
+                if "GLOBAL" in step.opname or step.opname == "LOAD_NAME"
+            )
+            found = self._loads[code] = tuple(dict.fromkeys(loads)) if code.co_names else ()
+        return found
 
     def is_fixed(self, item: Any) -> bool:
         """Whether a function or class does the same in every sample: it reaches nothing random, and nothing bound anew."""

@@ -276,7 +276,7 @@ def facing(_ego: Ego, orientation: Any) -> Specifier:
         target = to_orientation(orientation, "`facing`")
 
     def evaluate(instance: Any) -> Mapping[str, Any]:
-        wanted = target[instance.position] if is_field(target) else target
+        wanted = frame_at(target, instance.position, "`facing`") if is_field(target) else target
         local = operate("compose", operate("inverse", instance.parentOrientation), wanted)
         if isinstance(local, Lazy):
             return {"yaw": local.yaw, "pitch": local.pitch, "roll": local.roll}

@@ -11,7 +11,7 @@ values, tells the classes.
 """
 
 from scenic.runtime.applying import apply, binary, fixed_batch, folded, operate, random_key, unary, uniform
-from scenic.runtime.choices import over_options, per_option
+from scenic.runtime.choices import options_of, over_options, per_option
 from scenic.runtime.coercions import (
     to_heading,
     to_orientation,
@@ -21,7 +21,7 @@ from scenic.runtime.coercions import (
     with_number,
     with_vector,
 )
-from scenic.runtime.definite import Orientation, Vector
+from scenic.runtime.definite import Orientation, OrientedVector, Vector
 from scenic.runtime.describing import describe, wrong_type
 from scenic.runtime.methods import Operand
 from scenic.runtime.nodes import CODEC, as_node, as_value, is_number, is_orientation, is_vector, kind_of
@@ -32,6 +32,7 @@ __all__ = [
     "CODEC",
     "NOTHING",
     "Orientation",
+    "OrientedVector",
     "Random",
     "Vector",
     "apply",
@@ -50,6 +51,7 @@ __all__ = [
     "is_vector",
     "kind_of",
     "operate",
+    "options_of",
     "over_options",
     "per_option",
     "random_key",

@@ -1,9 +1,12 @@
 """Vector fields, and values that are known only while an object is built."""
 
+import math
+
 import numpy as np
 import pytest
 import shapely
 
+import scenic
 from scenic.language.errors import (
     InvalidScenarioError,
     RandomControlFlowError,
@@ -168,3 +171,39 @@ def test_offset_along_a_field() -> None:
         tuple(item.position), np.array([0.5, 2, 1]) + euler(0.7).apply([1, 2, 3]), atol=1e-9
     )
     assert rotation(item.orientation).approx_equal(euler(0.4, 0.3, -0.2), 1e-9)
+
+
+def test_a_choice_among_fields_is_a_field() -> None:
+    text = (
+        "one, two = VectorField('one', lambda p: p.x / 10), VectorField('two', lambda p: 2 + p.y / 10)\n"
+        "which = Uniform(one, two, Uniform(one, two))\n"
+        "ego = new Object at (Range(3, 4), 5), facing which\n"
+        "other = new Object at (10, 7), facing 0.1 relative to which\n"
+        "third = new Object following which from (0, 50) for 2\n"
+        "mixed = new Object at (60, 0), facing Uniform(one, 0.5)\n"
+        "param there = (which at ego).yaw, follow = (follow which from (0, 50) for 2).position\n"
+        "param along = (1, 2) offset along which by (0, 1)\n"
+    )
+    kinds = set()
+    for found in scenic.scenarioFromString(text).sample(40, seed=1):
+        ego, other, third, mixed = found.objects
+        second = other.yaw - 0.1 > 2
+        kinds.add((second, mixed.yaw == 0.5))
+        x, y = ego.x, ego.y
+        assert ego.yaw == pytest.approx(2 + y / 10 if second else x / 10)
+        assert found.params["there"] == pytest.approx(ego.yaw)
+        assert other.yaw - 0.1 == pytest.approx(2.7 if second else 1.0)
+        assert third.position == found.params["follow"]
+        assert mixed.yaw in (0.5, pytest.approx(6 - 2 * math.pi))
+        heading = 2.2 if second else 0.1
+        assert found.params["along"] == pytest.approx((1 - math.sin(heading), 2 + math.cos(heading), 0))
+    assert len(kinds) == 4
+
+
+def test_attributes_are_no_names_of_the_program() -> None:
+    # The field reads `p.x`, which has nothing to do with the program's `x`; that one depends on the field.
+    text = "field = VectorField('f', lambda p: p.x / 10)\nx = field at Uniform((1, 2), (3, 4))\nparam x = x\n"
+    found = {
+        round(sampled.params["x"].yaw, 9) for sampled in scenic.scenarioFromString(text).sample(20, seed=1)
+    }
+    assert found == {0.1, 0.3}

@@ -26,6 +26,7 @@ from scenic.runtime.regions.base import Everywhere, Mask, Nowhere, Region, Works
 from scenic.runtime.regions.bodies import OccupiedSpace, SideSurface
 from scenic.runtime.regions.choice import as_region
 from scenic.runtime.regions.composite import (
+    Composite,
     DifferenceRegion,
     IntersectionRegion,
     UnionRegion,
@@ -39,7 +40,13 @@ from scenic.runtime.regions.meshes import (
     surface_in_world,
     world_mesh,
 )
-from scenic.runtime.regions.planar import Footprint, PlanarRegion, PolygonalFootprintRegion, PolygonalRegion
+from scenic.runtime.regions.planar import (
+    CircularRegion,
+    Footprint,
+    PlanarRegion,
+    PolygonalFootprintRegion,
+    PolygonalRegion,
+)
 from scenic.runtime.regions.scattered import PointSetRegion
 from scenic.runtime.regions.views import ViewRegion
 from scenic.runtime.regions.volumes import BoxRegion, PlacedVolume
@@ -440,7 +447,15 @@ def contains_region(first: Any, second: Any, tolerance: float = 0) -> bool:
     if flat_a is not None and flat_b is not None:
         if flat_a[1] is not None and flat_a[1] != flat_b[1]:
             return False
+        if isinstance(a, CircularRegion):
+            # Exactly, not by the polygon of the disc, which a sector of the same circle sticks out of.
+            import shapely
+
+            reach = shapely.hausdorff_distance(shapely.Point(a.center.x, a.center.y), flat_b[0])
+            return bool(reach <= float(a.radius) + tolerance + 1e-9)
         return bool(flat_a[0].buffer(tolerance + 1e-9).covers(flat_b[0]))
+    if isinstance(b, Footprint) and a.dimension == 3 and not isinstance(a, Footprint | Composite):
+        return False
     solid_a, solid_b = _solid(a), _solid(b)
     if solid_a is not None and solid_b is not None:
         rest = booleans.difference(solid_b, [solid_a])

@@ -30,6 +30,7 @@ from scenic.runtime.regions.single import Single
 from scenic.runtime.regions.stacked import Stack, body_operands, placed_of
 from scenic.runtime.spelling import plain_number
 from scenic.runtime.values import (
+    OrientedVector,
     Random,
     Vector,
     apply,
@@ -306,7 +307,7 @@ class Region(ABC):
             points, known = self.draw_points(numbers, keys, *columns)
             if known is None or known.all():
                 x, y, z = points[0].tolist()
-                return vector(x, y, z)
+                return self.orient(vector(x, y, z))
         raise RejectionException(f"no point was found in {self!r}")
 
     @staticmethod
@@ -315,12 +316,17 @@ class Region(ABC):
         return region.uniform_placement()[0]
 
     def projectVector(self, point: Any, onDirection: Any) -> Any:
-        """The point of the region where a point lands along a direction."""
-        return self.project(point, onDirection)[0]
+        """The point of the region where a point lands along a direction; ``None`` where a definite one does not."""
+        try:
+            return self.project(point, onDirection)[0]
+        except InvalidScenarioError:
+            return None
 
     def orient(self, point: Any) -> Any:
-        """The point with the preferred orientation there; the point itself where there is none."""
-        return point
+        """The point with the preferred heading there; the point itself where there is none."""
+        if not self.has_orientation or self.is_random or is_random(point):
+            return point
+        return OrientedVector.make(point, self.orientation_at(to_vector(point)).yaw)
 
     def __contains__(self, item: Any) -> Any:
         return self.containsObject(item) if hasattr(item, "occupiedSpace") else self.containsPoint(item)

@@ -22,6 +22,9 @@ from scenic.runtime.regions.planar import PlanarRegion
 TRIES: Final = 2_000
 """Draws of one point before a region counts as empty in a lane."""
 
+_TOGETHER: Final = 1 << 12
+"""Draws that are looked at together, at most."""
+
 _PROBES: Final = 8
 """Vertices of a body that are looked at before the union of its lane is made."""
 
@@ -92,22 +95,25 @@ class Composite(Region):
         found = np.zeros(lanes, dtype=np.bool_)
         words = np.broadcast_to(np.asarray(keys, dtype=np.uint64), lanes)
         parts = list(self._parts(columns))
-        for attempt in range(TRIES):
-            missing = np.flatnonzero(~found)
-            if not len(missing):
-                break
-            own = mix(words[missing] ^ np.uint64(attempt + 1))
-            choice = uniforms[0, missing] if attempt == 0 else open_unit(mix(own))
-            total = sums[:, missing]
+        first = 0
+        while first < TRIES and len(missing := np.flatnonzero(~found)):
+            # The first attempt that is kept counts, so looking at several at once changes nothing. They become more as lanes
+            # turn out to find it hard.
+            count = min(max(first, 1), TRIES - first, max(_TOGETHER // len(missing), 1))
+            lane = np.repeat(missing, count)
+            attempts = np.tile(np.arange(first, first + count, dtype=np.uint64), len(missing))
+            own = mix(words[lane] ^ (attempts + np.uint64(1)))
+            choice = uniforms[0, missing] if first == 0 else open_unit(mix(own))
+            total = sums[:, lane]
             chosen = (choice * total[-1] >= total).sum(axis=0).clip(0, len(sources) - 1)
-            drawn = np.zeros((len(missing), 3))
-            known = np.zeros(len(missing), dtype=np.bool_)
+            drawn = np.zeros((len(lane), 3))
+            known = np.zeros(len(lane), dtype=np.bool_)
             for number, source in enumerate(sources):
                 mine = np.flatnonzero(chosen == number)
                 if not len(mine):
                     continue
                 member, all_columns = parts[source]
-                some = [column if len(column) == 1 else column[missing[mine]] for column in all_columns]
+                some = [column if len(column) == 1 else column[lane[mine]] for column in all_columns]
                 fresh = (
                     np.stack(
                         [open_unit(mix(own[mine] + np.uint64(17 + axis))) for axis in range(member.draws)]
@@ -117,12 +123,15 @@ class Composite(Region):
                 )
                 drawn[mine], present = member.draw_points(fresh, mix(own[mine] + np.uint64(3)), *some)
                 known[mine] = True if present is None else present
-            rows = [column if len(column) == 1 else column[missing] for column in columns]
+            rows = [column if len(column) == 1 else column[lane] for column in columns]
             kept = known & self._accept(
                 drawn, self._exactly(drawn, rows), chosen, open_unit(mix(own + np.uint64(5)))
             )
-            points[missing[kept]] = drawn[kept]
-            found[missing[kept]] = True
+            kept_by_lane = kept.reshape(len(missing), count)
+            lucky = np.flatnonzero(kept_by_lane.any(axis=1))
+            points[missing[lucky]] = drawn[lucky * count + kept_by_lane[lucky].argmax(axis=1)]
+            found[missing[lucky]] = True
+            first += count
         return points, found
 
     def uniform_placement(self) -> tuple[Any, Any]:

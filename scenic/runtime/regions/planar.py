@@ -84,6 +84,13 @@ class PlanarRegion(Region):
         """The outline, as a line."""
         return self.algebra.boundary(self)
 
+    @property
+    def points(self) -> tuple[tuple[float, float, float], ...]:
+        """The vertices of the outlines, those of holes last."""
+        parts = getattr(self.polygons, "geoms", [self.polygons])
+        rings = [part.exterior for part in parts] + [ring for part in parts for ring in part.interiors]
+        return tuple((x, y, float(self.height)) for ring in rings for x, y, *_ in ring.coords)
+
     def buffer(self, distance: float) -> "PolygonalRegion":
         """The region of all points within ``distance`` metres (shrunk where negative)."""
         return PolygonalRegion(polygon=self.polygons.buffer(distance), z=float(self.height))
@@ -421,12 +428,6 @@ class PolygonalRegion(PlanarRegion):
 
     def polygons_now(self) -> Any:
         return self.outline.polygon
-
-    @property
-    def points(self) -> tuple[tuple[float, float, float], ...]:
-        """The vertices of the outlines, without holes."""
-        parts = getattr(self.outline.polygon, "geoms", [self.outline.polygon])
-        return tuple((x, y, self.z) for part in parts for x, y, *_ in part.exterior.coords)
 
     @staticmethod
     def unionAll(regions: Iterable["PolygonalRegion"], buf: float = 0) -> "PolygonalRegion":
