@@ -405,3 +405,17 @@ def test_what_regions_hold_and_where_things_land() -> None:
     assert {*RectangularRegion((0, 0), 0, 2, 4).points} == {(x, y, 0) for x in (-1, 1) for y in (-2, 2)}
     assert BoxRegion().projectVector((0.1, 0.2, 5), (0, 0, 1)) == (0.1, 0.2, pytest.approx(0.5))
     assert BoxRegion().projectVector((7, 0, 5), (0, 0, 1)) is None
+
+
+def test_batches_and_instances_are_drawn_as_before() -> None:
+    text = "x = DiscreteRange(0, 1)\nego = new Object at (x, 0), with tag Range(0, 1)\ndef f(v): return v > 0.5\nrequire f(x)"
+    program = scenic.scenarioFromString(text)
+    scenes, tried = program.generateBatch(numScenes=20, maxIterations=500)
+    assert len(scenes) == 20
+    assert 20 < tried <= 500
+    with pytest.raises(scenic.RejectionException):
+        program.generateBatch(20, maxIterations=20)
+    first, second = program.objects[0].sample(), program.objects[0].sample()
+    assert first.position in ((0, 0, 0), (1, 0, 0))
+    assert 0 < first.tag < 1
+    assert first.tag != second.tag

@@ -33,6 +33,7 @@ from scenic.runtime.shapes import BoxShape
 from scenic.runtime.sight import sees
 from scenic.runtime.values import (
     Orientation,
+    Random,
     operate,
     per_option,
     to_orientation,
@@ -197,6 +198,10 @@ class Point:
     def toVector(self) -> Any:
         """The position."""
         return self.position
+
+    def sample(self, subsamples: Any = None) -> Any:
+        """The instance with its random properties drawn now, independent of all scenes."""
+        return Random.drawn(self)
 
     def canSee(self, other: Any, occludingObjects: Any = (), *, certain: bool = False) -> Any:
         """Whether it sees a vector, a point or an object past some objects.

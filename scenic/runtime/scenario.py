@@ -1,5 +1,6 @@
 """A compiled scenario, from which scenes are sampled."""
 
+import math
 import random
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -270,11 +271,18 @@ class Scenario:
         return scene, scene.attempts
 
     def generateBatch(
-        self, n: int, maxIterations: int = DEFAULT_ATTEMPTS, verbosity: int = 0, feedback: Any = None
+        self, numScenes: int, maxIterations: float = math.inf, verbosity: int = 0, feedback: Any = None
     ) -> tuple[list[Scene], int]:
-        """``n`` scenes, and the total number of candidates tried for them."""
-        scenes = self.sample(n, max_attempts=maxIterations)
-        return scenes, sum(scene.attempts for scene in scenes)
+        """Scenes, and the total number of candidates tried for them, ``maxIterations`` at most.
+
+        Without that limit, a scene for which `DEFAULT_ATTEMPTS` candidates were rejected ends the search, too.
+        """
+        most = DEFAULT_ATTEMPTS if maxIterations == math.inf else int(maxIterations)
+        scenes = self.sample(numScenes, max_attempts=most)
+        tried = sum(scene.attempts for scene in scenes)
+        if tried > maxIterations:
+            raise RejectionException(f"failed to generate {numScenes} scenes in {maxIterations} iterations")
+        return scenes, tried
 
     def _sampling_error(self, error: CandidateError) -> Exception:
         cause, check = error.__cause__, error.check
