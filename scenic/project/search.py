@@ -82,6 +82,8 @@ class Finder:
         # An empty entry is the current folder, which a hostile one could fill: programs say what is beside them.
         self._installed = tuple(dict.fromkeys([*(each for each in installed if each), _LIBRARY]))
         self._entries: dict[str, frozenset[str]] = {}
+        self._stamps: dict[str, int] = {}
+        """By folder that was listed: when something in it was last made, renamed or removed."""
         self._found: dict[tuple[str, str, int], Found] = {}
         self._folders: dict[str, tuple[str, ...]] = {}
         self._folder_of: dict[str, str] = {}
@@ -89,7 +91,13 @@ class Finder:
     def forget(self) -> None:
         """Look at the folders again from now on."""
         self._entries = {}
+        self._stamps = {}
         self._found = {}
+
+    def is_stale(self, importer: str) -> bool:
+        """Whether there may be other files beside one than were found when its folder was listed."""
+        folders = self._beside(os.path.dirname(os.path.abspath(importer)))
+        return any(folder in self._stamps and self._stamps[folder] != _stamp(folder) for folder in folders)
 
     def find(self, name: str, *, importer: str, level: int = 0) -> Found:
         """The module that ``name`` means in the file ``importer``; ``level`` counts the dots before it."""
@@ -197,6 +205,7 @@ class Finder:
     def _list(self, folder: str) -> frozenset[str]:
         entries = self._entries.get(folder)
         if entries is None:
+            self._stamps[folder] = _stamp(folder)
             try:
                 entries = frozenset(os.listdir(folder))
             except (OSError, ValueError):
@@ -287,6 +296,13 @@ def _hooked(package: str) -> str | None:
         return None
     home = os.path.dirname(spec.origin)
     return os.path.dirname(home) if spec.submodule_search_locations is not None else home
+
+
+def _stamp(folder: str) -> int:
+    try:
+        return os.stat(folder).st_mtime_ns
+    except (OSError, ValueError):
+        return 0
 
 
 def _closed(folder: str) -> str:

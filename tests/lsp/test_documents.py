@@ -250,6 +250,18 @@ def test_what_one_file_says_changes_what_is_said_of_another(client: Client, tmp_
     )
 
 
+def test_files_beside_an_opened_one_may_be_new(client: Client, tmp_path: Path) -> None:
+    client.start(FULL, tmp_path)
+    first, second = ((tmp_path / name).as_uri() for name in ("first.scenic", "second.scenic"))
+    text = "from library import Chair\nego = new Chair\n"
+    client.open(first, text)
+    assert len(client.published(first)) == 1
+    (tmp_path / "library.scenic").write_text("class Chair: pass\n")
+    client.open(second, text)
+    assert client.published(second) == []
+    assert client.published(first) == []
+
+
 def test_a_client_that_watches_no_files_tells_by_saving(client: Client, tmp_path: Path) -> None:
     client.start(FULL, tmp_path)
     uri = (tmp_path / "main.scenic").as_uri()

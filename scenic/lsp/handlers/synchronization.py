@@ -19,6 +19,9 @@ def _opened(session: Session, params: Any) -> None:
         reading.integer(params, "textDocument", "version"),
         reading.text(params, "textDocument", "text"),
     )
+    if session.project.finder.is_stale(session.documents[uri].snapshot.filename):
+        # A file was made beside it of which nobody told us, perhaps this one.
+        session.files_changed()
     session.checks.opened(uri)
 
 
