@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from scenic.language.errors import ScenicError
-from scenic.runtime.geometry.depth import convex_depth
+from scenic.runtime.geometry.depth import convex_depth, convex_gap
 from scenic.runtime.geometry.poses import Floats, Poses
 from scenic.runtime.geometry.single import overlap
 from scenic.runtime.objects import Object, Point
@@ -129,12 +129,13 @@ def _overlap(left: Any, right: Any) -> float | None:
     """How deep one of two objects is in the other, or the gap between them, negative; no depth is known of concave shapes."""
     if not (isinstance(left, Object) and isinstance(right, Object)):
         return None
-    if not left.intersects(right):
-        return -float(gap_between(left, right))
-    if isinstance(left.shape, BoxShape) and isinstance(right.shape, BoxShape):
+    meet = left.intersects(right)
+    if meet and isinstance(left.shape, BoxShape) and isinstance(right.shape, BoxShape):
         one, other = placed_of(left), placed_of(right)
         if one is not None and other is not None:
             return overlap(one, other)
     if left.shape.mesh.is_convex and right.shape.mesh.is_convex:
-        return convex_depth(_hull(left), _hull(right))
+        return convex_depth(_hull(left), _hull(right)) if meet else -convex_gap(_hull(left), _hull(right))
+    if not meet:
+        return -float(gap_between(left, right))
     return math.inf

@@ -8,8 +8,10 @@ from scipy.spatial import ConvexHull
 
 import scenic
 from scenic.runtime.geometry import primitives
+from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.broadphase import boxes_overlap
-from scenic.runtime.geometry.depth import convex_depth
+from scenic.runtime.geometry.depth import convex_depth, convex_gap
+from scenic.runtime.geometry.distance import between as gaps
 from scenic.runtime.geometry.poses import Poses
 from scenic.runtime.geometry.single import Placed, overlap, placed
 from scenic.runtime.values import Orientation
@@ -126,6 +128,34 @@ def test_convex_solids_are_as_deep_in_each_other_as_the_hull_of_all_differences_
         checked += 1
         assert convex_depth(first, second) == pytest.approx(depth, rel=1e-7, abs=1e-9)
     assert checked > 5
+
+
+@pytest.mark.parametrize(
+    "kinds", [("cylinder", "cone"), ("spheroid", "box"), ("spheroid", "spheroid"), ("box", "box")]
+)
+def test_convex_solids_are_as_far_apart_as_their_faces(kinds: tuple[str, str]) -> None:
+    random = np.random.default_rng(2)
+    meshes = [getattr(primitives, kind)() for kind in kinds]
+    for far in (0.01, 0.5, 3, 1000):
+        turns = [Orientation.fromEuler(*random.uniform(-3, 3, 3).tolist()).q for _ in range(2)]
+        sizes = random.uniform(0.3, 2, (2, 3)).tolist()
+        way = random.normal(size=3)
+        where = way / np.linalg.norm(way) * (far + np.linalg.norm(sizes, axis=1).sum() / 2)
+        places = [(0.0, 0.0, 0.0), tuple(where.tolist())]
+        poses = [Poses.fixed(*pose) for pose in zip(places, turns, map(tuple, sizes), strict=True)]
+        corners = [pose.to_world(mesh.vertices[None])[0] for pose, mesh in zip(poses, meshes, strict=True)]
+        bodies = [Body((mesh,), None, pose) for mesh, pose in zip(meshes, poses, strict=True)]
+        assert convex_gap(*corners) == pytest.approx(float(gaps(*bodies, 1)[0]), rel=1e-9)
+
+
+def test_gaps_of_faces_edges_and_corners() -> None:
+    box = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], float)
+    assert convex_gap(box, box + np.array((2.5, 0.3, 0.2))) == pytest.approx(0.5, rel=1e-12)  # faces
+    assert convex_gap(box, box + np.array((5, 6, 0.2))) == pytest.approx(5, rel=1e-12)  # edges
+    assert convex_gap(box, box + np.array((3, 4, 4))) == pytest.approx(3, rel=1e-12)  # corners
+    assert convex_gap(box, box + np.array((2, 0.3, 0.2))) == pytest.approx(0, abs=1e-9)  # touching
+    assert convex_gap(box, box + np.array((2 + 1e-6, 0, 0))) == pytest.approx(1e-6, rel=1e-3)
+    assert convex_gap(box[:1], box + np.array((9, 0, 0))) == pytest.approx(9, rel=1e-12)
 
 
 def test_solids_that_touch_or_are_one_in_the_other() -> None:
