@@ -4,15 +4,17 @@ import ast
 import builtins
 import os
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from keyword import iskeyword
 from typing import Any, Final
 
+from scenic.compiler import tree as scenic
 from scenic.compiler.generated import WORDS
 from scenic.compiler.scopes import Binding, BindingKind, ScopeKind
 from scenic.compiler.tokens import FSTRING_MIDDLE, STRING
+from scenic.compiler.traversal import walk
 from scenic.ide import descriptions, documentation
 from scenic.ide.continuations import Continuation, Continuations, PhraseKind, continuations
 from scenic.ide.expressions import expression, operand_before
@@ -269,7 +271,7 @@ def _find(
         yield replace(offered, label=item.text) if item.words in begun else offered
         begun.add(item.words)
     if found.labels & _EXPRESSIONS or "a name" in found.labels:
-        running = last in _RUNNING or (last == "," and first == "do")
+        running = last in _RUNNING or (last == "," and first == "do") or before[-2:] == ("with", "behavior")
         fitting = _TARGETS if running else _MONITORS if before[-2:] == ("require", "monitor") else ()
         for each in _names(project, module, snapshot, line, column):
             if each.kind in fitting:
@@ -522,6 +524,10 @@ def _members(
     if found is None:
         return
     module, node = found
+    if text == "globalParameters":
+        for name in _parameters(module):
+            yield Completion(name, CompletionKind.PARAMETER, name, 1, "parameter")
+        return
     home = module_behind(project, module, node)
     if home is not None:
         exports = project.exports_of(home)
@@ -534,6 +540,8 @@ def _members(
     owner = (
         symbol if symbol is not None and symbol.kind is SymbolKind.CLASS else class_of(project, module, node)
     )
+    if owner is None and isinstance(node, ast.Name) and node.id in ("ego", "self"):
+        owner = Symbol("Object", SymbolKind.CLASS)  # Of whatever class, it is an object.
     cls = None if owner is None else class_of_symbol(project, owner)
     if cls is not None and cls.members:
         for member in cls.members:
@@ -550,6 +558,13 @@ def _members(
                              member.type or member.owner, key=key)  # fmt: skip
         return
     yield from _of_values(project, module, node, owner)
+
+
+def _parameters(module: Module) -> Sequence[str]:
+    """The global parameters that a module sets, as far as they are names."""
+    settings = (node for node in walk(module.tree) if isinstance(node, scenic.Param))
+    names = dict.fromkeys(item.name for node in settings for item in node.items)
+    return [name for name in names if name.isidentifier()]
 
 
 def _of_values(

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from scenic.compiler.generated import HARD_KEYWORDS
-from scenic.compiler.scopes import ScopeKind
+from scenic.compiler.scopes import Binding, Resolution, ScopeKind
 from scenic.ide.inheritance import family, own_member, owner_of, subclasses
 from scenic.ide.snapshot import Snapshot
 from scenic.language.names import RESERVED, TRACKED
@@ -251,6 +251,8 @@ def rename(
     related = family(project, symbol)
     if name != found.name:
         _refuse_clash(project, related.definitions, name)
+        if binding is not None:
+            _refuse_capture(names, binding, name)
     places = references(project, *related.definitions)
     # A place that names it differently (`import a as b`) keeps its own name.
     changed = [(place, name) for place in places if _text(project, place) == symbol.name]
@@ -265,6 +267,26 @@ def rename(
 
 
 # Helpers
+
+
+def _refuse_capture(names: Resolution, binding: Binding, name: str) -> None:
+    """Raise `RenameError` if a name of another scope would come between a binding and its uses, or the binding between
+    another one of that name and the uses of that.
+    """
+    own = binding.scope
+    for reference in names.references.values():
+        around = tuple(reference.scope.ancestors())
+        if own not in around:
+            continue
+        within = around[: around.index(own)]
+        if reference.binding is binding:
+            other = reference.scope.lookup(name)
+            if other is not None and other.scope in within:
+                raise RenameError(f"`{name}` means something else where `{binding.name}` is used")
+        elif reference.node.id == name and (
+            reference.binding is None or reference.binding.scope not in within
+        ):
+            raise RenameError(f"there is a `{name}` already that is used in the same scope")
 
 
 def _refuse_clash(project: Project, members: Sequence[Symbol], name: str) -> None:

@@ -87,3 +87,42 @@ def test_names_that_would_change_the_meaning(marked: str, name: str, reason: str
 def test_a_property_of_the_language_is_no_place_to_rename(tmp_path: Path) -> None:
     with pytest.raises(RenameError, match="`Object`"):
         prepare_rename(*at("wid|th: 2", tmp_path))
+
+
+CLOSURES = """\
+size = 1
+def outer(k):
+    def inner(j):
+        return j + k + size
+    def other(size):
+        return size
+    return [inner(i) for i in range(k)]
+"""
+
+
+@pytest.mark.parametrize(
+    ("line", "column", "name", "fits"),
+    [
+        (3, 14, "k", False),  # `inner` reads the `k` around it
+        (2, 10, "j", False),  # and `inner` has a `j` of its own
+        (2, 10, "size", False),
+        (1, 0, "j", False),
+        (1, 0, "range", False),
+        (7, 20, "k", False),
+        (5, 14, "k", True),
+        (1, 0, "other", False),
+        (1, 0, "extent", True),
+        (2, 10, "m", True),
+    ],
+)
+def test_no_name_comes_between_another_and_its_uses(
+    line: int, column: int, name: str, fits: bool, tmp_path: Path
+) -> None:
+    (tmp_path / "closures.scenic").write_text(CLOSURES)
+    filename = str(tmp_path / "closures.scenic")
+    place = Project((str(tmp_path),)), Snapshot(CLOSURES, filename), line, column
+    if fits:
+        assert rename(*place, name)
+    else:
+        with pytest.raises(RenameError):
+            rename(*place, name)

@@ -191,6 +191,8 @@ def test_signatures(project: Project) -> None:
         ("x = helper(", {"first=", "second=", "chair"}, set()),
         ("behavior B(far):\n    near = 1\n    take ", {"self", "far", "near", "chair"}, {"with"}),
         ("class Stool(Chair):\n    high: 1\n    width: self.", {"high", "legs", "height"}, {"require"}),
+        ("param pace = 3\nx = globalParameters.", {"pace"}, {"legs"}),
+        ("behavior B():\n    x = self.", {"position", "speed"}, {"legs"}),
         ("class Stool(Chair):\n    width: ", {"self", "chair"}, {"width"}),
         ("", {"require", "behavior", "param", "chair", "if", "class"}, {"take", "do"}),
         ("behavior B():\n    ", {"take", "do", "wait", "try"}, {"param", "model"}),
@@ -319,6 +321,8 @@ def test_rename_across_files(project: Project) -> None:
         ("to ch|air < 5", "1chair", "not a name"),
         ("to ch|air < 5", "new", "keyword"),
         ("to ch|air < 5", "total", "already"),
+        ("    in|ner = parameter", "helper", "already"),
+        ("def out|er(", "chair", "already"),
     ],
 )
 def test_impossible_names(project: Project, marked: str, name: str, reason: str) -> None:
