@@ -56,7 +56,9 @@ def test_points_that_nearly_leave_a_view(angles: tuple[float, float]) -> None:
         # The first change on the way: there may be several.
         places = np.linspace(0, 40, 400).tolist()
         last = next(number for number, place in enumerate(places) if not truth(place))
-        compare(answer, truth, flip(truth, places[last - 1], places[last]), certain=True)
+        change = flip(truth, places[last - 1], places[last])
+        compare(answer, truth, change, certain=True)
+        assert sees_point(looking, triple(start + change * way), []) is None
     assert looking.contains(triple(CAMERA)) is not True
     if angles[0] < 6 and angles[1] > 3:  # above the camera all azimuths are the same
         assert looking.contains(triple(TURN.apply([0, 0, 2]) + CAMERA)) is None
