@@ -419,3 +419,40 @@ def test_batches_and_instances_are_drawn_as_before() -> None:
     assert first.position in ((0, 0, 0), (1, 0, 0))
     assert 0 < first.tag < 1
     assert first.tag != second.tag
+
+
+def test_laws_can_be_asked_for() -> None:
+    import inspect
+
+    from scenic.core import distributions as laws
+
+    made = {
+        "Range": laws.Range(1, 2),
+        "Normal": laws.Normal(1, 2),
+        "TruncatedNormal": laws.TruncatedNormal(0, 1, -1, 1),
+        "DiscreteRange": laws.DiscreteRange(1, 3),
+        "Options": laws.Uniform("a", 2),
+    }
+    for name, value in made.items():
+        assert [other for other in made if isinstance(value, getattr(laws, other))] == [name]
+        assert isinstance(value, laws.Distribution)
+        assert value.isPrimitive
+    assert isinstance(laws.DiscreteRange(1, 2, weights=(1, 2)), laws.DiscreteRange)
+    assert isinstance(laws.Uniform(1, 2), laws.Options)
+    derived = laws.Uniform(1, 2) + 1
+    assert isinstance(derived, laws.Distribution)
+    assert not isinstance(derived, laws.Options)
+    assert not derived.isPrimitive
+    assert not isinstance(3, laws.Distribution)
+    assert (made["Range"].low, made["Range"].high, made["Normal"].mean, made["Normal"].stdDev) == (1, 2, 1, 2)
+    assert laws.Range(laws.Range(3, 4), 5).low.supportInterval() == pytest.approx((3, 4), abs=1e-9)
+    with pytest.raises(AttributeError):
+        _ = made["Range"].mean
+    assert list(inspect.signature(laws.Range).parameters) == ["low", "high"]
+
+    class Three(laws.Distribution):
+        def sampleGiven(self, value: object) -> int:
+            return 3
+
+    assert isinstance(Three(), Three)
+    assert not isinstance(made["Range"], Three)

@@ -3,9 +3,10 @@
 Names are the language's. Each gives a random value while a scenario is compiled, and a plain draw during a simulation.
 """
 
+import functools
 import itertools
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Final
 
 from scenic.graph.construction import make_node
@@ -28,6 +29,30 @@ from scenic.runtime.values import (
 
 _MOST_EXACT: Final = 2**61
 """Whole numbers of smaller size than this fit the integers of columns."""
+
+
+class Law:
+    """The function that draws from a law, which can also stand after ``isinstance``, as scripts expect of a class."""
+
+    def __init__(self, function: Callable[..., Any], operations: frozenset[str]) -> None:
+        functools.update_wrapper(self, function)
+        self._function = function
+        self._operations = operations
+
+    def __call__(self, *args: Any, **keywords: Any) -> Any:
+        return self._function(*args, **keywords)
+
+    def __instancecheck__(self, value: Any) -> bool:
+        return (
+            isinstance(value, Random) and value.isPrimitive and value.node.operation.name in self._operations
+        )
+
+    def __repr__(self) -> str:
+        return f"<law {self._function.__name__}>"
+
+
+def _law(*operations: str) -> Callable[[Callable[..., Any]], Law]:
+    return lambda function: Law(function, frozenset(operations))
 
 
 def primitive(operation: str, *operands: Any, payload: Any = None) -> Any:
@@ -55,16 +80,19 @@ def primitive(operation: str, *operands: Any, payload: Any = None) -> Any:
     return as_value(node, lambda: primitive(operation, *operands, payload=payload))
 
 
+@_law("range")
 def Range(low: Any, high: Any) -> Any:
     """A real number, uniform between two ends (in either order; they may be random)."""
     return primitive("range", to_scalar(low, "`Range`"), to_scalar(high, "`Range`"))
 
 
+@_law("normal")
 def Normal(mean: Any, stdDev: Any) -> Any:
     """A real number, normally distributed."""
     return primitive("normal", to_scalar(mean, "`Normal`"), to_scalar(stdDev, "`Normal`"))
 
 
+@_law("truncated normal")
 def TruncatedNormal(mean: Any, stdDev: Any, low: Any, high: Any) -> Any:
     """A real number, normally distributed on condition that it lies between two fixed ends."""
     if is_random(low) or is_random(high):
@@ -84,6 +112,7 @@ def TruncatedNormal(mean: Any, stdDev: Any, low: Any, high: Any) -> Any:
     )
 
 
+@_law("discrete range", "weighted integer")
 def DiscreteRange(low: Any, high: Any, weights: Sequence[float] | None = None) -> Any:
     """An integer between two ends (included), uniform, or with a weight for each."""
     if weights is None:
@@ -120,11 +149,13 @@ def _end(value: Any) -> Any:
     return to_scalar(value, "`DiscreteRange`")
 
 
+@_law("select", "look-up")
 def Uniform(*options: Any) -> Any:
     """One of the options, each equally likely. ``Uniform(*xs)`` draws from the elements of a list."""
     return _choose(options, [1.0] * len(options), "Uniform")
 
 
+@_law("select", "look-up")
 def Discrete(options: Mapping[Any, Any] | Iterable[Any]) -> Any:
     """One of the keys of a dictionary, with probability in proportion to its value."""
     if isinstance(options, Mapping):

@@ -2,7 +2,7 @@
 
 import functools
 from collections.abc import Callable
-from typing import Any, Self
+from typing import Any, Self, cast
 
 import numpy as np
 
@@ -16,7 +16,14 @@ from scenic.runtime.opaque import call_later, evaluated, later
 from scenic.runtime.values import Random, is_random
 
 
-class Distribution(Random):
+class _AnyLaw(type):
+    """So that every random value counts as a `Distribution` where a program asks with ``isinstance``."""
+
+    def __instancecheck__(cls, value: Any) -> bool:
+        return isinstance(value, Random) if cls.__base__ is Random else super().__instancecheck__(value)
+
+
+class Distribution(Random, metaclass=_AnyLaw):
     """Base of distributions written in Python.
 
     A subclass passes the values that it depends on to the base's initialiser, and implements `sampleGiven`. It may draw from
@@ -121,8 +128,8 @@ def distributionMethod(method: Callable[..., Any]) -> Callable[..., Any]:
 
 def supportInterval(value: Any) -> tuple[float | None, float | None]:
     """The least and the greatest value that a number, random or not, can have; ``None`` where that is not known."""
-    if isinstance(value, Distribution):
-        return value.supportInterval()
+    if Distribution in type(value).__mro__:
+        return cast("tuple[float | None, float | None]", value.supportInterval())
     return support_of(value)
 
 

@@ -3,9 +3,9 @@
 import functools
 import inspect
 import operator
-from collections.abc import Sequence
-from types import BuiltinFunctionType
-from typing import Any
+from collections.abc import Mapping, Sequence
+from types import BuiltinFunctionType, MappingProxyType
+from typing import Any, Final
 
 import numpy as np
 
@@ -78,9 +78,23 @@ def element(value: Random, index: Any) -> Any:
     return operate("getitem", value, index) if found is None else found
 
 
+_PARAMETERS: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType(
+    {
+        "range": ("low", "high"),
+        "discrete range": ("low", "high"),
+        "normal": ("mean", "stdDev"),
+        "truncated normal": ("mean", "stdDev"),
+    }
+)
+"""Parameters of primitive laws that scripts ask for, in the order of their operands."""
+
+
 def attribute(value: Random, name: str) -> Any:
     """An attribute of a random value. A choice gives the choice among the options' attributes."""
     node = value.node
+    names = _PARAMETERS.get(node.operation.name, ())
+    if name in names:
+        return as_value(node.operands[1 + names.index(name)])
     if node.operation is TABLE["select"]:
         index, *options = node.operands
         return select(index, [_attribute_of_option(option, name) for option in options])

@@ -60,6 +60,11 @@ class Random(Arithmetic):
         """The least and the greatest value, as far as they are known."""
         return Random.supported(self)
 
+    @property
+    def isPrimitive(self) -> bool:
+        """Whether it is drawn itself, not computed from what is drawn."""
+        return self._again is not None
+
     def clone(self) -> Any:
         """An independent draw of the same law."""
         return self if self._again is None else self._again()
