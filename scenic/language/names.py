@@ -10,6 +10,7 @@ from typing import Final
 __all__ = [
     "ANGLE_METHODS",
     "CONVERSIONS",
+    "IMPORTABLE",
     "LIFTED_FUNCTIONS",
     "LIFTED_METHODS",
     "NAMES",
@@ -292,3 +293,16 @@ LIFTED_METHODS: Final = frozenset(
     }
 )
 """Methods of vectors, orientations, objects and regions whose calls in a condition may become part of the graph."""
+
+_MOTION: Final = ("Fly", "SetAcceleration", "SetSteering", "SetThrottle", "SetVelocity", "SetWheelSpeeds")
+
+IMPORTABLE: Final[Mapping[str, str]] = MappingProxyType(
+    {
+        **dict.fromkeys(("DepthSensor", "RGBSensor", "SSSensor"), "scenic"),
+        **dict.fromkeys((*_MOTION, "KinematicSimulator"), "scenic.simulators.kinematic"),
+        **dict.fromkeys(("ApplyForce", "Grasp", "MujocoSimulator", "Release"), "scenic.simulators.mujoco"),
+        "Action": "scenic.simulators.actions",
+        "DummySimulator": "scenic.simulators.dummy",
+    }
+)
+"""Names that programs import rather than find, and the module that each is taken from."""

@@ -5,6 +5,8 @@ message begins. The ``#`` counts as a caret if one follows it directly.
 """
 
 import ast
+import importlib
+import importlib.util
 import re
 from pathlib import Path
 
@@ -16,6 +18,7 @@ from scenic.compiler.parser import parse
 from scenic.compiler.resolver import resolve
 from scenic.compiler.scopes import BindingKind, Resolution, ScopeKind
 from scenic.language.diagnostics import Diagnostic, Severity
+from scenic.language.names import IMPORTABLE
 from scenic.language.source import Source
 
 CASES = sorted((Path(__file__).parent.parent / "data" / "checks").glob("*.scenic"))
@@ -145,6 +148,19 @@ def test_names_in_broken_statements_may_be_bound_there() -> None:
     text = "value = = 3\nprint(value)\nprint(other)\n"
     [finding] = resolved(text).diagnostics
     assert finding.message == "the name `other` is not defined"
+
+
+@pytest.mark.parametrize("name", sorted(IMPORTABLE))
+def test_names_to_be_imported_are_told_with_their_module(name: str) -> None:
+    [finding] = resolved(f"x = {name}\nprint(x)\n").diagnostics
+    assert finding.help == f"import it: `from {IMPORTABLE[name]} import {name}`"
+    assert not resolved(f"from {IMPORTABLE[name]} import {name}\nx = {name}\n").diagnostics
+
+
+def test_modules_have_the_names_that_are_to_be_imported_from_them() -> None:
+    for name, module in IMPORTABLE.items():
+        if "mujoco" not in module or importlib.util.find_spec("mujoco") is not None:
+            assert hasattr(importlib.import_module(module), name)
 
 
 def test_broken_programs_are_resolved_too() -> None:

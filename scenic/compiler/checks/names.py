@@ -15,7 +15,7 @@ from scenic.compiler.checks.places import word_span
 from scenic.compiler.checks.unfinished import alone_names, begun_word, may_bind_more, text_before, unfinished
 from scenic.compiler.scopes import Binding, BindingKind, Reference, ScopeKind
 from scenic.language.diagnostics import Diagnostic, Label
-from scenic.language.names import CONVERSIONS, NAMES, TRACKED, NameKind
+from scenic.language.names import CONVERSIONS, IMPORTABLE, NAMES, TRACKED, NameKind
 from scenic.language.properties import CLASSES
 from scenic.language.spelling import distance, nearest
 
@@ -112,7 +112,7 @@ def check_names(context: Context, provided: Collection[str]) -> Iterator[Diagnos
         if elsewhere is not None and name in elsewhere:
             yield _out_of_reach(context, reference, elsewhere[name])
             continue
-        if name not in suggestions and len(suggestions) < MOST_SUGGESTIONS:
+        if name not in IMPORTABLE and name not in suggestions and len(suggestions) < MOST_SUGGESTIONS:
             own = resolution.names_in_reach(reference.scope).union(context.brought)
             suggestions[name] = (
                 begun_word(context, node)
@@ -131,6 +131,8 @@ def check_names(context: Context, provided: Collection[str]) -> Iterator[Diagnos
             if text_before(context, node).endswith("//")
             else f"did you mean `{suggestion}`?"
             if suggestion
+            else f"import it: `from {IMPORTABLE[name]} import {name}`"
+            if name in IMPORTABLE
             else "define it before it is used, or import it",
             # What the program does not define may be any of the many names that are always there.
             fix=context.renaming(node, name, suggestion, certain=suggestion not in provided)
