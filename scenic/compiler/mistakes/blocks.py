@@ -152,18 +152,21 @@ def unexpected_indent(at: Situation) -> Problem | None:
     return at.problem("SC102", at.here(), "this line is indented more than it can be", "indent it less")
 
 
+_BEGINNINGS: Final = {
+    "elif": "`if`",
+    "else": "`if`, `for`, `while` or `try`",
+    "except": "`try`",
+    "finally": "`try`",
+    "interrupt": "`try`",
+    "case": "`match`",
+}
+"""By the first word of a clause: what it belongs to."""
+
+
 def clause_without_beginning(at: Situation) -> Problem | None:
     """`else` without `if`, `case` without `match`."""
     word = at.word(at.first)
-    beginnings = {
-        "elif": "`if`",
-        "else": "`if`, `for`, `while` or `try`",
-        "except": "`try`",
-        "finally": "`try`",
-        "interrupt": "`try`",
-        "case": "`match`",
-    }
-    if word not in beginnings or at.first != at.start:
+    if word not in _BEGINNINGS or at.first != at.start:
         return None
     if word == "case" and (at.token != at.first + 1 or not at.starts_operand(at.token)):
         return None
@@ -190,8 +193,8 @@ def clause_without_beginning(at: Situation) -> Problem | None:
     return at.problem(
         "SC134",
         at.place(at.first),
-        f"`{word}` has no {beginnings[word]} that it could belong to",
-        f"align it with its {beginnings[word]}, between which and it no other statement stands",
+        f"`{word}` has no {_BEGINNINGS[word]} that it could belong to",
+        f"align it with its {_BEGINNINGS[word]}, between which and it no other statement stands",
     )
 
 
@@ -221,9 +224,6 @@ _CLAUSES: Final = {
 """Clauses after which not every clause can come, and the order of clauses there."""
 
 
-_AFTER_TRY: Final = ("except", "finally", "interrupt")
-
-
 def try_alone(at: Situation) -> Problem | None:
     """`try` without any clause."""
     if not at.expects("`except`, `finally` or `interrupt when`"):
@@ -236,7 +236,7 @@ def try_alone(at: Situation) -> Problem | None:
         if wrong is not None:
             return wrong
         if at.trials.line(at.token)[1] == at.token + 1 and any(
-            each.startswith(at.word(at.token)) for each in _AFTER_TRY
+            each.startswith(at.word(at.token)) for each, of in _BEGINNINGS.items() if of == "`try`"
         ):
             return at.problem(
                 "SC110",
