@@ -1,0 +1,198 @@
+"""Rules of regions, specifiers and operators that show only in corners."""
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+import scenic.core.regions as named
+import trimesh
+
+from scenic.language.errors import ScenicTypeError
+from scenic.runtime.purity import is_pure
+from scenic.runtime.regions.base import Workspace, everywhere, nowhere
+from scenic.runtime.regions.choice import RegionChoice
+from scenic.runtime.values import Orientation, Vector
+from tests.runtime.programs import failure, params, scenario, thing
+
+TILT = Orientation.fromEuler(0.7, 0.4, -0.3)
+
+
+def test_lines_in_numbers() -> None:
+    line = named.PolylineRegion([(0, 0), (3, 0), (3, 4)])
+    assert line.cumulativeLengths == [3, 7]
+    assert [tuple(point)[:2] for point in line.pointsSeparatedBy(2)] == [(0, 0), (2, 0), (3, 1), (3, 3)]
+    assert line.signedDistanceTo(Vector(1, 1, 50)) == pytest.approx(1)
+    assert line.signedDistanceTo(Vector(1, -1, 50)) == pytest.approx(-1)
+    assert tuple(line.project(Vector(1, 1, 50))) == (1, 0, 0)
+
+
+def test_cells_of_grids_and_points() -> None:
+    grid = named.GridRegion("grid", np.array([[0, 1, 0], [0, 0, 1]]), 2, 5, 0.5, -1)
+    for cell in ((0, 0), (1, 1), (2, 0)):
+        x, y = grid.gridToPoint(cell)
+        for dx, dy in ((0.9, 2.4), (-0.9, -2.4)):
+            assert grid.pointToGrid(Vector(x + dx, y + dy, 0)) == cell
+            assert bool(grid.containsPoint(Vector(x + dx, y + dy, 0))) is bool(
+                grid.grid[cell[1], cell[0]] == 0
+            )
+    assert grid.pointToGrid(Vector(-0.6, 0, 0)) is None
+    assert grid.pointToGrid(Vector(5.6, 0, 0)) is None
+
+
+def test_volumes_of_surfaces_are_where_these_are() -> None:
+    surface = named.MeshSurfaceRegion(
+        trimesh.creation.box((1, 2, 3)), dimensions=(2, 1, 4), position=(1, 2, 3), rotation=TILT
+    )
+    volume = surface.getVolumeRegion()
+    np.testing.assert_allclose(np.array(volume.AABB), np.array(surface.AABB), atol=1e-9)
+    assert volume.size == pytest.approx(8)
+
+
+def test_choices_of_regions_are_as_their_options() -> None:
+    field = named.PolygonalRegion([(0, 0), (1, 0), (1, 1)], orientation=object())
+    plain, box = named.CircularRegion((0, 0), 1), named.BoxRegion()
+    assert not RegionChoice(0, [field, plain]).has_orientation
+    assert RegionChoice(0, [field, field]).has_orientation
+    assert RegionChoice(0, [plain, box]).dimension == 3
+    error = failure("x = Uniform(CircularRegion((0, 0), 1), 3)\nego = new Object in x\n")
+    assert isinstance(error, ScenicTypeError)
+    assert "expected a region" in str(error)
+
+
+def test_set_operations_of_workspaces_and_nothing() -> None:
+    box = named.BoxRegion((2, 2, 2))
+    room: Any = Workspace(Workspace(box))
+    assert room.intersect(named.BoxRegion((1, 1, 9))).size == pytest.approx(2)
+    assert box.intersect(room).size == pytest.approx(8)
+    for region in (box, room, named.CircularRegion((0, 0), 1)):
+        assert region.containsRegion(nowhere)
+        assert everywhere.containsRegion(region)
+        assert not region.containsRegion(everywhere)
+    disc = named.CircularRegion((0, 0, 1), 3)
+    assert disc.footprint.containsRegion(named.CircularRegion((0, 0, 5), 2))
+    assert not disc.containsRegion(named.CircularRegion((0, 0, 5), 2))
+    assert not disc.containsRegion(named.CircularRegion((0, 0, 5), 2).footprint)
+
+
+def test_what_meets_only_by_its_inside_or_by_one_edge() -> None:
+    box = named.BoxRegion((4, 4, 4))
+    assert box.intersects(named.PathRegion([(-1, 0, 0), (1, 0, 0)]))  # within it
+    assert box.intersects(named.PathRegion([(-9, 0, 0), (9, 0, 0)]))  # through it
+    assert box.intersects(named.MeshSurfaceRegion(trimesh.creation.box((1, 1, 1))))
+    needle = named.MeshSurfaceRegion(trimesh.creation.box((0.1, 0.1, 9)))
+    plate = named.MeshSurfaceRegion(trimesh.creation.box((5, 5, 0.1)))
+    assert needle.intersects(plate)
+    assert plate.intersects(needle)
+    disc = named.CircularRegion((0, 0, 1), 1)
+    for ends in ([(0, 0, 0), (0, 0, 2)], [(0, 0, 2), (0, 0, 0)]):
+        assert disc.intersects(named.PathRegion(ends))
+    assert not disc.intersects(named.PathRegion([(0, 0, 2), (0, 0, 3)]))
+    flat = named.PathRegion([(-2, 0, 1), (2, 0, 1)])
+    assert disc.intersects(flat)
+    assert not named.CircularRegion((0, 0, 2), 1).intersects(flat)
+
+
+def test_lines_keep_their_height_where_they_are_cut() -> None:
+    for height in (0, 2):
+        one = named.RectangularRegion(Vector(0, 0, height), 0, 2, 2)
+        other = named.RectangularRegion(Vector(2, 0, height), 0, 2, 2)
+        common: Any = one.intersect(other)  # an edge
+        assert common.length == pytest.approx(2)
+        low, high = common.AABB
+        assert (low[2], high[2]) == (height, height)
+
+
+# Purity
+
+
+def _assigns_globally(x: float) -> float:
+    global _seen
+    _seen = x
+    return x
+
+
+def _assigns_slices(x: list[float]) -> list[float]:
+    x[0:1] = [0.0]
+    return x
+
+
+def _imports(x: float) -> float:
+    import math as other
+
+    return other.sin(x)
+
+
+def _defaults(x: float, *, box: list[float] = []) -> float:  # noqa: B006 - it is what is tested
+    return x + len(box)
+
+
+def _harmless(x: float, *, y: float = 2.0) -> float:
+    return math.sin(x) + y
+
+
+_seen = 0.0
+
+
+def test_what_functions_may_not_do_to_be_pure() -> None:
+    for function in (_assigns_globally, _assigns_slices, _imports, _defaults):
+        assert not is_pure(function)
+    assert is_pure(_harmless)
+
+
+# Specifiers and operators
+
+FIELD = "turned = PolygonalRegion([(-9, -9), (9, -9), (9, 9), (-9, 9)], orientation=VectorField('f', lambda p: 1.2))\n"
+
+
+def test_distances_to_regions_from_both_sides() -> None:
+    text = (
+        "ego = new Object at (5, 0, 1)\nr = CircularRegion((0, 0, 1), 2)\n"
+        "param x = (distance from r to (5, 0, 1), distance from (5, 0, 1) to r, distance to r)\n"
+    )
+    assert params(text)["x"] == pytest.approx((3, 3, 3))
+
+
+def test_requirements_see_what_hides() -> None:
+    wall = "wall = new Object at (0, 5), with width 9, with height 9\nfar = new Object at (0, 9)\nego = new Object\n"
+    assert thing(f"{wall}require not (ego can see far)\n") is not None
+    assert scenario(f"{wall}require ego can see wall\n").sample(1, seed=0)
+
+
+def test_the_gap_is_that_of_the_new_object() -> None:
+    text = (
+        "a = new Object with contactTolerance 0.5\n"
+        "b = new Object right of a, with contactTolerance 0.1\nparam x = b.position.x\n"
+    )
+    assert params(text)["x"] == pytest.approx(1 + 0.05)
+
+
+def test_objects_to_be_seen_stay_in_their_own_container() -> None:
+    text = (
+        "workspace = Workspace(RectangularRegion((0, 0), 0, 40, 40))\nego = new Object with visibleDistance 30\n"
+        "room = RectangularRegion((10, 0), 0, 4, 4)\n"
+        "x = new Object visible, with regionContainedIn room, with width 0.1, with length 0.1\nparam p = (x.position.x, x.position.y)\n"
+    )
+    made = scenario(text)
+    scenes = made.sample(20, seed=1)
+    assert all(8 <= item.params["p"][0] <= 12 for item in scenes)
+    # They are looked for there only.
+    assert sum(item.attempts for item in scenes) < 200
+
+
+def test_specifiers_of_one_name_may_offer_different_things() -> None:
+    """A class remembers how specifiers fit together: by what they offer, not by their names."""
+    for first, second in (("plain", "turned"), ("turned", "plain")):
+        text = (
+            f"{FIELD}plain = PolygonalRegion([(-9, -9), (9, -9), (9, 9), (-9, 9)])\n"
+            f"ego = new Object in {first}\nother = new Object in {second}\n"
+            "param x = (ego.yaw, ego.heading, other.heading)\n"
+        )
+        _, *headings = params(text.replace("new Object in", "new Object with allowCollisions True, in"))["x"]
+        assert headings == pytest.approx([1.2 if name == "turned" else 0 for name in (first, second)])
+
+
+def test_images_of_many_columns_have_them_across() -> None:
+    from scenic.cli.options import image_size_option
+
+    assert image_size_option(None, None, "640x480") == (640, 480)  # type: ignore[arg-type]
