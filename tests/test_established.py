@@ -456,3 +456,18 @@ def test_laws_can_be_asked_for() -> None:
 
     assert isinstance(Three(), Three)
     assert not isinstance(made["Range"], Three)
+
+
+def test_unions_of_polygons_close_gaps() -> None:
+    import shapely
+    from scenic.core.geometry import polygonUnion
+
+    left, right, far = shapely.box(0, 0, 1, 1), shapely.box(1.05, 0, 2, 1), shapely.box(3, 0, 4, 1)
+    holed = shapely.box(0, 5, 1, 6).difference(shapely.box(0.4, 5.4, 0.42, 5.42))
+    apart = polygonUnion([left, right, far])
+    assert (apart.area, len(apart.geoms)) == (pytest.approx(2.95), 3)
+    closed = polygonUnion([left, right, far, holed], buf=0.1)
+    assert (closed.area, len(closed.geoms)) == (pytest.approx(4, rel=1e-3), 3)
+    assert polygonUnion([holed, left]).area == pytest.approx(2 - 0.0004)
+    assert polygonUnion([holed, left], tolerance=1e-4).area == pytest.approx(2)
+    assert polygonUnion([holed], buf=0.1) is holed

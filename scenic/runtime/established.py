@@ -226,20 +226,30 @@ def toPolygon(thing: Any) -> Any:
 def polygonUnion(
     polys: Iterable[Any], buf: float = 0, tolerance: float = 0, holeTolerance: float = 0.002
 ) -> Any:
-    """The union of shapely polygons, each grown by ``buf``; holes smaller than ``holeTolerance`` m2 are filled."""
+    """The union of shapely polygons.
+
+    Gaps narrower than twice ``buf`` are closed. With a ``tolerance``, outlines are simplified by so much, and holes smaller than
+    ``holeTolerance`` square metres are filled.
+    """
     import shapely
 
-    members = [poly.buffer(buf) if buf else poly for poly in polys]
-    merged = shapely.union_all(members)
+    members = list(polys)
+    if len(members) == 1:
+        return members[0]
+    merged = shapely.union_all([poly.buffer(buf) for poly in members] if buf else members)
+    if buf:
+        merged = merged.buffer(-buf)
     if tolerance:
         merged = merged.simplify(tolerance)
-    parts = [
-        shapely.Polygon(
-            part.exterior, [ring for ring in part.interiors if shapely.Polygon(ring).area >= holeTolerance]
-        )
-        for part in getattr(merged, "geoms", [merged])
-        if part.geom_type == "Polygon"
-    ]
+    parts = [part for part in getattr(merged, "geoms", [merged]) if part.geom_type == "Polygon"]
+    if tolerance:
+        parts = [
+            shapely.Polygon(
+                part.exterior,
+                [ring for ring in part.interiors if shapely.Polygon(ring).area >= holeTolerance],
+            )
+            for part in parts
+        ]
     return parts[0] if len(parts) == 1 else shapely.MultiPolygon(parts)
 
 

@@ -132,7 +132,7 @@ def test_buffers(name: str, distance: float) -> None:
 @pytest.mark.parametrize("margin", [0, 0.4])
 def test_unions(margin: float) -> None:
     moved = shapely.affinity.translate(RING, 7, 1)
-    joined = shapely.union_all([polygon.buffer(margin) for polygon in (HOOK, WEDGE, moved)])
+    joined = shapely.union_all([polygon.buffer(margin) for polygon in (HOOK, WEDGE, moved)]).buffer(-margin)
     setup = (
         f"{IMPORT}from shapely.affinity import translate\n"
         "parts = [POLYGONS['hook'], POLYGONS['wedge'], translate(POLYGONS['ring'], 7, 1)]\n"

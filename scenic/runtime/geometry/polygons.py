@@ -47,11 +47,13 @@ class Polygons:
 
     @staticmethod
     def union(members: Sequence["Polygons"], buffer: float = 0.0) -> "Polygons":
-        """The union of polygons, each grown by ``buffer`` metres."""
+        """The union of polygons; gaps between and in them that are narrower than twice ``buffer`` metres are closed."""
         import shapely
 
-        grown = [member.polygon.buffer(buffer) if buffer else member.polygon for member in members]
-        return Polygons(shapely.union_all(grown))
+        if not buffer:
+            return Polygons(shapely.union_all([member.polygon for member in members]))
+        grown = shapely.union_all([member.polygon.buffer(buffer) for member in members])
+        return Polygons(grown.buffer(-buffer))
 
     def __repr__(self) -> str:
         return f"<Polygons of {self.area:g} square metres>"

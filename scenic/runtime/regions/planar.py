@@ -431,7 +431,7 @@ class PolygonalRegion(PlanarRegion):
 
     @staticmethod
     def unionAll(regions: Iterable["PolygonalRegion"], buf: float = 0) -> "PolygonalRegion":
-        """The union of regions, each grown by ``buf`` metres."""
+        """The union of regions; gaps that are narrower than twice ``buf`` metres are closed."""
         members = list(regions)
         if not members or not all(isinstance(member, PlanarRegion) for member in members):
             raise ScenicTypeError("`unionAll` takes at least one polygonal region", span=here())

@@ -58,6 +58,7 @@ def test_area_and_union():
     assert Polygons(SEVERAL).area == pytest.approx(HOLED.area + 0.5)
     joined = Polygons.union([Polygons(shapely.box(0, 0, 1, 1)), Polygons(shapely.box(1.1, 0, 2, 1))], 0.1)
     assert joined.polygon.geom_type == "Polygon"
+    assert joined.area == pytest.approx(2, rel=1e-3)
 
 
 @pytest.mark.parametrize(
