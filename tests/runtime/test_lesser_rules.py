@@ -80,7 +80,7 @@ def test_what_meets_only_by_its_inside_or_by_one_edge() -> None:
     assert box.intersects(named.PathRegion([(-1, 0, 0), (1, 0, 0)]))  # within it
     assert box.intersects(named.PathRegion([(-9, 0, 0), (9, 0, 0)]))  # through it
     assert box.intersects(named.MeshSurfaceRegion(trimesh.creation.box((1, 1, 1))))
-    needle = named.MeshSurfaceRegion(trimesh.creation.box((0.1, 0.1, 9)))
+    needle = named.MeshSurfaceRegion(trimesh.creation.box((0.1, 0.1, 9)), position=(1, 0.4, 0))
     plate = named.MeshSurfaceRegion(trimesh.creation.box((5, 5, 0.1)))
     assert needle.intersects(plate)
     assert plate.intersects(needle)
@@ -101,6 +101,31 @@ def test_lines_keep_their_height_where_they_are_cut() -> None:
         assert common.length == pytest.approx(2)
         low, high = common.AABB
         assert (low[2], high[2]) == (height, height)
+
+
+def test_pieces_of_a_path_in_a_solid() -> None:
+    """It ends in one of them, and the other way round the same pieces are left."""
+    rooms = named.BoxRegion((2, 2, 2)).union(named.BoxRegion((2, 2, 2), (6, 0, 0)))
+    places = [(-3, 0, 0.1), (6, 0, 0.1)]
+    for ends in (places, places[::-1]):
+        inside: Any = rooms.intersect(named.PathRegion(ends))
+        assert inside.length == pytest.approx(2 + 1)
+        assert inside.distanceTo(Vector(3, 0, 0.1)) == pytest.approx(2)
+        assert inside.AABB[1][0] == pytest.approx(6)
+    assert not rooms.intersects(named.PathRegion([(1.5, 0, 0), (4.5, 0, 0)]))
+
+
+def test_heights_of_what_is_left_of_regions_of_the_plane() -> None:
+    high = named.RectangularRegion(Vector(0, 0, 3), 0, 4, 4)
+    low = named.RectangularRegion(Vector(1, 0, 0), 0, 4, 4)
+    for common in (low.footprint.intersect(high), high.intersect(low.footprint)):
+        assert (common.z, common.area) == (3, pytest.approx(12))
+    rest: Any = high.difference(low.footprint)
+    assert (rest.z, rest.area) == (3, pytest.approx(4))
+    either = high.union(low)
+    assert either.AABB == ((-2, -2, 0), (3, 2, 3))
+    assert either.distanceTo(Vector(0, 0, 2)) == pytest.approx(1)
+    assert either.distanceTo(Vector(0, 0, 1)) == pytest.approx(1)
 
 
 # Purity
