@@ -8,6 +8,8 @@ import pytest
 import scenic.core.regions as named
 import trimesh
 
+from scenic.graph.bounds import Bounds
+from scenic.graph.operations import TABLE
 from scenic.language.errors import ScenicTypeError
 from scenic.runtime.purity import is_pure
 from scenic.runtime.regions.base import Workspace, everywhere, nowhere
@@ -168,6 +170,26 @@ def test_what_functions_may_not_do_to_be_pure() -> None:
 # Specifiers and operators
 
 FIELD = "turned = PolygonalRegion([(-9, -9), (9, -9), (9, 9), (-9, 9)], orientation=VectorField('f', lambda p: 1.2))\n"
+
+
+def test_upright_orientations_of_random_yaw() -> None:
+    """They are one angle each, which is turned back, and left alone by what turns nothing."""
+    text = (
+        "y = Range(0.5, 1)\no = Orientation.fromEuler(y, 0, 0)\nn = Orientation.fromEuler(0, 0, 0)\n"
+        "param x = (y, o.inverse.yaw, (o * n).yaw, (n * o).yaw, (o * o.inverse).yaw, (o * o).yaw)\n"
+    )
+    yaw, *found = params(text)["x"]
+    assert found == pytest.approx([-yaw, yaw, yaw, 0, 2 * yaw])
+
+
+@pytest.mark.parametrize("ends", [(5.0, 0.0), (0.0, 5.0)])
+def test_bounds_of_ranges_whose_ends_are_in_either_order(ends: tuple[float, float]) -> None:
+    reading = TABLE["range"].bounds
+    assert reading is not None
+    found = reading(None, Bounds(np.array([0.1]), np.array([0.9])), *map(Bounds.exactly, ends))
+    assert found is not None
+    assert found.lower[0] == pytest.approx(0.5)
+    assert found.upper[0] == pytest.approx(4.5)
 
 
 def test_distances_to_regions_from_both_sides() -> None:
