@@ -19,11 +19,17 @@ from scenic.runtime.geometry.triangles import Corners, separated_by_edges
 _FIRST: Final = 4
 """Pairs of faces of an entry compared first; each further turn takes four times as many, until one pair touches."""
 
+_LEAST: Final = 1 << 9
+"""So many are compared together where there are: fewer take as long."""
+
 _CHUNK: Final = 1 << 12
 """Pairs of faces compared together, so that the temporary columns stay in the processor's cache."""
 
 _PAIRS: Final = 1 << 15
 """Pairs of leaves compared together."""
+
+_GRID: Final = 1 << 10
+"""Pairs of leaves of an entry from which on they are compared without those of others."""
 
 _SLACK: Final = 1e-14
 """Gap, in parts of the faces' size and distance from the origin, up to which they touch: rounding."""
@@ -61,20 +67,37 @@ class Surfaces:
 
         """
         result = np.zeros(len(front.touching), dtype=np.bool_)
+        for owner, one, two in self._near_leaves(front, chosen):
+            self._settle(result, *self._forest.faces_of(chosen[owner], one, two), forth, back)
+        return result
+
+    def _near_leaves(self, front: Front, chosen: Indices) -> Iterator[tuple[Indices, Indices, Indices]]:
+        """All pairs of leaves whose boxes meet in both frames, in groups (place in ``chosen``, first leaf, second leaf)."""
         first, second = (groups.take(chosen) for groups in front.leaves())
         pairs = first.counts * second.counts
         own = self._forest.middle.take(front.leaf, axis=1), self._forest.half.take(front.leaf, axis=1)
         images = front.centre, front.reach
-        for part in pieces(pairs, _PAIRS):
-            owner, offset = expand(pairs[part])
-            owner += part.start
+        few = np.flatnonzero(pairs <= _GRID)
+        for part in pieces(pairs[few], _PAIRS):
+            owner, offset = expand(pairs[few[part]])
+            owner = few[owner + part.start]
             width = second.counts[owner]
             one, two = first.starts[owner] + offset // width, second.starts[owner] + offset % width
             near = _near(images, one, own, two)
             near = near[_near(images, two[near], own, one[near])]
-            leaves = front.leaf[one[near]], front.leaf[two[near]]
-            self._settle(result, *self._forest.faces_of(chosen[owner[near]], *leaves), forth, back)
-        return result
+            yield owner[near], front.leaf[one[near]], front.leaf[two[near]]
+        # A grid of rows and columns takes no index for each pair.
+        for place in np.flatnonzero(pairs > _GRID).tolist():
+            rows, columns = (
+                slice(start, start + count)
+                for start, count in (
+                    (int(groups.starts[place]), int(groups.counts[place])) for groups in (first, second)
+                )
+            )
+            one, two = np.nonzero(
+                _grid_near(images, rows, own, columns) & _grid_near(images, columns, own, rows).T
+            )
+            yield np.full(len(one), place), front.leaf[rows][one], front.leaf[columns][two]
 
     def _settle(
         self,
@@ -138,6 +161,20 @@ def _near(moving: tuple[Floats, Floats], one: Indices, still: tuple[Floats, Floa
     return np.flatnonzero(x & y & z)
 
 
+def _grid_near(
+    moving: tuple[Floats, Floats], one: slice, still: tuple[Floats, Floats], two: slice
+) -> Booleans:
+    """The same for each of ``one`` and each of ``two``, ``(len(one), len(two))``."""
+    (centre, reach), (middle, half) = moving, still
+    x, y, z = (
+        np.abs(centre[axis, one, np.newaxis] - middle[axis, two])
+        <= reach[axis, one, np.newaxis] + half[axis, two]
+        for axis in range(3)
+    )
+    result: Booleans = x & y & z
+    return result
+
+
 def _turns(entry: Indices) -> Iterator[Indices]:
     """Indices of pairs: the first few of each entry, then more and more of the rest."""
     if len(entry) <= _CHUNK // 4:
@@ -147,7 +184,7 @@ def _turns(entry: Indices) -> Iterator[Indices]:
     grouped = entry[order]
     starts = np.flatnonzero(np.diff(grouped, prepend=-1))
     rank = np.arange(len(order)) - np.repeat(starts, np.diff(starts, append=len(order)))
-    done, most = 0, _FIRST
+    done, most = 0, max(_FIRST, _LEAST // len(starts))
     while done < len(order):
         chosen = order[(rank >= done) & (rank < done + most)]
         if not len(chosen):

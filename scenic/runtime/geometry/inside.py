@@ -20,11 +20,39 @@ from scenic.runtime.geometry.ragged import expand, group_starts, pieces
 _CHUNK: Final = 1 << 19
 """Pairs of point and face looked at together; some twenty temporary arrays of that length are alive."""
 
+_FEW: Final = 1 << 16
+"""Pairs of point and face up to which all are looked at: a grid takes longer to make."""
+
 _PADDING: Final = 1e-12
 """Part of the extents by which the boxes of faces are widened: more than the rounding of points on edges."""
 
 _MOST_INCIDENCES: Final = 8
 """Cells of the grid per face above which the grid is made coarser, on average."""
+
+
+@dataclass(frozen=True, slots=True)
+class UprightFaces:
+    """The faces of a mesh, made ready for vertical lines.
+
+    Attributes:
+        corners: ``(f, 3, 3)`` corners of each face, in ascending order of vertex index, so that both faces
+            of an edge run through it in the same direction.
+        boxes: ``(f, 6)``: lower and upper corner of the bounding box of each face, slightly widened.
+
+    """
+
+    corners: Floats
+    boxes: Floats
+
+
+def upright_faces(mesh: Mesh) -> UprightFaces:
+    """Those of a mesh. Get them as ``mesh.derived(upright_faces)``."""
+    corners = mesh.vertices[np.sort(mesh.faces, axis=1)]
+    padding = _PADDING * mesh.extents
+    # Written out, since reductions over short axes are slow.
+    lowest = np.minimum(np.minimum(corners[:, 0], corners[:, 1]), corners[:, 2])
+    highest = np.maximum(np.maximum(corners[:, 0], corners[:, 1]), corners[:, 2])
+    return UprightFaces(corners, np.concatenate([lowest - padding, highest + padding], axis=1))
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,9 +65,6 @@ class ColumnGrid:
         cells: cells per axis.
         starts: ``(cells² + 1,)``: where the faces of each cell begin in ``faces``.
         faces: face indices, cell by cell.
-        corners: ``(f, 3, 3)`` corners of each face, in ascending order of vertex index, so that both faces
-            of an edge run through it in the same direction.
-        boxes: ``(f, 6)``: lower and upper corner of the bounding box of each face, slightly widened.
 
     """
 
@@ -48,18 +73,11 @@ class ColumnGrid:
     cells: int
     starts: Indices
     faces: Indices
-    corners: Floats
-    boxes: Floats
 
 
 def column_grid(mesh: Mesh) -> ColumnGrid:
     """The grid of a mesh; takes tens of milliseconds for 100,000 faces. Get it as ``mesh.derived(column_grid)``."""
-    corners = mesh.vertices[np.sort(mesh.faces, axis=1)]
-    padding = _PADDING * mesh.extents
-    # Written out, since reductions over short axes are slow.
-    lowest = np.minimum(np.minimum(corners[:, 0], corners[:, 1]), corners[:, 2])
-    highest = np.maximum(np.maximum(corners[:, 0], corners[:, 1]), corners[:, 2])
-    boxes = np.concatenate([lowest - padding, highest + padding], axis=1)
+    boxes = mesh.derived(upright_faces).boxes
     low, high = boxes[:, :2], boxes[:, 3:5]
     lower, extents = mesh.bounds[0, :2], mesh.extents[:2]
     cells = int(np.clip(np.sqrt(len(mesh.faces)), 1, 1024))
@@ -68,7 +86,7 @@ def column_grid(mesh: Mesh) -> ColumnGrid:
         first = _cell(low, lower, scale, cells)
         counts = _cell(high, lower, scale, cells) - first + 1
         total = int((counts[:, 0] * counts[:, 1]).sum())
-        if cells == 1 or total <= _MOST_INCIDENCES * len(corners) + 4096:
+        if cells == 1 or total <= _MOST_INCIDENCES * len(boxes) + 4096:
             break
         cells = max(cells // 2, 1)
     face, offset = expand(counts[:, 0] * counts[:, 1])
@@ -76,9 +94,7 @@ def column_grid(mesh: Mesh) -> ColumnGrid:
     row = first[face, 1] + offset % counts[face, 1]
     cell = column * cells + row
     order = np.argsort(cell, kind="stable")
-    return ColumnGrid(
-        lower, scale, cells, group_starts(cell[order], cells * cells), face[order], corners, boxes
-    )
+    return ColumnGrid(lower, scale, cells, group_starts(cell[order], cells * cells), face[order])
 
 
 def contains_points(mesh: Mesh, points: Floats) -> Booleans:
@@ -91,7 +107,7 @@ def contains_points(mesh: Mesh, points: Floats) -> Booleans:
     points = points[candidates]
     for part, owner, face in _faces_over(mesh, points):
         point = points[part][owner]
-        above = _heights(mesh.derived(column_grid).corners[face], point) > point[:, 2]
+        above = _heights(mesh.derived(upright_faces).corners[face], point) > point[:, 2]
         crossings = np.bincount(owner[above], minlength=part.stop - part.start)
         result[candidates[part]] = crossings % 2 == 1
     return result
@@ -112,7 +128,7 @@ def contains_lattice(mesh: Mesh, x: Floats, y: Floats, z: Floats) -> Booleans:
     levels = len(z) + 1
     crossings = np.zeros((len(points), levels), dtype=np.intp)
     for part, owner, face in _faces_over(mesh, points):
-        height = _heights(mesh.derived(column_grid).corners[face], points[part][owner])
+        height = _heights(mesh.derived(upright_faces).corners[face], points[part][owner])
         crossed = np.flatnonzero(height > -np.inf)
         # The number of lattice points below the crossing: those see it above them.
         level = np.searchsorted(z, height[crossed])
@@ -125,6 +141,11 @@ def contains_lattice(mesh: Mesh, x: Floats, y: Floats, z: Floats) -> Booleans:
 
 def _faces_over(mesh: Mesh, points: Floats) -> Iterator[tuple[slice, Indices, Indices]]:
     """Pieces of the points, with pairs (point in the piece, face) that hold all faces above each point."""
+    boxes = mesh.derived(upright_faces).boxes
+    if len(points) * len(boxes) <= _FEW:
+        owner, face = np.nonzero(_may_cross_above(boxes, points[:, np.newaxis]))
+        yield slice(0, len(points)), owner, face
+        return
     grid = mesh.derived(column_grid)
     cells = _cell(points[:, :2], grid.lower, grid.scale, grid.cells)
     cell = cells[:, 0] * grid.cells + cells[:, 1]
@@ -132,7 +153,7 @@ def _faces_over(mesh: Mesh, points: Floats) -> Iterator[tuple[slice, Indices, In
     for part in pieces(counts, _CHUNK):
         owner, offset = expand(counts[part])
         face = grid.faces[grid.starts[cell[part]][owner] + offset]
-        over = _may_cross_above(grid.boxes[face], points[part][owner])
+        over = _may_cross_above(boxes[face], points[part][owner])
         yield part, owner[over], face[over]
 
 
@@ -142,10 +163,10 @@ def _cell(xy: Floats, lower: Floats, scale: Floats, cells: int) -> Indices:
 
 
 def _may_cross_above(boxes: Floats, points: Floats) -> Booleans:
-    x, y, z = points[:, 0], points[:, 1], points[:, 2]
-    result: Booleans = (
-        (boxes[:, 0] <= x) & (x <= boxes[:, 3]) & (boxes[:, 1] <= y) & (y <= boxes[:, 4]) & (z <= boxes[:, 5])
-    )
+    """Whether points ``(..., 3)`` lie below or in the columns of boxes ``(..., 6)``."""
+    x, y, z = points[..., 0], points[..., 1], points[..., 2]
+    low_x, low_y, _, high_x, high_y, high_z = boxes.T
+    result: Booleans = (low_x <= x) & (x <= high_x) & (low_y <= y) & (y <= high_y) & (z <= high_z)
     return result
 
 

@@ -10,8 +10,11 @@ Two environment variables govern it: ``SCENIC_CACHE=off`` turns it off; ``SCENIC
 
 import contextlib
 import hashlib
+import io
+import json
 import os
 import tempfile
+import zlib
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final, TypeAlias
@@ -23,6 +26,9 @@ Arrays: TypeAlias = Mapping[str, npt.NDArray[Any]]
 
 MOST_BYTES: Final = 256 << 20
 """Size that the store may grow to."""
+
+_SUFFIX: Final = ".arrays"
+"""Of files: a checksum, the names as JSON, the arrays in NumPy's own format. An archive takes longer to open."""
 
 _KEPT: Final = 0.75
 """Part of the size that is left after a clearance."""
@@ -40,7 +46,7 @@ def kept(kind: str, content: Sequence[npt.NDArray[Any]], compute: Callable[[], A
     folder = _folder()
     if folder is None:
         return compute()
-    path = folder / f"{_key(kind, content)}.npz"
+    path = folder / f"{_key(kind, content)}{_SUFFIX}"
     found = _read(path)
     if found is None:
         found = compute()
@@ -51,7 +57,7 @@ def kept(kind: str, content: Sequence[npt.NDArray[Any]], compute: Callable[[], A
 def is_kept(kind: str, content: Sequence[npt.NDArray[Any]]) -> bool:
     """Whether an earlier run left what `kept` would otherwise compute."""
     folder = _folder()
-    return folder is not None and (folder / f"{_key(kind, content)}.npz").exists()
+    return folder is not None and (folder / f"{_key(kind, content)}{_SUFFIX}").exists()
 
 
 def _folder() -> Path | None:
@@ -76,12 +82,14 @@ def _key(kind: str, content: Sequence[npt.NDArray[Any]]) -> str:
 
 
 def _read(path: Path) -> Arrays | None:
-    from zipfile import BadZipFile  # with what it imports, a hundredth of a start
-
     try:
-        with path.open("rb") as stream, np.load(stream, allow_pickle=False) as arrays:
-            found = {name: arrays[name] for name in arrays.files}
-    except (OSError, ValueError, EOFError, KeyError, BadZipFile):
+        checksum, _, content = path.read_bytes().partition(b"\n")
+        if checksum != _checksum(content):
+            return None
+        stream = io.BytesIO(content)
+        names = json.loads(stream.readline())
+        found = {name: np.lib.format.read_array(stream, allow_pickle=False) for name in names}
+    except (OSError, ValueError, EOFError):
         # Not there, or no file of ours: what is computed takes its place.
         return None
     with contextlib.suppress(OSError):
@@ -89,13 +97,21 @@ def _read(path: Path) -> Arrays | None:
     return found
 
 
+def _checksum(content: bytes) -> bytes:
+    return b"%08x" % zlib.crc32(content)
+
+
 def _write(path: Path, arrays: Arrays) -> None:
-    contents: dict[str, Any] = dict(arrays)  # NumPy's types take no others for keywords
+    stream = io.BytesIO()
+    stream.write(json.dumps(list(arrays)).encode() + b"\n")
+    for array in arrays.values():
+        np.lib.format.write_array(stream, np.asanyarray(array), allow_pickle=False)
+    content = stream.getvalue()
     with contextlib.suppress(OSError):
         path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
         with tempfile.NamedTemporaryFile(dir=path.parent, prefix=".", suffix=".part", delete=False) as part:
             try:
-                np.savez(part, allow_pickle=False, **contents)
+                part.write(_checksum(content) + b"\n" + content)
                 part.close()
                 os.replace(part.name, path)
             except BaseException:
@@ -107,7 +123,7 @@ def _write(path: Path, arrays: Arrays) -> None:
 def _clear(folder: Path) -> None:
     """Remove the files used longest ago if there are too many bytes."""
     files = []
-    for path in folder.glob("*.npz"):
+    for path in (*folder.glob(f"*{_SUFFIX}"), *folder.glob("*.npz")):  # which earlier versions wrote
         with contextlib.suppress(OSError):  # another process may have removed it
             status = path.stat()
             files.append((status.st_mtime_ns, status.st_size, path))

@@ -1,6 +1,8 @@
+import io
 import multiprocessing
 import os
 import pickle
+import zlib
 
 import numpy as np
 import pytest
@@ -76,10 +78,26 @@ def test_damaged_files_are_made_anew(folder, damage):
     assert compute.calls == 2
 
 
+@pytest.mark.parametrize("place", [0, 5, 40, -1])
+def test_a_wrong_byte_is_noticed(folder, place):
+    kept("x 1", CONTENT, Counted())
+    (path,) = folder.iterdir()
+    content = bytearray(path.read_bytes())
+    content[place] ^= 1
+    path.write_bytes(content)
+    compute = Counted()
+    np.testing.assert_array_equal(kept("x 1", CONTENT, compute)["a"], [0, 1, 2])
+    assert compute.calls == 1
+
+
 def test_objects_are_never_unpickled(folder):
     kept("x 1", CONTENT, Counted())
     (path,) = folder.iterdir()
-    np.savez(path, a=np.array([{"evil": True}], dtype=object))
+    stream = io.BytesIO()
+    stream.write(b'["a"]\n')
+    np.lib.format.write_array(stream, np.array([{"evil": True}], dtype=object), allow_pickle=True)
+    content = stream.getvalue()
+    path.write_bytes(b"%08x\n" % zlib.crc32(content) + content)
     compute = Counted()
     np.testing.assert_array_equal(kept("x 1", CONTENT, compute)["a"], [0, 1, 2])
     assert compute.calls == 1
