@@ -343,12 +343,13 @@ def _meet(a: Region, b: Region) -> bool:
             return _crosses_plane(line, other)
         if isinstance(line, SideSurface):
             shell = surface_in_world(line)
-            if not len(shell.faces):
+            if shell is None:
                 return False
             if isinstance(other, Footprint):
                 return bool(other.polygons.intersects(shadow(shell)))
             if isinstance(other, SideSurface):
-                return _edges_cross(shell, surface_in_world(other))
+                second = surface_in_world(other)
+                return second is not None and _edges_cross(shell, second)
             solid = _solid(other)
             if solid is not None:
                 return any(_inside(solid, vertex) for vertex in shell.vertices) or _edges_cross(shell, solid)

@@ -6,7 +6,7 @@ from typing import Any, Self
 import numpy as np
 
 from scenic.graph.kinds import Column
-from scenic.language.errors import ScenicTypeError, ScenicValueError
+from scenic.language.errors import InvalidScenarioError, ScenicTypeError, ScenicValueError
 from scenic.runtime.context import here
 from scenic.runtime.fields import RegionField
 from scenic.runtime.geometry import body_points, distance
@@ -227,8 +227,8 @@ def solid_in_world(operands: list[Column]) -> Mesh:
     return Mesh(vertices, unit.faces)
 
 
-def surface_in_world(region: SideSurface) -> Mesh:
-    """The faces of a surface without random parameters, in the world; perhaps none."""
+def surface_in_world(region: SideSurface) -> Mesh | None:
+    """The faces of a surface without random parameters, in the world, and their vertices alone; ``None`` without faces."""
     columns = region.fixed_columns("the surface")
     body, mesh = body_of(*columns), solid_in_world(columns)
     side, threshold = region.facing.side, region.facing.threshold
@@ -236,10 +236,11 @@ def surface_in_world(region: SideSurface) -> Mesh:
         return mesh
     unit = body.meshes[0 if body.choice is None else int(body.choice[0])]
     faces = np.arange(len(unit.faces))
-    return Mesh(
-        mesh.vertices,
-        mesh.faces[side_contains(unit, body.poses, side, threshold, np.zeros_like(faces), faces)],
-    )
+    mine = mesh.faces[side_contains(unit, body.poses, side, threshold, np.zeros_like(faces), faces)]
+    if not len(mine):
+        return None
+    used, corners = np.unique(mine, return_inverse=True)
+    return Mesh(mesh.vertices[used], corners.reshape(mine.shape))
 
 
 def world_mesh(region: Region) -> Any:
@@ -248,6 +249,12 @@ def world_mesh(region: Region) -> Any:
 
     if isinstance(region, SideSurface):
         mesh = surface_in_world(region)
+        if mesh is None:
+            raise InvalidScenarioError(
+                f"{region!r} has no faces",
+                span=here(),
+                help="take another side, or give the object other `sideComponentThresholds`",
+            )
     else:
         mesh = solid_in_world(region.fixed_columns("the mesh"))
     return trimesh.Trimesh(np.array(mesh.vertices), np.array(mesh.faces), process=False)

@@ -1,0 +1,271 @@
+"""Regions of random parameters, asked and drawn from with the columns that parameters have: each lane is a region of its own."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from scipy import stats
+
+from scenic.graph.bounds import Bounds
+from scenic.language.errors import InvalidScenarioError
+from scenic.runtime.geometry import primitives
+from scenic.runtime.geometry.bodies import Body, Poses
+from scenic.runtime.regions import composite
+from scenic.runtime.regions.algebra import meets_bodies
+from scenic.runtime.regions.base import Region
+from scenic.runtime.regions.choice import RegionChoice
+from scenic.runtime.regions.composite import DifferenceRegion, IntersectionRegion, UnionRegion
+from scenic.runtime.regions.planar import CircularRegion, RectangularRegion
+from scenic.runtime.regions.scattered import GridRegion
+from scenic.runtime.regions.volumes import BoxRegion, SpheroidRegion
+from tests.runtime.programs import FALSE_ALARM, draws, failure, scenario
+
+N = 4000
+
+
+def drawn(region: Region, *columns: Any, n: int = N) -> tuple[NDArray[np.float64], Any]:
+    """Points of a region in lanes, with its columns or those of its fixed parameters."""
+    random = np.random.default_rng(4)
+    given = columns or tuple(region.fixed_columns("the test"))
+    keys = random.integers(0, 1 << 63, n, dtype=np.uint64)
+    return region.draw_points(random.random((region.draws, n)), keys, *given)
+
+
+def rows(region: Region) -> list[Any]:
+    return region.fixed_columns("the test")
+
+
+def assert_share(found: Any, share: float) -> None:
+    count = int(np.count_nonzero(found))
+    assert stats.binomtest(count, len(found), share).pvalue > FALSE_ALARM
+
+
+def test_points_of_a_union_are_uniform_where_members_overlap() -> None:
+    """A draw that is given up for lying in two members is repeated in any member, not in the same one."""
+    whole, half = RectangularRegion((1, 0), 0, 2, 1), RectangularRegion((0.5, 0), 0, 1, 1)
+    for members in ((whole, half), (half, whole), (half, whole, half)):
+        points, found = drawn(UnionRegion(*members))
+        assert found.all()
+        assert_share(points[:, 0] < 1, 1 / 2)
+        assert stats.kstest(points[:, 0] / 2, "uniform").pvalue > FALSE_ALARM
+
+
+def test_members_of_lower_dimension_do_not_thin_a_union() -> None:
+    """The cells of a grid hold points although only their middles are drawn."""
+    grid = GridRegion("cells", [[0]], 1, 1, 0.5, 0)
+    whole = RectangularRegion((1, 0), 0, 2, 1)
+    assert grid.dimension < whole.dimension
+    for members in ((whole, grid), (grid, whole)):
+        points, _ = drawn(UnionRegion(*members))
+        assert_share(points[:, 0] < 1, 1 / 2)
+
+
+def test_points_of_an_intersection_come_from_its_thinnest_member() -> None:
+    ball, disc = SpheroidRegion((4, 4, 4), (0, 0, 1)), CircularRegion((1, 0, 1), 2)
+    for members in ((ball, disc), (disc, ball)):
+        region = IntersectionRegion(*members)
+        points, found = drawn(region, n=200)
+        assert found.all()
+        assert region.dimension == 2
+        assert (points[:, 2] == 1).all()
+        assert (np.hypot(points[:, 0], points[:, 1]) <= 2).all()
+        assert (np.hypot(points[:, 0] - 1, points[:, 1]) <= 2).all()
+
+
+def test_what_a_member_does_not_find_is_not_drawn(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nothing is left of a disc without a larger one in every second lane; and the origin is no stand-in."""
+    monkeypatch.setattr(composite, "TRIES", 40)
+    radius = np.where(np.arange(40) % 2, 3.0, 0.5)
+    disc, hole, far = CircularRegion((0, 0), 1), CircularRegion((0, 0), 1), CircularRegion((9, 9), 1)
+    left = DifferenceRegion(disc, hole)
+    columns = [*rows(disc), rows(hole)[0], radius, *rows(hole)[2:], *rows(far)]
+    region = DifferenceRegion(left, far)
+    points, found = drawn(region, *columns, n=40)
+    np.testing.assert_array_equal(found, radius < 1)
+    distance = np.hypot(points[:, 0], points[:, 1])[found]
+    assert ((distance > 0.5) & (distance <= 1)).all()
+    choice = RegionChoice(0, [left, disc])
+    index = (np.arange(40) // 2 % 2).astype(np.int64)
+    points, found = drawn(choice, index, *columns[: len(left.parameters)], *rows(disc), n=40)
+    np.testing.assert_array_equal(found, (radius < 1) | (index == 1))
+
+
+def test_footprints_of_combinations_hold_at_every_height() -> None:
+    low, high = CircularRegion((0, 0, 0), 2), CircularRegion((1, 0, 0), 2)
+    places = np.array([(x, 0.0, z) for x in (-1.5, 0.5, 2.5, 5.0) for z in (0.0, 7.0)])
+    expected = {
+        IntersectionRegion: [False, True, False, False],
+        UnionRegion: [True, True, True, False],
+        DifferenceRegion: [True, False, False, False],
+    }
+    for kind, inside in expected.items():
+        footprint = kind(low, high).footprint
+        assert footprint.dimension == low.footprint.dimension
+        found = footprint.contains_points(places, *rows(footprint))
+        np.testing.assert_array_equal(found, np.repeat(inside, 2))
+
+
+def test_members_of_a_random_union_hold_a_body_together() -> None:
+    """A box across the seam of two squares, which in some lanes leave a gap between them."""
+    program = (
+        "gap = Uniform(-0.5, 0, 0.5)\n"
+        "room = RectangularRegion((-2, 0), 0, 4, 4).union(RectangularRegion((2 + gap, 0), 0, 4, 4))\n"
+        "box = new Object with width 2, with length 1, with regionContainedIn everywhere\n"
+        "param x = (room.containsObject(box), gap)\n"
+    )
+    assert set(draws(program, n=24)) == {(True, -0.5), (True, 0), (False, 0.5)}
+
+
+def test_gaps_of_a_choice_are_those_of_the_drawn_region() -> None:
+    """A container of the plane is no farther from what is above it."""
+    disc, plate = CircularRegion((0, 0, 0), 1), CircularRegion((10, 0, 0), 2)
+    index = np.array([0, 1, 0, 1])
+    places = np.array([(4.0, 0, 5), (4.0, 0, 5), (0.5, 0, 5), (0.5, 0, 5)])
+    columns = (index, *rows(disc), *rows(plate))
+    found = RegionChoice(0, [disc, plate]).gaps(places, *columns)
+    np.testing.assert_allclose(found, [3, 4, 0, 7.5])
+
+
+def two_bodies(first: Any, second: Any) -> Body:
+    """Unit cubes in two lanes."""
+    turn = np.tile((0.0, 0.0, 0.0, 1.0), (2, 1))
+    return Body(
+        (primitives.box(),), None, Poses(np.array([first, second], dtype=float), turn, np.ones((2, 3)))
+    )
+
+
+def test_cells_hold_the_body_of_each_lane() -> None:
+    grid = GridRegion("cells", [[0, 0, 1]], 2, 2, 0, 0)
+    free, blocked = (1, 0, 0), (3.2, 0, 0)
+    for places, expected in (((free, blocked), [True, False]), ((blocked, free), [False, True])):
+        np.testing.assert_array_equal(grid.contains_bodies(two_bodies(*places), 2), expected)
+
+
+def test_regions_meet_the_shape_of_each_lane() -> None:
+    """A ball near a corner of a unit cube does not meet the ellipsoid that fills the cube."""
+    cube, ball = primitives.box(), primitives.spheroid()
+    corner = BoxRegion((0.2, 0.2, 0.2), (0.5, 0.5, 0.5))
+    for choice in ([0, 1, 0], [1, 0, 1]):
+        body = Body((cube, ball), np.array(choice), Poses.fixed((0, 0, 0)))
+        found = meets_bodies(corner, body, 3, rows(corner))
+        np.testing.assert_array_equal(found, [number == 0 for number in choice])
+
+
+def test_points_of_a_drawn_side_are_uniform() -> None:
+    """Both coordinates on the top of one of two boxes: of the face and of the place on it as little as of each other."""
+    text = (
+        "a = new Object at (0, 0), with regionContainedIn everywhere\n"
+        "b = new Object at (5, 0), with regionContainedIn everywhere\n"
+        "p = new Point in Uniform(a.topSurface, b.topSurface)\nparam x = tuple(p.position)\n"
+    )
+    values = np.array(draws(text, n=1500))
+    np.testing.assert_allclose(values[:, 2], 0.5)
+    assert_share(values[:, 0] > 2.5, 1 / 2)
+    for axis in np.where(values[:, 0] > 2.5, values[:, 0] - 5, values[:, 0]), values[:, 1]:
+        assert stats.kstest(axis + 0.5, "uniform").pvalue > FALSE_ALARM
+    cells = np.histogram2d(
+        np.remainder(values[:, 0] + 0.5, 5), values[:, 1] + 0.5, bins=3, range=[[0, 1]] * 2
+    )[0]
+    assert stats.chisquare(cells.ravel()).pvalue > FALSE_ALARM
+
+
+WALLS = """\
+box = new Object facing {yaw} deg, with regionContainedIn everywhere, with sideComponentThresholds {thresholds}
+param x = tuple(side.intersects(CUBE) for side in (box.leftSurface, box.rightSurface, box.backSurface, box.frontSurface, \
+box.bottomSurface, box.topSurface))
+"""
+UP = "(-0.5, 0.5)"
+
+
+@pytest.mark.parametrize(
+    ("yaw", "x", "y", "touched"),
+    [
+        (0, UP, UP, "left"),
+        (45, UP, UP, "left back"),  # the components of the wall's normal are 0.71
+        (45, "(-0.8, 0.5)", UP, "back"),
+        (45, UP, "(-0.8, 0.5)", "left"),
+        (45, "(-0.8, 0.5)", "(-0.8, 0.5)", ""),
+        (45, "(-0.5, 0.8)", "(-0.5, 0.8)", "left back"),
+    ],
+)
+def test_sides_have_the_faces_that_pass_their_thresholds(yaw: int, x: str, y: str, touched: str) -> None:
+    """Asked by a small cube at the middle of the wall that looks to the left, and with the turned box also to the back."""
+    half = 0.5 * np.cos(np.deg2rad(yaw))
+    cube = f"BoxRegion(dimensions=(0.1, 0.1, 0.1), position=({-half}, {-0.5 * np.sin(np.deg2rad(yaw))}, 0))"
+    text = WALLS.format(yaw=yaw, thresholds=f"({x}, {y}, {UP})").replace("CUBE", cube)
+    (found,) = draws(text, n=1)
+    names = ("left", "right", "back", "front", "bottom", "top")
+    assert [name for name, meets in zip(names, found, strict=True) if meets] == touched.split()
+
+
+def test_a_side_ends_where_its_faces_end() -> None:
+    """What holds a corner of the bottom alone does not meet the top; sides without faces meet nothing."""
+    text = (
+        "box = new Object facing 45 deg, with regionContainedIn everywhere, with sideComponentThresholds {}\n"
+        "corner = BoxRegion(dimensions=(0.2, 0.2, 0.2), position=(0, 0.7071, -0.5))\n"
+        "param x = (box.bottomSurface.intersects(corner), box.topSurface.intersects(corner), "
+        "box.topSurface.intersects(box.leftSurface), box.leftSurface.intersects(box.topSurface))\n"
+    )
+    assert draws(text.format("((-0.5, 0.5), (-0.5, 0.5), (-0.5, 0.5))"), n=1) == [(True, False, True, True)]
+    none = text.format("((-0.8, 0.8), (-0.5, 0.5), (-0.5, 0.5))")
+    assert draws(none, n=1) == [(True, False, False, False)]
+    assert isinstance(failure(none + "param y = box.leftSurface.mesh\n"), InvalidScenarioError)
+
+
+def test_boxes_of_sides() -> None:
+    """Of the side itself where the object is fixed."""
+    (found,) = draws(
+        "box = new Object with width 4\nparam x = (box.topSurface.AABB, box.surface.AABB)\n", n=1
+    )
+    np.testing.assert_allclose(found, [[(-2, -0.5, 0.5), (2, 0.5, 0.5)], [(-2, -0.5, -0.5), (2, 0.5, 0.5)]])
+
+
+def test_fields_of_combinations() -> None:
+    """Where regions overlap the first one tells; the way that a line or surface goes is no field for what is left of it."""
+    text = (
+        "one, two = VectorField('one', lambda p: 1), VectorField('two', lambda p: 2)\n"
+        "a = RectangularRegion((0, 0), 0, 4, 4)\n"
+        "a, b = (PolygonalRegion(polygon=Polygon([(x, 0), (x + 4, 0), (x + 4, 4), (x, 4)]), orientation=field) "
+        "for x, field in ((0, one), (2, two)))\n"
+        "line = PolylineRegion([(-1, 1), (9, 1)])\n"
+        "ab, ba = a.union(b), b.union(a)\n"
+        "param x = (*(r.orientation[place].yaw for r in (ab, ba) for place in ((1, 1), (3, 1), (5, 1))), "
+        "line.intersect(a).orientation[(1, 1)].yaw, a.intersect(line).orientation[(1, 1)].yaw, "
+        "a.intersect(b).orientation[(3, 1)].yaw, b.intersect(a).orientation[(3, 1)].yaw)\n"
+    )
+    (found,) = draws("from shapely import Polygon\n" + text, n=1)
+    assert found == pytest.approx((1, 1, 2, 1, 2, 2, 1, 1, 1, 2))
+
+
+def test_directions_of_projections_are_kept() -> None:
+    """Things go to a wall along its own direction, also to that of its surface or volume."""
+    text = (
+        "import trimesh\n"
+        "box = trimesh.creation.box()\n"
+        "wall = MeshSurfaceRegion(box, dimensions=(2, 8, 8), onDirection=(1, 0, 0))\n"
+        "block = BoxRegion((2, 8, 8), onDirection=(1, 0, 0))\n"
+        "one = new Point at (-5, 2, 1), on wall\n"
+        "two = new Point at (-5, 2, 1), on block\n"
+        "three = new Point at (-5, 2, 1), on block.getVolumeRegion()\n"
+        "four = new Point at (0, 2, -9), on MeshSurfaceRegion(box, dimensions=(2, 8, 8))\n"
+        "param x = [tuple(p.position) for p in (one, two, three, four)]\n"
+    )
+    (found,) = draws(text, n=1)
+    np.testing.assert_allclose(found, [(-1, 2, 1)] * 3 + [(0, 2, -4)], atol=1e-9)
+
+
+def test_bounds_of_points_on_a_fixed_side_are_those_of_its_corners() -> None:
+    """The top of a table that is far from the origin, and of another extent along each axis."""
+    program = scenario(
+        "base = new Object at (10, 2.5, 5), with width 4, with length 2, with height 1\n"
+        "thing = new Point on base.topSurface\nparam x = thing.position\n"
+    )
+    (node,) = (node for node in program.outline.graph.nodes if node.operation.name == "point of triangles")
+    assert node.operation.bounds is not None
+    unit = Bounds(np.zeros(3), np.ones(3))
+    found = node.operation.bounds(node.payload, unit, unit, unit)
+    np.testing.assert_allclose(found.lower, [(8, 1.5, 5.5)] * 3)
+    np.testing.assert_allclose(found.upper, [(12, 3.5, 5.5)] * 3)
+    assert (found.lower <= (8, 1.5, 5.5)).all()
+    assert (found.upper >= (12, 3.5, 5.5)).all()
