@@ -157,13 +157,18 @@ def sample(
         if sinks.is_lines(named):
             target = named
         else:
-            chosen.append(sinks.scene_file(named, count))
+            chosen.append(sinks.scene_file(named, count, first))
     if view is not None:
         chosen.append(sinks.page(Path(view), path.name))
     if png is not None:
         chosen.append(
             sinks.images(
-                Path(png), path.stem, count, image_size, {**outlook, "workspace": frame == "workspace"}
+                Path(png),
+                path.stem,
+                count,
+                image_size,
+                {**outlook, "workspace": frame == "workspace"},
+                first,
             )
         )
     if chosen and (jobs > 1 or resume):

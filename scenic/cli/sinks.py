@@ -51,10 +51,17 @@ def is_lines(path: Path) -> bool:
     return suffix not in _SOLID
 
 
-def scene_file(path: Path, count: int) -> Sink:
-    """A ``.glb`` or ``.obj`` file for each scene, by the name's ending; raises ``OutputError`` at once if that cannot be."""
+def scene_file(path: Path, count: int, first: int = 0) -> Sink:
+    """A ``.glb`` or ``.obj`` file for each scene, by the name's ending; raises ``OutputError`` at once if that cannot be.
+
+    Args:
+        path: the file of one scene; those of several have their numbers in their names.
+        count: how many scenes.
+        first: the number of the first one.
+
+    """
     check_writable(path)
-    _check_numbered(path, count)
+    _check_numbered(path, count, first)
     return (_obj_files if path.suffix.lower() == ".obj" else _glb_files)(path, count)
 
 
@@ -96,11 +103,16 @@ def _labelled(folder: Path, camera: str, size: tuple[int, int] | None) -> Iterat
 
 
 def images(
-    path: Path, stem: str, count: int, size: tuple[int, int] | None, outlook: Mapping[str, Any]
+    path: Path,
+    stem: str,
+    count: int,
+    size: tuple[int, int] | None,
+    outlook: Mapping[str, Any],
+    first: int = 0,
 ) -> Sink:
     """A PNG image of each scene: at ``path`` if that ends in ``.png``, else in the folder of that name.
 
-    ``outlook`` holds what is not to be as in an `Outlook` made without arguments.
+    ``outlook`` holds what is not to be as in an `Outlook` made without arguments; ``first`` is the number of the first scene.
 
     Raises ``OutputError`` or ``MissingLibraryError`` at once if that cannot be.
     """
@@ -113,13 +125,14 @@ def images(
     else:
         check_folder(path if path.exists() else path.resolve().parent)
         folder, target = path, path / f"{stem}.png"
-    _check_numbered(target, count)
+    _check_numbered(target, count, first)
     return _images(folder, target, count, size, outlook)
 
 
-def _check_numbered(path: Path, count: int) -> None:
+def _check_numbered(path: Path, count: int, first: int) -> None:
+    """Look at the last file: no other name is longer."""
     if path.parent.exists():
-        check_writable(numbered(path, count - 1, count))
+        check_writable(numbered(path, first + count - 1, count))
 
 
 @contextmanager

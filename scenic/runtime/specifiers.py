@@ -405,14 +405,8 @@ class UserSpecifier:
             return offered
 
         reads = {*self.reads, *reads_of(arguments)}
-        modifiable = frozenset(self.modifies)
         return _specifier(
-            self.__name__,
-            self.priorities,
-            evaluate,
-            *reads,
-            modifiable=modifiable,
-            modify=evaluate if modifiable else None,
+            self.__name__, self.priorities, evaluate, *reads, modifiable=frozenset(self.modifies)
         )
 
 

@@ -7,11 +7,16 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Iterable, Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 import scenic
+from scenic.cli import workers
+from scenic.cli.batches import Job, WorkerDiedError, in_processes
+from scenic.formats.json_lines import SceneLines
 from tests.cli.commands import run_here
 
 PROGRAM = """
@@ -118,6 +123,57 @@ def test_killed_workers_change_nothing(folder: Path) -> None:
             shown = process.stderr.read()
         assert process.returncode == 0, shown
         assert target.read_bytes() == whole(folder)
+
+
+def made_by(run: Any, monkeypatch: pytest.MonkeyPatch, job: Job) -> bytes:
+    """The lines of a job by processes that answer as ``run`` says."""
+    scenario = scenic.scenarioFromString("ego = new Object with foo Range(0, 1)\n")
+    monkeypatch.setattr(workers, "run", run)
+    return b"".join(made.lines for made in in_processes(scenario, SceneLines(), job, 2))
+
+
+def test_pieces_are_told_in_order_whatever_the_order_in_which_they_are_made(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    job = Job(seed=3, first=5, last=105, max_attempts=10, deadline=None)
+
+    def one_by_one(function: Any, pieces: Iterable[Job], **_others: Any) -> Iterator[Any]:
+        yield from enumerate(map(function, pieces))
+
+    def mixed(function: Any, pieces: Iterable[Job], **others: Any) -> Iterator[Any]:
+        results = list(one_by_one(function, pieces, **others))
+        assert len(results) > 4
+        random.Random(2).shuffle(results)
+        yield from results
+
+    def backwards(function: Any, pieces: Iterable[Job], **others: Any) -> Iterator[Any]:
+        yield from reversed(list(one_by_one(function, pieces, **others)))
+
+    expected = made_by(one_by_one, monkeypatch, job)
+    assert [json.loads(line)["k"] for line in expected.splitlines()] == list(range(5, 105))
+    assert made_by(mixed, monkeypatch, job) == expected
+    assert made_by(backwards, monkeypatch, job) == expected
+
+
+@pytest.mark.parametrize("deaths", [0, 1, 3, 4])
+def test_a_piece_is_made_again_three_times(monkeypatch: pytest.MonkeyPatch, deaths: int) -> None:
+    """The piece of scene 6 loses its process so often, and is given up at the fourth loss."""
+    job = Job(seed=3, first=0, last=40, max_attempts=10, deadline=None)
+    left = deaths
+
+    def dying(function: Any, pieces: Iterable[Job], *, lost: Any, **_others: Any) -> Iterator[Any]:
+        nonlocal left
+        for number, piece in enumerate(pieces):
+            dies = piece.first <= 6 < piece.last and left > 0
+            left -= dies
+            yield number, lost(piece, -9) if dies else function(piece)
+
+    if deaths == 4:
+        with pytest.raises(WorkerDiedError, match="exit code -9"):
+            made_by(dying, monkeypatch, job)
+    else:
+        lines = made_by(dying, monkeypatch, job)
+        assert [json.loads(line)["k"] for line in lines.splitlines()] == list(range(40))
 
 
 def test_a_torn_line_is_made_again(folder: Path) -> None:

@@ -94,6 +94,7 @@ def test_options_reach_the_pipeline(stub: Stub) -> None:
         "mode2D": True,
         "prune": False,
         "max_attempts": 7,
+        "source": None,
     }
 
 
@@ -180,6 +181,27 @@ def test_json_lines_to_a_file(stub: Stub, tmp_path: Path) -> None:
     result = run("-n", 2, "-o", tmp_path / "out.jsonl", "--seed", 1)
     assert result.stdout == ""
     assert [row["k"] for row in lines((tmp_path / "out.jsonl").read_text())] == [0, 1]
+
+
+@pytest.mark.parametrize(
+    ("options", "last"),
+    [
+        (("-n", 3, "-o", "{}/room.glb"), "room-002.glb"),
+        (("-n", 3, "--first", 8, "-o", "{}/room.obj"), "room-010.obj"),
+        (("-n", 2, "--png", "{}/room.png"), "room-001.png"),
+        (("-n", 2, "--first", 1, "--png", "{}"), "room-002.png"),
+        (("-n", 1, "--first", 5, "--png", "{}"), "room.png"),
+    ],
+)
+def test_the_last_of_several_files_is_looked_at_before_anything_is_sampled(
+    stub: Stub, tmp_path: Path, options: tuple[object, ...], last: str
+) -> None:
+    (tmp_path / last).mkdir()
+    result = run(*(str(option).format(tmp_path) for option in options))
+    assert isinstance(result.exception, OutputError)
+    assert last in str(result.exception)
+    assert stub.sampled == 0
+    assert os.listdir(tmp_path) == [last]
 
 
 def test_one_glb_or_several(stub: Stub, tmp_path: Path) -> None:

@@ -157,6 +157,34 @@ def test_one_that_fails_leaves_the_others(folder: Path) -> None:
     assert result.stdout.count("reached time limit") == made
 
 
+def test_an_error_tells_more_than_a_rejection(folder: Path) -> None:
+    """The exit code of a run in which some simulations fail and others are rejected."""
+    (folder / "both.scenic").write_text(RAISING + "require eventually ego.position.y > 2\n")
+    result = run(
+        folder, "both.scenic", "-n", 8, "--seed", 3, "--time", 4, "--tries", 1, "--simulator", "dummy"
+    )
+    assert "rejected (1 tried)" in result.stdout
+    assert "error[SC400]: ValueError: oops" in result.stderr
+    assert result.returncode == 1
+
+
+def test_trajectories_are_kept_for_what_decides_them(folder: Path) -> None:
+    """Another limit on the time of a step makes no other simulation; another number of steps or of tries does."""
+    options = ("moving.scenic", "--seed", 3, "--time", 4, "-o", "out")
+    kept = folder / "out" / "simulation-0000.jsonl"
+    assert run(folder, *options).returncode == 0
+    for more, again in (
+        (["--step-limit", 5], False),
+        (["-n", 2], False),
+        (["--tries", 7], True),
+        (["--timestep", 0.5], True),
+        (["--simulator", "dummy"], True),
+    ):
+        before = kept.stat().st_ino, kept.stat().st_mtime_ns
+        assert run(folder, *options, *more).returncode == 0
+        assert ((kept.stat().st_ino, kept.stat().st_mtime_ns) != before) is again, more
+
+
 def test_code_that_spins_is_named(folder: Path) -> None:
     result = run(folder, "spinning.scenic", "--seed", 3, "--step-limit", 0.1)
     assert result.returncode == 1

@@ -193,3 +193,28 @@ def test_the_index_of_a_folder_says_what_is_in_its_images(tmp_path: Path) -> Non
     assert (crate["bbox"], crate["area"], crate["occluded"]) == ([21, 6, 7, 5], 35, pytest.approx(0.3))
     # Down the columns: 21 of 20 pixels before the first, then 5 of 20 each.
     assert crate["segmentation"] == {"size": [20, 40], "counts": [21 * 20 + 6, *[5, 15] * 6, 5, 12 * 20 + 9]}
+
+
+def test_what_reaches_behind_the_camera_is_measured_where_it_is_before_it() -> None:
+    """A floor from 6 m before the camera to 4 m behind it, 1 m below: all columns, and the rows that it fills from its far edge."""
+    floor = ahead(-4, 0, -1.5, (100, 10, 1))
+    found, _ = seen(floor)
+    label = found.labels[0]
+    # 20 rows over 1 m upward at 1 m: the far edge is 1 / 6 m below the middle there.
+    top = math.ceil(10 + 20 / 6 - 0.5)
+    assert label.full_box is not None
+    assert label.full_box.as_list() == [0, top, 40, 20 - top]
+    assert (label.pixels, label.full_pixels) == (40 * (20 - top), 40 * (20 - top))
+
+
+@pytest.mark.parametrize("inside", [0, 1e-9, 1e-8, 1e-7])
+def test_no_more_is_seen_of_something_than_there_is_of_it(inside: float) -> None:
+    """A wall whose outline goes through the middles of pixels, or so little inside them that the image shows these too."""
+    across = (2 * 24.5 / 40 - 1) * 2 * 3 - 2 * inside
+    found, _ = seen(ahead(3, 0, 0, (across, 1, across)))
+    label = found.labels[0]
+    # Columns 15 to 24 and rows 5 to 14, or those between them.
+    assert label.pixels in range(8 * 8, 10 * 10 + 1)
+    assert label.full_pixels in range(label.pixels, 10 * 10 + 1)
+    assert label.occluded is not None
+    assert 0 <= label.occluded < 1

@@ -212,3 +212,25 @@ def test_what_is_specified_by_a_choice_follows_the_mutated_instance() -> None:
         one, other = item.objects
         gap = tuple(p - q for p, q in zip(one.position, other.position, strict=True))
         assert sum(part * part for part in gap) == pytest.approx(4)
+
+
+@pytest.mark.parametrize(
+    ("property", "specifier", "statement"),
+    [
+        ("foo: 1", "with foo 1", "mutate a"),
+        ("foo: 1", "with foo 1", "def f():\n    mutate a\nf()"),
+        ("foo: 1", "with foo 1", "a.mutationScale = 1"),
+        ("foo: 1", "with mutationScale 1", "pass"),
+        ("mutationScale: 1", "with foo 1", "pass"),
+    ],
+)
+def test_choices_follow_mutation_however_it_is_asked_for(
+    property: str, specifier: str, statement: str
+) -> None:
+    text = (
+        f"class A(Object):\n    {property}\nego = a = new A at (3, 4), {specifier}\n"
+        f"param x = (a.position.x, Uniform(a, a).position.x)\n{statement}\n"
+    )
+    for item in scenario(text).sample(5, seed=2):
+        assert item.params["x"] == (3, item.egoObject.position.x)
+        assert item.egoObject.position.x != 3

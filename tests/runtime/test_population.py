@@ -75,6 +75,33 @@ def test_what_a_script_sets_stays_in_one_scene() -> None:
     assert told(again) == told(first)
 
 
+@pytest.mark.parametrize("given", ["with foo x", "with width f(x)", "at (f(x), 0, 0)"])
+def test_an_object_is_that_of_its_own_scene(given: str) -> None:
+    """Also where only a property differs, and where a function that is called on samples gives the place or size."""
+    text = (
+        "@distributionFunction\ndef f(v):\n    return v + 1\n"
+        f"x = Range(0, 1)\nego = new Object {given}\nparam x = x\n"
+    )
+    scenes = scenic.scenarioFromString(text).sample(60, seed=1)
+    values = {
+        "with foo x": lambda item: item.foo,
+        "with width f(x)": lambda item: item.width - 1,
+        "at (f(x), 0, 0)": lambda item: item.position.x - 1,
+    }
+    found = [values[given](scene.egoObject) for scene in scenes]
+    assert found == pytest.approx([scene.params["x"] for scene in scenes])
+    assert len({round(value, 9) for value in found}) == 60
+
+
+def test_copies_of_scenes_made_together_have_objects_of_their_own() -> None:
+    for scene in scenic.scenarioFromString(ALONE).sample(5, seed=1):
+        scene.objects[0].mark = 1
+        again = deepcopy(scene)
+        assert not {*map(id, scene.objects)} & {*map(id, again.objects)}
+        assert not hasattr(again.objects[0], "mark")
+        assert told(again) == told(scene)
+
+
 def test_scenes_are_freed_as_soon_as_nobody_holds_them() -> None:
     scenario = scenic.scenarioFromString(ALONE)
     with no_garbage_collection():
