@@ -87,6 +87,7 @@ NOTED: Final = frozenset(
         ast.ImportFrom,
         ast.Return,
         ast.Subscript,
+        ast.Try,
         ast.UnaryOp,
         scenic.BehaviorDef,
         scenic.Model,

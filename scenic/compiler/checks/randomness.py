@@ -57,14 +57,21 @@ def _assigned(name: ast.Name, context: Context) -> ast.expr | None:
     return context.assigned.get(binding.sites[0])
 
 
+def _is_asked_now(node: ast.expr | ast.stmt, scope: Scope, context: Context) -> bool:
+    """Whether a node is evaluated while the scenario is being built, and nothing there catches what that raises."""
+    if scope is not context.resolution.module or where_of(node, scope).place is not Place.TOP:
+        return False
+    caught = (each for each, _ in context.nodes(ast.Try) if each.handlers and each.body)
+    return not (
+        _in_condition(node, context) or any(_lies_in(node, each.body[0], each.body[-1]) for each in caught)
+    )
+
+
 def _decides(node: ast.If | ast.While | ast.IfExp, scope: Scope, context: Context) -> Iterator[Diagnostic]:
     """SC403: ``if x > 1`` with a random ``x``."""
-    where = where_of(node, scope)
-    if scope is not context.resolution.module or where.place is not Place.TOP:
-        return
     if isinstance(node.test, ast.UnaryOp) and isinstance(node.test.op, ast.Not):
         return  # `_truth` tells.
-    if _in_condition(node, context) or not _is_random(node.test, context):
+    if not (_is_random(node.test, context) and _is_asked_now(node, scope, context)):
         return
     what = "comparing" if isinstance(node.test, ast.Compare) else "deciding by"
     yield context.error(
@@ -78,13 +85,10 @@ def _decides(node: ast.If | ast.While | ast.IfExp, scope: Scope, context: Contex
 
 def _iterates(node: ast.For, scope: Scope, context: Context) -> Iterator[Diagnostic]:
     """SC403: ``for i in range(x)`` with a random ``x``."""
-    where = where_of(node, scope)
-    if scope is not context.resolution.module or where.place is not Place.TOP:
-        return
     counted = node.iter
     is_range = isinstance(counted, ast.Call) and context.provided(counted.func) == "range"
     values = counted.args if isinstance(counted, ast.Call) and is_range else [counted]
-    if not any(_is_random(each, context) for each in values):
+    if not (any(_is_random(each, context) for each in values) and _is_asked_now(node, scope, context)):
         return
     yield context.error(
         "SC403",
@@ -96,14 +100,12 @@ def _iterates(node: ast.For, scope: Scope, context: Context) -> Iterator[Diagnos
 
 def _truth(node: ast.BoolOp | ast.UnaryOp, scope: Scope, context: Context) -> Iterator[Diagnostic]:
     """SC403: ``x and y``, ``not x`` with a random ``x``."""
-    if scope is not context.resolution.module or where_of(node, scope).place is not Place.TOP:
-        return
     if isinstance(node, ast.UnaryOp):
         asked = [node.operand] if isinstance(node.op, ast.Not) else []
     else:
         asked = node.values[:-1]
     wrong = next((each for each in asked if _is_random(each, context)), None)
-    if wrong is None or _in_condition(node, context):
+    if wrong is None or not _is_asked_now(node, scope, context):
         return
     yield context.error(
         "SC403",
@@ -117,12 +119,13 @@ def _in_condition(node: ast.expr | ast.stmt, context: Context) -> bool:
     """Whether an expression is a part of what is evaluated later, on samples."""
     if not isinstance(node, ast.expr):
         return False
-    place = (node.lineno, node.col_offset)
-    return any(
-        (statement.lineno, statement.col_offset) <= place < (statement.end_lineno, statement.end_col_offset)
-        for cls in _LATER
-        for statement, _ in context.nodes(cls)
-    )
+    return any(_lies_in(node, statement, statement) for cls in _LATER for statement, _ in context.nodes(cls))
+
+
+def _lies_in(node: ast.expr | ast.stmt, first: ast.stmt, last: ast.stmt) -> bool:
+    """Whether a node stands between the beginning of a statement and the end of another."""
+    begin, end = (first.lineno, first.col_offset), (last.end_lineno or 0, last.end_col_offset or 0)
+    return begin <= (node.lineno, node.col_offset) < end
 
 
 RULES: Final[dict[type[ast.AST], NodeRule]] = {

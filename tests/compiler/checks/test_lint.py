@@ -106,6 +106,8 @@ def test_repairs_repair(case: Path) -> None:
         ("x = Range(0, 1)\nif x > 0.5:\n    y = 3\nego = new Object\n", [("SC403", 2, 3)]),
         ("x = Range(0, 1)\ny = 1 if abs(-x) > 0.5 else 2\nego = new Object\n", [("SC403", 2, 9)]),
         ("x = Uniform(1, 2)\nwhile x: pass\nego = new Object\n", [("SC403", 2, 6)]),
+        ("try:\n    if Range(0, 1) > 0: pass\nexcept Exception:\n    y = 1\nego = new Object\n", []),
+        ("try:\n    y = 1\nfinally:\n    z = not Range(0, 1)\nego = new Object\n", [("SC403", 4, 12)]),
         ("x = DiscreteRange(1, 4)\nfor i in range(x): pass\nego = new Object\n", [("SC403", 2, 9)]),
         ("for i in Uniform([1], [2]): pass\nego = new Object\n", [("SC403", 1, 9)]),
         ("for i in [Range(0, 1), 3]: new Object at (i, 0)\nego = new Object\n", []),
