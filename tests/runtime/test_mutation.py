@@ -228,7 +228,7 @@ def test_choices_follow_mutation_however_it_is_asked_for(
     property: str, specifier: str, statement: str
 ) -> None:
     text = (
-        f"class A(Object):\n    {property}\nego = a = new A at (3, 4), {specifier}\n"
+        f"class A(Object):\n    {property}\na = new A at (3, 4), {specifier}\nego = a\n"
         f"param x = (a.position.x, Uniform(a, a).position.x)\n{statement}\n"
     )
     for item in scenario(text).sample(5, seed=2):
