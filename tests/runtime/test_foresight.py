@@ -151,8 +151,16 @@ def test_a_function_of_the_program_may_ask_for_scenes() -> None:
     program = scenario(text)
     HOOK.append(ask)
     random.seed(8)
-    values = [program.generate()[0].params["x"] for _ in range(5)]
+    values: list[float] = []
+    # In a thread of its own, so that one that waits for itself is noticed.
+    asking = threading.Thread(
+        target=lambda: values.extend(program.generate()[0].params["x"] for _ in range(5)), daemon=True
+    )
+    asking.start()
+    asking.join(60)
+    assert not asking.is_alive()
     assert len(seen) == 5
+    assert len(values) == 5
     assert len(set(values)) == 5
 
 

@@ -269,3 +269,20 @@ def test_bounds_of_points_on_a_fixed_side_are_those_of_its_corners() -> None:
     np.testing.assert_allclose(found.upper, [(12, 3.5, 5.5)] * 3)
     assert (found.lower <= (8, 1.5, 5.5)).all()
     assert (found.upper >= (12, 3.5, 5.5)).all()
+
+
+@pytest.mark.parametrize(
+    "volume", ["BoxRegion((2, 4, 6))", "MeshVolumeRegion(trimesh.creation.box(), dimensions=(2, 4, 6))"]
+)
+def test_what_is_in_a_volume_or_on_its_border_stays_there(volume: str) -> None:
+    """Whatever the direction is: along a face, an edge or a diagonal, outwards, or none."""
+    places = [(0, 0, 0), (1, 0, 0), (1, 2, 0), (1, 2, 3), (-1, -2, -3), (0.5, 2, -1)]
+    ways = [(0, 0, 1), (1, 0, 0), (0, 1, 0), (1, 2, 3), (1, 2, 0), (0, 0, 0)]
+    text = f"import trimesh\nroom = {volume}\n" + "".join(
+        f"class P{number}(Point):\n    onDirection: {way}\n" for number, way in enumerate(ways)
+    )
+    points = ", ".join(
+        f"(new P{number} at {place}, on room)" for number in range(len(ways)) for place in places
+    )
+    text += f"points = [{points}]\nparam x = [tuple(p.position) for p in points]\n"
+    assert draws(text, n=1) == [places * len(ways)]
