@@ -216,3 +216,12 @@ def test_the_schema_refuses_other_documents(change: dict[str, Any]) -> None:
     document = json.loads(scene_line(Scene([Object(shape=CYLINDER)])))
     assert conforms(document, SCHEMA)
     assert not conforms(document | change, SCHEMA)
+
+
+@pytest.mark.parametrize(
+    ("value", "told"),
+    [(math.inf, {"$float": "inf"}), (-math.inf, {"$float": "-inf"}), (np.float64(2.5), 2.5), (-0.0, 0.0)],
+)
+def test_places_tell_every_number(value: float, told: object) -> None:
+    (thing,) = json.loads(scene_line(Scene([Object((1.0, value, 3.0))])))["objects"]
+    assert thing["position"] == [1.0, told, 3.0]

@@ -286,3 +286,8 @@ def test_what_is_in_a_volume_or_on_its_border_stays_there(volume: str) -> None:
     )
     text += f"points = [{points}]\nparam x = [tuple(p.position) for p in points]\n"
     assert draws(text, n=1) == [places * len(ways)]
+
+
+def test_radii_of_balls_in_boxes_and_ellipsoids() -> None:
+    (found,) = draws("param x = (BoxRegion((3, 2, 5)).inradius, SpheroidRegion((3, 7, 4)).inradius)\n", n=1)
+    assert found == (1, 1.5)
