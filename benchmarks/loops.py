@@ -62,6 +62,7 @@ def main() -> None:
     parser.add_argument("--reference", required=True, help="command of the other implementation")
     parser.add_argument("--meshes", required=True, help="folder of meshes")
     parser.add_argument("--turns", type=int, default=2)
+    parser.add_argument("--program", action="append", choices=PROGRAMS, help="only this one")
     parser.add_argument("--child", nargs=2, help=argparse.SUPPRESS)
     arguments = parser.parse_args()
     if arguments.child:
@@ -71,7 +72,7 @@ def main() -> None:
     print(
         f"{'program':14} {'reference':>10} {'first loop':>16} {'loop':>16} {'sample':>16}   loop / steady batch"
     )
-    for name in PROGRAMS:
+    for name in arguments.program or PROGRAMS:
         path = str(HERE / "loops" / f"{name}.scenic")
         theirs, ours = [], []
         for turn in range(arguments.turns):

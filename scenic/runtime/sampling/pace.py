@@ -14,6 +14,12 @@ _LIKELY_LANE: Final = 5e-6
 _ROUND_SECONDS: Final = 2.0
 """Rounds are cut to about this time, so that limits and interrupts are noticed soon."""
 
+_TRUST: Final = 4
+"""Costs are believed for rounds up to so many times as large as any that was made."""
+
+_FIRST: Final = 512
+"""Lanes of the first round, at most, if it has many attempts at a scene."""
+
 _AHEAD: Final = (1, 2, 3, 4, 6, 8, 12, 16)
 """Attempts ahead that are weighed where all rounds to come are looked at."""
 
@@ -45,6 +51,7 @@ class Pace:
     lanes: float = 0.0
     passed: float = 0.0
     _rounds: int = 0
+    _largest: int = 0
     _weight: float = 0.0
     _x: float = 0.0
     _y: float = 0.0
@@ -58,6 +65,7 @@ class Pace:
         # What the first round made, later ones find.
         fading = 0.0 if self._rounds == 1 else _FADING
         self._rounds += 1
+        self._largest = max(self._largest, lanes)
         for name, value in (
             ("_weight", 1.0),
             ("_x", lanes),
@@ -98,15 +106,16 @@ class Pace:
         """
         fixed, lane = self.cost()
         most = max(1, min(self.most, most, int((_ROUND_SECONDS - fixed) / lane)))
+        believed = min(most, max(waiting, _FIRST, _TRUST * self._largest))
         rejected = 1 - self.acceptance
         if not more:
-            ahead = _until_all_are_found(waiting, most, fixed, lane, rejected)
+            ahead = _until_all_are_found(waiting, believed, fixed, lane, rejected)
             if ahead is not None:
                 return Round(waiting, ahead)
         best, price = Round(1, 1), float("inf")
         ahead = 1
-        while ahead <= most:
-            scenes = min(waiting, most // ahead)
+        while ahead <= believed:
+            scenes = min(waiting, believed // ahead)
             found = scenes * (1 - rejected**ahead)
             this = (fixed + lane * scenes * ahead) / found if found > 0 else float("inf")
             if this < price or (found <= 0 and price == float("inf")):
