@@ -15,7 +15,7 @@ from typing import Any
 
 from scenic.runtime.sampling.engine import Engine
 from scenic.runtime.sampling.pace import Round
-from scenic.runtime.sampling.pending import Task
+from scenic.runtime.sampling.pending import Pending
 
 HERE = Path(__file__).parent
 LANES = (16, 64, 256, 4096)
@@ -37,7 +37,7 @@ class OfSize:
     def __init__(self, lanes: int) -> None:
         self.most = lanes
 
-    def choose(self, *_arguments: Any) -> Round:
+    def choose(self, *_arguments: Any, **_options: Any) -> Round:
         return Round(self.most, 1)
 
     def add(self, *_arguments: Any) -> None:
@@ -50,9 +50,10 @@ def milliseconds(engine: Engine, lanes: int, rounds: int) -> float:
     inner._pace = OfSize(lanes)
     times = []
     for seed in range(rounds + SETTLING):
-        pending = inner._start([(number, Task(seed, number)) for number in range(lanes)])
+        pending = Pending(inner._chances)
+        pending.add([(seed, number) for number in range(lanes)])
         begun = time.thread_time()
-        inner._round(pending, {}, 10**6, lanes)
+        inner._round(pending, {}, 10**6, lanes, more=False)
         times.append(time.thread_time() - begun)
     return statistics.median(times[SETTLING:]) * 1e3
 

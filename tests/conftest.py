@@ -3,6 +3,14 @@
 import os
 
 import pytest
+from hypothesis import HealthCheck, settings
+
+# A slow machine is no finding. (Where CI is set, Hypothesis takes its own profile, which says the same.)
+settings.register_profile(
+    "patient", settings.get_profile("default"), deadline=None, suppress_health_check=[HealthCheck.too_slow]
+)
+if not os.environ.get("CI"):
+    settings.load_profile("patient")
 
 # Tests compute everything themselves, and leave nothing behind in the home of whoever runs them.
 os.environ["SCENIC_CACHE"] = "off"

@@ -12,7 +12,7 @@ from scenic.graph.batch import Batch
 from scenic.language.garbage import no_garbage_collection
 from scenic.runtime.objects import Object, Point, put
 from scenic.runtime.samples import Globals, Sample, reachable
-from scenic.runtime.sampling.engine import Accepted
+from scenic.runtime.sampling.engine import Found
 
 _TOGETHER: Final = 512
 """Objects made at a time, about: below a millisecond, should nobody look at the other scenes."""
@@ -37,12 +37,12 @@ class Populations:
         self._others = tuple(others)
         self._linked: bool | None = None
 
-    def of(self, accepted: Accepted) -> "Population":
-        """The objects of a scene and of the others of its batch."""
-        found: Population | None = accepted.shared.get(self)
-        if found is None:
-            found = accepted.shared[self] = Population(self, accepted.batch)
-        return found
+    def of(self, found: Found) -> "Population":
+        """The objects of the scenes that a round has found."""
+        population: Population | None = found.shared.get(self)
+        if population is None:
+            population = found.shared[self] = Population(self, found.batch)
+        return population
 
     @property
     def linked(self) -> bool:

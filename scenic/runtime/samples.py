@@ -26,7 +26,7 @@ from scenic.runtime.ownership import (
     own_functions,
     slots,
 )
-from scenic.runtime.values import Random, Vector, as_node
+from scenic.runtime.values import Orientation, Random, Vector, as_node
 
 
 class Lanes(Protocol):
@@ -183,7 +183,7 @@ def reachable(values: Iterable[Any], names: Globals) -> Iterator[Any]:
     stack = list(values)[::-1]
     while stack:
         value = stack.pop()
-        if id(value) in seen or value is None or isinstance(value, _PLAIN):
+        if type(value) in _PLAIN or id(value) in seen or isinstance(value, _NUMBERS_AND_TEXT):
             continue
         seen[id(value)] = value  # Kept alive, so that identities stay unique.
         yield value
@@ -193,7 +193,9 @@ def reachable(values: Iterable[Any], names: Globals) -> Iterator[Any]:
             stack.extend(reversed(list(_parts(value, names))))
 
 
-_PLAIN = (int, float, str, bytes, bool, CodeType)
+_NUMBERS_AND_TEXT = (int, float, str, bytes)
+_PLAIN = frozenset({*_NUMBERS_AND_TEXT, bool, type(None), CodeType, Vector, Orientation})
+"""Types of values that are the same in every sample; most parts of programs are of one of them."""
 
 
 def _boxed_constants(root: Node, seen: dict[int, Any]) -> list[Any]:
@@ -291,7 +293,7 @@ class Sample:
         if isinstance(value, Random):
             drawn = self._lanes.read(self._lane, value.node)  # one object, too
             return self.value(drawn) if value.node.kind.is_boxed else drawn
-        if value is None or isinstance(value, _PLAIN):
+        if type(value) in _PLAIN or isinstance(value, _NUMBERS_AND_TEXT):
             return value
         known = self._memo.get(id(value), _MISSING)
         if known is _MISSING:

@@ -15,7 +15,7 @@ import numpy as np
 from scenic.graph.draws import Counter, Points, Source
 from scenic.graph.node import Graph, Node
 from scenic.language.errors import SerializationError
-from scenic.runtime.sampling.engine import Accepted
+from scenic.runtime.sampling.engine import Found
 from scenic.runtime.sampling.pending import Task
 
 FORMAT: Final = "scenic scene"
@@ -76,13 +76,13 @@ def _broken(why: str) -> SerializationError:
 
 
 def draws_of(
-    accepted: Accepted, nodes: Iterable[Node] | None = None
+    found: Found, lane: int, nodes: Iterable[Node] | None = None
 ) -> tuple[dict[int, float], dict[int, int]]:
-    """The draws behind an accepted lane, by address: numbers of axes, and words of keys.
+    """The draws behind a scene that was found, by address: numbers of axes, and words of keys.
 
     ``nodes`` are some nodes of the graph; all of them by default.
     """
-    batch = accepted.again()
+    batch = found.again(lane)
     graph = batch.graph
     numbers: dict[int, float] = {}
     words: dict[int, int] = {}

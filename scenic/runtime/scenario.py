@@ -5,6 +5,7 @@ import random
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import repeat
 from pathlib import Path
 from typing import Any
 
@@ -169,13 +170,13 @@ class Scenario:
                 its type, and tells the place in a note.
 
         """
-        tasks = (Task(seed, k) for k in range(first, first + n))
+        tasks = zip(repeat(seed), range(first, first + n))  # one of them has no end
         deadline = None if time_limit is None else time.monotonic() + time_limit
         yield from self._find(tasks, max_attempts=max_attempts, deadline=deadline, lanes=lanes, source=source)
 
     def _find(
         self,
-        tasks: Iterable[Task],
+        tasks: Iterable[tuple[int, int]],
         *,
         max_attempts: int | None = None,
         deadline: float | None = None,
@@ -190,17 +191,17 @@ class Scenario:
         results = self._engine_of(source).scenes(tasks, max_attempts=limit, deadline=deadline, lanes=lanes)
         return self._scenes(results)
 
-    def _foresee(self, tasks: Iterable[Task], max_attempts: int) -> Iterator[Scene | Exhausted]:
+    def _foresee(self, tasks: Iterable[tuple[int, int]], max_attempts: int) -> Iterator[Scene | Exhausted]:
         """The same for tasks without end."""
         if self._impossible:
             return self._not_found(tasks)
         return self._scenes(self._engine.foresee(tasks, max_attempts=self._most_attempts(max_attempts)))
 
-    def _not_found(self, tasks: Iterable[Task]) -> Iterator[Exhausted]:
+    def _not_found(self, tasks: Iterable[tuple[int, int]]) -> Iterator[Exhausted]:
         report = None
-        for task in tasks:
-            report = report or self._engine.report(task, PROOF_CANDIDATES)
-            yield Exhausted(task.seed, task.k, 0, "impossible", report)
+        for seed, k in tasks:
+            report = report or self._engine.report(Task(seed, k), PROOF_CANDIDATES)
+            yield Exhausted(seed, k, 0, "impossible", report)
 
     def _most_attempts(self, wanted: int | None) -> int:
         limit = DEFAULT_ATTEMPTS if wanted is None else wanted
@@ -214,7 +215,11 @@ class Scenario:
         family = self._family
         try:
             for result in results:
-                yield result if isinstance(result, Exhausted) else Scene(result, family)
+                if isinstance(result, Exhausted):
+                    yield result
+                else:
+                    found, lane = result
+                    yield Scene(found, lane, family)
         except CandidateError as error:
             failure = error
         else:
@@ -325,8 +330,10 @@ class Scenario:
 
     def sceneToBytes(self, scene: Scene, allowPickle: bool = False) -> bytes:
         """A scene as data, which `sceneFromBytes` takes up again. ``allowPickle`` is accepted for compatibility."""
-        numbers, words = draws_of(scene.accepted)
-        return SavedScene(scene.digest, scene.accepted.task, scene.attempts, numbers, words).to_bytes()
+        numbers, words = draws_of(scene.found, scene.lane)
+        return SavedScene(
+            scene.digest, scene.found.task(scene.lane), scene.attempts, numbers, words
+        ).to_bytes()
 
     def __reduce__(self) -> tuple[Any, ...]:
         """A scenario is pickled as its program, and compiled anew by whoever unpickles it."""
@@ -354,7 +361,7 @@ class Scenario:
                 help="load the program, parameters and options with which it was saved",
             )
         source = source_of(saved, self._engine.plan.graph)
-        return Scene(self._engine.replay(source, saved.task, saved.attempts), self._family)
+        return Scene(*self._engine.replay(source, saved.task, saved.attempts), self._family)
 
     def replay(self, path: str | Path) -> Scene:
         """The scene that `Scene.save` has written; raises `SerializationError` as `sceneFromBytes` does."""
@@ -413,7 +420,7 @@ class Scenario:
             chosen = [self.objects[item] if isinstance(item, int) else item for item in objects]
             values = [*chosen, *(self._program.parameters[name] for name in params)]
             nodes = Graph(dependencies(values)).nodes
-            numbers, words = draws_of(scene.accepted, nodes)
+            numbers, words = draws_of(scene.found, scene.lane, nodes)
             self._condition = ({**self._condition[0], **numbers}, {**self._condition[1], **words})
         self._engine = Engine(self.outline.plan(), self._conditioned(lambda lanes: Counter(lanes.keys)))
         self._foreseen = Foreseen(self._foresee)

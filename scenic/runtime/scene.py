@@ -16,7 +16,7 @@ from scenic.runtime.population import Populations
 from scenic.runtime.program import Program, Requirement
 from scenic.runtime.regions.base import Region, Workspace
 from scenic.runtime.samples import dependencies
-from scenic.runtime.sampling.engine import Accepted
+from scenic.runtime.sampling.engine import Found
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,24 +74,25 @@ class Scene:
     _objects: tuple[Any, ...] | None = None
     _params: dict[str, Any] | None = None
 
-    def __init__(self, accepted: Accepted, family: Family) -> None:
-        self.accepted = accepted
+    def __init__(self, found: Found, lane: int, family: Family) -> None:
+        self.found = found
+        self.lane = lane
         self._family = family
 
     @property
     def seed(self) -> int:
         """Seed of the run that made the scene."""
-        return self.accepted.task.seed
+        return self.found.seeds[self.lane]
 
     @property
     def k(self) -> int:
         """Number of the scene in that run, from 0; with `seed` it determines the scene."""
-        return self.accepted.task.k
+        return self.found.numbers[self.lane]
 
     @property
     def attempts(self) -> int:
         """Candidates tried until this one was accepted, itself included."""
-        return self.accepted.attempts
+        return self.found.attempts[self.lane]
 
     @property
     def workspace(self) -> Workspace:
@@ -105,12 +106,12 @@ class Scene:
 
     def lookup(self, node: Node) -> Any:
         """The value of a node in this scene."""
-        return self.accepted.batch.value(node, self.accepted.lane)
+        return self.found.batch.value(node, self.lane)
 
     @property
     def dimension(self) -> int:
         """How many axes the unit cube has that scenes of the program are drawn from."""
-        return self.accepted.batch.graph.dimension
+        return self.found.batch.graph.dimension
 
     @property
     def program(self) -> Program:
@@ -124,7 +125,7 @@ class Scene:
         soft = [item for item in self.program.requirements if item.probability < 1 and not _always(item)]
         if requirement not in soft:
             return True
-        return self.accepted.is_active(soft.index(requirement), requirement.probability)
+        return self.found.is_active(self.lane, soft.index(requirement), requirement.probability)
 
     def within(self, copies: Copier) -> "Scene":
         """The same scene over other copies of its values, as a simulation changes them."""
@@ -146,8 +147,8 @@ class Scene:
         """The values of the program in this scene."""
         if self._sample is None:
             # Scenes of a batch have their objects made together.
-            population = self._family.populations.of(self.accepted)
-            self._sample, self._objects = population.take(self.accepted.lane)
+            population = self._family.populations.of(self.found)
+            self._sample, self._objects = population.take(self.lane)
         return self._sample
 
     def place(self, number: int) -> tuple[Span | None, str | None]:

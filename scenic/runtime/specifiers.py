@@ -43,7 +43,9 @@ Evaluate = Callable[[Any], Mapping[str, Any]]
 Ego = Callable[[], Any]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(
+    slots=True, eq=False
+)  # Not frozen: that would double the cost of making one, of which there are many.
 class Specifier:
     """One specifier of an instance.
 

@@ -121,7 +121,7 @@ class Simulation(ABC):
         self._now: Poses = ()
         self._enable_replay = enableReplay
         self._original = scene
-        self._copies = Copies(scene.accepted.batch, scene.accepted.lane)
+        self._copies = Copies(scene.found.batch, scene.lane)
         self._properties: dict[type, tuple[str, ...]] = {}
         self._sets: dict[type, frozenset[str]] = {}
         self._finals: dict[type, Finals] = {}

@@ -130,5 +130,4 @@ class Simulator(ABC):
 def _sourcing(source: PointSet | Sourcing, scene: Scene, attempt: int) -> Sourcing:
     if callable(source):
         return source
-    task = scene.accepted.task
-    return driven(source, scene.dimension, seed=task.seed, scene=task.k, attempt=attempt)
+    return driven(source, scene.dimension, seed=scene.seed, scene=scene.k, attempt=attempt)

@@ -9,9 +9,9 @@ are fixed in advance by their addresses (`scenic.graph.draws`).
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from copy import copy
-from dataclasses import dataclass
-from itertools import islice
-from typing import Any, NamedTuple
+from dataclasses import dataclass, field
+from itertools import islice, repeat
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -67,30 +67,40 @@ class Plan:
         return 8 * numbers + BODY_BYTES * self.bodies
 
 
-class Accepted(NamedTuple):
-    """A scene's values: one lane of a finished batch.
+@dataclass(frozen=True, slots=True, eq=False)
+class Found:
+    """The scenes that a round has found: the lanes of a finished batch.
 
-    ``alone`` makes a batch of one attempt, to look at its draws. ``shared`` is for what is made of all scenes of the batch
-    together: it lives as long as one of them.
+    ``seeds``, ``numbers`` and ``attempts`` tell of each lane which scene it is, and after how many candidates it was
+    found. ``alone`` makes a batch of one attempt, to look at its draws. ``shared`` is for what is made of all scenes of
+    the batch together: it lives as long as one of them.
     """
 
-    task: Task
-    attempts: int
+    seeds: Sequence[int]
+    numbers: Sequence[int]
+    attempts: Sequence[int]
     batch: Batch
-    lane: int
     alone: Callable[[Task, int], Batch]
-    shared: dict[object, Any]
+    shared: dict[object, Any] = field(default_factory=dict)
 
-    def again(self) -> Batch:
+    def task(self, lane: int) -> Task:
+        """Which scene that is."""
+        return Task(self.seeds[lane], self.numbers[lane])
+
+    def again(self, lane: int) -> Batch:
         """A batch of that lane alone."""
-        return self.alone(self.task, self.attempts - 1)
+        return self.alone(self.task(lane), self.attempts[lane] - 1)
 
-    def is_active(self, place: int, probability: float) -> bool:
+    def is_active(self, lane: int, place: int, probability: float) -> bool:
         """Whether a soft requirement, number ``place`` among those that are checked, had to hold in the scene."""
-        seeds = np.array([seed_word(self.task.seed)], dtype=np.uint64)
-        keys = scene_keys(seeds, np.array([self.task.k], dtype=np.int64))
+        seeds = np.array([seed_word(self.seeds[lane])], dtype=np.uint64)
+        keys = scene_keys(seeds, np.array([self.numbers[lane]], dtype=np.int64))
         where = np.array([soft_address(place)], dtype=np.uint64)
         return bool(Counter(keys).uniforms(where)[0, 0] < probability)
+
+
+Accepted = tuple[Found, int]
+"""A scene: one of those that a round has found. (There are many of them; a class of their own would cost more.)"""
 
 
 class CandidateError(Exception):
@@ -138,7 +148,7 @@ class Engine:
 
     def scenes(
         self,
-        tasks: Iterable[Task],
+        tasks: Iterable[tuple[int, int]],
         *,
         max_attempts: int,
         lanes: int | None = None,
@@ -147,7 +157,7 @@ class Engine:
         """The scenes of ``tasks``, in order.
 
         Args:
-            tasks: which scenes.
+            tasks: which scenes: seeds, and numbers in the run of a seed.
             max_attempts: candidates tried for one scene before it is given up.
             lanes: candidates in one batch at most; changes speed and memory, never the scenes.
             deadline: a time of `time.monotonic` after which the scenes not yet found are given up.
@@ -159,7 +169,9 @@ class Engine:
         most = self._pace.most if lanes is None else lanes
         return self._results(tasks, max_attempts, most, lambda _: most, deadline)
 
-    def foresee(self, tasks: Iterable[Task], *, max_attempts: int) -> Iterator[Accepted | Exhausted]:
+    def foresee(
+        self, tasks: Iterable[tuple[int, int]], *, max_attempts: int
+    ) -> Iterator[Accepted | Exhausted]:
         """The same as `scenes` for tasks without end, of which nobody knows how many are wanted.
 
         One is looked for at first, then more at a time the more have been wanted, as long as that takes little time.
@@ -173,7 +185,7 @@ class Engine:
 
     def _results(
         self,
-        tasks: Iterable[Task],
+        tasks: Iterable[tuple[int, int]],
         max_attempts: int,
         most: int,
         window: Callable[[int], int],
@@ -205,7 +217,7 @@ class Engine:
             else:
                 self._round(pending, done, max_attempts, most, more=more)
             while (result := done.pop(upcoming, None)) is not None:
-                if isinstance(result, CandidateError):
+                if type(result) is not tuple and isinstance(result, CandidateError):
                     raise result
                 yield result
                 upcoming += 1
@@ -246,18 +258,25 @@ class Engine:
         finished = np.zeros(len(pending), dtype=np.bool_)
         finished[owner[rows[first]]] = True
         for row in rows[first[failed[first] >= 0]].tolist():
-            number = int(pending.number[owner[row]])
+            scene = int(owner[row])
             check = self.plan.checks[int(failures[row])]
-            done[number] = self._error(check, pending.task(number), int(attempts[row]))
+            done[int(pending.number[scene])] = self._error(check, pending.task(scene), int(attempts[row]))
         good = first[failed[first] < 0]
         if len(good):
             batch.keep(good)
             batch.settle(self.plan.outputs)
-            alone, shared = self._alone, dict[object, Any]()
-            found = rows[good]
-            numbers, tries = pending.number[owner[found]].tolist(), (attempts[found] + 1).tolist()
-            for lane, (number, tried) in enumerate(zip(numbers, tries, strict=True)):
-                done[number] = Accepted(pending.task(number), tried, batch, lane, alone, shared)
+            rows = rows[good]
+            scenes = owner[rows]
+            found = Found(
+                pending.given[scenes].tolist(),
+                pending.k[scenes].tolist(),
+                (attempts[rows] + 1).tolist(),
+                batch,
+                self._alone,
+            )
+            done.update(
+                zip(pending.number[scenes].tolist(), zip(repeat(found), range(len(scenes))), strict=True)
+            )
         hopeless = ~finished & (pending.attempts >= max_attempts)
         self._give_up(pending, hopeless, "attempts", done)
         pending.leave(finished | hopeless)
@@ -271,7 +290,7 @@ class Engine:
         def alone(_task: Task, _attempt: int) -> Batch:
             return Batch(self._single, source, self.plan.codec, rejections=(RejectionException,))
 
-        return Accepted(task, attempts, batch, 0, alone, {})
+        return Found([task.seed], [task.k], [attempts], batch, alone), 0
 
     def _batch(self, source: Source, *, grouped: bool = True) -> Batch:
         return Batch(
@@ -341,11 +360,11 @@ class Engine:
         reason: str,
         done: dict[int, Accepted | Exhausted | CandidateError],
     ) -> None:
-        for number, attempts in zip(
-            pending.number[which].tolist(), pending.attempts[which].tolist(), strict=True
-        ):
-            task = pending.task(number)
-            done[number] = Exhausted(task.seed, task.k, attempts, reason, self.report(task, attempts))
+        for row in np.flatnonzero(which).tolist():
+            task, attempts = pending.task(row), int(pending.attempts[row])
+            done[int(pending.number[row])] = Exhausted(
+                task.seed, task.k, attempts, reason, self.report(task, attempts)
+            )
 
     def report(self, task: Task, attempts: int) -> RejectionReport:
         """Each check's share in the rejections among the first attempts at a scene.

@@ -29,6 +29,7 @@ class Pending:
 
     Attributes:
         number: which of all scenes that are looked for each one is, ``(n,)``.
+        given: the seeds, any integers, ``(n,)``.
         seed: words that the seeds stand for, ``(n,)``.
         k: their numbers in the runs of those seeds, ``(n,)``.
         key: words that their draws follow from, ``(n,)``.
@@ -42,9 +43,9 @@ class Pending:
         self._addresses: Final = np.array(
             [soft_address(place) for place in range(len(chances))], dtype=np.uint64
         )
-        self._tasks: Final[dict[int, Task]] = {}
         self._next = 0
         self.number = np.empty(0, dtype=np.int64)
+        self.given = np.empty(0, dtype=np.object_)
         self.seed: Words = np.empty(0, dtype=np.uint64)
         self.k = np.empty(0, dtype=np.int64)
         self.key: Words = np.empty(0, dtype=np.uint64)
@@ -54,18 +55,17 @@ class Pending:
     def __len__(self) -> int:
         return len(self.number)
 
-    def task(self, number: int) -> Task:
+    def task(self, row: int) -> Task:
         """Which scene that is."""
-        return self._tasks[number]
+        return Task(self.given[row], int(self.k[row]))
 
-    def add(self, tasks: Sequence[Task]) -> None:
-        """Look for more scenes."""
+    def add(self, tasks: Sequence[tuple[int, int]]) -> None:
+        """Look for more scenes, of seeds and numbers in their runs."""
         if not tasks:
             return
         numbers = range(self._next, self._next + len(tasks))
         self._next = numbers.stop
-        self._tasks.update(zip(numbers, tasks, strict=True))
-        seeds, ks = [task.seed for task in tasks], [task.k for task in tasks]
+        seeds, ks = zip(*tasks, strict=True)
         words = {seed: seed_word(seed) for seed in set(seeds)}
         seed = (
             np.array([words[seed] for seed in seeds], dtype=np.uint64)
@@ -76,6 +76,7 @@ class Pending:
         key = scene_keys(seed, k)
         inactive = Counter(key).uniforms(self._addresses) >= self._chances[:, np.newaxis]
         self.number = np.concatenate([self.number, np.arange(numbers.start, numbers.stop)])
+        self.given = np.concatenate([self.given, np.array(seeds, dtype=np.object_)])
         self.seed = np.concatenate([self.seed, seed])
         self.k = np.concatenate([self.k, k])
         self.key = np.concatenate([self.key, key])
@@ -86,10 +87,8 @@ class Pending:
         """Those scenes ``(n,)`` are found, or given up."""
         if not finished.any():
             return
-        for number in self.number[finished].tolist():
-            del self._tasks[number]
         left = np.flatnonzero(~finished)
-        for name in ("number", "seed", "k", "key", "attempts", "inactive"):
+        for name in ("number", "given", "seed", "k", "key", "attempts", "inactive"):
             setattr(self, name, getattr(self, name)[left])
 
 
