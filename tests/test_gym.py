@@ -186,6 +186,12 @@ def test_render_shows_the_present() -> None:
     env.close()
 
 
+TWO_IMAGES = """
+from scenic import SSSensor
+ego = new Object with sensors {'front': SSSensor(width=16, height=12)}
+"""
+
+
 @pytest.mark.parametrize(
     ("options", "message"),
     [
@@ -193,6 +199,7 @@ def test_render_shows_the_present() -> None:
         ({"observations": ["whiskers"]}, "no property 'whiskers'"),
         ({"observations": ["shape"]}, "not a number"),
         ({"observations": ["observations.front"]}, "no camera 'front'"),
+        ({"text": TWO_IMAGES, "observations": ["observations.front"]}, "no camera 'front'"),
         ({"agent": "cat", "observations": {"ego": ["position"]}}, "no agent 'cat'"),
     ],
 )

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from scenic.formats.instances import Array
 from scenic.formats.poses import rotation_matrix
 from scenic.runtime.geometry.mesh import Mesh
-from scenic.runtime.regions.base import Everywhere, Nowhere, Region, Workspace
+from scenic.runtime.regions.base import Region, Workspace
 from scenic.runtime.regions.bodies import OccupiedSpace, SideSurface
 from scenic.runtime.regions.composite import (
     Composite,
@@ -57,7 +57,7 @@ def outlines(region: Any) -> list[Array]:
     """
     while isinstance(region, Workspace):
         region = region.region
-    if not isinstance(region, Region) or region.is_random or isinstance(region, Everywhere | Nowhere):
+    if not isinstance(region, Region) or region.is_random:
         return []
     columns = region.fixed_columns("the outline")
     match region:

@@ -8,6 +8,8 @@ import pytest
 import scenic
 from scenic.formats.html import page
 from scenic.formats.regions import _cell_edges, bounds, outlines
+from scenic.runtime.regions.base import everywhere, nowhere
+from scenic.runtime.regions.lines import PathRegion
 from tests.formats.test_html import data_of
 
 PROGRAM = """
@@ -124,3 +126,17 @@ def test_a_region_that_nothing_needs_has_no_place(scenes):
     (scene,) = scenic.scenarioFromString(used).sample(1, seed=3)
     center = scene.regions["unused"].center
     assert np.hypot(*(np.array(list(scene.objects[-1].position)) - list(center))[:2]) <= 2
+
+
+def test_chains_stay_apart_and_whole() -> None:
+    chains = [
+        [(0, 0, 0), (1, 0, 0), (1, 1, 0)],
+        [(5, 0, 0), (6, 0, 0), (6, 1, 0), (7, 1, 2)],
+        [(9, 9, 9), (8, 9, 9)],
+    ]
+    lines = outlines(PathRegion(polylines=chains))
+    assert [[tuple(point) for point in line] for line in lines] == chains
+
+
+def test_nothing_is_drawn_of_what_has_no_bounds() -> None:
+    assert outlines(everywhere) == outlines(nowhere) == []

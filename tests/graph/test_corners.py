@@ -366,3 +366,22 @@ def test_infinite_bounds_say_nothing_wrong(case, infinite):
             columns, narrowed(case, (values[lane], values[lane]), ends), strict=True
         ):
             assert low <= column[lane] <= high
+
+
+@pytest.mark.parametrize("base", [3.7, 1e-20, 1e20, 0.999])
+@pytest.mark.parametrize("exponent", [-3.0, 0.5, 5.0])
+def test_powers_have_room_for_libraries_that_err_by_a_unit(base, exponent):
+    lower, upper = ends_of("power", (base, base), (exponent, exponent))
+    value = base**exponent
+    room = 2 * math.ulp(value)
+    assert value - 10 * room < lower <= value - room
+    assert value + room <= upper < value + 10 * room
+
+
+def test_angles_have_room_at_the_seam_and_at_the_poles():
+    for case in CASES:
+        if case.name == "euler":
+            limit = math.pi / 2 if case.payload == 1 else math.pi
+            lower, upper = bounds_of(case, [np.array([[0.0, 0.0, 0.0, 1.0]])], [((-1.0,) * 4, (1.0,) * 4)])
+            assert lower <= math.nextafter(-limit, -4)
+            assert upper >= math.nextafter(limit, 4)

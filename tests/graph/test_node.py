@@ -1,12 +1,16 @@
 """Nodes, graphs and kinds."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from graph.programs import Triple, constant, make, one_of, uniform
 from scenic.graph import bounding
+from scenic.graph.construction import make_node
 from scenic.graph.kinds import Kind, boxed, join
 from scenic.graph.node import Graph, axis
+from scenic.graph.operations import TABLE
 
 
 def test_operands_come_before_what_uses_them():
@@ -74,3 +78,12 @@ def test_bounds_of_the_whole_cube_give_up_after_some_nodes():
         x = make("multiply", x, 1.5)
     bounds = bounding.overall(x)
     assert (bounds.lower[0], bounds.upper[0]) == (-np.inf, np.inf)
+
+
+def test_equal_nodes_are_one_unless_what_they_carry_may_change():
+    x = uniform(0, 1)
+    operation = replace(TABLE["sin"], rewrite=None)
+    assert make_node(operation, [x], payload="name") is make_node(operation, [x], payload="name")
+    assert make_node(operation, [x], payload="name") is not make_node(operation, [x], payload="other")
+    changing = ["name"]
+    assert make_node(operation, [x], payload=changing) is not make_node(operation, [x], payload=changing)

@@ -7,15 +7,17 @@ import numpy as np
 import pytest
 import scenic.core.regions as named
 import trimesh
+from scipy import stats
 
 from scenic.graph.bounds import Bounds
 from scenic.graph.operations import TABLE
 from scenic.language.errors import ScenicTypeError
+from scenic.runtime.fields import VectorField
 from scenic.runtime.purity import is_pure
 from scenic.runtime.regions.base import Workspace, everywhere, nowhere
 from scenic.runtime.regions.choice import RegionChoice
 from scenic.runtime.values import Orientation, Vector
-from tests.runtime.programs import failure, params, scenario, thing
+from tests.runtime.programs import FALSE_ALARM, draws, failure, params, scenario, thing
 
 TILT = Orientation.fromEuler(0.7, 0.4, -0.3)
 
@@ -243,3 +245,95 @@ def test_images_of_many_columns_have_them_across() -> None:
     from scenic.cli.options import image_size_option
 
     assert image_size_option(None, None, "640x480") == (640, 480)  # type: ignore[arg-type]
+
+
+def test_grids_hold_boxes_by_all_corners_and_face_their_field() -> None:
+    grid = named.GridRegion("grid", np.zeros((3, 3)), 1, 1, 0, 0, orientation=named_field(0.4))
+    assert grid.has_orientation
+    setting = (
+        "grid = GridRegion('grid', [[0, 0, 0]] * 3, 1, 1, 0, 0)\n"
+        "param x = tuple(grid.containsObject(new Object at (x, y, 50), facing ({turn}), with regionContainedIn everywhere, with allowCollisions True)"
+        " for x, y in {places})\n"
+    )
+    upright = [(1, 1), (-0.1, 1), (2.1, 1), (1, -0.1), (1, 2.1)]
+    found = params(setting.format(turn="0, 0, 0", places=upright))["x"]
+    assert found == (True, False, False, False, False)
+    # Leaning by 45 degrees about an axis of the plane, a cube reaches 0.71 to both sides of it.
+    for turn, places in (
+        ("0, 45 deg, 0", [(1, 0.3), (1, 1.7), (1, 0.1), (1, 1.9)]),
+        ("0, 0, 45 deg", [(0.3, 1), (1.7, 1), (0.1, 1), (1.9, 1)]),
+    ):
+        assert params(setting.format(turn=turn, places=places))["x"] == (True, True, False, False)
+
+
+def named_field(heading: float) -> Any:
+    return VectorField("field", lambda _place: heading)
+
+
+def test_sectors_hold_their_arc_and_their_corner() -> None:
+    sector = named.SectorRegion((1, 2, 3), 5, 0, 1)
+    for place, held in (((1, 7), True), ((1, 7.001), False), ((1, 2), True), ((1, 1.999), False)):
+        assert bool(sector.containsPoint(Vector(*place, 3))) is held
+    assert sector.distanceTo(Vector(1, 7, 3)) == 0
+
+
+def test_discs_have_as_many_corners_as_asked_for() -> None:
+    for resolution in (1, 4, 32):
+        (part,) = named.CircularRegion((0, 0), 1, resolution=resolution).polygons.geoms
+        assert len(part.exterior.coords) == 4 * resolution + 1
+
+
+def test_volumes_of_any_size_hold_others_by_their_own_measure() -> None:
+    for size in (1e-4, 1.0, 1e4):
+        whole, moved = (named.BoxRegion((size,) * 3, position=(x * size, 0, 0)) for x in (0, 0.01))
+        assert whole.containsRegion(whole)
+        assert not whole.containsRegion(moved)
+        assert whole.containsRegion(named.BoxRegion((0.9 * size,) * 3, position=(0.04 * size, 0, 0)))
+
+
+def test_a_solid_taken_away_is_that_of_each_lane() -> None:
+    """A cube that a random hole in its container reaches in some lanes only."""
+    text = (
+        "import trimesh\nway = Uniform(1, 3)\n"
+        "hole = MeshVolumeRegion(trimesh.creation.box((1, 1, 1)), position=(way, 0, 0))\n"
+        "room = BoxRegion((9, 9, 9)).difference(hole)\n"
+        "cube = new Object with width 2, with regionContainedIn everywhere\n"
+        "param x = (room.containsObject(cube), way)\n"
+    )
+    assert set(draws(text, n=24)) == {(False, 1), (True, 3)}
+
+
+def test_functions_of_numbers_read_own_properties() -> None:
+    text = (
+        "class Kite:\n    width: 3\n    span: hypot(self.width, 4)\n    tilt: sin(self.width) + cos(self.width)\n"
+        "    most: max(self.width, 2) + min(self.width, 2)\nego = new Kite\n"
+    )
+    kite = thing(text)
+    assert (kite.span, kite.most) == (5, 5)
+    assert kite.tilt == pytest.approx(math.sin(3) + math.cos(3))
+
+
+def test_functions_of_numbers_wait_for_what_depends_on_the_place() -> None:
+    text = "east = VectorField('east', lambda place: place.x)\nego = new Object at (3, 0), with k {}((0 relative to east).yaw{})\n"
+    for function, rest, expected in (("hypot", ", 4", 5), ("sin", "", math.sin(3)), ("max", ", 2", 3)):
+        assert thing(text.format(function, rest)).k == pytest.approx(expected)
+
+
+def test_lists_that_are_drawn_and_unpacked() -> None:
+    """Each element of what the lists come to is as likely."""
+    for options, expected in (
+        ("*Uniform([1, 2], [3]), *Uniform([4], [5, 6, 7])", {3: 3 / 16, 4: 5 / 24, 5: 11 / 96, 1: 13 / 96}),
+        ("*listed(Range(0, 1))", {1: 1 / 3, 3: 1 / 3}),
+        ("*listed(Range(0, 1)), 9", {1: 1 / 4, 9: 1 / 4}),
+    ):
+        text = f"def listed(_): return [1, 2, 3]\nx = Uniform({options})\nparam x = x\n"
+        found = draws(text)
+        for value, share in expected.items():
+            assert stats.binomtest(found.count(value), len(found), share).pvalue > FALSE_ALARM
+
+
+def test_options_that_are_no_numbers_are_named_when_they_are_drawn() -> None:
+    error = failure("ego = new Object with width Uniform(1, 2.5, 'a')\n", n=30)
+    assert isinstance(error, ScenicTypeError)
+    assert "expected a number, not 'a'" in str(error)
+    assert set(draws("ego = new Object with width Uniform(1, 2.5)\nparam x = ego.width\n", n=30)) == {1, 2.5}

@@ -281,3 +281,39 @@ def test_memory_of_a_long_stream_is_bounded() -> None:
     )
     assert done.returncode == 0, done.stderr
     assert int(done.stdout) < 300_000  # bytes; 4,000 scenes that are kept take 2,000,000
+
+
+def test_a_condition_that_is_false_elsewhere_than_where_it_rejects() -> None:
+    text = (
+        "from scenic.language.errors import RejectionException\nx = Range(0, 1)\nparam x = x\n"
+        "def f(x):\n    if x < 0.3:\n        raise RejectionException('never')\n    return x < 0.5\nrequire f(x)\n"
+    )
+    for lanes in LANES:
+        values = [scene.params["x"] for scene in scenario(text).sample(60, seed=2, lanes=lanes)]
+        assert 0.3 <= min(values) < 0.35 < 0.45 < max(values) < 0.5
+
+
+def test_soft_requirements_that_always_hold_take_no_number_of_others() -> None:
+    text = "x = Range(0, 1)\nego = new Object at (x, 0)\nrequire[0.3] 1 < 2\nrequire[0.5] x > 0.5\nrequire[0.2] x < 0.9\n"
+    scenes = scenario(text).sample(60, seed=2)
+    constant, *others = scenes[0].program.requirements
+    assert all(scene.enforces(constant) for scene in scenes)
+    for requirement, holds in zip(others, (lambda x: x > 0.5, lambda x: x < 0.9), strict=True):
+        enforced = [scene for scene in scenes if scene.enforces(requirement)]
+        assert 0 < len(enforced) < len(scenes)
+        assert all(holds(scene.egoObject.x) for scene in enforced)
+
+
+def test_sizes_that_objects_share_are_those_of_each() -> None:
+    """Three cubes of one random size, whose neighbours touch only when it is large."""
+    text = (
+        "size = Range(0.5, 3)\n"
+        + "".join(
+            f"new Object at ({x}, 0), with width size, with length size, with height size\n"
+            for x in (0, 2, 4)
+        )
+        + "param size = size\n"
+    )
+    for lanes in LANES:
+        sizes = [scene.params["size"] for scene in scenario(text).sample(80, seed=2, lanes=lanes)]
+        assert 1.8 < max(sizes) < 2

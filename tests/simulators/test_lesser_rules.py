@@ -302,3 +302,36 @@ def test_headings_stay_within_half_a_turn() -> None:
     assert series(done, "yaw") == pytest.approx(
         [0, math.pi / 2, math.pi, -math.pi / 2, 0, math.pi / 2, math.pi], abs=1e-9
     )
+
+
+SUB = (
+    "def noted(): log.append(len(log))\nlog = []\n"
+    "behavior Calm():\n    while True:\n        wait\n"
+    "behavior Busy():\n    noted()\n    while True:\n        wait\n"
+    "scenario Main():\n    setup:\n        ego = new Object\n        record len(log) as starts\n"
+    "    compose:\n        sub = Sub()\n        do sub\n"
+    "scenario Sub():\n    setup:\n        thing = new Object at (4, 4), with behavior Calm\n"
+    "        override thing with behavior {}\n    compose:\n        wait\n        wait\n"
+)
+
+
+@pytest.mark.parametrize(("behavior", "starts"), [("Busy", [0, 1, 1]), ("None", [0, 0, 0])])
+def test_what_overrides_the_behavior_of_a_new_agent_starts_once(behavior: str, starts: list[int]) -> None:
+    done = DummySimulator().simulate(scene(SUB.format(behavior)), maxSteps=3)
+    assert done is not None
+    assert [count for _, count in done.records["starts"]] == starts
+
+
+def test_running_scenarios_show_what_they_hold() -> None:
+    text = SUB.format("Calm").replace(
+        "        do sub\n",
+        "        do sub until seen(sub)\n",
+    )
+    text = (
+        "found = []\ndef seen(sub):\n"
+        "    found.append((sub.ego is ego, len(sub.objects), [tuple(item.position)[:2] for item in sub.agents]))\n"
+        "    return False\n" + text.replace("len(log) as starts", "list(found) as found")
+    )
+    done = DummySimulator().simulate(scene(text), maxSteps=3)
+    assert done is not None
+    assert done.records["found"][-1][1][-1] == (True, 1, [(4, 4)])

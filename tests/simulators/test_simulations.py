@@ -372,6 +372,19 @@ def test_values_are_written(tmp_path: Path) -> None:
     assert sorted(path.name for path in (tmp_path / "images").iterdir()) == ["0.png", "1.png"]
 
 
+def test_arrays_and_images_are_written_as_they_are(tmp_path: Path) -> None:
+    """Arrays keep the type of their numbers; intensities from 0 to 1 become bytes, beyond that they are cut off."""
+    from PIL import Image
+
+    image = "numpy.array([[0, 0.5, 1], [-1, 2, 0.1]], dtype=numpy.float32)"
+    for kind in ("npy", "png"):
+        simulate("import numpy\n" + recording(tmp_path, f"{{step}}.{kind}", image), 1)
+    found = np.load(tmp_path / "0.npy")
+    assert found.dtype == np.float32
+    np.testing.assert_array_equal(found, np.array([[0, 0.5, 1], [-1, 2, 0.1]], dtype=np.float32))
+    np.testing.assert_array_equal(np.asarray(Image.open(tmp_path / "0.png")), [[0, 128, 255], [0, 255, 26]])
+
+
 @pytest.mark.parametrize("target", ["{step}.npy", "{simulation}.jsonl"])
 @pytest.mark.parametrize(
     "end",

@@ -147,8 +147,7 @@ class Run:
         return self._count
 
     def _where(self) -> tuple[int, int | None, Any]:
-        agent = None if self.agent is None else self._numbers.get(id(self.agent))
-        return (self.current.number, agent, self.context.place_name())
+        return (self.current.number, self._numbers.get(id(self.agent)), self.context.place_name())
 
     @contextmanager
     def active(self) -> Iterator[None]:

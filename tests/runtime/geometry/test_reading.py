@@ -245,6 +245,7 @@ def test_nodes_by_parts_and_strips():
         ("cut.stl", b"\0" * 80 + b"\x02\0\0\0" + b"\0" * 50, "as long as"),
         ("order.ply", b"ply\nformat cuneiform 1.0\nend_header\n", "its header has the line"),
         ("far.ply", ply("<", [(0, 1, 9)]), "vertex outside 0 to 3"),
+        ("near.ply", ply("<", [(0, 1, 2), (0, -1, 2)]), "vertex outside 0 to 3"),
         ("cut.ply", ply("<", [(0, 1, 2)])[:-5], "ends before"),
         ("cut_text.ply", ply("<", [(0, 1, 2)], text=True)[:-4], "ends before"),
         ("points.ply", HEADER.format(format="ascii").encode() + b"end_header\n" + b"0 " * 12, "no faces"),
