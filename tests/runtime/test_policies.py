@@ -83,11 +83,11 @@ def test_a_stream_that_failed_is_not_asked_again() -> None:
 
 
 def paced(lanes: int, passed: int, rounds: int = 30) -> Pace:
-    """After rounds of two sizes that cost a millisecond and a microsecond a lane."""
+    """After rounds of two sizes that cost a millisecond and four microseconds a lane."""
     pace = Pace(4096)
     for number in range(rounds):
         some = lanes if number % 2 else 2 * lanes
-        pace.add(some, passed * some // lanes, 1e-3 + 1e-6 * some)
+        pace.add(some, passed * some // lanes, 1e-3 + 4e-6 * some)
     return pace
 
 
@@ -96,7 +96,17 @@ def test_what_never_passed_may_pass() -> None:
     assert 0 < pace.acceptance < 0.01
     assert paced(100, 50).acceptance == pytest.approx(0.5, abs=0.01)
     fixed, lane = pace.cost()
-    assert (fixed, lane) == pytest.approx((1e-3, 1e-6), rel=1e-3)
+    assert (fixed, lane) == pytest.approx((1e-3, 4e-6), rel=1e-3)
+
+
+def test_lanes_are_never_free() -> None:
+    """Even if a small round took longer than a large one, by what was made in it."""
+    pace = Pace(4096)
+    for lanes, seconds in ((500, 0.02), (400, 0.01), (100, 0.012)):
+        pace.add(lanes, lanes // 2, seconds)
+    fixed, lane = pace.cost()
+    assert lane > 0.2 * 0.01 / 400
+    assert fixed + 250 * lane == pytest.approx(0.011, rel=0.1)
 
 
 def test_a_round_costs_least_for_what_it_finds() -> None:

@@ -30,6 +30,9 @@ _MOST_ENTRIES: Final = 1 << 18
 _STEP: Final = 1 << 12
 """Entries looked at closely together: few enough for the processor's cache and for losing lanes early."""
 
+_FEW: Final = 32
+"""Entries that are tested exactly beside others, needed or not: a test of its own costs as much, for any number."""
+
 _LIKELY: Final = (0.25, 0.5)
 """Distances of centres over the sum of the radii below which a collision is likely; only an order."""
 
@@ -293,6 +296,8 @@ class _Search:
                 order = np.argsort(entries.lane, kind="stable")
                 lanes = entries.lane[order]
                 now[order] = np.arange(len(order)) - np.searchsorted(lanes, lanes) < most
+                if np.count_nonzero(~now) <= _FEW:
+                    now[:] = True
             current = entries.where(now)
             mesh_a, mesh_b = self._meshes(current)
             together = self._solids.touch(

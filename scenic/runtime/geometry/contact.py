@@ -4,7 +4,7 @@ Exact up to rounding: trees of boxes name the pairs of faces that may meet, and 
 axes. Each mesh stays in its unit frame; what is known of it there serves all sizes and poses.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Final
 
 import numpy as np
@@ -33,6 +33,9 @@ _GRID: Final = 1 << 10
 
 _SLACK: Final = 1e-14
 """Gap, in parts of the faces' size and distance from the origin, up to which they touch: rounding."""
+
+_Group = tuple[Indices, Indices, Indices]
+"""Pairs of leaves of entries: each time which entry, the one leaf and the other."""
 
 
 class Surfaces:
@@ -67,11 +70,11 @@ class Surfaces:
 
         """
         result = np.zeros(len(front.touching), dtype=np.bool_)
-        for owner, one, two in self._near_leaves(front, chosen):
+        for owner, one, two in _together(self._near_leaves(front, chosen)):
             self._settle(result, *self._forest.faces_of(chosen[owner], one, two), forth, back)
         return result
 
-    def _near_leaves(self, front: Front, chosen: Indices) -> Iterator[tuple[Indices, Indices, Indices]]:
+    def _near_leaves(self, front: Front, chosen: Indices) -> Iterator[_Group]:
         """All pairs of leaves whose boxes meet in both frames, in groups (place in ``chosen``, first leaf, second leaf)."""
         first, second = (groups.take(chosen) for groups in front.leaves())
         pairs = first.counts * second.counts
@@ -173,6 +176,25 @@ def _grid_near(
     )
     result: Booleans = x & y & z
     return result
+
+
+def _together(groups: Iterator[_Group]) -> Iterator[_Group]:
+    """Groups of enough pairs each, but for the last."""
+    parts: list[_Group] = []
+    total = 0
+    for group in groups:
+        parts.append(group)
+        total += len(group[0])
+        if total >= _CHUNK:
+            yield _joined(parts)
+            parts, total = [], 0
+    if parts:
+        yield _joined(parts)
+
+
+def _joined(parts: Sequence[_Group]) -> _Group:
+    owner, one, two = (np.concatenate(columns) for columns in zip(*parts, strict=True))
+    return owner, one, two
 
 
 def _turns(entry: Indices) -> Iterator[Indices]:

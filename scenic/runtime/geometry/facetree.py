@@ -38,8 +38,8 @@ class FaceTree:
     """A complete binary tree over the faces of a mesh, in heap order.
 
     Attributes:
-        middle: the centres of the boxes, ``(nodes, 3)``.
-        half: half their extents, a little widened (by enough for unit meshes), ``(nodes, 3)``.
+        middle: the centres of the boxes, ``(3, nodes)``.
+        half: half their extents, a little widened (by enough for unit meshes), ``(3, nodes)``.
         starts: where the faces of each leaf begin in ``faces``, ``(leaves + 1,)``.
         faces: face numbers, leaf by leaf; one or two to a leaf.
 
@@ -53,29 +53,34 @@ class FaceTree:
 
 def face_tree(mesh: Mesh) -> FaceTree:
     """The tree of a mesh. Get it as ``mesh.derived(face_tree)``."""
+    lowest, highest = _boxes(mesh.derived(face_corners))
     if len(mesh.faces) < _LARGE:
-        return tree_of(mesh.triangles)
-    corners = _corners(mesh.triangles)
-    found = kept(_KIND, (mesh.vertices, mesh.faces), lambda: {"faces": _sorted(*corners)})
-    return _boxed(*corners, found["faces"])
+        return _boxed(lowest, highest, _sorted(lowest, highest))
+    found = kept(_KIND, mesh.digest, lambda: {"faces": _sorted(lowest, highest)})
+    return _boxed(lowest, highest, found["faces"])
 
 
 def tree_of(triangles: Floats) -> FaceTree:
     """The tree of triangles ``(f, 3, 3)``, at least one; they may have collapsed to segments or points."""
-    corners = _corners(triangles)
-    return _boxed(*corners, _sorted(*corners))
+    lowest, highest = _boxes(np.ascontiguousarray(triangles.transpose(1, 2, 0)))
+    return _boxed(lowest, highest, _sorted(lowest, highest))
 
 
-def _corners(triangles: Floats) -> tuple[Floats, Floats]:
-    """The lowest and the highest corners of the boxes around triangles."""
-    # Written out, since reductions over short axes are slow.
-    a, b, c = triangles[:, 0], triangles[:, 1], triangles[:, 2]
+def face_corners(mesh: Mesh) -> Floats:
+    """The three corners of all faces, ``(3, 3, f)`` by corner and coordinate. Get them as ``mesh.derived(face_corners)``."""
+    vertices = np.ascontiguousarray(mesh.vertices.T)
+    return np.stack([vertices.take(mesh.faces[:, number], axis=1) for number in range(3)])
+
+
+def _boxes(corners: Floats) -> tuple[Floats, Floats]:
+    """The lowest and the highest corners ``(3, f)`` of the boxes around triangles with corners ``(3, 3, f)``."""
+    a, b, c = corners
     return np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
 
 
 def _sorted(lowest: Floats, highest: Floats) -> Indices:
     """The triangles in the order of the leaves: each part is cut evenly along the axis on which it is longest."""
-    centre = lowest + highest
+    centre = np.ascontiguousarray((lowest + highest).T)
     extent = float(np.ptp(centre, axis=0).max())
     scaled = (centre - centre.min(axis=0)) / (extent or 1.0)
     count = len(centre)
@@ -95,12 +100,14 @@ def _boxed(lowest: Floats, highest: Floats, faces: Indices) -> FaceTree:
     """The tree whose leaves have the triangles in this order."""
     depth = _depth(len(faces))
     starts = _starts(len(faces), depth)
-    lower = [np.minimum.reduceat(lowest[faces], starts[:-1])]
-    upper = [np.maximum.reduceat(highest[faces], starts[:-1])]
+    # A leaf has one face, or two.
+    first, last = faces[starts[:-1]], faces[starts[1:] - 1]
+    lower = [np.minimum(lowest.take(first, axis=1), lowest.take(last, axis=1))]
+    upper = [np.maximum(highest.take(first, axis=1), highest.take(last, axis=1))]
     for _ in range(depth):
-        lower.append(np.minimum(lower[-1][::2], lower[-1][1::2]))
-        upper.append(np.maximum(upper[-1][::2], upper[-1][1::2]))
-    low, high = np.concatenate(lower[::-1]), np.concatenate(upper[::-1])
+        lower.append(np.minimum(lower[-1][:, ::2], lower[-1][:, 1::2]))
+        upper.append(np.maximum(upper[-1][:, ::2], upper[-1][:, 1::2]))
+    low, high = np.concatenate(lower[::-1], axis=1), np.concatenate(upper[::-1], axis=1)
     return FaceTree((low + high) / 2, (high - low) / 2 + _PADDING, starts, faces)
 
 
@@ -126,12 +133,12 @@ class Forest:
 
     def __init__(self, meshes: Sequence[Mesh]) -> None:
         trees = [mesh.derived(face_tree) for mesh in meshes]
-        nodes = np.array([len(tree.middle) for tree in trees])
+        nodes = np.array([tree.middle.shape[1] for tree in trees])
         sizes = np.array([len(tree.faces) for tree in trees])
         self.roots = np.cumsum(nodes) - nodes
         first_face = np.cumsum(sizes) - sizes
-        self.middle = _columns([tree.middle for tree in trees])
-        self.half = _columns([tree.half for tree in trees])
+        self.middle: Final = _beside([tree.middle for tree in trees])
+        self.half: Final = _beside([tree.half for tree in trees])
         child, start, end = [], [], []
         for tree, root, face in zip(trees, self.roots.tolist(), first_face.tolist(), strict=True):
             leaves = len(tree.starts) - 1
@@ -142,13 +149,15 @@ class Forest:
         self.child = np.concatenate(child)
         """The first child of each node, the second comes next; -1 for leaves."""
         self.start, self.count = np.concatenate(start), np.concatenate(end) - np.concatenate(start)
-        ordered = [(mesh, tree.faces) for mesh, tree in zip(meshes, trees, strict=True)]
-        self.corners: Final = np.stack(
-            [_columns([mesh.triangles[faces, number] for mesh, faces in ordered]) for number in range(3)]
+        self.corners: Final = _beside(
+            [
+                mesh.derived(face_corners).take(tree.faces, axis=2)
+                for mesh, tree in zip(meshes, trees, strict=True)
+            ]
         )
         """The three corners of all faces, ``(3, 3, f)`` by corner and coordinate, in the unit frames of their meshes."""
-        self.normals: Final = _columns([mesh.area_vectors[faces] for mesh, faces in ordered])
-        """Area vectors of all faces, likewise."""
+        self.normals: Final = _normals(self.corners)
+        """Normals of all faces as long as twice the areas, ``(3, f)``."""
         self._leaves = np.array([len(tree.starts) - 1 for tree in trees])
         self.face: Final = np.concatenate(
             [face + _first_faces(tree) for face, tree in zip(first_face.tolist(), trees, strict=True)]
@@ -269,5 +278,11 @@ class _Maps:
         self.offset = maps.offset
 
 
-def _columns(parts: Sequence[Floats]) -> Floats:
-    return np.ascontiguousarray(np.concatenate(parts).T)
+def _beside(parts: Sequence[Floats]) -> Floats:
+    return parts[0] if len(parts) == 1 else np.concatenate(parts, axis=-1)
+
+
+def _normals(corners: Floats) -> Floats:
+    x, y, z = corners[1] - corners[0]
+    u, v, w = corners[2] - corners[0]
+    return np.stack([y * w - z * v, z * u - x * w, x * v - y * u])

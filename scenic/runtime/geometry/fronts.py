@@ -19,6 +19,10 @@ _LEVEL: Final = 4
 """Where the search begins: of the boxes above, one nearly always comes near."""
 
 
+_STEP: Final = 3
+"""Levels that the search goes down at a time: boxes between them are not looked at."""
+
+
 class Front(NamedTuple):
     """What comes near.
 
@@ -77,7 +81,9 @@ class Fronts:
             inner = forest.child[node[left]] >= 0
             ends, left = left[~inner], left[inner]
             found.append((entry[ends], node[ends], centre.take(ends, axis=1), reach.take(ends, axis=1)))
-            entry, node = forest.parts(*forest.parts(entry[left], node[left]))
+            entry, node = entry[left], node[left]
+            for _ in range(_STEP):
+                entry, node = forest.parts(entry, node)
         entry, leaf, centre, reach = (np.concatenate(parts, axis=-1) for parts in zip(*found, strict=True))
         order = np.argsort(entry, kind="stable")
         order = order[~touching[entry[order] % pairs]]

@@ -12,7 +12,7 @@ from scenic.language.errors import MeshError
 from scenic.runtime.geometry import topology
 from scenic.runtime.geometry.poses import Floats, Indices
 from scenic.runtime.geometry.ragged import distinct, first_of_each
-from scenic.runtime.geometry.store import Arrays, kept
+from scenic.runtime.geometry.store import Arrays, digest_of, kept
 
 _MOST_HEIGHTS: Final = 1 << 21
 """Heights of vertices above faces that are looked at to see that a solid is convex without its hull."""
@@ -98,6 +98,11 @@ class Mesh:
         return {}
 
     @cached_property
+    def digest(self) -> bytes:
+        """What stands for the mesh where something that follows from it is kept on disk."""
+        return digest_of(self.vertices, self.faces)
+
+    @cached_property
     def bounds(self) -> Floats:
         """Lower and upper corner, ``(2, 3)``."""
         return _read_only(np.stack([self.vertices.min(axis=0), self.vertices.max(axis=0)]))
@@ -154,7 +159,7 @@ class Mesh:
             planes = np.unique(np.round(planes, 12), axis=0)
             used = distinct(self.faces)
             return Hull(_read_only(self.vertices[used]), _read_only(planes), self.volume)
-        found = kept("hull 1", (self.vertices,), self._computed_hull)
+        found = kept("hull 1", self.digest, self._computed_hull)
         return Hull(_read_only(found["vertices"]), _read_only(found["planes"]), float(found["volume"]))
 
     def _computed_hull(self) -> Arrays:

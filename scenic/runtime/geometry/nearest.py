@@ -86,10 +86,10 @@ class Nearest:
 
     def _gap(self, points: Floats, size: Floats, node: Indices) -> Floats:
         """The squared distances of points from boxes."""
-        middle, half = self._tree.middle[node], self._tree.half[node]
+        middle, half = self._tree.middle.take(node, axis=1), self._tree.half.take(node, axis=1)
         total = np.zeros(len(node))
         for axis in range(3):
-            beside = np.abs(points[:, axis] - size[:, axis] * middle[:, axis]) - size[:, axis] * half[:, axis]
+            beside = np.abs(points[:, axis] - size[:, axis] * middle[axis]) - size[:, axis] * half[axis]
             beside = np.maximum(beside, 0.0)
             total += beside * beside
         return total

@@ -15,7 +15,7 @@ import json
 import os
 import tempfile
 import zlib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, Final, TypeAlias
 
@@ -34,12 +34,21 @@ _KEPT: Final = 0.75
 """Part of the size that is left after a clearance."""
 
 
-def kept(kind: str, content: Sequence[npt.NDArray[Any]], compute: Callable[[], Arrays]) -> Arrays:
+def digest_of(*arrays: npt.NDArray[Any]) -> bytes:
+    """What stands for the content of arrays, their types and shapes included."""
+    digest = hashlib.sha256()
+    for array in arrays:
+        digest.update(f"{array.dtype.str}{array.shape}\0".encode())
+        digest.update(np.ascontiguousarray(array).data)
+    return digest.digest()
+
+
+def kept(kind: str, content: bytes, compute: Callable[[], Arrays]) -> Arrays:
     """``compute()``, or what an earlier run got from it.
 
     Args:
         kind: a name and a version of what is computed; a new version whenever the result changes.
-        content: all that it is computed from.
+        content: the digest of all that it is computed from.
         compute: returns named arrays, none of them of objects.
 
     """
@@ -54,7 +63,7 @@ def kept(kind: str, content: Sequence[npt.NDArray[Any]], compute: Callable[[], A
     return found
 
 
-def is_kept(kind: str, content: Sequence[npt.NDArray[Any]]) -> bool:
+def is_kept(kind: str, content: bytes) -> bool:
     """Whether an earlier run left what `kept` would otherwise compute."""
     folder = _folder()
     return folder is not None and (folder / f"{_key(kind, content)}{_SUFFIX}").exists()
@@ -73,12 +82,8 @@ def _folder() -> Path | None:
         return None
 
 
-def _key(kind: str, content: Sequence[npt.NDArray[Any]]) -> str:
-    digest = hashlib.sha256(kind.encode())
-    for array in content:
-        digest.update(f"\0{array.dtype.str}{array.shape}\0".encode())
-        digest.update(array.tobytes())
-    return digest.hexdigest()
+def _key(kind: str, content: bytes) -> str:
+    return hashlib.sha256(kind.encode() + b"\0" + content).hexdigest()
 
 
 def _read(path: Path) -> Arrays | None:

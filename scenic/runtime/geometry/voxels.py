@@ -57,21 +57,29 @@ def voxels(mesh: Mesh) -> Voxels:
     """The cells of a closed unit mesh. Get them as ``mesh.derived(voxels)``."""
     if mesh.is_box:
         return _box_voxels(mesh)
-    found = kept(_KIND, (mesh.vertices, mesh.faces), lambda: _computed(mesh))
+    found = kept(_KIND, mesh.digest, lambda: _computed(mesh))
     solid, occupied = (_unpacked(found[name]) for name in ("solid", "occupied"))
-    filled = np.zeros((RESOLUTION + 1,) * 3, dtype=np.int32)
-    np.cumsum(occupied, axis=2, dtype=np.int32, out=filled[1:, 1:, 1:])
-    # `cumsum` along the other axes is eight times slower than whole rows added.
-    for index in range(1, RESOLUTION + 1):
-        filled[:, index] += filled[:, index - 1]
-    for index in range(1, RESOLUTION + 1):
-        filled[index] += filled[index - 1]
-    return Voxels(solid, filled, found["cover"], found["probes"])
+    return Voxels(solid, _counts(occupied), found["cover"], found["probes"])
+
+
+def _counts(occupied: Booleans) -> npt.NDArray[np.int32]:
+    """How many cells with smaller index on every axis are occupied, as in `Voxels.filled`."""
+    # Whole slabs are added: `cumsum` takes three times as long. A row holds few enough cells for one byte.
+    rows = np.ascontiguousarray(occupied.transpose(2, 0, 1)).view(np.uint8)
+    for index in range(1, RESOLUTION):
+        rows[index] += rows[index - 1]
+    counts = np.zeros((RESOLUTION + 1,) * 3, dtype=np.int32)
+    counts[1:, 1:, 1:] = rows.transpose(1, 2, 0)
+    for index in range(2, RESOLUTION + 1):
+        counts[:, index] += counts[:, index - 1]
+    for index in range(2, RESOLUTION + 1):
+        counts[index] += counts[index - 1]
+    return counts
 
 
 def seconds_to_make(mesh: Mesh) -> float:
     """About how long `voxels` will take: next to nothing where an earlier run left them."""
-    if mesh.is_box or is_kept(_KIND, (mesh.vertices, mesh.faces)):
+    if mesh.is_box or is_kept(_KIND, mesh.digest):
         return 0.0
     return 0.04 + 4e-6 * len(mesh.faces)
 

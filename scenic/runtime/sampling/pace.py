@@ -11,6 +11,9 @@ _LIKELY_FIXED: Final = 1e-3
 _LIKELY_LANE: Final = 5e-6
 """Seconds a round and a lane before anything is measured."""
 
+_LEAST_SHARE: Final = 0.25
+"""Lanes cost this part, at least, of what rounds take on average."""
+
 _ROUND_SECONDS: Final = 2.0
 """Rounds are cut to about this time, so that limits and interrupts are noticed soon."""
 
@@ -90,7 +93,8 @@ class Pace:
             slope = (self._xy / self._weight - mean_x * mean_y) / variance
         else:
             slope = 0.5 * mean_y / mean_x  # rounds of one size tell nothing of the two parts
-        slope = min(max(slope, 1e-9), mean_y / mean_x)
+        # What is made once is in some rounds' times, and may hide what lanes cost: they are taken to cost a little.
+        slope = min(max(slope, _LEAST_SHARE * mean_y / mean_x), mean_y / mean_x)
         return max(mean_y - slope * mean_x, 1e-6), slope
 
     def scenes_within(self, seconds: float) -> int:

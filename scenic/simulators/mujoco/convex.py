@@ -45,7 +45,7 @@ def convex_parts(mesh: Any) -> tuple[npt.NDArray[np.float64], ...]:
         parts = [np.asarray(vertices, np.float64) for vertices, _ in found]
         return {"vertices": np.concatenate(parts), "ends": np.cumsum([len(part) for part in parts])}
 
-    arrays = kept("convex parts 1", (mesh.vertices, mesh.faces), compute)
+    arrays = kept("convex parts 1", mesh.digest, compute)
     parts = np.split(arrays["vertices"], arrays["ends"][:-1])
     return tuple(part for part in parts if _volume(part) > _FLAT)
 

@@ -9,12 +9,12 @@ import pytest
 
 from scenic.runtime.geometry import store
 from scenic.runtime.geometry.mesh import Mesh
-from scenic.runtime.geometry.store import kept
+from scenic.runtime.geometry.store import digest_of, kept
 from scenic.runtime.geometry.voxels import voxels
 
 from .samples import bumpy, table
 
-CONTENT = (np.arange(4.0),)
+CONTENT = digest_of(np.arange(4.0))
 
 
 @pytest.fixture
@@ -43,7 +43,11 @@ def test_what_is_kept_is_not_computed_again(folder):
         np.testing.assert_array_equal(found["a"], [0, 1, 2])
         assert float(found["b"]) == 0.5
     assert compute.calls == 1
-    for kind, content in (("x 2", CONTENT), ("x 1", (np.arange(5.0),)), ("x 1", (np.arange(4),))):
+    for kind, content in (
+        ("x 2", CONTENT),
+        ("x 1", digest_of(np.arange(5.0))),
+        ("x 1", digest_of(np.arange(4))),
+    ):
         kept(kind, content, compute)
     assert compute.calls == 4
     assert len(list(folder.iterdir())) == 4
