@@ -224,3 +224,19 @@ def test_what_is_computed_of_meshes_is_kept_unless_it_must_not(tmp_path: Path) -
         found.append(result.stdout)
         assert (tmp_path / "kept").exists() == (options == [])
     assert found[0] == found[1]
+
+
+@pytest.mark.parametrize("target", ["-", "images.jsonl", "images.png", "images.glb"])
+def test_labelled_images_need_a_folder(folder: Path, target: str) -> None:
+    result = run(folder, "balls.scenic", "--camera", "ball", "-o", target)
+    assert result.returncode == 2
+    assert "labelled images cannot be written" in result.stderr
+    assert not (folder / target).exists()
+
+
+def test_labelled_images_do_not_replace_a_file(folder: Path) -> None:
+    (folder / "images").write_text("mine")
+    result = run(folder, "balls.scenic", "--camera", "ball", "-o", "images")
+    assert result.returncode == 2
+    assert "is not a folder" in result.stderr
+    assert (folder / "images").read_text() == "mine"

@@ -9,7 +9,10 @@ import scenic
 from scenic.formats.html import page
 from scenic.formats.regions import _cell_edges, bounds, outlines
 from scenic.runtime.regions.base import everywhere, nowhere
+from scenic.runtime.regions.composite import IntersectionRegion
 from scenic.runtime.regions.lines import PathRegion
+from scenic.runtime.regions.planar import CircularRegion
+from scenic.runtime.regions.volumes import BoxRegion, SpheroidRegion
 from tests.formats.test_html import data_of
 
 PROGRAM = """
@@ -140,3 +143,20 @@ def test_chains_stay_apart_and_whole() -> None:
 
 def test_nothing_is_drawn_of_what_has_no_bounds() -> None:
     assert outlines(everywhere) == outlines(nowhere) == []
+
+
+def test_what_is_left_of_a_plane_is_hatched() -> None:
+    """Lines across the rest of a disc, and none across a volume's rest."""
+    disc, ball = CircularRegion((0, 0, 1), 4), SpheroidRegion((6, 6, 6), (0, 0, 1))
+    for members, expected in (((disc, ball), True), ((ball, disc), True)):
+        lines = outlines(IntersectionRegion(*members))
+        inner = [line for line in lines if (np.hypot(line[:, 0], line[:, 1]) < 2.9).any()]
+        assert bool(inner) is expected
+        assert all((line[:, 2] == 1).all() for line in inner)
+        assert all((np.hypot(line[:, 0], line[:, 1]) < 3.1).all() for line in inner)
+    box = BoxRegion((2, 2, 2), (1, 0, 1))
+    for line in outlines(IntersectionRegion(ball, box)):
+        assert all(
+            (np.abs(np.abs(line - box.position.row) - 1) < 1e-9).any(axis=1)
+            | (np.abs(np.linalg.norm(line - [0, 0, 1], axis=1) - 3) < 1e-9)
+        )

@@ -1,5 +1,6 @@
 """Imports between Scenic modules, of Python modules beside the program, and models."""
 
+import importlib
 import sys
 from pathlib import Path
 
@@ -54,6 +55,21 @@ def test_modules_of_one_program_are_not_those_of_another(tmp_path: Path) -> None
         )
     found = [first(tmp_path / name / "main.scenic").params["x"] for name in "abab"]
     assert found == [1, 2, 1, 2]
+
+
+def test_modules_on_the_path_of_python_are_loaded_once(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whether or not the program has a file of that name beside it, which then is not looked at."""
+    written(tmp_path / "usual", {"usual_name.py": "VALUE = 1\n"})
+    monkeypatch.syspath_prepend(str(tmp_path / "usual"))
+    usual = importlib.import_module("usual_name")
+    main = written(
+        tmp_path / "own",
+        {"usual_name.py": "VALUE = 2\n", "main.scenic": "import usual_name\nparam x = usual_name.VALUE\n"},
+    )
+    assert first(main).params["x"] == 1
+    assert sys.modules["usual_name"] is usual
 
 
 PACKAGE = {

@@ -5,6 +5,7 @@ import pytest
 from scipy import stats
 
 import scenic
+from scenic.graph.kinds import Kind
 from scenic.language.errors import InvalidScenarioError, ScenicTypeError, SpecifierError
 from tests.runtime.programs import FALSE_ALARM, draws, failure, scenario, scene
 
@@ -31,6 +32,12 @@ def test_a_distribution_of_the_program(options: str) -> None:
 def test_resampling_draws_anew_from_the_same_dependencies() -> None:
     values = draws(LAW + "d = Shifted(low)\nparam x = (low, d, resample(d))", n=300)
     assert all(low <= d <= low + 1 and low <= e <= low + 1 and d != e for low, d, e in values)
+
+
+def test_what_is_drawn_anew_is_known_to_be_a_number_too() -> None:
+    law = "Shifted(low, valueType=float)"
+    for value in (law, f"resample({law})", f"resample(resample({law}))"):
+        assert scenario(LAW + f"param x = {value}").params["x"].node.kind is Kind.SCALAR
 
 
 def test_distributions_of_the_program_work_in_objects_and_requirements() -> None:
