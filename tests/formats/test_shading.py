@@ -1,14 +1,17 @@
 """Colours of pixels against the formula of the light, where it can be done by hand: stretched, thin and backward surfaces."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 import trimesh
 
+from scenic.formats.backdrop import _lines, sky_color
 from scenic.formats.buffers import Lens, look
 from scenic.formats.camera import Camera
 from scenic.formats.colors import decoded, linear
 from scenic.formats.instances import picture
-from scenic.formats.lighting import own_light
+from scenic.formats.lighting import _averaged, own_light
 from scenic.formats.render import paint
 from scenic.formats.stage import SKY, Stage
 from tests.formats.stand_ins import BALL, Mesh, Object, Scene, Shape, Source, Turn, unit
@@ -125,3 +128,45 @@ def test_below_the_ground_nothing_falls_on_it() -> None:
     )
     assert look(stage, below, directions).group.tolist() == [SKY, SKY]
     assert SKY not in look(stage, above, directions).group.tolist()
+
+
+def test_the_sky_is_palest_at_the_horizon_whatever_the_length_of_directions() -> None:
+    rise = np.radians([-40, 0, 10, 20, 30, 60, 90])
+    directions = np.stack([np.cos(rise) * 0.6, np.cos(rise) * 0.8, np.sin(rise)], axis=1)
+    low, high = np.asarray(linear((0.90, 0.92, 0.95))), np.asarray(linear((0.74, 0.82, 0.91)))
+    part = np.clip(2 * np.sin(rise), 0, 1)
+    for length in (0.1, 1, 7):
+        found = sky_color((length * directions).astype(np.float32))
+        np.testing.assert_allclose(found.T, low + part[:, None] * (high - low), atol=1e-5)
+
+
+def test_lines_of_the_ground_are_a_pixel_wide_and_fade() -> None:
+    """A metre apart, every fifth one stronger; about the middle of the scene, which is not that of the grid."""
+    stage = SimpleNamespace(reach=12.0, center=np.array([0.25, -0.5, 0.0]))
+    for distance, wide, strength, step in (
+        (0.0, 0.01, 0.7, 5), (0.005, 0.01, 0.7, 5), (0.02, 0.05, 0.7, 5), (0.1, 0.2, 0.7, 5), (0.3, 0.2, 0.0, 5)
+    ):  # fmt: skip
+        for sign in (-1, 1):
+            place = np.array([5 - 0.25 + sign * distance], np.float32)
+            other = np.array([2.5 + 0.5], np.float32)
+            found = [
+                _lines(stage, *at, np.array([wide], np.float32))
+                for at in ((place, other), (other - 0.75, place + 0.75))
+            ]
+            line = min(1.2 - distance / wide, 1)
+            fine = line * 0.35 * np.clip(1.5 - 6 * wide, 0, 1)
+            coarse = line * strength * np.clip(1.5 - 6 * wide / step, 0, 1)
+            expected = max(1 - (1 - fine) * (1 - coarse), 0) if distance < 1.2 * wide else 0
+            np.testing.assert_allclose(np.concatenate(found), expected, atol=1e-4)
+
+
+def test_means_are_over_the_same_surface() -> None:
+    group = np.ones((9, 12), np.int32)
+    group[:, 6:] = 2
+    means, count = _averaged(np.where(group == 1, np.float32(3), np.float32(5)), group)
+    np.testing.assert_allclose(means, np.where(group == 1, 3, 5), rtol=1e-6)
+    # Five nodes of which the outer two count half, in both directions.
+    np.testing.assert_allclose(count[4], 4 * np.array([2.5, 3.5, 4, 4, 3.5, 2.5] * 2))
+    slope = np.tile(np.arange(12, dtype=np.float32), (9, 1))
+    means, _ = _averaged(slope, np.ones_like(group))
+    np.testing.assert_allclose(means[:, 2:-2], slope[:, 2:-2], rtol=1e-6)

@@ -64,7 +64,7 @@ CONDITIONS = [
     "n - 1",
     "n and xs[0] > 2",
     "(n or 5) > 3",
-    "(n and 3) == 3",
+    "(3 and n) == 2",
     "(x > 0.5 or n) == 1",
     "(x, n) > (0.5, 2)",
     "[i for i in xs if i > n]",

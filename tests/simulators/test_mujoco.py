@@ -437,6 +437,39 @@ ego = new Object at (0, 0, 0.1), with dynamics 'differential', with width 0.4, w
     assert ends[0][1].yaw == pytest.approx(ends[1][1].yaw, abs=0.05)
 
 
+@pytest.mark.parametrize("size", [(0.4, 0.9, 0.5), (0.9, 0.3, 0.9), (1.2, 2.0, 0.4)])
+def test_wheels_and_casters_of_robots_are_within_their_box(size: tuple[float, float, float]) -> None:
+    import mujoco
+
+    width, length, height = size
+    text = f"ego = new Object at (0, 0, 5), with dynamics 'differential', with width {width}, with length {length}, with height {height}\n"
+    simulation = MujocoSimulation(
+        scene_of(text), key=b"1", deferred=True, maxSteps=1, timestep=0.05, name="one"
+    )
+    simulation.begin()
+    model = simulation.model
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    parts: dict[int, list[Any]] = {
+        int(mujoco.mjtGeom.mjGEOM_ELLIPSOID): [],
+        int(mujoco.mjtGeom.mjGEOM_SPHERE): [],
+    }
+    for kind, place, extent in zip(model.geom_type, data.geom_xpos - [0, 0, 5], model.geom_size, strict=True):
+        if int(kind) in parts:
+            parts[int(kind)].append((place, extent if extent[1] else np.full(3, extent[0])))
+    wheels, casters = parts.values()
+    radius = min(height / 2, length / 4)
+    for place, extent in wheels:
+        assert extent[1] == extent[2] == pytest.approx(radius)
+        assert abs(place[0]) + extent[0] == pytest.approx(width / 2)
+        np.testing.assert_allclose(place[1:], [0, radius - height / 2], atol=1e-9)
+    for place, extent in casters:
+        assert abs(place[1]) + extent[1] == pytest.approx(length / 2)
+        assert -height / 2 < place[2] - extent[2] < -height / 2 + 0.05 * radius
+    assert sorted(np.sign(place[0]) for place, _ in wheels) == [-1, 1]
+    assert sorted(np.sign(place[1]) for place, _ in casters) == [-1, 1]
+
+
 # One simulation is one value
 
 
