@@ -56,17 +56,24 @@ def suspects(resolution: Resolution, source: Source, *, longest_line: int) -> li
     logical line. Where what is said of one statement depends on others, they are all of them.
     """
     stretches = resolution.stretches
-    if longest_line > _LONGEST or any(_joins(each) for each in stretches):
+    if longest_line > _LONGEST or any(each.common("joins", _joins) for each in stretches):
         return [statement for each in stretches for statement in each.statements]
     return [
         statement
         for each in stretches
-        if not each.classes <= _HARMLESS
-        or _is_suspect(each)
-        or _has_suspect_words(each.statements, source)
-        or _is_deep(each.statements)
+        if each.common("suspect", lambda own: _is_suspect_anywhere(own, source))
         for statement in each.statements
     ]
+
+
+def _is_suspect_anywhere(stretch: Stretch, source: Source) -> bool:
+    """Whether something may be said of a stretch, wherever it stands."""
+    return (
+        not stretch.contents.classes <= _HARMLESS
+        or _is_suspect(stretch)
+        or _has_suspect_words(stretch.statements, source)
+        or _is_deep(stretch.statements)
+    )
 
 
 def _joins(stretch: Stretch) -> bool:
@@ -80,7 +87,7 @@ def _joins(stretch: Stretch) -> bool:
 def _is_suspect(stretch: Stretch) -> bool:
     """Whether there is a node of which something may be said."""
     for cls, test in _TESTS.items():
-        if any(test(node) for node, _ in stretch.nodes.get(cls, ())):
+        if any(test(node) for node, _ in stretch.nodes(cls)):
             return True
     return any(
         binding.kinds & _PARAMETERS and len(binding.sites) > 1 and _is_repeated(binding.sites)

@@ -5,7 +5,8 @@ running the program. It uses an explicit stack, so that no depth of nesting is t
 """
 
 import ast
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from itertools import pairwise
 from types import MappingProxyType
 from typing import Any, Final, NamedTuple
 
@@ -18,11 +19,13 @@ from scenic.compiler.scopes import (
     REFLECTION,
     Binding,
     BindingKind,
+    Contents,
     Reference,
     Resolution,
     Scope,
     ScopeKind,
     Stretch,
+    key_of,
 )
 from scenic.compiler.surroundings import SurroundingsOf
 from scenic.compiler.traversal import FIELDS, parts, walk
@@ -77,7 +80,7 @@ def bind(tree: ast.Module) -> Resolution:
     """Bind every name of a module, of Scenic or of Python, without any check: ``diagnostics`` stays empty."""
     with no_garbage_collection():
         module = _module_scope()
-        return Resolution(tree, module, [_bound(tree.body, module)])
+        return Resolution(tree, module, [Stretch(tree.body, _collector(module))])
 
 
 def bind_again(tree: ast.Module, before: Resolution | None) -> Resolution:
@@ -86,44 +89,49 @@ def bind_again(tree: ast.Module, before: Resolution | None) -> Resolution:
     Of the first version, there is none before it.
     """
     with no_garbage_collection():
-        if before is None:
-            module = _module_scope()
-            return Resolution(tree, module, _in_stretches(tree.body, module))
-        old, body = before.stretches, tree.body
-        first = begin = 0
-        while first < len(old) and _stands(old[first], body, begin):
-            begin += len(old[first].statements)
-            first += 1
-        last, end = len(old), len(body)
-        while last > first and end - len(old[last - 1].statements) >= begin:
-            size = len(old[last - 1].statements)
-            if not _stands(old[last - 1], body, end - size):
-                break
-            end -= size
-            last -= 1
-        middle = _in_stretches(body[begin:end], before.module)
-        return Resolution(tree, before.module, [*old[:first], *middle, *old[last:]])
-
-
-def _stands(stretch: Stretch, body: list[ast.stmt], begin: int) -> bool:
-    """Whether the statements of a stretch are these very ones."""
-    own = stretch.statements
-    # Nodes are equal only to themselves.
-    return own == tuple(body[begin : begin + len(own)])
+        body = tree.body
+        module = _module_scope() if before is None else before.module
+        known = {} if before is None else {each.keys[0]: each for each in before.stretches if each.keys}
+        keys = [key_of(statement) for statement in body]
+        found: list[Stretch] = []
+        begin = index = 0
+        while index < len(body):
+            old = known.get(keys[index])
+            end = index if old is None else index + len(old.keys)
+            if old is None or tuple(keys[index:end]) != old.keys:
+                index += 1
+                continue
+            found += _in_stretches(body[begin:index], module)
+            own = tuple(body[index:end])
+            # Nodes are equal only to themselves.
+            found.append(old if own == old.statements else old.moved(own))
+            begin = index = end
+        found += _in_stretches(body[begin:], module)
+        return Resolution(tree, module, found)
 
 
 def _in_stretches(body: list[ast.stmt], module: Scope) -> list[Stretch]:
-    return [_bound(body[index : index + _STRETCH], module) for index in range(0, len(body), _STRETCH)]
+    """Some statements, divided evenly."""
+    count = -(-len(body) // _STRETCH)
+    ends = [len(body) * index // count for index in range(count + 1)] if count else []
+    collect = _collector(module)
+    return [Stretch(body[begin:end], collect) for begin, end in pairwise(ends)]
 
 
 def _module_scope() -> Scope:
     return Scope(ScopeKind.MODULE, "<module>", ast.Module(body=[], type_ignores=[]), None)
 
 
-def _bound(statements: list[ast.stmt], module: Scope) -> Stretch:
-    collector = _Collector(statements, module)
-    collector.walk()
-    return collector.finish()
+def _collector(module: Scope) -> Callable[[Stretch], Contents]:
+    """What looks at the statements of a stretch."""
+
+    def collect(stretch: Stretch) -> Contents:
+        with no_garbage_collection():
+            collector = _Collector(stretch.statements, module)
+            collector.walk()
+            return collector.finish()
+
+    return collect
 
 
 def _brings_names(line: str) -> bool:
@@ -149,7 +157,7 @@ _Task = tuple[ast.AST, Scope]
 class _Collector:
     """Walks some statements once and notes scopes, bindings and uses of names."""
 
-    def __init__(self, statements: list[ast.stmt], module: Scope) -> None:
+    def __init__(self, statements: Sequence[ast.stmt], module: Scope) -> None:
         self._statements = statements
         self._module = module
         self._scopes: dict[ast.AST, Scope] = {}
@@ -202,7 +210,7 @@ class _Collector:
                     elif part is not None:
                         stack.append(part)
 
-    def finish(self) -> Stretch:
+    def finish(self) -> Contents:
         """What has been noted, put together; nodes in the order of the text, however the statements are divided up."""
         for noted in self._nodes.values():
             if len(noted) > 1:
@@ -235,8 +243,7 @@ class _Collector:
                 if binding is None:
                     free.add(name)
             references[node] = Reference(node, scope, binding)
-        return Stretch(
-            tuple(self._statements),
+        return Contents(
             bound,
             references,
             self._scopes,

@@ -5,13 +5,16 @@ A scope is built once by `scenic.compiler.resolver` and only read afterwards. No
 
 import ast
 import builtins
-from bisect import bisect_left
-from collections.abc import Collection, Iterator, Mapping, Sequence
+import threading
+from bisect import bisect_left, bisect_right
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 from functools import cached_property
-from typing import Any, Final
+from typing import Any, Final, TypeVar
 
+from scenic.compiler import tree as scenic
+from scenic.compiler.traversal import first_line
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.names import NAMES, TRACKED
 
@@ -20,11 +23,13 @@ __all__ = [
     "REFLECTION",
     "Binding",
     "BindingKind",
+    "Contents",
     "Reference",
     "Resolution",
     "Scope",
     "ScopeKind",
     "Stretch",
+    "key_of",
 ]
 
 _MODULE_ATTRIBUTES: Final = frozenset(
@@ -83,14 +88,34 @@ class BindingKind(StrEnum):
     SELF = "self"
 
 
-@dataclass(slots=True, eq=False)
 class Binding:
-    """A name in a scope. ``sites`` are the nodes that bind it, in no particular order; ``kinds`` how they do."""
+    """A name in a scope. ``sites`` are the nodes that bind it, in no particular order; ``kinds`` how they do.
 
-    name: str
-    scope: "Scope" = field(repr=False)
-    sites: list[ast.AST] = field(default_factory=list, repr=False)
-    kinds: set[BindingKind] = field(default_factory=set)
+    A name of the module has its sites from ``stretches``, when they are first asked for.
+    """
+
+    __slots__ = ("_sites", "kinds", "name", "scope", "stretches")
+
+    def __init__(
+        self,
+        name: str,
+        scope: "Scope",
+        sites: list[ast.AST] | None = None,
+        kinds: set[BindingKind] | None = None,
+        *,
+        stretches: "list[Stretch] | None" = None,
+    ) -> None:
+        self.name: Final = name
+        self.scope: Final = scope
+        self.kinds: Final = set() if kinds is None else kinds
+        self.stretches: Final = stretches
+        self._sites = [] if sites is None and stretches is None else sites
+
+    @property
+    def sites(self) -> list[ast.AST]:
+        if self._sites is None:
+            self._sites = [site for each in self.stretches or () for _, site in each.bound[self.name]]
+        return self._sites
 
 
 @dataclass(slots=True, eq=False)
@@ -143,9 +168,9 @@ class Reference:
     binding: Binding | None
 
 
-@dataclass(frozen=True, eq=False)
-class Stretch:
-    """Successive statements of the top level, and all that can be said of their names without what stands around them.
+@dataclass(frozen=True, slots=True, eq=False)
+class Contents:
+    """What is in a stretch of the top level, as far as it can be told without what stands around it.
 
     ``bound`` gives the nodes that bind each name of the module, and how. ``references`` to names of the module have no
     binding here. ``nodes``, ``scopes``, ``nonlocals`` and ``tolerated`` are as in `Resolution`; ``reserved`` are the
@@ -154,7 +179,6 @@ class Stretch:
     which programs read or bind names. ``wildcard`` tells whether names come in that the text does not show.
     """
 
-    statements: tuple[ast.stmt, ...]
     bound: Mapping[str, Sequence[tuple[BindingKind, ast.AST]]]
     references: Mapping[ast.AST, Reference]
     scopes: Mapping[ast.AST, Scope]
@@ -166,6 +190,92 @@ class Stretch:
     reflecting: frozenset[str]
     wildcard: bool
 
+
+_T = TypeVar("_T")
+
+_IMPORTS: Final = (ast.Import, ast.ImportFrom, scenic.Model)
+
+
+class Stretch:
+    """Successive statements of the top level, and all that can be said of them without what stands around them.
+
+    What has been found out without saying where is handed on to the same statements further down (`moved`); their
+    ``contents`` are looked at only when somebody asks for nodes.
+    """
+
+    def __init__(
+        self,
+        statements: Sequence[ast.stmt],
+        collect: "Callable[[Stretch], Contents]",
+        common: dict[str, Any] | None = None,
+    ) -> None:
+        self.statements: Final = tuple(statements)
+        self._collect: Final = collect
+        self._common: Final = {} if common is None else common
+        """What holds wherever the statements stand."""
+        self._contents: Contents | None = None
+        self._lock: Final = threading.Lock()
+
+    def moved(self, statements: Sequence[ast.stmt]) -> "Stretch":
+        """The same for copies of the statements on other lines."""
+        return Stretch(statements, self._collect, self._common)
+
+    def common(self, key: str, find: "Callable[[Stretch], _T]") -> _T:
+        """Something that holds wherever the statements stand, found out but once."""
+        if key not in self._common:
+            self._common[key] = find(self)
+        found: _T = self._common[key]
+        return found
+
+    @property
+    def contents(self) -> Contents:
+        """What is in it."""
+        if self._contents is None:
+            # Scopes are compared by identity: all threads must have the same.
+            with self._lock:
+                if self._contents is None:
+                    self._contents = self._collect(self)
+        return self._contents
+
+    # Where it stands
+
+    @cached_property
+    def keys(self) -> tuple[object, ...]:
+        """What each statement has in common with its copies on other lines, and with no other statement."""
+        return tuple(key_of(each) for each in self.statements)
+
+    @cached_property
+    def lines(self) -> tuple[int, ...]:
+        """The first line of each statement."""
+        return tuple(first_line(each) for each in self.statements)
+
+    @property
+    def last_line(self) -> int:
+        """The last line of the last statement."""
+        last = self.statements[-1]
+        return last.end_lineno or last.lineno
+
+    # Its nodes
+
+    @property
+    def bound(self) -> Mapping[str, Sequence[tuple[BindingKind, ast.AST]]]:
+        """See `Contents`."""
+        return self.contents.bound
+
+    @property
+    def references(self) -> Mapping[ast.AST, Reference]:
+        """See `Contents`."""
+        return self.contents.references
+
+    @property
+    def scopes(self) -> Mapping[ast.AST, Scope]:
+        """See `Contents`."""
+        return self.contents.scopes
+
+    def nodes(self, cls: type[ast.AST]) -> Sequence[tuple[Any, Scope]]:
+        """Its nodes of a class, each with the scope in which it stands."""
+        return self.contents.nodes.get(cls, ()) if cls in self.noted else ()
+
     @cached_property
     def named(self) -> Mapping[str, Sequence[Reference]]:
         """The uses of each name that no scope within the module binds."""
@@ -176,37 +286,13 @@ class Stretch:
         return found
 
     @cached_property
-    def loaded(self) -> frozenset[Binding | str]:
-        """What is read here: bindings, of what may belong to the module only the names."""
+    def loaded(self) -> frozenset[Binding]:
+        """What is read here of what scopes within the module bind."""
         return frozenset(
-            each.binding or each.node.id
+            each.binding
             for each in self.references.values()
-            if each.node.ctx.__class__ is ast.Load
+            if each.binding is not None and each.node.ctx.__class__ is ast.Load
         )
-
-    @cached_property
-    def needs(self) -> Mapping[str, frozenset[str]]:
-        """For each name of the module that is bound here: such names in the definitions and values that it is bound to."""
-        values: dict[ast.AST, ast.AST] = {}
-        for node, _ in self.nodes.get(ast.Assign, ()):
-            values.update((target, node) for target in node.targets)
-        for node, _ in self.nodes.get(ast.AnnAssign, ()):
-            values[node.target] = node
-        used = sorted(
-            (use.node.lineno, use.node.col_offset, name) for name, uses in self.named.items() for use in uses
-        )
-
-        def within(site: Any) -> Iterator[str]:
-            node = values.get(site, site)
-            first = node.decorator_list[0] if getattr(node, "decorator_list", None) else node
-            begin = bisect_left(used, (first.lineno, first.col_offset))
-            end = bisect_left(used, (node.end_lineno, node.end_col_offset))
-            return (name for _, _, name in used[begin:end])
-
-        return {
-            name: frozenset(needed for _, site in sites for needed in within(site))
-            for name, sites in self.bound.items()
-        }
 
     @cached_property
     def sites(self) -> Mapping[ast.AST, Binding | str]:
@@ -219,6 +305,106 @@ class Stretch:
         }
         found.update((site, name) for name, sites in self.bound.items() for _, site in sites)
         return found
+
+    # What holds wherever it stands
+
+    @property
+    def noted(self) -> frozenset[type[ast.AST]]:
+        """The classes that the checks look for of which it has nodes."""
+        return self.common(
+            "noted", lambda own: frozenset(cls for cls, found in own.contents.nodes.items() if found)
+        )
+
+    @property
+    def kinds(self) -> Mapping[str, frozenset[BindingKind]]:
+        """The names of the module that are bound here, and how."""
+        return self.common(
+            "kinds",
+            lambda own: {name: frozenset(kind for kind, _ in sites) for name, sites in own.bound.items()},
+        )
+
+    @property
+    def used(self) -> frozenset[str]:
+        """The names that are used here and that no scope within the module binds."""
+        return self.common("used", lambda own: frozenset(own.named))
+
+    @property
+    def read(self) -> frozenset[str]:
+        """Those of them that are read."""
+        return self.common(
+            "read",
+            lambda own: frozenset(
+                name
+                for name, uses in own.named.items()
+                if any(each.node.ctx.__class__ is ast.Load for each in uses)
+            ),
+        )
+
+    @property
+    def bound_by(self) -> Mapping[str, frozenset[object]]:
+        """For each name of the module that is bound here, the keys of the statements that bind it."""
+
+        def find(own: Stretch) -> Mapping[str, frozenset[object]]:
+            # Statements of one line count as one.
+            by_line = dict(zip(own.lines, own.keys, strict=True))
+            lines = [*by_line]
+
+            def key(site: Any) -> object:
+                return by_line[lines[bisect_right(lines, site.lineno) - 1]]
+
+            return {name: frozenset(key(site) for _, site in sites) for name, sites in own.bound.items()}
+
+        return self.common("bound by", find)
+
+    @property
+    def importing(self) -> Sequence[object]:
+        """The keys of the statements that import, in order."""
+
+        def find(own: Stretch) -> Sequence[object]:
+            imports = [node for cls in _IMPORTS for node, _ in own.nodes(cls)]
+            return [
+                key
+                for key, statement in zip(own.keys, own.statements, strict=True)
+                if any(
+                    first_line(statement) <= node.lineno <= (statement.end_lineno or 0) for node in imports
+                )
+            ]
+
+        return self.common("importing", find)
+
+    @property
+    def needs(self) -> Mapping[str, frozenset[str]]:
+        """For each name of the module that is bound here: such names in the definitions and values that it is bound to."""
+        return self.common("needs", _needs)
+
+
+def _needs(stretch: Stretch) -> Mapping[str, frozenset[str]]:
+    values: dict[ast.AST, ast.AST] = {}
+    for node, _ in stretch.nodes(ast.Assign):
+        values.update((target, node) for target in node.targets)
+    for node, _ in stretch.nodes(ast.AnnAssign):
+        values[node.target] = node
+    used = sorted(
+        (use.node.lineno, use.node.col_offset, name) for name, uses in stretch.named.items() for use in uses
+    )
+
+    def within(site: Any) -> Iterator[str]:
+        node = values.get(site, site)
+        first = node.decorator_list[0] if getattr(node, "decorator_list", None) else node
+        begin = bisect_left(used, (first.lineno, first.col_offset))
+        end = bisect_left(used, (node.end_lineno, node.end_col_offset))
+        return (name for _, _, name in used[begin:end])
+
+    return {
+        name: frozenset(needed for _, site in sites for needed in within(site))
+        for name, sites in stretch.bound.items()
+    }
+
+
+def key_of(statement: ast.stmt) -> object:
+    """What a statement of the top level has in common with its copies on other lines, and with no other statement."""
+    # Copies have the attributes of the original.
+    return statement.__dict__.setdefault("scenic_key", object())
 
 
 REBINDING: Final = frozenset({"exec", "globals", "vars"})
@@ -244,25 +430,30 @@ class Resolution:
         self.stretches: Final = tuple(stretches)
         self.diagnostics: tuple[Diagnostic, ...] = ()
         self.names: Final[Mapping[str, Binding]] = self._names()
-        reflecting = frozenset().union(*(each.reflecting for each in stretches)).difference(self.names)
+        reflecting = (
+            frozenset()
+            .union(*(each.common("reflecting", lambda own: own.contents.reflecting) for each in stretches))
+            .difference(self.names)
+        )
         self.reflective: Final = bool(reflecting)
         self.rebinding: Final = not reflecting.isdisjoint(REBINDING)
-        self.wildcard: bool = self.rebinding or any(each.wildcard for each in stretches)
+        self.wildcard: bool = self.rebinding or any(
+            each.common("wildcard", lambda own: own.contents.wildcard) for each in stretches
+        )
         self._tree = tree
         self._nodes: dict[type[ast.AST], list[tuple[Any, Scope]]] = {}
         self._more: Mapping[ast.AST, Reference] = {}
-        self._recent: Mapping[ast.AST, Reference] = {}
 
     def _names(self) -> dict[str, Binding]:
         names: dict[str, Binding] = {}
         for stretch in self.stretches:
-            for name, sites in stretch.bound.items():
+            for name, kinds in stretch.kinds.items():
                 binding = names.get(name)
                 if binding is None:
-                    binding = names[name] = Binding(name, self.module)
-                for kind, site in sites:
-                    binding.sites.append(site)
-                    binding.kinds.add(kind)
+                    names[name] = Binding(name, self.module, None, {*kinds}, stretches=[stretch])
+                elif binding.stretches is not None:
+                    binding.stretches.append(stretch)
+                    binding.kinds.update(kinds)
         return names
 
     def _copy(self) -> "Resolution":
@@ -305,37 +496,62 @@ class Resolution:
     @cached_property
     def scopes(self) -> Mapping[ast.AST, Scope]:
         """The scope that a node opens."""
-        return self._joined({self._tree: self.module}, "scopes")
+        found: dict[ast.AST, Scope] = {self._tree: self.module}
+        for each in self.stretches:
+            found.update(each.scopes)
+        return found
 
     @cached_property
     def nonlocals(self) -> Mapping[ast.AST, Scope]:
         """The scope in which a ``nonlocal`` statement stands."""
-        return self._joined({}, "nonlocals")
+        return {node: scope for each in self.stretches for node, scope in each.contents.nonlocals.items()}
 
     @cached_property
     def tolerated(self) -> Collection[ast.AST]:
         """The names read where a missing name is provided for."""
-        return frozenset().union(*(each.tolerated for each in self.stretches))
+        return frozenset().union(
+            *(
+                each.contents.tolerated
+                for each in self.stretches
+                if each.common("tolerates", lambda own: bool(own.contents.tolerated))
+            )
+        )
 
     @property
     def reserved(self) -> Sequence[tuple[str, ast.AST]]:
         """The places where the program binds a name that it must not bind."""
-        return [item for each in self.stretches for item in each.reserved]
+        return [
+            item
+            for each in self.stretches
+            if each.common("binds reserved", lambda own: bool(own.contents.reserved))
+            for item in each.contents.reserved
+        ]
 
     def nodes(self, cls: type[ast.AST]) -> Sequence[tuple[Any, Scope]]:
         """The nodes of one of the classes that the checks look for, each with the scope in which it stands."""
         if len(self.stretches) == 1:
-            return self.stretches[0].nodes.get(cls, ())
+            return self.stretches[0].nodes(cls)
         found = self._nodes.get(cls)
         if found is None:
-            found = [item for each in self.stretches for item in each.nodes.get(cls, ())]
+            found = [item for each in self.stretches for item in each.nodes(cls)]
             self._nodes[cls] = found
         return found
 
-    def _joined(self, found: dict[ast.AST, Scope], name: str) -> dict[ast.AST, Scope]:
-        for stretch in self.stretches:
-            found.update(getattr(stretch, name))
-        return found
+    def around(self, node: Any) -> Iterator[Stretch]:
+        """The stretches in which a node of the tree may stand, by its line: more than one if they share that."""
+        line: int | None = getattr(node, "lineno", None)
+        stretches = self.stretches
+        if line is None or len(stretches) == 1:
+            yield from stretches
+            return
+        index = bisect_right(self._first_lines, line) - 1
+        while index >= 0 and stretches[index].last_line >= line:
+            yield stretches[index]
+            index -= 1
+
+    @cached_property
+    def _first_lines(self) -> list[int]:
+        return [each.lines[0] for each in self.stretches]
 
     def sites(self) -> Iterator[tuple[ast.AST, Binding]]:
         """Every node that binds a name, with what it binds; in no particular order."""
@@ -346,20 +562,19 @@ class Resolution:
     def uses(self, name: str) -> Iterator[Reference]:
         """Where a name is used that no scope within the module binds, in no particular order; without what it means."""
         for stretch in self.stretches:
-            yield from stretch.named.get(name, ())
+            if name in stretch.used:
+                yield from stretch.named[name]
 
     @cached_property
     def used(self) -> Collection[str]:
         """The names that are used and that no scope within the module binds."""
-        return frozenset().union(*(each.named for each in self.stretches))
-
-    @cached_property
-    def _loaded(self) -> Collection[Binding | str]:
-        return frozenset().union(*(each.loaded for each in self.stretches))
+        return frozenset().union(*(each.used for each in self.stretches))
 
     def is_read(self, binding: Binding) -> bool:
         """Whether the value of a binding is read anywhere."""
-        return (binding.name if binding.scope is self.module else binding) in self._loaded
+        if binding.scope is self.module:
+            return any(binding.name in each.read for each in self.stretches)
+        return any(binding in each.loaded for each in self.around(binding.scope.node))
 
     # One of them
 
@@ -370,14 +585,13 @@ class Resolution:
             return known.get(node)  # type: ignore[arg-type]
         if not isinstance(node, ast.Name):
             return None
-        found = self._more.get(node) or self._recent.get(node)
+        found = self._more.get(node)
         if found is None:
-            # Who asks for one name asks for others near it.
-            around = next((each.references for each in self.stretches if node in each.references), None)
-            if around is None:
+            found = next(
+                (each.references[node] for each in self.around(node) if node in each.references), None
+            )
+            if found is None:
                 return None
-            self._recent = around
-            found = around[node]
         binding = found.binding or self.names.get(found.node.id)
         return found if binding is found.binding else Reference(found.node, found.scope, binding)
 
@@ -388,7 +602,7 @@ class Resolution:
 
     def binding_at(self, site: ast.AST) -> Binding | None:
         """The binding that a node (a name, definition, parameter or alias) belongs to."""
-        for stretch in self.stretches:
+        for stretch in self.around(site):
             found = stretch.sites.get(site)
             if found is not None:
                 return self.names[found] if isinstance(found, str) else found
@@ -400,7 +614,7 @@ class Resolution:
             return self.scopes.get(node)
         if node is self._tree:
             return self.module
-        return next((each.scopes[node] for each in self.stretches if node in each.scopes), None)
+        return next((each.scopes[node] for each in self.around(node) if node in each.scopes), None)
 
     def lookup(self, name: str, scope: Scope) -> Binding | None:
         """What a read of ``name`` in a scope means; ``None`` if the text binds it nowhere in reach."""

@@ -6,7 +6,7 @@ from typing import Final
 
 from scenic.compiler import tree
 
-__all__ = ["FIELDS", "parts", "walk"]
+__all__ = ["FIELDS", "first_line", "parts", "walk"]
 
 _PLAIN: Final = frozenset(
     {
@@ -69,3 +69,9 @@ def walk(node: ast.AST) -> Iterator[ast.AST]:
         inner = parts(part)
         inner.reverse()
         stack.extend(inner)
+
+
+def first_line(statement: ast.stmt) -> int:
+    """The line on which a statement begins; a decorated definition begins with its decorators."""
+    decorators = getattr(statement, "decorator_list", None)
+    return decorators[0].lineno if decorators else statement.lineno

@@ -70,6 +70,7 @@ _LINTS: Final[tuple[PieceRule, ...]] = (
     guards.check_guards,
     instances.check_instances,
     uses.check_replaced,
+    uses.check_unused,
 )
 _PROGRAM_RULES: Final[tuple[ProgramRule, ...]] = (flow.check_end, order.check_order, uses.check_uses)
 

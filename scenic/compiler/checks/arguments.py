@@ -188,10 +188,10 @@ def _own_method(function: ast.expr, context: Context) -> Any:
         return None
     name = function.attr
     # Other classes of the program may replace the method.
-    owners = context.owners.get(name, [])
-    if owners != [binding.scope.parent] or name in context.stored_attributes:
+    own = None if binding.scope.parent is None else binding.scope.parent.bindings.get(name)
+    if own is None or context.owners.get(name) != 1 or name in context.stored_attributes:
         return None
-    sites = owners[0].bindings[name].sites
+    sites = own.sites
     if len(sites) != 1 or not isinstance(sites[0], ast.FunctionDef) or sites[0].decorator_list:
         return None
     found = sites[0]
@@ -247,7 +247,13 @@ def _uncalled(value: ast.expr | None, context: Context) -> Iterator[Diagnostic]:
 
 def _returns(function: ast.FunctionDef, context: Context) -> bool:
     """Whether calls of a function may give anything else than ``None``."""
-    return context.resolution.scopes.get(function) in context.returning
+    scope = context.resolution.scope(function)
+    return any(
+        where is scope and (cls is not ast.Return or node.value is not None)
+        for stretch in context.resolution.around(function)
+        for cls in (ast.Return, ast.Yield, ast.YieldFrom)
+        for node, where in stretch.nodes(cls)
+    )
 
 
 def _count(count: int) -> str:

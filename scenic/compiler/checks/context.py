@@ -1,6 +1,7 @@
 """What every rule is given: the program, what its names mean, and the making of diagnostics."""
 
 import ast
+from collections import Counter
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from functools import cached_property
 from typing import Any, Final
@@ -9,7 +10,7 @@ from weakref import proxy
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.blocks import Block, blocks, position
 from scenic.compiler.checks.classes import Classes
-from scenic.compiler.checks.kept import Kept, Said, changed_names
+from scenic.compiler.checks.kept import Kept, Moves, Said, changed_names
 from scenic.compiler.checks.places import header_span, word_span
 from scenic.compiler.scopes import PROVIDED, Binding, BindingKind, Resolution, Scope, ScopeKind, Stretch
 from scenic.compiler.surroundings import Foreign, Surroundings
@@ -71,7 +72,7 @@ class Context:
         self.brought: Final[Collection[str]] = () if surroundings is None else surroundings.names
         """The names that star imports and the model are known to bring."""
         self.before: Final = before
-        self.said: Final[dict[tuple[str, Stretch], Said]] = {}
+        self.said: Final[dict[tuple[str, tuple[object, ...]], Said]] = {}
         """What was said of each stretch by each group of rules."""
         self.asked: Final[set[str]] = set()
         """The facts about the whole program that rules have asked for."""
@@ -96,13 +97,13 @@ class Context:
     @cached_property
     def kept(self) -> Kept:
         """What was said, for the next version."""
-        return Kept(self._state, self.resolution.names, self.said)
+        return Kept(self._state, self.resolution.names, self.resolution.stretches, self.said)
 
     @cached_property
     def _state(self) -> tuple[object, ...]:
         """What every rule may depend on."""
-        imports = [node for cls in (ast.Import, ast.ImportFrom, scenic.Model) for node, _ in self.nodes(cls)]
         resolution, surroundings = self.resolution, self.surroundings
+        imports = [key for stretch in resolution.stretches for key in stretch.importing]
         modules = None if surroundings is None else surroundings.state
         return (self.source.filename, resolution.wildcard, resolution.reflective, modules, *imports)
 
@@ -122,7 +123,12 @@ class Context:
 
     def is_unchanged(self, stretch: Stretch) -> bool:
         """Whether all that a stretch that stood in the version before may depend on is as it was, but for `fact`."""
-        return self._changed is not None and self._changed.isdisjoint(stretch.named)
+        return self._changed is not None and self._changed.isdisjoint(stretch.used)
+
+    @cached_property
+    def moves(self) -> Moves:
+        """Where the statements of the version before stand now."""
+        return Moves(() if self.before is None else self.before.stretches, self.resolution.stretches)
 
     def follows_error(self, stretch: Stretch) -> bool:
         """Whether the last thing before a stretch that could be a header could not be parsed."""
@@ -176,9 +182,9 @@ class Context:
         return found
 
     @property
-    def owners(self) -> Mapping[str, list[Scope]]:
-        """The classes of the program that define an attribute or method of each name."""
-        found: Mapping[str, list[Scope]] = self.fact("owners")
+    def owners(self) -> Mapping[str, int]:
+        """How many classes of the program define an attribute or method of each name."""
+        found: Mapping[str, int] = self.fact("owners")
         return found
 
     @property
@@ -187,17 +193,15 @@ class Context:
         found: frozenset[str] = self.fact("class names")
         return found
 
-    @property
-    def returning(self) -> frozenset[Scope | None]:
-        """The scopes of the functions whose calls may give anything else than ``None``."""
-        found: frozenset[Scope | None] = self.fact("returning")
-        return found
-
     # What its names mean
 
     def nodes(self, cls: type[ast.AST]) -> Sequence[tuple[Any, Scope]]:
         """All nodes of a class, with their scopes."""
         return self.resolution.nodes(cls)
+
+    def nodes_around(self, node: ast.AST, cls: type[ast.AST]) -> Iterator[Any]:
+        """The nodes of a class that may stand around or in a node: those near it, and maybe others."""
+        return (found for stretch in self.resolution.around(node) for found, _ in stretch.nodes(cls))
 
     @cached_property
     def _last_wildcard(self) -> tuple[int, int]:
@@ -282,15 +286,9 @@ class Context:
         return value if literal and value is not None and self._stands(name.id, value) else None
 
     @cached_property
-    def assigned(self) -> Mapping[ast.AST, ast.expr]:
+    def assigned(self) -> "Assigned":
         """The value of each name that is the whole target of an assignment."""
-        found: dict[ast.AST, ast.expr] = {}
-        for node, _ in self.nodes(ast.Assign):
-            found.update((target, node.value) for target in node.targets if isinstance(target, ast.Name))
-        for node, _ in self.nodes(ast.AnnAssign):
-            if isinstance(node.target, ast.Name) and node.value is not None:
-                found[node.target] = node.value
-        return found
+        return Assigned(self.resolution)
 
     @cached_property
     def imports(self) -> Mapping[ast.AST, tuple[Any, bool, list[Any]]]:
@@ -303,14 +301,11 @@ class Context:
             for alias in statement.names
         }
 
-    @cached_property
+    @property
     def unresolved(self) -> frozenset[str]:
         """The names that are read and mean nothing that is known."""
-        return frozenset(
-            name
-            for name in self.resolution.used
-            if name not in self.resolution.names and name not in PROVIDED and name not in self.brought
-        )
+        found: frozenset[str] = self.fact("unresolved")
+        return found
 
     @cached_property
     def mentions(self) -> Mapping[str, list[tuple[int, int]]]:
@@ -388,43 +383,87 @@ class Context:
         return self.replacement(f"Write `{meant}`", place, meant, certain=certain and is_slip(name, meant))
 
 
+def _united(context: Context, key: str, find: Callable[[Stretch], frozenset[str]]) -> frozenset[str]:
+    """What is found in any stretch."""
+    return frozenset().union(*(each.common(key, find) for each in context.resolution.stretches))
+
+
 def _attributes(context: Context) -> frozenset[str]:
-    return frozenset(node.attr for node, _ in context.nodes(ast.Attribute))
+    return _united(
+        context, "attributes", lambda own: frozenset(node.attr for node, _ in own.nodes(ast.Attribute))
+    )
 
 
 def _stored_attributes(context: Context) -> frozenset[str]:
-    return frozenset(
-        node.attr for node, _ in context.nodes(ast.Attribute) if not isinstance(node.ctx, ast.Load)
+    return _united(
+        context,
+        "stored attributes",
+        lambda own: frozenset(
+            node.attr for node, _ in own.nodes(ast.Attribute) if not isinstance(node.ctx, ast.Load)
+        ),
     )
 
 
 def _given(context: Context) -> frozenset[str]:
-    return frozenset(node.property for node, _ in context.nodes(scenic.SpecifierPhrase))
-
-
-def _owners(context: Context) -> dict[str, list[Scope]]:
-    found: dict[str, list[Scope]] = {}
-    for scope in context.resolution.scopes.values():
-        if scope.kind is ScopeKind.CLASS:
-            for name in scope.bindings:
-                found.setdefault(name, []).append(scope)
-    return found
-
-
-def _returning(context: Context) -> frozenset[Scope | None]:
-    return frozenset(
-        scope
-        for cls in (ast.Return, ast.Yield, ast.YieldFrom)
-        for node, scope in context.nodes(cls)
-        if cls is not ast.Return or node.value is not None
+    return _united(
+        context, "given", lambda own: frozenset(node.property for node, _ in own.nodes(scenic.SpecifierPhrase))
     )
 
 
-def _class_names(context: Context) -> frozenset[str]:
+def _owners(context: Context) -> Mapping[str, int]:
+    found: Counter[str] = Counter()
+    for stretch in context.resolution.stretches:
+        found.update(stretch.common("owners", _owners_in))
+    return found
+
+
+def _owners_in(stretch: Stretch) -> Counter[str]:
+    classes = (scope for scope in stretch.scopes.values() if scope.kind is ScopeKind.CLASS)
+    return Counter(name for scope in classes for name in scope.bindings)
+
+
+def _unresolved(context: Context) -> frozenset[str]:
+    resolution = context.resolution
     return frozenset(
         name
-        for name, binding in context.resolution.names.items()
-        if any(isinstance(site, ast.ClassDef) for site in binding.sites)
+        for name in resolution.used
+        if name not in resolution.names and name not in PROVIDED and name not in context.brought
+    )
+
+
+class Assigned:
+    """The values of names that are the whole targets of assignments, by the nodes of the names."""
+
+    def __init__(self, resolution: Resolution) -> None:
+        self._resolution = resolution
+        self._known: dict[Stretch, Mapping[ast.AST, ast.expr]] = {}
+
+    def get(self, site: ast.AST) -> ast.expr | None:
+        """The value that is assigned to a name there."""
+        for stretch in self._resolution.around(site):
+            if stretch not in self._known:
+                self._known[stretch] = _assigned_in(stretch)
+            value = self._known[stretch].get(site)
+            if value is not None:
+                return value
+        return None
+
+
+def _assigned_in(stretch: Stretch) -> Mapping[ast.AST, ast.expr]:
+    found: dict[ast.AST, ast.expr] = {}
+    for node, _ in stretch.nodes(ast.Assign):
+        found.update((target, node.value) for target in node.targets if isinstance(target, ast.Name))
+    for node, _ in stretch.nodes(ast.AnnAssign):
+        if isinstance(node.target, ast.Name) and node.value is not None:
+            found[node.target] = node.value
+    return found
+
+
+def _class_names(context: Context) -> frozenset[str]:
+    return _united(
+        context,
+        "class names",
+        lambda own: frozenset(name for name, kinds in own.kinds.items() if BindingKind.CLASS in kinds),
     )
 
 
@@ -434,8 +473,8 @@ _FACTS: Final[Mapping[str, Callable[[Context], Any]]] = {
     "class names": _class_names,
     "given": _given,
     "owners": _owners,
-    "returning": _returning,
     "stored attributes": _stored_attributes,
+    "unresolved": _unresolved,
 }
 
 

@@ -62,7 +62,7 @@ def _property(context: Context, node: scenic.PropertyDef) -> Iterator[Diagnostic
                 word_span(context.source, node, attribute),
                 "use `additive`, `dynamic` or `final`",
             )
-    scope = context.resolution.scopes.get(node)
+    scope = context.resolution.scope(node)
     own = None if scope is None else scope.bindings.get("self")
     if own is None or not context.resolution.is_read(own):
         return

@@ -13,7 +13,7 @@ from scenic.compiler.checks.context import Context
 from scenic.compiler.checks.pieces import Piece
 from scenic.compiler.checks.places import word_span
 from scenic.compiler.checks.unfinished import alone_names, begun_word, may_bind_more, text_before, unfinished
-from scenic.compiler.scopes import Binding, BindingKind, Reference, ScopeKind
+from scenic.compiler.scopes import Binding, BindingKind, Reference, Scope, ScopeKind, Stretch
 from scenic.language.diagnostics import Diagnostic, Label
 from scenic.language.names import CONVERSIONS, IMPORTABLE, NAMES, TRACKED, NameKind
 from scenic.language.properties import CLASSES
@@ -56,12 +56,10 @@ def check_names(context: Context, provided: Collection[str]) -> Iterator[Diagnos
     if resolution.wildcard:
         return
     skipped: set[str] | None = None
-    classes: set[ast.expr] = set()
     alone: set[ast.Name] = set()
     being_typed: set[str] = set()
     importing = half_typed = False
     suggestions: dict[str, str | None] = {}
-    elsewhere: dict[str, Binding] | None = None
     missing = [
         reference
         for name in resolution.used
@@ -75,7 +73,6 @@ def check_names(context: Context, provided: Collection[str]) -> Iterator[Diagnos
             continue
         if skipped is None:
             skipped = _skipped_words(context)
-            classes = {node.cls for node, _ in context.nodes(scenic.New)}
             alone = alone_names(context)
             words = {each.id for each in alone}
             importing = any(_is_import(word) for word in words) or _is_import_broken(context)
@@ -87,7 +84,6 @@ def check_names(context: Context, provided: Collection[str]) -> Iterator[Diagnos
                 if isinstance(site, ast.alias)
             )
             being_typed = words | _last_words(context) | {each.name for each in missing_imports}
-            elsewhere = _bound_somewhere(context)
         if name in skipped:
             continue
         if node not in alone and (importing or any(_may_become(word, name) for word in being_typed)):
@@ -95,7 +91,7 @@ def check_names(context: Context, provided: Collection[str]) -> Iterator[Diagnos
         if context.broken:
             # Its binding may be among what is broken: once is enough.
             skipped.add(name)
-        if node in classes:
+        if any(node is new.cls for new in context.nodes_around(node, scenic.New)):
             if name not in suggestions and len(suggestions) < MOST_SUGGESTIONS:
                 suggestions[name] = nearest(name, _classes_in_reach(reference, context))
             if half_typed and suggestions.get(name) is None:
@@ -109,8 +105,9 @@ def check_names(context: Context, provided: Collection[str]) -> Iterator[Diagnos
         if _names_property(context, reference):
             yield _without_self(context, reference)
             continue
-        if elsewhere is not None and name in elsewhere:
-            yield _out_of_reach(context, reference, elsewhere[name])
+        elsewhere = _bound_somewhere(name, context)
+        if elsewhere is not None:
+            yield _out_of_reach(context, reference, elsewhere)
             continue
         if name not in IMPORTABLE and name not in suggestions and len(suggestions) < MOST_SUGGESTIONS:
             own = resolution.names_in_reach(reference.scope).union(context.brought)
@@ -197,14 +194,23 @@ def _missing_imports(context: Context) -> list[Binding]:
     ]
 
 
-def _bound_somewhere(context: Context) -> dict[str, Binding]:
-    """The first binding of each name in any scope but the module's."""
-    found: dict[str, Binding] = {}
-    for scope in sorted(context.resolution.scopes.values(), key=lambda each: position(each.node)):
-        if scope.kind not in (ScopeKind.MODULE, ScopeKind.PROPERTY):
-            for name, binding in scope.bindings.items():
-                found.setdefault(name, binding)
-    return found
+def _bound_somewhere(name: str, context: Context) -> Binding | None:
+    """The first binding of a name in any scope but the module's."""
+    for stretch in context.resolution.stretches:
+        if name in stretch.common("bound within", _bound_within):
+            scopes = [scope for scope in stretch.scopes.values() if _is_told_of(scope) and name in scope.bindings]
+            return min(scopes, key=lambda each: position(each.node)).bindings[name]
+    return None
+
+
+def _bound_within(stretch: Stretch) -> frozenset[str]:
+    return frozenset(
+        name for scope in stretch.scopes.values() if _is_told_of(scope) for name in scope.bindings
+    )
+
+
+def _is_told_of(scope: Scope) -> bool:
+    return scope.kind not in (ScopeKind.MODULE, ScopeKind.PROPERTY)
 
 
 def _out_of_reach(context: Context, reference: Reference, binding: Binding) -> Diagnostic:

@@ -11,7 +11,7 @@ from scenic.compiler.checks.blocks import in_compose, position
 from scenic.compiler.checks.context import Context
 from scenic.compiler.checks.places import word_span
 from scenic.compiler.checks.unfinished import alone_names
-from scenic.compiler.scopes import PROVIDED, Scope, ScopeKind
+from scenic.compiler.scopes import PROVIDED, Scope, ScopeKind, Stretch
 from scenic.language.diagnostics import Diagnostic, Label
 from scenic.language.operators import EGO, OPERATORS
 from scenic.language.specifiers import SPECIFIERS
@@ -56,27 +56,24 @@ def _names(context: Context, starts: list[tuple[int, int]]) -> Iterator[Diagnost
     resolution = context.resolution
     if resolution.wildcard or resolution.reflective or _postpones_annotations(context):
         return
-    module = resolution.module
     body = context.tree.body
     first: dict[str, int] = {}
-    last_lines: dict[str, int] = {}
-    for binding in resolution.names.values():
-        if binding.name not in PROVIDED and binding.name not in context.brought:
-            site = min(binding.sites, key=position) if len(binding.sites) > 1 else binding.sites[0]
-            index = first[binding.name] = _statement(starts, site)
-            last_lines[binding.name] = getattr(body[index], "end_lineno", None) or 0
     early: list[ast.Name] = []
     defined: set[str] = set()
     for stretch in resolution.stretches:
-        for name in stretch.named.keys() - defined:
-            early += [
-                reference.node
-                for reference in stretch.named[name]
-                if reference.scope is module
-                and reference.node.lineno <= last_lines.get(name, -1)
-                and isinstance(reference.node.ctx, ast.Load)
-            ]
-        defined.update(stretch.bound)
+        # What is bound here may be read here before; what is bound only further down is read too early for certain.
+        candidates = {
+            *stretch.common("read early", _read_early),
+            *((stretch.common("read at once", _read_at_once) & resolution.names.keys()) - stretch.kinds.keys()),
+        }
+        for name in candidates - defined - PROVIDED:
+            if name in context.brought:
+                continue
+            if name not in first:
+                first[name] = _statement(starts, min(resolution.names[name].sites, key=position))
+            last_line = getattr(body[first[name]], "end_lineno", None) or 0
+            early += [node for node in _reads_at_once(stretch, name) if node.lineno <= last_line]
+        defined.update(stretch.kinds)
     reported: set[str] = set()
     half_typed = min(map(position, alone_names(context)), default=None)
     for node in sorted(early, key=position):
@@ -112,6 +109,31 @@ def _names(context: Context, starts: list[tuple[int, int]]) -> Iterator[Diagnost
         )
 
 
+def _reads_at_once(stretch: Stretch, name: str) -> Iterator[ast.Name]:
+    """The reads of a name that no scope within the module binds, that are no part of any definition."""
+    return (
+        each.node
+        for each in stretch.named.get(name, ())
+        if each.scope.kind is ScopeKind.MODULE and isinstance(each.node.ctx, ast.Load)
+    )
+
+
+def _read_at_once(stretch: Stretch) -> frozenset[str]:
+    return frozenset(name for name in stretch.read if any(_reads_at_once(stretch, name)))
+
+
+def _read_early(stretch: Stretch) -> frozenset[str]:
+    """The names bound in a stretch that are read there on the line where that first ends, or before."""
+    found = set()
+    for name in stretch.common("read at once", _read_at_once) & stretch.kinds.keys():
+        site = min((site for _, site in stretch.bound[name]), key=position)
+        index = max(0, bisect_right([position(each) for each in stretch.statements], position(site)) - 1)
+        last_line = stretch.statements[index].end_lineno or 0
+        if any(node.lineno <= last_line for node in _reads_at_once(stretch, name)):
+            found.add(name)
+    return frozenset(found)
+
+
 def _ego(context: Context, starts: list[tuple[int, int]]) -> Iterator[Diagnostic]:
     """SC209: a use of the ego, said or implied, before the first assignment to it."""
     if context.resolution.reflective or any("ego".startswith(name.id) for name in alone_names(context)):
@@ -130,8 +152,9 @@ def _ego(context: Context, starts: list[tuple[int, int]]) -> Iterator[Diagnostic
         if not _is_python(statement) and brings(statement):
             # A Scenic module brings its ego along.
             end = min(end, _statement(starts, statement) - 1)
-    uses = list(_uses(context))
     own = [item for item in assignments if not _in_scenario(item[1])]
+    # All that is used after it has been set is right.
+    uses = list(_uses(context, min((node.lineno for node, _ in own), default=None)))
     yield from _ego_of(context, module, context.tree.body, own, uses, end)
     scenarios = context.nodes(scenic.ScenarioDef)
     if own or end < len(context.tree.body):
@@ -197,16 +220,24 @@ def _in_scenario(scope: Scope) -> bool:
     return any(outer.kind in own for outer in scope.ancestors())
 
 
-def _uses(context: Context) -> Iterator[tuple[ast.AST, Scope]]:
-    """Everything that reads the ego, and the scope in which it stands."""
-    for reference in context.resolution.uses("ego"):
-        node = reference.node
-        if isinstance(node.ctx, ast.Load) and node not in context.resolution.tolerated:
-            yield node, reference.scope
-    for node, scope in context.nodes(scenic.Operation):
+def _uses(context: Context, last: int | None) -> Iterator[tuple[ast.AST, Scope]]:
+    """Everything that reads the ego, and the scope in which it stands; of what is after the last line, maybe not all."""
+    for stretch in context.resolution.stretches:
+        if last is not None and stretch.lines and stretch.lines[0] > last:
+            return
+        if stretch.common("uses ego", lambda own: any(_uses_in(own))):
+            tolerated = context.resolution.tolerated
+            yield from ((node, scope) for node, scope in _uses_in(stretch) if node not in tolerated)
+
+
+def _uses_in(stretch: Stretch) -> Iterator[tuple[ast.AST, Scope]]:
+    for reference in stretch.named.get("ego", ()):
+        if isinstance(reference.node.ctx, ast.Load):
+            yield reference.node, reference.scope
+    for node, scope in stretch.nodes(scenic.Operation):
         if node.operator in _OPERATORS and _implied(node, OPERATORS[node.operator].operands):
             yield node, scope
-    for node, scope in context.nodes(scenic.SpecifierPhrase):
+    for node, scope in stretch.nodes(scenic.SpecifierPhrase):
         if node.specifier in _SPECIFIERS:
             declared = SPECIFIERS[node.specifier]
             if declared.reads_ego or _implied(node, declared.operands):

@@ -1,14 +1,14 @@
 """Rules that look at one stretch of the top level at a time, and are asked again only of what has changed."""
 
 import ast
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from functools import cached_property
 from typing import Any, TypeAlias
 
 from scenic.compiler.checks.blocks import Block, blocks
 from scenic.compiler.checks.context import Context
 from scenic.compiler.checks.kept import Said
-from scenic.compiler.scopes import Scope, Stretch
+from scenic.compiler.scopes import Binding, Scope, Stretch
 from scenic.language.diagnostics import Diagnostic
 
 __all__ = ["Piece", "PieceRule", "piecewise"]
@@ -28,7 +28,17 @@ class Piece:
 
     def nodes(self, cls: type[ast.AST]) -> Sequence[tuple[Any, Scope]]:
         """Its nodes of a class, with their scopes."""
-        return self._stretch.nodes.get(cls, ())
+        return self._stretch.nodes(cls)
+
+    @property
+    def scopes(self) -> Collection[Scope]:
+        """The scopes in it."""
+        return self._stretch.scopes.values()
+
+    @property
+    def loaded(self) -> Collection[Binding]:
+        """What is read in it of what scopes within the module bind."""
+        return self._stretch.loaded
 
     @cached_property
     def blocks(self) -> tuple[Block, ...]:
@@ -53,12 +63,18 @@ def piecewise(
     for stretch in context.resolution.stretches:
         go_on()
         known = (
-            None if before is None or not context.is_unchanged(stretch) else before.said.get((group, stretch))
+            before.said.get((group, stretch.keys))
+            if before is not None and context.is_unchanged(stretch)
+            else None
         )
-        if known is None or any(context.fact(name) != value for name, value in known.facts):
+        if known is not None and any(context.fact(name) != value for name, value in known.facts):
+            known = None
+        if known is not None:
+            known = context.moves.of(known, context.source.filename)
+        if known is None:
             context.asked.clear()
             piece = Piece(context, stretch, follows_error=context.follows_error(stretch))
             found = tuple(item for rule in rules for item in rule(piece, context))
             known = Said(found, tuple((name, context.fact(name)) for name in sorted(context.asked)))
-        context.said[group, stretch] = known
+        context.said[group, stretch.keys] = known
         yield from known.found

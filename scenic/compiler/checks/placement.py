@@ -43,8 +43,12 @@ def check_placement(piece: Piece, context: Context) -> Iterator[tuple[ast.AST, D
                     continue
                 for message, help_ in _problems(statement, where):
                     yield statement, context.error("SC201", message, statement, help_)
-    if not any(piece.nodes(cls) for cls in NOTED) or context.broken:
-        return
+    found = list(_misplaced_expressions(piece, context))
+    if found and not context.broken:
+        yield from found
+
+
+def _misplaced_expressions(piece: Piece, context: Context) -> Iterator[tuple[ast.AST, Diagnostic]]:
     later = _evaluated_later(piece)
     for cls in NOTED:
         for node, scope in piece.nodes(cls):

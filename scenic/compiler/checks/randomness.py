@@ -61,7 +61,7 @@ def _is_asked_now(node: ast.expr | ast.stmt, scope: Scope, context: Context) -> 
     """Whether a node is evaluated while the scenario is being built, and nothing there catches what that raises."""
     if scope is not context.resolution.module or where_of(node, scope).place is not Place.TOP:
         return False
-    caught = (each for each, _ in context.nodes(ast.Try) if each.handlers and each.body)
+    caught = (each for each in context.nodes_around(node, ast.Try) if each.handlers and each.body)
     return not (
         _in_condition(node, context) or any(_lies_in(node, each.body[0], each.body[-1]) for each in caught)
     )
@@ -119,7 +119,7 @@ def _in_condition(node: ast.expr | ast.stmt, context: Context) -> bool:
     """Whether an expression is a part of what is evaluated later, on samples."""
     if not isinstance(node, ast.expr):
         return False
-    return any(_lies_in(node, statement, statement) for cls in _LATER for statement, _ in context.nodes(cls))
+    return any(_lies_in(node, statement, statement) for cls in _LATER for statement in context.nodes_around(node, cls))
 
 
 def _lies_in(node: ast.expr | ast.stmt, first: ast.stmt, last: ast.stmt) -> bool:

@@ -11,6 +11,7 @@ from typing import Final
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.context import Context
 from scenic.compiler.forms import declared_forms
+from scenic.compiler.scopes import Stretch
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.keywords import SOFT_KEYWORDS, TEMPORAL_OPERATORS
 from scenic.language.statements import STATEMENTS
@@ -112,12 +113,22 @@ def unfinished(context: Context, node: ast.Name) -> Diagnostic | None:
 
 def alone_names(context: Context) -> set[ast.Name]:
     """The names that nothing binds and that are whole statements, alone or in a row: all have just begun to be typed."""
+    resolution = context.resolution
     return {
         name
-        for node, _ in context.nodes(ast.Expr)
-        for name in _names_in_row(node.value)
-        if (reference := context.resolution.reference(name)) is not None and reference.binding is None
+        for stretch in resolution.stretches
+        if any(each not in resolution.names for each in stretch.common("alone", _alone_in))
+        for name in _alone(stretch)
+        if (reference := resolution.reference(name)) is not None and reference.binding is None
     }
+
+
+def _alone_in(stretch: Stretch) -> frozenset[str]:
+    return frozenset(name.id for name in _alone(stretch))
+
+
+def _alone(stretch: Stretch) -> Iterator[ast.Name]:
+    return (name for node, _ in stretch.nodes(ast.Expr) for name in _names_in_row(node.value))
 
 
 def _names_in_row(value: ast.expr) -> Iterator[ast.Name]:

@@ -19,7 +19,7 @@ from scenic.language.names import NAMES, NameKind
 from scenic.language.spans import Span
 from scenic.language.spelling import is_slip
 
-__all__ = ["check_replaced", "check_uses"]
+__all__ = ["check_replaced", "check_unused", "check_uses"]
 
 _PYTHON_MODULES: Final = sys.stdlib_module_names | {"numpy", "scipy", "shapely", "trimesh"}
 """Modules that are certainly no Scenic modules: importing one of those has effects, used or not."""
@@ -44,17 +44,39 @@ _HIDING: Final = frozenset(
 
 
 def check_uses(context: Context) -> Iterator[Diagnostic]:
-    """SC205 to SC208."""
-    certain = not (context.resolution.reflective or context.broken)
-    is_read = context.resolution.is_read
-    for scope in context.resolution.scopes.values():
-        for binding in context.resolution.bindings(scope).values():
+    """SC206, SC207 and SC208, of what the module binds and of imports."""
+    resolution = context.resolution
+    for name in resolution.names.keys() & NAMES.keys():
+        yield from _hidden(resolution.names[name], context)
+    if resolution.reflective or context.broken:
+        return
+    imported: dict[Binding, Scope] = {}
+    for cls in (ast.Import, ast.ImportFrom):
+        for node, _ in context.nodes(cls):
+            for alias in node.names:
+                binding = resolution.binding_at(alias)
+                if binding is not None:
+                    imported[binding] = binding.scope
+    for binding, scope in imported.items():
+        if _is_imported(binding) and not resolution.is_read(binding) and _is_of_concern(binding, context):
+            yield from _unused_import(binding, scope, context)
+    yield from _replaced(context, context.tree.body)
+
+
+def check_unused(piece: Piece, context: Context) -> Iterator[Diagnostic]:
+    """SC205 and SC207, of what other scopes than the module's bind."""
+    for scope in piece.scopes:
+        local = scope.kind in (ScopeKind.FUNCTION, ScopeKind.BEHAVIOR, ScopeKind.MONITOR)
+        for binding in scope.bindings.values():
             if binding.name in NAMES:
                 yield from _hidden(binding, context)
-            if certain and not is_read(binding):
+            if (
+                local
+                and binding.kinds == {BindingKind.VARIABLE}
+                and binding not in piece.loaded
+                and not context.resolution.reflective
+            ):
                 yield from _unused(binding, scope, context)
-    if certain:
-        yield from _replaced(context, context.tree.body)
 
 
 def check_replaced(piece: Piece, context: Context) -> Iterator[Diagnostic]:
@@ -80,21 +102,27 @@ def _hidden(binding: Binding, context: Context) -> Iterator[Diagnostic]:
     )
 
 
-def _unused(binding: Binding, scope: Scope, context: Context) -> Iterator[Diagnostic]:
-    """SC205 and SC206, about a binding that is never read."""
+def _is_imported(binding: Binding) -> bool:
+    return binding.kinds <= {BindingKind.MODULE, BindingKind.IMPORTED}
+
+
+def _is_of_concern(binding: Binding, context: Context) -> bool:
+    """Whether it would be a mistake not to read a binding."""
     # What is assigned to the word of a guard was meant to be compared, as the parser says.
     if binding.name.startswith("_") or binding.name in scenic.GUARDS:
-        return
-    if any(is_slip(name, binding.name) for name in context.unresolved):
-        return  # It is that name that is wrong.
-    if binding.kinds <= {BindingKind.MODULE, BindingKind.IMPORTED}:
-        yield from _unused_import(binding, scope, context)
-    elif (
-        binding.kinds == {BindingKind.VARIABLE}
-        and scope.kind in (ScopeKind.FUNCTION, ScopeKind.BEHAVIOR, ScopeKind.MONITOR)
+        return False
+    # It may be another name that is wrong.
+    return not any(is_slip(name, binding.name) for name in context.unresolved)
+
+
+def _unused(binding: Binding, scope: Scope, context: Context) -> Iterator[Diagnostic]:
+    """SC205, about a variable that is never read."""
+    if (
         # The variables of behaviors and monitors can be read from outside, as attributes.
-        and (scope.kind is ScopeKind.FUNCTION or binding.name not in context.attributes)
+        (scope.kind is ScopeKind.FUNCTION or binding.name not in context.attributes)
         and all(_plain(context.assigned.get(site)) for site in binding.sites)
+        and not context.broken
+        and _is_of_concern(binding, context)
     ):
         first = min(binding.sites, key=position)
         yield context.warning(
