@@ -9,7 +9,6 @@ import ast
 from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 from scenic.compiler.actions import Problem
 from scenic.compiler.generated import WORDS
@@ -60,6 +59,8 @@ def revise(text: str, before: Revision | None = None, *, filename: str = "<strin
     """
     lines = tuple(text.split("\n"))
     longest: int | None = None
+    # A text with a mistake may be parsed several times.
+    shifted: dict[int, list[ast.stmt]] = {}
     careful = None if before is None else before.careful
 
     def reread(text: str) -> Tokens:
@@ -79,7 +80,9 @@ def revise(text: str, before: Revision | None = None, *, filename: str = "<strin
             again = lex_again(text, lines, before.plain, change, _plainly)
             plain, splice = (_plainly(text), None) if again is None else again
             tokens = plain.tokens
-            parsed = parse_tokens(tokens, lambda read: _known(read, before.parsed, change, splice), reread)
+            parsed = parse_tokens(
+                tokens, lambda read: _known(read, before.parsed, change, splice, shifted), reread
+            )
             if splice is not None and before.result.longest_line <= len(tokens.kinds):
                 fresh = tokens.kinds[splice.begin : splice.end + splice.moved]
                 longest = max(before.result.longest_line, tokens_of_longest_line(fresh))
@@ -136,8 +139,23 @@ def _carefully(text: str) -> Lexed:
 # Statements
 
 
-def _known(tokens: Tokens, before: Parsed, change: Change, splice: Splice | None) -> Statements:
-    """The statements of the version before that stand in these tokens too: by their first token."""
+def _known(
+    tokens: Tokens,
+    before: Parsed,
+    change: Change,
+    splice: Splice | None,
+    shifted: dict[int, list[ast.stmt]],
+) -> Statements:
+    """The statements of the version before that stand in these tokens too: by their first token.
+
+    ``shifted`` are copies of such statements where they stand now, by where their first tokens stood.
+    """
+
+    def moved(start: int, statements: list[ast.stmt]) -> list[ast.stmt]:
+        if start not in shifted:
+            shifted[start] = [_shifted(each, change.shift) for each in statements]
+        return shifted[start]
+
     old = before.tokens
     wrong = _wrong_lines(before)
     if splice is not None and not (splice.tokens is tokens and splice.old is old and not wrong):
@@ -151,7 +169,7 @@ def _known(tokens: Tokens, before: Parsed, change: Change, splice: Splice | None
                 found[start] = known
                 continue
             if change.shift:
-                statements = [_shifted(each, change.shift) for each in statements]
+                statements = moved(start, statements)
             found[start + splice.moved] = (statements, stop + splice.moved)
             continue
         line, last_line = old.lines[start], old.end_lines[stop - 1]
@@ -177,7 +195,7 @@ def _known(tokens: Tokens, before: Parsed, change: Change, splice: Splice | None
         if tokens.lines[begin] != line + shift:
             continue
         if shift:
-            statements = [_shifted(each, shift) for each in statements]
+            statements = moved(start, statements)
         found[begin] = (statements, begin + count)
     return found
 
@@ -201,20 +219,28 @@ def _lines_of(problem: Problem) -> set[int]:
     return {line for place in places for line in (place[0], place[2])}
 
 
-def _shifted(node: Any, by: int) -> Any:
-    """A copy of a tree, so many lines further down."""
+def _shifted(node: ast.stmt, by: int) -> ast.stmt:
+    """A copy of a tree, so many lines further down, however deep it is."""
     new = node.__class__.__new__(node.__class__)
-    values = new.__dict__
-    values.update(node.__dict__)
-    if "lineno" in values:
-        values["lineno"] += by
-        end = values.get("end_lineno")
-        if end is not None:
-            values["end_lineno"] = end + by
-    for field in FIELDS[node.__class__]:
-        value = values.get(field)
-        if value.__class__ is list:
-            values[field] = [_shifted(part, by) if isinstance(part, ast.AST) else part for part in value]
-        elif isinstance(value, ast.AST):
-            values[field] = _shifted(value, by)
+    stack: list[tuple[ast.AST, ast.AST]] = [(node, new)]
+    while stack:
+        old, copy = stack.pop()
+        values = copy.__dict__ = {**old.__dict__}
+        if "lineno" in values:
+            values["lineno"] += by
+            end = values.get("end_lineno")
+            if end is not None:
+                values["end_lineno"] = end + by
+        for field in FIELDS[old.__class__]:
+            value = values.get(field)
+            cls = value.__class__
+            if cls is list:
+                parts = values[field] = [*value]
+                for index, part in enumerate(parts):
+                    if part.__class__ in FIELDS:
+                        parts[index] = inner = part.__class__.__new__(part.__class__)
+                        stack.append((part, inner))
+            elif cls in FIELDS:
+                values[field] = inner = cls.__new__(cls)
+                stack.append((value, inner))
     return new

@@ -12,7 +12,6 @@ from typing import Any, Final, NamedTuple
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks import NOTED, Context, check
-from scenic.compiler.checks.blocks import position
 from scenic.compiler.checks.kept import Kept
 from scenic.compiler.scopes import (
     PROVIDED,
@@ -28,7 +27,7 @@ from scenic.compiler.scopes import (
     key_of,
 )
 from scenic.compiler.surroundings import SurroundingsOf
-from scenic.compiler.traversal import FIELDS, parts, walk
+from scenic.compiler.traversal import FIELDS, parts, position, walk
 from scenic.language.garbage import no_garbage_collection
 from scenic.language.names import RESERVED, TRACKED
 from scenic.language.source import Source

@@ -14,7 +14,7 @@ from functools import cached_property
 from typing import Any, Final, TypeVar
 
 from scenic.compiler import tree as scenic
-from scenic.compiler.traversal import first_line
+from scenic.compiler.traversal import first_line, position
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.names import NAMES, TRACKED
 
@@ -116,6 +116,13 @@ class Binding:
         if self._sites is None:
             self._sites = [site for each in self.stretches or () for _, site in each.bound[self.name]]
         return self._sites
+
+    @property
+    def first_site(self) -> Any:
+        """The site that comes first in the text."""
+        if self._sites is None and self.stretches:
+            return min((site for _, site in self.stretches[0].bound[self.name]), key=position)
+        return min(self.sites, key=position)
 
 
 @dataclass(slots=True, eq=False)

@@ -2,11 +2,11 @@
 
 import ast
 from collections.abc import Iterator
-from typing import Final
+from typing import Any, Final
 
 from scenic.compiler import tree
 
-__all__ = ["FIELDS", "first_line", "parts", "walk"]
+__all__ = ["FIELDS", "first_line", "parts", "position", "walk"]
 
 _PLAIN: Final = frozenset(
     {
@@ -75,3 +75,8 @@ def first_line(statement: ast.stmt) -> int:
     """The line on which a statement begins; a decorated definition begins with its decorators."""
     decorators = getattr(statement, "decorator_list", None)
     return decorators[0].lineno if decorators else statement.lineno
+
+
+def position(node: Any) -> tuple[int, int]:
+    """Where a node begins, for comparing; nodes without a place come first."""
+    return getattr(node, "lineno", 0), getattr(node, "col_offset", 0)

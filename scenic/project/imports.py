@@ -7,10 +7,9 @@ from functools import cached_property
 from typing import Any, Final
 
 from scenic.compiler import tree as scenic
-from scenic.compiler.checks.blocks import position
 from scenic.compiler.checks.places import header_span, word_span
 from scenic.compiler.scopes import Resolution
-from scenic.compiler.traversal import walk
+from scenic.compiler.traversal import position, walk
 from scenic.language.diagnostics import Diagnostic, Edit, Fix, Severity
 from scenic.language.libraries import FAMILIES, LIBRARIES
 from scenic.language.source import Source

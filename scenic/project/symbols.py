@@ -7,9 +7,9 @@ from enum import StrEnum
 from typing import Any, Final
 
 from scenic.compiler import tree as scenic
-from scenic.compiler.checks.blocks import position
 from scenic.compiler.checks.places import header_span
 from scenic.compiler.scopes import Binding, BindingKind, ScopeKind
+from scenic.compiler.traversal import position
 from scenic.language.names import NAMES, TRACKED, NameKind
 from scenic.language.properties import CLASSES
 from scenic.language.spans import Span

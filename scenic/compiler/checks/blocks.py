@@ -7,9 +7,10 @@ from typing import Any, Final, NamedTuple
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.scopes import Scope, ScopeKind
+from scenic.compiler.traversal import position
 from scenic.language.statements import Place
 
-__all__ = ["DYNAMIC", "Block", "Where", "blocks", "in_compose", "position", "where_of"]
+__all__ = ["DYNAMIC", "Block", "Where", "blocks", "in_compose", "where_of"]
 
 DYNAMIC: Final = frozenset({Place.BEHAVIOR, Place.MONITOR, Place.COMPOSE})
 """Where statements run step by step during a simulation."""
@@ -149,8 +150,3 @@ def where_of(node: Any, scope: Scope) -> Where:
 def in_compose(node: Any, scenario: Any) -> bool:
     """Whether a node of a scenario stands in its compose block, which is always the last."""
     return bool(scenario.compose) and position(node) >= position(scenario.compose[0])
-
-
-def position(node: Any) -> tuple[int, int]:
-    """Where a node begins, for comparing; nodes without a place come first."""
-    return getattr(node, "lineno", 0), getattr(node, "col_offset", 0)

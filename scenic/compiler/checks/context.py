@@ -8,12 +8,13 @@ from typing import Any, Final
 from weakref import proxy
 
 from scenic.compiler import tree as scenic
-from scenic.compiler.checks.blocks import Block, blocks, position
+from scenic.compiler.checks.blocks import Block, blocks
 from scenic.compiler.checks.classes import Classes
 from scenic.compiler.checks.kept import Kept, Moves, Said, changed_names
 from scenic.compiler.checks.places import header_span, word_span
 from scenic.compiler.scopes import PROVIDED, Binding, BindingKind, Resolution, Scope, ScopeKind, Stretch
 from scenic.compiler.surroundings import Foreign, Surroundings
+from scenic.compiler.traversal import position
 from scenic.language.diagnostics import Diagnostic, Edit, Fix, Label, Severity
 from scenic.language.source import Source
 from scenic.language.spans import Span
@@ -406,7 +407,9 @@ def _stored_attributes(context: Context) -> frozenset[str]:
 
 def _given(context: Context) -> frozenset[str]:
     return _united(
-        context, "given", lambda own: frozenset(node.property for node, _ in own.nodes(scenic.SpecifierPhrase))
+        context,
+        "given",
+        lambda own: frozenset(node.property for node, _ in own.nodes(scenic.SpecifierPhrase)),
     )
 
 

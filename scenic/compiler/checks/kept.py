@@ -104,7 +104,11 @@ def changed_names(
     changed = {*before.keys() ^ after.keys()}
     for name, binding in after.items():
         old = before.get(name)
-        if old is not None and old.stretches != binding.stretches and _statements(old) != _statements(binding):
+        if (
+            old is not None
+            and old.stretches != binding.stretches
+            and _statements(old) != _statements(binding)
+        ):
             changed.add(name)
     if not changed:
         return frozenset()

@@ -5,9 +5,10 @@ from collections.abc import Iterator
 from typing import Any, Final
 
 from scenic.compiler import tree as scenic
-from scenic.compiler.checks.blocks import DYNAMIC, position, where_of
+from scenic.compiler.checks.blocks import DYNAMIC, where_of
 from scenic.compiler.checks.context import Context, NodeRule
 from scenic.compiler.scopes import Scope
+from scenic.compiler.traversal import position
 from scenic.language.diagnostics import Diagnostic, Edit, Fix
 from scenic.language.spans import Span
 from scenic.language.statements import Place

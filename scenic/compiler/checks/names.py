@@ -8,12 +8,12 @@ from typing import Any, Final
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.arguments import kind_of
-from scenic.compiler.checks.blocks import position
 from scenic.compiler.checks.context import Context
 from scenic.compiler.checks.pieces import Piece
 from scenic.compiler.checks.places import word_span
 from scenic.compiler.checks.unfinished import alone_names, begun_word, may_bind_more, text_before, unfinished
 from scenic.compiler.scopes import Binding, BindingKind, Reference, Scope, ScopeKind, Stretch
+from scenic.compiler.traversal import position
 from scenic.language.diagnostics import Diagnostic, Label
 from scenic.language.names import CONVERSIONS, IMPORTABLE, NAMES, TRACKED, NameKind
 from scenic.language.properties import CLASSES
@@ -198,7 +198,9 @@ def _bound_somewhere(name: str, context: Context) -> Binding | None:
     """The first binding of a name in any scope but the module's."""
     for stretch in context.resolution.stretches:
         if name in stretch.common("bound within", _bound_within):
-            scopes = [scope for scope in stretch.scopes.values() if _is_told_of(scope) and name in scope.bindings]
+            scopes = [
+                scope for scope in stretch.scopes.values() if _is_told_of(scope) and name in scope.bindings
+            ]
             return min(scopes, key=lambda each: position(each.node)).bindings[name]
     return None
 
@@ -226,7 +228,7 @@ def _out_of_reach(context: Context, reference: Reference, binding: Binding) -> D
     else:
         within = f"the {scope.kind} `{scope.name}`"
         help_ = "what is bound in there exists only there: bind the name here, or return the value"
-    first = min(binding.sites, key=position)
+    first = binding.first_site
     return context.error(
         "SC202",
         f"the name `{name}` is not defined here, only in {within}",

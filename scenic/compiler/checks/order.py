@@ -7,11 +7,12 @@ from collections.abc import Iterator
 from typing import Any, Final
 
 from scenic.compiler import tree as scenic
-from scenic.compiler.checks.blocks import in_compose, position
+from scenic.compiler.checks.blocks import in_compose
 from scenic.compiler.checks.context import Context
 from scenic.compiler.checks.places import word_span
 from scenic.compiler.checks.unfinished import alone_names
 from scenic.compiler.scopes import PROVIDED, Scope, ScopeKind, Stretch
+from scenic.compiler.traversal import position
 from scenic.language.diagnostics import Diagnostic, Label
 from scenic.language.operators import EGO, OPERATORS
 from scenic.language.specifiers import SPECIFIERS
@@ -64,13 +65,16 @@ def _names(context: Context, starts: list[tuple[int, int]]) -> Iterator[Diagnost
         # What is bound here may be read here before; what is bound only further down is read too early for certain.
         candidates = {
             *stretch.common("read early", _read_early),
-            *((stretch.common("read at once", _read_at_once) & resolution.names.keys()) - stretch.kinds.keys()),
+            *(
+                (stretch.common("read at once", _read_at_once) & resolution.names.keys())
+                - stretch.kinds.keys()
+            ),
         }
         for name in candidates - defined - PROVIDED:
             if name in context.brought:
                 continue
             if name not in first:
-                first[name] = _statement(starts, min(resolution.names[name].sites, key=position))
+                first[name] = _statement(starts, resolution.names[name].first_site)
             last_line = getattr(body[first[name]], "end_lineno", None) or 0
             early += [node for node in _reads_at_once(stretch, name) if node.lineno <= last_line]
         defined.update(stretch.kinds)
@@ -99,7 +103,7 @@ def _names(context: Context, starts: list[tuple[int, int]]) -> Iterator[Diagnost
         if context.binding(node) is not binding:
             continue
         reported.add(name)
-        site = min(binding.sites, key=position)
+        site = binding.first_site
         yield context.error(
             "SC204",
             f"`{name}` is used before it is defined",

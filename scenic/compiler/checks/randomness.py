@@ -119,7 +119,11 @@ def _in_condition(node: ast.expr | ast.stmt, context: Context) -> bool:
     """Whether an expression is a part of what is evaluated later, on samples."""
     if not isinstance(node, ast.expr):
         return False
-    return any(_lies_in(node, statement, statement) for cls in _LATER for statement in context.nodes_around(node, cls))
+    return any(
+        _lies_in(node, statement, statement)
+        for cls in _LATER
+        for statement in context.nodes_around(node, cls)
+    )
 
 
 def _lies_in(node: ast.expr | ast.stmt, first: ast.stmt, last: ast.stmt) -> bool:

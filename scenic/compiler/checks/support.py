@@ -5,11 +5,12 @@ from collections.abc import Container, Iterator
 from typing import Any, Final
 
 from scenic.compiler import tree as scenic
-from scenic.compiler.checks.blocks import in_compose, position
+from scenic.compiler.checks.blocks import in_compose
 from scenic.compiler.checks.context import Context
 from scenic.compiler.checks.instances import missing_new
 from scenic.compiler.checks.pieces import Piece
 from scenic.compiler.scopes import BindingKind, Scope, ScopeKind
+from scenic.compiler.traversal import position
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.keywords import TEMPORAL_OPERATORS
 from scenic.language.names import NAMES

@@ -8,12 +8,11 @@ from typing import Any, Final
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.arguments import kind_of
-from scenic.compiler.checks.blocks import position
 from scenic.compiler.checks.context import DEFINITIONS, Context
 from scenic.compiler.checks.pieces import Piece
 from scenic.compiler.checks.places import word_span
 from scenic.compiler.scopes import Binding, BindingKind, Scope, ScopeKind
-from scenic.compiler.traversal import walk
+from scenic.compiler.traversal import position, walk
 from scenic.language.diagnostics import Diagnostic, Edit, Fix, Label
 from scenic.language.names import NAMES, NameKind
 from scenic.language.spans import Span
@@ -93,7 +92,7 @@ def _hidden(binding: Binding, context: Context) -> Iterator[Diagnostic]:
     declared = NAMES[binding.name]
     if declared.kind in _HIDEABLE or not binding.kinds <= _HIDING or binding.scope.kind is ScopeKind.CLASS:
         return
-    first = min(binding.sites, key=position)
+    first = binding.first_site
     yield context.warning(
         "SC207",
         f"`{binding.name}` hides the {declared.kind} of the language with that name",
@@ -124,7 +123,7 @@ def _unused(binding: Binding, scope: Scope, context: Context) -> Iterator[Diagno
         and not context.broken
         and _is_of_concern(binding, context)
     ):
-        first = min(binding.sites, key=position)
+        first = binding.first_site
         yield context.warning(
             "SC205",
             f"the variable `{binding.name}` is never read",
