@@ -126,9 +126,17 @@ def session(lines: int, edits: int, folder: Path) -> None:
         client.published(uri, version=edit("\n"))
         return time.perf_counter() - start
 
+    def bracket(index: int) -> float:
+        start = time.perf_counter()
+        change = ((line, 0), (line, 1), "") if index % 2 else ((line, 0), (line, 0), "(")
+        client.published(uri, version=client.change(uri, change))
+        return time.perf_counter() - start
+
     print(f"  diagnostics after a keystroke    {measured(client, edits, diagnostics)}")
-    client.change(uri, text)
+    client.published(uri, version=client.change(uri, text))
     print(f"  diagnostics after a new line     {measured(client, edits, line_end)}")
+    client.published(uri, version=client.change(uri, text))
+    print(f"  after a bracket is typed, deleted {measured(client, edits, bracket)}")
     # Elsewhere a bracket is open.
     client.published(uri, version=client.change(uri, text.replace("def f5(a, b=1)", "def f5(a, b=1")))
     print(f"  the same in a broken text        {measured(client, edits, diagnostics)}")

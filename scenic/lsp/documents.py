@@ -77,18 +77,32 @@ def changed(text: str, changes: Sequence[Any], encoding: Encoding) -> str:
             text = new
             continue
         start, end = reading.range_of(changes, index, "range")
-        starts = [0, *(found.end() for found in _LINE_END.finditer(text))]
-        first = _offset(text, starts, *start, encoding)
-        text = text[:first] + new + text[max(first, _offset(text, starts, *end, encoding)) :]
+        first, last = (_offset(text, *place, encoding) for place in (start, end))
+        text = text[:first] + new + text[max(first, last) :]
     return text
 
 
-def _offset(text: str, starts: Sequence[int], line: int, character: int, encoding: Encoding) -> int:
-    if line >= len(starts):
+def _line(text: str, line: int) -> tuple[int, int] | None:
+    """Where a line begins and ends, without its line end; ``None`` if there is no such line."""
+    if "\r" not in text:
+        parts = text.split("\n", line)
+        if len(parts) <= line:
+            return None
+        begin = len(text) - len(parts[-1])
+        end = text.find("\n", begin)
+        return begin, len(text) if end < 0 else end
+    ends = list(_LINE_END.finditer(text))
+    if line > len(ends):
+        return None
+    return ends[line - 1].end() if line else 0, ends[line].start() if line < len(ends) else len(text)
+
+
+def _offset(text: str, line: int, character: int, encoding: Encoding) -> int:
+    found = _line(text, line)
+    if found is None:
         return len(text)
-    begin = starts[line]
-    end = starts[line + 1] if line + 1 < len(starts) else len(text)
-    content = text[begin:end].rstrip("\r\n") if line + 1 < len(starts) else text[begin:end]
+    begin, end = found
+    content = text[begin:end]
     if content.isascii() or encoding is Encoding.UTF32:
         return begin + min(character, len(content))
     seen = 0
@@ -96,4 +110,4 @@ def _offset(text: str, starts: Sequence[int], line: int, character: int, encodin
         seen += units(each, encoding)
         if seen > character:
             return begin + column
-    return begin + len(content)
+    return end
