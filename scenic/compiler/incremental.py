@@ -9,6 +9,7 @@ import ast
 from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from scenic.compiler.actions import Problem
 from scenic.compiler.generated import WORDS
@@ -221,7 +222,7 @@ def _lines_of(problem: Problem) -> set[int]:
 
 def _shifted(node: ast.stmt, by: int) -> ast.stmt:
     """A copy of a tree, so many lines further down, however deep it is."""
-    new = node.__class__.__new__(node.__class__)
+    new: ast.stmt = _empty(node)
     stack: list[tuple[ast.AST, ast.AST]] = [(node, new)]
     while stack:
         old, copy = stack.pop()
@@ -232,15 +233,20 @@ def _shifted(node: ast.stmt, by: int) -> ast.stmt:
             if end is not None:
                 values["end_lineno"] = end + by
         for field in FIELDS[old.__class__]:
-            value = values.get(field)
+            value: Any = values.get(field)
             cls = value.__class__
             if cls is list:
                 parts = values[field] = [*value]
                 for index, part in enumerate(parts):
                     if part.__class__ in FIELDS:
-                        parts[index] = inner = part.__class__.__new__(part.__class__)
+                        parts[index] = inner = _empty(part)
                         stack.append((part, inner))
             elif cls in FIELDS:
-                values[field] = inner = cls.__new__(cls)
+                values[field] = inner = _empty(value)
                 stack.append((value, inner))
     return new
+
+
+def _empty(node: Any) -> Any:
+    """A node of the same class, of which nothing is known."""
+    return node.__class__.__new__(node.__class__)

@@ -8,7 +8,7 @@ from typing import Any, Final
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.places import header_span, word_span
-from scenic.compiler.scopes import Resolution
+from scenic.compiler.scopes import BindingKind, Resolution, Stretch
 from scenic.compiler.traversal import position, walk
 from scenic.language.diagnostics import Diagnostic, Edit, Fix, Severity
 from scenic.language.libraries import FAMILIES, LIBRARIES
@@ -240,19 +240,18 @@ class Imports:
         imported = {
             binding.name
             for binding in self._resolution.names.values()
-            if all(isinstance(site, ast.alias) for site in binding.sites)
+            if binding.kinds <= {BindingKind.MODULE, BindingKind.IMPORTED}
         }
         if not imported:
             return
-        for node, _ in self._resolution.nodes(ast.Attribute):
-            base = node.value
-            while isinstance(base, ast.Attribute):
-                base = base.value
-            if (
-                not isinstance(base, ast.Name)
-                or base.id not in imported
-                or not isinstance(node.ctx, ast.Load)
-            ):
+        reads = (
+            read
+            for stretch in self._resolution.stretches
+            if not imported.isdisjoint(stretch.common("bases", _bases))
+            for read in _attributes(stretch)
+        )
+        for node, base in reads:
+            if base not in imported:
                 continue
             home = self._module(node.value)
             if home is None or home.is_missing or home.kind is ModuleKind.NAMESPACE:
@@ -358,3 +357,17 @@ def _shown(folder: str, own: str) -> str:
     except ValueError:  # on another drive
         return folder
     return folder if relative.startswith(os.path.join(os.pardir, os.pardir)) else relative
+
+
+def _attributes(stretch: Stretch) -> Iterator[tuple[ast.Attribute, str]]:
+    """The attributes that are read, however deep, of what names mean; with the names."""
+    for node, _ in stretch.nodes(ast.Attribute):
+        base = node.value
+        while isinstance(base, ast.Attribute):
+            base = base.value
+        if isinstance(base, ast.Name) and isinstance(node.ctx, ast.Load):
+            yield node, base.id
+
+
+def _bases(stretch: Stretch) -> frozenset[str]:
+    return frozenset(name for _, name in _attributes(stretch))

@@ -2,14 +2,16 @@
 
 import ast
 import random
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 import pytest
 
 from scenic.compiler.check import check_again, check_text
+from scenic.compiler.compile import Checked
 from scenic.compiler.incremental import revise
 from scenic.compiler.resolver import bind, bind_again
-from scenic.compiler.scopes import Binding, Reference
+from scenic.compiler.scopes import Binding, Reference, Resolution
 from scenic.language.source import Source
 from scenic.project.index import Project
 from scenic.project.surroundings import surroundings_in
@@ -231,6 +233,71 @@ def test_little_is_looked_at_again() -> None:
     assert after.kept is not None
     fresh = [key for key, said in after.kept.said.items() if before.kept.said.get(key) is not said]
     assert 0 < len(fresh) <= 6
+
+
+def versions(texts: Iterable[str]) -> Iterator[tuple[Resolution, Checked]]:
+    """What is made of one version after the other, each held against a fresh check."""
+    revision, names, checked = None, None, None
+    for text in texts:
+        revision = revise(text, revision, filename="f")
+        names = bind_again(revision.result.tree, names)
+        checked = check_again(revision.result, Source(text, "f"), resolution=names, before=checked)
+        assert checked.diagnostics == check_text(text, filename="f")
+        yield names, checked
+
+
+def test_what_only_moves_is_not_looked_at_again() -> None:
+    lines = [
+        f"class C{index}(Object): width: {index}\nx{index} = new C{index} at {index}" for index in range(100)
+    ]
+    lines[80] = "def f(): y = 1"  # A warning, which moves.
+    more = [*lines[:50], "", *lines[50:]]
+    less = [*lines[:20], *lines[22:]]
+    (_, before), (names, after), _ = versions("\n".join(each) for each in (lines, more, less))
+    assert before.kept is not None
+    assert after.kept is not None
+    assert before.kept.said.keys() == after.kept.said.keys()
+    assert [item.span.line for item in (*before.diagnostics, *after.diagnostics) if item.span] == [161, 162]
+    looked_at = [each for each in names.stretches if each._contents is not None]
+    assert len(looked_at) <= len(names.stretches) // 2 + 1
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_the_same_after_lines_are_inserted_and_taken_away(seed: int) -> None:
+    chance = random.Random(seed)
+    lines = [chance.choice(STATEMENTS).replace("\\n", "\n") for _ in range(90)]
+
+    def texts() -> Iterator[str]:
+        for _ in range(20):
+            yield "\n".join(lines)
+            index = chance.randrange(len(lines))
+            kind = chance.random()
+            if kind < 0.6 or not lines[index]:
+                lines.insert(index, chance.choice(["", "# a comment", "x = (", "\n\n"]))
+            elif kind < 0.8:
+                lines.insert(chance.randrange(len(lines)), lines.pop(index))
+            else:
+                del lines[index]
+
+    for _ in versions(texts()):
+        pass
+
+
+def test_what_is_nested_deeply_moves() -> None:
+    text = "x = " + "1 + " * 900 + "1\ny = " + "(" * 90 + "z" + ")" * 90
+    for names, _ in versions([text, "\n" + text, "\n\n" + text]):
+        assert {*names.names} == {"x", "y"}
+
+
+def test_labels_follow_what_they_name() -> None:
+    # The label of what is said at the end names a place at the beginning.
+    lines = ["def f(a): pass", *(f"x{index} = {index}" for index in range(60)), "f()"]
+    texts = [lines, [*lines[:30], "", *lines[30:]], ["", *lines], [*lines[:-1], "", lines[-1]], lines[1:]]
+    found = [
+        item for _, checked in versions("\n".join(each) for each in texts) for item in checked.diagnostics
+    ]
+    places = [(item.span.line, *(label.span.line for label in item.labels)) for item in found if item.span]
+    assert places == [(62, 1), (63, 1), (63, 2), (63, 1), (61,)]
 
 
 @pytest.mark.parametrize(
