@@ -13,7 +13,7 @@ from typing import Any, Final
 from scenic.compiler import tree as scenic
 from scenic.compiler.generated import WORDS
 from scenic.compiler.scopes import Binding, BindingKind, ScopeKind
-from scenic.compiler.tokens import FSTRING_MIDDLE, STRING
+from scenic.compiler.tokens import FSTRING_END, FSTRING_MIDDLE, FSTRING_START, STRING
 from scenic.compiler.traversal import walk
 from scenic.ide import descriptions, documentation
 from scenic.ide.continuations import Continuation, Continuations, PhraseKind, continuations
@@ -25,7 +25,7 @@ from scenic.language.properties import CLASSES
 from scenic.language.spans import Span
 from scenic.language.specifiers import SPECIFIERS
 from scenic.language.statements import STATEMENTS, Place
-from scenic.project.classes import Class, class_of, class_of_symbol, meaning, module_behind
+from scenic.project.classes import Class, Member, class_of, class_of_symbol, meaning, module_behind
 from scenic.project.index import Project
 from scenic.project.modules import Module
 from scenic.project.queries import call_signature
@@ -87,8 +87,16 @@ _EXPRESSIONS: Final = frozenset(
 )
 _RUNNING: Final = frozenset({"do", "choose", "shuffle"})
 _TARGETS: Final = (CompletionKind.BEHAVIOR, CompletionKind.SCENARIO)
+_NEVER_RUN: Final = frozenset({CompletionKind.CLASS, CompletionKind.MONITOR})
+_OWN: Final = 4
+"""The rank of the last names that a program or its modules define."""
 _MONITORS: Final = (CompletionKind.MONITOR,)
 _BEGUN: Final = re.compile(r"\w*$")
+_NUMBER: Final = re.compile(r"(?<![\w.)\]])\d[\d_]*\.$")
+"""A number, whose point has no members after it."""
+_CLASS_HEADER: Final = re.compile(r"class\s+\w+\s*(?:\((?P<bases>[\w\s.,]*)\))?\s*:")
+_NEW_NAME: Final = frozenset({"as", "behavior", "class", "def", "monitor", "scenario"})
+"""After these words at the beginning of a line, and after the first one anywhere, comes a name that is still to be found."""
 
 _BLOCKS: Final[Mapping[str, str]] = {
     "if": "if ${1:condition}:\n\t$0",
@@ -125,7 +133,7 @@ def completions(project: Project, snapshot: Snapshot, line: int, column: int) ->
     text = _open_string(snapshot, line, column)
     if text is not None:
         return _files(snapshot, line, column, text)
-    if content[start : start + 1].isdigit():
+    if content[start : start + 1].isdigit() or _NUMBER.search(content[:start]):
         return _NOTHING
     found = continuations(snapshot.text, line, column)
     items = list(_find(project, snapshot, line, start, found))
@@ -207,6 +215,13 @@ def _open_string(snapshot: Snapshot, line: int, column: int) -> str | None:
             )
         if inside and tokens.kinds[index] == FSTRING_MIDDLE:
             return ""
+        begin = (tokens.lines[index], tokens.columns[index])
+        end = (tokens.end_lines[index], tokens.end_columns[index])
+        # The text of an f-string ends where its quotes stand, and begins after them.
+        if (tokens.kinds[index] in (FSTRING_MIDDLE, FSTRING_START) and end == (line, byte)) or (
+            tokens.kinds[index] in (FSTRING_MIDDLE, FSTRING_END) and begin == (line, byte)
+        ):
+            return ""
     return None
 
 
@@ -254,6 +269,8 @@ def _find(
     if last == ".":
         yield from _members(project, snapshot, before[:-1], line, column)
         return
+    if last in _NEW_NAME and (len(before) == 1 or last == "as" or before == ("async", "def")):
+        return
     if last == "new":
         yield from (each for each in _names(project, module, snapshot, line, column) if each.kind is CompletionKind.CLASS
                     and _is_scenic(project, module, snapshot, each, line, column))  # fmt: skip
@@ -262,8 +279,13 @@ def _find(
         yield from _properties(project, snapshot, before, line, column)
         return
     places = _places(snapshot, line)
+    if not before and Place.CLASS in places:
+        yield from _inherited(project, snapshot, line, column)
     begun: set[str] = set()
+    run = last in _RUNNING or (last == "," and first == "do")
     for item in found.items:
+        if run and item.kind is PhraseKind.OPERATOR:
+            continue
         if item.kind is PhraseKind.STATEMENT and not places & STATEMENTS[item.name].places:
             continue
         offered = _of_continuation(item)
@@ -271,12 +293,12 @@ def _find(
         yield replace(offered, label=item.text) if item.words in begun else offered
         begun.add(item.words)
     if found.labels & _EXPRESSIONS or "a name" in found.labels:
-        running = last in _RUNNING or (last == "," and first == "do") or before[-2:] == ("with", "behavior")
+        running = run or before[-2:] == ("with", "behavior")
         fitting = _TARGETS if running else _MONITORS if before[-2:] == ("require", "monitor") else ()
         for each in _names(project, module, snapshot, line, column):
             if each.kind in fitting:
                 yield Completion(each.label, each.kind, each.text, 0, each.detail, each.snippet, each.key)
-            else:
+            elif not (run and (each.kind in _NEVER_RUN or each.rank > _OWN)):
                 yield each
     if "an argument" in found.labels:
         yield from _arguments(project, snapshot, before, line, column)
@@ -290,20 +312,25 @@ def _places(snapshot: Snapshot, line: int) -> frozenset[Place]:
 
     Read off the headers of the blocks around it, since what is being written may not be in the tree.
     """
+    for header in _headers(snapshot, line):
+        word = header.split(maxsplit=1)[0].rstrip(":")
+        if word in _PLACES:
+            return _PLACES[word]
+    return frozenset({Place.TOP})
+
+
+def _headers(snapshot: Snapshot, line: int) -> Iterator[str]:
+    """The lines above a line that are indented less, the innermost first."""
     content = snapshot.source.line(line)
     level = len(content) - len(content.lstrip())
     for number in range(line - 1, 0, -1):
+        if not level:
+            return
         content = snapshot.source.line(number)
         indentation = len(content) - len(content.lstrip())
-        if not content.strip() or indentation >= level:
-            continue
-        level = indentation
-        word = content.split(maxsplit=1)[0].rstrip(":")
-        if word in _PLACES:
-            return _PLACES[word]
-        if not level:
-            break
-    return frozenset({Place.TOP})
+        if content.strip() and indentation < level:
+            level = indentation
+            yield content.strip()
 
 
 _PLACES: Final[Mapping[str, frozenset[Place]]] = {
@@ -509,6 +536,35 @@ def _properties(
         yield Completion(
             member.name, CompletionKind.PROPERTY, member.name, 0 if own else 1, detail, snippet, key
         )
+
+
+def _inherited(project: Project, snapshot: Snapshot, line: int, column: int) -> Iterator[Completion]:
+    """The properties that a class may give other defaults, where it may define a property.
+
+    Of a class without a body there is nothing in the tree: its bases are read off its header.
+    """
+    header = _CLASS_HEADER.match(next(_headers(snapshot, line), ""))
+    if header is None:
+        return
+    scope = snapshot.scope_at(line, column)
+    body = getattr(scope.node, "body", ()) if scope.kind is ScopeKind.CLASS else ()
+    own = {each.name for each in body if isinstance(each, scenic.PropertyDef)}
+    members: dict[str, Member] = {}
+    for base in (header["bases"] or "Object").split(","):
+        found = expression(project, snapshot, base.strip(), line, column)
+        symbol = None if found is None else meaning(project, *found)
+        cls = None if symbol is None else class_of_symbol(project, symbol)
+        for member in () if cls is None or not cls.is_scenic else cls.properties:
+            members.setdefault(member.name, member)
+    for member in members.values():
+        if member.name in own or "final" in member.attributes:
+            continue
+        known = member.symbol is not None
+        key = ("member", snapshot.filename, member.owner, member.name) if known else ("property", member.name)
+        detail = member.type or (f"default: {member.default}" if member.default else member.owner)
+        snippet = f"{member.name}: ${{1:{_escaped(member.default or 'value')}}}"
+        text = f"{member.name}: "
+        yield Completion(member.name, CompletionKind.PROPERTY, text, 0 if known else 1, detail, snippet, key)
 
 
 def _escaped(text: str) -> str:

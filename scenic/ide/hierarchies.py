@@ -18,6 +18,7 @@ from scenic.project.symbols import Symbol, SymbolKind, symbol_of_binding
 __all__ = ["Call", "callable_at", "callees", "callers", "class_at", "subtypes", "supertypes"]
 
 _CALLABLE = (
+    SymbolKind.CLASS,
     SymbolKind.FUNCTION,
     SymbolKind.METHOD,
     SymbolKind.BEHAVIOR,
@@ -43,7 +44,7 @@ class Call:
 
 
 def callable_at(project: Project, filename: str, line: int, column: int) -> Symbol | None:
-    """The function, behavior, monitor or scenario that the name at a place means."""
+    """The function, behavior, monitor, scenario or class that the name at a place means."""
     symbol = symbol_at(project, filename, line, column)
     return symbol if symbol is not None and symbol.kind in _CALLABLE and not symbol.is_builtin else None
 
@@ -98,12 +99,14 @@ def subtypes(project: Project, symbol: Symbol) -> tuple[Symbol, ...]:
 
 
 def _calls(node: ast.AST) -> Iterator[ast.expr]:
-    """The functions that are called in a definition."""
+    """The functions that are called in a definition, and the classes of which it makes instances."""
     for part in walk(node):
         if isinstance(part, ast.Call):
             yield part.func
         elif isinstance(part, scenic.Do | scenic.DoChoose | scenic.DoShuffle):
             yield from (target for target in part.targets if isinstance(target, ast.Name | ast.Attribute))
+        elif isinstance(part, scenic.New):
+            yield part.cls
 
 
 def _is_called(module: Module, span: Span) -> bool:

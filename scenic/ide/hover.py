@@ -9,12 +9,14 @@ from scenic.compiler import tree as scenic
 from scenic.compiler.tokens import NAME
 from scenic.ide import descriptions, documentation
 from scenic.ide.snapshot import Snapshot
+from scenic.language.names import TRACKED
 from scenic.language.operators import OPERATORS
 from scenic.language.spans import Span
 from scenic.language.specifiers import SPECIFIERS
 from scenic.language.statements import STATEMENTS
 from scenic.project.index import Project
-from scenic.project.queries import occurrence_at, symbol_of
+from scenic.project.modules import Module
+from scenic.project.queries import occurrence_at, occurrences, symbol_of
 
 __all__ = ["Hover", "hover"]
 
@@ -64,8 +66,19 @@ def _defined(project: Project, snapshot: Snapshot, span: Span) -> str | None:
     found = None if module is None else occurrence_at(module, span.line, span.column)
     if module is None or found is None or found.span.line != span.line or found.span.column != span.column:
         return None
+    if found.name in TRACKED and isinstance(found.node, ast.Name):
+        return _tracked(module, found.name)
     symbol = symbol_of(project, module, found)
     return None if symbol is None else descriptions.describe(project, symbol)
+
+
+def _tracked(module: Module, name: str) -> str | None:
+    """What the ego or the workspace is, if the module sets it."""
+    setting = next((each for each in occurrences(module) if each.name == name and each.defines), None)
+    if setting is None:
+        return None
+    line = module.source.line(setting.span.line).strip().removesuffix(",")
+    return f"```scenic\n{line}\n```\n\n{documentation.of_name(name) or ''}".rstrip()
 
 
 def _explain(word: str, kind: int, node: ast.AST) -> str | None:

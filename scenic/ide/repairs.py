@@ -8,7 +8,7 @@ from scenic.language.diagnostics import Diagnostic, Edit, Severity
 from scenic.language.selection import Rules, is_lasting
 from scenic.language.spans import Span
 
-__all__ = ["ignoring", "repair_all", "repairs"]
+__all__ = ["difference", "ignoring", "repair_all", "repairs", "touch"]
 
 
 def repairs(found: Sequence[Diagnostic], span: Span) -> tuple[Diagnostic, ...]:
@@ -17,7 +17,7 @@ def repairs(found: Sequence[Diagnostic], span: Span) -> tuple[Diagnostic, ...]:
         item
         for item in found
         if item.fix is not None
-        and any(each is not None and _touch(each, span) for each in (item.span, *_of_fix(item)))
+        and any(each is not None and touch(each, span) for each in (item.span, *_of_fix(item)))
     )
 
 
@@ -30,7 +30,7 @@ def ignoring(
     for item in found:
         if (
             item.span is None
-            or not _touch(item.span, span)
+            or not touch(item.span, span)
             or is_lasting(item)
             or item.severity is Severity.ERROR
         ):
@@ -60,12 +60,17 @@ def repair_all(text: str, *, filename: str, rules: Rules | None = None) -> Edit 
     repaired = repair(text, filename=filename, shown=(rules or Rules()).apply)
     if not repaired.count:
         return None
-    before = _common(text, repaired.text)
-    after = _common(text[before:][::-1], repaired.text[before:][::-1])
+    return difference(text, repaired.text)
+
+
+def difference(text: str, changed: str) -> Edit | None:
+    """The edit of one part that makes one text of another; ``None`` if they are the same."""
+    if text == changed:
+        return None
+    before = _common(text, changed)
+    after = _common(text[before:][::-1], changed[before:][::-1])
     end = len(text) - after
-    return Edit(
-        Span(*_place(text, before), *_place(text, end)), repaired.text[before : len(repaired.text) - after]
-    )
+    return Edit(Span(*_place(text, before), *_place(text, end)), changed[before : len(changed) - after])
 
 
 def _common(one: str, other: str) -> int:
@@ -82,7 +87,8 @@ def _of_fix(item: Diagnostic) -> list[Span]:
     return [] if item.fix is None else [edit.span for edit in item.fix.edits]
 
 
-def _touch(one: Span, other: Span) -> bool:
+def touch(one: Span, other: Span) -> bool:
+    """Whether two places have a point in common."""
     return _start(one) <= _end(other) and _start(other) <= _end(one)
 
 

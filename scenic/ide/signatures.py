@@ -4,7 +4,7 @@ import ast
 from dataclasses import dataclass
 from typing import Final
 
-from scenic.compiler.tokens import DEDENT, INDENT, NEWLINE
+from scenic.compiler.tokens import DEDENT, INDENT, NEWLINE, Tokens
 from scenic.ide.expressions import expression, operand_before
 from scenic.ide.snapshot import Snapshot
 from scenic.project.index import Project
@@ -14,6 +14,7 @@ from scenic.project.signatures import Signature
 __all__ = ["Help", "signature_help"]
 
 _MOST_TOKENS: Final = 5_000
+_DEFINING: Final = frozenset({"behavior", "class", "def", "monitor", "scenario"})
 _CLOSERS: Final = frozenset({")", "]", "}"})
 _OPENERS: Final = frozenset({"(", "[", "{"})
 
@@ -75,6 +76,8 @@ def _call_around(snapshot: Snapshot, line: int, column: int) -> tuple[str, int, 
                 and (tokens.texts[index - 1].isidentifier() or tokens.texts[index - 1] in _CLOSERS)
             ):
                 called = operand_before(tokens.texts[max(0, index - 200) : index])
+                if _is_defined(tokens, index - 1):
+                    return None
                 return (called, commas, name or _keyword(argument)) if called else None
             else:
                 # Brackets of another kind: the call is further out.
@@ -86,6 +89,15 @@ def _call_around(snapshot: Snapshot, line: int, column: int) -> tuple[str, int, 
         elif not commas and not depth:
             argument.append(text)
     return None
+
+
+def _is_defined(tokens: Tokens, name: int) -> bool:
+    """Whether a name is not called but defined: the word before it begins the line."""
+    if name < 1 or tokens.texts[name - 1] not in _DEFINING:
+        return False
+    return (
+        name < 2 or tokens.kinds[name - 2] in (NEWLINE, INDENT, DEDENT) or tokens.texts[name - 2] == "async"
+    )
 
 
 def _keyword(backwards: list[str]) -> str | None:

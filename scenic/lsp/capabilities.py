@@ -6,10 +6,13 @@ from scenic.ide.semantic_tokens import MODIFIERS, TYPES
 from scenic.lsp.convert import Json
 from scenic.lsp.session import Client
 
-__all__ = ["FIX_ALL", "SAMPLE", "SIMULATE", "WATCHED", "capabilities", "registrations"]
+__all__ = ["FIX_ALL", "ORGANIZE", "SAMPLE", "SIMULATE", "WATCHED", "capabilities", "registrations"]
 
 FIX_ALL: Final = "source.fixAll.scenic"
 """The kind of the action that makes all repairs of a document, which editors can make when they save it."""
+
+ORGANIZE: Final = "source.organizeImports"
+"""The kind of the action that puts the imports of a document in order."""
 
 SAMPLE: Final = "scenic.sample"
 """The command that runs a program; its arguments are the document's address and maybe an object with options."""
@@ -56,7 +59,7 @@ def capabilities(client: Client) -> Json:
         "documentSymbolProvider": True,
         "workspaceSymbolProvider": {"resolveProvider": True, "workDoneProgress": True},
         "codeActionProvider": {
-            "codeActionKinds": ["quickfix", FIX_ALL],
+            "codeActionKinds": ["quickfix", FIX_ALL, ORGANIZE],
             "resolveProvider": True,
         }
         if client.has("textDocument", "codeAction", "codeActionLiteralSupport")

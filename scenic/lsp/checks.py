@@ -247,4 +247,7 @@ def _protocol(found: Sequence[Diagnostic], lines: Lines, uri: str, session: Sess
     related = not told or client.can("textDocument", "publishDiagnostics", "relatedInformation")
     tags = not told or client.has("textDocument", "publishDiagnostics", "tagSupport")
     pages = client.can("textDocument", "publishDiagnostics", "codeDescriptionSupport")
-    return [to_diagnostic(item, lines, uri, related=related, tags=tags, pages=pages) for item in found]
+    return [
+        to_diagnostic(item, lines, uri, elsewhere=session.location, related=related, tags=tags, pages=pages)
+        for item in found
+    ]

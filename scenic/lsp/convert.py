@@ -5,12 +5,13 @@ lines from 1 and columns in characters. A byte order mark at the beginning is a 
 us.
 """
 
-from collections.abc import Iterable, Mapping
+import os
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Any, Final, TypeAlias
 
-from scenic.language.diagnostics import Diagnostic, Edit, Severity
+from scenic.language.diagnostics import Diagnostic, Edit, Label, Severity
 from scenic.language.explanations import explanation_file
 from scenic.language.source import Source
 from scenic.language.spans import Span
@@ -110,12 +111,14 @@ def to_diagnostic(
     lines: Lines,
     uri: str,
     *,
+    elsewhere: Callable[[str, Span], Json] | None = None,
     related: bool = True,
     tags: bool = True,
     pages: bool = False,
 ) -> Json:
     """A diagnostic as the protocol has it: the help is a line of the message, labels are related places.
 
+    ``elsewhere`` gives the places in other files; without it, they are left out.
     ``related`` and ``tags`` tell whether the client shows such, ``pages`` whether it opens the page of a code.
     """
     message = diagnostic.message
@@ -133,12 +136,23 @@ def to_diagnostic(
         found["codeDescription"] = {"href": to_uri(page)}
     if tags and diagnostic.code in _UNNECESSARY:
         found["tags"] = [_TAG_UNNECESSARY]
-    places = [
-        {"location": {"uri": uri, "range": lines.to_range(label.span)}, "message": label.text}
-        for label in diagnostic.labels
-    ]
+    places: list[Json] = []
+    for label in diagnostic.labels:
+        if label.filename is None or label.filename == diagnostic.filename:
+            location: Json = {"uri": uri, "range": lines.to_range(label.span)}
+        elif elsewhere is not None:
+            location = elsewhere(label.filename, label.span)
+        else:
+            continue
+        places.append({"location": location, "message": label.text})
     if places and related:
         found["relatedInformation"] = places
     elif places:
-        found["message"] += "".join(f"\nline {label.span.line}: {label.text}" for label in diagnostic.labels)
+        found["message"] += "".join(f"\n{_place(label)}: {label.text}" for label in diagnostic.labels)
     return found
+
+
+def _place(label: Label) -> str:
+    """A place in words."""
+    line = f"line {label.span.line}"
+    return line if label.filename is None else f"{os.path.basename(label.filename)}, {line}"

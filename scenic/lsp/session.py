@@ -10,6 +10,7 @@ from scenic.ide.snapshot import PythonSnapshot, Snapshot
 from scenic.language.errors import ScenicError
 from scenic.language.selection import Rules
 from scenic.language.source import Source, read_source
+from scenic.language.spans import Span
 from scenic.lsp import reading
 from scenic.lsp.convert import Encoding, Json, Lines
 from scenic.lsp.documents import Document, snapshot_of
@@ -270,6 +271,10 @@ class Session:
             return opened.lines
         module = self.project.module(filename)
         return Lines(Source("", filename) if module is None else module.source, self.encoding)
+
+    def location(self, filename: str, span: Span) -> Json:
+        """A place in any file."""
+        return {"uri": self.uri_of(filename), "range": self.lines_of(filename).to_range(span)}
 
     def lines_of_source(self, filename: str, source: Source) -> Lines:
         """The lines of a file of which the source is at hand."""

@@ -297,7 +297,7 @@ def test_repairs(client: Client, tmp_path: Path) -> None:
     uri = (tmp_path / "room.scenic").as_uri()
     text = "import os\r\nego = new Object with name '😀', with wdth 3\r\nif True\r\n    pass\r\n"
     provider = client.start({**FULL, "workspace": {}})["codeActionProvider"]
-    assert provider["codeActionKinds"] == ["quickfix", "source.fixAll.scenic"]
+    assert provider["codeActionKinds"] == ["quickfix", "source.fixAll.scenic", "source.organizeImports"]
     client.open(uri, text)
     client.published(uri)
 
@@ -339,7 +339,7 @@ def test_all_repairs_can_be_worked_out_later(client: Client) -> None:
     params = {
         "textDocument": {"uri": "untitled:a"},
         "range": {"start": place, "end": place},
-        "context": {"diagnostics": [], "only": ["source"]},
+        "context": {"diagnostics": [], "only": ["source.fixAll"]},
     }
     (found,) = client.request("textDocument/codeAction", params)
     assert "edit" not in found
@@ -349,3 +349,88 @@ def test_all_repairs_can_be_worked_out_later(client: Client) -> None:
     assert applied("import os\nx = 1\n", change["edits"]) == "x = 1\n"
     client.change("untitled:a", "import os\ny = 1\n")
     assert client.refused("codeAction/resolve", found) == -32801
+
+
+def test_what_is_elsewhere_is_said_to_be_there(client: Client, tmp_path: Path) -> None:
+    library, uri = tmp_path / "library.scenic", (tmp_path / "main.scenic").as_uri()
+    library.write_text("# one\n# two\nbehavior Walk(speed):\n    take speed\n")
+    client.start(FULL, tmp_path)
+    client.open(uri, "from library import Walk\nego = new Object with behavior Walk(1, 2)\n")
+    (found,) = client.published(uri)
+    (related,) = found["relatedInformation"]
+    assert related["location"]["uri"] == library.as_uri()
+    assert related["location"]["range"]["start"] == {"line": 2, "character": 9}
+
+
+def actions(client: Client, uri: str, line: int, only: str) -> list[dict[str, Any]]:
+    place = {"line": line, "character": 0}
+    params = {
+        "textDocument": {"uri": uri},
+        "range": {"start": place, "end": {"line": line + 1, "character": 0}},
+        "context": {"diagnostics": [], "only": [only]},
+    }
+    found: list[dict[str, Any]] = client.request("textDocument/codeAction", params)
+    return found
+
+
+def edited(text: str, action: dict[str, Any]) -> str:
+    (change,) = action["edit"]["documentChanges"]
+    return applied(text, change["edits"])
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "title", "expected"),
+    [
+        ("x = clamp(1)\n", 0, "Import `clamp` from `tools.bounds`", "from tools.bounds import clamp\n{}"),
+        ('"""Doc."""\nego = new Chair\n', 1, "Import `Chair` from `seats`",
+         '"""Doc."""\nfrom seats import Chair\nego = new Chair\n'),
+        ("from seats import Stool\nego = new Chair\nnew Stool\n", 1, "Import `Chair` from `seats`",
+         "from seats import Stool, Chair\nego = new Chair\nnew Stool\n"),
+        ("import math\nx = clamp(math.pi)", 1, "Import `clamp` from `tools.bounds`",
+         "import math\nfrom tools.bounds import clamp\nx = clamp(math.pi)"),
+    ],
+)  # fmt: skip
+def test_names_that_are_missing_are_imported(
+    client: Client, tmp_path: Path, text: str, line: int, title: str, expected: str
+) -> None:
+    (tmp_path / "tools").mkdir()
+    (tmp_path / "tools" / "bounds.py").write_text("def clamp(x): return x\n")
+    (tmp_path / "seats.scenic").write_text(
+        "from tools.bounds import clamp\nclass Chair: pass\nclass Stool: pass\n"
+    )
+    uri = (tmp_path / "main.scenic").as_uri()
+    client.start(FULL, tmp_path)
+    client.open(uri, text)
+    assert client.published(uri)
+    found = [each for each in actions(client, uri, line, "quickfix") if each["title"].startswith("Import")]
+    assert [each["title"] for each in found] == [title]
+    assert "isPreferred" not in found[0]
+    result = edited(text, found[0])
+    assert result == expected.format(text)
+    assert client.change(uri, result) == 2
+    assert client.published(uri, version=2) == []
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("import sys\nimport os\nx = os, sys\n", "import os\nimport sys\nx = os, sys\n"),
+        ("import math, os\nx = os\n", "import os\nx = os\n"),
+        ("from math import sin, tan, cos\nimport os\nx = sin, cos, os\n",
+         "import os\nfrom math import cos, sin\nx = sin, cos, os\n"),
+        # What makes objects is run in the order in which it stands.
+        ("from seats import b, a\nfrom chairs import c\nx = a, b, c\n",
+         "from seats import a, b\nfrom chairs import c\nx = a, b, c\n"),
+        ("import sys\n# first\nimport os\nx = os, sys\n", None),
+        ("import sys; import os\nx = os, sys\n", None),
+        ("import sys\nimport os\nx = (os, sys\n", None),
+    ],
+)  # fmt: skip
+def test_imports_are_put_in_order(client: Client, tmp_path: Path, text: str, expected: str | None) -> None:
+    (tmp_path / "seats.scenic").write_text("a = b = 1\n")
+    (tmp_path / "chairs.scenic").write_text("c = 1\n")
+    uri = (tmp_path / "main.scenic").as_uri()
+    client.start(FULL, tmp_path)
+    client.open(uri, text)
+    found = actions(client, uri, 0, "source.organizeImports")
+    assert [edited(text, each) for each in found] == ([] if expected is None else [expected])

@@ -144,6 +144,7 @@ def test_what_is_offered(project: Project) -> None:
         ("import library as li|b", "module library"),
         ("def outer(para|meter)", "parameter"),
         ("e|go = new Object", "point of view"),
+        ("e|go = new Object", "new Object left of chair"),
     ],
 )
 def test_hover(project: Project, marked: str, said: str) -> None:
@@ -152,6 +153,10 @@ def test_hover(project: Project, marked: str, said: str) -> None:
     assert said in found["contents"]["value"]
     word = project.text(project.main, found["range"])
     assert word in marked.replace("|", "")
+
+
+def test_what_is_being_defined_is_not_called(project: Project) -> None:
+    assert project.ask("signatureHelp", "def outer(para|meter)") is None
 
 
 @pytest.mark.parametrize("marked", ["# reg|ion seats", "Range(|1, 2)", "😀 aft|er"])
@@ -196,8 +201,17 @@ def test_signatures(project: Project) -> None:
         ("class Stool(Chair):\n    width: ", {"self", "chair"}, {"width"}),
         ("", {"require", "behavior", "param", "chair", "if", "class"}, {"take", "do"}),
         ("behavior B():\n    ", {"take", "do", "wait", "try"}, {"param", "model"}),
+        ("behavior B():\n    do ", {"Walk", "choose"}, {"Chair", "Range", "distance to", "len"}),
+        ("class Stool(Chair):\n    ", {"width", "legs", "def"}, {"require"}),
+        ("class Stool(Chair):\n    legs: 3\n    wi", {"width"}, {"legs"}),
+        ("class Stool(Chair):\n    def f(self):\n        ", {"chair"}, {"legs"}),
         ("x = 'abc ", set(), {"chair"}),
         ("# ", set(), {"chair"}),
+        ('x = f"cha', set(), {"chair"}),
+        ('x = f"{cha', {"chair"}, set()),
+        ("x = 3.", set(), {"deg", "chair"}),
+        ("behavior ", set(), {"deg", "chair"}),
+        ("import math as ", set(), {"chair"}),
     ],
 )
 def test_completion(project: Project, text: str, first: set[str], absent: set[str]) -> None:
@@ -349,6 +363,10 @@ def test_calls(project: Project) -> None:
     assert outgoing["to"]["name"] == "helper"
     assert project.text(project.main, outgoing["fromRanges"][0]) == "helper"
     assert project.ask("prepareCallHierarchy", "to ch|air < 5") is None
+    # Making an instance is a call of the class.
+    (item,) = project.ask("prepareCallHierarchy", "class Armchair(Cha|ir)")
+    (incoming,) = project.client.request("callHierarchy/incomingCalls", {"item": item})
+    assert incoming["from"]["name"] == "Main"
 
 
 def test_types(project: Project) -> None:

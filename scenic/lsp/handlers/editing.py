@@ -7,10 +7,11 @@ from scenic.ide import navigation
 from scenic.ide.dedenting import dedented
 from scenic.ide.diagnostics import found_in
 from scenic.ide.formatting import formatting
-from scenic.ide.repairs import ignoring, repair_all, repairs
+from scenic.ide.importing import missing_imports, organize_imports
+from scenic.ide.repairs import ignoring, repair_all, repairs, touch
 from scenic.language.diagnostics import Diagnostic, Edit
 from scenic.lsp import reading
-from scenic.lsp.capabilities import FIX_ALL
+from scenic.lsp.capabilities import FIX_ALL, ORGANIZE
 from scenic.lsp.convert import Json, to_diagnostic
 from scenic.lsp.documents import Document
 from scenic.lsp.errors import ErrorCode, ProtocolError
@@ -38,15 +39,26 @@ def _actions(session: Session, params: Any) -> Json:
         for item in repairs(found, span):
             assert item.fix is not None
             action = _action(session, document, item.fix.title, _QUICK_FIX, item.fix.edits)
-            actions.append({**action, "diagnostics": [_diagnostic(item, document)], "isPreferred": True})
+            # An editor may make what is preferred without asking.
+            preferred = {"isPreferred": True} if item.fix.certain else {}
+            actions.append({**action, "diagnostics": [_diagnostic(session, item, document)], **preferred})
+        project = session.project_with(document)
+        for missing in missing_imports(project, document.snapshot, found, lambda each: touch(each, span)):
+            action = _action(session, document, missing.title, _QUICK_FIX, [missing.edit])
+            actions.append({**action, "diagnostics": [_diagnostic(session, missing.diagnostic, document)]})
         for item, edit in ignoring(document.snapshot, found, span):
             title = f"Silence {item.code} on this line"
             action = _action(session, document, title, _QUICK_FIX, [edit])
-            actions.append({**action, "diagnostics": [_diagnostic(item, document)]})
+            actions.append({**action, "diagnostics": [_diagnostic(session, item, document)]})
     # It is dear, and an editor asks with each move of the cursor what is offered there.
     automatic = reading.lookup(params, "context", "triggerKind") == _AUTOMATIC and not only
     if not automatic and _wanted(FIX_ALL, only):
         actions += _all_repairs(session, document)
+    if not automatic and _wanted(ORGANIZE, only):
+        found = found_in(document.snapshot, rules, session.project_beside(document), stamp=session.generation)
+        organized = organize_imports(document.snapshot, found)
+        if organized is not None:
+            actions.append(_action(session, document, "Organize imports", ORGANIZE, [organized]))
     return actions
 
 
@@ -84,8 +96,8 @@ def _action(
     return {"title": title, "kind": kind, "edit": session.workspace_edit(changes)}
 
 
-def _diagnostic(item: Diagnostic, document: Document) -> Json:
-    return to_diagnostic(item, document.lines, document.uri)
+def _diagnostic(session: Session, item: Diagnostic, document: Document) -> Json:
+    return to_diagnostic(item, document.lines, document.uri, elsewhere=session.location)
 
 
 def _wanted(kind: str, only: Sequence[str]) -> bool:
