@@ -289,6 +289,13 @@ def test_what_is_nested_deeply_moves() -> None:
         assert {*names.names} == {"x", "y"}
 
 
+def test_what_stands_before_a_stretch_matters() -> None:
+    lines = [f"x{index} = {index}" for index in range(15)]
+    texts = [[*lines, before, "take x1", *lines] for before in ("y = 1", "beha A():", "y = 1")]
+    found = [checked.diagnostics for _, checked in versions("\n".join(each) for each in texts)]
+    assert ["SC201" in {item.code for item in each} for each in found] == [True, False, True]
+
+
 def test_labels_follow_what_they_name() -> None:
     # The label of what is said at the end names a place at the beginning.
     lines = ["def f(a): pass", *(f"x{index} = {index}" for index in range(60)), "f()"]

@@ -20,10 +20,14 @@ __all__ = ["Kept", "Moves", "Said", "changed_names"]
 
 @dataclass(frozen=True, slots=True)
 class Said:
-    """What was found in one stretch, and the facts about the whole program that were asked for meanwhile."""
+    """What was found in one stretch, and the facts about the whole program that were asked for meanwhile.
+
+    ``follows_error`` is what was known of the statements before it.
+    """
 
     found: tuple[Diagnostic, ...]
     facts: tuple[tuple[str, object], ...]
+    follows_error: bool
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -67,14 +67,20 @@ def piecewise(
             if before is not None and context.is_unchanged(stretch)
             else None
         )
-        if known is not None and any(context.fact(name) != value for name, value in known.facts):
+        follows_error = context.follows_error(stretch)
+        if known is not None and (
+            known.follows_error is not follows_error
+            or any(context.fact(name) != value for name, value in known.facts)
+        ):
             known = None
         if known is not None:
             known = context.moves.of(known, context.source.filename)
         if known is None:
             context.asked.clear()
-            piece = Piece(context, stretch, follows_error=context.follows_error(stretch))
+            piece = Piece(context, stretch, follows_error=follows_error)
             found = tuple(item for rule in rules for item in rule(piece, context))
-            known = Said(found, tuple((name, context.fact(name)) for name in sorted(context.asked)))
+            known = Said(
+                found, tuple((name, context.fact(name)) for name in sorted(context.asked)), follows_error
+            )
         context.said[group, stretch.keys] = known
         yield from known.found
