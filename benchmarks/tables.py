@@ -41,7 +41,13 @@ def cell(x, y):
 map = PolygonalRegion.unionAll([cell(5 * (i % 100), 5 * (i // 100)) for i in range({count})])
 new Object in map, with width 0.5, with length 0.5
 """
+OPTIONS = """\
+x = Uniform(*[new OrientedPoint at (Range(i, i + 1), Normal(i, 2)), facing Range(0, 1) for i in range({count})])
+ego = new Object at x, facing x.heading
+"""
 PROGRAMS = {
+    "1 random place": OPTIONS.format(count=1),
+    "1,000 random places": OPTIONS.format(count=1000),
     "1 place": PLACES.format(count=1),
     "3,000 places": PLACES.format(count=3000),
     "5,000 regions joined": REGIONS.format(count=5000),

@@ -16,7 +16,19 @@ from scenic.graph.draws import BOX, Source
 from scenic.graph.kinds import Codec, Column, Kind, boxed
 from scenic.graph.node import Graph, Node
 from scenic.graph.operation import FAULT, OK, Call, Status
-from scenic.graph.schedule import Draw, Fixed, Gather, Gathered, Place, Run, Schedule, Scheduler, Slot, Step
+from scenic.graph.schedule import (
+    ChosenDraw,
+    Draw,
+    Fixed,
+    Gather,
+    Gathered,
+    Place,
+    Run,
+    Schedule,
+    Scheduler,
+    Slot,
+    Step,
+)
 
 
 class _Group:
@@ -114,9 +126,13 @@ class Batch:
         if schedule.steps:
             with np.errstate(all="ignore"):
                 for step in schedule.steps:
-                    self._groups[step.slot] = (
-                        self._draw(step) if isinstance(step, Draw) else self._evaluate(step)
-                    )
+                    if isinstance(step, Draw):
+                        group = self._draw(step)
+                    elif isinstance(step, ChosenDraw):
+                        group = self._draw_chosen(step)
+                    else:
+                        group = self._evaluate(step)
+                    self._groups[step.slot] = group
 
     def column(self, node: Node) -> Column:
         """Values of ``node``, leading dimension ``len(self)`` or 1."""
@@ -220,11 +236,24 @@ class Batch:
             return _Group(self._source.words(step.addresses), None, self._generation)
         numbers = self._source.uniforms(step.addresses)
         if self._domain is not None:
-            if self._boxes is None:
-                draws = self._source.uniforms(np.array([BOX], dtype=np.uint64))[0]
-                self._boxes = self._domain.choose(draws)
-            numbers = self._domain.place(numbers, step.axes, self._boxes)
+            numbers = self._domain.place(numbers, step.axes, self._boxes_of(self._domain))
         return _Group(numbers, None, self._generation)
+
+    def _draw_chosen(self, step: ChosenDraw) -> _Group:
+        columns, status = self._operand(step.index)
+        index = np.broadcast_to(columns[0], (len(self.rows),))
+        if status is not None:
+            index = np.where(status[0] == OK, index, 0)
+        numbers = self._source.uniform_each(step.addresses[index])
+        if self._domain is not None:
+            numbers = self._domain.place_each(numbers, step.axes[index], self._boxes_of(self._domain))
+        return _Group(numbers[np.newaxis], status, self._generation)
+
+    def _boxes_of(self, domain: Domain) -> NDArray[np.intp]:
+        """Which box of the domain each lane is drawn from."""
+        if self._boxes is None:
+            self._boxes = domain.choose(self._source.uniforms(np.array([BOX], dtype=np.uint64))[0])
+        return self._boxes
 
     def _evaluate(self, step: Step) -> _Group:
         columns: list[Column] = []

@@ -80,6 +80,10 @@ class Domain:
             points[row] = _between(numbers[row], lower[chosen, row], upper[chosen, row])
         return points
 
+    def place_each(self, numbers: Floats, axes: NDArray[np.intp], chosen: NDArray[np.intp]) -> Floats:
+        """The same for numbers ``(n,)`` of one axis in each lane, ``(n,)``."""
+        return _between(numbers, self.lower[chosen, axes], self.upper[chosen, axes])
+
     def _shares(self) -> Floats:
         logarithms = self._logarithms()
         volumes = np.exp(logarithms - logarithms.max())

@@ -91,6 +91,9 @@ class Source(Protocol):
     def uniforms(self, addresses: Words) -> Floats:
         """Numbers of the open unit interval, ``(addresses, lanes)``."""
 
+    def uniform_each(self, addresses: Words) -> Floats:
+        """Numbers ``(n,)`` of one address in each lane, those of `uniforms`."""
+
     def words(self, addresses: Words) -> Words:
         """Words that key further draws (of nodes that retry, of opaque calls), ``(addresses, lanes)``."""
 
@@ -136,6 +139,10 @@ class Counter:
     def uniforms(self, addresses: Words) -> Floats:
         return open_unit(words_of(self.keys, addresses))
 
+    def uniform_each(self, addresses: Words) -> Floats:
+        with np.errstate(over="ignore"):
+            return open_unit(mix(self.keys + addresses))
+
     def words(self, addresses: Words) -> Words:
         return words_of(self.keys, addresses)
 
@@ -174,9 +181,19 @@ class Points:
                 result[row] = self._values[name]
         return result
 
+    def uniform_each(self, addresses: Words) -> Floats:
+        return each_of_distinct(self, addresses)
+
     def words(self, addresses: Words) -> Words:
         result = self._rest.words(addresses)
         for row, name in enumerate(addresses.tolist()):
             if name in self._words:
                 result[row] = self._words[name]
         return result
+
+
+def each_of_distinct(source: Source, addresses: Words) -> Floats:
+    """What `Source.uniform_each` gives, by way of all lanes' numbers of all those addresses."""
+    distinct, which = np.unique(addresses, return_inverse=True)
+    numbers: Floats = source.uniforms(distinct)[which, np.arange(len(addresses))]
+    return numbers

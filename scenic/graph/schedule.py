@@ -17,6 +17,7 @@ import numpy as np
 
 from scenic.graph.draws import Words
 from scenic.graph.kinds import Column, Kind
+from scenic.graph.merging import Merger, is_choice_of_draws
 from scenic.graph.node import Graph, Node
 from scenic.graph.operation import Operation
 
@@ -87,10 +88,22 @@ class Draw:
 
 
 @dataclass(frozen=True, slots=True)
+class ChosenDraw:
+    """Of several axes each lane draws one."""
+
+    slot: Slot
+    index: Gather
+    """Which one."""
+    addresses: Words
+    axes: np.ndarray[Any, np.dtype[np.intp]]
+    """Numbers of the axes in the domain."""
+
+
+@dataclass(frozen=True, slots=True)
 class Schedule:
     """What to do to get some nodes; afterwards they and all that they need are at ``places``."""
 
-    steps: tuple[Draw | Step, ...]
+    steps: tuple[Draw | ChosenDraw | Step, ...]
     places: Mapping[Node, Place]
 
 
@@ -113,6 +126,7 @@ class Scheduler:
         self._kept: list[Schedule] = []
         self._gathers: dict[tuple[int, tuple[Node, ...]], Gather] = {}
         self._slots = 0
+        self._merger: Final = Merger()
 
     @property
     def start(self) -> Schedule:
@@ -137,23 +151,58 @@ class Scheduler:
         return gather
 
     def _make(self, before: Schedule, roots: Sequence[Node]) -> Schedule:
-        missing = _missing(roots, before.places)
+        missing = self._missing(roots, before.places)
         if not missing:
             return Schedule((), before.places)
         places = dict(before.places)
-        steps: list[Draw | Step] = []
+        steps: list[Draw | ChosenDraw | Step] = []
         levels: dict[Node, int] = {}
         groups: dict[tuple[int, Hashable], list[Node]] = {}
         for node in missing:
-            level = 1 + max((levels.get(operand, 0) for operand in node.operands), default=-1)
+            level = 1 + max((levels.get(needed, 0) for needed in self._needed(node)), default=-1)
             levels[node] = level
             groups.setdefault((level, self._signature(node)), []).append(node)
         for (_, signature), members in sorted(groups.items(), key=lambda item: item[0][0]):
+            merged = self._merged(members[0])
             if signature in ("axis", "key"):
                 steps.append(self._draw(members, places, axes=signature == "axis"))
+            elif merged is not members[0]:
+                places[members[0]] = places[merged]
+            elif self._grouped and is_choice_of_draws(merged):
+                steps.append(self._chosen_draw(merged, places))
             else:
                 steps.append(self._step(members, places))
         return Schedule(tuple(steps), places)
+
+    def _merged(self, node: Node) -> Node:
+        """What is evaluated in place of a node. (Singly, nodes are evaluated as they are: that tells what failed.)"""
+        return self._merger(node) if self._grouped else node
+
+    def _needed(self, node: Node) -> Sequence[Node]:
+        """What has to be there before a node is evaluated."""
+        merged = self._merged(node)
+        if merged is not node:
+            return (merged,)
+        return node.operands[:1] if self._grouped and is_choice_of_draws(node) else node.operands
+
+    def _missing(self, roots: Iterable[Node], there: Mapping[Node, Place]) -> list[Node]:
+        """The nodes below ``roots`` that are neither there nor constant, operands first."""
+        result: dict[Node, None] = {}
+        for root in roots:
+            if root.is_constant or root in there or root in result:
+                continue
+            stack: list[tuple[Node, int]] = [(root, 0)]
+            while stack:
+                node, position = stack.pop()
+                needed = self._needed(node)
+                if position < len(needed):
+                    stack.append((node, position + 1))
+                    operand = needed[position]
+                    if not operand.is_constant and operand not in there and operand not in result:
+                        stack.append((operand, 0))
+                elif node not in result:
+                    result[node] = None
+        return list(result)
 
     def _signature(self, node: Node) -> Hashable:
         """Equal for nodes that can be evaluated together."""
@@ -180,6 +229,12 @@ class Scheduler:
     def _draw(self, members: Sequence[Node], places: dict[Node, Place], *, axes: bool) -> Draw:
         numbers = np.array([self.graph.axes[node] for node in members], dtype=np.intp) if axes else None
         return Draw(self._slot(members, places), self.graph.addresses(members), numbers)
+
+    def _chosen_draw(self, node: Node, places: dict[Node, Place]) -> ChosenDraw:
+        index, *axes = node.operands
+        numbers = np.array([self.graph.axes[axis] for axis in axes], dtype=np.intp)
+        gather = _gather([index], places)
+        return ChosenDraw(self._slot([node], places), gather, self.graph.addresses(axes), numbers)
 
     def _step(self, members: list[Node], places: dict[Node, Place]) -> Step:
         first = members[0]
@@ -211,25 +266,6 @@ class Scheduler:
 
 def _is_python(node: Node) -> bool:
     return node.operation.is_python(node.operands, node.kind)
-
-
-def _missing(roots: Iterable[Node], there: Mapping[Node, Place]) -> list[Node]:
-    """The nodes below ``roots`` that are neither there nor constant, operands first."""
-    result: dict[Node, None] = {}
-    for root in roots:
-        if root.is_constant or root in there or root in result:
-            continue
-        stack: list[tuple[Node, int]] = [(root, 0)]
-        while stack:
-            node, position = stack.pop()
-            if position < len(node.operands):
-                stack.append((node, position + 1))
-                operand = node.operands[position]
-                if not operand.is_constant and operand not in there and operand not in result:
-                    stack.append((operand, 0))
-            elif node not in result:
-                result[node] = None
-    return list(result)
 
 
 def _order(node: Node, places: Mapping[Node, Place]) -> tuple[tuple[int, int], ...]:
@@ -278,6 +314,7 @@ def _run(places: Sequence[Place]) -> Run | None:
 
 
 __all__ = [
+    "ChosenDraw",
     "Draw",
     "Fixed",
     "Gather",

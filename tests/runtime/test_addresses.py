@@ -38,6 +38,11 @@ OWN = [
         "param x = (c.position, Uniform([1, 2], [3])[0], str(c.x))\nrequire c.x > 0"
     ),
     (
+        "p = Uniform(*[new OrientedPoint at (Range(i, i + 1), Range(0, 2)), facing Range(0, 1) for i in range(12)])\n"
+        "q = Discrete({Normal(i, 1 + i) * Range(0, 1) + Uniform(*[DiscreteRange(j, 9) for j in range(15)]): i + 1 for i in range(20)})\n"
+        "ego = new Object at p, facing p.heading\nparam x = (p.x, q)\nrequire q > 2"
+    ),
+    (
         "x = Normal(0, 1)\ny = TruncatedNormal(x, 1, -1, 2)\nz = Discrete({x: 1, y: 2})\nparam x = (x, y, z, resample(x))\n"
         "require z > x or y > 0"
     ),

@@ -523,6 +523,19 @@ def _select_solver(terms: Terms, _payload: Any, index: Any, *options: Any) -> An
     return chain(terms, index, options)
 
 
+SELECT: Final = Operation(
+    "select",
+    _select_kind,
+    _select,
+    "The option that an index draws; only its faults and rejections count.",
+    python=_python_select,
+    bounds=_select_bounds,
+    inverse=_select_inverse,
+    solver=_select_solver,
+    strict=False,
+    rewrite=_constants,
+)
+
 OPERATIONS = (
     Operation(
         "range",
@@ -588,17 +601,6 @@ OPERATIONS = (
         solver=_choice_solver,
         stacks=True,
     ),
-    Operation(
-        "select",
-        _select_kind,
-        _select,
-        "The option that an index draws; only its faults and rejections count.",
-        python=_python_select,
-        bounds=_select_bounds,
-        inverse=_select_inverse,
-        solver=_select_solver,
-        strict=False,
-        rewrite=_constants,
-    ),
+    SELECT,
     LOOKUP,
 )

@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from scenic.graph.draws import BOX, Counter, Floats, Lanes, Source, Words
+from scenic.graph.draws import BOX, Counter, Floats, Lanes, Source, Words, each_of_distinct
 from scenic.graph.node import Graph
 from scenic.graph.points import PointSet
 
@@ -33,6 +33,9 @@ class _Driven:
         result = self._points.of_scenes(axes, self._count, self._lanes)
         missing = np.isnan(result)
         return np.where(missing, self._rest.uniforms(addresses), result) if missing.any() else result
+
+    def uniform_each(self, addresses: Words) -> Floats:
+        return each_of_distinct(self, addresses)
 
     def words(self, addresses: Words) -> Words:
         return self._rest.words(addresses)

@@ -49,6 +49,7 @@ class Outline:
     graph: Graph
     checks: tuple[Check, ...]
     outputs: tuple[Node, ...]
+    """What scenes show. Of the rest, as points, what somebody asks for is evaluated then."""
     requirements: tuple[Requirement, ...]
     """The hard requirements of the program, for analysis."""
     containment: tuple[NodeCheck, ...]
@@ -67,8 +68,8 @@ def outline(program: Program, ego: Object | None, workspace: Workspace, *, mode_
 
     Raises `InvalidScenarioError` where a built-in requirement can be seen to fail in every scene.
     """
-    outputs = dependencies(program.reachable())
-    checks: list[Check] = _drawing(outputs)
+    reached = dependencies(program.reachable())
+    checks: list[Check] = _drawing(reached)
     checks += _finite(program)
     checks += _sizes(program)
     containment = _containment(program, workspace)
@@ -77,7 +78,8 @@ def outline(program: Program, ego: Object | None, workspace: Workspace, *, mode_
     checks += _collisions(program)
     checks += _requirements(program)
     nodes = [node for check in checks for node in check.nodes]
-    graph = Graph([*outputs, *nodes])
+    graph = Graph([*reached, *nodes])
+    outputs = dependencies([*program.objects, *program.parameters.values()])
     hard = tuple(item for item in program.requirements if item.probability == 1)
     return Outline(graph, tuple(checks), tuple(outputs), hard, tuple(containment), len(program.objects))
 
