@@ -44,6 +44,9 @@ EXPRESSIONS = (
     "self in polygon",
     "self in box",
     "distance from u to region",
+    "minimum distance from self to other",
+    "minimum distance from self to round",
+    "minimum distance from round to cone",
     "self intersects other",
     "self intersects region",
     "self can see other",
@@ -64,6 +67,8 @@ ego = new Object with behavior B()
 other = new Object at (8, 8), facing 20 deg
 wall = new Object at (0, -5), with width 10, with height 5, with length 0.1
 hidden = new Object at (0, -8)
+round = new Object at (-8, 9), with shape CylinderShape(), facing (30 deg, 20 deg, 0)
+cone = new Object at (-12, 9), with shape ConeShape()
 for i in range(8):
     new Object at (2 * i - 7, -14), with shape CylinderShape()
 scenario Sub():

@@ -79,6 +79,8 @@ def unary(name: str) -> Callable[[Any], Any]:
             result = scalar(None, operand._row)
         else:
             return apply(operation, operand)
+        if type(result) is float:
+            return result
         return apply(operation, operand) if result is NotImplemented else _of_row(result)
 
     return applied

@@ -311,6 +311,8 @@ def field_of(value: Any, what: str) -> VectorField:
 
 def frame_at(direction: Any, position: Any, what: str) -> Any:
     """A direction as an orientation; a field's is that at a point."""
+    if type(direction) is float:  # the most frequent one
+        return Orientation.fromEuler(direction, 0.0, 0.0)
     if isinstance(direction, VectorField):
         return direction[position]
     if not is_field(direction):

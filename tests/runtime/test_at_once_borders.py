@@ -18,9 +18,10 @@ from scenic.graph import quaternions
 from scenic.runtime.geometry import primitives
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.collision import collide
+from scenic.runtime.geometry.distance import between
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.poses import Floats, Poses
-from scenic.runtime.geometry.single import Placed, is_near_way, meet, overlap, placed
+from scenic.runtime.geometry.single import Placed, gap, is_near_way, meet, overlap, placed
 from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.planar import CircularRegion, PolygonalRegion, RectangularRegion
 from scenic.runtime.regions.single import Single
@@ -285,6 +286,32 @@ def test_boxes_that_nearly_touch() -> None:
             deep = overlap(item.at(along), standing.at(0))
             assert 0 < deep <= change - along + 1e-7
             assert deep == pytest.approx(depth(item, along, standing), abs=1e-9)
+
+
+@pytest.mark.parametrize("shape", ["box", "cone"])
+def test_the_gap_between_convex_bodies(shape: str) -> None:
+    turn = Rotation.from_euler("zxy", ANGLES).as_quat()
+    standing = Moving(shape, np.array([0.3, 0.1, -0.2]), np.zeros(3), turn, (1, 2, 0.5))
+    both = lanes(standing, 0)
+    measured = set()
+    for item in moving(10, (0.3, 0.1, -0.2), seed=9)[1::2]:
+
+        def truth(along: float, item: Moving = item) -> bool:
+            return not collide([lanes(item, along), both], np.array([[0, 1]]), lanes=1).free[0]
+
+        change = flip(truth, 0, 5, width=1e-8)
+        convex = mesh_of(item.shape).is_convex
+        for beyond in (1e-3, 0.4, 9):
+            found = gap(item.at(change + beyond), standing.at(0))
+            assert (found is None) is not convex
+            if found is not None:
+                measured.add(item.shape)
+                assert found == pytest.approx(between(lanes(item, change + beyond), both, 1)[0], abs=1e-9)
+                assert found == pytest.approx(gap(standing.at(0), item.at(change + beyond)), abs=1e-9)
+        assert gap(item.at(change + 1e-7), standing.at(0)) is None
+        inside = gap(item.at(change - CENTIMETRE), standing.at(0))
+        assert inside == (0 if item.shape == shape == "box" else None)
+    assert measured == {"box", "cylinder", "cone", "spheroid"}
 
 
 def depth(one: Moving, along: float, other: Moving) -> float:

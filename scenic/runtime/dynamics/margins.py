@@ -10,15 +10,13 @@ from collections.abc import Sequence
 from typing import Any
 
 from scenic.language.errors import ScenicError
-from scenic.runtime.geometry.depth import convex_depth, convex_gap
-from scenic.runtime.geometry.poses import Floats, Poses
+from scenic.runtime.geometry.depth import convex_depth
 from scenic.runtime.geometry.single import overlap
 from scenic.runtime.objects import Object, Point
 from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.bodies import gap_between
 from scenic.runtime.regions.planar import PlanarRegion
 from scenic.runtime.regions.stacked import placed_of
-from scenic.runtime.shapes import BoxShape
 from scenic.runtime.values import Vector, is_number, is_vector, to_vector
 
 __all__ = ["margin"]
@@ -93,16 +91,8 @@ def _clearance(item: Object, region: Region) -> float:
 
 def _corners(item: Object) -> Sequence[Vector]:
     """The corners of the convex hull of an object."""
-    if isinstance(item.shape, BoxShape):
-        return item.corners
-    return [Vector.of(row) for row in _hull(item).tolist()]
-
-
-def _hull(item: Object) -> Floats:
-    """The corners of the convex hull of an object, ``(n, 3)``."""
-    poses = Poses.fixed(item.position, item.orientation.q, (item.width, item.length, item.height))
-    corners: Floats = poses.to_world(item.shape.mesh.hull.vertices[None])[0]
-    return corners
+    body = placed_of(item)
+    return item.corners if body is None else [Vector.of(row) for row in body.hull().tolist()]
 
 
 def _signed_distance(point: Vector, region: Region) -> float:
@@ -129,13 +119,13 @@ def _overlap(left: Any, right: Any) -> float | None:
     """How deep one of two objects is in the other, or the gap between them, negative; no depth is known of concave shapes."""
     if not (isinstance(left, Object) and isinstance(right, Object)):
         return None
-    meet = left.intersects(right)
-    if meet and isinstance(left.shape, BoxShape) and isinstance(right.shape, BoxShape):
-        one, other = placed_of(left), placed_of(right)
-        if one is not None and other is not None:
-            return overlap(one, other)
-    if left.shape.mesh.is_convex and right.shape.mesh.is_convex:
-        return convex_depth(_hull(left), _hull(right)) if meet else -convex_gap(_hull(left), _hull(right))
-    if not meet:
+    if not left.intersects(right):
         return -float(gap_between(left, right))
+    one, other = placed_of(left), placed_of(right)
+    if one is None or other is None:
+        return math.inf
+    if one.mesh.is_box and other.mesh.is_box:
+        return overlap(one, other)
+    if one.mesh.is_convex and other.mesh.is_convex:
+        return convex_depth(one.hull(), other.hull())
     return math.inf

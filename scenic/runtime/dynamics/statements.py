@@ -87,12 +87,15 @@ def do(owner: Running, targets: Sequence[Any], limit: Any = None, unit: str | No
     stop = _stop_test(owner, limit, unit)
     started: list[Running] = []
     try:
-        for target in targets:
-            sub = begin(owner, target)
-            started.append(sub)
-            sub.start()
+        # What is over at once is not even set up; a condition may read what only the set-up will make.
+        over = owner.run.holds(limit) if unit == "until" else stop is not None and stop()
+        if not over:
+            for target in targets:
+                sub = begin(owner, target)
+                started.append(sub)
+                sub.start()
         waiting = started
-        while stop is None or not stop():
+        while waiting:
             if len(waiting) == 1:
                 output = waiting[0].resume()
                 if output is None:
@@ -105,6 +108,8 @@ def do(owner: Running, targets: Sequence[Any], limit: Any = None, unit: str | No
                     break
             owner.direct = False
             yield output
+            if stop is not None and stop():
+                break
         owner.direct = True
     finally:
         for sub in started:

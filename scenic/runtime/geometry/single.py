@@ -7,7 +7,11 @@ over lanes. So an answer is the same however it was found.
 import math
 from typing import Final, NamedTuple, TypeAlias
 
+import numpy as np
+
+from scenic.runtime.geometry.depth import convex_gap
 from scenic.runtime.geometry.mesh import Mesh
+from scenic.runtime.geometry.poses import Floats
 
 Triple: TypeAlias = tuple[float, float, float]
 Rows: TypeAlias = tuple[Triple, Triple, Triple]
@@ -73,6 +77,12 @@ class Placed(NamedTuple):
             for k in (-1, 1)
         ]
 
+    def hull(self) -> Floats:
+        """The corners of its convex hull, ``(n, 3)``."""
+        frame = np.array(self.axes) * (2 * np.array(self.half)[:, np.newaxis])
+        corners: Floats = self.mesh.hull.vertices @ frame + np.array(self.position)
+        return corners
+
 
 def placed(
     position: Triple, orientation: tuple[float, float, float, float], size: Triple, mesh: Mesh
@@ -116,6 +126,19 @@ def meet(one: Placed, other: Placed) -> bool | None:
     if gap < -slack and one.mesh.is_box and other.mesh.is_box:
         return True
     return None
+
+
+def gap(one: Placed, other: Placed) -> float | None:
+    """The least distance between points of two convex bodies, in metres, equal to that over lanes but for rounding.
+
+    ``None`` where they may touch, or one is not convex.
+    """
+    if not (one.mesh.is_convex and other.mesh.is_convex):
+        return None
+    if meet(one, other):
+        return 0.0
+    found = convex_gap(one.hull(), other.hull())
+    return found if found > one.slack + other.slack else None
 
 
 def overlap(one: Placed, other: Placed) -> float:

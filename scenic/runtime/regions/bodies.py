@@ -12,11 +12,12 @@ from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import Call, Operation, always
 from scenic.runtime.geometry import body_points, containment, distance, projection, surface
 from scenic.runtime.geometry.collision import Body, collide
+from scenic.runtime.geometry.single import gap
 from scenic.runtime.geometry.surface import Side
 from scenic.runtime.lazy import is_lazy
 from scenic.runtime.regions.base import Mask, Points, Region, unsupported
 from scenic.runtime.regions.fixed_sides import FixedSide
-from scenic.runtime.regions.stacked import Stack, body_of, body_operands
+from scenic.runtime.regions.stacked import Stack, body_of, body_operands, placed_of
 from scenic.runtime.values import apply, is_random, operate, to_vector, uniform, vector
 
 SIDES: Mapping[str, Side] = MappingProxyType(
@@ -182,7 +183,9 @@ _GAP = Operation(
 
 def gap_between(first: Any, second: Any) -> Any:
     """The least distance between points of two objects, in metres."""
-    return apply(_GAP, *body_operands(first), *body_operands(second))
+    one, other = placed_of(first), placed_of(second)
+    found = None if one is None or other is None else gap(one, other)
+    return found if found is not None else apply(_GAP, *body_operands(first), *body_operands(second))
 
 
 def bounding_corners(thing: Any) -> tuple[Any, Any]:
