@@ -54,6 +54,7 @@ class _Work:
         self._form = form
         self._whole = whole
         self._made: Any = None
+        self._named: bool | None = None
 
     def __getstate__(self) -> dict[str, Any]:
         # Not what cannot go to a process that starts afresh.
@@ -80,6 +81,13 @@ class _Work:
     def file(self, k: int) -> Path | None:
         """Where simulation ``k`` is kept."""
         return None if self._folder is None else self._folder / f"simulation-{k:04d}.{self._form}"
+
+    def _looks_back(self) -> bool:
+        """Whether the program's text has the name of something that all of the course is needed for."""
+        if self._named is None:
+            text = Path(self._loading["path"]).read_bytes()
+            self._named = any(name in text for name in (b"trajectory", b"actionSequence"))
+        return self._named
 
     def known(self, k: int) -> dict[str, Any] | None:
         """What an earlier run has kept of simulation ``k``, if that was of the same program, seed and settings."""
@@ -142,9 +150,10 @@ class _Work:
             return {"k": k, "about": about, "page": kept.finish(done, about)}
 
     def _simulated(self, k: int, kept: "_Kept") -> "Numbered":
-        """Simulation ``k``; again, with its whole course in memory, if the program looked back at that.
+        """Simulation ``k``, with its whole course in memory if the program's text tells that it looks back at it.
 
-        Each decides for itself, so that files do not depend on which simulations a process makes.
+        Code elsewhere may do so, too: then it is made again. Each decides for itself, so that files do not depend on
+        which simulations a process makes.
         """
         from scenic.simulators.batch import simulate_number
         from scenic.simulators.results import NotKeptError
@@ -160,6 +169,8 @@ class _Work:
             enableReplay=False,
             **self._running,
         )
+        if self._looks_back():
+            return simulate(keep_course=True)
         try:
             numbered = simulate(keep_course=False)
         except Exception as error:

@@ -149,6 +149,28 @@ def test_the_command_keeps_what_a_program_looks_back_at(tmp_path: Path) -> None:
     }
 
 
+def test_a_program_whose_text_looks_back_is_run_once(tmp_path: Path) -> None:
+    (tmp_path / "note.py").write_text(
+        "from pathlib import Path\n"
+        "def note():\n"
+        "    with Path('runs').open('a') as file:\n"
+        "        file.write('x')\n"
+    )
+    options = ["--seed", "1", "--simulator", "dummy", "--time", "3", "-o", "out"]
+    runs = 0
+    for look, more in (("simulation().trajectory", 1), ("getattr(simulation(), 'tra' + 'jectory')", 2)):
+        (tmp_path / "back.scenic").write_text(
+            "from note import note\nego = new Object\nrecord initial note()\n"
+            f"record final len(list({look})) as states\n"
+        )
+        done = run_here(["simulate", "back.scenic", *options], folder=tmp_path)
+        assert done.returncode == 0, done.stderr
+        (path,) = (tmp_path / "out").iterdir()
+        assert scenic.read_trajectory(path).about["records"]["states"] == 4
+        runs += more
+        assert (tmp_path / "runs").read_text() == "x" * runs
+
+
 # Series of arrays
 
 
