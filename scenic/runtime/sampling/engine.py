@@ -139,6 +139,8 @@ class Engine:
         """Candidates tried so far."""
         self.passed = 0
         """Candidates that met every requirement."""
+        self.seconds = 0.0
+        """Processor time of all rounds so far."""
         self._pace = Pace(max(64, min(DEFAULT_LANES, BATCH_BYTES // max(1, plan.lane_bytes))))
         self._scheduler = Scheduler(plan.graph, grouped=grouped)
         self._single = Scheduler(plan.graph, grouped=False)
@@ -176,10 +178,16 @@ class Engine:
 
         One is looked for at first, then more at a time the more have been wanted, as long as that takes little time.
         """
+        before = self.seconds
 
         def window(given: int) -> int:
-            # A round costs mostly the same whatever its size.
-            return min(16 * given + 1, _MOST_FORESEEN, self._pace.scenes_within(_FORESIGHT_SECONDS))
+            if not given:
+                return 1
+            # A round costs mostly the same whatever its size. So much is found in vain, if nobody wants more, as takes about
+            # as long as all before.
+            fixed, _ = self._pace.cost()
+            likely = max(16 * given + 1, self._pace.scenes_within(fixed + self.seconds - before))
+            return min(likely, _MOST_FORESEEN, self._pace.scenes_within(_FORESIGHT_SECONDS))
 
         return self._results(tasks, max_attempts, self._pace.most, window, None)
 
@@ -280,7 +288,9 @@ class Engine:
         hopeless = ~finished & (pending.attempts >= max_attempts)
         self._give_up(pending, hopeless, "attempts", done)
         pending.leave(finished | hopeless)
-        self._pace.add(len(owner), passed, time.thread_time() - begun)
+        seconds = time.thread_time() - begun
+        self.seconds += seconds
+        self._pace.add(len(owner), passed, seconds)
 
     def replay(self, source: Source, task: Task, attempts: int) -> Accepted:
         """The scene of given draws, one lane of points of the cube; no check is made again."""

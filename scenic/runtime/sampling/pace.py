@@ -11,6 +11,9 @@ _LIKELY_FIXED: Final = 1e-3
 _LIKELY_LANE: Final = 5e-6
 """Seconds a round and a lane before anything is measured."""
 
+_FIXED_LANES: Final = 200
+"""A round costs about what so many lanes cost more, before rounds of several sizes have been measured."""
+
 _LEAST_SHARE: Final = 0.25
 """Lanes cost this part, at least, of what rounds take on average."""
 
@@ -92,7 +95,7 @@ class Pace:
         if variance > 1e-2 * mean_x * mean_x:
             slope = (self._xy / self._weight - mean_x * mean_y) / variance
         else:
-            slope = 0.5 * mean_y / mean_x  # rounds of one size tell nothing of the two parts
+            slope = mean_y / (mean_x + _FIXED_LANES)  # rounds of one size tell nothing of the two parts
         # What is made once is in some rounds' times, and may hide what lanes cost: they are taken to cost a little.
         slope = min(max(slope, _LEAST_SHARE * mean_y / mean_x), mean_y / mean_x)
         return max(mean_y - slope * mean_x, 1e-6), slope
