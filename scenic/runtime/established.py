@@ -216,11 +216,10 @@ def convertToFootprint(region: Region) -> Region:
 
 
 def toPolygon(thing: Any) -> Any:
-    """A region of the plane, or an object seen from above, as a shapely polygon."""
-    for name in ("polygons", "polygon"):
-        if hasattr(thing, name):
-            return getattr(thing, name)
-    return thing.boundingPolygon.polygons
+    """The shapely geometry of a polygon, of a region of the plane, its footprint or a line; ``None`` of anything else."""
+    if hasattr(thing, "geom_type"):
+        return thing if "Polygon" in thing.geom_type else None
+    return getattr(thing, "polygons", getattr(thing, "lineString", None))
 
 
 def polygonUnion(

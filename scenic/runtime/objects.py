@@ -215,6 +215,11 @@ class Point:
         return sees(self, other, occludingObjects, certain=certain)
 
     @property
+    def corners(self) -> tuple[Any, ...]:
+        """The position, which is all that it fills."""
+        return (self.position,)
+
+    @property
     def visibleRegion(self) -> Any:
         """The places in its view, as far as nothing hides them."""
         return ViewRegion.of(self)
@@ -486,16 +491,19 @@ for _name in ("top", "bottom", "left", "right", "front", "back"):
     setattr(Object, f"{_name}Surface", _surface(_name))
 
 
-def oriented_point(position: Any, orientation: Any) -> OrientedPoint:
+def oriented_point(position: Any, orientation: Any, *, by_angles: bool = False) -> OrientedPoint:
     """An oriented point that the program did not create with ``new``.
 
-    All its other properties are at their defaults, which are computed when they are asked for.
+    Its orientation is that of its parent; or, ``by_angles``, its own yaw, pitch and roll in the global frame. All its other
+    properties are at their defaults, which are computed when they are asked for.
     """
-    values: dict[str, Any] = {"position": position, "parentOrientation": to_orientation(orientation)}
-    instance = OrientedPoint._make(values)
-    for name in ("yaw", "pitch", "roll"):
-        instance.__dict__[name] = 0.0
-    instance.__dict__["orientation"] = instance.parentOrientation
+    whole = to_orientation(orientation)
+    angles = whole.eulerAngles if by_angles else (0.0, 0.0, 0.0)
+    instance = OrientedPoint._make(
+        {"position": position, "parentOrientation": Orientation() if by_angles else whole}
+    )
+    instance.__dict__.update(zip(("yaw", "pitch", "roll"), angles, strict=True))
+    instance.__dict__["orientation"] = whole
     instance.__dict__["_implied"] = True
     return instance
 

@@ -102,7 +102,7 @@ class Finals:
 def combine(chain: Sequence[Mapping[str, PropertyDefinition]]) -> dict[str, Property]:
     """The properties of a class from the definitions of each class of its method-resolution order.
 
-    Raises `InvalidScenarioError` where a final property is defined again or one is both additive and dynamic.
+    Raises `InvalidScenarioError` where a final property is defined again, or one definition is both additive and dynamic.
     """
     names = dict.fromkeys(name for definitions in reversed(chain) for name in definitions)
     return {
@@ -120,19 +120,18 @@ def _combine(name: str, definitions: Sequence[PropertyDefinition]) -> Property:
                 span=primary.span,
                 help="choose another name, or leave `final` out where it is defined first",
             )
-    additive = "additive" in primary.attributes
-    dynamic = any("dynamic" in definition.attributes for definition in definitions)
-    if additive and dynamic:
+    if {"additive", "dynamic"} <= primary.attributes:
         raise InvalidScenarioError(
             f"property {name!r} cannot be both additive and dynamic",
             span=primary.span,
             help="leave one of the two out",
         )
+    additive = "additive" in primary.attributes
     return Property(
         name,
         tuple(definitions) if additive else (primary,),
         additive,
-        dynamic,
+        any("dynamic" in definition.attributes for definition in definitions),
         "final" in primary.attributes,
     )
 

@@ -115,7 +115,10 @@ def build(cls: type[Point], specifiers: Sequence[Specifier], *, mode_2d: bool = 
                 value = offered[name]
                 if type(value) not in _PLAIN:
                     value = settle(value, instance)
-                value = values[name] = normalised(name, value)
+                value = normalised(name, value)
+                if is_object and mode_2d and name == "position":
+                    value = normalised(name, (value.x, value.y, 0))  # before others read it
+                values[name] = value
                 if is_object and name in _CHECKED:
                     _check_value(name, value, mode_2d=mode_2d)
         except Located as error:
@@ -130,9 +133,6 @@ def build(cls: type[Point], specifiers: Sequence[Specifier], *, mode_2d: bool = 
     values["_given"] = resolution.given
     if mode_2d:
         values["_planar"] = True  # how it sees
-    if issubclass(cls, Object) and mode_2d:
-        position = values["position"]
-        values["position"] = normalised("position", (position.x, position.y, 0))
     return instance
 
 

@@ -131,14 +131,11 @@ def on(_ego: Ego, target: Any) -> Specifier:
     surface = target.onSurface if is_kind(target, Object) else target
     reads = ("baseOffset", "contactTolerance", "onDirection")
     priorities = {"position": 1}
-    region: Region | None = None
-    if isinstance(surface, Region):
-        region = surface
+    region = as_region(surface)
+    if region is not None:
         if region.has_orientation:
             priorities["parentOrientation"] = 2
-    elif isinstance(surface, Random) and surface.node.kind.is_boxed:
-        region = region_of(surface, "`on`")
-    elif is_vector(surface) or hasattr(surface, "toVector"):
+    elif is_vector(surface) or isinstance(surface, Random) or hasattr(surface, "toVector"):
         place = to_vector(surface, "`on`")
     else:
         raise wrong_type("a region, an object or a vector", surface, "`on`")

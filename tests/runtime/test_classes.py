@@ -50,7 +50,6 @@ def test_additive_properties_collect_definitions() -> None:
         ("class A:\n    x1[final]: 1\nclass B(A):\n    x1: 2", InvalidScenarioError, "final", 4),
         ("class A:\n    x1[final]: 1\nnew A with x1 2", SpecifierError, "cannot be directly specified", 3),
         ("class A:\n    x1[additive, dynamic]: 1", InvalidScenarioError, "both additive and dynamic", 2),
-        ("class A:\n    x1[dynamic]: 1\nclass B(A):\n    x1[additive]: 1", InvalidScenarioError, "both", 4),
         ("class A:\n    orientation: 1", InvalidScenarioError, "final", 2),
         ("class A:\n    left: 1\nnew A", SpecifierError, "'left' is an attribute of A", 2),
         ("class A:\n    f: 1\n    def f(self): pass\nnew A", SpecifierError, "'f' is an attribute of A", 2),

@@ -26,8 +26,8 @@ def test_lines_in_numbers() -> None:
     line = named.PolylineRegion([(0, 0), (3, 0), (3, 4)])
     assert line.cumulativeLengths == [3, 7]
     assert [tuple(point)[:2] for point in line.pointsSeparatedBy(2)] == [(0, 0), (2, 0), (3, 1), (3, 3)]
-    assert line.signedDistanceTo(Vector(1, 1, 50)) == pytest.approx(1)
-    assert line.signedDistanceTo(Vector(1, -1, 50)) == pytest.approx(-1)
+    assert line.signedDistanceTo(Vector(1, 1, 50)) == pytest.approx(math.hypot(1, 50))
+    assert line.signedDistanceTo(Vector(1, -1, 50)) == pytest.approx(-math.hypot(1, 50))
     assert tuple(line.project(Vector(1, 1, 50))) == (1, 0, 0)
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from runtime.programs import draws, failure
+from runtime.programs import draws, failure, thing
 from scenic.language.errors import InvalidScenarioError
 
 REGIONS = (
@@ -58,3 +58,34 @@ def test_a_region_with_random_parameters_is_sampled() -> None:
 
 def test_all_of_space_cannot_be_drawn_from() -> None:
     assert isinstance(failure(REGIONS + "new Object in Uniform(disc, everywhere)"), InvalidScenarioError)
+
+
+def roll_of_a_tilted_top() -> float:
+    """The roll of the top of the object below that is rolled by 0.5."""
+    tilted = thing("ego = new Object facing (0.3, 0, 0.5)")
+    return float(tilted.topSurface.orientation[tilted.top.position].roll)
+
+
+def test_things_land_on_the_option_that_is_drawn() -> None:
+    text = (
+        "low = new Object at (0, 0, 0), with allowCollisions True\n"
+        "high = new Object at (0, 0, 9), with allowCollisions True\n"
+        "tilted = new Object at (0, 0, 20), facing (0.3, 0, 0.5), with allowCollisions True\n"
+        "aside = new Object at (40, 0, 0)\n"
+        "new Object at (0, 0, 30), on {where}, with allowCollisions True, with onDirection (0, 0, 1)\n"
+        "param x = (ego.z, ego.parentOrientation)\n"
+    )
+    level = text.replace("new Object at (0, 0, 30)", "ego = new Object at (0, 0, 30)")
+    heights = [height for height, _ in draws(level.format(where="Uniform(low, high)"), n=60)]
+    assert sorted({round(height, 3) for height in heights}) == [1, 10]
+    assert 15 < sum(height > 5 for height in heights) < 45
+    # Where the option that is drawn is missed, the candidate is rejected; one that is not drawn rejects nothing.
+    missed = [height for height, _ in draws(level.format(where="Uniform(low, aside, high)"), n=60)]
+    assert 15 < sum(height > 5 for height in missed) < 45
+    frames = [frame for _, frame in draws(level.format(where="Uniform(tilted, high)"), n=40)]
+    assert {round(frame.roll, 6) for frame in frames} == {0.0, round(roll_of_a_tilted_top(), 6)}
+
+
+def test_random_vectors_are_places_to_stand_on() -> None:
+    found = draws("ego = new Object on Uniform((1, 2), (3, 4, 5))\nparam x = tuple(ego.position)", n=30)
+    assert {tuple(round(part, 4) for part in place) for place in found} == {(1, 2, 0.5), (3, 4, 5.5)}

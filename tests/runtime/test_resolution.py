@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
 import pytest
 
 from scenic.language.errors import InvalidScenarioError, ScenicValueError, SpecifierError
@@ -183,6 +184,17 @@ def test_2d_defaults() -> None:
     )
     assert (found.z, found.height, tuple(found.baseOffset)) == (0, 5, (0, 0, 0))
     assert (found.contactTolerance, found.requireVisible, found.occluding) == (0, True, False)
+
+
+def test_2d_places_are_flat_when_others_read_them() -> None:
+    text = "ego = new Object at (1, 2, 3), with roll 0.3\n"
+    aside = thing(text + "new Object facing directly toward (5, 6, 7), offset by (9, 2, 3)", mode2D=True)
+    ahead = np.array(aside.relativePosition((0, 1, 0)) - aside.position)
+    way = np.array([5, 6, 7]) - np.array(aside.position)
+    np.testing.assert_allclose(ahead, way / np.linalg.norm(way), atol=1e-9)
+    assert aside.z == 0
+    kept = thing(text + "class A:\n    foo: self.position\nnew A at (9, 9, 9)", mode2D=True)
+    assert tuple(kept.foo) == (9, 9, 0)
 
 
 def test_2d_headings() -> None:

@@ -22,8 +22,11 @@ _ENTRIES: Final = 1 << 12
 """Pairs of bodies looked at together."""
 
 
-def to_surface(body: Body, points: Floats, lanes: int) -> Found:
-    """The nearest point of the body's surface to each point ``(lanes | 1, 3)``; numbers are those of faces."""
+def to_surface(body: Body, points: Floats, lanes: int, *, within: float = np.inf) -> Found:
+    """The nearest point of the body's surface to each point ``(lanes | 1, 3)``; numbers are those of faces.
+
+    Points that are farther from it than ``within`` (metres) are only known to be, and given as infinitely far.
+    """
     distance, nearest = np.empty(lanes), np.empty((lanes, 3))
     number = np.empty(lanes, dtype=np.intp)
     for mesh, chosen in body.by_mesh(lanes):
@@ -32,7 +35,7 @@ def to_surface(body: Body, points: Floats, lanes: int) -> Found:
         # A frame that turns and moves with the body, but is not stretched, keeps distances.
         rigid = Poses(poses.position, poses.orientation, np.ones((1, 3)))
         local = np.ascontiguousarray(np.broadcast_to(rigid.to_unit(start), (len(chosen), 3)))
-        found = mesh.derived(nearest_of).find(local, poses.size)
+        found = mesh.derived(nearest_of).find(local, poses.size, within=within)
         distance[chosen], number[chosen] = found.distance, found.number
         nearest[chosen] = rigid.to_world(found.point)
     return Found(distance, nearest, number)

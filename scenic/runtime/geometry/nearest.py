@@ -24,7 +24,7 @@ class Found(NamedTuple):
     Attributes:
         distance: ``(n,)``, metres.
         point: where it is, ``(n, 3)``.
-        number: of the triangle or segment that it belongs to, ``(n,)``.
+        number: of the triangle or segment that it belongs to, ``(n,)``; -1 where nothing was found.
 
     """
 
@@ -41,17 +41,23 @@ class Nearest:
         self._tree: Final = tree_of(self._corners) if tree is None else tree
         self._inner: Final = len(self._tree.starts) - 2
 
-    def find(self, points: Floats, scale: Floats | None = None) -> Found:
+    def find(self, points: Floats, scale: Floats | None = None, *, within: float = np.inf) -> Found:
         """The nearest points of all that is indexed.
 
         Args:
             points: where to look from, ``(n, 3)``.
             scale: factors ``(n | 1, 3)`` by which all that is indexed is stretched first.
+            within: metres; points that are farther than this from everything are only known to be (infinitely far).
 
         """
         count = len(points)
         size = np.ones((count, 3)) if scale is None else np.broadcast_to(scale, (count, 3))
-        squared, nearest, number = self._dive(points, size)
+        if np.isfinite(within):
+            # What is just as far counts, so a little more is looked at; the distances found are exact.
+            squared = np.full(count, np.nextafter((within * (1 + 1e-9)) ** 2, np.inf))
+            nearest, number = np.zeros((count, 3)), np.full(count, -1, dtype=np.intp)
+        else:
+            squared, nearest, number = self._dive(points, size)
         fronts = [(np.arange(count), np.zeros(count, dtype=np.intp))]
         while fronts:
             entry, node = fronts.pop()
@@ -67,7 +73,7 @@ class Nearest:
                 entry, node = entry[~leaves], node[~leaves]
             if len(entry):
                 fronts.append((np.repeat(entry, 2), np.stack([2 * node + 1, 2 * node + 2], axis=1).ravel()))
-        return Found(length(points - nearest), nearest, number)
+        return Found(np.where(number < 0, np.inf, length(points - nearest)), nearest, number)
 
     def _dive(self, points: Floats, size: Floats) -> tuple[Floats, Floats, Indices]:
         """Squared distances, nearest points and numbers in the leaf that is reached by always taking the nearer box."""

@@ -81,6 +81,11 @@ def _solid(region: Region) -> Mesh | None:
     return None
 
 
+def _meshed(region: Region) -> Mesh | None:
+    """A fixed volume as a mesh of the world, views included, whose meshes are somewhat smaller than they are."""
+    return region.solid() if isinstance(region, ViewRegion) else _solid(region)
+
+
 def _flat(region: Region) -> tuple[Any, float | None] | None:
     """A fixed region of the plane as a shapely geometry with its height; no height means all heights."""
     if isinstance(region, PlanarRegion):
@@ -109,7 +114,8 @@ def region_of(geometry: Any, height: float | None, orientation: Any) -> Region:
     if lines and height is not None:
         line = shapely.MultiLineString(lines) if len(lines) > 1 else lines[0]
         if height == 0:
-            return PolylineRegion(polyline=line, orientation=True if orientation is None else orientation)
+            own = orientation is None or isinstance(orientation, RegionField)  # the directions of its pieces
+            return PolylineRegion(polyline=line, orientation=own or orientation)
         return PathRegion(polylines=[[(x, y, height) for x, y, *_ in part.coords] for part in lines])
     points = [(part.x, part.y, height) for part in leaves if part.geom_type == "Point"]
     if points and height is not None:
@@ -119,8 +125,18 @@ def region_of(geometry: Any, height: float | None, orientation: Any) -> Region:
 
 def _field(*regions: Region) -> Any:
     """The preferred orientation of what is left of regions: that of the first one with any."""
-    found = (region.orientation for region in regions if region.orientation is not None)
-    return next((field for field in found if not isinstance(field, RegionField)), None)
+    return next((region.orientation for region in regions if region.orientation is not None), None)
+
+
+def field_of_union(members: Sequence[Region]) -> PiecewiseVectorField | None:
+    """The preferred orientation of a union of regions of the plane: that of the first member that holds the point."""
+    oriented = any(member.has_orientation for member in members)
+    return PiecewiseVectorField("union", members) if oriented else None
+
+
+def own_field(region: Region) -> RegionField:
+    """The orientations that the points of a region have by themselves, as a field."""
+    return RegionField(region)
 
 
 def _prism_about(solid: Mesh, polygon: Any) -> Mesh | None:
@@ -182,6 +198,11 @@ def _exact_intersection(a: Region, b: Region) -> Region | None:
             return region_of(slice_at(solid, height).intersection(polygon), height, _field(a, b))
         if isinstance(line, LineRegion):
             return _line_inside(line, solid)
+    for path, above in ((a, b), (b, a)):
+        if isinstance(path, PathRegion) and isinstance(above, Footprint):
+            heights = [point[2] for chain in path.chains for point in chain]
+            column = prism(above.polygons, min(heights) - 1, max(heights) + 1)
+            return nowhere if column is None else _line_inside(path, column)
     return None
 
 
@@ -248,10 +269,7 @@ def union(first: Any, second: Any) -> Region:
         if flat_a is not None and flat_b is not None and flat_a[1] == flat_b[1]:
             areal = not (isinstance(a, LineRegion) and isinstance(b, LineRegion))
             if areal:
-                field = None
-                if a.has_orientation or b.has_orientation:
-                    field = PiecewiseVectorField("union", [a, b])
-                return region_of(flat_a[0].union(flat_b[0]), flat_a[1], field)
+                return region_of(flat_a[0].union(flat_b[0]), flat_a[1], field_of_union([a, b]))
         solid_a, solid_b = _solid(a), _solid(b)
         if solid_a is not None and solid_b is not None:
             return _volume(booleans.union([solid_a, solid_b]))
@@ -305,18 +323,26 @@ def intersects(first: Any, second: Any) -> Any:
 
 def _meet(a: Region, b: Region) -> bool:
     """Whether two fixed regions share a point."""
+    if isinstance(a, Nowhere) or isinstance(b, Nowhere):
+        return False
+    if isinstance(a, Everywhere) or isinstance(b, Everywhere):
+        return True
     for one, two in ((a, b), (b, a)):
         if isinstance(one, PointSetRegion):
             return any(_holds(two, point) for point in one.points)
         if isinstance(one, UnionRegion):
             return any(_meet(member, two) for member in one.members)
+        if isinstance(one, IntersectionRegion | DifferenceRegion):
+            shared = _shared(one, two)
+            if shared is not None:
+                return not isinstance(shared, Nowhere)
         if isinstance(one, VoxelRegion):
             return any(_meet(cell, two) for cell in one.cells_within(*two.box(*two.fixed_columns("the box"))))
     flat_a, flat_b = _flat(a), _flat(b)
     if flat_a is not None and flat_b is not None:
         same = flat_a[1] is None or flat_b[1] is None or flat_a[1] == flat_b[1]
         return same and bool(flat_a[0].intersects(flat_b[0]))
-    solid_a, solid_b = (one.solid() if isinstance(one, ViewRegion) else _solid(one) for one in (a, b))
+    solid_a, solid_b = _meshed(a), _meshed(b)
     if solid_a is not None and solid_b is not None:
         return _solids_meet(solid_a, solid_b)
     for solid, flat, other in ((solid_a, flat_b, b), (solid_b, flat_a, a)):
@@ -350,10 +376,25 @@ def _meet(a: Region, b: Region) -> bool:
             if isinstance(other, SideSurface):
                 second = surface_in_world(other)
                 return second is not None and _edges_cross(shell, second)
-            solid = _solid(other)
+            solid = _meshed(other)
             if solid is not None:
                 return any(_inside(solid, vertex) for vertex in shell.vertices) or _edges_cross(shell, solid)
     raise NotImplementedError(f"whether {a!r} and {b!r} intersect is not known for regions of these kinds")
+
+
+def _shared(one: IntersectionRegion | DifferenceRegion, other: Region) -> Region | None:
+    """What a composite region shares with another, where that has a closed form when views are taken as their meshes."""
+    first, *rest = (volume_of(each) if isinstance(each, ViewRegion) else each for each in one.members)
+    shared = intersection(first, volume_of(other) if isinstance(other, ViewRegion) else other)
+    for member in rest:
+        if isinstance(one, IntersectionRegion):
+            shared = intersection(shared, member)
+        elif isinstance(shared, PlanarRegion) and (solid := _solid(member)) is not None:
+            cut = slice_at(solid, float(shared.height))
+            shared = region_of(shared.polygons.difference(cut), float(shared.height), None)
+        else:
+            shared = difference(shared, member)
+    return None if isinstance(shared, Composite) else shared
 
 
 def _crosses_plane(line: LineRegion, region: PlanarRegion) -> bool:
@@ -457,7 +498,7 @@ def contains_region(first: Any, second: Any, tolerance: float = 0) -> bool:
         return bool(flat_a[0].buffer(tolerance + 1e-9).covers(flat_b[0]))
     if isinstance(b, Footprint) and a.dimension == 3 and not isinstance(a, Footprint | Composite):
         return False
-    solid_a, solid_b = _solid(a), _solid(b)
+    solid_a, solid_b = _meshed(a), _meshed(b)
     if solid_a is not None and solid_b is not None:
         rest = booleans.difference(solid_b, [solid_a])
         return rest is None or rest.volume <= 1e-9 * solid_b.volume
@@ -477,11 +518,16 @@ def boundary(region: PlanarRegion) -> PolylineRegion:
 
 
 def outline_from_above(region: Region) -> PolygonalRegion:
-    """A volume seen from above, at height 0."""
-    solid = _solid(region)
+    """A volume or surface seen from above, at height 0."""
+    solid = surface_in_world(region) if isinstance(region, SideSurface) else _solid(region)
     if solid is None:
         raise InvalidScenarioError(f"{region!r} has no outline from above", span=here())
     return PolygonalRegion(polygon=shadow(solid))
+
+
+def part_between(region: Footprint, low: float, high: float) -> Region:
+    """The part of a footprint between two heights, in metres."""
+    return _volume(prism(region.polygons, low, high))
 
 
 def volume_of(region: PlacedVolume | ViewRegion) -> MeshVolumeRegion:
@@ -527,6 +573,9 @@ class _Algebra:
     meets_bodies = staticmethod(meets_bodies)
     region_of = staticmethod(region_of)
     surface_of = staticmethod(surface_of)
+    part_between = staticmethod(part_between)
+    field_of_union = staticmethod(field_of_union)
+    own_field = staticmethod(own_field)
     voxelized = staticmethod(voxelized)
     world_mesh = staticmethod(world_mesh)
 

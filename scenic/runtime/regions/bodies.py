@@ -252,6 +252,8 @@ class SideSurface(Region):
         if is_random(thresholds):
             raise unsupported("a `sideComponentThresholds` that is no choice among constants")
         super().__init__(*body_operands(thing), name=f"{side} surface" if SIDES[side] else side)
+        self.position, self.rotation, self.dimensions = self.parameters[:3]
+        self.tolerance, self.onDirection = 1e-6, None
         self.facing = Facing(SIDES[side])
         if self.facing.side is not None:
             axis, sign = self.facing.side
@@ -321,6 +323,30 @@ class SideSurface(Region):
     def mesh(self) -> Any:
         """Its faces in the world as a mesh, trimesh's; of a surface without random parameters."""
         return self.algebra.world_mesh(self)
+
+    @cached_property
+    def orientation(self) -> Any:
+        """The field of its normals."""
+        return self.algebra.own_field(self)
+
+    @property
+    def isConvex(self) -> bool:
+        """Whether the faces bound a convex volume."""
+        return self.facing.side is None and bool(self.parameters[3].mesh.is_convex)
+
+    @property
+    def circumcircle(self) -> tuple[Any, Any]:
+        """Centre and radius of the ball around the box of the whole body."""
+        return self.position, operate("divide", operate("norm", self.dimensions), 2)
+
+    @property
+    def boundingPolygon(self) -> Any:
+        """The faces seen from above."""
+        return self.algebra.outline_from_above(self)
+
+    def getSurfaceRegion(self) -> Region:
+        """The surface itself."""
+        return self
 
     def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
         return np.zeros(lanes, dtype=np.bool_)

@@ -6,11 +6,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from scenic.graph.kinds import Column
+from scenic.graph.construction import make_node
+from scenic.graph.kinds import Column, Kind
+from scenic.graph.operation import Call, Operation, always
 from scenic.graph.operations import TABLE
+from scenic.language.errors import InvalidScenarioError
+from scenic.runtime.choices import select
+from scenic.runtime.context import here
 from scenic.runtime.geometry.collision import Body
 from scenic.runtime.regions.base import Mask, Points, Region
-from scenic.runtime.values import Random, as_value
+from scenic.runtime.values import Orientation, Random, as_node, as_value
 
 
 class RegionChoice(Region):
@@ -42,6 +47,13 @@ class RegionChoice(Region):
             if option.dimension == np.inf:
                 option.uniform_placement()  # says why not
         return super().uniform_placement()
+
+    def project(self, point: Any, direction: Any) -> tuple[Any, Any]:
+        """Onto the option that is drawn; one on which the point does not land rejects only where it is drawn."""
+        landings = [_landing(option, point, direction) for option in self.options]
+        index = as_node(self.parameters[0])
+        places, orientations = ([as_node(part) for part in parts] for parts in zip(*landings, strict=True))
+        return select(index, places), select(index, orientations) if self.has_orientation else None
 
     def sampled(self, sample: Any) -> Region:
         """The region that a sample draws."""
@@ -133,6 +145,28 @@ class RegionChoice(Region):
             lower.append(low)
             upper.append(high)
         return np.minimum.reduce(lower), np.maximum.reduce(upper)
+
+
+def _landing(option: Region, point: Any, direction: Any) -> tuple[Any, Any]:
+    try:
+        return option.project(point, direction)
+    except InvalidScenarioError:  # a definite point that does not land
+        return as_value(make_node(_NO_LANDING, (), span=here())), Orientation()
+
+
+def _no_landing(call: Call) -> Points:
+    call.reject(np.ones(1, dtype=np.bool_))
+    return np.zeros((1, 3))
+
+
+_NO_LANDING = Operation(
+    "landing nowhere",
+    always(Kind.VECTOR),
+    _no_landing,
+    "Where a point lands on an option of a choice that it misses; rejected where that option is drawn.",
+    pure=False,
+    rejects=True,
+)
 
 
 def as_region(value: Any) -> Region | None:

@@ -33,15 +33,28 @@ LEVEL: Final = 1e-6
 
 
 class Composite(Region):
-    """A region made of members."""
+    """A region made of members.
+
+    Args:
+        members: the regions.
+        orientation: a vector field in the place of what the members prefer.
+        name: for messages.
+
+    """
 
     draws = 1
     may_find_none = True
 
-    def __init__(self, *members: Region, name: str | None = None) -> None:
+    def __init__(self, *members: Region, orientation: Any = None, name: str | None = None) -> None:
         super().__init__(*(value for member in members for value in member.parameters), name=name)
         self.members = members
-        self.has_orientation, self.orientation = False, None
+        self._field = orientation
+        self.has_orientation, self.orientation = orientation is not None, orientation
+
+    @property
+    def regions(self) -> tuple[Region, ...]:
+        """The members."""
+        return self.members
 
     def _parts(self, columns: Sequence[Column]) -> Iterator[tuple[Region, Sequence[Column]]]:
         first = 0
@@ -52,7 +65,12 @@ class Composite(Region):
 
     def sampled(self, sample: Any) -> Region:
         """The region of one sample, in closed form where it has one."""
-        return self.combined([member.sampled(sample) for member in self.members]) if self.is_random else self
+        if not self.is_random:
+            return self
+        members = [member.sampled(sample) for member in self.members]
+        if self._field is not None:
+            return type(self)(*members, orientation=self._field, name=self.name)
+        return self.combined(members)
 
     def in_lane(self, lane: int, columns: Sequence[Column]) -> Region:
         """The region at the values of one lane, in closed form where it has one."""
@@ -140,6 +158,8 @@ class Composite(Region):
         return super().uniform_placement()
 
     def orientation_at(self, point: Any) -> Any:
+        if self._field is not None:
+            return self._field[point]
         for member in self.members:
             if member.has_orientation:
                 return member.orientation_at(point) if self.has_orientation else None
@@ -165,11 +185,11 @@ def exactly_contains(region: Region, points: Points, columns: Sequence[Column]) 
 class IntersectionRegion(Composite):
     """The points that lie in all members."""
 
-    def __init__(self, *members: Region, name: str | None = None) -> None:
-        super().__init__(*members, name=name)
+    def __init__(self, *members: Region, orientation: Any = None, name: str | None = None) -> None:
+        super().__init__(*members, orientation=orientation, name=name)
         self.dimension = min(member.dimension for member in members)
         oriented = next((member for member in members if member.has_orientation), None)
-        if oriented is not None:
+        if orientation is None and oriented is not None:
             self.has_orientation, self.orientation = True, oriented.orientation
 
     def combined(self, members: Sequence[Region]) -> Region:
@@ -224,8 +244,8 @@ class IntersectionRegion(Composite):
 class UnionRegion(Composite):
     """The points that lie in any member."""
 
-    def __init__(self, *members: Region, name: str | None = None) -> None:
-        super().__init__(*members, name=name)
+    def __init__(self, *members: Region, orientation: Any = None, name: str | None = None) -> None:
+        super().__init__(*members, orientation=orientation, name=name)
         self.dimension = max(member.dimension for member in members)
 
     def combined(self, members: Sequence[Region]) -> Region:
@@ -314,10 +334,14 @@ class UnionRegion(Composite):
 class DifferenceRegion(Composite):
     """The points of the first member that do not lie in the second."""
 
-    def __init__(self, *members: Region, name: str | None = None) -> None:
-        super().__init__(*members, name=name)
-        self.dimension = members[0].dimension
-        self.has_orientation, self.orientation = members[0].has_orientation, members[0].orientation
+    def __init__(
+        self, regionA: Region, regionB: Region, *, orientation: Any = None, name: str | None = None
+    ) -> None:
+        super().__init__(regionA, regionB, orientation=orientation, name=name)
+        self.regionA, self.regionB = regionA, regionB
+        self.dimension = regionA.dimension
+        if orientation is None:
+            self.has_orientation, self.orientation = regionA.has_orientation, regionA.orientation
 
     def combined(self, members: Sequence[Region]) -> Region:
         return members[0].difference(members[1])

@@ -135,6 +135,11 @@ class PathRegion(LineRegion):
             raise ScenicValueError(f"`PathRegion`: {error}", span=here()) from error
         super().__init__(segments, tolerance, orientation, name)
 
+    def defaultOrientation(self, point: Any) -> Orientation:
+        """The direction of the segment nearest to a point."""
+        place = np.array([tuple(to_vector(point))])
+        return Orientation.of(self.pieces.frames[self.pieces.nearest(place)[1][0]].tolist())
+
 
 class PolylineRegion(LineRegion):
     """A chain of line segments in the plane, or several.
@@ -196,8 +201,10 @@ class PolylineRegion(LineRegion):
     def _end(self, point: Any, segment: int) -> OrientedPoint:
         place = Vector.of(point)
         if isinstance(self.orientation, VectorField) and not isinstance(self.orientation, RegionField):
-            return oriented_point(place, self.orientation[place])
-        return oriented_point(place, Orientation.of(self.pieces.frames[segment].tolist()))
+            orientation = self.orientation[place]
+        else:
+            orientation = Orientation.of(self.pieces.frames[segment].tolist())
+        return oriented_point(place, orientation, by_angles=True)
 
     @property
     def start(self) -> OrientedPoint:
@@ -210,9 +217,8 @@ class PolylineRegion(LineRegion):
         return self._end(self.pieces.ends[-1].tolist(), len(self.pieces.starts) - 1)
 
     def signedDistanceTo(self, point: Any) -> float:
-        """Distance from a point to the line, negative on the right of it (metres)."""
+        """Distance from a point to the line, negative on the right of it (metres); z counts, as in every distance."""
         place = np.array([tuple(to_vector(point))])
-        place[:, 2] = 0
         distance, index, _ = self.pieces.nearest(place)
         start, end = self.pieces.starts[index[0]], self.pieces.ends[index[0]]
         along, across = end - start, place[0] - start

@@ -136,7 +136,8 @@ class MeshVolumeRegion(OccupiedSpace):
             inside = np.array(np.broadcast_to(inside, max(len(inside), len(points), len(body))))
             part = body if len(body) == 1 else body.take(near)
             place = points if len(points) == 1 else points[near]
-            inside[near] = distance.to_solid(part, place, len(near)) <= self.tolerance
+            found = distance.to_surface(part, place, len(near), within=self.tolerance)
+            inside[near] = found.distance <= self.tolerance
         return inside
 
     @classmethod
@@ -213,10 +214,6 @@ class MeshSurfaceRegion(SideSurface):
         """The volume that the surface bounds; raises ``ValueError`` where it bounds none."""
         position, rotation, dimensions, shape = self.parameters
         return MeshVolumeRegion(shape.mesh, dimensions, position, rotation)
-
-    def getSurfaceRegion(self) -> "MeshSurfaceRegion":
-        """The surface itself."""
-        return self
 
 
 def solid_in_world(operands: list[Column]) -> Mesh:

@@ -80,6 +80,15 @@ class PlanarRegion(Region):
         return vector(middle.x, middle.y, self.height), float(shapely.minimum_bounding_radius(self.polygons))
 
     @property
+    def inradius(self) -> Any:
+        """The radius of the largest circle about the middle of its bounding box that it holds, in metres."""
+        import shapely
+
+        left, bottom, right, top = self.polygons.bounds
+        middle = shapely.Point((left + right) / 2, (bottom + top) / 2)
+        return float(self.polygons.boundary.distance(middle)) if self.polygons.covers(middle) else 0.0
+
+    @property
     def boundary(self) -> Any:
         """The outline, as a line."""
         return self.algebra.boundary(self)
@@ -94,6 +103,19 @@ class PlanarRegion(Region):
     def buffer(self, distance: float) -> "PolygonalRegion":
         """The region of all points within ``distance`` metres (shrunk where negative)."""
         return PolygonalRegion(polygon=self.polygons.buffer(distance), z=float(self.height))
+
+    @staticmethod
+    def unionAll(regions: Iterable["PlanarRegion"], buf: float = 0) -> "PolygonalRegion":
+        """The union of regions; gaps that are narrower than twice ``buf`` metres are closed.
+
+        What the regions prefer as orientations it prefers, too, the first that holds a point before the others.
+        """
+        members = list(regions)
+        if not members or not all(isinstance(member, PlanarRegion) for member in members):
+            raise ScenicTypeError("`unionAll` takes at least one polygonal region", span=here())
+        merged = Polygons.union([Polygons(member.polygons) for member in members], buf)
+        field = PlanarRegion.algebra.field_of_union(members)
+        return PolygonalRegion(polygon=merged.polygon, z=float(members[0].height), orientation=field)
 
     @abstractmethod
     def beside(self, points: Points, *columns: Column) -> Column:
@@ -336,7 +358,10 @@ class RectangularRegion(PlanarRegion):
     def polygons_now(self) -> Any:
         import shapely
 
-        box = shapely.box(-self.width / 2, -self.length / 2, self.width / 2, self.length / 2)
+        x, y = self.width / 2, self.length / 2
+        box = shapely.Polygon(
+            [(x, y), (-x, y), (-x, -y), (x, -y)]
+        )  # from the corner with which `corners` begin
         cos, sin = math.cos(self.heading), math.sin(self.heading)
         return shapely.affinity.affine_transform(box, [cos, -sin, sin, cos, self.position.x, self.position.y])
 
@@ -428,15 +453,6 @@ class PolygonalRegion(PlanarRegion):
 
     def polygons_now(self) -> Any:
         return self.outline.polygon
-
-    @staticmethod
-    def unionAll(regions: Iterable["PolygonalRegion"], buf: float = 0) -> "PolygonalRegion":
-        """The union of regions; gaps that are narrower than twice ``buf`` metres are closed."""
-        members = list(regions)
-        if not members or not all(isinstance(member, PlanarRegion) for member in members):
-            raise ScenicTypeError("`unionAll` takes at least one polygonal region", span=here())
-        merged = Polygons.union([Polygons(member.polygons) for member in members], buf)
-        return PolygonalRegion(polygon=merged.polygon, z=float(members[0].height))
 
     def single(self) -> Single | None:
         return Polygon(self.outline, self._z)
@@ -624,6 +640,20 @@ class Footprint(Region):
     def polygons(self) -> Any:
         """The region seen from above, as a shapely ``MultiPolygon``."""
         return self.region.polygons
+
+    @property
+    def isConvex(self) -> bool:
+        """Whether the region seen from above is convex."""
+        return bool(self.polygons.convex_hull.area <= self.polygons.area * (1 + 1e-9))
+
+    def boundFootprint(self, centerZ: float, height: float) -> Region:
+        """The part of the footprint that is so high, about a middle height (metres)."""
+        part: Region = self.algebra.part_between(self, centerZ - height / 2, centerZ + height / 2)
+        return part
+
+    def approxBoundFootprint(self, centerZ: float, height: float) -> Region:
+        """A part of the footprint that holds the one of `boundFootprint`."""
+        return self.boundFootprint(centerZ, height)
 
     def buffer(self, distance: float) -> "Footprint":
         """The footprint of all points within ``distance`` metres."""

@@ -149,6 +149,43 @@ class ViewRegion(Region):
         """Its mesh seen from above."""
         return self.algebra.volume_of(self).boundingPolygon
 
+    @property
+    def position(self) -> Any:
+        """Where the observer is."""
+        return self.parameters[0]
+
+    @property
+    def rotation(self) -> Any:
+        """The frame of the observer."""
+        return self.parameters[1]
+
+    @property
+    def isConvex(self) -> bool:
+        """Whether its mesh is convex."""
+        return bool(self.algebra.volume_of(self).isConvex)
+
+    @property
+    def inradius(self) -> float:
+        """As of its mesh."""
+        radius: float = self.algebra.volume_of(self).inradius
+        return radius
+
+    @property
+    def circumcircle(self) -> tuple[Any, float]:
+        """As of its mesh."""
+        circle: tuple[Any, float] = self.algebra.volume_of(self).circumcircle
+        return circle
+
+    def voxelized(self, pitch: float) -> Region:
+        """The cells of this edge length, in metres, that its mesh touches."""
+        cells: Region = self.algebra.volume_of(self).voxelized(pitch)
+        return cells
+
+    def project(self, point: Any, direction: Any) -> tuple[Any, Any]:
+        """As onto its mesh."""
+        landing: tuple[Any, Any] = self.algebra.volume_of(self).project(point, direction)
+        return landing
+
     def box(self, *columns: Column) -> tuple[Points, Points]:
         camera, reach = columns[0], columns[4][:, None]
         return camera - reach, camera + reach

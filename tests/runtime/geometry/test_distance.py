@@ -69,6 +69,10 @@ def test_points_and_surfaces(name):
     np.testing.assert_allclose(np.abs(signs), found.distance)
     np.testing.assert_allclose(np.linalg.norm(points - found.point, axis=1), found.distance, rtol=1e-9)
     np.testing.assert_array_equal(distance.to_solid(body, points, COUNT), np.maximum(signs, 0))
+    for within in (0.0, float(np.median(found.distance)), float(found.distance.max())):
+        near = distance.to_surface(body, points, COUNT, within=within).distance
+        np.testing.assert_array_equal(near <= within, found.distance <= within)
+        np.testing.assert_array_equal(near[near <= within], found.distance[near <= within])
     inside = 0
     for entry in range(COUNT):
         world = trimesh.Trimesh(world_vertices(mesh, poses, entry), mesh.faces, process=False)
