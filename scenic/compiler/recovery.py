@@ -189,7 +189,12 @@ class Recovery:
         header = max(0, first - 3)
         while header > 0 and kinds[header - 1] not in (NEWLINE, INDENT, DEDENT):
             header -= 1
-        if header <= self._last_reported < end or self._lexical_between(header, end):
+        if (
+            header <= self._last_reported < end
+            # A header without a colon will be told of.
+            or (first > 2 and kinds[first - 1] == INDENT and kinds[first - 3] != _COLON)
+            or self._lexical_between(header, end)
+        ):
             self._spoilt.append((self.tokens.lines[first], self.tokens.lines[end]))
         else:
             _, _, farthest, expected = self._recording("statement", part)

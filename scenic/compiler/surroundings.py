@@ -33,6 +33,7 @@ class Foreign:
     ``definition`` is the one definition that it can only mean, without decorators; ``None`` if there may be others.
     ``parameters`` are those of a class that is called like a function. ``properties`` are those of a class of objects,
     ``None`` if they cannot be known. ``filename`` and ``span`` tell where the name is defined.
+    ``is_plain_class`` tells whether it is a class that certainly makes no objects of the scene.
     """
 
     name: str
@@ -41,6 +42,7 @@ class Foreign:
     properties: Mapping[str, Property] | None = field(default=None, repr=False)
     filename: str | None = None
     span: Span | None = None
+    is_plain_class: bool = False
 
 
 class Surroundings(Protocol):

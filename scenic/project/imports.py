@@ -306,9 +306,10 @@ class Imports:
         return Fix(f"Write `{near}`", tuple(edits), is_slip(name, near))
 
     def _is_guarded(self, node: ast.AST) -> bool:
-        """Whether a node stands in a ``try``, so that its failure may be provided for."""
+        """Whether a node stands in a ``try`` that catches errors, so that its failure may be provided for."""
         return any(
             isinstance(owner, ast.Try | ast.TryStar | scenic.TryInterrupt)
+            and owner.handlers
             and position(owner) <= position(node) <= (owner.end_lineno or 0, owner.end_col_offset or 0)
             for owner in walk(self._tree)
         )

@@ -111,13 +111,14 @@ def _explored(project: Project, exported: Exported) -> Foreign | None:
         return None
     if not isinstance(node, DEFINITIONS) or getattr(node, "decorator_list", None):
         return None
-    parameters, properties = None, None
+    parameters, properties, is_plain_class = None, None, False
     if isinstance(node, ast.ClassDef):
         known = class_of_symbol(project, symbol)
         if known is not None and known.complete:
             properties = _properties(known) if known.is_scenic else None
             parameters = None if known.is_scenic else _parameters(known)
-    return Foreign(symbol.name, node, parameters, properties, symbol.filename, symbol.span)
+            is_plain_class = not known.is_scenic
+    return Foreign(symbol.name, node, parameters, properties, symbol.filename, symbol.span, is_plain_class)
 
 
 def _properties(known: Class) -> Mapping[str, Property]:

@@ -79,6 +79,28 @@ def test_an_ego_that_a_module_brings_is_there(tmp_path: Path) -> None:
     assert findings(tmp_path / "main.scenic", text) == []
 
 
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("from math import pi\nego = new Object at pie\n", ["SC202 `pie`"]),
+        ("from math import pi\nego = new Object at tau\n", ["SC206 `pi`", "SC202 `tau`"]),
+        ("from tools import Action\nego = new Object\nnew Action\n", ["SC203 `Action`"]),
+        # What has a handler may be meant to fail; interrupts handle no errors.
+        ("import tools\nego = new Object\ntry:\n    tools.pull\nexcept AttributeError:\n    pass\n", []),
+        ("import tools\nego = new Object\ntry:\n    tools.pull\nfinally:\n    pass\n", ["SC212 `tools`"]),
+        (
+            "import tools\nego = new Object\nbehavior B():\n    try:\n        take tools.Axion()\n"
+            "    interrupt when tools.pull:\n        wait\nego.behavior = B\n",
+            ["SC212 `tools`", "SC212 `tools`"],
+        ),
+    ],
+)
+def test_what_is_said_of_python_modules(tmp_path: Path, text: str, expected: list[str]) -> None:
+    write(tmp_path, {"tools.py": "class Action:\n    pass\ndef push(): pass\n"})
+    found = findings(tmp_path / "main.scenic", text)
+    assert [f"{item.code} `{item.message.split('`')[1]}`" for item in found] == expected
+
+
 def test_changes_of_a_module_are_seen(tmp_path: Path) -> None:
     found = project(tmp_path, {"m.scenic": "def f(a): return a\n"})
     known = surroundings_in(found)

@@ -10,6 +10,7 @@ from scenic.compiler.checks.conditions import truth
 from scenic.compiler.checks.context import Context
 from scenic.compiler.checks.pieces import Piece
 from scenic.compiler.checks.places import word_span
+from scenic.compiler.scopes import PROVIDED
 from scenic.compiler.traversal import parts
 from scenic.language.diagnostics import Diagnostic
 
@@ -198,16 +199,19 @@ def _lasts(body: list[Any], context: Context) -> bool:
     stack: list[ast.AST] = [*body]
     while stack:
         node = stack.pop()
-        if isinstance(node, _LASTING) or _is_begun(node) or _is_forgotten(node, context):
+        if isinstance(node, _LASTING) or _is_begun(node, context) or _is_forgotten(node, context):
             return True
         if not isinstance(node, (*_OWN_BODIES, ast.expr)):
             stack.extend(parts(node))
     return False
 
 
-def _is_begun(node: ast.AST) -> bool:
-    """Whether a statement is a `take` of which only the word is written."""
-    return isinstance(node, ast.Expr) and isinstance(node.value, ast.Name) and node.value.id == "take"
+def _is_begun(node: ast.AST, context: Context) -> bool:
+    """Whether a statement is a `take` of which only the word is written, or a word that may be a misspelt `wait`."""
+    if not isinstance(node, ast.Expr) or not isinstance(node.value, ast.Name):
+        return False
+    name = node.value
+    return name.id == "take" or (context.binding(name) is None and name.id not in PROVIDED)
 
 
 def _is_forgotten(node: ast.AST, context: Context) -> bool:

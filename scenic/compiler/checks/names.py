@@ -11,7 +11,14 @@ from scenic.compiler.checks.arguments import kind_of
 from scenic.compiler.checks.context import Context
 from scenic.compiler.checks.pieces import Piece
 from scenic.compiler.checks.places import word_span
-from scenic.compiler.checks.unfinished import alone_names, begun_word, may_bind_more, text_before, unfinished
+from scenic.compiler.checks.unfinished import (
+    alone_names,
+    begun_word,
+    compared_names,
+    may_bind_more,
+    text_before,
+    unfinished,
+)
 from scenic.compiler.scopes import Binding, BindingKind, Reference, Scope, ScopeKind, Stretch
 from scenic.compiler.traversal import position
 from scenic.language.diagnostics import Diagnostic, Label
@@ -57,6 +64,8 @@ def check_names(context: Context, provided: Collection[str]) -> Iterator[Diagnos
         return
     skipped: set[str] | None = None
     alone: set[ast.Name] = set()
+    compared: set[ast.Name] = set()
+    meant: set[str] = set()
     being_typed: set[str] = set()
     importing = half_typed = False
     suggestions: dict[str, str | None] = {}
@@ -75,6 +84,8 @@ def check_names(context: Context, provided: Collection[str]) -> Iterator[Diagnos
             skipped = _skipped_words(context)
             alone = alone_names(context)
             words = {each.id for each in alone}
+            compared = compared_names(context)
+            meant = {each.id for each in compared}
             importing = any(_is_import(word) for word in words) or _is_import_broken(context)
             missing_imports = _missing_imports(context)
             half_typed = may_bind_more(context) or any(
@@ -87,6 +98,15 @@ def check_names(context: Context, provided: Collection[str]) -> Iterator[Diagnos
         if name in skipped:
             continue
         if node not in alone and (importing or any(_may_become(word, name) for word in being_typed)):
+            continue
+        if name in meant:
+            if node in compared:
+                yield context.error(
+                    "SC202",
+                    f"the name `{name}` is not defined",
+                    node,
+                    f"`==` compares; `{name} = ...` would define it",
+                )
             continue
         if context.broken:
             # Its binding may be among what is broken: once is enough.
@@ -286,6 +306,12 @@ def _no_class(context: Context, name: ast.Name) -> Iterator[Diagnostic]:
     foreign = context.foreign(name)
     definition: Any = context.definition(name) if foreign is None else foreign.definition
     labels: tuple[Label, ...] = ()
+    if foreign is not None and foreign.is_plain_class:
+        labels = context.defined(name.id, definition, foreign)
+        what = f"`{name.id}` is a class of Python, not one of objects"
+        help_ = f"leave out `new`: write `{name.id}(...)`"
+        yield context.warning("SC203", what, name, help_, labels=labels)
+        return
     if definition is not None and not isinstance(definition, ast.ClassDef):
         what = kind_of(definition)
         labels = context.defined(name.id, definition, foreign)

@@ -16,7 +16,7 @@ from scenic.language.diagnostics import Diagnostic
 from scenic.language.keywords import SOFT_KEYWORDS, TEMPORAL_OPERATORS
 from scenic.language.statements import STATEMENTS
 
-__all__ = ["alone_names", "begun_word", "may_bind_more", "text_before", "unfinished"]
+__all__ = ["alone_names", "begun_word", "compared_names", "may_bind_more", "text_before", "unfinished"]
 
 _ENDS: Final = ("", ",", ")", "]", "}", ";", ":", "#")
 """What may follow where something is missing: the end of the line, or one of these."""
@@ -129,6 +129,28 @@ def _alone_in(stretch: Stretch) -> frozenset[str]:
 
 def _alone(stretch: Stretch) -> Iterator[ast.Name]:
     return (name for node, _ in stretch.nodes(ast.Expr) for name in _names_in_row(node.value))
+
+
+def compared_names(context: Context) -> set[ast.Name]:
+    """The names that nothing binds on the left of ``==`` in statements that only compare: they were meant to be bound."""
+    resolution = context.resolution
+    return {
+        name
+        for stretch in resolution.stretches
+        if any(
+            each not in resolution.names
+            for each in stretch.common("compared", lambda own: frozenset(name.id for name in _compared(own)))
+        )
+        for name in _compared(stretch)
+        if (reference := resolution.reference(name)) is not None and reference.binding is None
+    }
+
+
+def _compared(stretch: Stretch) -> Iterator[ast.Name]:
+    for node, _ in stretch.nodes(ast.Expr):
+        match node.value:
+            case ast.Compare(left=ast.Name() as name, ops=[ast.Eq()]):
+                yield name
 
 
 def _names_in_row(value: ast.expr) -> Iterator[ast.Name]:

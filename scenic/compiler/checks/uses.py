@@ -111,7 +111,10 @@ def _is_of_concern(binding: Binding, context: Context) -> bool:
     if binding.name.startswith("_") or binding.name in scenic.GUARDS:
         return False
     # It may be another name that is wrong.
-    return not any(is_slip(name, binding.name) for name in context.unresolved)
+    own = binding.name
+    return not any(
+        is_slip(name, own) or name.startswith(own) or own.startswith(name) for name in context.unresolved
+    )
 
 
 def _unused(binding: Binding, scope: Scope, context: Context) -> Iterator[Diagnostic]:

@@ -26,6 +26,7 @@ RULES: Final[tuple[Rule, ...]] = (
     statements.parts_of_scenario,
     statements.definition_without_name,
     blocks.try_alone,
+    blocks.decorator_alone,
     blocks.missing_block,
     blocks.unexpected_indent,
     python.two_commas,

@@ -4,6 +4,7 @@ from dataclasses import replace
 from typing import Final
 
 from scenic.compiler.actions import Problem
+from scenic.compiler.generated import HARD_KEYWORDS
 from scenic.compiler.mistakes.elsewhere import first_word
 from scenic.compiler.mistakes.situation import Situation, insertion
 from scenic.compiler.mistakes.trial import Change
@@ -13,6 +14,7 @@ from scenic.language.spelling import nearest
 
 __all__ = [
     "clause_without_beginning",
+    "decorator_alone",
     "header_without_colon",
     "missing_block",
     "missing_colon",
@@ -244,10 +246,26 @@ def try_alone(at: Situation) -> Problem | None:
                 f"`{at.word(at.token)}` is no complete clause",
                 "write the whole clause, with a colon at its end",
             )
+    # What follows may be right.
     return at.problem(
         "SC134",
-        at.here(),
+        at.place(place[0]),
         "`try` needs a clause: `except`, `finally` or `interrupt when`",
         "add one after the block, indented like `try`",
-        labels=((at.place(place[0]), "the `try` is here"),),
+    )
+
+
+def decorator_alone(at: Situation) -> Problem | None:
+    """A decorator before what it cannot decorate."""
+    if at.token != at.first or at.tokens.texts[at.start] != "@" or HARD_KEYWORDS["def"] not in at.expected:
+        return None
+    if at.found and any(word.startswith(at.found) for word in ("async", "class", "def")):
+        return None
+    # The statement that follows may be right.
+    first, end = at.trials.line(at.token - 2)
+    return at.problem(
+        "SC110",
+        (*at.place(first)[:2], *at.place(end - 1)[2:]),
+        "a decorator needs a function or class after it",
+        "write `def` or `class` on the next line",
     )

@@ -105,6 +105,13 @@ def test_repairs_repair(case: Path) -> None:
         ("class Plain(object): pass\nego = new Object\nx = Plain()\n", []),
         ("x = Range(0, 1)\nif x > 0.5:\n    y = 3\nego = new Object\n", [("SC403", 2, 3)]),
         ("x = Range(0, 1)\ny = 1 if abs(-x) > 0.5 else 2\nego = new Object\n", [("SC403", 2, 9)]),
+        # One mistake is told of once.
+        ("chair == new Object\nnew Object left of chair\nego = new Object\n", [("SC202", 1, 0)]),
+        (
+            "chair == new Object\nnew Object left of chiar\nego = new Object\n",
+            [("SC202", 1, 0), ("SC202", 2, 19)],
+        ),
+        ("monitor M():\n    wiat\nego = new Object\n", [("SC202", 2, 4)]),
         ("x = Uniform(1, 2)\nwhile x: pass\nego = new Object\n", [("SC403", 2, 6)]),
         ("try:\n    if Range(0, 1) > 0: pass\nexcept Exception:\n    y = 1\nego = new Object\n", []),
         ("try:\n    y = 1\nfinally:\n    z = not Range(0, 1)\nego = new Object\n", [("SC403", 4, 12)]),
