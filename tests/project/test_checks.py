@@ -89,8 +89,10 @@ def test_an_ego_that_a_module_brings_is_there(tmp_path: Path) -> None:
         ("import tools\nego = new Object\ntry:\n    tools.pull\nexcept AttributeError:\n    pass\n", []),
         ("import tools\nego = new Object\ntry:\n    tools.pull\nfinally:\n    pass\n", ["SC212 `tools`"]),
         (
-            "import tools\nego = new Object\nbehavior B():\n    try:\n        take tools.Axion()\n"
-            "    interrupt when tools.pull:\n        wait\nego.behavior = B\n",
+            (
+                "import tools\nego = new Object\nbehavior B():\n    try:\n        take tools.Axion()\n"
+                "    interrupt when tools.pull:\n        wait\nego.behavior = B\n"
+            ),
             ["SC212 `tools`", "SC212 `tools`"],
         ),
     ],
