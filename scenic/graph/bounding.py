@@ -8,7 +8,7 @@ import numpy as np
 
 from scenic.graph.bounds import Bounds, outward
 from scenic.graph.kinds import Kind
-from scenic.graph.node import Node
+from scenic.graph.node import UNREAD, Node
 from scenic.graph.operation import BoundsReading, Operation
 
 LARGEST: Final = 2.0**62
@@ -72,8 +72,11 @@ def integral(kind: Kind, bounds: Bounds | None) -> Bounds | None:
 def overall(node: Node) -> Bounds | None:
     """Bounds of a node over the whole cube, for one box; ``None`` where nothing is known.
 
-    Visits a bounded number of nodes below, and none below integers, whose limits are kept on the node.
+    Visits a bounded number of nodes below, and none below those whose bounds are known already. They are kept with the node.
     """
+    if node.bounds is not UNREAD:
+        found: Bounds | None = node.bounds
+        return found
     known: dict[Node, Bounds | None] = {}
     visits = 0
     stack = [node]
@@ -82,7 +85,7 @@ def overall(node: Node) -> Bounds | None:
         if current in known:
             stack.pop()
             continue
-        leaf = _leaf(current)
+        leaf = _leaf(current) if current.bounds is UNREAD else current.bounds
         if leaf is not None:
             known[current] = leaf
             stack.pop()
@@ -97,6 +100,7 @@ def overall(node: Node) -> Bounds | None:
         ]
         known[current] = forward(current, operands)
         stack.pop()
+    node.keep_bounds(known[node])
     return known[node]
 
 

@@ -13,6 +13,9 @@ from scenic.graph.operation import Call, Operation, always
 
 Consumers = WeakValueDictionary[Hashable, "Node"]
 
+UNREAD: Final = object()
+"""In the place of bounds that nobody has asked for."""
+
 
 @dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
 class Node:
@@ -30,6 +33,8 @@ class Node:
     span: Hashable | None = None
     limits: tuple[int, int] | None = None
     _consumers: Consumers | None = field(default=None, init=False, repr=False)
+    _bounds: Any = field(default=UNREAD, init=False, repr=False)
+    """What `scenic.graph.bounding.overall` has found: it is asked of a node again and again."""
 
     @property
     def consumers(self) -> Consumers:
@@ -43,6 +48,16 @@ class Node:
         """Give the node the operands that were not there yet when it was made, before anything reads the graph."""
         object.__setattr__(self, "operands", operands)
         object.__setattr__(self, "payload", payload)
+        object.__setattr__(self, "_bounds", UNREAD)
+
+    @property
+    def bounds(self) -> Any:
+        """The bounds over the whole cube, or `UNREAD`."""
+        return self._bounds
+
+    def keep_bounds(self, bounds: Any) -> None:
+        """Let `bounds` be these from now on."""
+        object.__setattr__(self, "_bounds", bounds)
 
     @property
     def is_constant(self) -> bool:

@@ -177,7 +177,11 @@ def _may_be_infinite(root: Node, known: dict[Node, Bounds | None]) -> bool:
         if missing:
             stack += missing
             continue
-        bounds = forward(node, [known[operand] for operand in node.operands])
+        operands = [known[operand] for operand in node.operands]
+        are_overall = all(
+            bounds is overall(operand) for bounds, operand in zip(operands, node.operands, strict=True)
+        )
+        bounds = overall(node) if are_overall else forward(node, operands)
         if node.operation.bounds is None and bounds is not None and not _is_python(node):
             bounds = Bounds(np.maximum(bounds.lower, -_FAR), np.minimum(bounds.upper, _FAR))
         known[node] = bounds
