@@ -49,7 +49,8 @@ def choose_simulator(name: str | None, scenario: Scenario) -> Simulator:
     name = name or "kinematic"
     module, colon, cls = _PLACES.get(name, name).partition(":")
     if not (module and colon and cls):
-        meant = nearest(name.lower(), _PLACES)
+        plain = name.lower()
+        meant = plain if plain in _PLACES else nearest(plain, _PLACES)
         own = "or MODULE:CLASS for one of your own"
         raise SimulatorChoiceError(
             f"there is no simulator {name!r}",

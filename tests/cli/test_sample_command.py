@@ -240,3 +240,11 @@ def test_labelled_images_do_not_replace_a_file(folder: Path) -> None:
     assert result.returncode == 2
     assert "is not a folder" in result.stderr
     assert (folder / "images").read_text() == "mine"
+
+
+def test_images_of_a_camera_have_their_labels_beside_them(folder: Path) -> None:
+    result = run(folder, "balls.scenic", "--camera", "ego", "-n", 2, "--image-size", "32x24", "-o", "seen")
+    assert result.returncode == 0, result.stderr
+    index = json.loads((folder / "seen" / "annotations.json").read_text())
+    assert len(index["images"]) == 2
+    assert all((folder / "seen" / image["file_name"]).exists() for image in index["images"])

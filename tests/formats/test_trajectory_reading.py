@@ -147,6 +147,16 @@ def test_runs_go_on_in_columns(folder: Path) -> None:
 
 
 @needs_parquet
+def test_tables_of_something_else_are_refused(tmp_path: Path) -> None:
+    import pyarrow
+    from pyarrow import parquet
+
+    parquet.write_table(pyarrow.table({"step": [0, 1]}), tmp_path / "other.parquet")
+    with pytest.raises(ValueError, match="there is no simulation in it"):
+        trajectory_tables.parquet_about(tmp_path / "other.parquet")
+
+
+@needs_parquet
 def test_numbers_that_are_not_finite(tmp_path: Path) -> None:
     about: dict[str, Any] = {"format": "scenic-simulation", "version": 1, "steps": 0, "timestep": 1.0}
     about["objects"] = [{"name": None}]

@@ -385,3 +385,11 @@ def test_angles_have_room_at_the_seam_and_at_the_poles():
             lower, upper = bounds_of(case, [np.array([[0.0, 0.0, 0.0, 1.0]])], [((-1.0,) * 4, (1.0,) * 4)])
             assert lower <= math.nextafter(-limit, -4)
             assert upper >= math.nextafter(limit, 4)
+
+
+def test_nothing_is_certain_of_numbers_that_may_be_none():
+    """The difference of infinities is no number, and unequal to itself."""
+    for name, certain in (("equal", (0, 1)), ("not equal", (0, 1))):
+        for end in (math.inf, -math.inf):
+            assert ends_of(name, (end, end), (end, end)) == certain
+    assert ends_of("equal", (2.0, 2.0), (2.0, 2.0)) == (1, 1)

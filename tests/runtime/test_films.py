@@ -12,6 +12,7 @@ import pytest
 
 import scenic
 from scenic.language.errors import UnsupportedError
+from scenic.runtime.dynamics.series import Film
 from scenic.simulators.dummy import DummySimulator
 
 
@@ -71,6 +72,16 @@ def test_films_keep_the_pace_of_the_simulation(tmp_path: Path) -> None:
     _, pace, shown = frames(tmp_path / "film.mp4")
     assert pace == 10
     assert len(shown) == 5
+
+
+@pytest.mark.skipif(importlib.util.find_spec("imageio_ffmpeg") is None, reason="needs the extra [video]")
+def test_films_may_have_a_pace_of_their_own(tmp_path: Path) -> None:
+    film = Film(tmp_path / "film.mp4", 0.1, fps=25)
+    for step in range(3):
+        film.add(step, np.zeros((64, 96), dtype=np.uint8))
+    film.save()
+    _, pace, shown = frames(tmp_path / "film.mp4")
+    assert (pace, len(shown)) == (25, 3)
 
 
 def test_without_the_library_the_extra_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -337,3 +337,29 @@ def test_options_that_are_no_numbers_are_named_when_they_are_drawn() -> None:
     assert isinstance(error, ScenicTypeError)
     assert "expected a number, not 'a'" in str(error)
     assert set(draws("ego = new Object with width Uniform(1, 2.5)\nparam x = ego.width\n", n=30)) == {1, 2.5}
+
+
+@pytest.mark.parametrize(
+    "region",
+    [
+        "PolygonalRegion([(0, 0), (x, 0), (1, 1)])",
+        "PolygonalRegion([(0, 0), (1, 0), (1, 1)], z=x)",
+        "PolylineRegion([(0, 0), (x, 0)])",
+        "PathRegion([(0, 0, 0), (x, 0, 1)])",
+        "PointSetRegion('points', [(0, 0), (x, 0)])",
+    ],
+)
+def test_regions_of_points_need_fixed_ones(region: str) -> None:
+    error = failure(f"x = Range(1, 2)\nego = new Object in {region}\n")
+    assert isinstance(error, ScenicTypeError)
+    assert "needs fixed points" in str(error)
+
+
+def test_points_and_grids_have_the_orientation_that_they_are_given() -> None:
+    for region in (
+        named.PointSetRegion("points", [(0, 0), (3, 0)], orientation=named_field(0.4)),
+        named.GridRegion("grid", np.zeros((1, 2)), 3, 1, 0, 0, orientation=named_field(0.4)),
+    ):
+        assert region.has_orientation
+        assert region.orientation_at(Vector(3, 0, 0)).yaw == pytest.approx(0.4)
+    assert not named.PointSetRegion("points", [(0, 0)]).has_orientation

@@ -8,8 +8,10 @@ from typing import Any
 import pytest
 
 from scenic.language.errors import RejectionException
+from scenic.runtime.choices import _is_data
 from scenic.runtime.functions import max as language_max
 from scenic.runtime.purity import is_pure
+from scenic.runtime.values import Vector
 from tests.runtime.programs import draws, failure, scenario
 
 LIMIT = 3
@@ -133,3 +135,10 @@ def test_generators_are_as_before() -> None:
     before = random.getstate()
     scenario(COUNTING).sample(20, seed=3)
     assert random.getstate() == before
+
+
+def test_data_are_what_no_program_changes() -> None:
+    for value in (1, "a", None, (1, [2.5, {3}]), {"a": [1, {2: (3,)}]}, Vector(1, 2, 3), slice(1, 2)):
+        assert _is_data(value)
+    for value in (object(), [object()], {"a": object()}, {object(): 1}, (1, {"a": {"b": object()}}), len):
+        assert not _is_data(value)

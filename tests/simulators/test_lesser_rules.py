@@ -10,7 +10,7 @@ import pytest
 import scenic
 from scenic.language.errors import DivergenceError, InvalidScenarioError, SerializationError
 from scenic.runtime.dynamics.recorders import Recorder
-from scenic.simulators.batch import choose_simulator
+from scenic.simulators.batch import SimulatorChoiceError, choose_simulator
 from scenic.simulators.dummy import DummySimulator
 from scenic.simulators.kinematic import KinematicSimulator
 from scenic.simulators.replays import Replay
@@ -335,3 +335,11 @@ def test_running_scenarios_show_what_they_hold() -> None:
     done = DummySimulator().simulate(scene(text), maxSteps=3)
     assert done is not None
     assert done.records["found"][-1][1][-1] == (True, 1, [(4, 4)])
+
+
+@pytest.mark.parametrize(("name", "meant"), [("Kinematc", "kinematic"), ("MUJOCO", "mujoco"), ("zzz", None)])
+def test_simulators_that_were_meant_are_named(name: str, meant: str | None) -> None:
+    with pytest.raises(SimulatorChoiceError) as caught:
+        choose_simulator(name, scenic.scenarioFromString("ego = new Object\n"))
+    advice = str(caught.value.help)
+    assert advice == f"did you mean {meant}?" if meant else "MODULE:CLASS" in advice

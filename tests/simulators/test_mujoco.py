@@ -405,6 +405,12 @@ def test_guided_bodies_do_not_fall() -> None:
     np.testing.assert_allclose(last(done)[0], [0, 2, 3], atol=0.03)
 
 
+def test_guided_bodies_keep_their_acceleration() -> None:
+    action = "(SetVelocity((0, 1, 0)), SetAcceleration((0.5, -1, 0.25)))"
+    done = run(told(action) + "ego = new Gripper at (0, 0, 2), with behavior B\n", 40)
+    np.testing.assert_allclose(last(done)[0], [1, 0, 2.5], atol=0.05)
+
+
 def test_quadrotors_hover_tilt_and_turn() -> None:
     hovering = run("ego = new Quadrotor at (0, 0, 5)\n", 40)
     np.testing.assert_allclose(last(hovering)[0], [0, 0, 5], atol=1e-6)

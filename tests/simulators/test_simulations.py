@@ -517,3 +517,14 @@ def test_code_that_spins_is_named() -> None:
         simulate(SPINNING, 2, stuck_after=0.05)
     with pytest.raises(StuckBehaviorError, match=r"line [45] has run"):
         simulate(SPINNING.replace("4_000_000", "10**12"), 2, stuck_after=0.05, stuck_is_error=True)
+
+
+def test_code_that_spins_while_robustness_is_measured_is_no_margin() -> None:
+    """A condition is computed once for its verdict, and again for its margin."""
+    text = (
+        "known = []\ndef late(y):\n    while y > 0 and y in known:\n        pass\n    known.append(y)\n    return y\n"
+        "ego = new Object\nrequire always late(ego.y) < 9\n"
+    )
+    simulator = DummySimulator(drift=1, timestep=1)
+    with pytest.raises(StuckBehaviorError, match=r"has run for 0\.05 s"):
+        simulator.simulate(scene_of(text), maxSteps=4, robustness=True, stuck_after=0.05, stuck_is_error=True)

@@ -9,8 +9,11 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
+
 from scenic.language.errors import ScenicError
 from scenic.runtime.geometry.depth import convex_depth
+from scenic.runtime.geometry.poses import Floats
 from scenic.runtime.geometry.single import overlap
 from scenic.runtime.objects import Object, Point
 from scenic.runtime.regions.base import Region
@@ -83,36 +86,39 @@ def _membership(item: Any, region: Any) -> float | None:
 def _clearance(item: Object, region: Region) -> float:
     corners = _corners(item)
     if region.containsObject(item):
-        return max(0.0, min(_depth(corner, region) for corner in corners))
+        return max(0.0, float(_depths(corners, region).min()))
     # It may stick out between its corners, over a hole; then it is not known by how much.
-    outside = max(_distance(corner, region) for corner in corners)
+    outside = float(_distances(corners, region).max())
     return -outside if outside > 0 else -math.inf
 
 
-def _corners(item: Object) -> Sequence[Vector]:
-    """The corners of the convex hull of an object."""
+def _corners(item: Object) -> Floats:
+    """The corners of the convex hull of an object, ``(n, 3)``."""
     body = placed_of(item)
-    return item.corners if body is None else [Vector.of(row) for row in body.hull().tolist()]
+    return np.array(item.corners) if body is None else body.hull()
 
 
 def _signed_distance(point: Vector, region: Region) -> float:
-    return _depth(point, region) if region.containsPoint(point) else -_distance(point, region)
+    place = np.array([point.row])
+    (distance,) = _depths(place, region) if region.containsPoint(point) else -_distances(place, region)
+    return float(distance)
 
 
-def _distance(point: Vector, region: Region) -> float:
-    """How far a point is from the region, in metres; from a region of the plane as it is contained in it, seen from above."""
+def _distances(points: Floats, region: Region) -> Floats:
+    """How far points ``(n, 3)`` are from the region, in metres; from one of the plane as it contains them, seen from above."""
     if isinstance(region, PlanarRegion):
-        point = Vector(point.x, point.y, region.z)
-    return float(region.distanceTo(point))
+        points = np.column_stack([points[:, :2], np.full(len(points), float(region.z))])
+    return region.distances(points, *region.fixed_columns("the distance"))
 
 
-def _depth(point: Vector, region: Region) -> float:
-    """How far a point of the region is from its boundary, in metres."""
+def _depths(points: Floats, region: Region) -> Floats:
+    """How far points ``(n, 3)`` of the region are from its boundary, in metres."""
     if isinstance(region, PlanarRegion):
         # Its outline is a line of the ground, whatever the height of the region is.
-        return float(region.boundary.distanceTo(Vector(point.x, point.y, 0)))
+        ground: Floats = region.boundary.distances(np.column_stack([points[:, :2], np.zeros(len(points))]))
+        return ground
     surface = getattr(region, "getSurfaceRegion", None)
-    return math.inf if surface is None else float(surface().distanceTo(point))
+    return np.full(len(points), math.inf) if surface is None else _distances(points, surface())
 
 
 def _overlap(left: Any, right: Any) -> float | None:

@@ -3,7 +3,7 @@
 import math
 from typing import TYPE_CHECKING, Any
 
-from scenic.language.errors import RejectSimulationException
+from scenic.language.errors import RejectSimulationException, StuckBehaviorError, StuckBehaviorWarning
 from scenic.runtime.dynamics.declarations import Required
 from scenic.runtime.temporal.monitors import Monitor, Verdict
 from scenic.runtime.temporal.robustness import Robustness
@@ -64,6 +64,8 @@ class Followed:
     def _margin(self, index: int) -> float:
         try:
             return margin(self._required.atoms[index])
+        except (StuckBehaviorError, StuckBehaviorWarning):
+            raise
         except Exception:  # noqa: BLE001 - had it counted, the verdict would have raised it
             return math.nan
 

@@ -98,6 +98,9 @@ def test_normalizing_undoes_placing():
         (np.zeros((3, 3)), np.zeros((0, 3)), "no triangles"),
         ([(0, 0, 0), (1, 0, 0), (0, np.nan, 0)], [(0, 1, 2)], "not finite"),
         (np.zeros((3, 2)), [(0, 1, 2)], "needs arrays"),
+        (np.zeros((3, 3)), [0, 1, 2], "needs arrays"),
+        (np.zeros((3, 3)), [(0, 1, 2, 2)], "needs arrays"),
+        (np.zeros(9), [(0, 1, 2)], "needs arrays"),
     ],
 )
 def test_bad_arrays_are_refused(vertices, faces, message):
