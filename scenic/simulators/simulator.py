@@ -123,7 +123,9 @@ class Simulator(ABC):
         """A simulation of a scene, which has run; ``options`` are for the constructor of `Simulation`."""
 
     def destroy(self) -> None:
-        """Clean up; the simulator cannot be used any more."""
+        """Clean up, once; the simulator cannot be used any more."""
+        if getattr(self, "_destroyed", False):
+            raise RuntimeError("the simulator has been destroyed already")
         self._destroyed = True
 
 

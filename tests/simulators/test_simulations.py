@@ -499,6 +499,8 @@ def test_a_destroyed_simulator_is_of_no_use() -> None:
     simulator.destroy()
     with pytest.raises(RuntimeError, match="destroyed"):
         simulator.simulate(scene_of("ego = new Object"), maxSteps=1)
+    with pytest.raises(RuntimeError, match="destroyed already"):
+        simulator.destroy()
 
 
 def test_the_simulator_of_a_program() -> None:

@@ -361,18 +361,21 @@ class Run:
         reasons: dict[ScenarioActivation, str] = {}
         end: str | None = None
         for scenario in list(self.scenarios):
-            for monitor in list(scenario.monitors):
+            ended = []
+            # What a monitor asks for while it runs is a monitor of this step, too.
+            for monitor in scenario.monitors:
                 with self.within(scenario):
                     output = monitor.resume()
                 if output is None:
-                    if monitor in scenario.monitors:
-                        scenario.monitors.remove(monitor)
+                    ended.append(monitor)
                 elif isinstance(output, Termination):
                     # Of several requests the last one gives the reason.
                     if output.simulation:
                         end = output.reason
                     else:
                         reasons[scenario] = output.reason
+            if ended:
+                scenario.monitors = [monitor for monitor in scenario.monitors if monitor not in ended]
         if end is not None:
             self._remember("terminatedByMonitor", end)
         for scenario, reason in reasons.items():
@@ -439,16 +442,16 @@ class Run:
     # The end
 
     def finish(self) -> None:
-        """Stop what still runs, newest first, and evaluate what is recorded at the end."""
+        """Stop scenarios that still run, newest first, evaluate what is recorded at the end, and let behaviors clean up."""
         top = self.top
         for scenario in reversed(list(self.scenarios)):
             scenario.stop("simulation ended")
+        self._finished = True
+        self.finish_records(top)
         for obj in self.simulation.objects:
             behavior = obj.behavior
             if isinstance(behavior, Behavior) and behavior._activation is not None:
                 behavior._activation.stop()
-        self._finished = True
-        self.finish_records(top)
 
     def abandon(self) -> None:
         """Give up after a rejection or an error: close what is open and remove what was recorded."""
