@@ -260,6 +260,8 @@ def _find(
     module = project.module(snapshot.filename)
     if module is None:
         return
+    if last in _NEW_NAME and (len(before) == 1 or last == "as" or before == ("async", "def")):
+        return
     if first in ("import", "from", "model") and "import" not in before[1:]:
         yield from _modules(project, snapshot, before)
         return
@@ -268,8 +270,6 @@ def _find(
         return
     if last == ".":
         yield from _members(project, snapshot, before[:-1], line, column)
-        return
-    if last in _NEW_NAME and (len(before) == 1 or last == "as" or before == ("async", "def")):
         return
     if last == "new":
         yield from (each for each in _names(project, module, snapshot, line, column) if each.kind is CompletionKind.CLASS

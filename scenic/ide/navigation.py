@@ -203,6 +203,8 @@ def prepare_rename(project: Project, snapshot: Snapshot, line: int, column: int)
     module, found = _occurrence(project, snapshot, line, column)
     if module is None or found is None:
         return None
+    if _alias(module, found) is not None:
+        return found.span, found.name  # Whatever it means: the name is the program's own.
     symbol = symbol_of(project, module, found)
     if found.name in RESERVED or found.name in TRACKED or (symbol is not None and symbol.is_builtin):
         raise RenameError(f"`{found.name}` belongs to the language and cannot be renamed")
@@ -242,6 +244,17 @@ def rename(
     module, found = _occurrence(project, snapshot, line, column)
     assert module is not None
     assert found is not None
+    own = _alias(module, found)
+    if own is not None:
+        if name != found.name and name in module.resolution.names:
+            raise RenameError(f"there is a `{name}` already in the same scope")
+        _refuse_capture(module.resolution, own, name)
+        same = _same(project, module, found)
+        return tuple(
+            (Place(module.filename, each.span, each.defines), name)
+            for each in same
+            if each.name == found.name and not isinstance(each.node, ast.Attribute)
+        )
     symbol = symbol_of(project, module, found)
     assert symbol is not None
     binding = symbol.binding
@@ -303,6 +316,18 @@ def _occurrence(
 ) -> tuple[Module | None, Occurrence | None]:
     module = project.module(snapshot.filename)
     return module, None if module is None else occurrence_at(module, line, column)
+
+
+def _alias(module: Module, found: Occurrence) -> Binding | None:
+    """What a name is bound to that an import of the module gave, as in ``import a as b``; ``None`` for all other names."""
+    binding = module.resolution.names.get(found.name)
+    if binding is None or isinstance(found.node, ast.Attribute) or len(binding.sites) != 1:
+        return None
+    [site] = binding.sites
+    is_alias = isinstance(site, ast.alias) and site.asname == found.name != site.name
+    if isinstance(found.node, ast.Name) and module.resolution.binding(found.node) is not binding:
+        return None
+    return binding if is_alias else None
 
 
 def _same(project: Project, module: Module, found: Occurrence) -> Sequence[Occurrence]:

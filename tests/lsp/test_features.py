@@ -211,7 +211,7 @@ def test_signatures(project: Project) -> None:
         ('x = f"{cha', {"chair"}, set()),
         ("x = 3.", set(), {"deg", "chair"}),
         ("behavior ", set(), {"deg", "chair"}),
-        ("import math as ", set(), {"chair"}),
+        ("import math as m", set(), {"chair", "math"}),
     ],
 )
 def test_completion(project: Project, text: str, first: set[str], absent: set[str]) -> None:
@@ -342,6 +342,32 @@ def test_rename_across_files(project: Project) -> None:
 def test_impossible_names(project: Project, marked: str, name: str, reason: str) -> None:
     with pytest.raises(Refused, match=reason):
         project.ask("rename", marked, newName=name)
+
+
+@pytest.mark.parametrize(
+    ("before", "after"),
+    [
+        ("import library as l|ib\nx = lib.helper(lib.lib)\n", "import library as own\nx = own.helper(own.lib)\n"),
+        ("import library as lib\nx = li|b.helper(1)\n", "import library as own\nx = own.helper(1)\n"),
+        ("from math import sin as si|ne\nx = sine(2)\n", "from math import sin as own\nx = own(2)\n"),
+        ("from library import Chair as Se|at\ndef f(Seat): return Seat\nego = new Seat\n",
+         "from library import Chair as own\ndef f(Seat): return Seat\nego = new own\n"),
+    ],
+)  # fmt: skip
+def test_names_that_imports_give(project: Project, before: str, after: str) -> None:
+    uri = (Path(project.main.removeprefix("file://")).parent / "aliases.scenic").as_uri()
+    head, tail = before.split("|")
+    project.client.open(uri, head + tail)
+    position = {"line": head.count("\n"), "character": len(head) - head.rfind("\n") - 1}
+    params = {"textDocument": {"uri": uri}, "position": position, "newName": "own"}
+    found = project.client.request("textDocument/rename", params)
+    (change,) = found["documentChanges"]
+    assert applied(head + tail, change["edits"]) == after
+    with pytest.raises(Refused):
+        project.client.request(
+            "textDocument/rename", {**params, "newName": "x" if "x =" in tail else "Seat()"}
+        )
+    project.client.send("textDocument/didClose", {"textDocument": {"uri": uri}})
 
 
 def test_linked_names(project: Project) -> None:
