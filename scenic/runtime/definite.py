@@ -35,7 +35,14 @@ class Vector(VectorMethods):
     def __new__(cls, x: Any, y: Any, z: Any = 0) -> Any:
         if is_random(x) or is_random(y) or is_random(z):
             return cls._vector(x, y, z)
-        return cls.of((float(x), float(y), float(z)))
+        try:
+            return cls.of((float(x), float(y), float(z)))
+        except (TypeError, ValueError):
+            raise ScenicTypeError(
+                f"`Vector` needs three numbers, not {describe((x, y, z))}",
+                span=here(),
+                help="coordinates are in metres",
+            ) from None
 
     @classmethod
     def of(cls, row: Iterable[float]) -> Self:

@@ -31,6 +31,14 @@ def test_lines_in_numbers() -> None:
     assert tuple(line.project(Vector(1, 1, 50))) == (1, 0, 0)
 
 
+def test_vectors_of_what_is_no_number() -> None:
+    for text in ("param x = Vector(1, 2, 'a')", "param x = Vector(None, 2)"):
+        error = failure(text)
+        assert isinstance(error, ScenicTypeError)
+        assert "`Vector` needs three numbers" in str(error)
+        assert (error.lineno, bool(error.help)) == (1, True)
+
+
 def test_cells_of_grids_and_points() -> None:
     grid = named.GridRegion("grid", np.array([[0, 1, 0], [0, 0, 1]]), 2, 5, 0.5, -1)
     for cell in ((0, 0), (1, 1), (2, 0)):
