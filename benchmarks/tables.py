@@ -37,7 +37,9 @@ REGIONS = """\
 import random
 rng = random.Random(3)
 def cell(x, y):
-    return PolygonalRegion([(x, y), (x + 4, y), (x + 4, y + 4), (x, y + 4)], orientation=rng.uniform(-3, 3))
+    heading = rng.uniform(-3, 3)
+    field = VectorField("street", lambda _: heading)
+    return PolygonalRegion([(x, y), (x + 4, y), (x + 4, y + 4), (x, y + 4)], orientation=field)
 map = PolygonalRegion.unionAll([cell(5 * (i % 100), 5 * (i // 100)) for i in range({count})])
 new Object in map, with width 0.5, with length 0.5
 """

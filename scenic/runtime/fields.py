@@ -5,8 +5,8 @@ arrays of points.
 """
 
 import math
-from collections.abc import Callable, Iterable, Sequence
-from functools import partial
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -38,6 +38,9 @@ from scenic.runtime.values import (
 Points = NDArray[np.float64]
 Headings = NDArray[np.float64]
 Mask = NDArray[np.bool_]
+
+_MANY_REGIONS = 16
+"""Regions of a field from which on an index pays."""
 
 
 class VectorField:
@@ -197,11 +200,31 @@ class PiecewiseVectorField(VectorField):
     ) -> None:
         self.regions = tuple(regions)
         self.defaultHeading = defaultHeading
+        self._oriented = tuple(region for region in self.regions if region.orientation is not None)
         super().__init__(name, self._value, **options)
 
+    @cached_property
+    def _index(self) -> CellIndex | None:
+        """Finds the region that holds a point, if they are many and fixed polygons."""
+        if len(self._oriented) < _MANY_REGIONS:
+            return None
+        polygons = [
+            None if getattr(region, "is_random", False) else getattr(region, "polygons", None)
+            for region in self._oriented
+        ]
+        return None if any(item is None for item in polygons) else CellIndex(polygons)
+
+    def _likely(self, point: Any) -> Iterator[Any]:
+        """The regions in their order, before them the one that holds the point as seen from above."""
+        if self._index is not None:
+            x, y, _ = to_vector(point)
+            number = int(self._index.first_at(np.array([x]), np.array([y]))[0])
+            yield from self._oriented[number : number + 1]
+        yield from self._oriented
+
     def _value(self, point: Any) -> Any:
-        for region in self.regions:
-            if region.orientation is not None and region.containsPoint(point):
+        for region in self._likely(point):
+            if region.containsPoint(point):
                 return region.orientation[point]
         if self.defaultHeading is None:
             raise RejectionException(f"field {self.name!r} has no direction at {point!r}")

@@ -207,3 +207,21 @@ def test_attributes_are_no_names_of_the_program() -> None:
         round(sampled.params["x"].yaw, 9) for sampled in scenic.scenarioFromString(text).sample(20, seed=1)
     }
     assert found == {0.1, 0.3}
+
+
+def test_unions_of_many_regions_take_the_first_that_holds_the_point() -> None:
+    """A row of squares that overlap by half, each with a field of its own; also above them, and beside."""
+    text = (
+        "def square(x):\n    return PolygonalRegion([(x, 0), (x + 2, 0), (x + 2, 2), (x, 2)], "
+        "orientation=VectorField('own', lambda p: x / 100))\n"
+        "plain = PolygonalRegion([(-1, 0), (40, 0), (40, 2), (-1, 2)])\n"
+        "row = PolygonalRegion.unionAll([plain, *[square(x) for x in range(30)]])\n"
+        "def heading(x, z=0): return row.orientation[(x, 1, z)].yaw\n"
+        "param found = [heading(x + 0.5) for x in (0, 1, 7, 28, 29)], border = heading(4), last = heading(31)\n"
+        "new Object in row, with width 0.1, with length 0.1\n"
+    )
+    (found,) = scenic.scenarioFromString(text).sample(1, seed=1)
+    assert found.params["found"] == pytest.approx([0, 0, 0.06, 0.27, 0.28])
+    assert (found.params["border"], found.params["last"]) == pytest.approx((0.02, 0.29))
+    (item,) = found.objects
+    assert item.heading == pytest.approx(max(0, math.ceil(item.x) - 2) / 100)
