@@ -529,13 +529,7 @@ def _properties(
     for member in () if cls is None else cls.properties:
         if member.name in given or "final" in member.attributes:
             continue
-        own = member.symbol is not None
-        key = ("member", snapshot.filename, member.owner, member.name) if own else ("property", member.name)
-        detail = member.type or (f"default: {member.default}" if member.default else member.owner)
-        snippet = f"{member.name} ${{1:{_escaped(member.default or 'value')}}}"
-        yield Completion(
-            member.name, CompletionKind.PROPERTY, member.name, 0 if own else 1, detail, snippet, key
-        )
+        yield _property(snapshot, member, member.name)
 
 
 def _inherited(project: Project, snapshot: Snapshot, line: int, column: int) -> Iterator[Completion]:
@@ -559,12 +553,18 @@ def _inherited(project: Project, snapshot: Snapshot, line: int, column: int) -> 
     for member in members.values():
         if member.name in own or "final" in member.attributes:
             continue
-        known = member.symbol is not None
-        key = ("member", snapshot.filename, member.owner, member.name) if known else ("property", member.name)
-        detail = member.type or (f"default: {member.default}" if member.default else member.owner)
-        snippet = f"{member.name}: ${{1:{_escaped(member.default or 'value')}}}"
-        text = f"{member.name}: "
-        yield Completion(member.name, CompletionKind.PROPERTY, text, 0 if known else 1, detail, snippet, key)
+        yield _property(snapshot, member, f"{member.name}:", after=" ")
+
+
+def _property(snapshot: Snapshot, member: Member, text: str, *, after: str = "") -> Completion:
+    """A property that is given a value: ``text``, then the value; ``after`` is what a client without snippets adds."""
+    own = member.symbol is not None
+    key = ("member", snapshot.filename, member.owner, member.name) if own else ("property", member.name)
+    detail = member.type or (f"default: {member.default}" if member.default else member.owner)
+    snippet = f"{text} ${{1:{_escaped(member.default or 'value')}}}"
+    return Completion(
+        member.name, CompletionKind.PROPERTY, text + after, 0 if own else 1, detail, snippet, key
+    )
 
 
 def _escaped(text: str) -> str:
