@@ -98,18 +98,11 @@ class _Choice:
 
 
 def _likeness(node: Node) -> Hashable:
-    """Equal for nodes that differ in their operands alone."""
+    """Equal for nodes that may be merged."""
     if node.is_constant or node.is_axis:
         return node.operation, node.kind
     operation = node.operation
     # What stacks is elementwise: its values are the same in every bit, whatever else is evaluated with them.
-    if operation.stacks and operation.strict and operation.pure and not node.kind.is_boxed:
-        kinds = tuple(operand.kind for operand in node.operands)
-        if not any(kind.is_boxed for kind in kinds):
-            try:
-                key = (operation, type(node.payload), node.payload, node.kind, kinds)
-                hash(key)
-            except TypeError:
-                return id(node)
-            return key
-    return id(node)
+    merges = operation.stacks and operation.strict and operation.pure
+    boxed = node.kind.is_boxed or any(operand.kind.is_boxed for operand in node.operands)
+    return node.likeness if merges and not boxed else id(node)

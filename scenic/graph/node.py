@@ -51,6 +51,16 @@ class Node:
         object.__setattr__(self, "_bounds", UNREAD)
 
     @property
+    def likeness(self) -> Hashable:
+        """Equal for nodes of one operation that differ in their operands alone; of a payload that has no hash, the node's own."""
+        try:
+            hash(self.payload)
+        except TypeError:
+            return id(self)
+        kinds = tuple(operand.kind for operand in self.operands)
+        return (id(self.operation), type(self.payload), self.payload, self.kind, kinds)
+
+    @property
     def bounds(self) -> Any:
         """The bounds over the whole cube, or `UNREAD`."""
         return self._bounds

@@ -212,12 +212,7 @@ class Scheduler:
             return "key"
         if not (self._grouped and node.operation.stacks) or _is_python(node):
             return id(node)
-        try:
-            hash(node.payload)
-        except TypeError:
-            return id(node)
-        kinds = tuple(operand.kind for operand in node.operands)
-        return (id(node.operation), type(node.payload), node.payload, node.kind, kinds)
+        return node.likeness
 
     def _slot(self, members: Sequence[Node], places: dict[Node, Place]) -> Slot:
         slot = self._slots
