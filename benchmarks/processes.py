@@ -27,12 +27,15 @@ def seconds(program: str, runs: list[list[str]]) -> float:
                     *("-o", f"{folder}/{number}.jsonl", *options),
                 ],
                 cwd=HERE.parent,
-                stderr=subprocess.DEVNULL,
+                stderr=subprocess.PIPE,
+                text=True,
             )
             for number, options in enumerate(runs)
         ]
-        if any(process.wait() for process in started):
-            sys.exit("a run failed")
+        for process in started:
+            _, told = process.communicate()
+            if process.returncode:
+                sys.exit(told)
         return time.perf_counter() - begun
 
 

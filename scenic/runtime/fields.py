@@ -7,7 +7,7 @@ arrays of points.
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import cached_property, partial
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,7 +39,7 @@ Points = NDArray[np.float64]
 Headings = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
-_MANY_REGIONS = 16
+_MANY_REGIONS: Final = 16
 """Regions of a field from which on an index pays."""
 
 
