@@ -9,7 +9,8 @@ import time
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Final
+from pickle import PickleBuffer
+from typing import TYPE_CHECKING, Final
 
 from scenic.formats.growing import GrowingFile
 from scenic.formats.json_lines import SceneLines
@@ -18,6 +19,9 @@ from scenic.language.errors import Located
 from scenic.runtime.sampling.report import Exhausted
 from scenic.runtime.scenario import Scenario
 from scenic.runtime.scene import Scene
+
+if TYPE_CHECKING:
+    from _typeshed import ReadableBuffer
 
 _FIRST: Final = 16
 """Scenes of the first piece of a job that a process makes; later ones follow what these took."""
@@ -66,7 +70,7 @@ class Made:
     """What came of a job: lines, scenes not found, and whether it has to be made by the parent, to show an error."""
 
     job: Job
-    lines: bytes
+    lines: "ReadableBuffer"
     missing: tuple[Exhausted, ...]
     attempts: int = 0
     seconds: float = 0.0
@@ -134,7 +138,7 @@ def _make(scenario: Scenario, lines: SceneLines, job: Job) -> Made:
                 text += lines.line(result).encode("ascii") + b"\n"
     except Exception:  # noqa: BLE001 - the parent makes the job again, and shows the error with its place
         return Made(job, b"", (), failed=True)
-    return Made(job, bytes(text), tuple(missing), attempts, time.monotonic() - begun)
+    return Made(job, PickleBuffer(text), tuple(missing), attempts, time.monotonic() - begun)
 
 
 def in_processes(scenario: Scenario, lines: SceneLines, job: Job, jobs: int) -> Iterator[Made]:

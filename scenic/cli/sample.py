@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from types import FrameType
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import click
 
@@ -18,6 +18,9 @@ from scenic.cli.output import CLEAN, has_colours
 from scenic.formats.files import OutputError
 from scenic.formats.growing import GrowingFile
 from scenic.language.errors import Located
+
+if TYPE_CHECKING:
+    from _typeshed import ReadableBuffer
 
 __all__ = ["NOT_ALL", "sample"]
 
@@ -245,9 +248,9 @@ PATIENCE: Final = 10.0
 """Seconds after the time limit until candidates under way are given up; the engine itself looks at the time between rounds."""
 
 
-def _to_output(lines: bytes) -> None:
+def _to_output(lines: "ReadableBuffer") -> None:
     try:
-        sys.stdout.write(lines.decode("ascii"))
+        sys.stdout.write(str(lines, "ascii"))
         sys.stdout.flush()
     except BrokenPipeError:
         raise

@@ -9,9 +9,12 @@ import contextlib
 import os
 from pathlib import Path
 from types import TracebackType
-from typing import BinaryIO, Self
+from typing import TYPE_CHECKING, BinaryIO, Self
 
 from scenic.formats.files import OutputError, check_writable
+
+if TYPE_CHECKING:
+    from _typeshed import ReadableBuffer
 
 
 class GrowingFile:
@@ -32,7 +35,7 @@ class GrowingFile:
         self._replaces = self.path.exists() and not resume
         self._stream: BinaryIO | None = None
         self._resume = resume
-        self._lines = 0
+        self._is_empty = True
 
     def kept(self) -> list[bytes]:
         """The whole lines of the earlier run that is resumed; a torn last line is left out."""
@@ -57,10 +60,10 @@ class GrowingFile:
             self._stream.seek(0, os.SEEK_END)
         except OSError as error:
             raise _refusal(self.path, error) from error
-        self._lines = len(kept)
+        self._is_empty = not kept
         return self
 
-    def write(self, lines: bytes) -> None:
+    def write(self, lines: "ReadableBuffer") -> None:
         """Add whole lines; they are in the file when this returns, whatever happens to the process."""
         assert self._stream is not None
         try:
@@ -68,7 +71,7 @@ class GrowingFile:
             self._stream.flush()
         except OSError as error:
             raise _refusal(self.path, error) from error
-        self._lines += lines.count(b"\n")
+        self._is_empty = self._is_empty and not memoryview(lines).nbytes
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, place: TracebackType | None
@@ -78,7 +81,7 @@ class GrowingFile:
             os.fsync(self._stream.fileno())
         with contextlib.suppress(OSError):
             self._stream.close()
-        if self._lines == 0 and kind is not None:
+        if self._is_empty and kind is not None:
             self.part.unlink(missing_ok=True)
         elif kind is None or not self._replaces:
             os.replace(self.part, self.path)

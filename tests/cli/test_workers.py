@@ -2,8 +2,10 @@
 
 import os
 import signal
+import socket
 import time
 from multiprocessing.connection import Connection
+from pickle import PickleBuffer
 from typing import Any
 
 import pytest
@@ -37,6 +39,17 @@ def die_half_way(value: int) -> bytes:
     return b"answer" * 1000
 
 
+def large(value: int) -> tuple[int, PickleBuffer]:
+    return value, PickleBuffer(bytearray(b"%d" % value) * value)
+
+
+def die_before_the_buffer(value: int) -> PickleBuffer:
+    """Kills its process between an answer and what the answer leaves out."""
+    if value % 2:
+        socket.send_fds = lambda *_: os.kill(os.getpid(), signal.SIGKILL)  # type: ignore[assignment]  # in this process alone
+    return PickleBuffer(b"buffer")
+
+
 def sleep(value: int) -> int:
     time.sleep(value)
     return os.getpid()
@@ -65,6 +78,32 @@ def test_half_an_answer_counts_as_none(method: str) -> None:
         run(die_half_way, range(4), jobs=2, lost=lambda value, code: b"%d %d" % (value, code), method=method)
     )
     assert found == {0: b"answer" * 1000, 1: b"1 -9", 2: b"answer" * 1000, 3: b"3 -9"}
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_buffers(method: str) -> None:
+    sizes = [0, 1, 300_000, 7]
+    found = dict(run(large, sizes, jobs=2, lost=lambda value, _: (value, PickleBuffer(b"")), method=method))
+    assert {index: (size, bytes(buffer)) for index, (size, buffer) in found.items()} == {
+        index: (size, b"%d" % size * size) for index, size in enumerate(sizes)
+    }
+
+
+def test_buffers_without_files_in_memory(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("scenic.cli.workers._memory_file", None)
+    test_buffers("fork")
+
+
+@pytest.mark.skipif(not hasattr(os, "memfd_create"), reason="buffers are part of the answer here")
+def test_an_answer_without_its_buffer_counts_as_none() -> None:
+    found = run(
+        die_before_the_buffer, range(3), jobs=1, lost=lambda value, code: PickleBuffer(b"lost"), method="fork"
+    )
+    assert [(index, bytes(buffer)) for index, buffer in found] == [
+        (0, b"buffer"),
+        (1, b"lost"),
+        (2, b"buffer"),
+    ]
 
 
 def test_closing_ends_the_processes() -> None:
