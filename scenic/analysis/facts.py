@@ -10,9 +10,11 @@ from scenic.language.spans import Span
 class Fact:
     """A hard requirement whose truth value is a node.
 
-    ``label`` names it in reports (``"requirement on line 3"``); ``span`` is its place in the program.
+    ``label`` names it in reports (``"requirement on line 3"``); ``span`` is its place in the program. The language's own
+    requirements (``built_in``) are named in messages, too: that place is of what they are about.
     """
 
     node: Node
     label: str
     span: Span | None = None
+    built_in: bool = False

@@ -54,12 +54,13 @@ def _by_intervals(graph: Graph, conditions: Sequence[Fact]) -> tuple[Fact, ...]:
 
 def _contradiction(item: Contradiction, verdict: Verdict) -> Diagnostic:
     *others, last = item.conditions
+    subject = f"'{last.label}', which the language requires," if last.built_in else "this requirement"
     if others:
-        message = "this requirement cannot hold together with the others marked"
+        message = f"{subject} cannot hold together with the others marked"
     elif item.supports:
-        message = "this requirement cannot hold for any value of what it depends on"
+        message = f"{subject} cannot hold for any value of what it depends on"
     else:
-        message = "this requirement can never hold"
+        message = f"{subject} can never hold"
     labels = [Label(other.span, "while this is required") for other in others if other.span is not None]
     phrases: dict[Span, tuple[str, list[str]]] = {}
     for support in item.supports:

@@ -23,6 +23,7 @@ from scenic.runtime.geometry.visibility.proving import Proof, prove
 from scenic.runtime.geometry.visibility.single import View, sees_body, sees_point
 from scenic.runtime.geometry.visibility.views import Views
 from scenic.runtime.regions.stacked import body_of, body_operands, placed_of
+from scenic.runtime.sight_readings import TARGET, sees_bounds, sees_inverse
 from scenic.runtime.values import (
     Orientation,
     Random,
@@ -36,7 +37,7 @@ from scenic.runtime.values import (
     wrong_type,
 )
 
-VIEW_OPERANDS: Final = 9
+VIEW_OPERANDS: Final = TARGET
 """How many values describe an observer."""
 
 
@@ -207,7 +208,13 @@ def _seen(call: Call, *columns: Column) -> Column:
 
 
 SEES = Operation(
-    "sees", always(Kind.BOOLEAN), _seen, "Whether an observer sees a point or an object past others."
+    "sees",
+    always(Kind.BOOLEAN),
+    _seen,
+    "Whether an observer sees a point or an object past others.",
+    bounds=sees_bounds,
+    inverse=sees_inverse,
+    partial=True,
 )
 
 

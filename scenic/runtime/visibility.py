@@ -10,6 +10,7 @@ from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import Call, Operation, always
 from scenic.runtime.regions.stacked import body_operands
 from scenic.runtime.sight import camera_of, is_body, sees, view_operands
+from scenic.runtime.sight_readings import sees_in_plane_bounds, sees_in_plane_inverse
 from scenic.runtime.values import apply, is_random, per_option, to_scalar, to_vector
 
 FULL_ANGLE = 2 * np.pi - 0.017
@@ -120,6 +121,18 @@ def _crosses(starts: Column, ends: Column, direction: Column, distance: Column) 
 
 
 _SEES_POINT = Operation(
-    "sees point in plane", always(Kind.BOOLEAN), _sees_point, "Whether a 2D view holds a point."
+    "sees point in plane",
+    always(Kind.BOOLEAN),
+    _sees_point,
+    "Whether a 2D view holds a point.",
+    bounds=sees_in_plane_bounds,
+    inverse=sees_in_plane_inverse,
 )
-_SEES = Operation("sees in plane", always(Kind.BOOLEAN), _sees, "Whether a 2D view touches an outline.")
+_SEES = Operation(
+    "sees in plane",
+    always(Kind.BOOLEAN),
+    _sees,
+    "Whether a 2D view touches an outline.",
+    bounds=sees_in_plane_bounds,
+    inverse=sees_in_plane_inverse,
+)

@@ -90,3 +90,9 @@ def test_places_that_are_not_known_are_left_out():
     (found,) = report((make("greater", x, 2), None))
     assert told(found) == ("SC700", None, [])
     assert report() == ()
+
+
+def test_what_the_language_requires_is_named():
+    condition = make("less", 2, 1)
+    (found,) = prove(Graph([condition]), [Fact(condition, "Car in view", line(2), built_in=True)])
+    assert found.message == "'Car in view', which the language requires, can never hold"

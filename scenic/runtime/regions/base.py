@@ -14,6 +14,7 @@ from typing import Any, ClassVar, cast
 import numpy as np
 from numpy.typing import NDArray
 
+from scenic.graph.bounds import Bounds
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import Call, Operation, always
 from scenic.language.errors import (
@@ -25,7 +26,17 @@ from scenic.language.errors import (
 )
 from scenic.runtime.context import here
 from scenic.runtime.geometry.collision import Body
-from scenic.runtime.regions.knowledge import Containment, containment_bounds, containment_inverse, payload_box
+from scenic.runtime.regions.knowledge import (
+    Containment,
+    containment_bounds,
+    containment_inverse,
+    distance_bounds,
+    distance_inverse,
+    fixed,
+    point_bounds,
+    point_inverse,
+)
+from scenic.runtime.regions.nearness import SLACK, at_any_height
 from scenic.runtime.regions.single import Single
 from scenic.runtime.regions.stacked import Stack, body_operands, placed_of
 from scenic.runtime.spelling import plain_number
@@ -67,6 +78,8 @@ class Region(ABC):
     """Whether every point has a preferred orientation."""
     orientation: Any = None
     """The vector field of the preferred orientations, where there is one."""
+    tolerance: float = 0.0
+    """Metres by which a point may lie outside and count as in the region."""
     kindred: ClassVar[tuple[str, ...]] = ()
     """Names of further classes whose instances are, to a program that asks with ``isinstance``, of this class."""
     algebra: ClassVar[Any] = None
@@ -139,10 +152,26 @@ class Region(ABC):
     def container_box(self, *columns: Column) -> tuple[Points, Points]:
         """As `box`, of the region as a container: one in the plane holds what is above and below it."""
         lower, upper = self.box(*columns)
-        if self.dimension != 2:
-            return lower, upper
-        z = np.array([False, False, True])
-        return np.where(z, -np.inf, lower), np.where(z, np.inf, upper)
+        if self.dimension == 2:
+            found = at_any_height(Bounds(lower, upper))
+            return found.lower, found.upper
+        return lower, upper
+
+    def extent(self, *parameters: Bounds | None) -> Bounds | None:
+        """Bounds ``(m | 1, 3)`` of the region's points from those of its parameters; ``None`` where nothing is known.
+
+        Here, and wherever parameters are fixed, by `box`. Kinds whose parameters are often random know more.
+        """
+        columns = fixed(parameters)
+        return None if columns is None else Bounds(*self.box(*columns))
+
+    def container_extent(self, *parameters: Bounds | None) -> Bounds | None:
+        """As `extent`, of the region as a container."""
+        columns = fixed(parameters)
+        if columns is not None:
+            return Bounds(*self.container_box(*columns))
+        found = self.extent(*parameters)
+        return found if found is None or self.dimension != 2 else at_any_height(found)
 
     def sizes(self, *columns: Column) -> NDArray[np.float64]:
         """The measure ``(n | 1,)`` of the region: count, metres, square or cubic metres by its dimension."""
@@ -347,7 +376,13 @@ def _contains_point(call: Call, points: Points, *columns: Column) -> Column:
 
 
 _CONTAINS_POINT = Operation(
-    "region contains point", always(Kind.BOOLEAN), _contains_point, "Whether a region holds a point."
+    "region contains point",
+    always(Kind.BOOLEAN),
+    _contains_point,
+    "Whether a region holds a point.",
+    bounds=point_bounds,
+    inverse=point_inverse,
+    partial=True,
 )
 
 
@@ -357,7 +392,13 @@ def _distances(call: Call, points: Points, *columns: Column) -> Column:
 
 
 _DISTANCE = Operation(
-    "distance to region", always(Kind.SCALAR), _distances, "Distance from a point to a region."
+    "distance to region",
+    always(Kind.SCALAR),
+    _distances,
+    "Distance from a point to a region.",
+    bounds=distance_bounds,
+    inverse=distance_inverse,
+    partial=True,
 )
 
 
@@ -394,6 +435,11 @@ def _draw(call: Call, *columns: Column) -> Column:
     return points
 
 
+def _point_extent(region: Region, *operands: Bounds | None) -> Bounds | None:
+    found = region.extent(*operands[region.draws + 1 :])
+    return None if found is None else Bounds(found.lower - SLACK, found.upper + SLACK)
+
+
 def _may_find_none(_operands: Sequence[Any], payload: Any) -> bool:
     return bool(payload.may_find_none)
 
@@ -403,7 +449,7 @@ _DRAW = Operation(
     always(Kind.VECTOR),
     _draw,
     "A uniform point of a region, from uniform numbers and a key; rejected where the region is empty.",
-    bounds=lambda payload, *bounds: payload_box(payload, bounds[payload.draws + 1 :]),
+    bounds=_point_extent,
     rejects=_may_find_none,
 )
 
@@ -511,7 +557,7 @@ class Workspace(Region):
         self.region = region
         self.has_orientation, self.orientation = region.has_orientation, region.orientation
         self.dimension = region.dimension
-        self.draws, self.may_find_none = region.draws, region.may_find_none
+        self.draws, self.may_find_none, self.tolerance = region.draws, region.may_find_none, region.tolerance
 
     def single(self) -> Single | None:
         return self.region.at_once
@@ -536,6 +582,9 @@ class Workspace(Region):
 
     def box(self, *columns: Column) -> tuple[Points, Points]:
         return self.region.box(*columns)
+
+    def container_box(self, *columns: Column) -> tuple[Points, Points]:
+        return self.region.container_box(*columns)
 
     def sizes(self, *columns: Column) -> NDArray[np.float64]:
         return self.region.sizes(*columns)

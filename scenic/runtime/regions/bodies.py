@@ -8,6 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from scenic.graph import intervals
+from scenic.graph.bounds import Bounds
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import Call, Operation, always
 from scenic.runtime.geometry import body_points, containment, distance, projection, surface
@@ -17,6 +19,7 @@ from scenic.runtime.geometry.surface import Side
 from scenic.runtime.lazy import is_lazy
 from scenic.runtime.regions.base import Mask, Points, Region, unsupported
 from scenic.runtime.regions.fixed_sides import FixedSide
+from scenic.runtime.regions.nearness import body_box, body_reach, grown, only_within, separation
 from scenic.runtime.regions.stacked import Stack, body_of, body_operands, placed_of
 from scenic.runtime.values import apply, is_random, operate, to_vector, uniform, vector
 
@@ -67,6 +70,9 @@ class OccupiedSpace(Region):
 
     def box(self, *columns: Column) -> tuple[Points, Points]:
         return body_points.bounds(body_of(*columns))
+
+    def extent(self, *parameters: Bounds | None) -> Bounds | None:
+        return super().extent(*parameters) or body_box(*parameters[:3])
 
     def sizes(self, *columns: Column) -> Column:
         return body_points.volumes(body_of(*columns))
@@ -173,11 +179,30 @@ _PLANAR_INRADIUS = Operation(
 )
 
 
+def _gap_bounds(_payload: Any, *operands: Bounds | None) -> Bounds:
+    first, second = body_box(*operands[:3]), body_box(*operands[4:7])
+    least = np.zeros(1) if first is None or second is None else np.maximum(separation(first, second), 0.0)
+    return Bounds(least, np.full_like(least, np.inf))
+
+
+def _near_each_other(result: Bounds, operands: Sequence[Bounds | None]) -> list[Bounds | None]:
+    """Where two bodies can be that are so far from each other at most: bounds of `body_operands` of both."""
+    parts: list[Bounds | None] = [None] * 8
+    for mine, other in ((0, 4), (4, 0)):
+        box, reach = body_box(*operands[other : other + 3]), body_reach(*operands[mine + 1 : mine + 3])
+        if box is not None and reach is not None:
+            parts[mine] = intervals.subtract(grown(box, result.upper * (1 + 1e-9)), reach)
+    return parts
+
+
 _GAP = Operation(
     "distance of bodies",
     always(Kind.SCALAR),
     lambda call, *columns: distance.between(body_of(*columns[:4]), body_of(*columns[4:]), call.lanes),
     "The least distance between points of two bodies; 0 where they touch.",
+    bounds=_gap_bounds,
+    inverse=lambda _payload, result, *operands: _near_each_other(result, operands),
+    partial=True,
 )
 
 
@@ -224,8 +249,23 @@ def _intersect(
     return ~collide(bodies, np.array([[0, 1]]), lanes=lanes).free
 
 
+def _intersect_bounds(_payload: Any, *operands: Bounds | None) -> Bounds:
+    return only_within(body_box(*operands[:3]), body_box(*operands[4:7]), np.zeros(1))
+
+
+def _intersect_inverse(_payload: Any, result: Bounds, *operands: Bounds | None) -> Sequence[Bounds | None]:
+    within = np.where(result.lower > 0, 0.0, np.inf)
+    return _near_each_other(Bounds(within, within), operands)
+
+
 _INTERSECT = Operation(
-    "bodies intersect", always(Kind.BOOLEAN), _intersect, "Whether two objects share a point."
+    "bodies intersect",
+    always(Kind.BOOLEAN),
+    _intersect,
+    "Whether two objects share a point.",
+    bounds=_intersect_bounds,
+    inverse=_intersect_inverse,
+    partial=True,
 )
 
 
@@ -315,6 +355,9 @@ class SideSurface(Region):
         if len(body) > 1 or self.facing.side is None:
             return body_points.bounds(body)
         return body_points.side_bounds(body, self.facing.side, self.facing.threshold)
+
+    def extent(self, *parameters: Bounds | None) -> Bounds | None:
+        return super().extent(*parameters) or body_box(*parameters[:3])
 
     def sizes(self, *columns: Column) -> Column:
         return body_points.areas(body_of(*columns), self.facing.side, self.facing.threshold)

@@ -1,11 +1,12 @@
 """A random choice among regions, as a region: each lane has the one that it draws."""
 
 from collections.abc import Iterator, Sequence
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from scenic.graph.bounds import Bounds
 from scenic.graph.construction import make_node
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import Call, Operation, always
@@ -15,7 +16,10 @@ from scenic.runtime.choices import select
 from scenic.runtime.context import here
 from scenic.runtime.geometry.collision import Body
 from scenic.runtime.regions.base import Mask, Points, Region
+from scenic.runtime.regions.nearness import hull_of
 from scenic.runtime.values import Orientation, Random, as_node, as_value
+
+_Part = TypeVar("_Part")
 
 
 class RegionChoice(Region):
@@ -34,6 +38,7 @@ class RegionChoice(Region):
         self.draws = max(option.draws for option in options)
         self.has_orientation = all(option.has_orientation for option in options)
         self.may_find_none = any(option.may_find_none for option in options)
+        self.tolerance = max(option.tolerance for option in options)
 
     @property
     def footprint(self) -> Region:
@@ -60,15 +65,19 @@ class RegionChoice(Region):
         region: Region = self.options[sample.value(self.parameters[0])].sampled(sample)
         return region
 
+    def _each(self, columns: Sequence[_Part]) -> Iterator[tuple[Region, Sequence[_Part]]]:
+        """Each option with what belongs to its parameters."""
+        first = 1
+        for option in self.options:
+            yield option, columns[first : first + len(option.parameters)]
+            first += len(option.parameters)
+
     def _drawn(
         self, lanes: int, columns: Sequence[Column]
     ) -> Iterator[tuple[Region, NDArray[np.intp], list[Column]]]:
         """Each option with the lanes that draw it and the columns of its parameters there."""
         index = np.broadcast_to(columns[0], lanes)
-        first = 1
-        for number, option in enumerate(self.options):
-            mine = columns[first : first + len(option.parameters)]
-            first += len(option.parameters)
+        for number, (option, mine) in enumerate(self._each(columns)):
             chosen = np.flatnonzero(index == number)
             if len(chosen):
                 yield option, chosen, [part if len(part) == 1 else part[chosen] for part in mine]
@@ -137,14 +146,14 @@ class RegionChoice(Region):
         return result
 
     def box(self, *columns: Column) -> tuple[Points, Points]:
-        first = 1
-        lower, upper = [], []
-        for option in self.options:
-            low, high = option.box(*columns[first : first + len(option.parameters)])
-            first += len(option.parameters)
-            lower.append(low)
-            upper.append(high)
+        lower, upper = zip(*(option.box(*mine) for option, mine in self._each(columns)), strict=True)
         return np.minimum.reduce(lower), np.maximum.reduce(upper)
+
+    def extent(self, *parameters: Bounds | None) -> Bounds | None:
+        return hull_of([option.extent(*mine) for option, mine in self._each(parameters)])
+
+    def container_extent(self, *parameters: Bounds | None) -> Bounds | None:
+        return hull_of([option.container_extent(*mine) for option, mine in self._each(parameters)])
 
 
 def _landing(option: Region, point: Any, direction: Any) -> tuple[Any, Any]:

@@ -6,17 +6,20 @@ These are the general forms, for members of any kind with parameters of any kind
 
 from abc import abstractmethod
 from collections.abc import Iterator, Sequence
-from typing import Any, Final
+from functools import reduce
+from typing import Any, Final, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from scenic.graph.bounds import Bounds
 from scenic.graph.draws import mix, open_unit
 from scenic.graph.kinds import Column
 from scenic.language.errors import InvalidScenarioError, ScenicTypeError
 from scenic.runtime.context import here
 from scenic.runtime.geometry.collision import Body
 from scenic.runtime.regions.base import Mask, Points, Region
+from scenic.runtime.regions.nearness import hull_of
 from scenic.runtime.regions.planar import PlanarRegion
 
 TRIES: Final = 2_000
@@ -30,6 +33,9 @@ _PROBES: Final = 8
 
 LEVEL: Final = 1e-6
 """Metres within which a point counts as being at the height of a region of the plane."""
+
+
+_Part = TypeVar("_Part")
 
 
 class Composite(Region):
@@ -48,6 +54,7 @@ class Composite(Region):
     def __init__(self, *members: Region, orientation: Any = None, name: str | None = None) -> None:
         super().__init__(*(value for member in members for value in member.parameters), name=name)
         self.members = members
+        self.tolerance = max(member.tolerance for member in members)
         self._field = orientation
         self.has_orientation, self.orientation = orientation is not None, orientation
 
@@ -56,7 +63,7 @@ class Composite(Region):
         """The members."""
         return self.members
 
-    def _parts(self, columns: Sequence[Column]) -> Iterator[tuple[Region, Sequence[Column]]]:
+    def _parts(self, columns: Sequence[_Part]) -> Iterator[tuple[Region, Sequence[_Part]]]:
         first = 0
         for member in self.members:
             count = len(member.parameters)
@@ -88,6 +95,17 @@ class Composite(Region):
             place = points[lane : lane + 1] if len(points) > 1 else points
             result[lane] = region.distances(place, *region.fixed_columns("the distance"))[0]
         return result
+
+    def extent(self, *parameters: Bounds | None) -> Bounds | None:
+        return self._box_of([member.extent(*mine) for member, mine in self._parts(parameters)])
+
+    def container_extent(self, *parameters: Bounds | None) -> Bounds | None:
+        """Of the members as containers: one in the plane holds what is above and below it, others do not."""
+        return self._box_of([member.container_extent(*mine) for member, mine in self._parts(parameters)])
+
+    @abstractmethod
+    def _box_of(self, boxes: Sequence[Bounds | None]) -> Bounds | None:
+        """The box of the region from those of its members."""
 
     @abstractmethod
     def combined(self, members: Sequence[Region]) -> Region:
@@ -240,6 +258,13 @@ class IntersectionRegion(Composite):
         )
         return np.minimum(lower, upper), upper
 
+    def _box_of(self, boxes: Sequence[Bounds | None]) -> Bounds | None:
+        known = [box for box in boxes if box is not None]
+        if not known:
+            return None
+        met = reduce(Bounds.meet, known)
+        return Bounds(np.minimum(met.lower, met.upper), met.upper)
+
 
 class UnionRegion(Composite):
     """The points that lie in any member."""
@@ -330,6 +355,9 @@ class UnionRegion(Composite):
         boxes = [member.box(*mine) for member, mine in self._parts(columns)]
         return np.minimum.reduce([low for low, _ in boxes]), np.maximum.reduce([high for _, high in boxes])
 
+    def _box_of(self, boxes: Sequence[Bounds | None]) -> Bounds | None:
+        return hull_of(boxes)
+
 
 class DifferenceRegion(Composite):
     """The points of the first member that do not lie in the second."""
@@ -379,6 +407,9 @@ class DifferenceRegion(Composite):
     def box(self, *columns: Column) -> tuple[Points, Points]:
         (first, mine), _ = self._parts(columns)
         return first.box(*mine)
+
+    def _box_of(self, boxes: Sequence[Bounds | None]) -> Bounds | None:
+        return boxes[0]
 
 
 __all__ = ["Composite", "DifferenceRegion", "IntersectionRegion", "UnionRegion", "exactly_contains"]

@@ -1,27 +1,28 @@
-"""What is known of containment without sampling: the bounds and inverse readings of "a region holds a body".
+"""What is known of regions without sampling: bounds and inverse readings of "a region holds a body", "holds a point", "is so far".
 
-A body lies in a region only if each of its extreme corners does. Intervals say where a corner can be; it is certainly
-outside where that box lies beside the region's bounding box, or farther from the region than it is large.
+A body lies in a region only if each of its extreme corners does. Intervals say where a corner, or a point, can be; it is
+certainly outside where that box lies beside the box in which the region lies, or farther from the region than it is large.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from scenic.graph import intervals
 from scenic.graph.bounds import Bounds, Floats
 from scenic.graph.operations.narrowing import truth, where
 from scenic.graph.operations.orientations import turned
+from scenic.language.errors import UnsupportedError
 from scenic.runtime.geometry.containment import extreme_corners
 from scenic.runtime.geometry.mesh import Mesh
+from scenic.runtime.regions.nearness import SLACK, grown, near, separation
 
 if TYPE_CHECKING:
     from scenic.runtime.regions.base import Region
-
-_SLACK: Final = 1e-6
-"""Metres by which containment is read generously: more than its tolerance and all rounding."""
+Mask = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,19 +38,18 @@ class Containment:
 def containment_bounds(payload: Containment, *operands: Bounds | None) -> Bounds | None:
     """Where a body is certainly outside, from bounds of position, orientation, size, (shape,) and parameters."""
     reach, position = _reach(payload, operands), operands[0]
-    fixed = _fixed(operands[4:])
-    if reach is None or position is None or fixed is None:
+    container = payload.region.container_extent(*operands[4:])
+    if reach is None or position is None or container is None:
         return None
     low = position.lower[:, np.newaxis] + reach.lower
     high = position.upper[:, np.newaxis] + reach.upper
-    lower, upper = payload.region.container_box(*fixed)
-    outside = ((low > upper + _SLACK) | (high < lower - _SLACK)).any(axis=(1, 2))
-    centre, half = (low + high) / 2, (high - low) / 2
-    radius = np.sqrt((half * half).sum(axis=2))
-    known = np.isfinite(centre).all(axis=2) & np.isfinite(radius)
-    points = np.where(known[..., np.newaxis], centre, 0.0)
-    gaps = payload.region.gaps(points.reshape(-1, 3), *fixed).reshape(radius.shape)
-    outside = outside | (known & (gaps > radius + _SLACK)).any(axis=1)
+    beside = (low > container.upper[:, np.newaxis] + SLACK) | (high < container.lower[:, np.newaxis] - SLACK)
+    outside = np.asarray(beside.any(axis=(1, 2)))
+    columns = fixed(operands[4:])
+    if columns is not None:
+        corners = Bounds(low.reshape(-1, 3), high.reshape(-1, 3))
+        away = _is_away(payload.region, corners, columns, SLACK)
+        outside = outside | away.reshape(low.shape[:2]).any(axis=1)
     return truth(np.zeros_like(outside), outside)
 
 
@@ -58,21 +58,81 @@ def containment_inverse(
 ) -> Sequence[Bounds | None]:
     """Where the centre of a body that is inside can be."""
     nothing: list[Bounds | None] = [None] * len(operands)
-    reach, fixed = _reach(payload, operands), _fixed(operands[4:])
-    if reach is None or fixed is None:
+    reach, container = _reach(payload, operands), payload.region.container_extent(*operands[4:])
+    if reach is None or container is None:
         return nothing
-    lower, upper = payload.region.container_box(*fixed)
-    new = Bounds((lower - _SLACK)[:, np.newaxis] - reach.upper, (upper + _SLACK)[:, np.newaxis] - reach.lower)
+    lower, upper = container.lower - SLACK, container.upper + SLACK
+    new = Bounds(lower[:, np.newaxis] - reach.upper, upper[:, np.newaxis] - reach.lower)
     return [where(result.lower > 0, Bounds(new.lower.max(axis=1), new.upper.min(axis=1))), *nothing[1:]]
 
 
-def payload_box(region: "Region", parameters: Sequence[Bounds | None]) -> Bounds | None:
-    """Bounds of a point of a region from those of its parameters; known only where these are fixed."""
-    fixed = _fixed(parameters)
-    if fixed is None:
+def point_bounds(region: "Region", point: Bounds | None, *parameters: Bounds | None) -> Bounds | None:
+    """Where a point is certainly outside a region."""
+    container = region.container_extent(*parameters)
+    if point is None or container is None:
         return None
-    lower, upper = region.box(*fixed)
-    return Bounds(lower - _SLACK, upper + _SLACK)
+    slack = SLACK + region.tolerance
+    beside = (point.lower > container.upper + slack) | (point.upper < container.lower - slack)
+    outside = np.asarray(beside.any(axis=1), dtype=np.bool_)
+    columns = fixed(parameters)
+    if columns is not None:
+        outside = outside | _is_away(region, point, columns, slack)
+    return truth(np.zeros_like(outside), outside)
+
+
+def point_inverse(
+    region: "Region", result: Bounds, _point: Bounds | None, *parameters: Bounds | None
+) -> Sequence[Bounds | None]:
+    """Where a point that a region holds can be."""
+    container = region.container_extent(*parameters)
+    return [near(result, container, np.full(1, region.tolerance)), *(None for _ in parameters)]
+
+
+def distance_bounds(region: "Region", point: Bounds | None, *parameters: Bounds | None) -> Bounds | None:
+    """How far a point is from a region: as far as its box from the region's, and what a distance can change within its box."""
+    extent = region.extent(*parameters)
+    if point is None:
+        return None
+    least = np.zeros(1) if extent is None else np.maximum(separation(point, extent), 0.0)
+    found = Bounds(least, np.full_like(least, np.inf))
+    columns = fixed(parameters)
+    if columns is None:
+        return found
+    centre, radius, known = _ball(point)
+    try:
+        distances = region.distances(centre, *columns)
+    except UnsupportedError:
+        return found
+    known &= np.isfinite(distances)
+    margin = np.where(known, radius + SLACK + 1e-9 * np.abs(distances), np.inf)
+    return found.meet(
+        Bounds(np.where(known, distances, 0.0) - margin, np.where(known, distances, 0.0) + margin)
+    )
+
+
+def distance_inverse(
+    region: "Region", result: Bounds, _point: Bounds | None, *parameters: Bounds | None
+) -> Sequence[Bounds | None]:
+    """Where a point that is so far from a region can be."""
+    extent = region.extent(*parameters)
+    place = None if extent is None else grown(extent, result.upper * (1 + 1e-9))
+    return [place, *(None for _ in parameters)]
+
+
+def _is_away(region: "Region", boxes: Bounds, columns: Sequence[Floats], slack: float) -> Mask:
+    """Which boxes ``(m, 3)`` are certainly farther from a container than they are large."""
+    centre, radius, known = _ball(boxes)
+    gaps = region.gaps(centre, *columns)
+    away: Mask = known & (gaps > radius + slack)
+    return away
+
+
+def _ball(boxes: Bounds) -> tuple[Floats, Floats, Mask]:
+    """Centres ``(m, 3)`` and radii ``(m,)`` of balls around boxes, and which boxes are bounded."""
+    centre, half = (boxes.lower + boxes.upper) / 2, (boxes.upper - boxes.lower) / 2
+    radius = np.sqrt((half * half).sum(axis=1))
+    known = np.isfinite(centre).all(axis=1) & np.isfinite(radius)
+    return np.where(known[:, np.newaxis], centre, 0.0), radius, known
 
 
 def _reach(payload: Containment, operands: Sequence[Bounds | None]) -> Bounds | None:
@@ -98,7 +158,7 @@ def _reach(payload: Containment, operands: Sequence[Bounds | None]) -> Bounds | 
     return Bounds(offsets.lower.reshape(boxes, count, 3), offsets.upper.reshape(boxes, count, 3))
 
 
-def _fixed(parameters: Sequence[Bounds | None]) -> list[Floats] | None:
+def fixed(parameters: Sequence[Bounds | None]) -> list[Floats] | None:
     """The columns of parameters that have one value each in every box; ``None`` if some have not."""
     columns = []
     for bounds in parameters:

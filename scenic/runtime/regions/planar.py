@@ -10,9 +10,11 @@ from typing import Any
 
 import numpy as np
 
+from scenic.graph import intervals
 from scenic.graph.bounds import Bounds, outward
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import Call, Operation, always
+from scenic.graph.operations.functions import length_bounds
 from scenic.language.errors import InvalidScenarioError, ScenicTypeError, ScenicValueError
 from scenic.runtime.context import here
 from scenic.runtime.geometry import containment
@@ -174,6 +176,14 @@ def _disc_point(_call: Call, first: Column, second: Column) -> Column:
     return disc_points(first, second)
 
 
+def _disc_extent(center: Bounds | None, radius: Bounds | None) -> Bounds | None:
+    """The box of a level disc, from bounds of its centre and radius."""
+    if center is None or radius is None:
+        return None
+    reach = np.maximum(radius.upper, 0.0)[:, np.newaxis] * np.array([1.0, 1.0, 0.0])
+    return intervals.add(center, Bounds(-reach, reach))
+
+
 def _disc_bounds(_payload: Any, first: Bounds, _second: Bounds) -> Bounds:
     reach = outward(first.upper, np.sqrt(first.upper), ulps=4).upper
     upper = np.stack([reach, reach, np.zeros_like(reach)], axis=-1)
@@ -242,6 +252,9 @@ class CircularRegion(PlanarRegion):
         center, radius = columns
         reach = radius[:, np.newaxis] * np.array([1.0, 1.0, 0.0])
         return center - reach, center + reach
+
+    def extent(self, *parameters: Bounds | None) -> Bounds | None:
+        return super().extent(*parameters) or _disc_extent(*parameters)
 
     def sizes(self, *columns: Column) -> Column:
         return np.asarray(math.pi * columns[1] ** 2)
@@ -371,6 +384,14 @@ class RectangularRegion(PlanarRegion):
         x, y = (width * cos + length * sin) / 2, (width * sin + length * cos) / 2
         reach = np.stack([x, y, np.zeros_like(x)], axis=-1)
         return position - reach, position + reach
+
+    def extent(self, *parameters: Bounds | None) -> Bounds | None:
+        position, _, width, length = parameters
+        found = super().extent(*parameters)
+        if found is not None or width is None or length is None:
+            return found
+        diagonal = length_bounds([width, length])
+        return _disc_extent(position, Bounds(diagonal.lower / 2, diagonal.upper / 2))
 
     def sizes(self, *columns: Column) -> Column:
         return np.asarray(columns[2] * columns[3])
@@ -544,6 +565,9 @@ class SectorRegion(PlanarRegion):
             points[:, number, 0], points[:, number, 1] = -radius * np.sin(way), radius * np.cos(way)
         return center + points.min(axis=1), center + points.max(axis=1)
 
+    def extent(self, *parameters: Bounds | None) -> Bounds | None:
+        return super().extent(*parameters) or _disc_extent(*parameters[:2])
+
     def sizes(self, *columns: Column) -> Column:
         return np.asarray(np.minimum(columns[3], 2 * math.pi) / 2 * columns[1] ** 2)
 
@@ -625,6 +649,9 @@ class Footprint(Region):
 
     def box(self, *columns: Column) -> tuple[Points, Points]:
         return self.region.container_box(*columns)
+
+    def extent(self, *parameters: Bounds | None) -> Bounds | None:
+        return self.region.container_extent(*parameters)
 
     def sizes(self, *columns: Column) -> Column:
         return np.full(1, np.inf)

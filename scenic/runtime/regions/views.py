@@ -8,6 +8,7 @@ from typing import Any, Final, Self
 
 import numpy as np
 
+from scenic.graph.bounds import Bounds
 from scenic.graph.draws import mix, open_unit, words_of
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import Call, Operation, always
@@ -30,6 +31,7 @@ from scenic.runtime.geometry.visibility.views import CORNERS, Views
 from scenic.runtime.regions.base import Everywhere, Mask, Points, Region, Workspace
 from scenic.runtime.regions.bodies import OccupiedSpace
 from scenic.runtime.regions.composite import DifferenceRegion, IntersectionRegion
+from scenic.runtime.regions.nearness import grown
 from scenic.runtime.regions.planar import CircularRegion
 from scenic.runtime.regions.stacked import body_of
 from scenic.runtime.sight import view_operands
@@ -189,6 +191,10 @@ class ViewRegion(Region):
     def box(self, *columns: Column) -> tuple[Points, Points]:
         camera, reach = columns[0], columns[4][:, None]
         return camera - reach, camera + reach
+
+    def extent(self, *parameters: Bounds | None) -> Bounds | None:
+        camera, reach = parameters[0], parameters[4]
+        return None if camera is None or reach is None else grown(camera, reach.upper)
 
     def sizes(self, *columns: Column) -> Column:
         return view_volume(views_over(columns))

@@ -17,6 +17,7 @@ from scenic.runtime.geometry.collision import Body, collide
 from scenic.runtime.geometry.poses import Poses
 from scenic.runtime.geometry.single import Placed, placed
 from scenic.runtime.regions.base import Mask, Points, Region
+from scenic.runtime.regions.nearness import body_box
 from scenic.runtime.regions.single import Ball, Box, Single
 from scenic.runtime.values import (
     Orientation,
@@ -125,6 +126,10 @@ class PlacedVolume(Region):
 
     def gaps(self, points: Points, *columns: Column) -> Column:
         return self.distances(points, *columns)
+
+    def extent(self, *parameters: Bounds | None) -> Bounds | None:
+        dimensions, position, rotation = parameters
+        return super().extent(*parameters) or body_box(position, rotation, dimensions)
 
     def _placed(self, x: Any, y: Any, z: Any) -> tuple[Any, Any]:
         """The point at these fractions of the dimensions from the centre."""

@@ -52,8 +52,8 @@ class Outline:
     """What scenes show. Of the rest, as points, what somebody asks for is evaluated then."""
     requirements: tuple[Requirement, ...]
     """The hard requirements of the program, for analysis."""
-    containment: tuple[NodeCheck, ...]
-    """That objects are inside their containers, likewise."""
+    built_in: tuple[NodeCheck, ...]
+    """That objects are inside their containers, and seen, likewise."""
     bodies: int
     """The number of objects."""
 
@@ -72,16 +72,15 @@ def outline(program: Program, ego: Object | None, workspace: Workspace, *, mode_
     checks: list[Check] = _drawing(reached)
     checks += _finite(program)
     checks += _sizes(program)
-    containment = _containment(program, workspace)
-    checks += containment
-    checks += _visibility(program, ego, mode_2d=mode_2d)
+    built_in = [*_containment(program, workspace), *_visibility(program, ego, mode_2d=mode_2d)]
+    checks += built_in
     checks += _collisions(program)
     checks += _requirements(program)
     nodes = [node for check in checks for node in check.nodes]
     graph = Graph([*reached, *nodes])
     outputs = dependencies([*program.objects, *program.parameters.values()])
     hard = tuple(item for item in program.requirements if item.probability == 1)
-    return Outline(graph, tuple(checks), tuple(outputs), hard, tuple(containment), len(program.objects))
+    return Outline(graph, tuple(checks), tuple(outputs), hard, tuple(built_in), len(program.objects))
 
 
 def _drawing(outputs: Sequence[Node]) -> list[Check]:
@@ -249,13 +248,13 @@ def _required(
     return []
 
 
-def _visibility(program: Program, ego: Object | None, *, mode_2d: bool) -> list[Check]:
+def _visibility(program: Program, ego: Object | None, *, mode_2d: bool) -> list[NodeCheck]:
     """What has to be seen by whom, and what must not be (section 10.1)."""
 
     def seen(observer: Any, target: Any) -> Node:
         return truth((sees_in_plane if mode_2d else sees)(observer, target, program.objects))
 
-    checks: list[Check] = []
+    checks: list[NodeCheck] = []
     for item, sighting in program.sightings:
         node = seen(sighting.observer, item)
         name, whom = _name(item), _name(sighting.observer)

@@ -1,0 +1,344 @@
+"""What analysis knows of regions, bodies and views from bounds: never less than is possible, however tight the bounds are.
+
+A reading is sound if the operation's own answer lies in the bounds of every box that holds its operands, and if the
+operands lie in the inverse of every result that they give. Boxes here touch the operands, or are just them.
+"""
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy import stats
+from scipy.spatial.transform import Rotation
+
+from scenic.graph.bounds import Bounds
+from scenic.graph.domain import Domain
+from scenic.graph.kinds import Kind
+from scenic.graph.operation import Call, Operation
+from scenic.language.errors import UnsupportedError
+from scenic.runtime.regions import base, bodies
+from scenic.runtime.regions.base import Region
+from scenic.runtime.regions.choice import RegionChoice
+from scenic.runtime.regions.composite import DifferenceRegion, IntersectionRegion, UnionRegion
+from scenic.runtime.regions.planar import CircularRegion, RectangularRegion, SectorRegion
+from scenic.runtime.regions.scattered import PointSetRegion
+from scenic.runtime.regions.volumes import BoxRegion, SpheroidRegion
+from scenic.runtime.sight import SEES
+from scenic.runtime.values import Random, Vector
+from scenic.runtime.visibility import _SEES as SEES_IN_PLANE
+from scenic.runtime.visibility import _SEES_POINT as SEES_POINT_IN_PLANE
+from tests.runtime.geometry.samples import SHAPES
+from tests.runtime.programs import scenario
+from tests.runtime.test_region_readings import REGIONS, UNBOUNDED, around, columns_of
+
+CONTAINS, DISTANCE, DRAW = base._CONTAINS_POINT, base._DISTANCE, base._DRAW
+Row = np.ndarray
+ROOT = Vector(0, 0, 0)
+
+
+def boxes(rows: Sequence[Row | None], random: np.random.Generator) -> Iterator[list[Bounds | None]]:
+    """Bounds that hold operands ``(n | 1, ...)``: just them, with them in a corner, and around them; nothing of ``None``.
+
+    Once the first operand alone is not known exactly, then all are not.
+    """
+    yield exact(rows)
+    for spread in (1, len(rows)):
+        for sides in ((0, 1), (1, 0), (1, 1)):
+            for scale in (1e-6, 0.3, 5.0):
+                room = [
+                    np.zeros((2, *np.shape(row)))
+                    if place >= spread
+                    else scale * np.abs(random.normal(size=(2, *np.shape(row))))
+                    for place, row in enumerate(rows)
+                ]
+                yield [
+                    None if row is None else Bounds(row - sides[0] * less, row + sides[1] * more)
+                    for row, (less, more) in zip(rows, room, strict=True)
+                ]
+
+
+def within(rows: Row, bounds: Bounds | None) -> bool:
+    return bounds is None or bool(((bounds.lower <= rows) & (rows <= bounds.upper)).all())
+
+
+def is_sound(
+    operation: Operation,
+    payload: Any,
+    results: Any,
+    rows: Sequence[Row | None],
+    random: np.random.Generator,
+) -> None:
+    """The readings of an operation agree with the results ``(n,)`` that it gives for some operands."""
+    assert operation.bounds is not None
+    assert operation.inverse is not None
+    results = np.asarray(results, dtype=float)
+    outcomes = [Bounds(results, results)]
+    if np.isin(results, (0, 1)).all():
+        outcomes.append(Bounds(np.zeros_like(results), np.ones_like(results)))
+    for given in boxes(rows, random):
+        assert within(results, operation.bounds(payload, *given))
+        for outcome in outcomes:
+            for row, part in zip(rows, operation.inverse(payload, outcome, *given), strict=True):
+                assert row is None or within(row, part)
+
+
+def exact(rows: Sequence[Row | None]) -> list[Bounds | None]:
+    return [None if row is None else Bounds(row, row) for row in rows]
+
+
+@pytest.mark.parametrize("name", REGIONS)
+def test_points_and_distances(name: str) -> None:
+    region, random = REGIONS[name], np.random.default_rng(3)
+    columns = columns_of(region)
+    rows = [None if column.dtype == object else column.astype(float) for column in columns]
+    points = around(region, 60)[::2]
+    lower, upper = (np.clip(corner, -30, 30) for corner in region.box(*columns))
+    beside = upper + np.array([region.tolerance, 0, 0])
+    points = np.concatenate([points, lower, upper, (lower + upper) / 2, beside])
+    is_sound(
+        CONTAINS,
+        region,
+        np.broadcast_to(region.contains_points(points, *columns), len(points)),
+        [points, *rows],
+        random,
+    )
+    try:
+        distances = np.broadcast_to(region.distances(points, *columns), len(points))
+    except UnsupportedError:
+        distances = np.full(len(points), np.inf)
+    else:
+        is_sound(DISTANCE, region, distances, [points, *rows], random)
+    if np.isfinite(distances).all() and all(
+        row is not None for row in rows
+    ):  # of meshes of objects no bounds are known
+        assert DISTANCE.bounds is not None
+        found = DISTANCE.bounds(region, *exact([points, *rows]))
+        assert (found.upper - found.lower).max() < 1e-4
+    if name not in UNBOUNDED | {"everywhere", "nowhere"}:
+        far = np.array([[400.0, -300, 200]])
+        assert CONTAINS.bounds is not None
+        assert CONTAINS.bounds(region, *exact([far, *rows])).upper[0] == 0
+
+
+def test_a_tolerance_counts() -> None:
+    """Points that count as in a region though they lie beside it, in whatever the region is part of."""
+    dots = PointSetRegion("dots", [(0, 0, 0), (1, 0, 0)], tolerance=0.5)
+    other = BoxRegion((1, 1, 1), Vector(9, 9, 9))
+    for region in (dots, UnionRegion(dots, other), DifferenceRegion(dots, other), base.Workspace(dots)):
+        columns = columns_of(region)
+        point = np.array([[1.4999, 0, 0]])
+        assert region.contains_points(point, *columns).all()
+        is_sound(CONTAINS, region, [1.0], [point, *columns], np.random.default_rng(2))
+    index = Random(scenario("param i = DiscreteRange(0, 1)").params["i"].node)
+    chosen = RegionChoice(index, [other, dots])
+    assert chosen.tolerance == 0.5
+
+
+VARYING: dict[str, Region] = {
+    "disc": CircularRegion(ROOT, 1),
+    "rectangle": RectangularRegion(ROOT, 0, 1, 1),
+    "sector": SectorRegion(ROOT, 1, 0, 1),
+    "box": BoxRegion((1, 1, 1)),
+    "ellipsoid": SpheroidRegion((1, 1, 1)),
+}
+
+
+def varied(region: Region, random: np.random.Generator) -> list[Row]:
+    """Columns of parameters that a region of this kind may have."""
+    rows = []
+    for value, column in zip(region.parameters, columns_of(region), strict=True):
+        if column.shape[1:] == (4,):
+            rows.append(Rotation.random(random_state=int(random.integers(1000))).as_quat()[None])
+        elif isinstance(value, Vector):
+            rows.append(random.uniform(0.2, 4, (1, 3)))
+        else:
+            rows.append(random.uniform(0.2, 4, 1))
+    return rows
+
+
+@pytest.mark.parametrize("name", VARYING)
+def test_regions_with_random_parameters(name: str) -> None:
+    region, random = VARYING[name], np.random.default_rng(4)
+    other = BoxRegion((2, 2, 2), Vector(3, 0, 0))
+    others = [column.astype(float) for column in columns_of(other)]
+    both = (region, other)
+    index = Random(scenario("param i = DiscreteRange(0, 1)").params["i"].node)
+    for _ in range(6):
+        rows = varied(region, random)
+        uniforms, keys = random.random((3, 6)), np.arange(6, dtype=np.uint64)
+        points, _ = region.draw_points(uniforms[: region.draws], keys, *rows)
+        points = np.concatenate([points, points + random.normal(size=points.shape)])
+        for whole, mine in (
+            (region, rows),
+            (region.footprint, rows),
+            (UnionRegion(*both), [*rows, *others]),
+            (IntersectionRegion(*both), [*rows, *others]),
+            (DifferenceRegion(*both), [*rows, *others]),
+            (RegionChoice(index, both), [np.zeros(1), *rows, *others]),
+        ):
+            held = np.broadcast_to(whole.contains_points(points, *mine), len(points))
+            is_sound(CONTAINS, whole, held, [points, *mine], random)
+        is_sound(DISTANCE, region, region.distances(points, *rows), [points, *rows], random)
+        for given in boxes(rows, random):
+            assert DRAW.bounds is not None
+            known = [*[None] * (region.draws + 1), *given]
+            assert within(points[:6], DRAW.bounds(region, *known))
+        far = exact([np.array([[50.0, 50, 0]])])
+        for given in boxes(rows, random):
+            assert CONTAINS.bounds is not None
+            near = all(bound is not None and (bound.upper < 15).all() for bound in given)
+            found = CONTAINS.bounds(region, *far, *given)
+            assert not near or found.upper[0] == 0
+
+
+def pose(random: np.random.Generator, place: Any = None) -> list[Row]:
+    """Position, orientation and size."""
+    turn = Rotation.random(random_state=int(random.integers(1000))).as_quat()
+    where = random.normal(size=(1, 3)) if place is None else np.asarray(place, dtype=float)[None]
+    return [where, turn[None], random.uniform(0.2, 2, (1, 3))]
+
+
+def test_two_bodies() -> None:
+    random = np.random.default_rng(7)
+    for name in ("box", "cone"):
+        mesh = shape_column(name)
+        first, second = (
+            [np.concatenate(part) for part in zip(*(pose(random) for _ in range(24)), strict=True)]
+            for _ in range(2)
+        )
+        second[0] = second[0] * np.repeat([[0.2], [1], [2], [4]], 6, axis=0)
+        columns, rows = [*first, mesh, *second, mesh], [*first, None, *second, None]
+        gaps = bodies._GAP.batch(Call((24,), None, [None] * 8), *columns)
+        assert gaps.min() == 0
+        assert gaps.max() > 1
+        is_sound(bodies._GAP, None, gaps, rows, random)
+        meets = bodies._INTERSECT.batch(Call((24,), None, [None] * 8), *columns)
+        assert (meets == (gaps == 0)).all()
+        is_sound(bodies._INTERSECT, None, meets, rows, random)
+    far = exact([*pose(random, (0, 0, 0)), None, *pose(random, (30, 40, 0)), None])
+    assert bodies._INTERSECT.bounds is not None
+    assert bodies._GAP.bounds is not None
+    assert bodies._INTERSECT.bounds(None, *far).upper[0] == 0
+    assert 50 - 2 * np.sqrt(12) < bodies._GAP.bounds(None, *far).lower[0] < 50
+
+
+def shape_column(name: str) -> Row:
+    """A column of one shape with the unit mesh of a sample."""
+
+    class Shape:
+        mesh = SHAPES[name]()
+
+    column = np.empty(1, dtype=object)
+    column[0] = Shape()
+    return column
+
+
+ANGLES = [(2 * np.pi, np.pi), (1.0, np.pi), (3.1, 2.9), (2 * np.pi, 0.4), (0.5, 0.3), (4.0, 1.0)]
+
+
+def observer(random: np.random.Generator, angles: tuple[float, float], reach: float) -> list[Row]:
+    turn = Rotation.random(random_state=int(random.integers(1000))).as_quat()
+    numbers = [*angles, reach, 5.0, 0.0, 0.0]
+    return [random.normal(size=(1, 3)), turn[None], *(np.array([number]) for number in numbers), np.zeros(1)]
+
+
+@pytest.mark.parametrize("angles", ANGLES)
+def test_what_is_seen(angles: tuple[float, float]) -> None:
+    """Targets lie just within, and just out of, the range and the borders of the view."""
+    random = np.random.default_rng(11)
+    shape = shape_column("box")
+    seen = unseen = 0
+    for number in range(14):
+        views = observer(random, angles, 4.0)
+        frame = Rotation.from_quat(views[1][0])
+        half = np.array(angles) / 2 * (1 + random.choice([-1e-6, 1e-6, -0.2, 0.2], 2))
+        azimuth, altitude = half * (random.uniform(-1, 1, 2) if number % 2 else random.choice([-1, 1], 2))
+        length = 4.0 * (1 + random.choice([-1e-6, 1e-6, -0.5]))
+        way = [-np.sin(azimuth) * np.cos(altitude), np.cos(azimuth) * np.cos(altitude), np.sin(altitude)]
+        place = views[0] + frame.apply(way)[None] * length
+        call = Call((1,), (False, False), [None] * 10, kinds=(Kind.SCALAR,) * 10)
+        point = float(SEES.batch(call, *views, place)[0])
+        is_sound(SEES, (False, False), [point], [*views, place], random)
+        body = pose(random, place[0])
+        body[2] = body[2] * (0.05 if number % 2 else 1)
+        call = Call((1,), (True, False), [None] * 13)
+        thing = float(SEES.batch(call, *views, *body, shape)[0])
+        is_sound(SEES, (True, False), [thing], [*views, *body, None], random)
+        seen, unseen = seen + int(point), unseen + int(not point)
+        away = views[0] + frame.apply(way)[None] * 9
+        assert SEES.bounds is not None
+        assert SEES.bounds((False, False), *exact([*views, away])).upper[0] == 0
+        behind = views[0] - frame.apply([0, 2, 0])[None]
+        above = views[0] + frame.apply([0, 0.01, 2])[None]
+        for where, limit in ((behind, angles[0]), (above, angles[1])):
+            if limit < 3:
+                assert SEES.bounds((False, False), *exact([*views, where])).upper[0] == 0
+    assert seen
+    assert unseen
+
+
+def test_what_is_seen_in_the_plane() -> None:
+    random = np.random.default_rng(12)
+    seen = 0
+    for _ in range(40):
+        camera, heading = random.normal(size=(1, 3)), random.uniform(-4, 4, 1)
+        angle, reach = random.uniform(0.3, 6.3, 1), np.array([3.0])
+        way = heading[0] + angle[0] / 2 * random.uniform(-1.1, 1.1)
+        length = 3 * (1 + random.choice([-1e-6, 1e-6, -0.4]))
+        place = camera + length * np.array([[-np.sin(way), np.cos(way), random.normal()]])
+        rows = [camera, heading, angle, reach, place]
+        point = float(SEES_POINT_IN_PLANE.batch(Call((1,), None, [None] * 5), *rows)[0])
+        is_sound(SEES_POINT_IN_PLANE, None, [point], rows, random)
+        body = pose(random, place[0] + (0.3, 0.2, 5))
+        yaw = random.uniform(-4, 4)
+        body[1] = np.array([[0, 0, np.sin(yaw / 2), np.cos(yaw / 2)]])
+        rows = [camera, heading, angle, reach, *body]
+        thing = float(SEES_IN_PLANE.batch(Call((1,), None, [None] * 7), *rows)[0])
+        is_sound(SEES_IN_PLANE, None, [thing], rows, random)
+        seen += int(point)
+        rows[4] = camera + 20 * np.array([[-np.sin(way), np.cos(way), 0]])
+        for operation, known in ((SEES_POINT_IN_PLANE, rows[:5]), (SEES_IN_PLANE, rows)):
+            assert operation.bounds is not None
+            assert operation.bounds(None, *exact(known)).upper[0] == 0
+    assert 5 < seen < 40
+
+
+PROGRAMS = {
+    "distance to a region": (
+        "region = CircularRegion((10, 0), 5)\n"
+        "ego = new Object at (Range(-100, 100), Range(-100, 100), 0)\n"
+        "require (distance from ego to region) < 3"
+    ),
+    "a random region": (
+        "region = CircularRegion((Range(5, 10), 0), Range(4, 6))\n"
+        "ego = new Object at (Range(-100, 100), Range(-100, 100), 0)\n"
+        "require ego in region"
+    ),
+    "a place": (
+        "region = RectangularRegion((0, 30), 0.4, 30, 10)\n"
+        "ego = new Object at (Range(-100, 100), Range(-100, 100), 0)\n"
+        "require ego.position in region"
+    ),
+    "in view": (
+        "ego = new Object facing 30 deg, with visibleDistance 20, with viewAngle 60 deg\n"
+        "other = new Object at (Range(-100, 100), Range(-100, 100), 0), with requireVisible True"
+    ),
+}
+MOST_TRIED = {"distance to a region": 3, "a random region": 5, "a place": 2, "in view": 5}
+"""Candidates for a scene with pruning; without, some hundreds."""
+
+
+@pytest.mark.parametrize("name", PROGRAMS)
+def test_pruning_changes_no_law(name: str) -> None:
+    places, tried = [], []
+    for prune in (True, False):
+        program = scenario(PROGRAMS[name])
+        if not prune:
+            program.restrict(Domain.whole(program.outline.graph.dimension))
+        scenes = program.sample(150, seed=5)
+        places.append(np.array([tuple(scene.objects[-1].position)[:2] for scene in scenes]))
+        tried.append(sum(scene.attempts for scene in scenes) / 150)
+    for axis in range(2):
+        assert stats.ks_2samp(places[0][:, axis], places[1][:, axis]).pvalue > 1e-3
+    assert tried[0] < MOST_TRIED[name] < tried[1] / 20
