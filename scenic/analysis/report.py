@@ -45,7 +45,7 @@ def _by_intervals(graph: Graph, conditions: Sequence[Fact]) -> tuple[Fact, ...]:
     Intervals know functions that the solver does not, such as sine.
     """
     core = contract(graph, conditions).impossible
-    for condition in core[:-1] if len(core) > 1 else ():
+    for condition in core if len(core) > 1 else ():
         rest = tuple(member for member in core if member is not condition)
         if contract(graph, rest).impossible:
             core = rest

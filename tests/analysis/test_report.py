@@ -96,3 +96,28 @@ def test_what_the_language_requires_is_named():
     condition = make("less", 2, 1)
     (found,) = prove(Graph([condition]), [Fact(condition, "Car in view", line(2), built_in=True)])
     assert found.message == "'Car in view', which the language requires, can never hold"
+
+
+def test_labels_stand_in_the_order_of_the_program():
+    x, y = uniform(0, 10, span=line(1)), uniform(0, 10, span=line(5))
+    first, last = make("greater", y, make("add", x, 6)), make("greater", x, 5)
+    (found,) = report((first, line(4)), (last, line(7)))
+    assert told(found) == ("SC700", 7, [(4, "while this is required"), (5, "this range is at most 10")])
+    (found,) = report((first, line(6)), (last, line(7)))
+    assert told(found) == ("SC700", 7, [(5, "this range is at most 10"), (6, "while this is required")])
+
+
+def test_what_has_no_place_comes_last():
+    x = uniform(0, 10)
+    high, low = (make("greater", x, 6), None), (make("less", x, 3), line(7))
+    for items in ((high, low), (low, high)):
+        (found,) = report(*items)
+        assert told(found) == ("SC700", None, [(7, "while this is required")])
+
+
+def test_what_intervals_do_not_need_is_not_blamed():
+    u, v = uniform(0, 3), uniform(0, 1)
+    needed = [(make("greater", make("sin", u), 0.9), line(3)), (make("less", u, 0.3), line(5))]
+    for place in (2, 4, 6):
+        (found,) = report((make("less", v, 0.5), line(place)), *needed)
+        assert told(found) == ("SC700", 5, [(3, "while this is required")])

@@ -6,8 +6,10 @@ from functools import cache
 import numpy as np
 import pytest
 from graph.programs import Triple, constant, make, one_of, source, uniform
+from scipy.optimize import linprog
 
 from analysis.random_programs import accepted, conditions
+from scenic.analysis import terms as terms_module
 from scenic.analysis.facts import Fact
 from scenic.analysis.smt import judge
 from scenic.analysis.terms import Answer, Questions, SolverTerms
@@ -181,3 +183,42 @@ def test_a_hard_question_is_given_up_by_count():
     sums = x * x * x + y * y * y + z * z * z == terms.real(114)
     questions = Questions(terms, [(x > one) | (x < -one)], [sums])
     assert questions.ask([0]) is not Answer.IMPOSSIBLE
+
+
+def test_the_last_of_a_contradiction_is_left_out_of_what_follows():
+    """It is the one to blame: without it the others can hold together."""
+    x = uniform(0, 1)
+    nodes = [make("less", x, 0.5), make("less", x, 0.6), make("greater", x, 0.8)]
+    (core,), _ = verdict(*nodes)
+    assert core in (["0", "2"], ["1", "2"])
+
+
+@pytest.mark.parametrize("seed", range(25))
+def test_contradictions_are_minimal_for_a_linear_program_too(seed):
+    """Half-planes: another solver finds no point in what is called impossible, and one as soon as any of it is taken away."""
+    rng = np.random.default_rng(seed)
+    normals = rng.integers(-3, 4, (9, 2))
+    limits = rng.integers(-4, 3, 9)
+    terms = SolverTerms()
+    x, y = terms.fresh(Kind.SCALAR), terms.fresh(Kind.SCALAR)
+    formulas = [
+        terms.real(int(a)) * x + terms.real(int(b)) * y <= terms.real(int(c))
+        for (a, b), c in zip(normals, limits, strict=True)
+    ]
+
+    def possible(members):
+        rows = list(members)
+        return not rows or linprog([0, 0], normals[rows], limits[rows], bounds=(None, None)).status == 0
+
+    core = Questions(terms, [], formulas).contradiction(range(9))
+    if core is None:
+        assert possible(range(9))
+    else:
+        assert not possible(core)
+        for left_out in core:
+            assert possible(member for member in core if member != left_out)
+
+
+def test_nothing_is_decided_once_the_count_is_spent(monkeypatch):
+    monkeypatch.setattr(terms_module, "TOTAL", 0)
+    assert verdict(make("less", 2, 1), make("less", 1, 2)) == ([], [])

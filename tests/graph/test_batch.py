@@ -1,22 +1,26 @@
 """Evaluation of graphs: order, lanes that are dropped, and the fate of lanes that fail or are rejected."""
 
 import numpy as np
+import pytest
 
 from graph.programs import (
     CODEC,
     Triple,
     batch_at,
+    constant,
     evaluate,
     faulty,
     is_fine,
     make,
     one_of,
+    random_points,
     sampled,
     source,
     uniform,
 )
 from scenic.graph import construction
 from scenic.graph import node as graph
+from scenic.graph.domain import Domain
 from scenic.graph.draws import address
 from scenic.graph.kinds import Kind
 from scenic.graph.node import Graph
@@ -201,3 +205,108 @@ def test_keys_depend_on_the_lane_and_the_address_alone():
     words = batch_at(several, np.full((5, 1), 0.5)).column(second)
     assert batch_at(alone, np.empty((5, 0))).column(second).tolist() == words.tolist()
     assert len({*words.tolist(), *batch_at(several, np.full((5, 1), 0.5)).column(first).tolist()}) == 10
+
+
+def tangle(rng, size=60):
+    """A graph of many alike nodes: of draws, constants, zeros of both signs, faults, rejections and Python objects."""
+    lanes = 12
+    statuses = [rng.choice([OK, OK, FAULT, REJECTED], lanes) for _ in range(2)]
+    numbers = [graph.axis(place=address("axis", number)) for number in range(4)]
+    numbers += [uniform(-1.0, 1.0), constant(0.0), constant(-0.0), constant(2.5), constant(-1.0)]
+    numbers += [faulty(Kind.SCALAR, rng.random(lanes), status, KeyError("given")) for status in statuses]
+    truths = [make("less", numbers[0], 0.5), constant(True)]
+    for _ in range(size):
+        a, b, c = (numbers[place] for place in rng.integers(0, len(numbers), 3))
+        p, q = (truths[place] for place in rng.integers(0, len(truths), 2))
+        match rng.integers(0, 9):
+            case 0 | 1 | 2:
+                numbers.append(make(str(rng.choice(["add", "multiply", "subtract"])), a, b))
+            case 3:
+                numbers.append(make("divide", a, b))
+            case 4:
+                numbers.append(make("if", p, a, b))
+            case 5:
+                numbers.append(one_of(a, b, c, 1.5))
+            case 6:
+                truths.append(make("less", a, b))
+            case 7:
+                truths.append(make(str(rng.choice(["and", "or"])), p, q))
+            case _:
+                numbers.append(make("maximum", a, b))
+    return [node for node in (*numbers, *truths) if not node.is_constant], lanes
+
+
+PAVED = 3
+"""Boxes of the domain below."""
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_lanes_are_what_they_are_alone(seed):
+    """Whatever is evaluated together, in whichever order, from which boxes, and whichever lanes are dropped meanwhile."""
+    rng = np.random.default_rng(seed)
+    nodes, lanes = tangle(rng)
+    net = Graph(nodes)
+    corners = np.sort(rng.random((PAVED, net.dimension, 2)), axis=2)
+    corners[:, :, 1] += 1e-3
+    domain = Domain(corners[:, :, 0], np.minimum(corners[:, :, 1], 1.0))
+    points = random_points(net, lanes, seed)
+    alone = {}
+    whole = batch_at(net, points, grouped=False, domain=domain)
+    for node in nodes:
+        status = whole.status(node)
+        alone[node] = whole.full(node), np.zeros(lanes, int) if status is None else status
+    for _ in range(4):
+        batch = batch_at(net, points, domain=domain)
+        batch.need([node for node in net.nodes if node.operation.name == "faulty"])
+        order = rng.permutation(len(nodes))
+        for some in np.array_split(order, int(rng.integers(1, 8))):
+            batch.need([nodes[place] for place in some])
+            if rng.random() < 0.5:
+                batch.read(0, nodes[some[0]])
+                batch.tuples(tuple(nodes[place] for place in some[:2]))
+            if len(batch) > 3:
+                batch.keep(rng.random(len(batch)) < 0.8)
+        kept_tuple = tuple(nodes[place] for place in order[:3])
+        rows = batch.tuples(kept_tuple) if len(batch) else []
+        for node in nodes:
+            values, status = (column[batch.rows] for column in alone[node])
+            found = batch.status(node)
+            assert (np.zeros(len(batch), int) if found is None else found).tolist() == status.tolist()
+            fine = status == OK
+            # Zeros of both signs are told apart.
+            assert batch.full(node)[fine].tobytes() == values[fine].tobytes()
+            for lane in np.flatnonzero(fine):
+                assert batch.read(int(lane), node) == values[lane]
+                if node in kept_tuple:
+                    row = rows[lane if len(rows) > 1 else 0]
+                    assert row[kept_tuple.index(node)] == values[lane]
+
+
+def test_one_row_of_values_and_a_fate_for_each_lane():
+    """An operand may be the same in all lanes that have it."""
+    operation = Operation("next", always(Kind.OTHER), lambda call, a: a, "A test.", python=lambda a: a + 1)
+    node = construction.make_node(
+        operation, [faulty(Kind.SCALAR, [5.0], np.array([FAULT, OK, REJECTED]), ValueError())]
+    )
+    batch = evaluate(node, 3)
+    assert batch.status(node).tolist() == [FAULT, OK, REJECTED]
+    assert batch.value(node, 1) == 6.0
+
+
+def test_an_index_without_a_value_draws_nothing():
+    index = faulty(Kind.INTEGER, [0, 99, -99, 2], np.array([OK, FAULT, REJECTED, OK]), ValueError())
+    axes = [graph.axis(place=address("option", number)) for number in range(12)]
+    node = make("select", index, *axes)
+    net = Graph([node, *axes])
+    points = random_points(net, 4)
+    batch = batch_at(net, points)
+    assert batch.status(node).tolist() == [OK, FAULT, REJECTED, OK]
+    assert batch.full(node)[[0, 3]].tolist() == [points[0, net.axes[axes[0]]], points[3, net.axes[axes[2]]]]
+
+
+def test_zeros_of_either_sign_are_different_numbers():
+    x = graph.axis()
+    products = [make("multiply", x, zero) for zero in (0.0, -0.0, 0.0, -0.0)]
+    batch = batch_at(Graph(products), [[0.5]])
+    batch.need(products)
+    assert [np.signbit(batch.column(node)[0]) for node in products] == [False, True, False, True]

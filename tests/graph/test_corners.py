@@ -393,3 +393,38 @@ def test_nothing_is_certain_of_numbers_that_may_be_none():
         for end in (math.inf, -math.inf):
             assert ends_of(name, (end, end), (end, end)) == certain
     assert ends_of("equal", (2.0, 2.0), (2.0, 2.0)) == (1, 1)
+
+
+LENGTHS = [(of("norm", V), 1), (of("distance", V, V), 2), (of("hypot", S, S, S), 3), (of("hypot", S, S), 2)]
+
+
+@pytest.mark.parametrize(("case", "count"), LENGTHS, ids=str)
+def test_a_length_that_was_computed_keeps_what_it_was_computed_of(case, count):
+    """All but one component known, and the length as it came out: what rounding took must not be held against the last one."""
+    rng = np.random.default_rng(61)
+    columns = [rng.normal(size=(150, 3) if part is V else 150) * 3 for part in case.operands]
+    values, _ = values_of(case, columns)
+    for lane, value in enumerate(values):
+        for place in range(count):
+            boxes = [(column[lane], column[lane]) for column in columns]
+            if case.operands[place] is V:
+                free = int(rng.integers(3))
+                low, high = columns[place][lane].copy(), columns[place][lane].copy()
+                low[free], high[free] = -20.0, 20.0
+                boxes[place] = (low, high)
+            else:
+                boxes[place] = (-20.0, 20.0)
+            for column, (lower, upper) in zip(columns, narrowed(case, (value, value), boxes), strict=True):
+                assert np.all((lower <= column[lane]) & (column[lane] <= upper))
+
+
+def test_a_number_that_scales_a_vector_has_to_suit_every_component():
+    box, free = ([1.0, 2.0, 4.0], [1.0, 2.0, 4.0]), (0.0, 10.0)
+    result = ([0.5, 0.1, 0.1], [3.0, 3.0, 3.0])
+    for name, kinds, boxes, place in (
+        ("multiply", (V, S), [box, free], 1),
+        ("multiply", (S, V), [free, box], 0),
+    ):
+        assert narrowed(of(name, *kinds), result, boxes)[place] == pytest.approx((0.5, 0.75))
+    quotient = narrowed(of("divide", V, S), result, [box, (0.1, 10.0)])[1]
+    assert quotient == pytest.approx((4 / 3, 2.0))

@@ -9,8 +9,10 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from graph.programs import CODEC, batch_at, faulty, make, one_of, sampled, source, uniform
+from graph.programs import CODEC, batch_at, constant, faulty, make, one_of, sampled, source, uniform
+from scenic.graph import bounding
 from scenic.graph import node as graph
+from scenic.graph.bounds import Bounds
 from scenic.graph.kinds import Kind
 from scenic.graph.node import Graph
 from scenic.graph.operations.normal import conditioned_cumulative, conditioned_quantile
@@ -198,3 +200,78 @@ def test_the_fate_of_the_index_counts():
     node = make("select", index, 1.0, 2.0)
     batch = batch_at(Graph([node]), np.empty((3, 0)), CODEC)
     assert batch.status(node).tolist() == [0, 1, 2]
+
+
+def test_an_option_of_weight_zero_is_not_drawn_beyond_the_last_limit():
+    """Sums of weights are rounded: the last limit may lie below the outermost points of the axis."""
+    limit = 1 - 2.0**-52
+    node = make("choice", graph.axis(), payload=(0.5, limit, limit))
+    assert batch_at(Graph([node]), np.array([[1 - 2.0**-53]]), CODEC).column(node).tolist() == [1]
+
+
+@pytest.mark.parametrize("end", [2.0**exponent for exponent in (52, 53, 60, 61, 62, 63, 64)])
+def test_discrete_ranges_of_any_size_keep_within_their_ends_or_fail(end):
+    for low, high in ((-end, end), (0.0, end), (end, end), (-end, -end)):
+        node = make("discrete range", graph.axis(), source(Kind.SCALAR, [low]), source(Kind.SCALAR, [high]))
+        batch = batch_at(Graph([node]), ENDS[:, None], CODEC)
+        status = batch.status(node)
+        if status is None:
+            values = batch.full(node).tolist()
+            assert all(low <= value <= high for value in values)
+            assert values[0] == low
+        else:
+            assert status.tolist() == [1] * len(ENDS)
+            assert end >= 2.0**61
+
+
+def counted(low, high):
+    return make("discrete range", graph.axis(), low, high)
+
+
+WEIGHTS = tuple((np.cumsum([3.0, 0.0, 1.0, 6.0, 0.0, 1.0]) / 11).tolist())
+STEPS = [
+    *((counted(-2, last), np.arange(1, last + 4) / (last + 3)) for last in range(60)),
+    (make("weighted integer", graph.axis(), payload=(10, WEIGHTS)), np.array(WEIGHTS)),
+    (make("choice", graph.axis(), payload=WEIGHTS), np.array(WEIGHTS)),
+]
+
+
+def test_inverses_keep_the_neighbours_of_every_step():
+    """Where a whole number becomes the next one, by a few units in the last place."""
+    for node, borders in STEPS:
+        points = borders[borders < 1]
+        around = [points]
+        for towards in (0.0, 1.0):
+            moved = points
+            for _ in range(3):
+                moved = np.nextafter(moved, towards)
+                around.append(moved)
+        axis = np.unique(np.concatenate([*around, ENDS]))
+        axis = axis[(axis > 0) & (axis < 1)]
+        values = batch_at(Graph([node]), axis[:, None], CODEC).full(node).astype(float)
+        result = Bounds(values, values)
+        whole = Bounds(np.zeros(len(axis)), np.ones(len(axis)))
+        others = [bounding.of_constant(operand) for operand in node.operands[1:]]
+        place = node.operation.inverse(node.payload, result, whole, *others)[0]
+        assert ((place.lower <= axis) & (axis <= place.upper)).all(), node
+        # And no more than that: a number is drawn by its own stretch of the axis.
+        shares = np.diff([0.0, *borders])
+        assert ((place.upper - place.lower) <= shares.max() + 1e-12).all()
+
+
+def test_bounds_of_whole_constants_hold_them_exactly():
+    for value in (
+        0,
+        1,
+        -7,
+        *(
+            sign * 2**bits + more
+            for bits in (52, 53, 54, 60, 61)
+            for more in (-1, 0, 1, 3)
+            for sign in (1, -1)
+        ),
+    ):
+        bounds = bounding.of_constant(constant(value))
+        assert bounds.lower[0] <= value <= bounds.upper[0]
+        if abs(value) <= 2**53:
+            assert bounds.lower[0] == value == bounds.upper[0]

@@ -122,8 +122,8 @@ def test_each_lane_has_its_own_address() -> None:
 def test_chains_of_any_length_are_merged_or_left() -> None:
     def chain(number: int) -> Node:
         node = uniform(0.0, 1.0)
-        for _ in range(100):
-            node = make("add", make("multiply", node, 1.5), float(number + 1))
+        for _ in range(600):
+            node = make("add", make("multiply", node, 0.75), float(number + 1))
         return node
 
     root = one_of(*(chain(number) for number in range(10)))

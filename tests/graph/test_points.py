@@ -89,3 +89,25 @@ def test_given_points() -> None:
     for wrong in ([[0.0]], [[1.0]], [[float("nan")]], [[[0.5]]]):
         with pytest.raises(ValueError, match="between 0 and 1"):
             GivenPoints(wrong)
+
+
+def test_no_two_draws_have_a_dimension_in_common() -> None:
+    """Axes, the choice of a box and draws of simulations, over several attempts."""
+    sobol, count = Sobol(), 3
+    numbers = [
+        column
+        for attempt in range(3)
+        for column in (
+            *sobol.of_scenes(np.arange(-1, count), count, lanes(8, attempt=attempt)),
+            *sobol.of_simulations(np.array([0, 1, 2, 511]), count, lanes(8, attempt=attempt)),
+        )
+    ]
+    assert len({tuple(column) for column in numbers}) == len(numbers)
+
+
+def test_the_next_sequence_is_another_one() -> None:
+    axes = np.arange(2)
+    first = Sobol().of_scenes(axes, 2, lanes(4, first=5))
+    for sequence in (1, 2, 3):
+        later = Sobol().of_scenes(axes, 2, lanes(4, first=5 + sequence * 2**20))
+        assert not np.isclose(first, later).any()
