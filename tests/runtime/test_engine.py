@@ -41,7 +41,7 @@ PROGRAMS = {
 def test_scenes_do_not_depend_on_the_batch(name: str) -> None:
     text = PROGRAMS[name]
     expected = [fingerprint(scene) for scene in scenario(text).sample(12, seed=5, lanes=1)]
-    for lanes in (7, 512, 4096):
+    for lanes in (2, 7, 512, 4096):
         program = scenario(text)
         assert [fingerprint(scene) for scene in program.sample(12, seed=5, lanes=lanes)] == expected
         # The same again from the same scenario, and a later part alone.
@@ -55,6 +55,8 @@ def test_scenes_do_not_depend_on_the_batch(name: str) -> None:
 def test_seeds_and_numbers_give_different_scenes(name: str) -> None:
     program = scenario(PROGRAMS[name])
     scenes = [*program.sample(4, seed=1), *program.sample(4, seed=2), *program.sample(4, seed=-3), *program.sample(4, seed=2**70)]  # fmt: skip
+    # Seeds are any integers: those that agree in 64 bits are different ones.
+    scenes += [*program.sample(2, seed=2**64 + 1), *program.sample(2, seed=2**64 - 3)]
     assert len({fingerprint(scene)[2:] for scene in scenes}) == len(scenes)
 
 

@@ -37,6 +37,11 @@ def test_the_scale_and_the_deviations_count() -> None:
         assert normal([getattr(ego, name) for ego in egos], deviation)
 
 
+def test_a_scale_of_either_sign_makes_noise() -> None:
+    scenes = scenario("ego = new Object\nmutate ego by -2\n").sample(N, seed=6)
+    assert normal([item.egoObject.position.x for item in scenes], 2)
+
+
 def test_final_properties_follow_and_others_stay() -> None:
     item = thing("ego = new Object at (1, 2), with tag 7, with speed 2\nmutate ego\n")
     assert item.position.x != 1

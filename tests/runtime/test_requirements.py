@@ -373,6 +373,14 @@ def test_what_can_be_seen_to_be_wrong_before_sampling(
     assert place(caught.value)[:2] == ("SC401", where)
 
 
+def test_of_several_collisions_that_first_complete_one_is_told() -> None:
+    """As one reads on, the first object that is in the way of an earlier one."""
+    text = "new Object at (0, 0)\nnew Object at (5, 0)\nnew Object at (5.5, 0)\nnew Object at (0.5, 0)\n"
+    with pytest.raises(InvalidScenarioError, match="always collides with the Object on line 2") as caught:
+        scenario(text)
+    assert place(caught.value)[1].startswith("3:")
+
+
 @pytest.mark.parametrize("name", ["width", "length", "height"])
 def test_random_sizes_are_positive(name: str) -> None:
     text = f"ego = new Object with {name} Range(-1, 1)\nparam x = ego.{name}"

@@ -121,6 +121,28 @@ def test_what_is_not_drawn_does_not_reject() -> None:
     assert all(scene.params["k"] == 7 or 5 <= scene.params["k"] <= scene.params["n"] for scene in scenes)
 
 
+def test_the_error_is_that_of_the_part_that_counts() -> None:
+    """What stands first, and is evaluated with it, but decides nothing, has an error too."""
+    text = "z = DiscreteRange(0, 5)\nrequire (z > 9 and 1 / z > 2) or 5 % z >= 0\n"
+    with pytest.raises(ZeroDivisionError, match="modulo"):
+        scenario(text).sample(99, seed=0)
+    text = "z = DiscreteRange(0, 5)\nrequire (z > 9 and 5 % z > 2) or 1 / z >= 0\n"
+    with pytest.raises(ZeroDivisionError, match="division"):
+        scenario(text).sample(99, seed=0)
+
+
+def test_faults_count_as_rejections_in_reports_and_what_never_rejects_is_not_told() -> None:
+    text = (
+        "x = Range(0, 1)\ndef never(v): return v > 9\nrequire 1 / max(0, x - 0.5) > 0 as fails\n"
+        "require x > -1 as holds\nrequire never(x) as never\n"
+    )
+    (result,) = scenario(text).stream(1, seed=1, max_attempts=1000)
+    assert not isinstance(result, scenic.Scene)
+    found = {row.label: row.rejected for row in result.report.rows}
+    assert set(found) == {"fails", "never"}
+    assert stats.binomtest(round(1000 * found["fails"]), 1000, 0.5).pvalue > FALSE_ALARM
+
+
 # Seeds
 
 
@@ -229,7 +251,10 @@ def test_the_report_of_a_collision_names_the_right_pair(moved: str, pair: str) -
     assert not isinstance(result, scenic.Scene)
     told = [row for row in result.report.rows if "collision" in row.label]
     assert [(row.rejected, row.alone) for row in told if row.rejected] == [(1.0, 1.0)]
-    (label,) = (row.label for row in told if row.rejected)
+    (row,) = (row for row in told if row.rejected)
+    label = row.label
+    assert row.span is not None
+    assert row.span.line == max("abc".index(name) for name in pair) + 1
     for name in "abc":
         assert (f"line {'abc'.index(name) + 1}" in label) == (name in pair)
 

@@ -178,3 +178,12 @@ def test_a_draw_says_where_it_is_made() -> None:
         for occurrence in (0, 1)
         for agent in (0, 1)
     ]
+
+
+def test_the_choice_of_a_box_is_a_draw_of_its_own() -> None:
+    """Where analysis leaves several boxes of the cube, rows fill each of them evenly."""
+    scenario = scenic.scenarioFromString("x = Range(0, 1)\nparam x = x\nrequire x < 0.2 or x > 0.8\n")
+    assert scenario.domain.boxes > 1
+    values = np.array([scene.params["x"] for scene in scenario.sample(256, seed=1, source=scenic.Sobol())])
+    counts = np.histogram(values, [0, 0.1, 0.2, 0.8, 0.9, 1])[0]
+    assert counts.tolist() == pytest.approx([64, 64, 0, 64, 64], abs=24)
