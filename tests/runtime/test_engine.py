@@ -263,6 +263,21 @@ def test_generate_batch() -> None:
     scenes, iterations = program.generateBatch(20)
     assert len(scenes) == 20
     assert iterations == sum(scene.attempts for scene in scenes) > 20
+    random.seed(0)
+    assert program.generateBatch(20, maxIterations=iterations)[1] == iterations
+    random.seed(0)
+    with pytest.raises(RejectionException):
+        program.generateBatch(20, maxIterations=iterations - 1)
+
+
+def test_what_is_restricted_is_so_at_once() -> None:
+    """Scenes that were foreseen are of the whole cube."""
+    program = scenario("param x = Range(0, 1)\n")
+    random.seed(1)
+    for _ in range(20):
+        program.generate()
+    program.restrict(Domain(np.array([[0.25]]), np.array([[0.5]])))
+    assert all(0.25 <= program.generate()[0].params["x"] <= 0.5 for _ in range(20))
 
 
 def test_sampling_leaves_the_generators_alone() -> None:

@@ -71,6 +71,15 @@ def test_requirements_keep_the_values_and_the_ego_of_their_moment() -> None:
         assert item.objects[1].position.x > 0.5
 
 
+def test_requirements_keep_the_global_names_of_their_moment() -> None:
+    """Also those that functions read which are called on samples."""
+    text = (
+        "limit = 0\ndef low(value):\n    if value < limit:\n        return True\n    return False\n"
+        "ego = new Object\nrequire low(ego.position.x)\nlimit = 100\nmutate ego\n"
+    )
+    assert max(item.egoObject.position.x for item in scenario(text).sample(50, seed=1)) < 0
+
+
 def test_points_are_mutated_too() -> None:
     values = draws(
         "p = new OrientedPoint at (4, 5)\nmutate p\nparam x = (p.position.x, p.heading)\nparam p = p", n=3

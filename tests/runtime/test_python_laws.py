@@ -1,5 +1,7 @@
 """Distributions, functions, methods and specifiers that programs define in Python."""
 
+import random
+
 import numpy as np
 import pytest
 from scipy import stats
@@ -7,7 +9,7 @@ from scipy import stats
 import scenic
 from scenic.graph.kinds import Kind
 from scenic.language.errors import InvalidScenarioError, ScenicTypeError, SpecifierError
-from tests.runtime.programs import FALSE_ALARM, draws, failure, scenario, scene
+from tests.runtime.programs import FALSE_ALARM, draws, failure, fingerprint, scenario, scene
 
 LAW = """
 import random
@@ -132,3 +134,50 @@ def test_parameters_are_asked_for_without_harm() -> None:
 def test_a_random_index_of_a_plain_list_is_a_type_error() -> None:
     with pytest.raises(TypeError, match="container of Python's own"):
         scenic.scenarioFromString("x = [1, 2][DiscreteRange(0, 1)]")
+
+
+DRAWING = {
+    "a value": "@distributionFunction\ndef f(v): return v + random.random()\nparam x = f(Range(0, 1))\n",
+    "a rejection": (
+        "@distributionFunction\ndef f(v):\n    if random.random() < 0.5: raise RejectionException\n    return v\n"
+        "param x = f(Range(0, 1))\n"
+    ),
+    "a fault that is rejected": (
+        "def f(v):\n    if random.random() < 0.5: raise KeyError('odd')\n    return True\n"
+        "x = DiscreteRange(0, 9)\nparam x = x\nrequire f(x) or x > 9\n"
+    ),
+    "a condition": "x = Range(0, 1)\nparam x = x\ndef f(v): return v < random.random()\nrequire f(x)\n",
+    "a field": (
+        "F = VectorField('F', lambda place: random.random())\n"
+        "param x = follow F from (Range(0, 1), 0, 0) for 3, y = F at (Range(0, 1), 0)\n"
+    ),
+    "whole blocks of numbers": (
+        "@distributionFunction\ndef f(v): return v + float(numpy.random.rand(312).sum())\nparam x = f(Range(0, 1))\n"
+    ),
+    "one number in many": (
+        "@distributionFunction\ndef f(v): return v + (numpy.random.rand() if v > 0.9 else 0)\nparam x = f(Range(0, 1))\n"
+    ),
+}
+
+
+@pytest.mark.parametrize("what", list(DRAWING))
+def test_code_that_draws_is_a_function_of_the_seed(what: str) -> None:
+    """Whatever the global generators have been used for before, and however many lanes are looked at together."""
+    text = "import random, numpy\n" + DRAWING[what]
+    found = set()
+    for lanes in (1, 3, 64, 4096):
+        random.seed(lanes)
+        np.random.seed(lanes)  # noqa: NPY002 - what programs use
+        np.random.rand(lanes % 5 + 1)  # noqa: NPY002 - now it is within a block of its numbers
+        program = scenario(text)
+        results: list[object] = []
+        for _ in range(2):  # now it is known that the code draws
+            try:
+                for scene in program.stream(40, seed=1, lanes=lanes):
+                    assert isinstance(scene, scenic.Scene)
+                    results.append(fingerprint(scene))
+            except KeyError:
+                results.append("odd")
+        found.add(tuple(results))
+        assert results[: len(results) // 2] == results[len(results) // 2 :]
+    assert len(found) == 1

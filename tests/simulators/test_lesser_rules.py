@@ -36,15 +36,17 @@ def test_objects_are_created_in_set_ups_alone(text: str) -> None:
 
 @pytest.mark.parametrize(
     ("condition", "error"),
-    [("nothing_of_that_name > 1", NameError), ("self.position.nothing > 1", AttributeError)],
+    [("late > 1", NameError), ("self.position.nothing > 1", AttributeError)],
 )
 def test_mistakes_in_conditions_of_interrupts_are_raised(condition: str, error: type[Exception]) -> None:
     text = (
-        "import builtins\nbehavior B():\n    try:\n        while True:\n            wait\n"
+        "behavior B():\n    try:\n        while True:\n            wait\n"
         f"    interrupt when {condition}:\n        wait\nego = new Object with behavior B\n"
+        "if ego is None:\n    late = 1\n"
     )
+    loaded = scene(text)
     with pytest.raises(error):
-        DummySimulator().simulate(scene(text), maxSteps=4)
+        DummySimulator().simulate(loaded, maxSteps=4)
 
 
 def test_what_a_simulator_creates_is_mutated_already() -> None:
