@@ -1,10 +1,12 @@
 import os
 import stat
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 from scenic.formats.files import OutputError, check_folder, check_writable, numbered, write, writing
+from scenic.formats.growing import GrowingFile
 
 
 def test_a_file_appears_whole(tmp_path: Path) -> None:
@@ -90,6 +92,18 @@ def test_folders(tmp_path: Path) -> None:
     check_folder(tmp_path)
     with pytest.raises(OutputError, match="does not exist"):
         check_folder(tmp_path / "missing")
+
+
+def test_a_file_that_cannot_grow_on_says_so(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    with GrowingFile(tmp_path / "out") as file:
+        file.write(b"one\n")
+        with monkeypatch.context() as patched:
+            patched.setattr(file, "_stream", SimpleNamespace(write=fail, flush=fail))
+            with pytest.raises(OutputError, match="no space left"):
+                file.write(b"two\n")
 
 
 def test_numbered_files() -> None:

@@ -293,6 +293,14 @@ def test_one_row_of_values_and_a_fate_for_each_lane():
     assert batch.value(node, 1) == 6.0
 
 
+def test_what_is_the_same_in_all_lanes_is_read_in_each():
+    node = make("add", source(Kind.SCALAR, [2.0]), 1.0)
+    batch = evaluate(node, 4)
+    assert len(batch.column(node)) == 1
+    assert [batch.read(lane, node) for lane in range(4)] == [3.0] * 4
+    assert [batch.value(node, lane) for lane in range(4)] == [3.0] * 4
+
+
 def test_an_index_without_a_value_draws_nothing():
     index = faulty(Kind.INTEGER, [0, 99, -99, 2], np.array([OK, FAULT, REJECTED, OK]), ValueError())
     axes = [graph.axis(place=address("option", number)) for number in range(12)]

@@ -12,7 +12,7 @@ import pytest
 
 import scenic
 from scenic.language.errors import UnsupportedError
-from scenic.runtime.dynamics.series import Film
+from scenic.runtime.dynamics.series import Film, _even
 from scenic.simulators.dummy import DummySimulator
 
 
@@ -64,6 +64,21 @@ def test_films_show_every_image(tmp_path: Path, shape: str) -> None:
     assert size == (96 if "96" in shape else 98, 64)
     assert pace == 10
     np.testing.assert_allclose([white(frame) for frame in shown], 8 * np.arange(1, 11), atol=3)
+
+
+@pytest.mark.parametrize("size", [(3, 4), (4, 3), (3, 5), (2, 2), (1, 1)])
+def test_images_of_odd_sizes_grow_below_and_to_the_right(size: tuple[int, int]) -> None:
+    """By what is at the border: nothing else of them moves."""
+    rng = np.random.default_rng(1)
+    for shape in (size, (*size, 3), (*size, 4)):
+        image = rng.integers(0, 256, shape).astype(np.uint8)
+        colours = np.stack([image] * 3, axis=-1) if image.ndim == 2 else image[:, :, :3]
+        grown = _even(image)
+        height, width = size
+        assert grown.shape == (height + height % 2, width + width % 2, 3)
+        np.testing.assert_array_equal(grown[:height, :width], colours)
+        np.testing.assert_array_equal(grown[height:, :width], colours[-1:][: grown.shape[0] - height])
+        np.testing.assert_array_equal(grown[:height, width:], colours[:, -1:][:, : grown.shape[1] - width])
 
 
 @pytest.mark.skipif(importlib.util.find_spec("imageio_ffmpeg") is None, reason="needs the extra [video]")

@@ -19,6 +19,7 @@ from scenic.simulators.simulator import Simulator
 from .test_interface import AGENTS, DRAWING, REJECTED, Plain, scene, simulator
 
 MAIN = "scenario Main():\n    setup:\n        ego = new Object\n"
+SUB = "scenario Sub():\n    setup:\n        new Object at (9, 9)\n    compose:\n        wait\n"
 
 
 @pytest.mark.parametrize(
@@ -27,11 +28,20 @@ MAIN = "scenario Main():\n    setup:\n        ego = new Object\n"
         "behavior B():\n    wait\n    new Object at (5, 5)\n    wait\nego = new Object with behavior B\n",
         "monitor M():\n    wait\n    new Object at (5, 5)\n    wait\nego = new Object\nrequire monitor M()\n",
         f"{MAIN}    compose:\n        wait\n        new Object at (5, 5)\n        wait\n",
+        # Where another scenario has been set up before.
+        f"{MAIN}    compose:\n        do Sub()\n        new Object at (5, 5)\n        wait\n{SUB}",
     ],
 )
 def test_objects_are_created_in_set_ups_alone(text: str) -> None:
     with pytest.raises(InvalidScenarioError, match="only in the setup of a scenario"):
         DummySimulator().simulate(scene(text), maxSteps=4)
+
+
+def test_conditions_of_ends_draw_nothing() -> None:
+    ends = "        terminate when simulation().currentTime > 1 and Range(0, 1) > 2\n"
+    loaded = scene(f"{MAIN}{ends}    compose:\n        while True:\n            wait\n")
+    with pytest.raises(InvalidScenarioError, match="cannot create a distribution"):
+        DummySimulator().simulate(loaded, maxSteps=4)
 
 
 @pytest.mark.parametrize(

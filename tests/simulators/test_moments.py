@@ -276,3 +276,46 @@ def test_actions_are_done_in_the_order_of_agents_whatever_the_schedule() -> None
     done = Backwards(scene, maxSteps=1, name="x", timestep=1)
     assert done.result is not None
     assert list(done.result.actions[0].values()) == [(0, (1, 0)), (1, (1,))]
+
+
+def test_agents_outlive_their_scenario_and_draw_on() -> None:
+    """The numbers of what they draw go on, too: none comes twice."""
+    text = """
+behavior B():
+    while True:
+        take Range(0, 1)
+scenario Main():
+    setup:
+        ego = new Object
+    compose:
+        do Sub() for 3 steps
+        while True:
+            wait
+scenario Sub():
+    setup:
+        new Object at (5, 0), with behavior B
+"""
+    (drawn,) = zip(*taken(simulate(text, 12), 1), strict=True)
+    assert len(set(drawn)) == len(drawn) == 12
+
+
+def test_at_the_end_scenarios_stop_from_the_newest_to_the_oldest(capsys: pytest.CaptureFixture[str]) -> None:
+    text = """
+scenario Main():
+    setup:
+        ego = new Object
+    compose:
+        try:
+            do Sub("first"), Sub("second")
+        finally:
+            print("main")
+scenario Sub(name):
+    compose:
+        try:
+            while True:
+                wait
+        finally:
+            print(name)
+"""
+    simulate(text, 3)
+    assert capsys.readouterr().out.split() == ["second", "first", "main"]

@@ -20,6 +20,7 @@ from scenic.language.errors import (
     annotation,
 )
 from scenic.runtime.context import current
+from scenic.runtime.dynamics.series import whole
 from scenic.runtime.values import Vector
 from scenic.simulators.actions import Action
 from scenic.simulators.dummy import DummySimulation, DummySimulator
@@ -367,6 +368,11 @@ def test_series_are_written(tmp_path: Path) -> None:
 def test_values_are_written(tmp_path: Path) -> None:
     simulate(recording(tmp_path, "{step}.npy", "[1, 2]"), 2)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["0.npy", "1.npy", "2.npy"]
+    for pattern in ("{0}/{1}/{2}.npy", "{}/{}/{}.npy", "{simulation}/{step}/{time}.npy"):
+        folder = tmp_path / pattern[1:2]
+        simulate(recording(folder, pattern, "[1, 2]"), 1, name="run", timestep=0.5)
+        found = sorted(str(path.relative_to(folder)) for path in folder.rglob("*.npy"))
+        assert found == ["run/0/0.0.npy", "run/1/0.5.npy"]
     image = "[[0, 128, 255], [1, 2, 3]]"
     simulate(recording(tmp_path / "images", "{time}.png", image), 1)
     assert sorted(path.name for path in (tmp_path / "images").iterdir()) == ["0.png", "1.png"]
@@ -395,6 +401,53 @@ def test_nothing_is_left_of_a_rejected_simulation(tmp_path: Path, target: str, e
     scene = scene_of(recording(tmp_path, target, end=end))
     assert DummySimulator(drift=1).simulate(scene, maxSteps=5) is None
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("target", ["sub.jsonl", "sub.npz", "sub.pickle", "sub-{step}.npy"])
+def test_what_was_whole_before_a_rejection_goes_too(tmp_path: Path, target: str) -> None:
+    """The file of a scenario that has ended, in a simulation that is rejected later."""
+    text = f"param recordFolder = {str(tmp_path)!r}\n" + SUB.format(
+        setup=f'        record simulation().currentTime to "{target}"'
+    )
+    done = DummySimulator().simulate(scene_of(text), maxSteps=5)
+    assert done is not None
+    assert len(list(tmp_path.iterdir())) == (2 if "step" in target else 1)
+    for path in tmp_path.iterdir():
+        path.unlink()
+    rejected = text.replace(
+        "        do Sub() for 2 steps\n        wait\n",
+        "        do Sub() for 2 steps\n        wait\n        require False\n        wait\n",
+    )
+    assert rejected != text
+    assert DummySimulator().simulate(scene_of(rejected), maxSteps=5) is None
+    assert list(tmp_path.iterdir()) == []
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    return {file.name: file.read_bytes() for file in folder.iterdir()}
+
+
+@pytest.mark.parametrize("ended", [KeyboardInterrupt, SystemExit, ValueError])
+def test_files_that_are_not_whole_do_not_remain(tmp_path: Path, ended: type[BaseException]) -> None:
+    """However it ends; and what had the name before is as it was."""
+    path = tmp_path / "one.npy"
+
+    def half() -> None:
+        with whole(path) as stream:
+            stream.write(b"half")
+            stream.flush()
+            assert (path.read_bytes() if path.exists() else b"") in (b"", b"before")
+            raise ended
+
+    for before in ({}, {"one.npy": b"before"}):
+        for name, content in before.items():
+            (tmp_path / name).write_bytes(content)
+        with pytest.raises(ended):
+            half()
+        assert contents(tmp_path) == before
+    with whole(path) as stream:
+        stream.write(b"all")
+    assert contents(tmp_path) == {"one.npy": b"all"}
 
 
 def test_a_disk_that_is_full_leaves_no_half_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

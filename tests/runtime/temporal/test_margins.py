@@ -77,6 +77,15 @@ def test_margins(condition: str, margin: float) -> None:
     assert robustness(condition, steps=3) == pytest.approx(margin, abs=1e-3)
 
 
+def test_what_is_round_is_as_deep_inside_as_its_hull_not_its_box(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(
+        globals(),
+        "SCENE",
+        "disc = CircularRegion((0, 0), 9)\nego = new Object with shape CylinderShape(), with width 2, with length 2\n",
+    )
+    assert robustness("always ego in disc", steps=3) == pytest.approx(5, abs=0.01)
+
+
 def test_the_margin_of_the_first_state_decides_outside_of_temporal_operators() -> None:
     assert robustness("ego.position in zone", steps=3) == pytest.approx(3)
 
