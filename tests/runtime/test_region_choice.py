@@ -5,6 +5,15 @@ import pytest
 
 from runtime.programs import draws, failure, thing
 from scenic.language.errors import InvalidScenarioError
+from scenic.runtime.geometry import primitives
+from scenic.runtime.geometry.bodies import Body
+from scenic.runtime.geometry.poses import Poses
+from scenic.runtime.regions.base import Region
+from scenic.runtime.regions.choice import RegionChoice
+from scenic.runtime.regions.lines import PathRegion
+from scenic.runtime.regions.planar import CircularRegion, RectangularRegion
+from scenic.runtime.regions.volumes import BoxRegion, SpheroidRegion
+from scenic.runtime.values import Orientation, Vector
 
 REGIONS = (
     "disc = CircularRegion((0, 0, 1), 2)\nplate = RectangularRegion((10, 0, 3), 0.5, 2, 4)\n"
@@ -89,3 +98,90 @@ def test_things_land_on_the_option_that_is_drawn() -> None:
 def test_random_vectors_are_places_to_stand_on() -> None:
     found = draws("ego = new Object on Uniform((1, 2), (3, 4, 5))\nparam x = tuple(ego.position)", n=30)
     assert {tuple(round(part, 4) for part in place) for place in found} == {(1, 2, 0.5), (3, 4, 5.5)}
+
+
+TILT = Orientation.fromEuler(0.7, 0.4, -0.3)
+OPTIONS: list[Region] = [
+    CircularRegion(Vector(1, 2, 3), 4),
+    BoxRegion(dimensions=(4, 1, 2), position=(-6, -2, 3), rotation=TILT),
+    PathRegion(polylines=[[(0, 0, 0), (1, 2, 13)], [(5, -5, 5), (5, 5, 9)]]),
+    SpheroidRegion(dimensions=(3, 9, 5), position=(1, 12, 3), rotation=TILT),
+    RectangularRegion(Vector(-1, 2, -4), 0.6, 7, 0.5),
+]
+
+
+@pytest.mark.parametrize("order", [(0, 1, 2, 3, 4), (3, 4, 1, 0, 2), (2, 1)])
+def test_each_lane_is_answered_by_its_own_option(order: tuple[int, ...]) -> None:
+    """Every reading over columns, with parameters that are the same in all lanes or differ from lane to lane."""
+    options = [OPTIONS[number] for number in order]
+    region = RegionChoice(0, options)
+    rng = np.random.default_rng(2)
+    lanes = 60
+    index = rng.integers(0, len(options), lanes)
+    shared = [option.fixed_columns("a test") for option in options]
+    spread = [
+        [column + 0.01 * np.arange(lanes).reshape(lanes, *(1,) * (column.ndim - 1)) for column in columns]
+        if type(option) in (CircularRegion, RectangularRegion)
+        else columns
+        for option, columns in zip(options, shared, strict=True)
+    ]
+    points = rng.uniform((-8, -6, -5), (6, 16, 10), (lanes, 3))
+    body = Body(
+        (primitives.box(), primitives.cone()),
+        rng.integers(0, 2, lanes),
+        Poses(points, np.array([[0.0, 0, 0, 1]]), rng.uniform(0.05, 2, (lanes, 3))),
+    )
+    uniforms, keys = rng.random((region.draws, lanes)), rng.integers(0, 2**63, lanes).astype(np.uint64)
+    for columns in (shared, spread):
+        flat = [index, *(column for mine in columns for column in mine)]
+        found = {
+            "contains": region.contains_points(points, *flat),
+            "holds": region.contains_bodies(body, lanes, *flat),
+            "meets": region.meets_bodies(body, lanes, *flat),
+            "gaps": region.gaps(points, *flat),
+            "distances": region.distances(points, *flat),
+            "sizes": region.sizes(*flat),
+            "draws": region.draw_points(uniforms, keys, *flat)[0],
+        }
+        lower, upper = region.box(*flat)
+        for lane in range(lanes):
+            one = np.array([lane])
+            option = options[index[lane]]
+            mine = [column if len(column) == 1 else column[one] for column in columns[index[lane]]]
+            alone = {
+                "contains": option.contains_points(points[one], *mine),
+                "holds": option.contains_bodies(body.take(one), 1, *mine),
+                "meets": option.meets_bodies(body.take(one), 1, *mine),
+                "gaps": option.gaps(points[one], *mine),
+                "distances": option.distances(points[one], *mine),
+                "sizes": option.sizes(*mine),
+                "draws": option.draw_points(uniforms[: option.draws, one], keys[one], *mine)[0],
+            }
+            for name, value in alone.items():
+                np.testing.assert_allclose(
+                    found[name][lane], np.ravel(value) if name == "draws" else value[0]
+                )
+            # Wherever the option may be drawn from lies in the box.
+            row = 0 if len(lower) == 1 else lane
+            for other, all_columns in zip(options, columns, strict=True):
+                rest = [column if len(column) == 1 else column[one] for column in all_columns]
+                place = other.draw_points(uniforms[: other.draws, one], keys[one], *rest)[0]
+                assert (lower[row] <= place + 1e-9).all()
+                assert (place <= upper[row] + 1e-9).all()
+        assert len(np.unique(found["contains"])) == 2 or order == (2, 1)
+    assert region.dimension == max(option.dimension for option in options)
+    assert region.has_orientation is all(option.has_orientation for option in options)
+
+
+def test_a_choice_among_lines_has_the_direction_of_the_one_drawn() -> None:
+    lines = [PathRegion([(0, 0, 0), (4, 1, 2)]), PathRegion([(0, 0, 0), (-1, 3, 0)])]
+    region = RegionChoice(0, lines)
+    assert region.has_orientation
+    index = np.array([1, 0, 0, 1])
+    found = region.orientations(np.zeros((1, 3)), index)
+    for lane, number in enumerate(index):
+        np.testing.assert_array_equal(found[lane], lines[number].orientations(np.zeros((1, 3)))[0])
+    assert not RegionChoice(0, [lines[0], OPTIONS[0]]).has_orientation
+    # Footprints of the plane, and of what is none already.
+    assert RegionChoice(0, lines).footprint.options == tuple(lines)
+    assert RegionChoice(0, [OPTIONS[0], OPTIONS[1]]).footprint.dimension == 3

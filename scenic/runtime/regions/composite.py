@@ -5,7 +5,7 @@ These are the general forms, for members of any kind with parameters of any kind
 """
 
 from abc import abstractmethod
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import reduce
 from typing import Any, Final, TypeVar
 
@@ -184,12 +184,17 @@ class Composite(Region):
         return None
 
 
+def folded(function: Callable[[Any, Any], Any], parts: Sequence[Any]) -> Any:
+    """What a function of two columns makes of several; some may have a single row, and others one for each lane."""
+    return reduce(function, parts)
+
+
 def _all(masks: Sequence[Mask]) -> Mask:
-    return np.asarray(np.logical_and.reduce(masks), dtype=np.bool_)
+    return np.asarray(folded(np.logical_and, masks), dtype=np.bool_)
 
 
 def _any(masks: Sequence[Mask]) -> Mask:
-    return np.asarray(np.logical_or.reduce(masks), dtype=np.bool_)
+    return np.asarray(folded(np.logical_or, masks), dtype=np.bool_)
 
 
 def exactly_contains(region: Region, points: Points, columns: Sequence[Column]) -> Mask:
@@ -247,15 +252,13 @@ class IntersectionRegion(Composite):
 
     def gaps(self, points: Points, *columns: Column) -> NDArray[np.float64]:
         return np.asarray(
-            np.maximum.reduce([member.gaps(points, *mine) for member, mine in self._parts(columns)])
+            folded(np.maximum, [member.gaps(points, *mine) for member, mine in self._parts(columns)])
         )
 
     def box(self, *columns: Column) -> tuple[Points, Points]:
         boxes = [member.box(*mine) for member, mine in self._parts(columns)]
-        lower, upper = (
-            np.maximum.reduce([low for low, _ in boxes]),
-            np.minimum.reduce([high for _, high in boxes]),
-        )
+        lower = folded(np.maximum, [low for low, _ in boxes])
+        upper = folded(np.minimum, [high for _, high in boxes])
         return np.minimum(lower, upper), upper
 
     def _box_of(self, boxes: Sequence[Bounds | None]) -> Bounds | None:
@@ -339,7 +342,7 @@ class UnionRegion(Composite):
 
     def gaps(self, points: Points, *columns: Column) -> NDArray[np.float64]:
         return np.asarray(
-            np.minimum.reduce([member.gaps(points, *mine) for member, mine in self._parts(columns)])
+            folded(np.minimum, [member.gaps(points, *mine) for member, mine in self._parts(columns)])
         )
 
     @property
@@ -348,12 +351,12 @@ class UnionRegion(Composite):
 
     def distances(self, points: Points, *columns: Column) -> NDArray[np.float64]:
         return np.asarray(
-            np.minimum.reduce([member.distances(points, *mine) for member, mine in self._parts(columns)])
+            folded(np.minimum, [member.distances(points, *mine) for member, mine in self._parts(columns)])
         )
 
     def box(self, *columns: Column) -> tuple[Points, Points]:
         boxes = [member.box(*mine) for member, mine in self._parts(columns)]
-        return np.minimum.reduce([low for low, _ in boxes]), np.maximum.reduce([high for _, high in boxes])
+        return folded(np.minimum, [low for low, _ in boxes]), folded(np.maximum, [high for _, high in boxes])
 
     def _box_of(self, boxes: Sequence[Bounds | None]) -> Bounds | None:
         return hull_of(boxes)
@@ -412,4 +415,4 @@ class DifferenceRegion(Composite):
         return boxes[0]
 
 
-__all__ = ["Composite", "DifferenceRegion", "IntersectionRegion", "UnionRegion", "exactly_contains"]
+__all__ = ["Composite", "DifferenceRegion", "IntersectionRegion", "UnionRegion", "exactly_contains", "folded"]

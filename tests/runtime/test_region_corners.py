@@ -1,0 +1,323 @@
+"""Regions where a rule has a special case: holes in the middle, full turns, several members, mirrored grids, level paths."""
+
+import math
+
+import numpy as np
+import pytest
+import scenic.core.regions as named
+import shapely
+
+from scenic.language.errors import RejectionException
+from scenic.runtime.fields import (
+    PiecewiseVectorField,
+    PolygonalVectorField,
+    PolyhedronVectorField,
+    VectorField,
+)
+from scenic.runtime.geometry import primitives
+from scenic.runtime.geometry.bodies import Body
+from scenic.runtime.geometry.poses import Poses
+from scenic.runtime.regions.composite import IntersectionRegion, UnionRegion
+from scenic.runtime.values import Orientation, Vector
+from tests.runtime.programs import draws, params, scenario
+
+TILT = Orientation.fromEuler(0.7, 0.4, -0.3)
+SQUARE_RING = shapely.box(-3, -2, 3, 2).difference(shapely.box(-1, -1, 1, 1))
+
+
+@pytest.mark.parametrize(
+    ("polygon", "radius"),
+    [
+        (SQUARE_RING, 0.0),
+        (shapely.box(-3, -2, 3, 2), 2.0),
+        (shapely.box(-3, -2, 3, 2).difference(shapely.box(0.5, -1, 1, 1)), 0.5),
+        (shapely.MultiPolygon([shapely.box(0, 0, 1, 1), shapely.box(3, 3, 4, 4)]), 0.0),
+        (shapely.Polygon([(0, 0), (6, 0), (6, 1), (1, 1), (1, 6), (0, 6)]), 0.0),
+    ],
+)
+def test_the_middle_of_a_polygon_may_lie_in_a_hole_or_notch(polygon: shapely.Geometry, radius: float) -> None:
+    assert named.PolygonalRegion(polygon=polygon).inradius == pytest.approx(radius)
+
+
+@pytest.mark.parametrize("angle", [0.5, 4.0, 2 * math.pi, 7.0, 11.0])
+def test_sectors_are_drawn_evenly_over_their_angle(angle: float) -> None:
+    """An angle beyond a full turn is a full turn: nowhere is drawn from twice."""
+    heading, count = 0.8, 40_000
+    region = named.SectorRegion(Vector(1, 2, 3), 2, heading, angle)
+    columns = region.fixed_columns("a test")
+    points, _ = region.draw_points(
+        np.random.default_rng(1).random((2, count)), np.zeros(count, np.uint64), *columns
+    )
+    x, y, z = (points - np.array([1, 2, 3])).T
+    assert (z == 0).all()
+    turned = np.angle(np.exp(1j * (np.arctan2(-x, y) - heading)))
+    wide = min(angle, 2 * math.pi)
+    assert (np.abs(turned) <= wide / 2 + 1e-9).all()
+    shares = np.histogram(turned, 16, (-wide / 2, wide / 2))[0]
+    assert (np.abs(shares - count / 16) < 6 * math.sqrt(count / 16)).all()
+    assert np.hypot(x, y).max() <= 2
+    assert (np.hypot(x, y) < 1).mean() == pytest.approx(0.25, abs=0.015)
+    assert region.size == pytest.approx(wide / 2 * 4)
+
+
+def grid(spacing: tuple[float, float]) -> named.GridRegion:
+    cells = np.zeros((4, 5))
+    cells[1, 2] = cells[3, 0] = 1
+    return named.GridRegion("grid", cells, *spacing, 0.5, -1)
+
+
+@pytest.mark.parametrize("spacing", [(2.0, 1.0), (-2.0, 1.0), (2.0, -1.0), (-0.5, -3.0)])
+def test_grids_may_run_either_way(spacing: tuple[float, float]) -> None:
+    region = grid(spacing)
+    lower, upper = region.container_box()
+    points = np.random.default_rng(2).uniform(-15, 15, (4000, 3))
+    inside = region.contains_points(points)
+    # Each cell reaches half a spacing about its point.
+    centres, half = np.array(region.points), np.abs(spacing) / 2
+    near = (np.abs(points[:, np.newaxis, :2] - centres[:, :2]) <= half).all(axis=2).any(axis=1)
+    np.testing.assert_array_equal(inside, near)
+    assert (points[inside] >= lower).all()
+    assert (points[inside] <= upper).all()
+    np.testing.assert_allclose((upper - lower)[0, :2], np.ptp(centres[:, :2], axis=0) + 2 * half)
+    for cell in ((0, 0), (4, 3), (2, 1)):
+        place = region.gridToPoint(cell)
+        assert region.pointToGrid((place[0] + 0.4 * spacing[0], place[1] - 0.4 * spacing[1])) == cell
+        assert region.containsPoint(Vector(*place, 0)) is (cell != (2, 1))
+    assert region.pointToGrid(region.gridToPoint((5, 0))) is None
+    assert region.pointToGrid(region.gridToPoint((0, -1))) is None
+
+
+@pytest.mark.parametrize("spacing", [(2.0, 1.0), (-2.0, 1.0)])
+def test_no_body_stands_over_an_obstacle_of_a_grid(spacing: tuple[float, float]) -> None:
+    """Not even one whose corners are all in free cells."""
+    region = grid(spacing)
+    middle = np.array([*region.gridToPoint((2, 1)), 0])
+    sizes = np.array([(2 * 2.2, 2.2, 1), (2 * 2.2, 0.5, 1), (1.2, 0.4, 1), (1.2, 0.4, 1), (9, 4, 1)])
+    offsets = np.array([(0, 0, 0), (0, 1, 0), (2, 0, 0), (0, 0, 7), (0, 0, 0)])
+    body = Body((primitives.box(),), None, Poses(middle + offsets, np.array([[0.0, 0, 0, 1]]), sizes))
+    assert region.contains_bodies(body, 5).tolist() == [False, True, True, False, False]
+
+
+def test_members_of_members_are_all_there_when_drawn() -> None:
+    """Of three and four regions with random parameters, in any order of combination."""
+    text = """
+a, b = CircularRegion((0, 0), Range(1, 2)), CircularRegion((10, 0), Range(1, 2))
+c, d = RectangularRegion((20, 0), 0, Range(1, 2), 3), RectangularRegion((30, 0), 0, 2, Range(2, 3))
+wide = CircularRegion((0, 0), Range(4, 5))
+half, upper = RectangularRegion((5, 0), 0, 10, Range(20, 21)), RectangularRegion((0, 5), 0, Range(20, 21), 10)
+places = ((0, 0), (10, 0), (20, 0), (30, 0), (40, 0))
+unions = (a.union(b).union(c).union(d), a.union(b.union(c).union(d)), d.union(c).union(b.union(a)))
+cuts = (wide.intersect(half).intersect(upper), upper.intersect(wide.intersect(half)), half.intersect(upper).intersect(wide))
+param x = tuple(tuple(u.containsPoint(p) for p in places) for u in unions), u = unions
+param y = tuple(tuple(r.containsPoint(p) for p in ((1, 1), (-1, 1), (1, -1), (3.9, 3.9))) for r in cuts), r = cuts
+"""
+    for seed in range(3):
+        found = params(text, seed=seed) if seed == 0 else params(text)
+        assert found["x"] == ((True, True, True, True, False),) * 3
+        assert found["y"] == ((True, False, False, False),) * 3
+        for region in found["u"]:
+            held = [region.containsPoint(Vector(x, 0, 0)) for x in (0, 10, 20, 30, 40)]
+            assert held == [True, True, True, True, False]
+        for region in found["r"]:
+            held = [region.containsPoint(Vector(x, y, 0)) for x, y in ((1, 1), (-1, 1), (1, -1), (3.9, 3.9))]
+            assert held == [True, False, False, False]
+
+
+def test_combinations_of_three_kinds_lie_in_their_boxes() -> None:
+    ball = named.SpheroidRegion(dimensions=(3, 9, 5), position=(1, 12, 3), rotation=TILT)
+    box = named.BoxRegion(dimensions=(4, 8, 2), position=(1, 8, 3), rotation=TILT)
+    cells = named.CircularRegion(Vector(2, 9, 0), 2.5).footprint
+    rng = np.random.default_rng(3)
+    points = rng.uniform((-4, 3, -2), (6, 18, 8), (20_000, 3))
+    held = [region.contains_points(points, *region.fixed_columns("a test")) for region in (ball, box, cells)]
+    for region, expected in (
+        (IntersectionRegion(ball, box, cells), held[0] & held[1] & held[2]),
+        (IntersectionRegion(cells, ball, box), held[0] & held[1] & held[2]),
+        (UnionRegion(ball, box, cells), held[0] | held[1] | held[2]),
+    ):
+        columns = region.fixed_columns("a test")
+        np.testing.assert_array_equal(region.contains_points(points, *columns), expected)
+        lower, upper = region.box(*columns)
+        assert (points[expected] >= lower).all()
+        assert (points[expected] <= upper).all()
+        gaps = region.gaps(points, *columns)
+        assert (gaps[expected] <= 1e-9).all()
+
+
+def test_paths_over_and_under_a_footprint_are_cut_at_its_border() -> None:
+    disc = named.CircularRegion(Vector(1, 0, 7), 2)
+    for chain, length in (
+        ([(-5, 0, 5), (6, 0, 5)], 4.0),
+        ([(1, -9, 0), (1, 9, 0)], 4.0),
+        ([(-5, 0, 0), (7, 0, 24)], 4 * math.sqrt(5)),
+        ([(1, 0, -3), (1, 0, 8)], 11.0),
+        ([(1, 1, -3), (1, 1, 8), (9, 1, 8)], 11 + math.sqrt(3)),
+    ):
+        path = named.PathRegion(chain)
+        for part in (path.intersect(disc.footprint), disc.footprint.intersect(path)):
+            assert part.length == pytest.approx(length, rel=1e-3)
+            heights = [point[2] for line in part.chains for point in line]
+            assert min(heights) >= min(point[2] for point in chain) - 1e-9
+            assert max(heights) <= max(point[2] for point in chain) + 1e-9
+    beside = named.PathRegion([(-5, 3, 5), (6, 3, 5)]).intersect(disc.footprint)
+    assert isinstance(beside, named.EmptyRegion)
+
+
+def test_footprints_with_holes_and_parts_cut_solids() -> None:
+    box = named.BoxRegion(dimensions=(4, 3, 2))
+    two = shapely.MultiPolygon([shapely.box(-3, -3, -1, 3), shapely.box(1, -3, 3, 3)])
+    for polygon, area in (
+        (SQUARE_RING, 12 - 4),
+        (two, 6.0),
+        (SQUARE_RING.union(shapely.box(-0.5, -0.5, 0.5, 0.5)), 9.0),
+    ):
+        column = named.PolygonalFootprintRegion(polygon)
+        assert box.intersect(column).size == pytest.approx(2 * area)
+        assert column.intersect(box).size == pytest.approx(2 * area)
+        assert box.difference(column).size == pytest.approx(2 * (12 - area))
+        bounded = column.boundFootprint(5, 3)
+        assert bounded.size == pytest.approx(3 * polygon.area)
+        np.testing.assert_allclose(np.array(bounded.AABB)[:, 2], [3.5, 6.5])
+
+
+def test_whether_volumes_are_convex() -> None:
+    frame = named.BoxRegion(dimensions=(4, 4, 4)).difference(named.BoxRegion(dimensions=(2, 2, 9)))
+    assert named.BoxRegion().isConvex is True
+    assert named.SpheroidRegion().isConvex is True
+    assert frame.isConvex is False
+    assert frame.getSurfaceRegion().isConvex is False
+    assert named.BoxRegion().getSurfaceRegion().isConvex is True
+    assert named.CircularRegion(Vector(0, 0, 0), 1).footprint.isConvex is True
+    assert named.PolygonalFootprintRegion(SQUARE_RING).isConvex is False
+
+
+def test_fields_have_their_default_where_no_cell_is() -> None:
+    cell, field = shapely.box(0, 0, 1, 1), VectorField("own", lambda _point: 0.25)
+    flat = named.PolygonalRegion(polygon=cell, orientation=field)
+    solid = named.BoxRegion(position=(0.5, 0.5, 0))
+    for make in (
+        lambda default: PolygonalVectorField("f", [(cell, 0.25)], defaultHeading=default),
+        lambda default: PolygonalVectorField(
+            "f", [(cell, None)], lambda _point: 0.25, defaultHeading=default
+        ),
+        lambda default: PiecewiseVectorField("f", [flat], defaultHeading=default),
+        lambda default: PolyhedronVectorField("f", [(solid, 0.25)], defaultHeading=default),
+        lambda default: PolyhedronVectorField("f", [(solid, None)], lambda _point: 0.25, default),
+    ):
+        for default in (0.5, 0.0):
+            known = make(default)
+            assert known[Vector(0.5, 0.5, 0)].yaw == pytest.approx(0.25)
+            assert known[Vector(3, 0.5, 0)].yaw == pytest.approx(default)
+        unknown = make(None)
+        assert unknown[Vector(0.5, 0.5, 0)].yaw == pytest.approx(0.25)
+        with pytest.raises(RejectionException):
+            unknown[Vector(3, 0.5, 0)]
+
+
+@pytest.mark.parametrize(
+    ("distance", "size", "steps", "count"),
+    [(12, 5, None, 4), (21, 5, None, 5), (20, 5, None, 4), (30, 1, None, 30), (30, 1, 2, 2), (3, 5, 7, 7)],
+)
+def test_ways_along_fields_are_cut_into_as_many_steps(
+    distance: float, size: float, steps: int | None, count: int
+) -> None:
+    """At least four, none longer than the size; or the number that was asked for."""
+    asked: list[Vector] = []
+
+    def value(point: Vector) -> float:
+        asked.append(point)
+        return 0.1 * point.y
+
+    VectorField("f", value).followFrom(Vector(0, 0, 0), distance, steps, size)
+    assert len(asked) == count
+    place = np.zeros(2)
+    for point in asked:
+        assert (point.x, point.y) == pytest.approx(place)
+        heading = 0.1 * place[1]
+        place = place + distance / count * np.array([-math.sin(heading), math.cos(heading)])
+
+
+def test_ways_along_polygons_of_random_length_end_where_fixed_ones_do() -> None:
+    text = """
+from shapely.geometry import box
+F = PolygonalVectorField('f', [(box(-50, 0, 50, 7), 0.5), (box(-50, 7, 50, 90), -0.75)], minSteps=3, defaultStepSize=2)
+way = Range(0.5, 20)
+param x = (way, F.followFrom((1, 1), way), F.followFrom((1, 1), way, steps=4), F.followFrom((1, 1), way, stepSize=0.5))
+"""
+    field = PolygonalVectorField(
+        "f",
+        [(shapely.box(-50, 0, 50, 7), 0.5), (shapely.box(-50, 7, 50, 90), -0.75)],
+        minSteps=3,
+        defaultStepSize=2,
+    )
+    start = Vector(1, 1, 0)
+    for way, by_default, by_number, by_size in draws(text, n=12):
+        for found, expected in (
+            (by_default, field.followFrom(start, way)),
+            (by_number, field.followFrom(start, way, 4)),
+            (by_size, field.followFrom(start, way, stepSize=0.5)),
+        ):
+            assert tuple(found) == pytest.approx(tuple(expected), abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    "made",
+    ["a.union(b)", "a.intersect(b)", "b.union(c).intersect(a)", "c.intersect(a.union(b))", "a.difference(b)"],
+)
+def test_fixed_and_random_members_are_asked_about_a_fixed_point(made: str) -> None:
+    """Of some members there is a column, of others a single row."""
+    text = (
+        "a, b = CircularRegion((0, 0), Range(1, 2)), CircularRegion((0, 1), 1)\n"
+        "c = BoxRegion(dimensions=(3, 3, Range(3, 4)))\n"
+        f"r = {made}\n"
+        "p = new Point in r\n"
+        "param a = a.radius, held = [r.containsPoint(q) for q in ((0, 0), (0, 1.5), (1.2, 0.5), (5, 5))], p = p.position, r = r\n"
+        "param above = r.footprint.containsPoint((0, 1.2, 0.5))\n"
+    )
+    for item in scenario(text).sample(9, seed=1):
+        found = item.params
+        places = np.array([(0, 0), (0, 1.5), (1.2, 0.5), (5, 5), (0, 1.2)])
+        a = np.hypot(*places.T) <= found["a"]
+        b = np.hypot(*(places - [0, 1]).T) <= 1
+        c = (np.abs(places) <= 1.5).all(axis=1)
+        expected = {
+            "a.union(b)": a | b,
+            "a.intersect(b)": a & b,
+            "b.union(c).intersect(a)": (b | c) & a,
+            "c.intersect(a.union(b))": c & (a | b),
+            "a.difference(b)": a & ~b,
+        }[made].tolist()
+        assert [*found["held"], found["above"]] == expected
+        assert found["r"].containsPoint(found["p"])
+
+
+def test_distances_and_boxes_of_fixed_and_random_members() -> None:
+    text = (
+        "a, b = CircularRegion((0, 0), Range(1, 2)), BoxRegion(dimensions=(2, 2, 2), position=(4, 0, 0))\n"
+        "param a = a.radius, x = a.union(b).distanceTo((2.5, 0)), y = b.union(a).distanceTo((-5, 0))\n"
+    )
+    for item in scenario(text).sample(9, seed=1):
+        radius = item.params["a"]
+        assert item.params["x"] == pytest.approx(min(2.5 - radius, 0.5))
+        assert item.params["y"] == pytest.approx(5 - radius)
+    disc, box = (
+        named.CircularRegion(Vector(0, 0, 0), 2),
+        named.BoxRegion(position=(1, 1, 0), dimensions=(4, 2, 3)),
+    )
+    centre, radius = disc.fixed_columns("a test")
+    columns = [centre, radius * np.array([0.5, 1.0, 1.5]), *box.fixed_columns("a test")]
+    for region, lower, upper in (
+        (
+            UnionRegion(disc, box),
+            [(-1, -1, -1.5), (-2, -2, -1.5), (-3, -3, -1.5)],
+            [(3, 2, 1.5), (3, 2, 1.5), (3, 3, 1.5)],
+        ),
+        (
+            IntersectionRegion(disc, box),
+            [(-1, 0, 0), (-1, 0, 0), (-1, 0, 0)],
+            [(1, 1, 0), (2, 2, 0), (3, 2, 0)],
+        ),
+    ):
+        found = region.box(*columns)
+        np.testing.assert_allclose(found[0], lower)
+        np.testing.assert_allclose(found[1], upper)
