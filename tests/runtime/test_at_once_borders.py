@@ -360,3 +360,41 @@ def test_the_measures_of_a_body() -> None:
         radius = np.linalg.norm(corners - item.start, axis=1).max()
         assert radius < body.radius < radius + 1e-4
         assert np.allclose(body.axes, quaternions.to_matrix(item.turn[np.newaxis])[0].T)
+
+
+@pytest.mark.parametrize("angle", [0.01, 0.06, 0.3, 1.2])
+def test_long_boxes_that_nearly_cross(angle: float) -> None:
+    """Between two planks only the direction across both tells them apart, however little one is turned."""
+    sizes = (40.0, 1.0, 0.2), (40.0, 1.0, 0.2)
+    turn = Rotation.from_euler("z", angle) * Rotation.from_euler("x", 0.7)
+    other = Rotation.from_euler("z", -angle) * Rotation.from_euler("x", -0.4)
+    for number in range(6):
+        way = np.random.default_rng(number).normal(size=3)
+        way /= np.linalg.norm(way)
+        still = Moving("box", np.zeros(3), way, turn.as_quat(), sizes[0])
+        item = Moving("box", np.array([0.3 * number, 0.1, 0]), way, other.as_quat(), sizes[1])
+        both = lanes(still, 0)
+
+        def truth(along: float, item: Moving = item, both: Body = both) -> bool:
+            return not collide([lanes(item, along), both], np.array([[0, 1]]), lanes=1).free[0]
+
+        for change in (flip(truth, 0, 60, width=1e-9), flip(truth, 0, -60, width=1e-9)):
+            for off in (CENTIMETRE, -CENTIMETRE, 0.1, -0.1):
+                met = meet(item.at(change + off), still.at(0))
+                assert met is truth(change + off)
+                assert meet(still.at(0), item.at(change + off)) is met
+
+
+def test_gaps_are_told_of_convex_bodies_alone() -> None:
+    """Whichever of the two is not convex."""
+    for shape in SHAPES:
+        one = placed((0, 0, 0), TURN.q, (1, 2, 3), mesh_of(shape))
+        other = placed((5, 0, 0), (0, 0, 0, 1), (1, 1, 1), primitives.cone())
+        assert (gap(one, other) is None) is (not mesh_of(shape).is_convex)
+        assert (gap(other, one) is None) is (not mesh_of(shape).is_convex)
+        assert meet(one, placed((0.1, 0, 0), (0, 0, 0, 1), (1, 1, 1), primitives.box())) is (
+            True if shape == "box" else None
+        )
+        assert meet(placed((0.1, 0, 0), (0, 0, 0, 1), (1, 1, 1), primitives.box()), one) is (
+            True if shape == "box" else None
+        )

@@ -1,4 +1,5 @@
 import math
+import os
 
 import numpy as np
 import pytest
@@ -97,7 +98,14 @@ def test_files_are_read_once_until_they_change(tmp_path):
     first = shapes.MeshShape.fromFile(path)
     assert shapes.MeshShape.fromFile(path, scale=2).mesh is first.mesh
     trimesh.creation.icosphere(subdivisions=2).export(path)
-    assert shapes.MeshShape.fromFile(path).mesh is not first.mesh
+    second = shapes.MeshShape.fromFile(path)
+    assert second.mesh is not first.mesh
+    # A file that is as long as before has another time.
+    content = path.read_bytes()
+    path.write_bytes(content.replace(b"v 0.", b"v 1.", 1))
+    os.utime(path, ns=(1, 1))
+    assert shapes.MeshShape.fromFile(path).mesh is not second.mesh
+    assert shapes.MeshShape.fromFile(path, initial_rotation=(1, 0, 0)).dimensions != second.dimensions
 
 
 def test_from_missing_file(tmp_path):

@@ -72,11 +72,13 @@ def cells_of(lower, upper):
     return low, high
 
 
+@pytest.mark.parametrize("swept", [broadphase._SWEPT, 0])
 @pytest.mark.parametrize(
     ("bodies", "moving", "lanes"),
     [(2, 2, 5), (2, 1, 8), (20, 20, 5), (65, 30, 3), (150, 150, 300), (420, 410, 2), (420, 5, 2)],
 )
-def test_near_pairs_hold_all_overlapping_boxes(bodies, moving, lanes):
+def test_near_pairs_hold_all_overlapping_boxes(bodies, moving, lanes, swept, monkeypatch):
+    monkeypatch.setattr(broadphase, "_SWEPT", swept)
     rng = np.random.default_rng(bodies)
     spread = 3 * bodies ** (1 / 3)
     lower = rng.uniform(-spread, spread, (bodies, lanes, 3))

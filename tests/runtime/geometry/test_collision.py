@@ -10,7 +10,7 @@ from scenic.runtime.geometry.crowd import Crowd
 from scenic.runtime.geometry.narrowphase import meshes_intersect
 from scenic.runtime.geometry.poses import Poses
 
-from .samples import SHAPES, random_poses, table, yawed
+from .samples import SHAPES, hollow, random_poses, table, yawed
 
 LANES = 60
 MESHES = [SHAPES[name]() for name in ("box", "table", "cylinder", "spheroid", "hollow")]
@@ -156,6 +156,27 @@ def test_fixed_bodies_are_compared_once():
     np.testing.assert_array_equal(found, one_by_one(bodies, cast.pairs.tolist(), 30))
     assert Collider(bodies, [(0, 1), (3, 0)]).fixed_collisions.tolist() == []
     assert Collider(bodies, [(2, 0), (3, 0)]).fixed_collisions.tolist() == [[0, 2]]
+
+
+def test_meshes_may_differ_from_batch_to_batch():
+    """As many as before: what was learnt of the others says nothing about them."""
+    poses = random_poses(60, 12, spread=0.5)
+    still = Body((table(),), None, yawed((0, 0, 0)))
+    cast = Collider([Body((primitives.spheroid(),), None, poses), still])
+    for mesh in (primitives.spheroid(), hollow(), primitives.cone(), table()):
+        bodies = [Body((mesh,), None, poses), still]
+        np.testing.assert_array_equal(
+            cast.test(bodies, 60).free, [not hit for (hit,) in one_by_one(bodies, [(0, 1)], 60)]
+        )
+
+
+def test_either_body_of_a_pair_may_allow_collisions():
+    lanes = 6
+    at = yawed((0, 0, 0))
+    allow = np.arange(lanes) % 2 == 0
+    for one, other in ((allow, np.zeros(1, bool)), (np.zeros(1, bool), allow), (allow, ~allow)):
+        bodies = [Body((primitives.box(),), None, at, allow=item) for item in (one, other)]
+        np.testing.assert_array_equal(collide(bodies, None, lanes).free, np.broadcast_to(one | other, lanes))
 
 
 def test_no_pairs():

@@ -144,6 +144,13 @@ def test_containers_without_volume_hold_nothing():
     np.testing.assert_array_equal(
         containment.in_box(body, sizes, np.zeros((1, 3)), still, 3), [True, False, False]
     )
+    little = Body((primitives.box(),), None, yawed((0, 0, 0), size=(0.01, 0.01, 0.01)))
+    np.testing.assert_array_equal(
+        containment.in_ellipsoid(little, sizes, np.zeros((1, 3)), still, 3), [True, False, False]
+    )
+    square = np.array([[(-1.0, -1), (1, -1), (1, 1), (-1, 1)]])
+    flat = np.concatenate([square, square * (1, 0), square * 0])
+    np.testing.assert_array_equal(containment.in_convex_polygon(little, flat, 3), [True, False, False])
 
 
 def outside_volume(inner, inner_poses, outer, outer_poses, entry):
@@ -169,7 +176,8 @@ def test_meshes_in_meshes(inner, outer):
 
 def test_a_body_over_a_cavity_is_not_inside():
     ball = primitives.spheroid()
-    for size, expected in ((0.2, False), (0.8, False)):
+    # The small one lies in it, the large one holds all of it, the one between them meets its corners.
+    for size, expected in ((0.2, False), (0.8, False), (0.95, False)):
         pose = yawed((0, 0, 0), size=(size, size, size))
         assert containment.mesh_in_mesh(ball, pose, hollow(), yawed((0, 0, 0)))[0] == expected
     assert containment.mesh_in_mesh(ball, yawed((0.37, 0, 0), size=(0.2,) * 3), hollow(), yawed((0, 0, 0)))[0]

@@ -9,6 +9,7 @@ from scipy.optimize import minimize
 from scenic.runtime.geometry import distance
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.nearest import nearest_on_triangles
+from scenic.runtime.geometry.poses import Poses
 from scenic.runtime.geometry.segments import Segments
 
 from .samples import (
@@ -135,6 +136,26 @@ def test_choices_and_fixed_bodies():
     for lane in range(9):
         alone = Body((meshes[choice[lane]],), None, poses.take(np.array([lane])))
         assert distance.between(still, alone, 1)[0] == pytest.approx(found[lane], abs=1e-12)
+
+
+@pytest.mark.parametrize("what", ["position", "orientation", "size"])
+def test_lanes_that_differ_in_one_thing_alone(what):
+    count = 5
+    a, b = random_poses(count, 21, spread=0.2), yawed((0, 0, 2.2), 0.3, (0.5, 1, 0.7))
+    parts = {
+        name: getattr(a, name) if name == what else getattr(a, name)[:1]
+        for name in ("position", "orientation", "size")
+    }
+    one, other = (
+        Body((mesh,), None, poses) for mesh, poses in ((table(), Poses(**parts)), (SHAPES["cone"](), b))
+    )
+    found = distance.between(one, other, count)
+    np.testing.assert_allclose(distance.between(other, one, count), found, atol=1e-12)
+    for lane in range(count):
+        alone = one.take(np.array([lane]))
+        alone = Body(alone.meshes, None, Poses(*(getattr(alone.poses, name) for name in parts)))
+        assert distance.between(alone, other, 1)[0] == pytest.approx(found[lane], abs=1e-12)
+    assert len(np.unique(found)) == count
 
 
 @pytest.mark.parametrize("batch", [1, 7])

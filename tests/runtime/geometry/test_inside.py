@@ -97,3 +97,16 @@ def test_lattices_are_points(name):
     off_border = (np.abs(points) != 0.5).all(axis=1)
     np.testing.assert_array_equal(found.ravel()[off_border], contains_points(mesh, points)[off_border])
     assert 0 < found.mean() < 1
+
+
+@pytest.mark.parametrize("name", ["box", "table", "hollow", "cylinder"])
+def test_lattices_agree_with_points_level_with_faces_and_corners(name):
+    """Also where a level of the lattice is exactly that of a face, and a column is that of an edge."""
+    mesh = SHAPES[name]()
+    axes = [
+        np.unique(np.concatenate([np.unique(mesh.vertices[:, axis]), np.linspace(-0.6, 0.6, 9)]))
+        for axis in range(3)
+    ]
+    points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
+    expected = contains_points(mesh, points.reshape(-1, 3)).reshape(points.shape[:3])
+    np.testing.assert_array_equal(contains_lattice(mesh, *axes), expected)

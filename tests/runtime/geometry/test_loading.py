@@ -1,5 +1,6 @@
 import bz2
 import gzip
+import itertools
 
 import numpy as np
 import pytest
@@ -9,8 +10,10 @@ from scenic.language.errors import MeshError
 from scenic.runtime.geometry import loading, primitives
 from scenic.runtime.geometry.inside import contains_points
 from scenic.runtime.geometry.loading import load_mesh
+from scenic.runtime.geometry.mesh import Mesh
+from scenic.runtime.geometry.solids import proper_volume
 
-from .samples import FILES, bumpy, hollow, placed, real_meshes
+from .samples import FILES, bumpy, hollow, placed, real_meshes, table
 
 
 def export(folder, name, *parts):
@@ -65,6 +68,52 @@ def test_a_solid_within_a_cavity(tmp_path):
     path = export(tmp_path, "nested.obj", hollow(), placed(primitives.spheroid(), (0, 0, 0), (0.3, 0.3, 0.3)))
     expected = 0.875 + primitives.spheroid().volume * 0.3**3
     assert load_mesh(path).volume == pytest.approx(expected, rel=1e-7)
+
+
+def test_cavities_belong_to_the_solids_around_them(tmp_path):
+    """A shell in the cavity of another one, in any order, and with one side turned inside out."""
+    cube = primitives.box()
+
+    def inwards(size):
+        whole = placed(cube, (0, 0, 0), (size,) * 3)
+        return Mesh(whole.vertices, whole.faces[:, ::-1])
+
+    def outwards(size):
+        return placed(cube, (0, 0, 0), (size,) * 3)
+
+    shells = [outwards(4), inwards(3), outwards(2), inwards(1)]
+    for order in itertools.permutations(shells):
+        merged = proper_volume(joined(order))
+        assert merged.is_volume
+        assert merged.volume == pytest.approx(64 - 27 + 8 - 1)
+        apart = proper_volume(joined(order), unify=False)
+        assert apart.volume == pytest.approx(64 - 27 + 8 - 1)
+
+
+def test_bodies_apart_are_turned_outwards_one_by_one(tmp_path):
+    parts = [
+        placed(shape(), (x, 0, 0), (1, 1, 1))
+        for x, shape in ((0, primitives.box), (2, primitives.cone), (4, table), (6, primitives.cylinder))
+    ]
+    expected = sum(part.volume for part in parts)
+    points = np.random.default_rng(4).uniform((-1, -1, -1), (7, 1, 1), (2000, 3))
+    inside = np.any([contains_points(part, points) for part in parts], axis=0)
+    for turned in itertools.product((False, True), repeat=4):
+        some = [
+            Mesh(part.vertices, part.faces[:, ::-1]) if inverted else part
+            for part, inverted in zip(parts, turned, strict=True)
+        ]
+        found = proper_volume(joined(some))
+        assert found.is_volume
+        assert found.volume == pytest.approx(expected)
+        np.testing.assert_array_equal(contains_points(found, points), inside)
+
+
+def joined(parts) -> Mesh:
+    whole = trimesh.util.concatenate(
+        [trimesh.Trimesh(part.vertices, part.faces, process=False) for part in parts]
+    )
+    return Mesh(whole.vertices, whole.faces)
 
 
 def test_nearly_equal_vertices_are_merged(tmp_path):

@@ -229,6 +229,53 @@ def test_nodes_by_parts_and_strips():
         read_gltf(json.dumps(tree).encode(), no_neighbour)
 
 
+@pytest.mark.parametrize("code", [5121, 5123, 5125])
+@pytest.mark.parametrize("start", [0, 8])
+@pytest.mark.parametrize("between", [0, 4])
+def test_elements_that_stand_apart_in_a_buffer(code, start, between):
+    """Interleaved attributes, offsets of view and accessor, and each type of corner numbers."""
+    corners = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)], dtype="<f4")
+    faces = np.array([(0, 2, 1), (0, 1, 3)], dtype={5121: "<u1", 5123: "<u2", 5125: "<u4"}[code])
+    rows = b"".join(b"\xff" * between + row.tobytes() for row in corners)
+    data = b"\x7f" * start + rows + b"\0" * 8 + faces.tobytes()
+    tree = {
+        "asset": {"version": "2.0"},
+        "nodes": [{"mesh": 0}, {"mesh": 0, "translation": [0, 0, 5]}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+        "accessors": [
+            {"bufferView": 0, "byteOffset": between, "componentType": 5126, "count": 4, "type": "VEC3"},
+            {"bufferView": 1, "byteOffset": 4, "componentType": code, "count": 6, "type": "SCALAR"},
+        ],
+        "bufferViews": [
+            {"buffer": 0, "byteOffset": start, "byteLength": len(rows), "byteStride": 12 + between},
+            {"buffer": 0, "byteOffset": start + len(rows) + 4, "byteLength": faces.nbytes + 4},
+        ],
+        "buffers": [{"byteLength": len(data), "uri": "data:;base64," + base64.b64encode(data).decode()}],
+    }
+    found = read_gltf(json.dumps(tree).encode(), no_neighbour)
+    np.testing.assert_array_equal(found.vertices, np.concatenate([corners, corners + np.array([0, 0, 5])]))
+    np.testing.assert_array_equal(found.faces, np.concatenate([faces, faces + np.array(4, faces.dtype)]))
+    tree["buffers"][0]["uri"] = "data:;base64," + base64.b64encode(data[:-1]).decode()
+    with pytest.raises(ValueError, match="ends before"):
+        read_gltf(json.dumps(tree).encode(), no_neighbour)
+    tree["accessors"][1]["count"] = 5  # a triangle that is cut off is none
+    assert len(read_gltf(json.dumps(tree).encode(), no_neighbour).faces) == 2
+
+
+def test_obj_lines_that_say_nothing():
+    """A `v` or an `f` alone is no vertex and no face; numbers from the end count the vertices before a face."""
+    square = b"v 0 0 0\nv\nv 1 0 0\nf\nv \nv 1 1 0\nf -3 -2 -1\nv 0 1 0 0.5\nvn 0 0 1\nf -4//1 -2/3/1 -1\n\nf 1 2\n"
+    found = read_obj(square)
+    np.testing.assert_array_equal(found.vertices, [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)])
+    np.testing.assert_array_equal(found.faces, [(0, 1, 2), (0, 2, 3)])
+    np.testing.assert_array_equal(read_obj(square.replace(b"\n", b"\r\n")).faces, found.faces)
+    continued = square.replace(b"f -3 -2", b"f -3 \\\n -2 # f 1 2 3\n".replace(b" # f 1 2 3\n", b""))
+    np.testing.assert_array_equal(read_obj(continued).faces, found.faces)
+    for bad in (b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n", b"v 0 0 0\nv 1 0 0\nf -1 -2 -3\nv 0 1 0\n"):
+        with pytest.raises(ValueError, match="vertex outside"):
+            read_obj(bad)
+
+
 @pytest.mark.parametrize(
     ("name", "content", "message"),
     [

@@ -36,6 +36,31 @@ class Counted:
         return {"a": np.arange(self.size), "b": np.array(0.5)}
 
 
+def test_digests_tell_content_shape_and_kind_apart():
+    zeros = [
+        np.zeros(6),
+        np.zeros((2, 3)),
+        np.zeros((3, 2)),
+        np.zeros(6, dtype=np.int64),
+        np.zeros(12, np.float32),
+    ]
+    digests = {digest_of(array) for array in zeros}
+    assert len(digests) == len(zeros)
+    one, other = np.arange(3.0), np.arange(3.0, 6.0)
+    assert len({digest_of(one, other), digest_of(other, one), digest_of(np.concatenate([one, other]))}) == 3
+    strided = np.arange(12.0).reshape(3, 4).T
+    assert digest_of(strided) == digest_of(np.ascontiguousarray(strided))
+    assert digest_of(one) == digest_of(one.copy())
+
+
+def test_what_is_kept_is_told_apart_by_kind_and_content(folder):
+    for kind, content, number in (("a", CONTENT, 1), ("b", CONTENT, 2), ("a", digest_of(np.zeros(3)), 3)):
+        assert kept(kind, content, lambda number=number: {"x": np.array(number)})["x"] == number
+        assert store.is_kept(kind, content)
+    assert kept("a", CONTENT, lambda: {"x": np.array(9)})["x"] == 1
+    assert not store.is_kept("b", digest_of(np.zeros(3)))
+
+
 def test_what_is_kept_is_not_computed_again(folder):
     compute = Counted()
     for _ in range(3):

@@ -65,6 +65,35 @@ def test_each_entry_has_its_own_side(side):
         check_uniform(draws[:, entry], expected_areas(mesh, poses, entry, side, 0.5))
 
 
+@pytest.mark.parametrize("side", SIDES)
+def test_entries_of_one_size_are_each_as_alone(side):
+    """Turned differently, or of the same turn and different sizes: each has the faces that it has alone."""
+    count = 40
+    uniforms = np.random.default_rng(31).random(count)
+    poses = random_poses(count, 32)
+    for mesh in (table(), bumpy(2)):
+        for some in (
+            Poses(poses.position, poses.orientation, poses.size[:1]),
+            Poses(poses.position, poses.orientation, np.repeat(poses.size[:1], count, axis=0)),
+            Poses(poses.position, poses.orientation[:1], poses.size),
+            Poses(
+                poses.position,
+                poses.orientation[[0, 1] * (count // 2)],
+                poses.size[[0, 0, 1, 1] * (count // 4)],
+            ),
+            Poses(poses.position, poses.orientation[:1], poses.size[:1]),
+        ):
+            faces = surface.draw_faces(body_of(mesh, some), side, 0.5, uniforms, count)
+            normals = surface.mean_normals(body_of(mesh, some), side, 0.5, count)
+            for lane in range(0, count, 3):
+                one = np.array([lane])
+                mine = body_of(mesh, some.take(one))
+                assert surface.draw_faces(mine, side, 0.5, uniforms[one], 1)[0] == faces[lane]
+                np.testing.assert_array_equal(surface.mean_normals(mine, side, 0.5, 1)[0], normals[lane])
+                if faces[lane] >= 0:
+                    assert expected_areas(mesh, some, lane, side, 0.5)[faces[lane]] > 0
+
+
 def test_meshes_of_several_blocks():
     mesh, poses = bumpy(5), random_poses(2, 24)
     assert len(mesh.faces) > 2 * surface._BLOCK

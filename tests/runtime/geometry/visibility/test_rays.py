@@ -1,0 +1,216 @@
+"""Single rays: which of them there are, that none is left out, and that none slips through a surface or starts on its wrong side."""
+
+import math
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from scenic.runtime.geometry import primitives
+from scenic.runtime.geometry.bodies import Body
+from scenic.runtime.geometry.mesh import Mesh
+from scenic.runtime.geometry.poses import Floats, Poses
+from scenic.runtime.geometry.visibility import hits
+from scenic.runtime.geometry.visibility.bodies import sees_bodies
+from scenic.runtime.geometry.visibility.grid import rows_towards
+from scenic.runtime.geometry.visibility.hits import exact_first, place
+from scenic.runtime.geometry.visibility.obstacles import Obstacles, Occluder
+from scenic.runtime.geometry.visibility.points import sees_points
+from scenic.runtime.geometry.visibility.views import Extents, Views
+from tests.runtime.geometry.samples import bumpy, table
+from tests.runtime.geometry.visibility.reference import Rotation
+from tests.runtime.geometry.visibility.test_bodies import BOX, FRAME, fixed, scenes
+
+EVERYWHERE = Extents(np.array([[-np.pi, np.pi]]), np.array([True]), np.array([[-np.pi / 2, np.pi / 2]]))
+
+
+def sees(observer: Views, target: Body, *occluders: Body) -> bool:
+    return bool(sees_bodies(observer, target, [Occluder(item) for item in occluders], 1)[0])
+
+
+@pytest.mark.parametrize("tenths", [1, 3, 7, 10, 23, 50])
+def test_ray_numbers_are_those_of_exact_arithmetic(tenths: int) -> None:
+    """Rounding of the product of angle and density makes no ray more."""
+    for degrees in range(1, 180, 2):
+        angle = math.radians(degrees)
+        observer = Views.fixed((0, 0, 0), angles=(angle, angle), density=tenths / 10)
+        rows = rows_towards(observer, EVERYWHERE, np.ones(1))
+        lines = math.ceil(Fraction(tenths, 10) * degrees)
+        assert len(rows.lane) == lines
+        level = np.abs(rows.altitude).argmin()
+        across = lines * math.cos(rows.altitude[level])
+        assert rows.count[level] == max(1, round(across))
+
+
+@pytest.mark.parametrize("shape", ["wide", "high"])
+def test_each_ray_of_a_fine_grid_is_cast(shape: str) -> None:
+    """Through a slit as narrow as the step from ray to ray a body is seen wherever the slit is about a ray."""
+    across, upward, angle = 260, 250, 0.5
+    if shape == "high":
+        across, upward = upward, across
+    observer = Views.fixed((0, 0, 0), angles=(angle, angle), count=(across, upward))
+    # Its middle is hidden by the beam that stands before it.
+    target, beam = fixed((0, 10, 0), (6, 0.1, 6)), fixed((0, 4.9, 0), (0.01, 0.01, 0.01))
+    half, count = 0.2 * angle / 260, 260
+    for number in np.random.default_rng(3).choice(count, 14, replace=False).tolist():
+        for off, seen in ((0.0, True), (0.5, False)):
+            middle = -angle / 2 + (number + 0.5 + off) * angle / count
+            if abs(middle) + 2 * half > angle / 2:
+                continue
+            low, high = 5 * math.tan(middle - half), 5 * math.tan(middle + half)
+            sides = [(low - 6, low), (high, high + 6)]
+            if shape == "wide":  # azimuths grow to the left
+                walls = [fixed((-(a + b) / 2, 5.0005, 0), (b - a, 1e-3, 12)) for a, b in sides]
+            else:
+                # Seen from the camera, rows are cones: only near the middle of the view they are level.
+                walls = [fixed((0, 5.0005, (a + b) / 2), (12, 1e-3, b - a)) for a, b in sides]
+                walls += [fixed((s * 6.02, 4.8, 0), (12, 1e-3, 12)) for s in (-1, 1)]
+            assert sees(observer, target, beam, *walls) is seen
+
+
+@pytest.mark.parametrize("mesh", [primitives.cylinder(40), primitives.spheroid(), table()])
+@pytest.mark.parametrize("off", [1e-3, 1e-7, 1e-9])
+def test_from_just_outside_a_surface_its_body_hides_nothing_ahead(mesh: Mesh, off: float) -> None:
+    """And everything from just inside, in every direction."""
+    turn = Rotation.from_euler("zxy", (0.4, 0.2, -0.3))
+    body = Body((mesh,), None, Poses.fixed((1, 2, 3), turn.as_quat(), (2, 3, 1.5)))
+    corners = turn.apply(mesh.triangles.reshape(-1, 3) * (2, 3, 1.5)).reshape(-1, 3, 3) + np.array([1, 2, 3])
+    faces = np.flatnonzero(mesh.areas > 1e-4)[:: max(1, len(mesh.faces) // 150)]
+    normal = np.cross(*(corners[faces, i] - corners[faces, 0] for i in (1, 2)))
+    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+    middle = corners[faces].mean(axis=1)
+    for side in (1, -1):
+        observers = Views.fixed((0, 0, 0), distance=99).spread(len(faces))
+        observers = Views(middle + side * off * normal, *(getattr(observers, name) for name in _REST))
+        for sideways in (0.0, 0.8):
+            ahead = normal + sideways * np.roll(normal, 1, axis=1) * (np.abs(normal) < 0.9)
+            ahead *= np.sign((ahead * normal).sum(axis=1, keepdims=True))
+            points = observers.camera + 0.1 * ahead if side > 0 else observers.camera + 9 * ahead
+            if side > 0 and not mesh.is_convex:
+                points = observers.camera + 0.01 * normal
+            seen = sees_points(observers, points, [Occluder(body)], len(faces))
+            assert (seen == (side > 0)).all()
+            if side < 0:
+                continue  # what single precision misses is looked at again, what it finds is not
+            obstacles = Obstacles(
+                [Occluder(body)], observers, np.arange(len(faces)), points, np.zeros(len(faces))
+            )
+            ways = observers.to_view(points)
+            assert not obstacles.block(np.arange(len(faces)), ways, np.ones(len(faces)), exact=False).any()
+
+
+_REST = ("orientation", "angles", "distance", "density", "count", "scaling")
+
+
+@pytest.mark.parametrize("mesh", [BOX, primitives.cylinder(7), primitives.spheroid(), table(), bumpy(3)])
+def test_no_ray_slips_between_two_faces(mesh: Mesh) -> None:
+    """Rays towards points of edges and corners meet the surface there or before."""
+    rng = np.random.default_rng(4)
+    first, second = mesh.faces[:, [0, 1, 2]].ravel(), mesh.faces[:, [1, 2, 0]].ravel()
+    edges = rng.integers(0, len(first), 900)
+    share = np.where(rng.random((900, 1)) < 0.2, 0.0, rng.random((900, 1)))
+    targets = (1 - share) * mesh.vertices[first[edges]] + share * mesh.vertices[second[edges]]
+    way = rng.normal(size=(900, 3))
+    origins = targets + way * rng.choice([0.3, 2.0, 40.0], (900, 1))
+    directions = targets - origins
+    near, _ = hits.box_span(origins, directions)
+    met = exact_first(mesh, origins, directions, near)
+    # One that only touches an edge from outside may pass.
+    deep = _dives(mesh, first, second, edges, directions)
+    assert (met[deep] <= 1 + 1e-9).all()
+    assert deep.mean() > 0.3
+
+
+def _dives(mesh: Mesh, first: Floats, second: Floats, edges: Floats, directions: Floats) -> Floats:
+    """Whether directions go inwards on both sides of an edge."""
+    sides = {(a, b): number // 3 for number, (a, b) in enumerate(zip(first, second, strict=True))}
+    along = np.array(
+        [
+            [directions[i] @ mesh.normals[sides[pair]] for pair in ((a, b), (b, a))]
+            for i, (a, b) in enumerate(zip(first[edges], second[edges], strict=True))
+        ]
+    )
+    return (along < -0.05 * np.linalg.norm(directions, axis=1)[:, np.newaxis]).all(axis=1)
+
+
+def test_what_single_precision_misses_hides_all_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where the index in single precision misses obstacles, faces in double precision are what counts."""
+    count = 60
+    observers, target, occluders = scenes(31, count)
+    target = Body((BOX,), None, target.poses)
+    points = target.poses.position
+    honest = (
+        sees_bodies(observers, target, occluders, count),
+        sees_points(observers, points, occluders, count),
+    )
+    rng = np.random.default_rng(5)
+
+    def careless(mesh: Mesh, origins: Floats, directions: Floats, near: Floats) -> Floats:
+        found = exact_first(mesh, origins, directions, near)
+        return np.where(rng.random(len(found)) < 0.7, np.inf, found)
+
+    monkeypatch.setattr(hits, "_quick_first", careless)
+    assert sees_bodies(observers, target, occluders, count).tolist() == honest[0].tolist()
+    assert sees_points(observers, points, occluders, count).tolist() == honest[1].tolist()
+
+
+def test_obstacles_are_all_that_meet_the_hull_of_camera_and_target() -> None:
+    """Against balls along the way; few are kept that do not meet it."""
+    rng = np.random.default_rng(6)
+    count = 4000
+    camera, middle = rng.normal(size=(2, count, 3))
+    middle = camera + (middle - camera) * rng.choice([0.3, 3.0], (count, 1))
+    radius = rng.choice([0.0, 0.5, 2.0], count) * rng.random(count)
+    place, size = camera + rng.normal(size=(count, 3)), rng.uniform(0.05, 1.2, (count, 3))
+    body = Body((BOX,), None, Poses(place, np.array([[0.0, 0, 0, 1]]), size))
+    observers = Views.fixed((0, 0, 0)).spread(count)
+    observers = Views(camera, *(getattr(observers, name) for name in _REST))
+    obstacles = Obstacles([Occluder(body)], observers, np.arange(count), middle, radius)
+    kept = obstacles.lanes[0]
+    part = np.linspace(0, 1, 801)[:, np.newaxis]
+    reach = np.linalg.norm(size, axis=1) / 2
+    lacks = np.array(
+        [
+            (
+                np.linalg.norm(camera[i] + part * (middle[i] - camera[i]) - place[i], axis=1)
+                - part[:, 0] * radius[i]
+            ).min()
+            - reach[i]
+            for i in range(count)
+        ]
+    )
+    assert kept[lacks <= 0].all()
+    assert not kept[lacks > 0.01].any()
+    assert 0.1 < (lacks <= 0).mean() < 0.9
+
+
+def test_of_a_body_that_passes_through_the_obstacle_around_the_camera_the_part_inside_is_seen() -> None:
+    """All corners of its box, and its middle, are hidden by the obstacle."""
+    room, plank = fixed((0, 0, 0), (2, 2, 2)), fixed((3.75, 0.6, 0), (10.5, 0.2, 0.2))
+    assert sees(Views.fixed((0, 0, 0)), plank, room)
+    assert not sees(Views.fixed((0, 0, 0)), fixed((3.75, 2.6, 0), (10.5, 0.2, 0.2)), room)
+    assert sees(Views.fixed((0, 0, 0)), plank, Body((primitives.cylinder(),), None, room.poses))
+
+
+@pytest.mark.parametrize("mesh", [BOX, primitives.cone(), FRAME])
+def test_rays_meet_turned_and_stretched_bodies_where_lines_of_the_world_do(mesh: Mesh) -> None:
+    """In lengths of the directions of the view's frame, whatever the frame and the sizes are."""
+    rng = np.random.default_rng(7)
+    turns = Rotation.random(2, random_state=8)
+    body = Body((mesh,), None, Poses.fixed((0.5, 4, -0.3), turns[0].as_quat(), (0.7, 3, 1.9)))
+    observer = Views.fixed((-0.2, 0.1, 0.3), turns[1].as_quat())
+    targets = mesh.triangles[rng.integers(0, len(mesh.faces), 300)]
+    weights = rng.dirichlet(np.ones(3), 300)[:, :, np.newaxis]
+    world = turns[0].apply((targets * weights).sum(axis=1) * (0.7, 3, 1.9)) + np.array([0.5, 4, -0.3])
+    directions = turns[1].inv().apply(world - observer.camera[0])
+    for exact in (False, True):
+        found = place(body, observer, np.zeros(1, dtype=np.intp)).first(
+            np.zeros(300, dtype=np.intp), directions, exact=exact
+        )
+        assert (found <= 1 + 1e-9).all()
+        assert np.isclose(found, 1).mean() > 0.1
+        # Half as long, they take twice as many of their lengths.
+        again = place(body, observer, np.zeros(1, dtype=np.intp)).first(
+            np.zeros(300, dtype=np.intp), directions / 2, exact=exact
+        )
+        assert again == pytest.approx(2 * found)
