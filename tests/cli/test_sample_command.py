@@ -85,6 +85,22 @@ def test_the_same_seed_gives_the_same_text(folder: Path) -> None:
     assert run(folder, "balls.scenic", "--seed", seed).stdout == drawn.stdout
 
 
+def test_a_part_of_a_run_is_that_part(folder: Path) -> None:
+    """Whichever part, in whichever way it is made, and taken up wherever it was left."""
+    rows = run(folder, "balls.scenic", "-n", 7, "--seed", 4).stdout.splitlines()
+    for first, count in ((0, 1), (3, 2), (2, 5), (6, 1)):
+        part = ["balls.scenic", "--seed", 4, "--first", first, "-n", count]
+        wanted = rows[first : first + count]
+        assert run(folder, *part).stdout.splitlines() == wanted
+        assert run(folder, *part, "-o", "some.jsonl").returncode == 0
+        written = (folder / "some.jsonl").read_text()
+        assert written.splitlines() == wanted
+        for left in range(count):
+            (folder / "some.jsonl").write_text("".join(line + "\n" for line in wanted[:left]))
+            assert run(folder, *part, "-o", "some.jsonl", "--resume").returncode == 0
+            assert (folder / "some.jsonl").read_text() == written
+
+
 @pytest.mark.parametrize(
     ("arguments", "code", "words"),
     [
@@ -248,3 +264,12 @@ def test_images_of_a_camera_have_their_labels_beside_them(folder: Path) -> None:
     index = json.loads((folder / "seen" / "annotations.json").read_text())
     assert len(index["images"]) == 2
     assert all((folder / "seen" / image["file_name"]).exists() for image in index["images"])
+
+
+@pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="there is no timer to limit it with")
+def test_what_a_limit_of_time_takes_is_given_back(folder: Path) -> None:
+    before = signal.getsignal(signal.SIGALRM)
+    for program in ("balls.scenic", "slow.scenic"):
+        run(folder, program, "--time-limit", "0.3")
+        assert signal.getsignal(signal.SIGALRM) is before
+        assert signal.getitimer(signal.ITIMER_REAL) == (0.0, 0.0)

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from scenic.formats.glb import glb
-from scenic.formats.instances import picture, surface_of
+from scenic.formats.glb import _Buffers, glb
+from scenic.formats.instances import Gallery, Surface, picture, surface_of
 from scenic.formats.obj import obj
 from tests.formats.stand_ins import BALL, Chair, Mesh, Object, Scene, Shape, Source, Turn
 
@@ -140,3 +140,34 @@ def test_only_objects_without_a_colour_use_up_colours() -> None:
     )
     assert [item.color for item in mixed[1:]] == [item.color for item in plain]
     assert plain[0].color != plain[1].color
+
+
+@pytest.mark.parametrize("count", [0xFFFE, 0xFFFF, 0x10000, 0x10001])
+def test_indices_take_two_bytes_as_long_as_none_is_the_last_number(count: int) -> None:
+    """The greatest number of a size means another thing to graphics cards: a new strip."""
+    rng = np.random.default_rng(0)
+    vertices = rng.random((count, 3)) - 0.5
+    faces = np.arange(3 * (count // 3)).reshape(-1, 3)
+    faces = np.concatenate([faces, [[0, 1, count - 1]]])
+    loose = Surface(vertices, np.tile([0.0, 0.0, 1.0], (count, 1)), faces)
+    buffers = _Buffers()
+    primitive = buffers.surface(loose)
+    accessor = buffers.accessors[primitive["indices"]]
+    view = buffers.views[accessor["bufferView"]]
+    size = {5123: 2, 5125: 4}[accessor["componentType"]]
+    content = bytes(buffers.data[view["byteOffset"] : view["byteOffset"] + view["byteLength"]])
+    found = np.frombuffer(content, f"<u{size}").reshape(-1, 3)
+    np.testing.assert_array_equal(found, faces)
+    assert found.max() < (1 << (8 * size)) - 1
+
+
+def test_meshes_are_told_apart_however_short_they_live() -> None:
+    """A mesh that is gone may leave its identity to another one."""
+    gallery = Gallery()
+    for number in range(30):
+        vertices = BALL.mesh.vertices * (1 - number / 100)
+        scene = Scene([Object(shape=Shape(Mesh(vertices, BALL.mesh.faces), Source({"kind": "mesh"})))])
+        (instance,) = gallery.add(scene)
+        surface = gallery.surfaces[instance.surface]
+        assert np.abs(surface.vertices).max() == pytest.approx(np.abs(vertices).max())
+        del scene, instance, vertices

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import PIL.Image
 import pytest
 
 from scenic.formats.coco import LabelledImages, millimetres
@@ -218,3 +219,27 @@ def test_no_more_is_seen_of_something_than_there_is_of_it(inside: float) -> None
     assert label.full_pixels in range(label.pixels, 10 * 10 + 1)
     assert label.occluded is not None
     assert 0 <= label.occluded < 1
+
+
+def test_classes_are_shown_beyond_the_range_of_sight_too(tmp_path: Path) -> None:
+    """Images show what labels say is out of range; only what has pixels of its own is a class there."""
+    near, far = ahead(4, -1, 0, (1, 1, 1)), ahead(30, 4, 0, (3, 3, 3))
+    owner = robot(
+        RGBSensor(), visibleDistance=10.0, viewAngles=(math.pi / 2, 1.0), cameraOffset=(0.5, 1.0, 0.25)
+    )
+    scene = Scene([owner, near, far], egoObject=owner, names={owner: "front"})
+    owner.others = {**owner.others, "sensors": {}}
+    folder = LabelledImages(tmp_path, "front", (40, 20))
+    folder.add(scene)
+    folder.finish()
+    image = {
+        name: np.asarray(PIL.Image.open(tmp_path / f"front-000000-{name}.png"))
+        for name in ("semantic", "instance")
+    }
+    labels = json.loads((tmp_path / "front-000000.json").read_text())
+    assert [entry["visible"] for entry in labels["objects"]] == [True, False]
+    for entry in labels["objects"]:
+        mine = image["instance"] == entry["index"] + 1
+        assert mine.sum() == entry["pixels"] > 0
+        assert (image["semantic"][mine] == labels["categories"]["Object"]).all()
+    assert (image["semantic"][image["instance"] == 0] == 0).all()

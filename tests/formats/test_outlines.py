@@ -7,7 +7,7 @@ import pytest
 
 import scenic
 from scenic.formats.html import page
-from scenic.formats.regions import _cell_edges, bounds, outlines
+from scenic.formats.regions import _cell_edges, _longest, bounds, outlines
 from scenic.runtime.regions.base import everywhere, nowhere
 from scenic.runtime.regions.composite import IntersectionRegion
 from scenic.runtime.regions.lines import PathRegion
@@ -160,3 +160,12 @@ def test_what_is_left_of_a_plane_is_hatched() -> None:
             (np.abs(np.abs(line - box.position.row) - 1) < 1e-9).any(axis=1)
             | (np.abs(np.linalg.norm(line - [0, 0, 1], axis=1) - 3) < 1e-9)
         )
+
+
+def test_of_too_many_lines_the_longest_are_drawn_in_their_order() -> None:
+    lengths = np.random.default_rng(2).permutation(4000) + 1.0
+    lines = [np.array([[number, 0, 0], [number, length, 0]]) for number, length in enumerate(lengths)]
+    kept = _longest(lines)
+    expected = np.flatnonzero(lengths > 1000)
+    assert [int(line[0, 0]) for line in kept] == expected.tolist()
+    assert _longest(lines[:3000]) == lines[:3000]

@@ -124,3 +124,16 @@ def test_draws():
     near(narrowed("range", (2, 3), (0, 1), (0, 5), (6, 20)), (0, 0.5), (0, 3), (6, 20))
     near(narrowed("discrete range", (2, 3), (0, 1), (1, 1), (4, 4)), (0.25, 0.75), (1, 1), (4, 4))
     near(narrowed("normal", (5, 9), (0, 1), (5, 5), (2, 2)), (0.5, 0.977249868), (5, 5), (2, 2))
+
+
+def test_rotations_are_equal_up_to_the_sign_of_their_quaternions():
+    """So equality says nothing of components."""
+    turn = np.array([[0.1, 0.2, 0.3, math.sqrt(0.86)]])
+    near = 1e-3
+    one, other = Bounds(turn - near, turn + near), Bounds(-turn - near, -turn + near)
+    for name, result in (("equal", TRUE), ("not equal", FALSE)):
+        for operands in ((one, other), (other, one), (one, one)):
+            for old, part in zip(operands, TABLE[name].inverse(None, box(*result), *operands), strict=True):
+                met = old if part is None else old.meet(part)
+                assert (met.lower == old.lower).all()
+                assert (met.upper == old.upper).all()

@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 
 from runtime.programs import scenario
+from scenic.runtime.values import Orientation, Vector
 
 PROGRAM = (
     "class Car:\n    width: 2\n    speedy: Range(0, 1)\n"
@@ -87,3 +88,23 @@ def first_position(number: int) -> Any:
 def test_a_pool_returns_positions() -> None:
     with multiprocessing.get_context("spawn").Pool(1) as pool:
         assert pool.map_async(first_position, [4]).get(timeout=60) == [whole().egoObject.position]
+
+
+def test_vectors_are_equal_to_pairs_and_triples_alone() -> None:
+    assert Vector(1, 2, 0) == (1, 2) == Vector(1, 2, 0)
+    assert Vector(1, 2, 3) == [1, 2, 3]
+    for other in ((1,), (1, 0, 0, 0), (), (1, 0, 1), [1], "100"):
+        assert Vector(1, 0, 0) != other
+
+
+def test_a_rotation_is_that_of_the_opposite_quaternion_too() -> None:
+    turn = Orientation.fromEuler(0.3, 0.2, 0.1)
+    opposite = Orientation.of(-part for part in (turn.x, turn.y, turn.z, turn.w))
+    assert turn == opposite
+    assert hash(turn) == hash(opposite)
+    assert turn.approxEq(opposite)
+    assert opposite.approxEq(Orientation.fromEuler(0.3 + 1e-7, 0.2, 0.1))
+    assert not opposite.approxEq(Orientation.fromEuler(0.31, 0.2, 0.1))
+    half = Orientation.of((1.0, 0.0, 0.0, 0.0))
+    assert half == Orientation.of((-1.0, 0.0, 0.0, 0.0))
+    assert hash(half) == hash(Orientation.of((-1.0, 0.0, 0.0, 0.0)))

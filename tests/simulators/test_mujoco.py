@@ -400,6 +400,31 @@ record far.position as far
     np.testing.assert_allclose(records(done, "far")[-1], [3, 0, 0.05], atol=1e-3)
 
 
+@pytest.mark.parametrize("taker", ["first", "second"])
+def test_of_two_grippers_each_may_hold_the_other(taker: str) -> None:
+    """Whichever was there first, and whoever else could hold it."""
+    held = "second" if taker == "first" else "first"
+    small = "with width 0.1, with length 0.1, with height 0.1"
+    text = f"""
+behavior Take():
+    if self is {taker}:
+        take Grasp({held})
+        wait for 5 steps
+        take Release()
+    take SetVelocity((0, 0.5, 0))
+    wait for 10 steps
+first = new Gripper at (0, 0, 1), {small}, with behavior Take
+second = new Gripper at (0.12, 0, 1), {small}, with behavior Take
+ego = first
+record ({taker}.holding, {held}.holding) as held
+"""
+    done = run(text, 20)
+    states = records(done, "held")
+    assert (True, False) in states
+    assert states[0] == states[-1] == (False, False)
+    assert not any(other for _, other in states)
+
+
 def test_guided_bodies_do_not_fall() -> None:
     done = run(told("SetVelocity((0, 1, 0.5))") + "ego = new Gripper at (0, 0, 2), with behavior B\n", 40)
     np.testing.assert_allclose(last(done)[0], [0, 2, 3], atol=0.03)
@@ -679,3 +704,76 @@ def test_the_renderer_of_the_library_agrees_with_rays() -> None:
     assert np.isinf(drawn["depth"][0]).all()
     red = drawn["front"]
     assert (red[inner][:, 0] > 2 * red[inner][:, 1]).all()
+
+
+@pytest.mark.parametrize(
+    ("width", "wheel", "mass"), [(0.35, 0.04, 3.0), (0.6, 0.1, 3.0), (0.35, 0.04, 20.0), (0.5, 0.07, 0.5)]
+)
+def test_robots_make_good_a_difference_of_speed_in_the_time_they_say(
+    width: float, wheel: float, mass: float
+) -> None:
+    """As what approaches exponentially does, in a twentieth of a second, whatever their size; wheels turn, too, and slow it a little."""
+    size = f"with width {width}, with length {width}, with height {2.5 * wheel}"
+    text = told("SetWheelSpeeds(0.1, 0.1)") + (
+        f"ego = new Robot at (0, 0, {1.25 * wheel}), {size}, with wheelRadius {wheel}, with mass {mass}, with behavior B\n"
+        "record ego.speed as v\n"
+    )
+    speeds = np.array(records(run(text, 12, timestep=0.02), "v")) / 0.1
+    # From the second step on, when the wheels have got their grip.
+    constant = -0.02 / np.polyfit(np.arange(2, 8), np.log(1 - speeds[2:8]), 1)[0] / 0.02 * 0.02
+    assert constant == pytest.approx(0.05, rel=0.15)
+
+
+@pytest.mark.parametrize("shape", ["BoxShape()", "ConeShape()"])
+@pytest.mark.parametrize("size", [(0.2, 0.8, 0.1), (0.8, 0.2, 0.3), (0.1, 0.3, 0.6)])
+def test_quadrotors_of_any_form_reach_their_attitude_critically_damped(
+    shape: str, size: tuple[float, float, float]
+) -> None:
+    """About each axis alike: a spring whose constant is 100 per second squared, without overshoot."""
+    width, length, height = size
+    for turn in ("pitch", "roll"):
+        text = told(f"Fly({turn}=0.1)") + (
+            f"ego = new Quadrotor at (0, 0, 9), with shape {shape}, with width {width}, with length {length}, "
+            f"with height {height}, with behavior B\nrecord ego.{turn} as angle\n"
+        )
+        angles = np.array(records(run(text, 10, timestep=0.05), "angle"))
+        time = 0.05 * np.arange(11)
+        np.testing.assert_allclose(angles, 0.1 * (1 - (1 + 10 * time) * np.exp(-10 * time)), atol=2e-3)
+
+
+def test_friction_is_that_of_sliding_alone() -> None:
+    """What resists spinning and rolling is as MuJoCo has it for all bodies."""
+    done = run("ego = new Body at (0, 0, 1), with friction 0.4\nnew Body at (5, 0, 1)\n", 0)
+    own, usual = (done.model.geom(f"object {number}").friction.tolist() for number in (0, 1))
+    assert own == [0.4, *usual[1:]]
+
+
+def test_a_gripper_lets_go_of_all_that_it_holds() -> None:
+    small = "with width 0.06, with length 0.06, with height 0.06, with reach 0.05"
+    text = f"""
+behavior B():
+    take Grasp(left), Grasp(right)
+    wait for 10 steps
+    take Release()
+    wait for 20 steps
+aside = new Body at (5, 0, 0.5)
+left = new Body at (-0.1, 0, 1), {small}
+right = new Body at (0.1, 0, 1), {small}
+ego = new Gripper at (0, 0, 1), with width 0.1, with reach 0.05, with behavior B
+record ego.holding as held
+record (left.position.z, right.position.z) as z
+"""
+    done = run(text, 31)
+    heights = records(done, "z")
+    assert min(heights[10]) > 0.95
+    assert max(heights[-1]) < 0.2
+    assert not records(done, "held")[-1]
+
+
+@pytest.mark.parametrize("speed", [0.4, -0.2])
+def test_a_robot_that_begins_with_a_speed_keeps_it(speed: float) -> None:
+    """Its wheels turn already, and its drive is told so."""
+    text = f"ego = new Robot at (0, 0, 0.06), facing 90 deg, with velocity ({-speed}, 0, 0)\nrecord ego.velocity as v\n"
+    velocities = np.array(records(run(text, 20, timestep=0.01), "v"))
+    np.testing.assert_allclose(velocities[:, 0], -speed, rtol=0.05)
+    np.testing.assert_allclose(velocities[:, 1:], 0, atol=0.05)

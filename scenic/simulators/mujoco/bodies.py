@@ -134,7 +134,7 @@ class Builder:
                 for other in self.parts:
                     self._possible_grip(part, other)
             for other in self.parts:
-                if other.model == "guided" and model != "guided":
+                if other.model == "guided":
                     self._possible_grip(other, part)
         for number, (_, name, sensor) in enumerate(carried((thing,))):
             self.cameras[id(thing), name] = f"{part.name} camera {number}"

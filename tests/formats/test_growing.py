@@ -1,0 +1,68 @@
+"""Files that grow: what is there after a run that was ended, however it was ended, and what another run makes of it."""
+
+from pathlib import Path
+
+import pytest
+
+from scenic.formats.growing import GrowingFile
+
+LINES = [b'{"k":0}\n', b'{"k":1,"x":"\xc3\xa9"}\n', b"\n", b'{"k":3}\n']
+WHOLE = b"".join(LINES)
+
+
+def names(folder: Path) -> dict[str, bytes]:
+    return {path.name: path.read_bytes() for path in folder.iterdir()}
+
+
+@pytest.mark.parametrize("place", ["out", "out.part"])
+def test_a_run_that_was_killed_anywhere_is_taken_up(tmp_path: Path, place: str) -> None:
+    """Whole lines stay, a torn one goes, and what comes next follows them."""
+    for cut in range(len(WHOLE) + 1):
+        for path in tmp_path.iterdir():
+            path.unlink()
+        (tmp_path / place).write_bytes(WHOLE[:cut])
+        count = WHOLE[:cut].count(b"\n")
+        file = GrowingFile(tmp_path / "out", resume=True)
+        assert file.kept() == LINES[:count]
+        with file:
+            assert names(tmp_path) == {"out.part": b"".join(LINES[:count])}
+            for line in LINES[count:]:
+                file.write(line)
+        assert names(tmp_path) == {"out": WHOLE}
+
+
+def test_what_is_there_counts_only_for_a_run_that_is_resumed(tmp_path: Path) -> None:
+    (tmp_path / "out").write_bytes(WHOLE)
+    file = GrowingFile(tmp_path / "out")
+    assert file.kept() == []
+    with file:
+        file.write(b"new\n")
+        assert names(tmp_path) == {"out": WHOLE, "out.part": b"new\n"}
+    assert names(tmp_path) == {"out": b"new\n"}
+
+
+@pytest.mark.parametrize("ended", [KeyboardInterrupt, ValueError])
+def test_a_run_that_is_ended_keeps_its_lines_and_no_run_without_lines_leaves_anything(
+    tmp_path: Path, ended: type[BaseException]
+) -> None:
+    def run(*lines: bytes, resume: bool = False) -> dict[str, bytes]:
+        file = GrowingFile(tmp_path / "out", resume=resume)
+
+        def fail() -> None:
+            with file:
+                for line in lines:
+                    file.write(line)
+                raise ended
+
+        with pytest.raises(ended):
+            fail()
+        return names(tmp_path)
+
+    assert run() == {}
+    assert run(b"one\n") == {"out": b"one\n"}
+    # What would replace an older file waits beside it.
+    assert run() == {"out": b"one\n"}
+    assert run(b"two\n") == {"out": b"one\n", "out.part": b"two\n"}
+    # The lines of the later run are those that are taken up.
+    assert run(b"three\n", resume=True) == {"out": b"two\nthree\n"}
+    assert run(resume=True) == {"out": b"two\nthree\n"}
