@@ -304,3 +304,15 @@ def test_deep_adds_what_analysis_proves(good: Path) -> None:
     good.write_text(GOOD.replace("> 0", "> 0  # scenic: ignore[SC701]"))
     assert run("check", "--deep", good).returncode == 0
     assert run("check", good).returncode == 0
+
+
+def test_the_error_of_which_there_is_more_to_read_is_an_error(tmp_path: Path) -> None:
+    """Not the warning before it."""
+    file = tmp_path / "both.scenic"
+    file.write_text("import math\nego = new Object\nx = egoo\n")
+    result = run("check", file)
+    found = json.loads(run("check", "--format", "json", file).stdout)["diagnostics"]
+    assert [item["severity"] for item in found] == ["warning", "error"]
+    assert f"scenic explain {found[1]['code']}\n" in result.stderr
+    file.write_text("import math\nego = new Object\n")
+    assert "scenic explain" not in run("check", file).stderr

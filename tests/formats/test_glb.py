@@ -78,3 +78,15 @@ def test_a_scene_without_objects() -> None:
 
 def test_equal_scenes_give_equal_files() -> None:
     assert glb(Scene([Object(), Chair(shape=BALL)])) == glb(Scene([Object(), Chair(shape=BALL)]))
+
+
+def test_colours_are_linear_light() -> None:
+    """By the formula of the standard, dark tones and the place where its two parts meet included."""
+    tones = [0.0, 0.01, 0.04, 0.041, 0.1, 0.3, 0.45, 0.7, 1.0]
+    materials = document_of(glb(Scene([Object(color=(tone, 0.0, 1.0)) for tone in tones])))["materials"]
+    found = [material["pbrMetallicRoughness"]["baseColorFactor"] for material in materials]
+    for tone, (red, green, blue, alpha) in zip(tones, found, strict=True):
+        # Back from light to tone.
+        back = 12.92 * red if red <= 0.0031308 else 1.055 * red ** (1 / 2.4) - 0.055
+        assert back == pytest.approx(tone, abs=2e-5)
+        assert (green, blue, alpha) == (0, 1, 1)

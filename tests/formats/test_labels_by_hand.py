@@ -243,3 +243,11 @@ def test_classes_are_shown_beyond_the_range_of_sight_too(tmp_path: Path) -> None
         assert mine.sum() == entry["pixels"] > 0
         assert (image["semantic"][mine] == labels["categories"]["Object"]).all()
     assert (image["semantic"][image["instance"] == 0] == 0).all()
+
+
+def test_of_several_cameras_of_one_name_the_first_objects_is_meant() -> None:
+    first, second = robot(RGBSensor(width=40, height=20)), robot(RGBSensor(width=60, height=20))
+    for objects, width in (([first, second], 40), ([second, first], 60)):
+        point = viewpoint(Scene(objects), "front", None)
+        assert point.owner is objects[0]
+        assert point.size == (width, 20)

@@ -170,3 +170,25 @@ def test_means_are_over_the_same_surface() -> None:
     slope = np.tile(np.arange(12, dtype=np.float32), (9, 1))
     means, _ = _averaged(slope, np.ones_like(group))
     np.testing.assert_allclose(means[:, 2:-2], slope[:, 2:-2], rtol=1e-6)
+
+
+@pytest.mark.parametrize("height", [0.2, 1.0, 5.0])
+def test_shadows_begin_at_the_foot_of_what_throws_them(height: float) -> None:
+    """However low it is: behind it as seen from the sun, and nowhere else."""
+    thing = Object((0, 0, height / 2), width=2, length=2, height=height)
+    drawn = picture([Scene([thing])])
+    stage = Stage(drawn.surfaces, drawn.scenes[0])
+    reach = height * np.hypot(SUN[0], SUN[1]) / SUN[2]
+    away = -SUN[:2] / np.hypot(SUN[0], SUN[1])
+    # From the corner that is turned away from the sun along its shadow, and beyond it; then towards the sun.
+    corner = np.array([1.0, 1.0])
+    places = [corner + away * reach * part for part in (0.1, 0.5, 0.85, 1.3, 2.0)]
+    places += [-corner - away * reach * part for part in (0.1, 0.5, 1.5)]
+    ground = np.array([[*place, 0.0] for place in places]) - stage.center
+    sun = stage.sunlit(
+        ground.astype(np.float32),
+        np.tile(np.float32([0, 0, 1]), (len(places), 1)),
+        np.zeros(len(places), np.int64),
+        16,
+    )
+    np.testing.assert_allclose(sun, [0, 0, 0, 1, 1, 1, 1, 1], atol=0.1)

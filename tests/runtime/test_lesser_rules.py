@@ -7,11 +7,15 @@ import numpy as np
 import pytest
 import scenic.core.regions as named
 import trimesh
+from scenic.core.distributions import Distribution, distributionFunction, needsSampling
+from scenic.core.lazy_eval import DelayedArgument
+from scenic.core.object_types import Mutator
 from scipy import stats
 
 from scenic.graph.bounds import Bounds
 from scenic.graph.operations import TABLE
-from scenic.language.errors import ScenicTypeError
+from scenic.language.errors import RandomControlFlowError, ScenicTypeError
+from scenic.runtime.coercions import to_heading
 from scenic.runtime.fields import VectorField
 from scenic.runtime.purity import is_pure
 from scenic.runtime.regions.base import Workspace, everywhere, nowhere
@@ -371,3 +375,82 @@ def test_points_and_grids_have_the_orientation_that_they_are_given() -> None:
         assert region.has_orientation
         assert region.orientation_at(Vector(3, 0, 0)).yaw == pytest.approx(0.4)
     assert not named.PointSetRegion("points", [(0, 0)]).has_orientation
+
+
+LATER = {
+    "truth": bool,
+    "elements": list,
+    "length": len,
+    "membership": lambda value: 3 in value,
+    "order": lambda value: value < 3,
+}
+
+
+@pytest.mark.parametrize("what", list(LATER))
+def test_what_depends_on_the_object_is_not_looked_into(what: str) -> None:
+    value = DelayedArgument({"x"}, lambda item: item.x)
+    with pytest.raises(RandomControlFlowError, match="depends on the object being specified") as caught:
+        LATER[what](value)
+    assert caught.value.help is not None
+    assert caught.value.help.startswith("it is known only while")
+
+
+def test_parts_that_programs_have_to_provide() -> None:
+    value = Distribution(1)
+    with pytest.raises(NotImplementedError, match="buckets"):
+        value.bucket()
+    with pytest.raises(NotImplementedError, match="sampleGiven"):
+        value.sampleGiven({})
+    with pytest.raises(NotImplementedError, match="appliedTo"):
+        Mutator().appliedTo(None)
+    assert value.supportInterval() == (None, None)
+
+
+def test_an_object_needs_sampling_if_anything_of_it_does() -> None:
+    loaded = scenario(
+        "ego = new Object at (Range(0, 1), 0)\nother = new Object at (5, 5)\nparam r = Range(0, 1), s = 3\n"
+    )
+    ego, other = loaded.objects
+    assert [needsSampling(item) for item in (ego, other, *loaded.params.values())] == [
+        True,
+        False,
+        True,
+        False,
+    ]
+
+
+def test_lifted_functions_keep_their_name_and_words() -> None:
+    def gain(value: float) -> float:
+        """By how much."""
+        return 2 * value
+
+    lifted = distributionFunction(gain)
+    assert (lifted.__name__, lifted.__doc__, lifted(3)) == ("gain", "By how much.", 6)
+
+
+def test_headings_of_random_values_that_have_none() -> None:
+    values = scenario(
+        "param v = Vector(Range(0, 1), 2, 3), h = Range(0, 1), b = Uniform(True, False)\n"
+    ).params
+    with pytest.raises(ScenicTypeError, match="a heading"):
+        to_heading(values["v"])
+    assert to_heading(values["h"]) is values["h"]
+
+
+@pytest.mark.parametrize(
+    "condition",
+    [
+        "not (x > 0.5 and y < 1)", "x > 0.5 if b else y > 0.2", "0 < x < y", "min(x, y) > 0.1", "abs(x) < 1", "ego in zone",
+        "(distance from ego to p) < 5", "ego can see p", "x > 0.5 or (y < 1 and b)", "always x > 0.5", "x > 0.5 implies y > 0.1",
+        "(x, y)[0] > 0.5", "(relative heading of ego) < 1", "hypot(x, y) < 1", "x % 1 < 0.5", "round(x) == 1", "sin(x) > 0", "b",
+        "ego intersects p", "max([x, y]) > 0", "len([x, y]) == 2", "ego.position.x > 0",
+    ],
+)  # fmt: skip
+def test_analysis_looks_into_conditions_of_the_language(condition: str) -> None:
+    """Called on samples they would hold as well; but nothing would be known of them."""
+    text = (
+        "x, y, b = Range(0, 1), Range(0, 2), Uniform(True, False)\nzone = CircularRegion((0, 0), 9)\n"
+        f"ego = new Object at (x, 0)\np = new Object at (5, y)\nrequire {condition}\n"
+    )
+    names = {node.operation.name for node in scenario(text).outline.graph.nodes}
+    assert "opaque condition" not in names

@@ -2,18 +2,23 @@
 
 import math
 from collections.abc import Mapping, Sequence
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
 import scenic
+from scenic.cli.simulate import _Kept
 from scenic.language.errors import DivergenceError, InvalidScenarioError, SerializationError
 from scenic.runtime.dynamics.recorders import Recorder
+from scenic.runtime.dynamics.requirements import Outcome
+from scenic.runtime.temporal.monitors import Verdict
 from scenic.simulators.batch import SimulatorChoiceError, choose_simulator
 from scenic.simulators.dummy import DummySimulator
 from scenic.simulators.kinematic import KinematicSimulator
 from scenic.simulators.replays import Replay
+from scenic.simulators.results import Latest, NotKeptError
 from scenic.simulators.simulator import Simulator
 
 from .test_interface import AGENTS, DRAWING, REJECTED, Plain, scene, simulator
@@ -355,3 +360,42 @@ def test_simulators_that_were_meant_are_named(name: str, meant: str | None) -> N
         choose_simulator(name, scenic.scenarioFromString("ego = new Object\n"))
     advice = str(caught.value.help)
     assert advice == f"did you mean {meant}?" if meant else "MODULE:CLASS" in advice
+
+
+def test_what_became_of_a_requirement_is_told_in_words() -> None:
+    assert repr(Outcome("near", 3, Verdict.PRESUMABLY_TRUE, 1.0)) == "<near: presumably true>"
+    assert repr(Outcome("near", None, None, None)) == "<near: not evaluated>"
+
+
+def test_a_property_without_a_value_takes_the_type_of_its_first_one() -> None:
+    class Telling(Plain):
+        def getProperties(self, obj: Any, properties: Any) -> Mapping[str, Any]:
+            found = dict(super().getProperties(obj, properties))
+            found["mood"] = [None, 1.5, 2, self.odd][min(self.currentTime, 3)]
+            return found
+
+    text = "class Moody:\n    mood[dynamic]: None\nego = new Moody\nrecord ego.mood as mood\n"
+    for odd, fine in ((2.5, True), ("glad", False), (scenic_vector(1), False)):
+        Telling.odd = odd
+        if fine:
+            done = simulator(Telling).simulate(scene(text), maxSteps=4)
+            assert done is not None
+            assert [value for _, value in done.records["mood"]] == [None, 1.5, 2, 2.5, 2.5]
+        else:
+            with pytest.raises(RuntimeError, match="mood"):
+                simulator(Telling).simulate(scene(text), maxSteps=4)
+
+
+def test_a_look_back_in_one_try_is_remembered_in_the_next() -> None:
+    kept = _Kept(None, "jsonl", False)
+    courses = [Latest("state"), Latest("state")]
+    for course in courses:
+        course.append(1)
+        course.append(2)
+    for course in courses:
+        kept.begin()(SimpleNamespace(trajectory=course, actionSequence=[]), (), {})
+        if course is courses[0]:
+            assert not kept.looked_back()
+            with pytest.raises(NotKeptError):
+                course[0]
+    assert kept.looked_back()

@@ -777,3 +777,14 @@ def test_a_robot_that_begins_with_a_speed_keeps_it(speed: float) -> None:
     velocities = np.array(records(run(text, 20, timestep=0.01), "v"))
     np.testing.assert_allclose(velocities[:, 0], -speed, rtol=0.05)
     np.testing.assert_allclose(velocities[:, 1:], 0, atol=0.05)
+
+
+@pytest.mark.parametrize(
+    ("timestep", "most", "count"),
+    [(0.05, 0.002, 25), (0.05, 0.02, 3), (0.1, 0.03, 4), (0.001, 0.002, 1), (0.3, 0.1, 3)],
+)
+def test_steps_of_the_physics_are_no_longer_than_allowed(timestep: float, most: float, count: int) -> None:
+    done = run("ego = new Body at (0, 0, 50)\n", 3, timestep=timestep, physics_step=most)
+    assert done.model.opt.timestep == pytest.approx(timestep / count)
+    assert done.model.opt.timestep <= most * (1 + 1e-9)
+    assert done.data.time == pytest.approx(3 * timestep)
