@@ -110,3 +110,6 @@ def test_numbered_files() -> None:
     assert numbered(Path("a/room.glb"), 0, 1) == Path("a/room.glb")
     assert numbered(Path("a/room.glb"), 7, 20) == Path("a/room-007.glb")
     assert numbered(Path("a/room.glb"), 7, 20_000) == Path("a/room-00007.glb")
+    # As many digits as the last number has, and three at least.
+    for count, last in ((2, "001"), (1000, "999"), (1001, "1000"), (10_000, "9999")):
+        assert numbered(Path("room.glb"), count - 1, count) == Path(f"room-{last}.glb")

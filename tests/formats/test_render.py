@@ -1,12 +1,14 @@
 import io
+import itertools
 import sys
 
 import numpy as np
 import PIL.Image
 import pytest
 
+import scenic
 from scenic.formats.buffers import Lens, seen
-from scenic.formats.camera import corners, framing, ground_height
+from scenic.formats.camera import STANDARD, corners, framed, framing, ground_height
 from scenic.formats.instances import picture
 from scenic.formats.png import MissingLibraryError, png
 from scenic.formats.render import paint, render
@@ -158,3 +160,17 @@ def test_without_pillow_the_way_to_get_it_is_told(monkeypatch: pytest.MonkeyPatc
     diagnostic = caught.value.diagnostic()
     assert diagnostic.code == "SC604"
     assert "pip install 'scenic-lang[view]'" in (diagnostic.help or "")
+
+
+def test_a_picture_of_the_workspace_shows_what_stands_in_it_whole() -> None:
+    """Above its height and below it, too; its sides are those of the workspace alone."""
+    program = "workspace = Workspace(RectangularRegion((1, 2), 0, 8, 6))\nego = new Object at (1, 2, {z}), with height 4\n"
+    for z in (5, -3, 0):
+        (scene,) = scenic.scenarioFromString(program.format(z=z)).sample(1, seed=0)
+        points = framed(scene, picture([scene]).scenes[0], STANDARD)
+        low, high = points.min(axis=0), points.max(axis=0)
+        assert low.tolist() == [-3, -1, min(0, z - 2)]
+        assert high.tolist() == [5, 5, max(0, z + 2)]
+        # At all four corners of the workspace, so that nothing hides at a rim.
+        for corner in itertools.product((-3, 5), (-1, 5), (low[2], high[2])):
+            assert (np.abs(points - corner).max(axis=1) < 1e-9).any()

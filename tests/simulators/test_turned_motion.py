@@ -105,7 +105,9 @@ def test_forms_of_one_mesh_have_their_own_sizes() -> None:
     found = model_of(
         f"ego = new Body with shape {shape}, with density 3\n"
         f"new Body at (5, 0, 0), with shape {shape}, with width 2, with length 3, with density 3\n"
+        f"new Body at (9, 0, 0), with shape {shape}, with height 5, with density 3\n"
     )
+    assert found["mass"]["object 2"] == pytest.approx(5 * found["mass"]["object 0"])
     first, second = found["mass"]["object 0"], found["mass"]["object 1"]
     assert second == pytest.approx(6 * first)
 

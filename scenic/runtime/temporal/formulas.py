@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Final, TypeAlias
 
-__all__ = ["ARITY", "Atom", "Compound", "Formula", "atoms", "is_temporal"]
+__all__ = ["ARITY", "Atom", "Compound", "Formula", "is_temporal"]
 
 ARITY: Final = {"not": 1, "next": 1, "always": 1, "eventually": 1, "until": 2, "implies": 2}
 """Operands of each operator; ``and`` and ``or`` have any number."""
@@ -41,10 +41,3 @@ def is_temporal(formula: Formula) -> bool:
     return formula.operator in ("next", "always", "eventually", "until") or any(
         is_temporal(operand) for operand in formula.operands
     )
-
-
-def atoms(formula: Formula) -> list[Atom]:
-    """The atoms of a formula, from left to right."""
-    if isinstance(formula, Atom):
-        return [formula]
-    return [atom for operand in formula.operands for atom in atoms(operand)]
