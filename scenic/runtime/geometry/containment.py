@@ -199,9 +199,11 @@ def mesh_in_mesh(inner: Mesh, inner_poses: Poses, outer: Mesh, outer_poses: Pose
     def test(chosen: Indices, points: Floats) -> Booleans:
         (x, y, z), scale = _local(inner_poses, outer_poses, chosen, points)
         result = np.ones(len(chosen), dtype=np.bool_)
-        slack = TOLERANCE / np.minimum(np.minimum(scale[0], scale[1]), scale[2])
+        width, length, height = (1 / part for part in scale)
         for a, b, c, d in outer.hull.planes:
-            result &= np.logical_and.reduce(a * x + b * y + c * z + d <= slack, axis=0)
+            # What is a length of 1 beside the plane in the unit frame, in the world is one over this.
+            across = np.sqrt((a * width) ** 2 + (b * length) ** 2 + (c * height) ** 2)
+            result &= np.logical_and.reduce(a * x + b * y + c * z + d <= TOLERANCE * across, axis=0)
         return result
 
     if outer.is_convex and len(outer.hull.planes) <= _MOST_PLANES:

@@ -15,6 +15,7 @@ from .samples import (
     SHAPES,
     hollow,
     in_batches,
+    placed,
     random_poses,
     real_meshes,
     solid,
@@ -135,6 +136,34 @@ def test_touching_from_inside_is_inside():
     turned = Body((primitives.box(),), None, yawed((0, 0, 0), np.pi / 2, (2, 2, 2)))
     assert containment.in_polygons(turned, square, 1)[0]
     assert containment.in_polygons(body, Polygons(RING.union(shapely.box(-1, -1, 1, 1))), 1)[0]
+
+
+def test_how_far_bodies_may_stick_out_is_the_same_on_every_axis():
+    """A billionth of a metre, however long, turned or thin the container is."""
+    sizes = np.array([1000.0, 10.0, 0.1])
+    turn = random_poses(1, 61).orientation
+    matrix = quaternions.to_matrix(turn)[0]
+    inner = np.array([1.0, 0.5, 0.05])
+    hollowed = placed(primitives.box(), (0, 0, 0), (1, 1, 1))
+    for axis in range(3):
+        for side in (1, -1):
+            for off, held in ((0.4e-9, True), (4e-9, False), (-1e-6, True), (1e-6, False)):
+                local = np.zeros(3)
+                local[axis] = side * ((sizes - inner)[axis] / 2 + off)
+                body = Body((primitives.box(),), None, Poses((matrix @ local)[None], turn, inner[None]))
+                if axis or abs(off) > 1e-7:  # beside a kilometre rounding is as large as that
+                    assert containment.in_box(body, sizes[None], np.zeros((1, 3)), turn, 1)[0] == held
+                container = Body((hollowed,), None, Poses(np.zeros((1, 3)), turn, sizes[None]))
+                if abs(off) > 1e-7:
+                    assert containment.in_body(body, container, 1)[0] == held
+                # The round one holds it only about its middle.
+                little = Body(
+                    (primitives.box(),), None, Poses((matrix @ local)[None], turn, inner[None] * 1e-7)
+                )
+                local[axis] = side * (sizes[axis] / 2 + (1e-4 if off > 1e-7 else -1e-4))
+                little = Body(little.meshes, None, Poses((matrix @ local)[None], turn, inner[None] * 1e-7))
+                expected = off <= 1e-7
+                assert containment.in_ellipsoid(little, sizes[None], np.zeros((1, 3)), turn, 1)[0] == expected
 
 
 def test_containers_without_volume_hold_nothing():
