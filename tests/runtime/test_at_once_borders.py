@@ -363,8 +363,8 @@ def test_the_measures_of_a_body() -> None:
 
 
 @pytest.mark.parametrize("angle", [0.01, 0.06, 0.3, 1.2])
-def test_long_boxes_that_nearly_cross(angle: float) -> None:
-    """Between two planks only the direction across both tells them apart, however little one is turned."""
+def test_planks_that_nearly_cross(angle: float) -> None:
+    """Of two planks, turned in all directions by little or much."""
     sizes = (40.0, 1.0, 0.2), (40.0, 1.0, 0.2)
     turn = Rotation.from_euler("z", angle) * Rotation.from_euler("x", 0.7)
     other = Rotation.from_euler("z", -angle) * Rotation.from_euler("x", -0.4)
@@ -398,3 +398,20 @@ def test_gaps_are_told_of_convex_bodies_alone() -> None:
         assert meet(placed((0.1, 0, 0), (0, 0, 0, 1), (1, 1, 1), primitives.box()), one) is (
             True if shape == "box" else None
         )
+
+
+@pytest.mark.parametrize("angle", [0.02, 0.05, 0.09, 0.4])
+def test_bars_that_cross_edge_on_edge(angle: float) -> None:
+    """Only the direction across both edges tells them apart, however little one is turned against the other."""
+    size = (400.0, 1.0, 1.0)
+    lower, upper = (
+        Rotation.from_euler("z", turn) * Rotation.from_euler("x", math.pi / 4) for turn in (angle, -angle)
+    )
+    still = Moving("box", np.zeros(3), np.array([0.0, 0, 1]), lower.as_quat(), size)
+    item = Moving("box", np.array([0.3, 0.1, 0]), np.array([0.0, 0, 1]), upper.as_quat(), size)
+    change = math.sqrt(2)  # both stand on their edges
+    for off in (CENTIMETRE, -CENTIMETRE, 0.1, -0.1):
+        assert meet(item.at(change + off), still.at(0)) is (off < 0)
+        assert meet(still.at(0), item.at(change + off)) is (off < 0)
+        assert overlap(item.at(change + off), still.at(0)) == pytest.approx(max(0.0, -off), abs=1e-9)
+    assert meet(item.at(change), still.at(0)) is None

@@ -118,6 +118,20 @@ def test_members_of_a_random_union_hold_a_body_together() -> None:
     assert set(draws(program, n=24)) == {(True, -0.5), (True, 0), (False, 0.5)}
 
 
+def test_lanes_of_a_union_are_those_of_its_columns() -> None:
+    """Some bodies a member holds alone; the lanes that are left are looked at with their own parameters and shapes."""
+    program = (
+        "gap, x = Uniform(-0.25, 0.5), Uniform(-2.5, 0.1)\n"
+        "room = RectangularRegion((-2, 0), 0, 4, 4).union(RectangularRegion((2 + gap, 0), 0, 4, 4))\n"
+        "thing = new Object at (x, 0, 0), with width 2, with length 1, with shape Uniform(BoxShape(), CylinderShape()), "
+        "with regionContainedIn everywhere\n"
+        "param x = (room.containsObject(thing), gap, x)\n"
+    )
+    found = draws(program, n=48)
+    assert [held for held, _, _ in found] == [x < -1 or gap < 0 for _, gap, x in found]
+    assert len(set(found)) == 4
+
+
 def test_gaps_of_a_choice_are_those_of_the_drawn_region() -> None:
     """A container of the plane is no farther from what is above it."""
     disc, plate = CircularRegion((0, 0, 0), 1), CircularRegion((10, 0, 0), 2)

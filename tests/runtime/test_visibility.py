@@ -195,3 +195,47 @@ def test_large_things_are_placed_visibly_wherever_a_part_is_in_view() -> None:
     text = "ego = new Object with viewAngle 90 deg, with visibleDistance 5\nnew Object visible, with width 6, with length 8\n"
     scenes = scenic.scenarioFromString(text, mode2D=True).sample(200, seed=1)
     assert max(math.hypot(*tuple(scene.objects[1].position)[:2]) for scene in scenes) > 8
+
+
+@pytest.mark.parametrize("angle", [0.2, 1.5, math.pi - 0.1, math.pi + 0.3, 4.5, 6.2, 2 * math.pi])
+def test_large_and_near_outlines_in_views_of_every_width(angle: float) -> None:
+    """Many reach into the view with the middle of an edge alone, or beside the camera."""
+    count, rng = 160, np.random.default_rng(int(10 * angle))
+    heading, turn = rng.uniform(-math.pi, math.pi, (2, count))
+    distance, size = (
+        rng.uniform(1, 4, count),
+        rng.uniform(0.1, 9, (count, 2)) * rng.choice([0.1, 1], (count, 2)),
+    )
+    camera = rng.uniform(-3, 3, (count, 3))
+    # Beyond the rim by about half the width of the outline, or anywhere near.
+    way, off = (
+        rng.uniform(-math.pi, math.pi, count),
+        distance + size.max(axis=1) / 2 * rng.uniform(0.3, 1.2, count),
+    )
+    off = np.where(rng.random(count) < 0.3, rng.uniform(0, 5, count), off)
+    turn = np.where(rng.random(count) < 0.5, way + rng.normal(0, 0.1, count), turn)
+    place = camera + np.stack([-off * np.sin(way), off * np.cos(way), rng.normal(size=count)], axis=-1)
+    zeros = np.zeros(count)
+    seen = _sees(
+        None,  # type: ignore[arg-type] # elementwise: nothing of the call is used
+        camera,
+        heading,
+        np.full(count, angle),
+        distance,
+        place,
+        np.stack([zeros, zeros, np.sin(turn / 2), np.cos(turn / 2)], axis=-1),
+        np.column_stack([size, np.ones(count)]),
+    )
+    decided = 0
+    for lane in range(count):
+        view = sector(*camera[lane, :2], heading[lane], angle, distance[lane])
+        target = rectangle(*place[lane, :2], turn[lane], *size[lane])
+        if view.intersects(target) and view.intersection(target).area > 1e-5:
+            assert seen[lane]
+        elif not view.buffer(1e-3).intersects(target):
+            assert not seen[lane]
+        else:
+            continue
+        decided += 1
+    assert decided > 0.95 * count
+    assert 0.1 < seen.mean() < 0.97

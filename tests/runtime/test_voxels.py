@@ -264,3 +264,24 @@ def test_the_mesh_of_cells() -> None:
     assert (held == region.contains_points(points)).all()
     assert region.voxel_points.shape == (4, 3)
     assert region.kdTree.query(region.voxel_points[0])[0] == 0
+
+
+def test_bodies_beside_cells_touch_those_that_they_reach() -> None:
+    """Up to the border of a cell, on every side of it; and no farther."""
+    import scenic.core.regions as named
+    import trimesh
+
+    filled = np.zeros((2, 3, 1), dtype=bool)
+    filled[0, 0] = filled[1, 2] = True
+    transform = np.diag([2.0, 1.0, 4.0, 1.0])
+    cells = named.VoxelRegion(trimesh.voxel.VoxelGrid(filled, transform=transform))
+    for centre in ((0, 0, 0), (2, 2, 0)):
+        for axis, half in enumerate((1.0, 0.5, 2.0)):
+            for side in (-1, 1):
+                for off, met in ((-0.01, True), (0.01, False)):
+                    place = np.array(centre, dtype=float)
+                    place[axis] += side * (half + 0.1 + off)
+                    body = named.BoxRegion(dimensions=(0.2, 0.2, 0.2), position=tuple(place))
+                    assert cells.intersects(body) is met
+                    assert body.intersects(cells) is met
+    assert not cells.intersects(named.BoxRegion(dimensions=(0.5, 0.5, 0.5), position=(2, 0, 0)))

@@ -84,6 +84,8 @@ def test_near_pairs_hold_all_overlapping_boxes(bodies, moving, lanes, swept, mon
     lower = rng.uniform(-spread, spread, (bodies, lanes, 3))
     upper = lower + rng.uniform(0, 1.5, lower.shape)
     upper[0] += 10 * spread  # one body is as large as the world
+    if bodies > 2:
+        lower[-2] -= 10 * spread  # and one that may be fixed begins before all others
     lower[-1, 0], upper[-1, 0] = np.inf, np.inf
     lower[-1, 1], upper[-1, 1] = np.nan, np.nan
     found = [np.stack(group, axis=1) for group in broadphase.near_pairs(*cells_of(lower, upper), moving)]

@@ -126,6 +126,40 @@ def test_nearly_equal_vertices_are_merged(tmp_path):
     assert load_mesh(tmp_path / "soup.obj").volume == pytest.approx(bumpy(2).volume)
 
 
+@pytest.mark.parametrize("scale", [1e-3, 1.0, 1e4])
+def test_how_near_vertices_are_merged_depends_on_the_size(scale):
+    """A hundred-millionth of the largest extent: no hole is left below, none closed above."""
+    box = placed(primitives.box(), (3 * scale, 0, 0), (2 * scale, scale, scale))
+    apart = box.triangles.reshape(-1, 3) + 0.0
+    rng = np.random.default_rng(3)
+    for part, whole in ((0.1e-8, True), (30e-8, False)):
+        moved = Mesh(
+            apart + part * 2 * scale * rng.uniform(-0.5, 0.5, apart.shape),
+            np.arange(len(apart)).reshape(-1, 3),
+        )
+        if whole:
+            solid = proper_volume(moved)
+            assert len(solid.vertices) == 8
+            assert solid.volume == pytest.approx(2 * scale**3, rel=1e-6)
+        else:
+            with pytest.raises(MeshError, match="holes"):
+                proper_volume(moved)
+    # A body so thin that merging by its own thickness would be too careful, or by metres too bold.
+    plate = placed(primitives.box(), (0, 0, 0), (scale, scale, 1e-6 * scale))
+    assert proper_volume(plate).volume == pytest.approx(1e-6 * scale**3, rel=1e-6)
+
+
+def test_surfaces_without_an_area_are_refused(tmp_path):
+    (tmp_path / "line.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 0 0\nf 1 2 3\n")
+    with pytest.raises(MeshError, match="no triangles with an area"):
+        load_mesh(tmp_path / "line.obj", volume=False)
+    with pytest.raises(MeshError, match="no triangles with an area"):
+        load_mesh(tmp_path / "line.obj")
+    (tmp_path / "empty.off").write_text("OFF\n0 0 0\n")
+    with pytest.raises(MeshError, match=r"empty.off` (holds no triangles|cannot be read as off)"):
+        load_mesh(tmp_path / "empty.off")
+
+
 def test_holes_are_counted(tmp_path):
     box = primitives.box()
     trimesh.Trimesh(box.vertices, box.faces[1:], process=False).export(tmp_path / "open.obj")

@@ -262,6 +262,109 @@ def test_elements_that_stand_apart_in_a_buffer(code, start, between):
     assert len(read_gltf(json.dumps(tree).encode(), no_neighbour).faces) == 2
 
 
+def gltf_triangle(**more):
+    """A description of one triangle; values by path, such as ``accessors_0_count``."""
+    corners = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 1, 0), (2, 1, 0)], dtype="<f4")
+    data = corners.tobytes() + np.arange(5, dtype="<u2").tobytes()
+    tree = {
+        "asset": {"version": "2.0"},
+        "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+        "accessors": [
+            {"bufferView": 0, "componentType": 5126, "count": 5, "type": "VEC3"},
+            {"bufferView": 1, "componentType": 5123, "count": 5, "type": "SCALAR"},
+        ],
+        "bufferViews": [{"buffer": 0, "byteLength": 60}, {"buffer": 0, "byteOffset": 60, "byteLength": 10}],
+        "buffers": [{"byteLength": len(data), "uri": "data:;base64," + base64.b64encode(data).decode()}],
+    }
+    for path, value in more.items():
+        *way, last = (int(part) if part.isdigit() else part for part in path.split("_"))
+        place = tree
+        for part in way:
+            place = place[part]
+        if value is None:
+            del place[last]
+        else:
+            place[last] = value
+    return tree
+
+
+@pytest.mark.parametrize("by_number", [True, False])
+@pytest.mark.parametrize(
+    ("mode", "faces"),
+    [(0, []), (1, []), (2, []), (3, []), (4, [(0, 1, 2)]), (5, [(0, 1, 2), (3, 2, 1), (2, 3, 4)]), (6, None)],
+)
+def test_modes_of_primitives(mode, faces, by_number):
+    tree = gltf_triangle(meshes_0_primitives_0_mode=mode)
+    if not by_number:
+        del tree["meshes"][0]["primitives"][0]["indices"]
+    data = json.dumps(tree).encode()
+    if faces is None:
+        with pytest.raises(NotCoveredError):
+            read_gltf(data, no_neighbour)
+    else:
+        assert read_gltf(data, no_neighbour).faces.tolist() == [list(face) for face in faces]
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "error"),
+    [
+        ("asset_version", "1.0", NotCoveredError),
+        ("asset_version", "2.1", None),
+        ("asset", None, NotCoveredError),
+        ("meshes_0_primitives_0_extensions", {"KHR_draco_mesh_compression": {}}, NotCoveredError),
+        ("meshes_0_primitives_0_targets", [{}], NotCoveredError),
+        ("accessors_0_sparse", {}, NotCoveredError),
+        ("accessors_0_bufferView", None, NotCoveredError),
+        ("accessors_0_normalized", True, NotCoveredError),
+        ("accessors_0_normalized", False, None),
+        ("bufferViews_0_extensions", {"EXT_meshopt_compression": {}}, NotCoveredError),
+        ("buffers_0_uri", None, ValueError),
+        ("accessors_0_count", 3, ValueError),
+        ("accessors_0_count", 0, ValueError),
+        ("accessors_1_count", 0, None),
+        ("accessors_1_count", 4, None),
+        ("accessors_1_count", 6, ValueError),
+        ("accessors_0_type", "VEC2", ValueError),
+        ("nodes_0_mesh", 1, ValueError),
+        ("meshes_0_primitives_0_attributes", {}, ValueError),
+    ],
+)
+def test_what_descriptions_may_say(path, value, error):
+    data = json.dumps(gltf_triangle(**{path: value})).encode()
+    if error is None:
+        found = read_gltf(data, no_neighbour)
+        assert len(found.faces) == (0 if path == "accessors_1_count" and value == 0 else 1)
+    else:
+        with pytest.raises(error):
+            read_gltf(data, no_neighbour)
+
+
+def test_files_in_one_piece():
+    text = json.dumps(gltf_triangle(buffers_0_uri=None)).encode()
+    text += b" " * (-len(text) % 4)
+    buffer = base64.b64decode(gltf_triangle()["buffers"][0]["uri"].partition(",")[2])
+    buffer += b"\0" * (-len(buffer) % 4)
+
+    def whole(*chunks, version=2):
+        body = b"".join(struct.pack("<I4s", len(data), kind) + data for kind, data in chunks)
+        return b"glTF" + struct.pack("<II", version, 12 + len(body)) + body
+
+    proper = whole((b"JSON", text), (b"BIN\0", buffer))
+    assert read_glb(proper, no_neighbour).faces.tolist() == [[0, 1, 2]]
+    other = whole((b"JSON", text), (b"NOTE", b"1234"), (b"BIN\0", buffer), (b"BIN\0", b"\0" * 80))
+    assert read_glb(other, no_neighbour).faces.tolist() == [[0, 1, 2]]
+    for data, error in (
+        (whole((b"JSON", text), (b"BIN\0", buffer), version=1), NotCoveredError),
+        (whole((b"BIN\0", buffer)), ValueError),
+        (whole((b"JSON", text)), ValueError),
+        (b"glTG" + proper[4:], ValueError),
+        (proper[:16], ValueError),
+    ):
+        with pytest.raises(error):
+            read_glb(data, no_neighbour)
+
+
 def test_obj_lines_that_say_nothing():
     """A `v` or an `f` alone is no vertex and no face; numbers from the end count the vertices before a face."""
     square = b"v 0 0 0\nv\nv 1 0 0\nf\nv \nv 1 1 0\nf -3 -2 -1\nv 0 1 0 0.5\nvn 0 0 1\nf -4//1 -2/3/1 -1\n\nf 1 2\n"

@@ -133,10 +133,11 @@ def _dives(mesh: Mesh, first: Floats, second: Floats, edges: Floats, directions:
     return (along < -0.05 * np.linalg.norm(directions, axis=1)[:, np.newaxis]).all(axis=1)
 
 
-def test_what_single_precision_misses_hides_all_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("seed", [32, 33])
+def test_what_single_precision_misses_hides_all_the_same(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """Where the index in single precision misses obstacles, faces in double precision are what counts."""
     count = 60
-    observers, target, occluders = scenes(31, count)
+    observers, target, occluders = scenes(seed, count)
     target = Body((BOX,), None, target.poses)
     points = target.poses.position
     honest = (
@@ -214,3 +215,21 @@ def test_rays_meet_turned_and_stretched_bodies_where_lines_of_the_world_do(mesh:
             np.zeros(300, dtype=np.intp), directions / 2, exact=exact
         )
         assert again == pytest.approx(2 * found)
+
+
+def test_cameras_in_bodies_of_different_shapes_are_each_in_their_own() -> None:
+    """The middle of a frame is beside it, that of a box in it; whichever comes first in the table of shapes."""
+    meshes = (BOX, FRAME, primitives.cone())
+    count = 24
+    choice = np.arange(count) % 3
+    place = np.where((np.arange(count) // 3 % 2 == 0)[:, np.newaxis], [[0.0, 0, 0]], [[0.9, 0, 0.9]])
+    # Straight ahead of narrow views that look away there is nothing of any of them but around the camera.
+    observers = Views.fixed((0, 0, 0), angles=(0.02, 0.02), count=(1, 1), distance=0.05).spread(count)
+    observers = Views(place, *(getattr(observers, name) for name in _REST))
+    for order in ((0, 1, 2), (2, 0, 1), (1, 2, 0)):
+        table_ = tuple(meshes[number] for number in order)
+        numbers = np.array([order.index(number) for number in choice])
+        body = Body(table_, numbers, Poses.fixed((0, 0, 0), size=(2, 2, 2)))
+        # A box holds both places, a frame the one in its corner, a cone the middle.
+        expected = (choice == 0) | ((choice == 1) == (place[:, 0] > 0))
+        assert sees_bodies(observers, body, (), count).tolist() == expected.tolist()

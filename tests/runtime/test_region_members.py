@@ -1,0 +1,367 @@
+"""Members that every kind of region has, and what is refused: names, measures, directions, fields of unions, operators."""
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import scenic.core.regions as named
+import shapely
+import trimesh
+
+import scenic
+from scenic.language.errors import InvalidScenarioError, ScenicTypeError, ScenicValueError, UnsupportedError
+from scenic.runtime.fields import VectorField
+from scenic.runtime.geometry import primitives
+from scenic.runtime.geometry.segments import Segments
+from scenic.runtime.geometry.single import placed
+from scenic.runtime.regions.composite import IntersectionRegion
+from scenic.runtime.shapes import BoxShape, ConeShape, CylinderShape, MeshShape, SpheroidShape
+from scenic.runtime.values import Orientation, Vector
+from tests.runtime.geometry.samples import SHAPES
+from tests.runtime.programs import assert_same_rotation, draws, euler, failure, params, scenario, thing
+
+TILT = Orientation.fromEuler(0.7, 0.4, -0.3)
+PLACE = Vector(1, 2, 3)
+CUBE = trimesh.creation.box()
+MAKERS: dict[str, Any] = {
+    "disc": lambda **more: named.CircularRegion(PLACE, 2, **more),
+    "sector": lambda **more: named.SectorRegion(PLACE, 2, 0.3, 1, **more),
+    "rectangle": lambda **more: named.RectangularRegion(PLACE, 0.3, 2, 4, **more),
+    "polygon": lambda **more: named.PolygonalRegion([(0, 0), (4, 0), (0, 3)], **more),
+    "footprint": lambda **more: named.PolygonalFootprintRegion(shapely.box(0, 0, 1, 2), **more),
+    "polyline": lambda **more: named.PolylineRegion([(0, 0), (4, 0), (4, 3)], **more),
+    "path": lambda **more: named.PathRegion([(0, 0, 0), (4, 0, 1)], **more),
+    "box": lambda **more: named.BoxRegion((1, 2, 3), PLACE, TILT, **more),
+    "ball": lambda **more: named.SpheroidRegion((1, 2, 3), PLACE, TILT, **more),
+    "volume": lambda **more: named.MeshVolumeRegion(CUBE, **more),
+    "surface": lambda **more: named.MeshSurfaceRegion(CUBE, **more),
+    "cells": lambda **more: named.VoxelRegion(trimesh.voxel.VoxelGrid(np.ones((1, 2, 3), bool)), **more),
+    "view": lambda **more: named.ViewRegion(4, (1, 1), **more),
+    "cut": lambda **more: IntersectionRegion(named.BoxRegion(), named.SpheroidRegion(), **more),
+}
+
+
+@pytest.mark.parametrize("kind", MAKERS)
+def test_regions_keep_their_names(kind: str) -> None:
+    region = MAKERS[kind](name="plaza")
+    assert region.name == "plaza"
+    assert "plaza" in str(region)
+    assert MAKERS[kind]().name is None
+    assert type(region).__name__ in str(region)
+
+
+@pytest.mark.parametrize(
+    ("region", "center", "radius"),
+    [
+        (MAKERS["disc"](), PLACE, 2),
+        (MAKERS["rectangle"](), PLACE, math.sqrt(5)),
+        (MAKERS["box"](), PLACE, math.sqrt(14) / 2),
+        (MAKERS["ball"](), PLACE, math.sqrt(14) / 2),
+        (named.MeshVolumeRegion(CUBE, (1, 2, 3), PLACE, TILT), PLACE, math.sqrt(14) / 2),
+        (named.MeshSurfaceRegion(CUBE, (1, 2, 3), PLACE, TILT), PLACE, math.sqrt(14) / 2),
+        (named.PolygonalRegion([(0, 0), (4, 0), (4, 3)], z=2), Vector(2, 1.5, 2), 2.5),
+    ],
+)
+def test_circles_and_balls_around_regions(region: Any, center: Vector, radius: float) -> None:
+    middle, found = region.circumcircle
+    assert tuple(middle) == pytest.approx(tuple(center))
+    assert found == pytest.approx(radius)
+
+
+def test_measures_of_volumes_of_meshes() -> None:
+    for shape, inradius in (("box", 0.5), ("hollow", 0.0), ("cylinder", 0.5)):
+        mesh = SHAPES[shape]()
+        volume = named.MeshVolumeRegion(mesh, (1, 2, 3), PLACE, TILT)
+        assert volume.inradius == pytest.approx(inradius, rel=0.02)
+        assert volume.size == pytest.approx(6 * mesh.volume)
+        assert volume.isConvex is (shape != "hollow")
+        assert volume.getVolumeRegion() is volume
+        surface = volume.getSurfaceRegion()
+        assert surface.getSurfaceRegion() is surface
+        assert surface.getVolumeRegion().size == pytest.approx(6 * mesh.volume)
+        turned = trimesh.Trimesh(np.array(mesh.vertices) * (1, 2, 3), mesh.faces, process=False)
+        assert surface.size == pytest.approx(turned.area)
+        for region in (volume, surface):
+            outline = region.boundingPolygon
+            hull = shapely.MultiPoint(np.array(region.mesh.vertices)[:, :2]).convex_hull
+            assert outline.polygons.convex_hull.symmetric_difference(hull).area < 1e-9
+        assert volume.voxelized(0.5).size >= volume.size * 0.9
+
+
+def test_measures_of_views() -> None:
+    view = named.ViewRegion(3, (2 * math.pi, math.pi), position=PLACE, rotation=TILT)
+    assert tuple(view.position) == tuple(PLACE)
+    assert view.rotation == TILT
+    assert view.inradius == pytest.approx(3, rel=0.01)
+    middle, radius = view.circumcircle
+    assert tuple(middle) == pytest.approx(tuple(PLACE), abs=1e-6)
+    assert radius == pytest.approx(3 * math.sqrt(3), rel=0.01)
+    assert view.getVolumeRegion().size == pytest.approx(4 / 3 * math.pi * 27, rel=0.01)
+    assert view.getSurfaceRegion().size == pytest.approx(4 * math.pi * 9, rel=0.01)
+    assert view.isConvex is True
+    assert view.voxelized(0.5).size == pytest.approx(4 / 3 * math.pi * 27, rel=0.4)
+
+
+@pytest.mark.parametrize("shape", ["box", "table", "hollow", "cone", "bumpy"])
+def test_discs_that_bodies_hold_seen_from_above_themselves(shape: str) -> None:
+    """By the distance of the position from the outline of the stretched body."""
+    mesh = SHAPES[shape]()
+    triangles = shapely.polygons(mesh.triangles[mesh.area_vectors[:, 2] != 0][:, :, :2])
+    outline = shapely.union_all(triangles)
+    for width, length in ((1, 1), (4, 1), (0.5, 3)):
+        stretched = shapely.affinity.scale(outline, width, length, origin=(0, 0))
+        item = thing(
+            "from tests.runtime.geometry.samples import SHAPES\n"
+            f"ego = new Object at (1, 2, 3), facing (0.7, 0.4, -0.3), with shape MeshShape(SHAPES['{shape}']()), "
+            f"with width {width}, with length {length}, with height 2\n"
+        )
+        expected = (
+            stretched.boundary.distance(shapely.Point(0, 0)) if stretched.covers(shapely.Point(0, 0)) else 0
+        )
+        assert item.planarInradius == pytest.approx(expected, abs=1e-9)
+
+
+def test_shapes_know_their_middles() -> None:
+    for shape in (BoxShape(), ConeShape(), CylinderShape(), SpheroidShape()):
+        assert shape.isConvex is True
+        assert shape.containsCenter is True
+    for name, convex, centre in (("hollow", False, False), ("table", False, False), ("bumpy", False, True)):
+        shape = MeshShape(SHAPES[name]())
+        assert (shape.isConvex, shape.containsCenter) == (convex, centre)
+    sizes = BoxShape(dimensions=(1, 2, 3), scale=2)
+    assert (sizes.width, sizes.length, sizes.height) == (2, 4, 6)
+
+
+def test_the_orientation_of_an_intersection_is_that_of_the_first_member_with_one() -> None:
+    field = VectorField("f", lambda point: point.x)
+    plain, oriented = (
+        named.CircularRegion(PLACE, 5),
+        named.PolygonalRegion([(-9, -9), (9, -9), (0, 9)], orientation=field),
+    )
+    other = named.PolygonalRegion([(-9, -9), (9, -9), (0, 9)], orientation=VectorField("g", lambda _point: 3))
+    for members, heading in (
+        ((plain, oriented), 0.5),
+        ((oriented, plain), 0.5),
+        ((plain, oriented, other), 0.5),
+        ((plain, other, oriented), 3),
+    ):
+        region = IntersectionRegion(*members)
+        assert region.has_orientation is True
+        assert region.orientation_at(Vector(0.5, 0, 0)).yaw == pytest.approx(heading)
+    assert IntersectionRegion(plain, plain).has_orientation is False
+    text = (
+        "field = VectorField('f', lambda p: 0.1 * p.x)\n"
+        "plain = CircularRegion((0, 0), Range(3, 4))\n"
+        "streets = PolygonalRegion([(-9, -9), (9, -9), (0, 9)], orientation=field)\n"
+        "ego = new Object in plain.intersect(streets)\nparam x = (ego.x, ego.heading)\n"
+    )
+    for x, heading in draws(text, n=9):
+        assert heading == pytest.approx(0.1 * x)
+
+
+def test_unions_of_fields_take_the_first_region_with_one() -> None:
+    left = named.PolygonalRegion(
+        [(0, 0), (2, 0), (2, 2), (0, 2)], orientation=VectorField("l", lambda _point: 1)
+    )
+    right = named.PolygonalRegion(
+        [(1, 0), (3, 0), (3, 2), (1, 2)], orientation=VectorField("r", lambda _point: 2)
+    )
+    plain = named.PolygonalRegion([(0, 0), (9, 0), (9, 2), (0, 2)])
+    field = VectorField.forUnionOf([plain, left, right])
+    assert field is not None
+    assert [field.at(Vector(x, 1, 0)).yaw for x in (0.5, 1.5, 2.5)] == pytest.approx([1, 1, 2])
+    field = VectorField.forUnionOf([right, left])
+    assert field is not None
+    assert [field.at(Vector(x, 1, 0)).yaw for x in (0.5, 1.5, 2.5)] == pytest.approx([1, 2, 2])
+    assert VectorField.forUnionOf([plain]) is None
+
+
+def test_fields_that_fail_in_some_lanes_fail_there() -> None:
+    for text in (
+        "f = VectorField('f', lambda p: 0.1 if p.x < 0.5 else 'north')\nparam x = f at (Range(0, 1), 0)\n",
+        "f = VectorField('f', lambda p: 0.1 if p.x < 0.5 else 'north')\nparam x = f.followFrom((Range(0, 1), 0), 3)\n",
+    ):
+        error = failure(text, n=12)
+        assert isinstance(error, ScenicTypeError)
+        assert "field" in str(error)
+        kept = text.replace("Range(0, 1)", "x").replace("f = ", "x = Range(0, 1)\nrequire x < 0.4\nf = ", 1)
+        assert len(scenic.scenarioFromString(kept).sample(12, seed=1)) == 12
+
+
+def test_fields_wait_for_the_object_in_specifiers() -> None:
+    text = (
+        "f = VectorField('f', lambda p: 0.1 * p.x)\n"
+        "class Car:\n    way: f.followFrom(self.position, self.width)\n    turn: f[self.position]\n    width: 4\n"
+        "ego = new Car at (2, 3)\n"
+    )
+    item = thing(text)
+    assert_same_rotation(item.turn, euler(0.2))
+    assert math.dist(tuple(item.way), (2, 3, 0)) == pytest.approx(4, rel=0.02)
+
+
+def test_ends_and_directions_of_lines() -> None:
+    line = named.PolylineRegion([(0, 0), (4, 0), (4, 3)])
+    assert [(tuple(a), tuple(b)) for a, b in line.segments] == [
+        ((0, 0, 0), (4, 0, 0)),
+        ((4, 0, 0), (4, 3, 0)),
+    ]
+    assert line.defaultOrientation(Vector(1, 1, 0)) == pytest.approx(-math.pi / 2)
+    assert line.defaultOrientation(Vector(5, 2, 0)) == pytest.approx(0)
+    own = named.PolylineRegion([(0, 0), (4, 0)], orientation=VectorField("f", lambda point: point.x))
+    assert own.end.heading == pytest.approx(4 - 2 * math.pi)
+    assert own.start.heading == pytest.approx(0)
+    assert [tuple(point) for point in line] == [(0, 0, 0), (4, 0, 0), (4, 3, 0)]
+    assert tuple(line[-1]) == (4, 3, 0)
+    assert line.cumulativeLengths == pytest.approx([4, 7])
+    joined = line + own
+    assert joined.length == pytest.approx(11)
+    with pytest.raises(TypeError):
+        line + 3
+    for chains in ([[(0, 0, 0), (math.inf, 0, 0)]], [[(0, 0, 0), (0, math.nan, 0)]], [[(1, 1, 1)]], []):
+        with pytest.raises(ValueError, match=r"finite|at least two"):
+            Segments.of_chains(chains)
+
+
+@pytest.mark.parametrize(
+    ("make", "error"),
+    [
+        (lambda: named.PathRegion(), ScenicValueError),
+        (lambda: named.PathRegion([(0, 0, 0), (1, 1, 1)], [[(0, 0, 0), (1, 1, 1)]]), ScenicValueError),
+        (lambda: named.PolylineRegion(), ScenicValueError),
+        (
+            lambda: named.PolylineRegion([(0, 0), (1, 1)], shapely.LineString([(0, 0), (1, 1)])),
+            ScenicValueError,
+        ),
+        (lambda: named.PolylineRegion(polyline=shapely.LineString()), ScenicValueError),
+        (lambda: named.PolylineRegion(polyline=shapely.Point(0, 0)), ScenicValueError),
+        (lambda: named.PolylineRegion([(0, 0), (0, 0)]), ScenicValueError),
+        (lambda: named.GridRegion("g", [0, 0], 1, 1, 0, 0), ScenicValueError),
+        (lambda: named.MeshVolumeRegion(CUBE, dimensions=(1, 0, 1)), ScenicValueError),
+        (lambda: named.MeshSurfaceRegion(CUBE, dimensions=(1, -1, 1)), ScenicValueError),
+        (lambda: named.MeshVolumeRegion.fromFile(3), ScenicTypeError),
+        (lambda: named.PolygonalRegion.unionAll([]), ScenicTypeError),
+        (lambda: named.PolygonalRegion.unionAll([named.BoxRegion()]), ScenicTypeError),
+        (lambda: named.BoxRegion().voxelized(0), ScenicValueError),
+        (lambda: named.BoxRegion().voxelized(-1), ScenicValueError),
+        (lambda: named.SpheroidRegion().voxelized(1e-5), ScenicValueError),
+        (
+            lambda: named.VoxelRegion(
+                trimesh.voxel.VoxelGrid(np.ones((2, 2, 2), bool), transform=np.diag([1.0, -1, 1, 1]))
+            ),
+            ScenicValueError,
+        ),
+        (lambda: named.VoxelRegion(trimesh.voxel.VoxelGrid(np.zeros((2, 2, 2), bool))), ScenicValueError),
+        (lambda: named.ViewRegion(4, (0, 1)), ScenicValueError),
+        (lambda: named.CircularRegion(PLACE, -1), ScenicValueError),
+        (lambda: named.RectangularRegion(PLACE, 0, 1, -1), ScenicValueError),
+        (lambda: named.BoxRegion((1, 0, 1)), ScenicValueError),
+        (lambda: named.everywhere.orientations(np.zeros((1, 3))), UnsupportedError),
+        (lambda: named.PathRegion([(0, 0, 0), (1, 1, 1)]).project(PLACE, None), ScenicTypeError),
+    ],
+)
+def test_what_is_no_region_is_refused(make: Any, error: type[Exception]) -> None:
+    with pytest.raises(error):
+        make()
+
+
+def test_files_of_volumes_and_of_surfaces(tmp_path: Path) -> None:
+    (tmp_path / "cube.obj").write_text(CUBE.export(file_type="obj"))
+    volume = named.MeshVolumeRegion.fromFile(tmp_path / "cube.obj", dimensions=(1, 2, 3))
+    assert volume.size == pytest.approx(6)
+    surface = named.MeshSurfaceRegion.fromFile(tmp_path / "cube.obj", position=PLACE)
+    assert surface.size == pytest.approx(6)
+    assert tuple(surface.AABB[0]) == pytest.approx((0.5, 1.5, 2.5))
+    (tmp_path / "plate.obj").write_text("v 0 0 0\nv 2 0 0\nv 0 2 0\nf 1 2 3\n")
+    assert named.MeshSurfaceRegion.fromFile(tmp_path / "plate.obj").size == pytest.approx(2)
+    plain = named.MeshSurfaceRegion.fromFile(tmp_path / "plate.obj", orientation=None)
+    assert plain.has_orientation is False
+    assert plain.uniform_placement()[1] is None
+
+
+def test_bodies_over_regions_without_an_extent_are_beside_them() -> None:
+    """One extent, or both, of a rectangle are 0; at once as over lanes."""
+    body = placed((0, 0, 0), (0, 0, 0, 1), (1, 1, 1), primitives.box())
+    for width, length in ((0, 4), (4, 0), (0, 0)):
+        region = named.RectangularRegion(Vector(0, 0, 0), 0.3, width, length)
+        single = region.at_once
+        assert single is not None
+        assert not single.holds_body(body)
+        assert region.containsPoint(Vector(0, 0, 9)) is True
+        assert region.containsPoint(Vector(0.1, 0.1, 0)) is False
+        assert region.containsObject(thing("ego = new Object")) is False
+        assert region.distanceTo(Vector(0, 0, 2)) == pytest.approx(2)
+    assert named.CircularRegion(Vector(0, 0, 0), 0).containsObject(thing("ego = new Object")) is False
+
+
+def test_operators_between_objects_and_regions() -> None:
+    text = (
+        "ego = new Object at (0, 0, 0)\nother = new Object at (5, 0, 0), with width Range(2, 2.5)\n"
+        "param w = other.width, a = minimum distance from other, b = minimum distance to other, "
+        "c = minimum distance from other to ego\n"
+        "param d = (1, 2, 3) relative to (4, 5, 6), e = (1, 2) offset by (3, 4)\n"
+    )
+    for item in scenario(text).sample(4, seed=1):
+        found = item.params
+        for name in "abc":
+            assert found[name] == pytest.approx(4.5 - found["w"] / 2)
+        assert tuple(found["d"]) == (5, 7, 9)
+        assert tuple(found["e"]) == (4, 6, 0)
+    for wrong in ("minimum distance from (0, 0)", "minimum distance from ego to 3"):
+        assert isinstance(failure(f"ego = new Object\nparam x = {wrong}"), ScenicTypeError)
+
+
+def test_sides_of_objects_by_name() -> None:
+    words = {
+        "left of": (-1, 0, 0), "right of": (1, 0, 0), "front of": (0, 2, 0), "back of": (0, -2, 0),
+        "top of": (0, 0, 3), "bottom of": (0, 0, -3), "front left of": (-1, 2, 0), "back right of": (1, -2, 0),
+        "top front left of": (-1, 2, 3), "bottom back right of": (1, -2, -3),
+    }  # fmt: skip
+    text = (
+        "ego = new Object at (1, 2, 3), facing (0.7, 0.4, -0.3), with width 2, with length 4, with height 6\n"
+    )
+    text += "param x = [" + ", ".join(f"({name} ego).position" for name in words) + "]\n"
+    turn = euler(0.7, 0.4, -0.3)
+    for place, offset in zip(params(text)["x"], words.values(), strict=True):
+        np.testing.assert_allclose(tuple(place), turn.apply(offset) + np.array([1, 2, 3]), atol=1e-9)
+
+
+def test_shared_points_of_regions_without_bounds() -> None:
+    box, points = named.BoxRegion(), named.PointSetRegion("p", [(0, 0, 0), (3, 0, 0)])
+    assert named.everywhere.union(box) is named.everywhere
+    assert box.union(named.everywhere) is named.everywhere
+    assert named.nowhere.union(box) is box
+    assert box.difference(named.nowhere) is box
+    assert isinstance(box.difference(named.everywhere), named.EmptyRegion)
+    assert box.intersect(named.everywhere) is box
+    assert isinstance(box.intersect(named.nowhere), named.EmptyRegion)
+    assert named.everywhere.intersects(box) is True
+    assert box.intersects(named.nowhere) is False
+    assert len(points.intersect(box).points) == 1
+    assert len(box.intersect(points).points) == 1
+    assert points.difference(box).points.tolist() == [[3, 0, 0]]
+    for one, other in ((named.PolylineRegion([(-2, 0), (2, 0)]), named.PolylineRegion([(0, -2), (0, 2)])),):
+        crossing = one.intersect(other)
+        assert isinstance(crossing, named.PointSetRegion)
+        assert crossing.points.tolist() == [[0, 0, 0]]
+    with pytest.raises((InvalidScenarioError, AttributeError)):
+        _ = MAKERS["cut"]().boundingPolygon
+
+
+@pytest.mark.parametrize(
+    "made",
+    [
+        "disc.footprint.intersect(plate.footprint)",
+        "disc.footprint.difference(plate.footprint)",
+        "disc.footprint.union(plate.footprint)",
+        "everywhere",
+        "disc.footprint",
+    ],
+)
+def test_no_point_is_drawn_from_what_has_no_bounds(made: str) -> None:
+    text = (
+        "disc, plate = CircularRegion((0, 0), Range(1, 2)), RectangularRegion((0, 0), 0, Range(1, 2), 4)\n"
+        f"new Point in {made}\n"
+    )
+    assert isinstance(failure(text), InvalidScenarioError | ScenicTypeError)
