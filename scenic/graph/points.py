@@ -149,13 +149,15 @@ class GivenPoints:
         given = np.array(rows, dtype=np.float64, ndmin=2)
         if given.ndim != 2 or not ((given > 0) & (given < 1)).all():
             raise ValueError("points of the unit cube are rows of numbers between 0 and 1, both excluded")
-        self._rows = given
+        self._width = given.shape[1]
+        self._rows = np.column_stack([given, np.full(len(given), np.nan)])
+        """The rows, and what stands for a number that they do not give."""
 
     def __len__(self) -> int:
         return len(self._rows)
 
     def __repr__(self) -> str:
-        return f"GivenPoints({len(self)} rows of {self._rows.shape[1]})"
+        return f"GivenPoints({len(self)} rows of {self._width})"
 
     def of_scenes(self, axes: NDArray[np.intp], count: int, lanes: Lanes) -> Floats:
         """See `PointSet`; ``IndexError`` for a scene without a row."""
@@ -170,6 +172,6 @@ class GivenPoints:
             raise IndexError(
                 f"there is no row for scene {int(lanes.scenes.max())}: {len(self)} rows are given"
             )
-        known = (columns >= 0) & (columns < self._rows.shape[1])
-        numbers = self._rows[lanes.scenes[:, np.newaxis], np.where(known, columns, 0)]
-        return np.ascontiguousarray(np.where(known, numbers, np.nan).T)
+        known = (columns >= 0) & (columns < self._width)
+        places = np.where(known, columns, self._width)
+        return np.ascontiguousarray(self._rows[lanes.scenes[:, np.newaxis], places].T)

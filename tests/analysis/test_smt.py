@@ -222,3 +222,28 @@ def test_contradictions_are_minimal_for_a_linear_program_too(seed):
 def test_nothing_is_decided_once_the_count_is_spent(monkeypatch):
     monkeypatch.setattr(terms_module, "TOTAL", 0)
     assert verdict(make("less", 2, 1), make("less", 1, 2)) == ([], [])
+
+
+BOUNDED = {
+    "range": (uniform(-1, 2), -1, 2),
+    "reversed range": (uniform(2, -1), -1, 2),
+    "discrete range": (make("discrete range", graph.axis(), -1, 3), -1, 3),
+    "weighted integer": (make("weighted integer", graph.axis(), payload=(4, (0.0, 0.5, 1.0, 1.0))), 5, 6),
+    "truncated normal": (make("truncated normal", graph.axis(), 9.0, 1.0, payload=(-1.0, 2.0)), -1, 2),
+    "half normal": (make("truncated normal", graph.axis(), 0.0, 1.0, payload=(0.5, math.inf)), 0.5, None),
+}
+
+
+@pytest.mark.parametrize("name", list(BOUNDED))
+def test_what_no_draw_reaches_is_impossible_on_either_side(name):
+    """By the end that it lies beyond, which is named; what lies between is possible."""
+    node, low, high = BOUNDED[name]
+    for end, words, beyond, within in (
+        (low, "is at least", "less", "greater or equal"),
+        (high, "is at most", "greater", "less or equal"),
+    ):
+        if end is not None:
+            (core,) = judge([Fact(make(beyond, node, end), "")]).contradictions
+            assert [item.phrase for item in core.supports] == [f"{words} {end:g}"]
+            assert judge([Fact(make(within, node, end), "")]).tautologies
+    assert verdict(make("less or equal", node, low)) == ([], [])

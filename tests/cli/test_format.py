@@ -51,3 +51,12 @@ def test_mistakes_are_left_alone(tmp_path: Path, capsys: pytest.CaptureFixture[s
     assert file.read_text() == "x=(\n"
     assert "left as it is" in capsys.readouterr().err
     assert run(tmp_path / "none.scenic") == 2
+
+
+def test_a_difference_tells_of_a_missing_line_end(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Or tools that apply it would join two lines."""
+    file = tmp_path / "open.scenic"
+    file.write_text("y = 2\nx=1")
+    assert run("--diff", file) == 1
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[-3:] == ["-x=1", r"\ No newline at end of file", "+x = 1"]

@@ -121,3 +121,14 @@ def test_outlines_span_the_regions_they_show() -> None:
         assert np.allclose((points.min(axis=0), points.max(axis=0)), (low, high), atol=0.01)
     assert outlines(None) == []
     assert bounds(None) is None
+
+
+def test_long_values_are_told_in_brief() -> None:
+    """In so many characters as fit, the last of them an ellipsis."""
+    texts = {"short": "a" * 80, "long": "b" * 81, "list": list(range(100)), "real": 0.123456789}
+    (scene,) = data_of(page([Scene([Object()], params=texts)], "title"))["scenes"]
+    found = dict(scene["params"].items() if isinstance(scene["params"], dict) else scene["params"])
+    assert found["short"] == "a" * 80
+    assert found["long"] == "b" * 79 + "…"
+    assert found["list"] == json.dumps(list(range(100)))[:79] + "…"
+    assert found["real"] == "0.123457"

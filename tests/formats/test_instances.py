@@ -104,3 +104,11 @@ def test_plain_objects_without_a_colour_have_different_ones() -> None:
     chairs = picture([Scene([Chair(), Chair(), Object()])]).scenes[0]
     ratios = [one / other for one, other in zip(chairs[0].color[:3], chairs[1].color[:3], strict=True)]
     assert max(ratios) == pytest.approx(min(ratios))
+
+
+@pytest.mark.parametrize("off", [1e-2, 1e-3, 1e-5])
+@pytest.mark.parametrize("side", [1, -1])
+def test_euler_angles_close_to_straight_up_and_down(off: float, side: int) -> None:
+    q = quaternion_of(Object(orientation=Turn.by(0.7, side * (math.pi / 2 - off), 0.4)))
+    again = quaternion_of(Object(orientation=Turn.by(*euler_angles(q))))
+    np.testing.assert_allclose(rotation_matrix(again), rotation_matrix(q), atol=1e-7)

@@ -12,7 +12,7 @@ import pytest
 from scenic.formats.coco import LabelledImages, millimetres
 from scenic.formats.labels import Observation, document, observe
 from scenic.formats.sensors import viewpoint
-from scenic.runtime.sensors import RGBSensor
+from scenic.runtime.sensors import DEFAULT_FIELD_OF_VIEW, RGBSensor
 from tests.formats.stand_ins import Object, Scene, Turn
 
 PLACE = np.array([1.0, 2.0, 3.0])
@@ -251,3 +251,15 @@ def test_of_several_cameras_of_one_name_the_first_objects_is_meant() -> None:
         point = viewpoint(Scene(objects), "front", None)
         assert point.owner is objects[0]
         assert point.size == (width, 20)
+
+
+@pytest.mark.parametrize("angle", [0.3, math.pi / 2, 2.0, math.radians(170)])
+def test_objects_look_as_wide_as_a_plane_can_show(angle: float) -> None:
+    """Up to 170 degrees; what is wider is narrowed to the usual angle of cameras."""
+    owner = Object(others={"viewAngles": (angle, 0.8)})
+    scene = Scene([owner], egoObject=owner)
+    assert viewpoint(scene, "ego", (64, 48)).angles == pytest.approx((angle, 0.8))
+    owner.others = {"viewAngles": (math.radians(170.5), 0.8)}
+    assert viewpoint(scene, "ego", (64, 48)).angles == pytest.approx(
+        (math.radians(DEFAULT_FIELD_OF_VIEW), 0.8)
+    )

@@ -443,7 +443,8 @@ def test_headings_of_random_values_that_have_none() -> None:
         "not (x > 0.5 and y < 1)", "x > 0.5 if b else y > 0.2", "0 < x < y", "min(x, y) > 0.1", "abs(x) < 1", "ego in zone",
         "(distance from ego to p) < 5", "ego can see p", "x > 0.5 or (y < 1 and b)", "always x > 0.5", "x > 0.5 implies y > 0.1",
         "(x, y)[0] > 0.5", "(relative heading of ego) < 1", "hypot(x, y) < 1", "x % 1 < 0.5", "round(x) == 1", "sin(x) > 0", "b",
-        "ego intersects p", "max([x, y]) > 0", "len([x, y]) == 2", "ego.position.x > 0",
+        "ego intersects p", "max([x, y]) > 0", "len([x, y]) == 2", "ego.position.x > 0", "(x > 0.5 or y < 1) == b",
+        "(x > 0.5 and b) == (y < 1)", "(not b) == (x > 0.5)", "(1 if x > 0.5 else 2) > y", "max(x if b else y, 0.2) < 1",
     ],
 )  # fmt: skip
 def test_analysis_looks_into_conditions_of_the_language(condition: str) -> None:
@@ -454,3 +455,22 @@ def test_analysis_looks_into_conditions_of_the_language(condition: str) -> None:
     )
     names = {node.operation.name for node in scenario(text).outline.graph.nodes}
     assert "opaque condition" not in names
+
+
+def test_of_options_that_do_not_fit_only_those_that_are_drawn_are_errors() -> None:
+    program = scenario("ego = new Object with width Uniform(1, 'a', 2.5)\n")
+    outcomes = set()
+    for seed in range(30):
+        try:
+            outcomes.add(program.sample(1, seed=seed)[0].objects[0].width)
+        except ScenicTypeError as error:
+            outcomes.add(str(error).partition("expected ")[2])
+    assert outcomes == {1.0, 2.5, "a number, not 'a' (str)"}
+
+
+def test_clones_are_independent_draws_of_the_same_law() -> None:
+    text = "x = Range(0, 1)\ny = x.clone()\nz = resample(x)\nparam x = (x, y, z)\n"
+    values = np.array(draws(text, n=300))
+    for column in values.T:
+        assert stats.kstest(column, "uniform").pvalue > FALSE_ALARM
+    assert abs(np.corrcoef(values.T) - np.eye(3)).max() < 0.25

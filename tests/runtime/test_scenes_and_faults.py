@@ -83,6 +83,17 @@ def test_a_fault_is_that_of_the_first_scene_that_has_one() -> None:
         assert outcome(count - 1, 5, lanes) == (1, True)
 
 
+def test_a_fault_is_told_with_its_scene_and_attempt() -> None:
+    text = "x, y = Range(0, 1), Range(0, 1)\ndef f(v):\n    {body}\n    return True\ndef g(v): return v < 0.4\nrequire g(y)\nrequire f(x)\nparam x = x\n"
+    free = scenario(text.format(body="pass")).sample(60, seed=3)
+    first = next(scene for scene in free if scene.params["x"] > 0.95)
+    assert first.k not in (0, first.attempts - 1)
+    with pytest.raises(KeyError) as caught:
+        scenario(text.format(body="if v > 0.95: raise KeyError('odd')")).sample(60, seed=3)
+    (note,) = caught.value.__notes__
+    assert f"(attempt {first.attempts - 1} at scene {first.k})" in note
+
+
 # Rejection
 
 

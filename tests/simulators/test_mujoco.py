@@ -757,13 +757,17 @@ behavior B():
     take Release()
     wait for 20 steps
 aside = new Body at (5, 0, 0.5)
-left = new Body at (-0.1, 0, 1), {small}
+left = new Body at (-0.115, 0, 1), facing (40 deg, 20 deg, 10 deg), {small}
 right = new Body at (0.1, 0, 1), {small}
 ego = new Gripper at (0, 0, 1), with width 0.1, with reach 0.05, with behavior B
 record ego.holding as held
 record (left.position.z, right.position.z) as z
+record (left.yaw, left.pitch, left.roll) as turn
 """
     done = run(text, 31)
+    # As it stood when it was taken.
+    for angles in records(done, "turn")[:10]:
+        assert angles == pytest.approx(np.radians([40, 20, 10]), abs=0.02)
     heights = records(done, "z")
     assert min(heights[10]) > 0.95
     assert max(heights[-1]) < 0.2

@@ -84,6 +84,26 @@ def test_global_generators_are_the_simulations_own() -> None:
     assert taken(first) == taken(simulate(text, key=b"1"))
 
 
+@pytest.mark.parametrize("draw", ["random.random()", "float(numpy.random.rand())"])
+def test_global_generators_go_on_from_step_to_step(draw: str) -> None:
+    """Also where a simulation is advanced step by step, beside others that draw from them."""
+    text = f"import random, numpy\nbehavior B():\n    while True:\n        take {draw}\nego = new Object with behavior B\n"
+    scene = scene_of(text)
+    whole = taken(simulate(text, 6, key=b"1"))
+    assert len(set(whole)) == 6
+    runs = [
+        DummySimulation(scene, maxSteps=6, name="x", timestep=1, deferred=True, key=key)
+        for key in (b"1", b"2")
+    ]
+    for run in runs:
+        run.begin()
+    going = list(runs)
+    while going:
+        going = [run for run in going if run.advanceOnce()]
+        random.random()
+    assert taken(runs[0]) == whole != taken(runs[1])
+
+
 # Replays
 
 

@@ -187,3 +187,17 @@ def test_the_choice_of_a_box_is_a_draw_of_its_own() -> None:
     values = np.array([scene.params["x"] for scene in scenario.sample(256, seed=1, source=scenic.Sobol())])
     counts = np.histogram(values, [0, 0.1, 0.2, 0.8, 0.9, 1])[0]
     assert counts.tolist() == pytest.approx([64, 64, 0, 64, 64], abs=24)
+
+
+def test_what_a_row_does_not_give_is_hashed() -> None:
+    """As it is without rows: the numbers of other axes change nothing."""
+    loose = scenic.scenarioFromString(SQUARE)
+    hashed = places(loose.sample(3, seed=0))
+    for rows, given in (([[0.25], [0.5], [0.75]], 1), (np.zeros((3, 0)), 0)):
+        found = places(loose.sample(3, seed=0, source=scenic.GivenPoints(rows)))
+        assert found[:, given:].tolist() == hashed[:, given:].tolist()
+        assert found[:, :given].tolist() == [row[:given] for row in np.asarray(rows).tolist()]
+    wide = scenic.scenarioFromString(
+        "import random\nego = new Object at (Range(0, 1), random.random() + Range(0, 1))\n"
+    )
+    assert np.isfinite(places(wide.sample(3, seed=0, source=scenic.GivenPoints([[0.5]] * 3)))).all()
