@@ -8,8 +8,11 @@ import math
 import pickle
 import types
 from pathlib import Path
+from unittest import mock
 
 import pytest
+import shapely
+import trimesh
 from scenic.core.regions import (
     BoxRegion,
     CircularRegion,
@@ -28,6 +31,7 @@ from scenic.core.regions import (
 import scenic
 from scenic.established import MODULES, lookup
 from scenic.language.names import NAMES
+from scenic.runtime.values import Vector
 from tests.runtime.programs import params
 
 
@@ -471,3 +475,115 @@ def test_unions_of_polygons_close_gaps() -> None:
     assert polygonUnion([holed, left]).area == pytest.approx(2 - 0.0004)
     assert polygonUnion([holed, left], tolerance=1e-4).area == pytest.approx(2)
     assert polygonUnion([holed], buf=0.1) is holed
+
+
+def test_geometry_of_the_plane_by_hand() -> None:
+    geometry = importlib.import_module("scenic.core.geometry")
+    north, east, high = (0, 3), (4, 0), Vector(4, 0, 9)
+    assert geometry.headingOfSegment((0, 0), north) == pytest.approx(0)
+    assert geometry.headingOfSegment((0, 0), east) == pytest.approx(-math.pi / 2)
+    assert geometry.viewAngleToPoint(east, (0, 0), math.pi / 2) == pytest.approx(-math.pi, abs=1e-9)
+    assert geometry.viewAngleToPoint(north, (0, 0), 0.25) == pytest.approx(-0.25)
+    assert geometry.apparentHeadingAtPoint(east, 0.5, (0, 0)) == pytest.approx(0.5 + math.pi / 2)
+    assert geometry.averageVectors((0, 0), (4, 8)) == (2, 4)
+    assert geometry.averageVectors((0, 0), (4, 8), 0.25) == (1, 2)
+    assert geometry.rotateVector((1, 0), math.pi / 2) == pytest.approx((0, 1))
+    for point in (Vector(0, 0, 5), (0, 0)):
+        assert geometry.distanceToLine(point, north, high) == pytest.approx(12 / 5)
+        assert geometry.distanceToLine(point, (1, 1), (1, 9)) == pytest.approx(1)
+    for angle, inside in ((0.7, False), (0.8, True)):
+        assert geometry.pointIsInCone((-0.4, 1), (0, 0), 0, angle) is inside
+    assert geometry.findMinMax([3, 1, 2]) == (1, 3)
+    assert geometry.findMinMax([]) == (math.inf, -math.inf)
+    for turns in (-3, 0, 1, 2):
+        assert geometry.normalizeAngle(0.3 + turns * math.tau) == pytest.approx(0.3)
+
+
+def test_polygons_of_shapely() -> None:
+    geometry = importlib.import_module("scenic.core.geometry")
+    ring = shapely.box(0, 0, 4, 4).difference(shapely.box(1, 1, 2, 2))
+    triangles = geometry.triangulatePolygon(ring)
+    assert sum(part.area for part in triangles) == pytest.approx(15)
+    assert all(len(part.exterior.coords) == 4 for part in triangles)
+    assert shapely.union_all(triangles).equals(ring)
+    for whole, area in ((ring, 16), (shapely.MultiPolygon([ring, shapely.box(9, 9, 10, 10)]), 17)):
+        assert geometry.removeHoles(whole).area == area
+        plt = mock.Mock()
+        geometry.plotPolygon(whole, plt, style="b-")
+        drawn = [([*call.args[0], *call.args[1]], call.args[2]) for call in plt.plot.call_args_list]
+        rings = [
+            each for part in getattr(whole, "geoms", [whole]) for each in (part.exterior, *part.interiors)
+        ]
+        assert drawn == [([*each.xy[0], *each.xy[1]], "b-") for each in rings]
+
+
+def test_values_are_read_as_types() -> None:
+    support = importlib.import_module("scenic.core.type_support")
+    assert support.toScalar(3) == 3.0
+    assert tuple(support.toVector((1, 2))) == (1, 2, 0)
+    assert support.toHeading(0.5) == 0.5
+    assert support.toOrientation(0.5).yaw == pytest.approx(0.5)
+    for read, word in (
+        (support.toScalar, "non-scalar"),
+        (support.toVector, "non-vector"),
+        (support.toHeading, "non-heading"),
+    ):
+        with pytest.raises(TypeError, match=word):
+            read("x")
+        with pytest.raises(TypeError, match="my own words"):
+            read("x", "my own words")
+
+
+def test_helpers_of_python() -> None:
+    utils, lazy = (
+        importlib.import_module("scenic.core.utils"),
+        importlib.import_module("scenic.core.lazy_eval"),
+    )
+    calls: list[str] = []
+
+    class Counted:
+        @utils.cached_method
+        def whole(self) -> int:
+            calls.append("method")
+            return len(calls)
+
+    @utils.cached
+    def alone() -> int:
+        calls.append("function")
+        return len(calls)
+
+    one, other = Counted(), Counted()
+    assert (one.whole(), one.whole(), other.whole(), one.whole()) == (1, 1, 2, 1)
+    assert (alone(), alone()) == (3, 3)
+    assert utils.argsToString((1, "a"), {"b": 2.5}) == "1, 'a', b=2.5"
+    assert utils.argsToString(()) == ""
+    delayed = lazy.DelayedArgument({"x", "y"}, lambda item: item.x + item.y)
+    assert lazy.needsLazyEvaluation(delayed)
+    assert not lazy.needsLazyEvaluation(3)
+    assert repr(delayed) == "<value that depends on x, y>"
+    call = lazy.makeDelayedFunctionCall(lambda a, b: a * b, (delayed,), {"b": 3})
+    item = types.SimpleNamespace(x=1, y=2)
+    for value, expected in (
+        (call, 9), (delayed + 1, 4), (1 - delayed, -2), (delayed * 2, 6), (7 % delayed, 1), (divmod(7, delayed), (2, 1)), (-delayed, -3),
+        (delayed**2, 9), (abs(1 - delayed), 2),
+    ):  # fmt: skip
+        assert lazy.needsLazyEvaluation(value)
+        assert lazy.valueInContext(value, item) == expected
+
+
+def test_arithmetic_of_random_numbers_from_the_right() -> None:
+    text = "n, x = DiscreteRange(2, 9), Range(1, 2)\nparam n = n, x = x, m = 17 % n, d = divmod(17, n), r = round(x, 1), w = round(x), p = +x, v = +Vector(x, 2, 3)\n"
+    for values in [scene.params for scene in scenic.scenarioFromString(text).sample(20, seed=1)]:
+        n, x = values["n"], values["x"]
+        assert (values["m"], tuple(values["d"])) == (17 % n, divmod(17, n))
+        assert (values["r"], values["w"], values["p"]) == (round(x, 1), round(x), x)
+        assert tuple(values["v"]) == (x, 2, 3)
+
+
+def test_forms_say_whether_they_are_convex_and_hold_their_middle() -> None:
+    shapes = importlib.import_module("scenic.core.shapes")
+    hollow = trimesh.creation.annulus(0.6, 1.0, 0.5)
+    for shape, convex, middle in (
+        (shapes.BoxShape(), True, True), (shapes.ConeShape(), True, True), (shapes.MeshShape(hollow), False, False),
+    ):  # fmt: skip
+        assert (shape.isConvex, shape.containsCenter) == (convex, middle)

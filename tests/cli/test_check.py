@@ -316,3 +316,20 @@ def test_the_error_of_which_there_is_more_to_read_is_an_error(tmp_path: Path) ->
     assert f"scenic explain {found[1]['code']}\n" in result.stderr
     file.write_text("import math\nego = new Object\n")
     assert "scenic explain" not in run("check", file).stderr
+
+
+def test_faults_of_ours_in_other_commands_ask_for_a_report(
+    good: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """With the way to where they came up, which is to be sent."""
+
+    def fail(*_: object, **__: object) -> None:
+        raise ZeroDivisionError("oops")
+
+    monkeypatch.setattr("scenic.pipeline.load", fail)
+    result = run("sample", good)
+    assert result.returncode == 70
+    assert "error[SC999]: internal error: ZeroDivisionError: oops" in result.stderr
+    assert "please report" in result.stderr
+    assert ", in sample\n" in result.stderr
+    assert ", in fail\n" in result.stderr

@@ -9,7 +9,7 @@ import trimesh
 from scenic.formats.backdrop import _lines, sky_color
 from scenic.formats.buffers import Lens, look
 from scenic.formats.camera import Camera
-from scenic.formats.colors import decoded, linear
+from scenic.formats.colors import decoded, encoded, linear
 from scenic.formats.instances import picture
 from scenic.formats.lighting import _averaged, own_light
 from scenic.formats.render import paint
@@ -192,3 +192,14 @@ def test_shadows_begin_at_the_foot_of_what_throws_them(height: float) -> None:
         16,
     )
     np.testing.assert_allclose(sun, [0, 0, 0, 1, 1, 1, 1, 1], atol=0.1)
+
+
+def test_tones_come_back_from_light() -> None:
+    """And light between two tones becomes the nearer one, by the standard's formula."""
+    tones = np.arange(256, dtype=np.uint8)
+    np.testing.assert_array_equal(encoded(decoded(tones)), tones)
+    light = np.linspace(0, 1, 5001, dtype=np.float32)
+    exact = 255 * np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
+    assert np.abs(encoded(light) - exact).max() < 0.65
+    assert abs(float(np.mean(encoded(light) - exact))) < 0.02
+    assert encoded(np.array([-1.0, 2.0])).tolist() == [0, 255]

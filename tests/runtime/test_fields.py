@@ -225,3 +225,17 @@ def test_unions_of_many_regions_take_the_first_that_holds_the_point() -> None:
     assert (found.params["border"], found.params["last"]) == pytest.approx((0.02, 0.29))
     (item,) = found.objects
     assert item.heading == pytest.approx(max(0, math.ceil(item.x) - 2) / 100)
+
+
+def test_the_field_of_a_union_is_that_of_the_first_region_that_has_a_place() -> None:
+    text = (
+        "from scenic.core.regions import RectangularRegion, PolygonalRegion\nF = VectorField('F', lambda p: 0.5)\nG = VectorField('G', lambda p: p.x)\n"
+        "left = PolygonalRegion([(-4, -1), (1, -1), (1, 1), (-4, 1)], orientation=F)\n"
+        "right = PolygonalRegion([(0, -1), (4, -1), (4, 1), (0, 1)], orientation=G)\n"
+        "bare = RectangularRegion((0, 0), 0, 1, 1)\nboth = VectorField.forUnionOf([left, right])\n"
+        "param found = [(both at (x, 0)).yaw for x in (-3, 0.5, 1.5, 3)], none = VectorField.forUnionOf([bare]), other = (F at (9, 9)).yaw\n"
+    )
+    found = params(text)
+    assert found["found"] == pytest.approx([0.5, 0.5, 1.5, 3])
+    assert found["none"] is None
+    assert found["other"] == pytest.approx(0.5)

@@ -1,6 +1,7 @@
 """Simulations as the Python API shows them: replays, soft requirements, records in files, faults, interleaving."""
 
 import json
+import pickle
 import random
 from pathlib import Path
 from typing import Any
@@ -383,6 +384,26 @@ def test_series_are_written(tmp_path: Path) -> None:
     simulate(recording(tmp_path, "{simulation}.npz", "ego.position"), 2)
     found = np.load(tmp_path / "1.npz")
     assert found["values"].shape == (3, 3)
+
+
+def test_arrays_tell_the_steps_at_which_they_were_recorded(tmp_path: Path) -> None:
+    text = f"param recordFolder = {str(tmp_path)!r}\nego = new Object\nrecord simulation().currentTime every 2 steps after 3 steps to 'run.npz'\n"
+    simulate(text, 9, timestep=0.25)
+    found = np.load(tmp_path / "run.npz")
+    assert found["steps"].tolist() == found["values"].tolist() == [4, 6, 8]
+    assert found["times"].tolist() == [1, 1.5, 2]
+
+
+def test_series_may_be_pickled(tmp_path: Path) -> None:
+    """As pairs of step and value; nothing is there before the end, or after a rejection."""
+    simulate(recording(tmp_path, "run.pickle", "(simulation().currentTime, 'x')"), 2)
+    assert [path.name for path in tmp_path.iterdir()] == ["run.pickle"]
+    found = pickle.loads((tmp_path / "run.pickle").read_bytes())
+    assert [(step, tuple(value)) for step, value in found] == [(step, (step, "x")) for step in range(3)]
+    (tmp_path / "run.pickle").unlink()
+    end = "require eventually ego.position.y > 30\n"
+    assert DummySimulator().simulate(scene_of(recording(tmp_path, "run.pickle", end=end)), maxSteps=2) is None
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_values_are_written(tmp_path: Path) -> None:
