@@ -119,10 +119,17 @@ class Batch:
 
     # Columns
 
-    def need(self, nodes: Iterable[Node]) -> None:
-        """Evaluate ``nodes`` together; what is there already is not evaluated again."""
-        schedule = self._scheduler.after(self._schedule, tuple(nodes))
+    def need(self, nodes: Iterable[Node], later: tuple[Node, ...] | None = None) -> None:
+        """Evaluate ``nodes`` together; what is there already is not evaluated again.
+
+        ``later`` are the nodes that will be needed afterwards; columns that serve only others are freed (by default, none).
+        """
+        schedule = self._scheduler.after(self._schedule, tuple(nodes), later)
         self._schedule = schedule
+        groups = self._groups
+        unused = iter(schedule.unused)
+        for slot in next(unused, ()):
+            del groups[slot]
         if schedule.steps:
             with np.errstate(all="ignore"):
                 for step in schedule.steps:
@@ -132,7 +139,9 @@ class Batch:
                         group = self._draw_chosen(step)
                     else:
                         group = self._evaluate(step)
-                    self._groups[step.slot] = group
+                    groups[step.slot] = group
+                    for slot in next(unused, ()):
+                        del groups[slot]
 
     def column(self, node: Node) -> Column:
         """Values of ``node``, leading dimension ``len(self)`` or 1."""

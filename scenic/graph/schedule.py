@@ -5,10 +5,10 @@ most of them alike. So nodes of one *signature* (operation, payload, kinds) that
 call over members x lanes. Operations that stack are elementwise, so that the results are bitwise those of single calls.
 
 A `Scheduler` is kept as long as its graph: what has to be evaluated to get some nodes, when others are there already, is
-worked out once.
+worked out once; and so is which columns nobody needs any more, after each step, where it is known what is still to come.
 """
 
-from collections.abc import Hashable, Iterable, Mapping, Sequence
+from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any, Final
@@ -101,10 +101,12 @@ class ChosenDraw:
 
 @dataclass(frozen=True, slots=True)
 class Schedule:
-    """What to do to get some nodes; afterwards they and all that they need are at ``places``."""
+    """What to do to get some nodes; afterwards they, and what else is kept, are at ``places``."""
 
     steps: tuple[Draw | ChosenDraw | Step, ...]
     places: Mapping[Node, Place]
+    unused: tuple[tuple[Slot, ...], ...] = ()
+    """What nobody needs any more: before the first step, then after each. Empty where all is kept."""
 
 
 _START: Final = Schedule((), {})
@@ -122,7 +124,7 @@ class Scheduler:
     def __init__(self, graph: Graph, *, grouped: bool = True) -> None:
         self.graph = graph
         self._grouped = grouped
-        self._known: dict[tuple[int, tuple[Node, ...]], Schedule] = {}
+        self._known: dict[tuple[int, tuple[Node, ...], tuple[Node, ...] | None], Schedule] = {}
         self._kept: list[Schedule] = []
         self._gathers: dict[tuple[int, tuple[Node, ...]], Gather] = {}
         self._slots = 0
@@ -133,12 +135,21 @@ class Scheduler:
         """The schedule of nothing."""
         return _START
 
-    def after(self, before: Schedule, roots: tuple[Node, ...]) -> Schedule:
-        """What gets ``roots`` once ``before`` has been done."""
-        key = (id(before), roots)
+    def after(
+        self, before: Schedule, roots: tuple[Node, ...], later: tuple[Node, ...] | None = None
+    ) -> Schedule:
+        """What gets ``roots`` once ``before`` has been done.
+
+        ``later`` are the nodes that will be needed afterwards: what serves neither is not kept. By default all is. (What is asked
+        for all the same is evaluated again.)
+        """
+        key = (id(before), roots, later)
         schedule = self._known.get(key)
         if schedule is None:
-            schedule = self._known[key] = self._make(before, roots)
+            schedule = self._make(before, roots)
+            if later is not None:
+                schedule = self._thrifty(schedule, [*roots, *later])
+            self._known[key] = schedule
             self._kept.append(schedule)  # alive, so that its identity stays its own
         return schedule
 
@@ -173,6 +184,32 @@ class Scheduler:
             else:
                 steps.append(self._step(members, places))
         return Schedule(tuple(steps), places)
+
+    def _thrifty(self, schedule: Schedule, wanted: Sequence[Node]) -> Schedule:
+        """The same schedule, without keeping what only gets others than the nodes that are wanted."""
+        kept: set[Slot] = set()
+        seen: set[Node] = set()
+        stack = list(wanted)
+        while stack:
+            node = stack.pop()
+            if node.is_constant or node in seen:
+                continue
+            seen.add(node)
+            place = schedule.places.get(node)
+            if place is None:
+                stack.extend(self._needed(node))
+            else:
+                kept.add(place.slot)
+        unused: list[tuple[Slot, ...]] = []
+        dropped: set[Slot] = set()
+        for step in reversed(schedule.steps):
+            last = {slot for slot in _slots_read(step) if slot not in kept} - dropped
+            dropped |= last
+            unused.append(tuple(last))
+        others = {place.slot for place in schedule.places.values()} - kept - dropped
+        unused.append(tuple(others))
+        places = {node: place for node, place in schedule.places.items() if place.slot in kept}
+        return Schedule(schedule.steps, places, tuple(reversed(unused)))
 
     def _merged(self, node: Node) -> Node:
         """What is evaluated in place of a node. (Singly, nodes are evaluated as they are: that tells what failed.)"""
@@ -257,6 +294,16 @@ class Scheduler:
             _is_python(first),
             may_mark or not operation.strict,
         )
+
+
+def _slots_read(step: Draw | ChosenDraw | Step) -> Iterator[Slot]:
+    if isinstance(step, Draw):
+        return
+    for gather in step.operands if isinstance(step, Step) else (step.index,):
+        if isinstance(gather, Run):
+            yield gather.slot
+        elif isinstance(gather, Gathered):
+            yield from (part.slot for part in gather.parts if isinstance(part, Place))
 
 
 def _is_python(node: Node) -> bool:

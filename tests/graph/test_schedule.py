@@ -1,5 +1,7 @@
 """What is evaluated together, and what is not: groups, runs of members, and what is there already."""
 
+import tracemalloc
+
 import numpy as np
 import pytest
 
@@ -84,3 +86,56 @@ def test_alike_products_of_small_and_of_large_integers_are_kept_apart() -> None:
         a, b, c, d = scene.params["parts"]
         assert (scene.params["small"], scene.params["large"]) == (a * b, c * d)
         assert type(scene.params["large"]) is int
+
+
+def test_what_is_still_to_come_decides_what_is_kept_and_never_a_value() -> None:
+    """Stages in any order, each told what the later ones need; or told too little, so that columns are made again."""
+    x = [axis(None, number) for number in range(5)]
+    sums = [make("add", number, 1.0) for number in x]
+    products = [make("multiply", sums[i], sums[j]) for i, j in ((0, 1), (1, 2), (2, 3), (3, 4), (0, 4))]
+    chosen = make("select", make("int", make("multiply", x[0], 3)), *sums[1:4])
+    nodes = [*sums, *products, chosen, make("divide", products[0], make("subtract", x[2], 0.5))]
+    graph = Graph(nodes)
+    random = np.random.default_rng(7)
+    points = random.random((6, graph.dimension))
+    points[0, graph.axes[x[2]]] = 0.5
+    plain = batch_at(graph, points)
+    expected = {node: plain.full(node).tolist() for node in nodes}
+    for grouped in (True, False):
+        for _ in range(40):
+            order = [nodes[place] for place in random.permutation(len(nodes))]
+            stages = [order[:3], order[3:5], order[5:9], order[9:]]
+            forgetful = random.random() < 0.5
+            batch = batch_at(graph, points, grouped=grouped)
+            for number, stage in enumerate(stages):
+                later = tuple(node for after in stages[number + 1 :] for node in after)
+                batch.need(stage, later[: len(later) // 2] if forgetful else later)
+                for node in stage:
+                    assert batch.full(node).tolist() == expected[node]
+                    assert (batch.status(node) is None) is (plain.status(node) is None)
+            for node in nodes:
+                assert batch.full(node).tolist() == expected[node]
+
+
+def test_columns_are_freed_after_their_last_use() -> None:
+    """A chain of hundreds takes the memory of a few columns, where only its end is wanted."""
+    lanes = 20_000
+    start = axis(None, 1)
+    node, middle = start, start
+    for number in range(300):
+        node = make("multiply", make("add", node, 1.0), 0.5 + number / 300)
+        middle = node if number == 150 else middle
+    graph = Graph([node])
+    points = np.random.default_rng(1).random((lanes, 1))
+    values = []
+    for later in (None, (node,)):
+        batch = batch_at(graph, points)
+        tracemalloc.start()
+        batch.need([middle], later)
+        batch.need([node], () if later else None)
+        _, peak = tracemalloc.get_traced_memory()
+        tracemalloc.stop()
+        values.append(batch.column(node))
+        columns = peak / (8 * lanes)
+        assert columns > 500 if later is None else columns < 40  # some are the schedule itself
+    np.testing.assert_array_equal(*values)

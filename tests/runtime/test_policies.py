@@ -167,7 +167,7 @@ class Stub:
 
 def staged(*checks: Stub) -> Stages:
     graph = Graph([node for check in checks for node in check.nodes])
-    return Stages(checks, Scheduler(graph))  # type: ignore[arg-type] # all that it looks at
+    return Stages(checks, (), Scheduler(graph))  # type: ignore[arg-type] # all that it looks at
 
 
 def orders(stages: Stages, lanes: int = 64) -> list[tuple[int, ...]]:

@@ -144,7 +144,7 @@ class Engine:
         self._pace = Pace(max(64, min(DEFAULT_LANES, BATCH_BYTES // max(1, plan.lane_bytes))))
         self._scheduler = Scheduler(plan.graph, grouped=grouped)
         self._single = Scheduler(plan.graph, grouped=False)
-        self._stages = Stages(plan.checks, self._scheduler)
+        self._stages = Stages(plan.checks, plan.outputs, self._scheduler)
         self._soft = [index for index, check in enumerate(plan.checks) if check.probability < 1]
         self._chances = np.array([plan.checks[index].probability for index in self._soft])
 
@@ -323,7 +323,7 @@ class Engine:
             if len(batch) == 0:
                 break
             begun = time.perf_counter()
-            batch.need(stage.nodes)
+            batch.need(stage.nodes, stage.later)
             shared = (time.perf_counter() - begun) / len(stage.checks)
             rows = batch.rows
             alive = np.ones(len(rows), dtype=np.bool_)

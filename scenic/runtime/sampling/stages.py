@@ -24,10 +24,11 @@ _FADING: Final = 0.8
 
 @dataclass(frozen=True, slots=True)
 class Stage:
-    """Checks made together, by their numbers, and the nodes that they need."""
+    """Checks made together, by their numbers, the nodes that they need, and those that are needed afterwards."""
 
     checks: tuple[int, ...]
     nodes: tuple[Node, ...]
+    later: tuple[Node, ...]
 
 
 @dataclass(slots=True)
@@ -44,12 +45,14 @@ class Stages:
 
     Args:
         checks: the checks, in program order.
+        outputs: what is needed of candidates that pass.
         scheduler: knows which nodes a check needs.
 
     """
 
-    def __init__(self, checks: Sequence[Check], scheduler: Scheduler) -> None:
+    def __init__(self, checks: Sequence[Check], outputs: Sequence[Node], scheduler: Scheduler) -> None:
         self._checks = checks
+        self._outputs = outputs
         self._needs = [tuple(dict.fromkeys(check.nodes)) for check in checks]
         self._below = [frozenset(scheduler.after(scheduler.start, nodes).places) for nodes in self._needs]
         self._measured = [_Measured() for _ in checks]
@@ -89,7 +92,7 @@ class Stages:
 
     def _plan(self, lanes: int) -> tuple[Stage, ...]:
         order = sorted(range(len(self._checks)), key=lambda index: (self._price(index), index))
-        stages: list[Stage] = []
+        stages: list[list[int]] = []
         there: set[Node] = set()
         members: list[int] = []
         elements = 0.0
@@ -100,19 +103,21 @@ class Stages:
             together = members and not self._checks[index].separate
             if not together or (fresh and elements + fresh * entering > _STACKED):
                 if members:
-                    stages.append(self._stage(members))
+                    stages.append(members)
                 members, elements, entering = [], 0.0, alive
             members.append(index)
             there |= self._below[index]
             elements += fresh * entering
             alive *= self._alive(index)
             if self._checks[index].separate:
-                stages.append(self._stage(members))
+                stages.append(members)
                 members, elements, entering = [], 0.0, alive
         if members:
-            stages.append(self._stage(members))
-        return tuple(stages)
-
-    def _stage(self, members: Sequence[int]) -> Stage:
-        nodes = dict.fromkeys(node for index in members for node in self._needs[index])
-        return Stage(tuple(members), tuple(nodes))
+            stages.append(members)
+        plan: list[Stage] = []
+        later = dict.fromkeys(self._outputs)
+        for members in reversed(stages):
+            nodes = dict.fromkeys(node for index in members for node in self._needs[index])
+            plan.append(Stage(tuple(members), tuple(nodes), tuple(later)))
+            later |= nodes
+        return tuple(reversed(plan))
