@@ -9,9 +9,10 @@ being false; those scenes are lost either way.
 All work is counted, never timed: the result decides which scenes a seed gives.
 """
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,11 +47,17 @@ SPLITS: Final = 16
 PATIENCE: Final = 4
 """Splits after which a paving ends that has lost nothing: most programs gain nothing by it, and shall not pay for all of it."""
 
+STRIKES: Final = 2
+"""Groups of conditions of one shape that gain nothing by it, after which others of that shape are left as they are."""
+
 SPLIT_AXES: Final = 8
 """Conditions on more axes than these are not paved: too few boxes would fall to each."""
 
 GAIN: Final = 0.5
-"""A paving is used if it leaves less than this share of its hull."""
+"""Pavings are used if they leave less than this share of their hull together."""
+
+FACTOR_GAIN: Final = 0.9
+"""And only those that leave less than this share each."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -62,6 +69,18 @@ class Pruning:
 
     domain: Domain
     impossible: tuple[Fact, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Boxes:
+    """Boxes of the cube, corners of shape ``(m, dimension)``."""
+
+    lower: Floats
+    upper: Floats
+
+    def volume(self, axes: NDArray[Any]) -> float:
+        """The volume of all of them together, along some axes only."""
+        return float((self.upper - self.lower)[:, axes].prod(axis=1).sum())
 
 
 def prune(graph: Graph, conditions: Sequence[Fact]) -> Domain:
@@ -78,12 +97,75 @@ def contract(graph: Graph, conditions: Sequence[Fact]) -> Pruning:
     boxes = network.contract(_Boxes(whole.lower, whole.upper))
     if len(boxes.lower) == 0:
         return Pruning(whole, _impossible_alone(graph, conditions))
-    paving = network.pave(boxes)
-    if len(paving.lower) == 0:
+    pavings = _pave(graph, conditions, boxes)
+    if pavings is None:
         return Pruning(whole, _impossible_alone(graph, conditions))
-    hull = Domain(paving.lower.min(axis=0, keepdims=True), paving.upper.max(axis=0, keepdims=True))
-    union = Domain(paving.lower, paving.upper)
-    return Pruning(union if union.volume < GAIN * hull.volume else hull, ())
+    return Pruning(_product(boxes, pavings), ())
+
+
+def _pave(graph: Graph, conditions: Sequence[Fact], hull: _Boxes) -> list[_Boxes] | None:
+    """Pavings of the hull, each of axes of its own: of groups of conditions that share no axis with other groups.
+
+    ``None`` where some group cannot hold.
+    """
+    groups = _groups(conditions)
+    pavings: list[_Boxes] = []
+    vain: Counter[tuple[int, ...]] = Counter()
+    for group in groups:
+        network = _Network(graph, group, VISITS // len(groups))
+        shape = len(group), len(network.inner), len(network.axes)
+        if vain[shape] == STRIKES:
+            continue
+        paving = network.pave(hull)
+        if len(paving.lower) == 0:
+            return None
+        axes = np.array(list(network.axes.values()), dtype=np.intp)
+        vain[shape] += paving.volume(axes) > FACTOR_GAIN * hull.volume(axes)
+        pavings.append(paving)
+    return pavings
+
+
+def _groups(conditions: Sequence[Fact]) -> list[list[Fact]]:
+    """The conditions in groups, in order, such that no axis is below conditions of two of them."""
+    leader: dict[Node, int] = {}
+    groups: dict[int, list[Fact]] = {}
+    for number, condition in enumerate(conditions):
+        axes = [node for node in _read([condition.node]) if node.is_axis]
+        joined = sorted({leader[axis] for axis in axes if axis in leader})
+        mine = joined[0] if joined else number
+        for other in joined[1:]:
+            groups[mine] += groups.pop(other)
+        groups.setdefault(mine, []).append(condition)
+        moved = set(joined[1:])
+        leader = (
+            {axis: mine if group in moved else group for axis, group in leader.items()} if moved else leader
+        )
+        leader.update(dict.fromkeys(axes, mine))
+    return list(groups.values())
+
+
+def _product(hull: _Boxes, pavings: Sequence[_Boxes]) -> Domain:
+    """The part of the cube that lies in all pavings; where one hardly says more than its hull, that takes its place."""
+    lower, upper = hull.lower.copy(), hull.upper.copy()
+    unions: list[tuple[Mask, _Boxes]] = []
+    left = 1.0
+    for paving in pavings:
+        least, most = paving.lower.min(axis=0), paving.upper.max(axis=0)
+        own = (paving.lower != hull.lower).any(axis=0) | (paving.upper != hull.upper).any(axis=0)
+        lower[0, own], upper[0, own] = least[own], most[own]
+        share = paving.volume(own) / float((most - least)[own].prod())
+        if share < FACTOR_GAIN:
+            unions.append((own, paving))
+            left *= share
+    if left >= GAIN:
+        return Domain(lower, upper)
+    # The axes of the first union are as it says, those of no union as in the hull; each other union is a factor.
+    factors = []
+    for own, paving in unions[1:]:
+        factors.append(Domain(np.where(own, paving.lower, 0.0), np.where(own, paving.upper, 1.0)))
+        lower[0, own], upper[0, own] = 0.0, 1.0
+    own, paving = unions[0]
+    return Domain(np.where(own, paving.lower, lower), np.where(own, paving.upper, upper), tuple(factors))
 
 
 def _impossible_alone(graph: Graph, conditions: Sequence[Fact]) -> tuple[Fact, ...]:
@@ -96,23 +178,9 @@ def _impossible_alone(graph: Graph, conditions: Sequence[Fact]) -> tuple[Fact, .
             alone.append(condition)
     if alone:
         return tuple(alone)
-    network = _Network(graph, conditions)
-    left = network.contract(_Boxes(whole.lower, whole.upper))
-    impossible = len(left.lower) == 0 or len(network.pave(left).lower) == 0
+    left = _Network(graph, conditions).contract(_Boxes(whole.lower, whole.upper))
+    impossible = len(left.lower) == 0 or _pave(graph, conditions, left) is None
     return tuple(conditions) if impossible else ()
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Boxes:
-    """Boxes of the cube, corners of shape ``(m, dimension)``."""
-
-    lower: Floats
-    upper: Floats
-
-    @property
-    def volume(self) -> float:
-        """The volume of all of them together."""
-        return float((self.upper - self.lower).prod(axis=1).sum())
 
 
 def _moved(before: _Boxes, after: _Boxes, alive: Mask) -> bool:
@@ -122,15 +190,32 @@ def _moved(before: _Boxes, after: _Boxes, alive: Mask) -> bool:
     return bool((new < (1 - PROGRESS) * old).any())
 
 
-class _Network:
-    """The nodes below some conditions, in the order of evaluation."""
+def _read(conditions: Sequence[Node]) -> list[Node]:
+    """The nodes below some conditions that readings of bounds look at, operands first."""
+    order: dict[Node, None] = {}
+    stack = [(node, 0) for node in reversed(conditions)]
+    while stack:
+        node, position = stack.pop()
+        if node in order:
+            continue
+        operands = node.operation.bounding(node.operands, node.payload)
+        if position < len(operands):
+            stack.append((node, position + 1))
+            stack.append((operands[position], 0))
+        else:
+            order[node] = None
+    return list(order)
 
-    def __init__(self, graph: Graph, conditions: Sequence[Fact]) -> None:
+
+class _Network:
+    """The nodes below some conditions that readings of bounds look at, in the order of evaluation."""
+
+    def __init__(self, graph: Graph, conditions: Sequence[Fact], visits: int = VISITS) -> None:
         self.conditions = [condition.node for condition in conditions]
-        self.order = Graph(self.conditions).nodes
+        self.order = _read(self.conditions)
         self.axes = {node: graph.axes[node] for node in self.order if node.is_axis}
         self.inner = [node for node in self.order if not node.is_axis and not node.is_constant]
-        self._visits = VISITS
+        self._visits = visits
 
     def contract(self, boxes: _Boxes, first: int = FIRST_ROUNDS) -> _Boxes:
         """The boxes narrowed, in more than ``first`` passes at least; those that hold no solution are left out."""
@@ -154,11 +239,11 @@ class _Network:
         axes = np.array(sorted(self.axes.values()))
         if not 0 < len(axes) <= SPLIT_AXES:
             return boxes
-        volume = boxes.volume
+        volume = boxes.volume(axes)
         for number in range(SPLITS):
             if not 0 < len(boxes.lower) <= LARGEST_PAVING // 2 or self._visits <= 0:
                 break
-            if number == PATIENCE and boxes.volume > (1 - PROGRESS) * volume:
+            if number == PATIENCE and boxes.volume(axes) > (1 - PROGRESS) * volume:
                 break
             widths = boxes.upper[:, axes] - boxes.lower[:, axes]
             rows, widest = np.arange(len(widths)), axes[widths.argmax(axis=1)]

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scenic.graph.domain import Domain
-from scenic.graph.draws import BOX, Source
+from scenic.graph.draws import Source, box_addresses
 from scenic.graph.kinds import Codec, Column, Kind, boxed
 from scenic.graph.node import Graph, Node
 from scenic.graph.operation import FAULT, OK, Call, Status
@@ -101,7 +101,7 @@ class Batch:
         self.rows = self.rows[chosen]
         self._source = self._source.take(chosen)
         if self._boxes is not None:
-            self._boxes = self._boxes[chosen]
+            self._boxes = self._boxes[:, chosen]
         self._kept.append(chosen)
         self._generation += 1
         self._values.clear()
@@ -259,9 +259,9 @@ class Batch:
         return _Group(numbers[np.newaxis], status, self._generation)
 
     def _boxes_of(self, domain: Domain) -> NDArray[np.intp]:
-        """Which box of the domain each lane is drawn from."""
+        """Which boxes of the factors of the domain each lane is drawn from, ``(parts, n)``."""
         if self._boxes is None:
-            self._boxes = domain.choose(self._source.uniforms(np.array([BOX], dtype=np.uint64))[0])
+            self._boxes = domain.choose(self._source.uniforms(box_addresses(len(domain.parts))))
         return self._boxes
 
     def _evaluate(self, step: Step) -> _Group:

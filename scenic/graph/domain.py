@@ -1,5 +1,6 @@
-"""The part of the unit cube to sample from: a union of boxes."""
+"""The part of the unit cube to sample from: a union of boxes, or a product of several."""
 
+import math
 from dataclasses import dataclass
 from typing import Any, Final, Self
 
@@ -20,16 +21,25 @@ class Domain:
     ``lower`` and ``upper``, both of shape ``(m, dimension)`` with ``0 <= lower < upper <= 1``, are the corners of the
     ``m >= 1`` boxes. Uniform points of the union are points of the cube conditioned to lie in it, which leaves every law
     conditioned on the requirements unchanged as long as the union holds all points that meet them.
+
+    ``factors`` are further unions, each of which narrows axes that no other does: the domain is what lies in all of them. So
+    what is asked of a hundred things, each by itself, takes a hundred small unions rather than one that nobody could write down.
     """
 
     lower: Floats
     upper: Floats
+    factors: tuple["Domain", ...] = ()
 
     def __post_init__(self) -> None:
         if self.lower.ndim != 2 or self.lower.shape != self.upper.shape or len(self.lower) == 0:
             raise ValueError(f"not boxes: corners of shapes {self.lower.shape} and {self.upper.shape}")
         if not ((self.lower >= 0) & (self.lower < self.upper) & (self.upper <= 1)).all():
             raise ValueError("a box of the cube must have volume and lie within it")
+        narrowed = np.zeros(self.dimension, dtype=np.intp)
+        for part in (self, *self.factors):
+            narrowed += ((part.lower > 0) | (part.upper < 1)).any(axis=0)
+        if (narrowed > 1).any():
+            raise ValueError("two factors narrow one axis")
 
     @classmethod
     def whole(cls, dimension: int) -> Self:
@@ -43,34 +53,50 @@ class Domain:
 
     @property
     def boxes(self) -> int:
-        """Number of boxes."""
+        """Number of boxes (of the first factor)."""
         return len(self.lower)
+
+    @property
+    def parts(self) -> tuple["Domain", ...]:
+        """All factors, from the first on."""
+        return (self, *self.factors)
 
     @property
     def is_whole(self) -> bool:
         """Whether nothing of the cube is left out."""
-        return self.boxes == 1 and bool((self.lower == 0).all() and (self.upper == 1).all())
+        return all(
+            len(part.lower) == 1 and bool((part.lower == 0).all() and (part.upper == 1).all())
+            for part in self.parts
+        )
 
     @property
     def volume(self) -> float:
         """Share of the cube that is left."""
-        return float(np.exp(self._logarithms()).sum())
+        return math.prod(float(np.exp(part._logarithms()).sum()) for part in self.parts)
 
     def _logarithms(self) -> Floats:
         """Logarithm of each box's volume; of many axes the volume itself may be too small for a float."""
         return np.asarray(np.log(self.upper - self.lower).sum(axis=1))
 
     def choose(self, draws: Floats) -> NDArray[np.intp]:
-        """Boxes chosen by uniform numbers ``(n,)`` of the open unit interval, each by its volume; shape ``(n,)``."""
+        """Boxes chosen by uniform numbers ``(parts, n)`` of the open unit interval, each by its volume; ``(parts, n)``."""
+        return np.stack([part._choose(numbers) for part, numbers in zip(self.parts, draws, strict=True)])
+
+    def _choose(self, draws: Floats) -> NDArray[np.intp]:
         if self.boxes == 1:
             return np.zeros(len(draws), dtype=np.intp)
         return np.minimum(np.searchsorted(self._shares(), draws, side="right"), self.boxes - 1)
 
     def place(self, numbers: Floats, axes: NDArray[np.intp], chosen: NDArray[np.intp]) -> Floats:
-        """Map uniform numbers of some axes, ``(axes, n)``, into the boxes ``chosen`` for the lanes, ``(n,)``.
+        """Map uniform numbers of some axes, ``(axes, n)``, into the boxes ``chosen`` for the lanes, ``(parts, n)``.
 
-        With all axes these are uniform points of the union. Each number depends on its axis and its lane alone.
+        With all axes these are uniform points of the domain. Each number depends on its axis and its lane alone.
         """
+        for part, boxes in zip(self.parts, chosen, strict=True):
+            numbers = part._place(numbers, axes, boxes)
+        return numbers
+
+    def _place(self, numbers: Floats, axes: NDArray[np.intp], chosen: NDArray[np.intp]) -> Floats:
         lower, upper = self.lower[:, axes], self.upper[:, axes]
         if self.boxes == 1:
             return _between(numbers, lower[0, :, np.newaxis], upper[0, :, np.newaxis])
@@ -82,7 +108,9 @@ class Domain:
 
     def place_each(self, numbers: Floats, axes: NDArray[np.intp], chosen: NDArray[np.intp]) -> Floats:
         """The same for numbers ``(n,)`` of one axis in each lane, ``(n,)``."""
-        return _between(numbers, self.lower[chosen, axes], self.upper[chosen, axes])
+        for part, boxes in zip(self.parts, chosen, strict=True):
+            numbers = _between(numbers, part.lower[boxes, axes], part.upper[boxes, axes])
+        return numbers
 
     def _shares(self) -> Floats:
         logarithms = self._logarithms()
@@ -90,32 +118,42 @@ class Domain:
         return np.asarray(np.cumsum(volumes) / volumes.sum())
 
     def contains(self, points: Floats) -> NDArray[np.bool_]:
-        """Which points of the cube, shape ``(n, dimension)``, lie in the union; shape ``(n,)``."""
-        inside = np.zeros(len(points), dtype=np.bool_)
-        for lower, upper in zip(self.lower, self.upper, strict=True):
-            inside |= ((points >= lower) & (points <= upper)).all(axis=1)
-        return inside
+        """Which points of the cube, shape ``(n, dimension)``, lie in the domain; shape ``(n,)``."""
+        everywhere = np.ones(len(points), dtype=np.bool_)
+        for part in self.parts:
+            inside = np.zeros(len(points), dtype=np.bool_)
+            for lower, upper in zip(part.lower, part.upper, strict=True):
+                inside |= ((points >= lower) & (points <= upper)).all(axis=1)
+            everywhere &= inside
+        return everywhere
 
     def to_data(self) -> dict[str, Any]:
         """Plain data for a manifest: the axes that are narrowed, by number, box by box."""
+        first, *factors = (part._boxes_to_data() for part in self.parts)
+        return {"dimension": self.dimension, "boxes": first, **({"factors": factors} if factors else {})}
+
+    def _boxes_to_data(self) -> list[dict[str, list[float]]]:
         boxes = []
         for lower, upper in zip(self.lower.tolist(), self.upper.tolist(), strict=True):
             ends = enumerate(zip(lower, upper, strict=True))
             boxes.append({str(axis): [low, high] for axis, (low, high) in ends if (low, high) != (0.0, 1.0)})
-        return {"dimension": self.dimension, "boxes": boxes}
+        return boxes
 
     @classmethod
     def from_data(cls, data: dict[str, Any]) -> Self:
         """The domain of `to_data`; raises ``ValueError`` for data that describes none."""
         try:
             dimension, boxes = int(data["dimension"]), data["boxes"]
+            factors = tuple(
+                cls.from_data({"dimension": dimension, "boxes": boxes}) for boxes in data.get("factors", ())
+            )
             lower, upper = np.zeros((len(boxes), dimension)), np.ones((len(boxes), dimension))
             for number, box in enumerate(boxes):
                 for axis, (low, high) in box.items():
                     lower[number, int(axis)], upper[number, int(axis)] = low, high
         except (KeyError, TypeError, IndexError, AttributeError) as error:
             raise ValueError(f"not a domain: {error}") from error
-        return cls(lower, upper)
+        return cls(lower, upper, factors)
 
 
 def _between(rows: Floats, lower: Floats, upper: Floats) -> Floats:

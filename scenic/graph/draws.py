@@ -47,6 +47,12 @@ BOX: Final = address("box of the domain")
 """Which box of a domain of several is drawn from."""
 
 
+def box_addresses(parts: int) -> Words:
+    """The addresses of which box is drawn from in each of the factors of a domain."""
+    others = [address("box of the domain", number) for number in range(1, parts)]
+    return np.array([BOX, *others], dtype=np.uint64)
+
+
 def seed_word(seed: int) -> np.uint64:
     """The 64-bit word that stands for a seed, which may be any integer."""
     return np.uint64(address("seed", int(seed)))

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any, Final, Protocol
+from typing import Any, Final, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -178,6 +178,9 @@ Rewriting = Callable[[Sequence[Any], Any], Any]
 """``(operands, payload) -> node``: a simpler node of the same value, ``None`` where there is none."""
 
 
+_Operand = TypeVar("_Operand")
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Operation:
     """An entry of the table.
@@ -194,7 +197,8 @@ class Operation:
     ``faults`` and ``rejects`` declare that a lane may fail with an exception, or have no value and be rejected; doing either
     undeclared is an internal error. An operation that ``stacks`` evaluates the columns of several alike nodes in one
     call: it is elementwise over all leading dimensions. A ``partial`` one has readings of bounds that take operands of which
-    nothing is known. ``rewrite`` simplifies a node before it is made.
+    nothing is known, and may look at some operands only: ``looks_at`` says which, from the payload. ``rewrite`` simplifies a node
+    before it is made.
     """
 
     name: str
@@ -212,6 +216,7 @@ class Operation:
     rejects: Declared = False
     stacks: bool = False
     partial: bool = False
+    looks_at: Callable[[Any], slice] | None = None
     rewrite: Rewriting | None = None
 
     def may_fault(self, operands: Sequence[Operand], payload: Any, kind: Kind) -> bool:
@@ -225,6 +230,10 @@ class Operation:
         if self.is_python(operands, kind):
             return True
         return self.rejects(operands, payload) if callable(self.rejects) else self.rejects
+
+    def bounding(self, operands: Sequence[_Operand], payload: Any) -> Sequence[_Operand]:
+        """The operands that readings of bounds look at."""
+        return operands if self.looks_at is None else operands[self.looks_at(payload)]
 
     def is_python(self, operands: Sequence[Operand], kind: Kind) -> bool:
         """Whether a node is evaluated lane by lane by the ``python`` function, which may raise anything."""

@@ -24,7 +24,8 @@ class PointSet(Protocol):
     def of_scenes(self, axes: NDArray[np.intp], count: int, lanes: Lanes) -> Floats:
         """The numbers ``(axes, lanes)`` of some of a program's ``count`` axes; NaN where a row has none, which are hashed.
 
-        Axis -1 is none of them: it chooses among the boxes that analysis leaves of the cube.
+        Axis -1 is none of them: it chooses among the boxes that analysis leaves of the cube (where it leaves a product of unions, among
+        those of the first; the other choices are hashed).
         """
 
     def of_simulations(self, draws: NDArray[np.intp], count: int, lanes: Lanes) -> Floats:

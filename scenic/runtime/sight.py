@@ -23,7 +23,7 @@ from scenic.runtime.geometry.visibility.proving import Proof, prove
 from scenic.runtime.geometry.visibility.single import View, sees_body, sees_point
 from scenic.runtime.geometry.visibility.views import Views
 from scenic.runtime.regions.stacked import body_of, body_operands, placed_of
-from scenic.runtime.sight_readings import TARGET, sees_bounds, sees_inverse
+from scenic.runtime.sight_readings import TARGET, sees_bounds, sees_inverse, sees_looks_at
 from scenic.runtime.values import (
     Orientation,
     Random,
@@ -215,6 +215,7 @@ SEES = Operation(
     bounds=sees_bounds,
     inverse=sees_inverse,
     partial=True,
+    looks_at=sees_looks_at,
 )
 
 

@@ -25,6 +25,12 @@ TARGET: Final = 9
 """Where what is looked at begins: a place, or the operands of a body."""
 
 
+def sees_looks_at(payload: tuple[bool, bool]) -> slice:
+    """The operands that matter: not what hides things."""
+    is_object, _ = payload
+    return slice(TARGET + (4 if is_object else 1))
+
+
 def sees_bounds(payload: tuple[bool, bool], *operands: Bounds | None) -> Bounds | None:
     """Where a target is certainly not seen, from bounds of the operands of "sees"."""
     camera, place, distance = operands[CAMERA], operands[TARGET], operands[DISTANCE]

@@ -21,9 +21,9 @@ POINTS = 2000
 
 
 def placed(domain, rows):
-    """Uniform points of a domain from uniform rows; the first number chooses the box."""
+    """Uniform points of a domain from uniform rows; the last numbers choose the boxes."""
     axes = np.arange(domain.dimension)
-    return domain.place(rows[:, 1:].T, axes, domain.choose(rows[:, 0])).T
+    return domain.place(rows.T[axes], axes, domain.choose(rows.T[len(axes) :])).T
 
 
 def check(*nodes):
@@ -245,6 +245,74 @@ def test_no_solution_of_a_random_program_is_lost(seed):
         assert found.domain.contains(points[good]).all()
 
 
+def test_what_shares_no_draw_is_paved_by_itself():
+    """Five pairs of draws, each of which must lie in a narrow diagonal band: as many unions, not one of many axes."""
+    conditions, pairs = [], []
+    for number in range(5):
+        x, y = uniform(0, 1), uniform(0, 1)
+        pairs.append((x, y))
+        conditions.append(make("less", make("absolute", make("subtract", x, y)), 0.1 + number / 100))
+    items = [Fact(node, "") for node in conditions]
+    network = Graph(conditions)
+    domain = prune(network, items)
+    assert len(domain.parts) == 5
+    assert domain.volume < 0.5**5
+    rng = np.random.default_rng(3)
+    points = rng.random((POINTS * 40, network.dimension))
+    good = points[accepted(network, points, items)]
+    assert domain.contains(good).all()
+    found = placed(domain, rng.random((20_000, network.dimension + 5)))
+    assert domain.contains(found).all()
+    found = found[accepted(network, found, items)]
+    assert len(found) > 20 * len(good)
+    # Of each pair alone the law has a closed form: the middle of a band is uniform but for its ends.
+    for number in range(5):
+        x, y = found[:, 2 * number], found[:, 2 * number + 1]
+        width = 0.1 + number / 100
+        inner = (x > width) & (x < 1 - width)
+        assert stats.kstest((y - x)[inner], stats.uniform(-width, 2 * width).cdf).pvalue > 1e-4
+        assert stats.kstest(x[inner], stats.uniform(width, 1 - 2 * width).cdf).pvalue > 1e-4
+
+
+def test_conditions_of_a_shape_that_gains_nothing_are_left_alone(monkeypatch):
+    """A sum of many draws says little of each; there are twenty of them, and one narrow band."""
+    looked = []
+    pave = contraction._Network.pave
+
+    def paved(self, hull):
+        looked.append(len(self.axes))
+        return pave(self, hull)
+
+    monkeypatch.setattr(contraction._Network, "pave", paved)
+    sums = []
+    for _ in range(20):
+        total = make("add", make("add", uniform(0, 1), uniform(0, 1)), uniform(0, 1))
+        sums.append(make("less", total, 2.9))
+    x, y = uniform(0, 1), uniform(0, 1)
+    nodes = [*sums, make("less", make("absolute", make("subtract", x, y)), 0.1)]
+    domain = prune(Graph(nodes), [Fact(node, "") for node in nodes])
+    assert looked == [3] * contraction.STRIKES + [2]
+    assert len(domain.parts) == 1
+    assert domain.volume < 0.5
+
+
+def test_groups_grow_together_by_a_condition_over_both():
+    x, y, z, w = (uniform(0, 1) for _ in range(4))
+
+    def band(a, b):
+        return Fact(make("less", make("absolute", make("subtract", a, b)), 0.1), "")
+
+    apart = [band(x, y), band(z, w)]
+    joined = [*apart, band(y, z)]
+    of = contraction._groups
+    assert [[items.index(fact) for fact in group] for items in (apart,) for group in of(items)] == [[0], [1]]
+    assert sorted(joined.index(fact) for group in of(joined) for fact in group) == [0, 1, 2]
+    assert len(of(joined)) == 1
+    assert len(of([band(x, y), band(z, w), band(y, x)])) == 2
+    constant = Fact(make("less", 1, 2), "")
+    assert len(of([constant, band(x, y)])) == 2
+
+
 def narrowed_programs():
     for seed in range(200):
         items = conditions(seed)
@@ -262,7 +330,7 @@ def test_pruned_and_unpruned_samples_follow_one_law():
         rng = np.random.default_rng(99)
         plain = rng.random((3000, network.dimension))
         plain = plain[accepted(network, plain, items)]
-        pruned = placed(domain, rng.random((3000, 1 + network.dimension)))
+        pruned = placed(domain, rng.random((3000, network.dimension + len(domain.parts))))
         pruned = pruned[accepted(network, pruned, items)]
         if len(plain) < 100:
             continue
@@ -286,7 +354,7 @@ def test_values_follow_one_law_too():
     domain = prune(network, [Fact(node, "")])
     rng = np.random.default_rng(5)
     samples = []
-    for points in (rng.random((20_000, 3)), placed(domain, rng.random((20_000, 4)))):
+    for points in (rng.random((20_000, 3)), placed(domain, rng.random((20_000, 3 + len(domain.parts))))):
         batch = batch_at(network, points, CODEC)
         batch.keep(batch.full(node))
         samples.append([batch.full(item).astype(float) for item in draws])

@@ -20,9 +20,9 @@ TWO = union([[0.0, 0.5], [0.0, 1.0]], [[0.5, 1.0], [0.75, 1.0]])
 
 
 def place(domain: Domain, rows: np.ndarray) -> np.ndarray:
-    """Points of the union from rows of uniform numbers: one for each axis, after one that chooses the box."""
-    axes = np.arange(domain.dimension)
-    return domain.place(rows[:, 1:].T, axes, domain.choose(rows[:, 0])).T
+    """Points of the domain from rows of uniform numbers: one for each axis, after those that choose the boxes."""
+    axes, parts = np.arange(domain.dimension), len(domain.parts)
+    return domain.place(rows[:, parts:].T, axes, domain.choose(rows[:, :parts].T)).T
 
 
 def test_the_whole_cube_leaves_points_as_they_are():
@@ -97,7 +97,48 @@ def test_many_axes_do_not_underflow():
     assert 0.28 < (points[:, 0] > 0.5).mean() < 0.39
 
 
+PRODUCT = Domain(
+    *(np.pad(ends, ((0, 0), (0, 2)), constant_values=end) for end, ends in enumerate((TWO.lower, TWO.upper))),
+    (
+        Domain(
+            *(
+                np.pad(ends, ((0, 0), (2, 0)), constant_values=end)
+                for end, ends in enumerate((TWO.lower, TWO.upper))
+            )
+        ),
+    ),
+)
+"""The same union of the first two axes and, by itself, of the last two."""
+
+
+def test_a_product_of_unions():
+    """Each factor is filled as if it were alone, and independently."""
+    assert PRODUCT.volume == pytest.approx(0.625**2)
+    assert not PRODUCT.is_whole
+    rows = np.random.default_rng(6).random((8000, 6))
+    points = place(PRODUCT, rows)
+    assert PRODUCT.contains(points).all()
+    for first in (0, 2):
+        alone = place(TWO, rows[:, [first // 2, first + 2, first + 3]])
+        assert points[:, first : first + 2].tobytes() == alone.tobytes()
+        outside = points.copy()
+        outside[:, first : first + 2] = 0.7, 0.5
+        assert not PRODUCT.contains(outside).any()
+    chosen = PRODUCT.choose(rows[:, :2].T)
+    for axis in range(4):
+        each = PRODUCT.place_each(rows[:, 2 + axis], np.full(8000, axis), chosen)
+        assert each.tobytes() == points[:, axis].tobytes()
+
+
+def test_two_factors_of_one_axis_are_refused():
+    with pytest.raises(ValueError, match="two factors narrow one axis"):
+        Domain(TWO.lower, TWO.upper, (TWO,))
+
+
 def test_plain_data_round_trip():
+    again = Domain.from_data(json.loads(json.dumps(PRODUCT.to_data())))
+    assert [part.lower.tobytes() for part in again.parts] == [part.lower.tobytes() for part in PRODUCT.parts]
+    assert [part.upper.tobytes() for part in again.parts] == [part.upper.tobytes() for part in PRODUCT.parts]
     for domain in (TWO, Domain.whole(4), union([[0.1, 0.30000000000000004]])):
         data = json.loads(json.dumps(domain.to_data()))
         again = Domain.from_data(data)

@@ -29,9 +29,12 @@ class _Driven:
         return _Driven(self._points, self._axes, self._count, self._lanes.take(lanes))
 
     def uniforms(self, addresses: Words) -> Floats:
-        axes = np.array([self._axes[name] for name in addresses.tolist()], dtype=np.intp)
+        names = addresses.tolist()
+        axes = np.array([self._axes.get(name, -1) for name in names], dtype=np.intp)
         result = self._points.of_scenes(axes, self._count, self._lanes)
         missing = np.isnan(result)
+        # Which boxes are drawn from in all but the first factor of a domain.
+        missing[[name not in self._axes for name in names]] = True
         return np.where(missing, self._rest.uniforms(addresses), result) if missing.any() else result
 
     def uniform_each(self, addresses: Words) -> Floats:
