@@ -192,3 +192,34 @@ def test_bounds_of_points_of_regions(name: str) -> None:
     random = np.random.default_rng(2)
     points, _ = region.draw_points(random.random((region.draws, 500)), np.zeros(500, np.uint64), *columns)
     assert ((found.lower - 1e-9 <= points) & (points <= found.upper + 1e-9)).all()
+
+
+def test_nothing_follows_from_distances_of_bodies_of_which_little_is_known() -> None:
+    """A body whose place, turn or size has no bounds says nothing of the other's place, and nothing breaks."""
+    from scenic.runtime.regions.bodies import _GAP
+
+    place, turn, size = exactly([[5.0, 0, 0]]), exactly([[0.0, 0, 0, 1]]), exactly([[1.0, 1, 1]])
+    known: list[Bounds | None] = [place, turn, size, None]
+    within = exactly([2.0])
+    assert _GAP.inverse is not None
+    full = _GAP.inverse(None, within, *known, *known)
+    assert full[0] is not None
+    assert full[4] is not None
+    # Half a diagonal, or an extent, of each beside the distance: a body at 7.5 may be that near, one at 9 is not.
+    assert full[0].lower[0, 0] < 2.1
+    assert 7.9 < full[0].upper[0, 0] < 9
+    for missing in range(3):
+        less: list[Bounds | None] = [None if part == missing else item for part, item in enumerate(known)]
+        one, other = _GAP.inverse(None, within, *less, *known), _GAP.inverse(None, within, *known, *less)
+        for found, mine, theirs in ((one, 0, 4), (other, 4, 0)):
+            # Without its place the other's still says where it is, without its size nothing does.
+            assert (found[mine] is not None, found[theirs] is not None) == {
+                0: (True, False),
+                1: (True, True),
+                2: (False, False),
+            }[missing]
+            for part in (mine, theirs):
+                mine_now, before = found[part], full[part]
+                if mine_now is not None and before is not None:
+                    assert (mine_now.lower <= before.lower).all()
+                    assert (mine_now.upper >= before.upper).all()

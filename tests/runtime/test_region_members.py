@@ -215,6 +215,9 @@ def test_ends_and_directions_of_lines() -> None:
     assert [tuple(point) for point in line] == [(0, 0, 0), (4, 0, 0), (4, 3, 0)]
     assert tuple(line[-1]) == (4, 3, 0)
     assert line.cumulativeLengths == pytest.approx([4, 7])
+    # Before its start and after its end, on the same straight line, a point is not on the right.
+    for point, signed in (((-3, 0, 0), 3), ((4, 5, 0), 2), ((2, 1, 0), 1), ((2, -1, 0), -1), ((5, 2, 0), -1)):
+        assert line.signedDistanceTo(Vector(*point)) == pytest.approx(signed)
     joined = line + own
     assert joined.length == pytest.approx(11)
     with pytest.raises(TypeError):
@@ -365,3 +368,17 @@ def test_no_point_is_drawn_from_what_has_no_bounds(made: str) -> None:
         f"new Point in {made}\n"
     )
     assert isinstance(failure(text), InvalidScenarioError | ScenicTypeError)
+
+
+def test_boxes_of_sides_of_several_bodies_hold_them() -> None:
+    """Of one body the box of the side is told, of several those of the bodies."""
+    item = thing("ego = new Object at (1, 2, 3), with width 2, with length 4, with height 6")
+    for side, bottom in ((item.topSurface, 6), (item.surface, 0)):
+        position, *others = side.fixed_columns("a test")
+        lower, upper = side.box(position, *others)
+        assert lower[0].tolist() == pytest.approx([0, 0, bottom])
+        assert upper[0].tolist() == pytest.approx([2, 4, 6])
+        moved = position + np.arange(3)[:, np.newaxis]
+        lower, upper = side.box(moved, *others)
+        np.testing.assert_allclose(lower, np.array([[0, 0, 0]]) + np.arange(3)[:, np.newaxis])
+        np.testing.assert_allclose(upper, np.array([[2, 4, 6]]) + np.arange(3)[:, np.newaxis])

@@ -54,6 +54,16 @@ def test_initial_rotation_of_quarters_keeps_boxes():
     assert not shapes.BoxShape(initial_rotation=(0.5, 0, 0)).mesh.is_box
 
 
+@pytest.mark.parametrize("angle", [1e-6, 5e-4, math.pi / 2 + 1e-6, math.pi - 5e-4])
+def test_small_turns_are_turns(angle):
+    """Only rounding is taken from what is nearly a quarter."""
+    long = trimesh.creation.box((1, 100, 2))
+    shape = shapes.MeshShape(long, initial_rotation=(angle, 0, 0))
+    cos, sin = abs(math.cos(angle)), abs(math.sin(angle))
+    assert shape.dimensions == pytest.approx((cos + 100 * sin, 100 * cos + sin, 2), rel=1e-12)
+    assert not shape.mesh.is_box
+
+
 def test_mesh_shape_measures_after_rotation():
     shape = shapes.MeshShape(wedge())
     assert shape.dimensions == (4, 2, 1)

@@ -116,3 +116,34 @@ def test_where_few_places_fit_they_are_drawn_again_and_no_scene_is_lost() -> Non
     )
     scenes = scenic.scenarioFromString(text).sample(60, seed=1)
     assert sum(scene.attempts for scene in scenes) < 1.6 * 60
+
+
+def test_places_near_a_view_are_in_the_container_and_within_reach() -> None:
+    from scenic.runtime.geometry import primitives
+    from scenic.runtime.geometry.bodies import Body
+    from scenic.runtime.geometry.poses import Poses
+    from scenic.runtime.regions.views import NearView
+    from scenic.runtime.regions.volumes import BoxRegion
+    from tests.runtime.programs import thing
+
+    observer = thing("ego = new Object at (4, -3, 2), with visibleDistance 5, with viewAngles (1, 1)")
+    seen = thing("ego = new Object with width 2, with length 4, with height 4")
+    container = BoxRegion((9, 9, 9), (1, 1, 1))
+    near = NearView(container, observer, seen)
+    columns = near.fixed_columns("a test")
+    rng = np.random.default_rng(3)
+    points = rng.uniform(-9, 9, (3000, 3))
+    camera = np.array([4, -3, 2])  # no camera offset by default
+    inside = (np.abs(points - 1) <= 4.5).all(axis=1) & (np.linalg.norm(points - camera, axis=1) <= 5 + 3)
+    np.testing.assert_array_equal(near.contains_points(points, *columns), inside)
+    assert 100 < inside.sum() < 1500
+    body = Body(
+        (primitives.box(),), None, Poses(points, np.array([[0.0, 0, 0, 1]]), np.array([[0.5, 1, 0.2]]))
+    )
+    corners = points[:, None] + np.array(
+        [(x, y, z) for x in (-0.25, 0.25) for y in (-0.5, 0.5) for z in (-0.1, 0.1)]
+    )
+    held = (np.abs(corners - 1) <= 4.5).all(axis=(1, 2)) & (
+        np.linalg.norm(corners - camera, axis=2) <= 8
+    ).all(axis=1)
+    np.testing.assert_array_equal(near.contains_bodies(body, 3000, *columns), held)

@@ -239,3 +239,19 @@ def test_large_and_near_outlines_in_views_of_every_width(angle: float) -> None:
         decided += 1
     assert decided > 0.95 * count
     assert 0.1 < seen.mean() < 0.97
+
+
+@pytest.mark.parametrize("place", [(0.0, 0.5), (0.3, 0.5), (-0.5, 0.2), (0.5, 0.5), (0.5, -0.5), (0.0, 0.0)])
+def test_a_camera_on_an_outline_sees_it_whichever_way_it_looks(place: tuple[float, float]) -> None:
+    for heading in (0.1, 1.7, 3.0, -1.4):
+        seen = _sees(
+            None,  # type: ignore[arg-type] # elementwise: nothing of the call is used
+            np.array([[*place, 0.0]]),
+            np.array([heading]),
+            np.array([0.2]),
+            np.array([5.0]),
+            np.zeros((1, 3)),
+            np.array([[0.0, 0, 0, 1]]),
+            np.ones((1, 3)),
+        )
+        assert seen.tolist() == [True]

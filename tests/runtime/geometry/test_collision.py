@@ -5,6 +5,7 @@ import pytest
 
 from scenic.runtime.geometry import primitives
 from scenic.runtime.geometry.bodies import Body
+from scenic.runtime.geometry.broadphase import boxes_overlap
 from scenic.runtime.geometry.collision import Collider, collide
 from scenic.runtime.geometry.crowd import Crowd
 from scenic.runtime.geometry.narrowphase import meshes_intersect
@@ -177,6 +178,19 @@ def test_either_body_of_a_pair_may_allow_collisions():
     for one, other in ((allow, np.zeros(1, bool)), (np.zeros(1, bool), allow), (allow, ~allow)):
         bodies = [Body((primitives.box(),), None, at, allow=item) for item in (one, other)]
         np.testing.assert_array_equal(collide(bodies, None, lanes).free, np.broadcast_to(one | other, lanes))
+
+
+def test_unwanted_pairs_count_nowhere_among_many_lanes():
+    """Pairs come in several groups there; in each of them only the wanted ones count."""
+    lanes, count = 9000, 8
+    box = primitives.box()
+    bodies = [Body((box,), None, random_poses(lanes, 40 + number, spread=2)) for number in range(count)]
+    wanted = [(0, 3), (7, 1), (2, 6), (5, 6)]
+    found = collide(bodies, wanted, lanes, exhaustive=True)
+    expected = np.stack([boxes_overlap(bodies[i].poses, bodies[j].poses) for i, j in wanted], axis=1)
+    np.testing.assert_array_equal(found.pairs, expected)
+    np.testing.assert_array_equal(collide(bodies, wanted, lanes).free, ~expected.any(axis=1))
+    assert 0.1 < expected.any(axis=1).mean() < 0.9
 
 
 def test_no_pairs():

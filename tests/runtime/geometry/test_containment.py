@@ -212,6 +212,24 @@ def test_a_body_over_a_cavity_is_not_inside():
     assert containment.mesh_in_mesh(ball, yawed((0.37, 0, 0), size=(0.2,) * 3), hollow(), yawed((0, 0, 0)))[0]
 
 
+@pytest.mark.parametrize("outer", ["table", "hollow"])
+def test_touching_concave_containers_from_inside_is_inside(outer):
+    """Face on face, edge on edge and in a corner; a millionth farther out it is not."""
+    cube = primitives.box()
+    # In the top of a table of height 1, or the wall of a hollow cube.
+    x, y, z = (0.0, 0.0, 0.45) if outer == "table" else (0.375, 0.0, 0.0)
+    size = (0.25, 0.5, 0.1) if outer == "table" else (0.25, 0.5, 0.5)
+    for corner in ((0, 0), (1, 0), (0, -1), (1, 1)):
+        place = np.array([x, y, z])
+        free = (0, 1) if outer == "table" else (1, 2)
+        for axis, side in zip(free, corner, strict=True):
+            place[axis] += side * (0.5 - size[axis] / 2)
+        for off, held in ((0.0, True), (-1e-6, True), (1e-6, False)):
+            fitting = yawed(tuple(place), size=tuple(np.array(size) * (1 + off)))
+            found = containment.mesh_in_mesh(cube, fitting, SHAPES[outer](), yawed((0, 0, 0)))
+            assert found[0] == held
+
+
 def test_bodies_in_bodies_with_choices():
     meshes = (primitives.box(), primitives.spheroid())
     choice = np.array([0, 1, 0, 1])

@@ -190,3 +190,23 @@ def test_lines():
     distance, number, place = Segments.of_chains([np.c_[lines[2], np.zeros(400)].tolist()]).nearest(vertices)
     np.testing.assert_array_equal(number, np.arange(398))
     np.testing.assert_allclose(place, vertices, atol=1e-12)
+
+
+def test_chains_apart_are_told_apart_at_their_ends():
+    """Of many segments as of few: at the start of a chain the last segment of the one before does not count."""
+    chains = [[(x + 200 * number, float((x + number) % 2), number) for x in range(60)] for number in range(3)]
+    whole = Segments.of_chains(chains)
+    assert len(whole.starts) > 96
+    places = np.array([chain[end] for chain in chains for end in (0, 1, 30, -1)], dtype=float)
+    offsets = np.array([(0, 0, 0), (-0.5, -0.2, 0), (0, 0, 1), (0.4, -0.3, 0)])
+    points = (places[:, None] + offsets).reshape(-1, 3)
+    distance, number, place = whole.nearest(points)
+    expected = whole._nearest_of_all(points)
+    np.testing.assert_allclose(distance, expected[0], atol=1e-12)
+    np.testing.assert_allclose(place, expected[2], atol=1e-12)
+    joint = (place == whole.starts[number]).all(axis=1) | (place == whole.ends[number]).all(axis=1)
+    np.testing.assert_array_equal(number[~joint], expected[1][~joint])
+    # Where chains begin there is nothing before.
+    for chain, first in zip(chains, (0, 59, 118), strict=True):
+        assert whole.nearest(np.array([chain[0]], dtype=float))[1].tolist() == [first]
+        assert whole.nearest(np.array([chain[1]], dtype=float))[1].tolist() == [first]

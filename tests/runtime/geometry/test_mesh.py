@@ -134,3 +134,21 @@ def test_real_meshes_are_volumes(path):
     assert mesh.is_volume
     np.testing.assert_array_equal(mesh.bounds, [[-0.5] * 3, [0.5] * 3])
     assert mesh.volume <= ConvexHull(mesh.vertices).volume * (1 + 1e-12)
+
+
+@pytest.mark.parametrize("depth", [1e-2, 1e-4, 1e-6])
+def test_a_slight_dent_is_none_of_the_hull(depth):
+    """And a slight peak is."""
+    corners = np.array([(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
+    faces = [face for face in primitives.box().faces.tolist() if set(face) not in ({1, 5, 7}, {1, 7, 3})]
+    rim = [(1, 5), (5, 7), (7, 3), (3, 1)]
+    for sign in (-1, 1):
+        vertices = np.vstack([corners, [0, 0, 0.5 + sign * depth]])
+        mesh = Mesh(vertices, np.array([*faces, *((a, b, 8) for a, b in rim)]))
+        assert mesh.is_volume
+        assert mesh.volume == pytest.approx(1 + sign * depth / 3)
+        assert mesh.is_convex is (sign > 0)
+        assert mesh.hull.volume == pytest.approx(1 + max(sign, 0) * depth / 3, abs=1e-12)
+        assert len(mesh.hull.vertices) == (9 if sign > 0 else 8)
+        heights = vertices @ mesh.hull.planes[:, :3].T + mesh.hull.planes[:, 3]
+        assert (heights <= 1e-11).all()

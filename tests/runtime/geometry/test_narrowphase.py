@@ -207,3 +207,29 @@ def test_resting_gap():
             position = np.c_[rng.uniform(-1, 1, (64, 2)), 2 + size[:, 2] / 2 + shift]
             poses = Poses(position, quaternions.from_euler(yaw, 0, 0), size)
             assert (meshes_intersect(table(), plate, mesh, poses) == expected).all()
+
+
+@pytest.mark.parametrize("patience", [0, np.inf])
+def test_faces_edges_and_corners_that_just_touch(patience):
+    """Where all coordinates are exact, so is contact; a hair apart there is none."""
+    cylinder, cone = primitives.cylinder(4), primitives.cone()
+    # Upright ones stand on each other; of the four-sided prism, corners are on the axes.
+    cases = [
+        (cylinder, (0, 0, 1.0), cylinder, (1, 1, 1)),
+        (cone, (0, 0, 1.0), table(), (1, 1, 1)),
+        (cylinder, (1.0, 0, 0), cylinder, (1, 1, 1)),
+        (cylinder, (0, 1.0, 0.5), cylinder, (1, 1, 1)),
+        (cone, (0, 0, -0.75), cylinder, (1, 1, 0.5)),
+        (table(), (1.0, 0, 0), table(), (1, 1, 1)),
+        (table(), (1.0, 1.0, 1.0), cylinder, (1, 1, 1)),
+    ]
+    for number, (first, way, second, size) in enumerate(cases):
+        solids = Solids([first, second], patience=patience)
+        zero = np.zeros(1, dtype=np.intp)
+        touches = number < len(cases) - 1  # the prism has no corner there
+        for off, expected in ((0.0, touches), (1e-6, False), (-1e-6, touches)):
+            at = np.asarray(way) * (1 + off)
+            moved = Poses.fixed(at, size=size)
+            still = Poses.fixed((0, 0, 0))
+            assert solids.intersect(zero, moved, zero + 1, still)[0] == expected, (number, off)
+            assert solids.intersect(zero + 1, still, zero, moved)[0] == expected, (number, off)

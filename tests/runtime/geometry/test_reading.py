@@ -392,6 +392,7 @@ def test_obj_lines_that_say_nothing():
             "nan.obj` has a coordinate that is not finite",
         ),
         ("short.stl", b"solid a\nfacet\nvertex 0 0 0\nvertex 1 0 0\n", "three corners"),
+        ("long.stl", b"\0" * 84 + b"xx", "as long as"),
         ("cut.stl", b"\0" * 80 + b"\x02\0\0\0" + b"\0" * 50, "as long as"),
         ("order.ply", b"ply\nformat cuneiform 1.0\nend_header\n", "its header has the line"),
         ("far.ply", ply("<", [(0, 1, 9)]), "vertex outside 0 to 3"),

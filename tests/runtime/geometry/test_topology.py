@@ -74,3 +74,12 @@ def test_ragged_loops(counts, most):
     assert np.diff(group_starts(owner, len(counts))).tolist() == counts.tolist()
     taken = [index for part in rows(len(counts), 3, most) for index in range(part.start, part.stop)]
     assert taken == list(range(len(counts)))
+
+
+def test_edges_of_three_faces_are_open():
+    fins = np.array([(0, 1, 2), (1, 0, 3), (0, 1, 4)])
+    census = topology.edge_census(fins)
+    assert (census.open_edges, census.inconsistent_edges) == (7, 0)
+    twice = np.array([(0, 1, 2), (1, 0, 2), (0, 1, 2), (0, 1, 2)])
+    assert topology.edge_census(twice).open_edges == 0
+    assert topology.edge_census(twice).inconsistent_edges == 3

@@ -9,7 +9,7 @@ from scenic.runtime.geometry.poses import Poses
 from scenic.runtime.geometry.visibility.bodies import sees_bodies
 from scenic.runtime.geometry.visibility.obstacles import Occluder
 from scenic.runtime.geometry.visibility.proofs import inner_boxes
-from scenic.runtime.geometry.visibility.proving import Proof, prove
+from scenic.runtime.geometry.visibility.proving import Proof, _Cells, prove
 from scenic.runtime.geometry.visibility.views import Views
 from tests.runtime.geometry.visibility.reference import winding
 from tests.runtime.geometry.visibility.test_bodies import FRAME, fixed, scenes
@@ -78,3 +78,53 @@ def test_what_surrounds_the_observer_is_divided_all_around() -> None:
     ring = Body((FRAME,), None, Poses.fixed((0, 0, 0), (np.sqrt(0.5), 0, 0, np.sqrt(0.5)), size=(9, 1, 9)))
     assert proof(Views.fixed((0, 0, 0)), ring) == Proof.SEEN
     assert proof(Views.fixed((0, 0, 0), distance=2), ring) == Proof.HIDDEN
+
+
+def test_what_stands_behind_or_in_a_body_hides_nothing_of_it() -> None:
+    """Also of one whose middle is not part of it, however near behind its nearest part that is."""
+    observer = Views.fixed((0, 0, 0))
+    frame = Body((FRAME,), None, Poses.fixed((0, 10, 0), size=(4, 1, 4)))
+    for behind in (10.6, 12, 15, 25):
+        assert proof(observer, frame, fixed((0, behind, 0), (40, 0.1, 40))) == Proof.SEEN
+    assert proof(observer, frame, fixed((0, 9.4, 0), (40, 0.1, 40))) == Proof.HIDDEN
+    # A wall in the middle of it hides the half that is behind.
+    assert proof(observer, frame, fixed((0, 10, 0), (40, 0.1, 40))) == Proof.SEEN
+
+
+def test_the_corners_of_a_cell_have_all_of_it_between_them() -> None:
+    """Every direction of a cell is a sum of its corners with no negative part, and the cell is hardly smaller."""
+    rng = np.random.default_rng(2)
+    count = 500
+    azimuth = rng.uniform(-np.pi, np.pi, (count, 1)) + np.array([[0, 1]]) * rng.uniform(
+        0.01, 0.35, (count, 1)
+    )
+    low = rng.uniform(-1.5, 1.4, (count, 1))
+    altitude = np.concatenate([low, np.minimum(low + rng.uniform(0.01, 0.35, (count, 1)), 1.55)], axis=1)
+    cells = _Cells(np.arange(count), azimuth, altitude)
+    corners = cells.corners()
+    # On the inner side of the planes through neighbouring corners, which run anticlockwise as seen from the camera.
+    normals = np.cross(corners, np.roll(corners, -1, axis=1))
+    middle = cells.middles()
+    inner = np.sign((normals * middle[:, np.newaxis]).sum(axis=2))
+    assert (inner == inner[:, :1]).all()
+    for u in np.linspace(0, 1, 9):
+        for v in np.linspace(0, 1, 9):
+            a, b = (1 - u) * azimuth[:, 0] + u * azimuth[:, 1], (1 - v) * altitude[:, 0] + v * altitude[:, 1]
+            way = np.stack([-np.sin(a) * np.cos(b), np.cos(a) * np.cos(b), np.sin(b)], axis=1)
+            assert ((normals * way[:, np.newaxis]).sum(axis=2) * inner >= -1e-12).all()
+    quarters = cells.quartered()
+    assert len(quarters.lane) == 4 * count
+    area = np.diff(np.sin(altitude), axis=1)[:, 0] * np.diff(azimuth, axis=1)[:, 0]
+    parts = np.diff(np.sin(quarters.altitude), axis=1)[:, 0] * np.diff(quarters.azimuth, axis=1)[:, 0]
+    np.testing.assert_allclose(np.bincount(quarters.lane, parts), area)
+
+
+def test_what_shows_through_a_frame_is_seen_though_the_corners_of_its_box_are_hidden() -> None:
+    """A frame hides by one of its bars what that hides, not by all of them together what is in its hole."""
+    observer = Views.fixed((0, 0, 0))
+    before = Body((FRAME,), None, Poses.fixed((0, 5, 0), size=(4, 0.2, 4)))
+    behind = Body((FRAME,), None, Poses.fixed((0, 10, 0), size=(6.8, 1, 6.8)))
+    assert proof(observer, behind, before) == Proof.SEEN
+    assert sees_bodies(observer, behind, [Occluder(before)], 1)[0]
+    full = fixed((0, 5, 0), (4, 0.2, 4))
+    assert proof(observer, behind, full) == Proof.HIDDEN

@@ -233,3 +233,35 @@ def test_cameras_in_bodies_of_different_shapes_are_each_in_their_own() -> None:
         # A box holds both places, a frame the one in its corner, a cone the middle.
         expected = (choice == 0) | ((choice == 1) == (place[:, 0] > 0))
         assert sees_bodies(observers, body, (), count).tolist() == expected.tolist()
+
+
+@pytest.mark.parametrize("mesh", [primitives.cylinder(7), primitives.spheroid(), table(), bumpy(3)])
+def test_rays_at_edges_are_decided_again_where_single_precision_names_the_wrong_face(mesh: Mesh) -> None:
+    rng = np.random.default_rng(14)
+    first, second = mesh.faces[:, [0, 1, 2]].ravel(), mesh.faces[:, [1, 2, 0]].ravel()
+    edges = rng.integers(0, len(first), 600)
+    share = rng.random((600, 1))
+    targets = (1 - share) * mesh.vertices[first[edges]] + share * mesh.vertices[second[edges]]
+    origins = targets + rng.normal(size=(600, 3)) * 2
+    directions = targets - origins
+    near, _ = hits.box_span(origins, directions)
+    deep = _dives(mesh, first, second, edges, directions)
+    quick = hits._quick_first(mesh, origins, directions, near)[deep]
+    assert (quick <= 1 + 1e-9).mean() > 0.98
+    np.testing.assert_allclose(quick, exact_first(mesh, origins, directions, near)[deep], atol=1e-9)
+
+
+@pytest.mark.parametrize("count", [(9, 9), (31, 31), (200, 200), (333, 77)])
+@pytest.mark.parametrize("side", [-1, 1])
+def test_no_ray_is_cast_beyond_the_view(count: tuple[int, int], side: int) -> None:
+    """All of a wide body that is in view is hidden, and what is beside the view is not seen however many rays there are."""
+    observer = Views.fixed((0, 0, 0), angles=(0.5, 0.5), count=count)
+    for axis in (0, 2):
+        place, size = np.array([0.0, 10, 0]), np.array([2.0, 0.2, 2.0])
+        place[axis], size[axis] = side * 5.0, 9.0
+        target = fixed(tuple(place), tuple(size))
+        screen = fixed((0, 5, 0), (2.6, 0.1, 2.6))  # the view is 5 tan 0.25 wide to each side there
+        assert not sees(observer, target, screen)
+        assert sees(observer, target)
+        narrow = fixed((0, 5, 0), (2.4, 0.1, 2.4))
+        assert sees(Views.fixed((0, 0, 0), angles=(0.5, 0.5), count=(401, 401)), target, narrow)

@@ -145,3 +145,18 @@ def test_middles_near_a_view_are_drawn_as_densely_close_by_as_far_off(
     assert np.abs(azimuth[far]).max() == pytest.approx(min(math.pi, horizontal / 2 + wider), abs=1e-3)
     higher = math.asin(radius / core)
     assert np.abs(altitude[far]).max() == pytest.approx(min(math.pi / 2, vertical / 2 + higher), abs=2e-2)
+
+
+@pytest.mark.parametrize("vertical", [math.pi, 3.0, 2.9])
+@pytest.mark.parametrize("horizontal", [0.5, 2.0])
+def test_middles_beyond_the_pole_are_drawn_all_around(horizontal: float, vertical: float) -> None:
+    """A ball that lies on the other side of the vertical reaches across it into a high view."""
+    count, radius = 60_000, 0.1
+    view = Views.fixed((0, 0, 0), angles=(horizontal, vertical), distance=1.2).spread(count)
+    drawn = draw_near(view, np.full(count, radius), np.random.default_rng(7).random((count, 4)))
+    x, y, z = drawn.T
+    beside = np.hypot(x, y)
+    # Behind the camera, so near the vertical that it touches the part of the view there.
+    touching = (beside < radius) & (np.abs(z) > 8.2 * radius) & (np.abs(z) < 1.2)
+    around = np.histogram(np.arctan2(-x, y)[touching], 8, (-np.pi, np.pi))[0]
+    assert around.min() > 0.4 * around.mean() > 3
