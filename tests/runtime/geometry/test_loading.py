@@ -8,6 +8,7 @@ import trimesh
 
 from scenic.language.errors import MeshError
 from scenic.runtime.geometry import loading, primitives
+from scenic.runtime.geometry.booleans import difference
 from scenic.runtime.geometry.inside import contains_points
 from scenic.runtime.geometry.loading import load_mesh
 from scenic.runtime.geometry.mesh import Mesh
@@ -88,6 +89,24 @@ def test_cavities_belong_to_the_solids_around_them(tmp_path):
         assert merged.volume == pytest.approx(64 - 27 + 8 - 1)
         apart = proper_volume(joined(order), unify=False)
         assert apart.volume == pytest.approx(64 - 27 + 8 - 1)
+
+
+def test_a_body_in_the_hole_of_another_is_no_cavity():
+    """It lies within the other's bounding box, but not in it: turned inside out, it is turned back."""
+    ring = difference(
+        placed(primitives.box(), (0, 0, 0), (4, 4, 1)), [placed(primitives.box(), (0, 0, 0), (2, 2, 3))]
+    )
+    assert ring is not None
+    little = placed(primitives.cone(), (0.1, 0, 0), (0.5, 0.5, 0.5))
+    inverted = Mesh(little.vertices, little.faces[:, ::-1])
+    for parts in ((ring, inverted), (inverted, ring), (ring, little)):
+        found = proper_volume(joined(parts))
+        assert found.volume == pytest.approx(12 + little.volume)
+        assert contains_points(found, np.array([[0.1, 0, 0], [1.5, 0, 0], [0.8, 0, 0]])).tolist() == [
+            True,
+            True,
+            False,
+        ]
 
 
 def test_bodies_apart_are_turned_outwards_one_by_one(tmp_path):

@@ -251,7 +251,9 @@ def test_rays_at_edges_are_decided_again_where_single_precision_names_the_wrong_
     np.testing.assert_allclose(quick, exact_first(mesh, origins, directions, near)[deep], atol=1e-9)
 
 
-@pytest.mark.parametrize("count", [(9, 9), (31, 31), (200, 200), (333, 77)])
+@pytest.mark.parametrize(
+    "count", [(9, 9), (31, 31), (333, 77), *((across, 60) for across in range(180, 212))]
+)
 @pytest.mark.parametrize("side", [-1, 1])
 def test_no_ray_is_cast_beyond_the_view(count: tuple[int, int], side: int) -> None:
     """All of a wide body that is in view is hidden, and what is beside the view is not seen however many rays there are."""
