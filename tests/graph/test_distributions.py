@@ -275,3 +275,19 @@ def test_bounds_of_whole_constants_hold_them_exactly():
         assert bounds.lower[0] <= value <= bounds.upper[0]
         if abs(value) <= 2**53:
             assert bounds.lower[0] == value == bounds.upper[0]
+
+
+def test_bounds_of_kinds_hold_every_value():
+    turns = np.random.default_rng(3).normal(size=(500, 4))
+    turns /= np.linalg.norm(turns, axis=1, keepdims=True)
+    turns = np.concatenate([turns, np.eye(4), -np.eye(4)])
+    for kind, values in (
+        (Kind.ORIENTATION, turns),
+        (Kind.BOOLEAN, np.array([0.0, 1.0])),
+        (Kind.INTEGER, np.array([-(2.0**70), 2.0**70])),
+        (Kind.SCALAR, np.array([-1e308, 1e308])),
+        (Kind.VECTOR, np.array([[-1e308, 0, 1e308]])),
+    ):
+        bounds = bounding.of_kind(kind)
+        assert ((bounds.lower <= values) & (values <= bounds.upper)).all()
+    assert bounding.of_kind(Kind.OTHER) is None

@@ -169,3 +169,12 @@ def test_methods_of_sampled_instances_see_the_sample() -> None:
         assert ego.left_over() == ego.tank - scene.params["limit"]
         assert twin.left_over() == twin.tank - scene.params["limit"]
         assert ego.partner() is twin
+
+
+def test_a_property_may_become_final_in_a_derived_class() -> None:
+    text = "class A:\n    p: 1\nclass B(A):\n    p[final]: 2\n"
+    assert [
+        item.p for item in scenario(text + "new A with p 5\nnew B at (9, 9)\n").sample(1, seed=0)[0].objects
+    ] == [5, 2]
+    assert isinstance(failure(text + "new B with p 3\n"), SpecifierError)
+    assert isinstance(failure(text + "class C(B):\n    p: 3\n"), InvalidScenarioError)

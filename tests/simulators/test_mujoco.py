@@ -792,3 +792,14 @@ def test_steps_of_the_physics_are_no_longer_than_allowed(timestep: float, most: 
     assert done.model.opt.timestep == pytest.approx(timestep / count)
     assert done.model.opt.timestep <= most * (1 + 1e-9)
     assert done.data.time == pytest.approx(3 * timestep)
+
+
+@pytest.mark.parametrize("mass", [0.2, 1.0, 5.0])
+def test_quadrotors_fly_alike_whatever_their_mass(mass: float) -> None:
+    """Thrust and drag are told as accelerations: dv/dt = a - 0.3 v, from rest."""
+    text = (
+        told("Fly(thrust=11.81)")
+        + f"ego = new Quadrotor at (0, 0, 9), with mass {mass}, with behavior B\nrecord ego.velocity.z as v\n"
+    )
+    speeds = np.array(records(run(text, 20), "v"))
+    np.testing.assert_allclose(speeds, 2 / 0.3 * (1 - np.exp(-0.3 * 0.05 * np.arange(21))), atol=0.01)

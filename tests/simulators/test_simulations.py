@@ -12,6 +12,7 @@ import pytest
 import scenic
 from scenic.language.errors import (
     DivergenceError,
+    GuardViolation,
     InvalidScenarioError,
     PreconditionViolation,
     SerializationError,
@@ -624,3 +625,19 @@ def test_code_that_spins_while_robustness_is_measured_is_no_margin() -> None:
     simulator = DummySimulator(drift=1, timestep=1)
     with pytest.raises(StuckBehaviorError, match=r"has run for 0\.05 s"):
         simulator.simulate(scene_of(text), maxSteps=4, robustness=True, stuck_after=0.05, stuck_is_error=True)
+
+
+@pytest.mark.parametrize("kind", ["precondition", "invariant"])
+def test_a_guard_that_rejects_does_not_hold(kind: str) -> None:
+    text = (
+        "def odd():\n    raise RejectionException('odd')\n"
+        f"behavior B():\n    {kind}: odd()\n    while True:\n        take 1\nego = new Object with behavior B\n"
+    )
+    assert DummySimulator().simulate(scene_of(text), maxSteps=3) is None
+    with pytest.raises(GuardViolation):
+        DummySimulator().simulate(scene_of(text), maxSteps=3, raiseGuardViolations=True)
+
+
+def test_files_of_no_known_kind_are_named() -> None:
+    with pytest.raises(ValueError, match=r"extension '\.odd'"):
+        scene_of("ego = new Object\nrecord 1 to 'run.odd'\n")

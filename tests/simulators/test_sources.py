@@ -201,3 +201,43 @@ def test_what_a_row_does_not_give_is_hashed() -> None:
         "import random\nego = new Object at (Range(0, 1), random.random() + Range(0, 1))\n"
     )
     assert np.isfinite(places(wide.sample(3, seed=0, source=scenic.GivenPoints([[0.5]] * 3)))).all()
+
+
+def test_what_a_scenario_does_after_another_one_is_its_own() -> None:
+    """Its draws have its number again; what it overrides ends with it."""
+    text = """
+scenario Main():
+    setup:
+        ego = new Object with foo 0
+        record ego.foo as foo
+    compose:
+        first = Range(0, 1)
+        do Sub() for 2 steps
+        second = Range(0, 1)
+        override ego with foo 1
+        do Sub() for 2 steps
+        third = Range(0, 1)
+scenario Sub():
+    compose:
+        while True:
+            within = Range(0, 1)
+            wait
+"""
+    made: list[Draw] = []
+
+    class Told:
+        def __init__(self, rest: Any) -> None:
+            self.rest, self.word = rest, rest.word
+
+        def draw(self, place: int, what: Draw) -> float:
+            made.append(what)
+            return float(self.rest.draw(place, what))
+
+    (scene,) = scenic.scenarioFromString(text).sample(1, seed=0)
+    done = DummySimulator().simulate(scene, maxSteps=8, source=Told)
+    assert done is not None
+    assert [what.scenario for what in made if "within" not in what.line] == [1, 1, 1]
+    inner = [what.scenario for what in made if "within" in what.line]
+    assert len(set(inner)) == 2
+    assert 1 not in inner
+    assert [value for _, value in done.records["foo"]][:4] == [0, 0, 1, 1]
