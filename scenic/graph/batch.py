@@ -119,12 +119,25 @@ class Batch:
 
     # Columns
 
-    def need(self, nodes: Iterable[Node], later: tuple[Node, ...] | None = None) -> None:
-        """Evaluate ``nodes`` together; what is there already is not evaluated again.
+    def need(self, nodes: Iterable[Node]) -> None:
+        """Evaluate ``nodes`` together; what is there already is not evaluated again."""
+        wanted = tuple(nodes)
+        if self._schedule.unused:
+            # A chain's columns may be gone. What it does not foresee is evaluated from the start: nobody asks for it in every batch.
+            if all(node.is_constant or self._is_there(node) for node in wanted):
+                return
+            self._groups.clear()
+            self._schedule = self._scheduler.start
+        self._do(self._scheduler.after(self._schedule, wanted))
 
-        ``later`` are the nodes that will be needed afterwards; columns that serve only others are freed (by default, none).
-        """
-        schedule = self._scheduler.after(self._schedule, tuple(nodes), later)
+    def follow(self, schedule: Schedule, nodes: Sequence[Node]) -> None:
+        """Evaluate ``nodes`` by the next schedule of a chain (`Scheduler.chain`), which frees what nobody needs any more."""
+        if self._schedule.places is schedule.places or not self._groups:
+            self._do(schedule)
+        else:
+            self.need(nodes)
+
+    def _do(self, schedule: Schedule) -> None:
         self._schedule = schedule
         groups = self._groups
         unused = iter(schedule.unused)
@@ -142,6 +155,10 @@ class Batch:
                     groups[step.slot] = group
                     for slot in next(unused, ()):
                         del groups[slot]
+
+    def _is_there(self, node: Node) -> bool:
+        place = self._schedule.places.get(node)
+        return place is not None and place.slot in self._groups
 
     def column(self, node: Node) -> Column:
         """Values of ``node``, leading dimension ``len(self)`` or 1."""
@@ -211,11 +228,9 @@ class Batch:
         return values
 
     def _place(self, node: Node) -> Place:
-        place = self._schedule.places.get(node)
-        if place is None:
+        if not self._is_there(node):
             self.need((node,))
-            place = self._schedule.places[node]
-        return place
+        return self._schedule.places[node]
 
     def _group(self, slot: Slot) -> _Group:
         group = self._groups[slot]

@@ -5,7 +5,7 @@ most of them alike. So nodes of one *signature* (operation, payload, kinds) that
 call over members x lanes. Operations that stack are elementwise, so that the results are bitwise those of single calls.
 
 A `Scheduler` is kept as long as its graph: what has to be evaluated to get some nodes, when others are there already, is
-worked out once; and so is which columns nobody needs any more, after each step, where it is known what is still to come.
+worked out once; and so is, for a chain of stages, after which step nobody needs a column any more.
 """
 
 from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
@@ -106,7 +106,8 @@ class Schedule:
     steps: tuple[Draw | ChosenDraw | Step, ...]
     places: Mapping[Node, Place]
     unused: tuple[tuple[Slot, ...], ...] = ()
-    """What nobody needs any more: before the first step, then after each. Empty where all is kept."""
+    """Of a schedule in a chain: what nobody needs any more, before the first step and then after each. ``places`` are those of all
+    of the chain, also of what is not evaluated yet or is kept no longer. Empty where all is kept."""
 
 
 _START: Final = Schedule((), {})
@@ -124,7 +125,7 @@ class Scheduler:
     def __init__(self, graph: Graph, *, grouped: bool = True) -> None:
         self.graph = graph
         self._grouped = grouped
-        self._known: dict[tuple[int, tuple[Node, ...], tuple[Node, ...] | None], Schedule] = {}
+        self._known: dict[tuple[int, tuple[Node, ...]], Schedule] = {}
         self._kept: list[Schedule] = []
         self._gathers: dict[tuple[int, tuple[Node, ...]], Gather] = {}
         self._slots = 0
@@ -135,23 +136,46 @@ class Scheduler:
         """The schedule of nothing."""
         return _START
 
-    def after(
-        self, before: Schedule, roots: tuple[Node, ...], later: tuple[Node, ...] | None = None
-    ) -> Schedule:
-        """What gets ``roots`` once ``before`` has been done.
-
-        ``later`` are the nodes that will be needed afterwards: what serves neither is not kept. By default all is. (What is asked
-        for all the same is evaluated again.)
-        """
-        key = (id(before), roots, later)
+    def after(self, before: Schedule, roots: tuple[Node, ...]) -> Schedule:
+        """What gets ``roots`` once ``before``, which keeps all, has been done."""
+        key = (id(before), roots)
         schedule = self._known.get(key)
         if schedule is None:
-            schedule = self._make(before, roots)
-            if later is not None:
-                schedule = self._thrifty(schedule, [*roots, *later])
-            self._known[key] = schedule
+            places = dict(before.places)
+            steps = tuple(self._steps(roots, places))
+            schedule = self._known[key] = Schedule(steps, places)
             self._kept.append(schedule)  # alive, so that its identity stays its own
         return schedule
+
+    def chain(self, stages: Sequence[Sequence[Node]]) -> tuple[Schedule, ...]:
+        """What gets the nodes of one stage after the other, from nothing, freeing each column after its last use.
+
+        A stage's nodes can be read until the next one begins; those of the last are kept.
+        """
+        places: dict[Node, Place] = {}
+        steps = [self._steps(roots, places) for roots in stages]
+        # When each slot is used for the last time: before a step (or the end) of a stage.
+        last: dict[Slot, tuple[int, int]] = {}
+        for stage, (roots, mine) in enumerate(zip(stages, steps, strict=True)):
+            for number, step in enumerate(mine):
+                last |= dict.fromkeys(_slots_read(step), (stage, number + 1))
+            last |= dict.fromkeys(
+                (places[node].slot for node in roots if not node.is_constant), (stage + 1, 0)
+            )
+        unused: list[list[list[Slot]]] = [[[] for _ in range(len(mine) + 1)] for mine in steps]
+        for slot, (stage, number) in last.items():
+            if stage < len(stages):
+                unused[stage][number].append(slot)
+        schedules = tuple(
+            Schedule(tuple(mine), places, tuple(map(tuple, drops)))
+            for mine, drops in zip(steps, unused, strict=True)
+        )
+        self._kept += schedules
+        return schedules
+
+    def below(self, roots: Iterable[Node]) -> frozenset[Node]:
+        """What is evaluated to get some nodes when nothing is there."""
+        return frozenset(self._missing(roots, {}))
 
     def gather(self, schedule: Schedule, nodes: tuple[Node, ...]) -> Gather:
         """Where the columns of ``nodes`` are, once ``schedule`` has been done."""
@@ -161,11 +185,9 @@ class Scheduler:
             gather = self._gathers[key] = _gather(nodes, schedule.places)
         return gather
 
-    def _make(self, before: Schedule, roots: Sequence[Node]) -> Schedule:
-        missing = self._missing(roots, before.places)
-        if not missing:
-            return Schedule((), before.places)
-        places = dict(before.places)
+    def _steps(self, roots: Sequence[Node], places: dict[Node, Place]) -> list[Draw | ChosenDraw | Step]:
+        """What gets ``roots`` where the nodes of ``places`` are there; adds the places of what it gets."""
+        missing = self._missing(roots, places)
         steps: list[Draw | ChosenDraw | Step] = []
         levels: dict[Node, int] = {}
         groups: dict[tuple[int, Hashable], list[Node]] = {}
@@ -183,33 +205,7 @@ class Scheduler:
                 steps.append(self._chosen_draw(merged, places))
             else:
                 steps.append(self._step(members, places))
-        return Schedule(tuple(steps), places)
-
-    def _thrifty(self, schedule: Schedule, wanted: Sequence[Node]) -> Schedule:
-        """The same schedule, without keeping what only gets others than the nodes that are wanted."""
-        kept: set[Slot] = set()
-        seen: set[Node] = set()
-        stack = list(wanted)
-        while stack:
-            node = stack.pop()
-            if node.is_constant or node in seen:
-                continue
-            seen.add(node)
-            place = schedule.places.get(node)
-            if place is None:
-                stack.extend(self._needed(node))
-            else:
-                kept.add(place.slot)
-        unused: list[tuple[Slot, ...]] = []
-        dropped: set[Slot] = set()
-        for step in reversed(schedule.steps):
-            last = {slot for slot in _slots_read(step) if slot not in kept} - dropped
-            dropped |= last
-            unused.append(tuple(last))
-        others = {place.slot for place in schedule.places.values()} - kept - dropped
-        unused.append(tuple(others))
-        places = {node: place for node, place in schedule.places.items() if place.slot in kept}
-        return Schedule(schedule.steps, places, tuple(reversed(unused)))
+        return steps
 
     def _merged(self, node: Node) -> Node:
         """What is evaluated in place of a node. (Singly, nodes are evaluated as they are: that tells what failed.)"""

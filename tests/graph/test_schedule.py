@@ -88,8 +88,8 @@ def test_alike_products_of_small_and_of_large_integers_are_kept_apart() -> None:
         assert type(scene.params["large"]) is int
 
 
-def test_what_is_still_to_come_decides_what_is_kept_and_never_a_value() -> None:
-    """Stages in any order, each told what the later ones need; or told too little, so that columns are made again."""
+def test_chains_change_no_value() -> None:
+    """Stages in any order, with lanes dropped between them; and other nodes asked for in the middle, which ends a chain."""
     x = [axis(None, number) for number in range(5)]
     sums = [make("add", number, 1.0) for number in x]
     products = [make("multiply", sums[i], sums[j]) for i, j in ((0, 1), (1, 2), (2, 3), (3, 4), (0, 4))]
@@ -100,21 +100,28 @@ def test_what_is_still_to_come_decides_what_is_kept_and_never_a_value() -> None:
     points = random.random((6, graph.dimension))
     points[0, graph.axes[x[2]]] = 0.5
     plain = batch_at(graph, points)
-    expected = {node: plain.full(node).tolist() for node in nodes}
+    expected = {node: plain.full(node) for node in nodes}
     for grouped in (True, False):
         for _ in range(40):
             order = [nodes[place] for place in random.permutation(len(nodes))]
-            stages = [order[:3], order[3:5], order[5:9], order[9:]]
-            forgetful = random.random() < 0.5
+            stages = [order[:3], order[3:5], order[5:5], order[5:9], order[9:]]
             batch = batch_at(graph, points, grouped=grouped)
-            for number, stage in enumerate(stages):
-                later = tuple(node for after in stages[number + 1 :] for node in after)
-                batch.need(stage, later[: len(later) // 2] if forgetful else later)
+            chain = batch._scheduler.chain(stages)
+            aside = int(random.integers(8))
+            for number, (stage, schedule) in enumerate(zip(stages, chain, strict=True)):
+                batch.follow(schedule, stage)
+                if number == aside:
+                    other = nodes[int(random.integers(len(nodes)))]
+                    assert batch.full(other).tolist() == expected[other][batch.rows].tolist()
                 for node in stage:
-                    assert batch.full(node).tolist() == expected[node]
-                    assert (batch.status(node) is None) is (plain.status(node) is None)
+                    assert batch.full(node).tolist() == expected[node][batch.rows].tolist()
+                    whole = plain.status(node)
+                    found = batch.status(node)
+                    left = None if whole is None else whole[batch.rows]
+                    assert (found is None) is (left is None or not left.any())
+                batch.keep(random.random(len(batch)) < 0.9)
             for node in nodes:
-                assert batch.full(node).tolist() == expected[node]
+                assert batch.full(node).tolist() == expected[node][batch.rows].tolist()
 
 
 def test_columns_are_freed_after_their_last_use() -> None:
@@ -128,14 +135,19 @@ def test_columns_are_freed_after_their_last_use() -> None:
     graph = Graph([node])
     points = np.random.default_rng(1).random((lanes, 1))
     values = []
-    for later in (None, (node,)):
+    for chained in (False, True):
         batch = batch_at(graph, points)
         tracemalloc.start()
-        batch.need([middle], later)
-        batch.need([node], () if later else None)
+        if chained:
+            first, second = batch._scheduler.chain([[middle], [node]])
+            batch.follow(first, [middle])
+            batch.follow(second, [node])
+        else:
+            batch.need([middle])
+            batch.need([node])
         _, peak = tracemalloc.get_traced_memory()
         tracemalloc.stop()
         values.append(batch.column(node))
         columns = peak / (8 * lanes)
-        assert columns > 500 if later is None else columns < 40  # some are the schedule itself
+        assert columns < 40 if chained else columns > 500  # some are the schedule itself
     np.testing.assert_array_equal(*values)

@@ -28,7 +28,7 @@ from scenic.runtime.sampling.checks import Check, Verdict
 from scenic.runtime.sampling.pace import Pace
 from scenic.runtime.sampling.pending import Pending, Task, soft_address
 from scenic.runtime.sampling.report import Exhausted, RejectionReport, RejectionRow
-from scenic.runtime.sampling.stages import Stages
+from scenic.runtime.sampling.stages import Stage, Stages
 
 DEFAULT_LANES = 4096
 REPORT_CANDIDATES = 1000
@@ -255,7 +255,8 @@ class Engine:
         attempts = pending.attempts[owner] + offset
         keys = attempt_keys(pending.key[owner], attempts)
         batch = self._batch(self._source(Lanes(pending.seed[owner], pending.k[owner], attempts, keys)))
-        failures = self._judge(batch, pending.inactive[owner] if self._soft else None)
+        *stages, last = self._stages.order(len(batch))
+        failures = self._judge(batch, stages, pending.inactive[owner] if self._soft else None)
         pending.attempts[active] += counts
         rows = batch.rows
         first = first_of_each(owner[rows])
@@ -272,7 +273,8 @@ class Engine:
         good = first[failed[first] < 0]
         if len(good):
             batch.keep(good)
-            batch.settle(self.plan.outputs)
+            batch.follow(last.schedule, last.nodes)
+            batch.settle(last.nodes)
             rows = rows[good]
             scenes = owner[rows]
             found = Found(
@@ -311,7 +313,9 @@ class Engine:
             rejections=(RejectionException,),
         )
 
-    def _judge(self, batch: Batch, inactive: NDArray[np.bool_] | None) -> NDArray[np.intp]:
+    def _judge(
+        self, batch: Batch, stages: Sequence[Stage], inactive: NDArray[np.bool_] | None
+    ) -> NDArray[np.intp]:
         """Run the checks, leaving in the batch the lanes that none rejects.
 
         Returns for each first lane the check, first in the program, at which it fails with an error (-1 for none).
@@ -319,11 +323,11 @@ class Engine:
         checks = self.plan.checks
         failures = np.full(len(batch), -1, dtype=np.intp)
         failed_at = np.full(len(batch), np.iinfo(np.int64).max, dtype=np.int64)
-        for stage in self._stages.order(len(batch)):
+        for stage in stages:
             if len(batch) == 0:
                 break
             begun = time.perf_counter()
-            batch.need(stage.nodes, stage.later)
+            batch.follow(stage.schedule, stage.nodes)
             shared = (time.perf_counter() - begun) / len(stage.checks)
             rows = batch.rows
             alive = np.ones(len(rows), dtype=np.bool_)

@@ -7,10 +7,11 @@ So checks share a stage while their columns are small. None of this changes whic
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Final
 
 from scenic.graph.node import Node
-from scenic.graph.schedule import Scheduler
+from scenic.graph.schedule import Schedule, Scheduler
 from scenic.runtime.sampling.checks import Check
 
 _STACKED: Final = 16_000
@@ -24,11 +25,11 @@ _FADING: Final = 0.8
 
 @dataclass(frozen=True, slots=True)
 class Stage:
-    """Checks made together, by their numbers, the nodes that they need, and those that are needed afterwards."""
+    """Checks made together, by their numbers; the nodes that they need, and what gets these after the stages before."""
 
     checks: tuple[int, ...]
     nodes: tuple[Node, ...]
-    later: tuple[Node, ...]
+    schedule: Schedule
 
 
 @dataclass(slots=True)
@@ -52,12 +53,17 @@ class Stages:
 
     def __init__(self, checks: Sequence[Check], outputs: Sequence[Node], scheduler: Scheduler) -> None:
         self._checks = checks
-        self._outputs = outputs
+        self._outputs = tuple(outputs)
         self._needs = [tuple(dict.fromkeys(check.nodes)) for check in checks]
-        self._below = [frozenset(scheduler.after(scheduler.start, nodes).places) for nodes in self._needs]
+        self._scheduler = scheduler
         self._measured = [_Measured() for _ in checks]
         self._plans: dict[int, tuple[Stage, ...]] = {}
         self._rounds = 0
+
+    @cached_property
+    def _below(self) -> list[frozenset[Node]]:
+        """What is evaluated for each check. (Of engines that never sample nobody asks for it.)"""
+        return [self._scheduler.below(nodes) for nodes in self._needs]
 
     def measure(self, index: int, lanes: int, seconds: float, passed: int) -> None:
         """Take into account that a check has judged ``lanes`` lanes."""
@@ -67,7 +73,7 @@ class Stages:
         measured.passed = _FADING * measured.passed + passed
 
     def order(self, lanes: int) -> tuple[Stage, ...]:
-        """The stages for a batch of so many lanes."""
+        """The stages for a batch of so many lanes; the last one has no checks: it gets the outputs."""
         self._rounds += 1
         if self._rounds & (self._rounds - 1) == 0:
             self._plans.clear()  # after 1, 2, 4, 8, ... rounds
@@ -114,10 +120,10 @@ class Stages:
                 members, elements, entering = [], 0.0, alive
         if members:
             stages.append(members)
-        plan: list[Stage] = []
-        later = dict.fromkeys(self._outputs)
-        for members in reversed(stages):
-            nodes = dict.fromkeys(node for index in members for node in self._needs[index])
-            plan.append(Stage(tuple(members), tuple(nodes), tuple(later)))
-            later |= nodes
-        return tuple(reversed(plan))
+        nodes = [
+            tuple(dict.fromkeys(node for index in members for node in self._needs[index]))
+            for members in stages
+        ]
+        nodes.append(self._outputs)
+        checks = [*map(tuple, stages), ()]
+        return tuple(map(Stage, checks, nodes, self._scheduler.chain(nodes)))
