@@ -1,7 +1,7 @@
 """The part of the unit cube to sample from: a union of boxes, or a product of several."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Final, Self
 
 import numpy as np
@@ -29,17 +29,18 @@ class Domain:
     lower: Floats
     upper: Floats
     factors: tuple["Domain", ...] = ()
+    _narrowed: NDArray[np.bool_] = field(init=False, repr=False)
+    """Which axes each part narrows, ``(parts, dimension)``."""
 
     def __post_init__(self) -> None:
         if self.lower.ndim != 2 or self.lower.shape != self.upper.shape or len(self.lower) == 0:
             raise ValueError(f"not boxes: corners of shapes {self.lower.shape} and {self.upper.shape}")
         if not ((self.lower >= 0) & (self.lower < self.upper) & (self.upper <= 1)).all():
             raise ValueError("a box of the cube must have volume and lie within it")
-        narrowed = np.zeros(self.dimension, dtype=np.intp)
-        for part in (self, *self.factors):
-            narrowed += ((part.lower > 0) | (part.upper < 1)).any(axis=0)
-        if (narrowed > 1).any():
+        narrowed = np.stack([((part.lower > 0) | (part.upper < 1)).any(axis=0) for part in self.parts])
+        if (narrowed.sum(axis=0) > 1).any():
             raise ValueError("two factors narrow one axis")
+        object.__setattr__(self, "_narrowed", narrowed)
 
     @classmethod
     def whole(cls, dimension: int) -> Self:
@@ -92,9 +93,14 @@ class Domain:
 
         With all axes these are uniform points of the domain. Each number depends on its axis and its lane alone.
         """
-        for part, boxes in zip(self.parts, chosen, strict=True):
-            numbers = part._place(numbers, axes, boxes)
-        return numbers
+        if not self.factors:
+            return self._place(numbers, axes, chosen[0])
+        points = numbers.copy()
+        for part, narrowed, boxes in zip(self.parts, self._narrowed, chosen, strict=True):
+            mine = np.flatnonzero(narrowed[axes])
+            if len(mine):
+                points[mine] = part._place(numbers[mine], axes[mine], boxes)
+        return points
 
     def _place(self, numbers: Floats, axes: NDArray[np.intp], chosen: NDArray[np.intp]) -> Floats:
         lower, upper = self.lower[:, axes], self.upper[:, axes]
