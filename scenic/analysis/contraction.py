@@ -38,7 +38,7 @@ VISITS: Final = 20_000
 PROGRESS: Final = 1e-3
 """Contraction goes on while some axis of some box loses at least this share."""
 
-LARGEST_PAVING: Final = 64
+LARGEST_PAVING: Final = 256
 """Boxes of a paving, at most."""
 
 SPLITS: Final = 16
