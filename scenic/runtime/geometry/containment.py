@@ -170,9 +170,10 @@ def in_ellipsoid(body: Body, dimensions: Floats, position: Floats, rotation: Flo
 
     def test(chosen: Indices, points: Floats) -> Booleans:
         (x, y, z), scale = _local(body.poses, container, chosen, points)
-        slack = TOLERANCE / np.minimum(np.minimum(scale[0], scale[1]), scale[2])
-        reach = 0.5 + slack
-        result: Booleans = np.logical_and.reduce(x * x + y * y + z * z <= reach * reach, axis=0)
+        radius = np.sqrt(x * x + y * y + z * z)
+        # What is a length of 1 across the surface in the unit frame, in the world is one over this.
+        across = np.sqrt((x / scale[0]) ** 2 + (y / scale[1]) ** 2 + (z / scale[2]) ** 2)
+        result: Booleans = np.logical_and.reduce((radius - 0.5) * radius <= TOLERANCE * across, axis=0)
         return result
 
     return _all_inside(body, lanes, test) & proper

@@ -80,15 +80,34 @@ class Segments:
     def nearest(self, points: Floats) -> tuple[Floats, Indices, Floats]:
         """For points ``(n, 3)``: distance ``(n,)``, segment ``(n,)`` and place ``(n, 3)`` of the nearest point of the line.
 
-        Where two segments meet, the first one counts. Long lines are asked through a tree of boxes.
+        Where segments meet, the first of them counts, also where a line closes. Long lines are asked through a tree of boxes.
         """
         if len(self.starts) <= _FEW:
-            return self._nearest_of_all(points)
-        distance, place, number = self._index.find(points)
-        before = np.maximum(number - 1, 0)
-        at_start = (place == self.starts[number]).all(axis=1) & (number > 0)
-        joined = at_start & (self.ends[before] == self.starts[number]).all(axis=1)
-        return distance, np.where(joined, before, number).astype(np.intp), place
+            distance, number, place = self._nearest_of_all(points)
+        else:
+            distance, place, number = self._index.find(points)
+        return distance, self._first_there(points, number), place
+
+    def _first_there(self, points: Floats, number: Indices) -> Indices:
+        """The first segments that end where these nearest ones ``(n,)`` are nearest to points, if that is at an end.
+
+        Others may be as near only up to rounding, and a tree finds any of them.
+        """
+        starts = self.starts[number]
+        along, offset = self.ends[number] - starts, points - starts
+        share = (offset * along).sum(axis=1) / (along * along).sum(axis=1)
+        at_start, at_end = (first[number] for first in self._first_at_ends)
+        result: Indices = np.where(share <= 0, at_start, np.where(share >= 1, at_end, number))
+        return result
+
+    @cached_property
+    def _first_at_ends(self) -> tuple[Indices, Indices]:
+        """For each segment, the first one with an end where it starts, and the first one with an end where it ends."""
+        count = len(self.starts)
+        _, where = np.unique(np.concatenate([self.starts, self.ends]), axis=0, return_inverse=True)
+        first = np.full(2 * count, count, dtype=np.intp)
+        np.minimum.at(first, where.ravel(), np.tile(np.arange(count), 2))
+        return first[where.ravel()[:count]], first[where.ravel()[count:]]
 
     @cached_property
     def _index(self) -> Nearest:

@@ -166,6 +166,23 @@ def test_how_far_bodies_may_stick_out_is_the_same_on_every_axis():
                 assert containment.in_ellipsoid(little, sizes[None], np.zeros((1, 3)), turn, 1)[0] == expected
 
 
+def test_how_far_bodies_may_stick_out_of_flat_ellipsoids_is_the_same_in_every_direction():
+    """A billionth of a metre along the normal of the surface, which is the distance from it."""
+    sizes = np.array([10.0, 1.0, 0.01])
+    turn = random_poses(1, 62).orientation
+    matrix = quaternions.to_matrix(turn)[0]
+    ways = np.concatenate([np.eye(3), -np.eye(3), np.random.default_rng(63).normal(size=(200, 3))])
+    ways /= np.linalg.norm(ways, axis=1, keepdims=True)
+    normals = ways / sizes
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    for mesh in (primitives.box(), primitives.cone()):
+        for off, held in ((-1e-7, True), (0.7e-9, True), (1.4e-9, False), (1e-7, False)):
+            places = (ways * sizes / 2 + off * normals) @ matrix.T
+            bodies = Body((mesh,), None, Poses(places, turn, np.full((1, 3), 1e-12)))
+            found = containment.in_ellipsoid(bodies, sizes[None], np.zeros((1, 3)), turn, len(places))
+            assert (found == held).all()
+
+
 def test_containers_without_volume_hold_nothing():
     body = Body((primitives.box(),), None, yawed((0, 0, 0)))
     sizes = np.array([(2, 2, 2), (2, 0, 2), (-2, 2, 2)], dtype=float)

@@ -1,0 +1,59 @@
+"""Chains of segments: which segment counts where several are as near, however many there are."""
+
+import numpy as np
+import pytest
+import shapely
+
+from scenic.runtime.geometry.segments import Segments
+
+FEW_AND_MANY = (7, 95, 96, 97, 128, 400)
+"""Long lines are asked through a tree."""
+
+
+def ring(count: int, turn: float = 0.0) -> np.ndarray:
+    """The corners of a regular polygon, the first of them at the end, too."""
+    angle = 2 * np.pi * np.arange(count) / count + turn
+    corners = np.stack([7 * np.cos(angle), 7 * np.sin(angle), 0 * angle], axis=1)
+    return np.concatenate([corners, corners[:1]])
+
+
+@pytest.mark.parametrize("count", FEW_AND_MANY)
+@pytest.mark.parametrize("turn", [0.0, 0.3, 2.0])
+def test_where_segments_meet_the_first_one_counts_also_where_a_line_closes(count: int, turn: float) -> None:
+    corners = ring(count, turn)
+    line = Segments.of_chains([corners])
+    for share in (1.0, 1.0001, 1.7, 30.0):  # beside a corner all are as near whose corner it is
+        _, number, place = line.nearest(corners[:-1] * share)
+        np.testing.assert_array_equal(number, np.maximum(np.arange(count) - 1, 0))
+        np.testing.assert_allclose(place, corners[:-1], atol=1e-12)
+    # In the middle of a segment no other is as near.
+    middles = (corners[1:] + corners[:-1]) / 2
+    for share in (1.0, 1.3):
+        np.testing.assert_array_equal(line.nearest(middles * share)[1], np.arange(count))
+
+
+@pytest.mark.parametrize("count", FEW_AND_MANY)
+def test_where_chains_cross_the_first_one_counts(count: int) -> None:
+    """Chains that all begin, or all end, at one place; before them one that only passes it by."""
+    tips = ring(count)[:-1]
+    passing = [(1.0, 0, 9), (2.0, 0, 9)]
+    for chains in ([[(0, 0, 0), tip] for tip in tips], [[tip, (0, 0, 0)] for tip in tips]):
+        line = Segments.of_chains([passing, *chains])
+        for above in (0.0, 1e-3, 2.0):
+            distance, number, _ = line.nearest(np.array([[0.0, 0, above]]))
+            assert distance[0] == above
+            assert number[0] == 1
+
+
+@pytest.mark.parametrize("count", FEW_AND_MANY)
+def test_nearest_points_of_lines(count: int) -> None:
+    rng = np.random.default_rng(count)
+    chain = rng.normal(size=(count + 1, 2)).cumsum(axis=0)
+    line = Segments.of_chains([np.column_stack([chain, np.zeros(count + 1)])])
+    points = np.concatenate([rng.uniform(chain.min(), chain.max(), (150, 2)), chain])
+    distance, number, place = line.nearest(np.column_stack([points, np.zeros(len(points))]))
+    expected = shapely.LineString(chain).distance(shapely.points(points))
+    np.testing.assert_allclose(distance, expected, atol=1e-12)
+    np.testing.assert_allclose(np.linalg.norm(place[:, :2] - points, axis=1), expected, atol=1e-12)
+    pieces = shapely.linestrings(np.stack([chain[:-1], chain[1:]], axis=1)[number])
+    np.testing.assert_allclose(shapely.distance(pieces, shapely.points(points)), expected, atol=1e-12)
