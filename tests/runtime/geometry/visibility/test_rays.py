@@ -1,5 +1,6 @@
 """Single rays: which of them there are, that none is left out, and that none slips through a surface or starts on its wrong side."""
 
+import dataclasses
 import math
 from fractions import Fraction
 
@@ -18,6 +19,7 @@ from scenic.runtime.geometry.visibility.obstacles import Obstacles, Occluder
 from scenic.runtime.geometry.visibility.points import sees_points
 from scenic.runtime.geometry.visibility.views import Extents, Views
 from tests.runtime.geometry.samples import bumpy, table
+from tests.runtime.geometry.visibility import reference
 from tests.runtime.geometry.visibility.reference import Rotation
 from tests.runtime.geometry.visibility.test_bodies import BOX, FRAME, fixed, scenes
 
@@ -267,3 +269,72 @@ def test_no_ray_is_cast_beyond_the_view(count: tuple[int, int], side: int) -> No
         assert sees(observer, target)
         narrow = fixed((0, 5, 0), (2.4, 0.1, 2.4))
         assert sees(Views.fixed((0, 0, 0), angles=(0.5, 0.5), count=(401, 401)), target, narrow)
+
+
+@pytest.mark.parametrize("explicit", [False, True])
+@pytest.mark.parametrize("angles", [(2 * math.pi, math.pi), (1.0, 2.9), (5.0, 0.3), (0.02, 3.0)])
+def test_the_rays_of_a_view_are_those_of_the_letter(explicit: bool, angles: tuple[float, float]) -> None:
+    """Rows lose rays as they shrink towards the poles, unless their number is given."""
+    for density in (0.1, 0.37, 1.0):
+        for scaling in (False, True):
+            count = (round(97 * density), round(61 * density)) if explicit else (0, 0)
+            observer = Views.fixed((0, 0, 0), angles=angles, density=density / 3, count=count)
+            observer = dataclasses.replace(observer, scaling=np.array([scaling]))
+            found = [rays for _, rays in rows_towards(observer, EVERYWHERE, np.full(1, 3.0)).rays(1000)]
+            expected = reference.grid(observer, 0, 3.0)
+            np.testing.assert_allclose(np.concatenate(found), expected, atol=1e-12)
+
+
+@pytest.mark.parametrize("across", [1, 2, 3, 7, 16, 1000])
+def test_thinned_rays_are_rays_that_lie_evenly_in_their_rows(across: int) -> None:
+    """None is made up, not even beyond the end of a row, and no more are left out there than between two of them."""
+    lanes = 24
+    observers = Views.fixed((0, 0, 0), angles=(1.9, 1.3), density=0.5).spread(lanes)
+    middle = np.linspace(-0.9, 0.9, lanes)[:, np.newaxis]
+    half = np.linspace(0.01, 0.8, lanes)[:, np.newaxis] * [[-1, 1]]
+    target = Extents(middle + half, np.zeros(lanes, dtype=bool), 0.4 * middle + half)
+    rows = rows_towards(observers, target, np.ones(lanes))
+    thinned = rows.thinned(across, lanes)
+    assert set(thinned.lane.tolist()) == set(rows.lane.tolist())
+    assert (thinned.totals(lanes) <= rows.totals(lanes)).all()
+    for lane, altitude, first, step, count in zip(
+        thinned.lane, thinned.altitude, thinned.first, thinned.step, thinned.count, strict=True
+    ):
+        (row,) = np.flatnonzero((rows.lane == lane) & (rows.altitude == altitude))
+        numbers = (first + np.arange(count) * step - rows.first[row]) / rows.step[row]
+        np.testing.assert_allclose(numbers, np.round(numbers), atol=1e-6)
+        stride = round(step / rows.step[row])
+        assert -1e-6 < numbers[0] < stride - 0.5
+        assert rows.count[row] - 0.5 - stride < numbers[-1] < rows.count[row] - 0.5
+        assert min(across, rows.count[row]) <= count <= max(1, 2 * across)
+
+
+@pytest.mark.parametrize("mesh", [primitives.cylinder(7), primitives.spheroid(), bumpy(3)])
+@pytest.mark.parametrize("away", [1.0, 100.0])
+def test_rays_past_corners_and_from_beside_faces_are_decided_as_in_double_precision(
+    mesh: Mesh, away: float
+) -> None:
+    """A millionth of the body beneath a corner, and from as far beneath and above it, single precision cannot tell."""
+    rng = np.random.default_rng(15)
+    count = 150
+    corners = mesh.vertices[rng.integers(0, len(mesh.vertices), count)]
+    depth = rng.choice([1e-6, 1e-4], (count, 1))
+    beneath, above = corners * (1 - depth), corners * (1 + depth)
+    far_off = beneath + away * rng.normal(size=(count, 3))
+    origins = np.concatenate([far_off, beneath, above])
+    directions = np.concatenate([beneath - far_off, rng.normal(size=(2 * count, 3))])
+    near, far = hits.box_span(origins, directions)
+    meets = np.flatnonzero((far >= 0) & (near <= far))
+    origins, directions, near = origins[meets], directions[meets], near[meets]
+    quick = hits._quick_first(mesh, origins, directions, near)
+    # Every face by itself.
+    ray, face = (
+        np.repeat(np.arange(len(origins)), len(mesh.faces)),
+        np.tile(np.arange(len(mesh.faces)), len(origins)),
+    )
+    crosses, distance = hits.face_crossings(mesh, origins[ray], directions[ray], face)
+    distance = np.where(crosses & (distance >= 0), distance, np.inf)
+    expected = distance.reshape(len(origins), -1).min(axis=1)
+    np.testing.assert_allclose(quick, expected, rtol=0, atol=1e-9)
+    assert 0.3 < np.isfinite(expected).mean() < 1
+    assert (expected < 1e-3).any()
