@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from graph.programs import CODEC, batch_at, make, one_of, source, uniform
 from scipy import stats
+from scipy.sparse import csgraph
 
 from analysis.random_programs import accepted, conditions
 from scenic.analysis import contraction
@@ -360,3 +361,150 @@ def test_values_follow_one_law_too():
         samples.append([batch.full(item).astype(float) for item in draws])
     for plain, pruned in zip(*samples, strict=True):
         assert stats.ks_2samp(plain, pruned, method="asymp").pvalue > 1e-4
+
+
+def band(x, y, width=0.1):
+    return Fact(make("less", make("absolute", make("subtract", x, y)), width), "")
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_groups_are_the_connected_components(seed):
+    """Whatever the order in which conditions join others, up to four at a time."""
+    rng = np.random.default_rng(seed)
+    draws = [uniform(0, 1) for _ in range(12)]
+    facts, reads = [], np.zeros((14, len(draws)), dtype=int)
+    for number in range(len(reads)):
+        chosen = rng.choice(len(draws), size=rng.integers(1, 5) if number > 6 else 1, replace=False)
+        total = draws[chosen[0]]
+        for place in chosen[1:]:
+            total = make("add", total, draws[place])
+        reads[number, chosen] = 1
+        facts.append(Fact(make("less", total, 0.5), str(number)))
+    count, labels = csgraph.connected_components(reads @ reads.T)
+    found = contraction._groups(facts)
+    assert len(found) == count
+    expected = {frozenset(np.flatnonzero(labels == label).tolist()) for label in range(count)}
+    assert {frozenset(int(fact.label) for fact in group) for group in found} == expected
+
+
+def square_of_distance(x, to):
+    """As a product, of whose factors bounds know nothing of each other."""
+    return make("multiply", make("subtract", x, to), make("subtract", x, to))
+
+
+def test_what_only_a_paving_proves_impossible_is_so():
+    """The square of a number is nowhere below -0.01; all requirements are named, since none is impossible by bounds alone."""
+    x, y, z = (uniform(0, 1) for _ in range(3))
+    possible = [band(y, z), Fact(make("less", x, 0.9), "")]
+    for at in (0, 1, 2):
+        items = [*possible]
+        items.insert(at, Fact(make("less", square_of_distance(x, 0.5), -0.01), ""))
+        found = contract(Graph([item.node for item in items]), items)
+        assert found.impossible == tuple(items)
+        assert found.domain.is_whole
+    assert contract(Graph([item.node for item in possible]), possible).impossible == ()
+
+
+def test_a_paving_that_is_as_good_as_its_hull_is_replaced_by_that():
+    """Also beside unions that are kept; and a draw that no condition reads stays whole."""
+    x, y, z, free = (uniform(0, 1) for _ in range(4))
+    narrow = Fact(make("less", square_of_distance(x, 0.5), 0.01), "")
+    nodes = [narrow.node, free]
+    domain = prune(Graph(nodes), [narrow])
+    assert domain.boxes == 1
+    assert domain.parts == (domain,)
+    assert interval(domain) == pytest.approx((0.4, 0.6), abs=0.02)
+    assert interval(domain)[0] <= 0.4
+    assert interval(domain)[1] >= 0.6
+    assert interval(domain, 1) == (0, 1)
+    for items in ([narrow, band(y, z)], [band(y, z), narrow]):
+        graph = Graph([item.node for item in items])
+        domain = prune(graph, items)
+        assert domain.boxes > 1
+        assert len(domain.parts) == 1
+        axis = graph.axes[next(node for node in contraction._read([narrow.node]) if node.is_axis)]
+        assert interval(domain, axis) == pytest.approx((0.4, 0.6), abs=0.02)
+        assert domain.volume < 0.3 * 0.25
+
+
+@pytest.mark.parametrize(("count", "kept"), [(1, False), (3, False), (4, True)])
+def test_small_gains_count_together(count, kept):
+    """Each leaves 0.8 of its draw: three of them more than half of the cube, four of them less."""
+    items = [
+        Fact(make("greater", make("absolute", make("subtract", uniform(0, 1), 0.5)), 0.1), "")
+        for _ in range(count)
+    ]
+    domain = prune(Graph([item.node for item in items]), items)
+    assert domain.is_whole is not kept
+    assert domain.volume == pytest.approx(0.8**count if kept else 1, abs=0.02)
+    assert len(domain.parts) == (count if kept else 1)
+
+
+def test_unions_within_a_hull_that_is_narrower_than_the_cube():
+    """Each axis is narrowed in one factor alone, and all that meets the conditions is left."""
+    items, nodes = [], []
+    for _ in range(3):
+        x, y = uniform(0, 1), uniform(0, 1)
+        nodes += [x, y]
+        items += [band(x, y, 0.05), Fact(make("greater", x, 0.3), ""), Fact(make("less", y, 0.9), "")]
+    network = Graph([item.node for item in items])
+    domain = prune(network, items)
+    assert len(domain.parts) == 3
+    points = np.random.default_rng(2).random((200_000, network.dimension))
+    left = np.ones(len(points), dtype=bool)
+    for number in range(3):
+        x, y = points[:, 2 * number], points[:, 2 * number + 1]
+        left &= (abs(x - y) < 0.05) & (x > 0.3) & (y < 0.9)
+    assert left.sum() > 10
+    assert domain.contains(points[left]).all()
+    for part in domain.parts:
+        narrowed = ((part.lower > 0) | (part.upper < 1)).any(axis=0)
+        assert narrowed.sum() == 2
+    for axis in range(6):
+        low = max(part.lower[:, axis].min() for part in domain.parts)
+        high = min(part.upper[:, axis].max() for part in domain.parts)
+        # x follows y up to 0.95, and y follows x down to 0.25.
+        assert (low, high) == pytest.approx((0.25, 0.9) if axis % 2 else (0.3, 0.95), abs=0.01)
+
+
+@pytest.mark.parametrize("extra", [0, 1])
+def test_so_many_axes_are_split_and_no_more(extra, monkeypatch):
+    sets = []
+    narrow = contraction._Network.contract
+    monkeypatch.setattr(
+        contraction._Network,
+        "contract",
+        lambda self, boxes, *rest, **more: (
+            sets.append(len(boxes.lower)) or narrow(self, boxes, *rest, **more)
+        ),
+    )
+    total, *rest = (uniform(0, 1) for _ in range(contraction.SPLIT_AXES + extra))
+    for draw in rest:
+        total = make("add", total, draw)
+    assert check(make("less", total, 100.0)).is_whole
+    assert max(sets) == (1 if extra else 2**contraction.PATIENCE)
+
+
+def test_a_paving_has_so_many_boxes_at_most():
+    """Along a circle all boxes would be split without end."""
+    x, y = uniform(-1, 1), uniform(-1, 1)
+    radius = make("add", make("power", x, 2), make("power", y, 2))
+    ring = make("less", make("absolute", make("subtract", radius, 0.8)), 0.01)
+    domain = check(ring)
+    assert contraction.LARGEST_PAVING / 4 < domain.boxes <= contraction.LARGEST_PAVING
+
+
+def test_few_visits_are_shared_among_groups(monkeypatch):
+    """What a program of many groups costs is bounded together, not each by itself."""
+    given = []
+    init = contraction._Network.__init__
+
+    def noted(self, graph, conditions, visits=contraction.VISITS):
+        given.append(visits)
+        init(self, graph, conditions, visits)
+
+    monkeypatch.setattr(contraction._Network, "__init__", noted)
+    items = [band(uniform(0, 1), uniform(0, 1)) for _ in range(4)]
+    prune(Graph([item.node for item in items]), items)
+    assert len(given) == 5
+    assert sum(given[1:]) <= contraction.VISITS

@@ -165,3 +165,35 @@ def test_bad_data_is_refused(data):
 def test_boxes_without_volume_are_refused(box):
     with pytest.raises(ValueError, match="volume"):
         union(box)
+
+
+@pytest.mark.parametrize("end", [0, 1])
+def test_boxes_that_differ_at_one_end_alone(end):
+    """An axis whose lower, or whose upper, corners are the same in all boxes."""
+    corners = np.zeros((3, 2)), np.ones((3, 2))
+    corners[end][:, 0] = (0.2, 0.4, 0.6)
+    corners[0][:, 1], corners[1][:, 1] = (0.0, 0.3, 0.7), (0.3, 0.7, 1.0)
+    domain = Domain(*corners)
+    rows = np.random.default_rng(8).random((500, 3))
+    points = place(domain, rows)
+    assert domain.contains(points).all()
+    (chosen,) = domain.choose(rows[:, :1].T)
+    assert set(chosen.tolist()) == {0, 1, 2}
+    for axis in range(2):
+        low, high = (ends[chosen, axis] for ends in corners)
+        assert points[:, axis] == pytest.approx(low + (high - low) * rows[:, 1 + axis], abs=1e-15)
+
+
+def test_a_factor_alone_may_narrow():
+    """The first factor is the whole cube, and what is left is not."""
+    domain = Domain(np.zeros((1, 2)), np.ones((1, 2)), (TWO,))
+    assert not domain.is_whole
+    assert domain.volume == pytest.approx(0.625)
+    assert Domain(np.zeros((1, 2)), np.ones((1, 2)), (Domain.whole(2),)).is_whole
+
+
+@pytest.mark.parametrize(("low", "high"), [(0.5, 1.0), (0.0, 0.5), (0.25, 0.5)])
+def test_one_end_is_enough_to_narrow_an_axis(low, high):
+    part = union([[low, high]])
+    with pytest.raises(ValueError, match="two factors narrow one axis"):
+        Domain(part.lower, part.upper, (part,))

@@ -8,7 +8,7 @@ import pytest
 import scenic
 from scenic.graph.node import Graph, axis
 from scenic.graph.operation import FAULT, OK
-from scenic.graph.schedule import Gathered, Place, Run, Scheduler, _run
+from scenic.graph.schedule import ChosenDraw, Draw, Gathered, Place, Run, Scheduler, Step, _run
 from tests.graph.programs import batch_at, make
 
 
@@ -151,3 +151,70 @@ def test_columns_are_freed_after_their_last_use() -> None:
         columns = peak / (8 * lanes)
         assert columns < 40 if chained else columns > 500  # some are the schedule itself
     np.testing.assert_array_equal(*values)
+
+
+def read_by(step: Draw | ChosenDraw | Step) -> set[int]:
+    """The slots that a step reads: those of its operands, however they are gathered."""
+    gathers = (
+        () if isinstance(step, Draw) else (step.index,) if isinstance(step, ChosenDraw) else step.operands
+    )
+    slots = set()
+    for gather in gathers:
+        if isinstance(gather, Run):
+            slots.add(gather.slot)
+        elif isinstance(gather, Gathered):
+            slots |= {part.slot for part in gather.parts if isinstance(part, Place)}
+    return slots
+
+
+def test_a_chain_keeps_what_is_still_read_and_nothing_else() -> None:
+    """After each stage exactly the columns are there that a later step reads, that this stage gives, or a later one as well."""
+    x = [axis(None, number) for number in range(5)]
+    sums = [make("add", number, 1.0) for number in x]
+    products = [make("multiply", sums[i], sums[j]) for i, j in ((0, 1), (1, 2), (2, 3), (3, 4), (0, 4))]
+    index = make("int", make("multiply", x[0], 3))
+    chosen = make("select", index, *x[1:4])
+    parts = [make("subtract", products[0], chosen), make("subtract", sums[4], 1.0)]
+    nodes = [*sums, *products, index, chosen, *parts]
+    random = np.random.default_rng(3)
+    points = random.random((4, Graph(nodes).dimension))
+    kinds = set()
+    for grouped in (True, False):
+        for _ in range(30):
+            order = [nodes[place] for place in random.permutation(len(nodes))]
+            stages = [order[:2], order[2:4], order[4:4], [*order[4:6], order[0]], order[6:9]]
+            batch = batch_at(Graph(nodes), points, grouped=grouped)
+            chain = batch._scheduler.chain(stages)
+            for number, (stage, schedule) in enumerate(zip(stages, chain, strict=True)):
+                batch.follow(schedule, stage)
+                made = {step.slot for each in chain[: number + 1] for step in each.steps}
+                later = {
+                    slot for each in chain[number + 1 :] for step in each.steps for slot in read_by(step)
+                }
+                given = {schedule.places[node].slot for each in stages[number:] for node in each}
+                assert batch._groups.keys() == made & (later | given)
+                kinds |= {type(step) for step in schedule.steps}
+    assert kinds == {Draw, ChosenDraw, Step}
+
+
+def test_a_chain_that_is_left_begins_anew() -> None:
+    """What it had not foreseen is evaluated from the start, and nothing of what had been freed is taken as there."""
+    x, y = axis(None, 1), axis(None, 2)
+    first, second = make("add", x, 1.0), make("multiply", make("add", x, 1.0), make("add", y, 3.0))
+    aside = make("subtract", x, y)
+    graph = Graph([first, second, aside])
+    points = np.random.default_rng(2).random((3, 2))
+    of = {node: points[:, place] for node, place in graph.axes.items()}
+    for left in range(2):
+        batch = batch_at(graph, points)
+        chain = batch._scheduler.chain([[first], [second]])
+        for schedule, node in list(zip(chain, (first, second), strict=True))[: left + 1]:
+            batch.follow(schedule, [node])
+        before = set(batch._groups)
+        assert batch.column(first if left == 0 else second) is not None
+        assert set(batch._groups) == before  # what is there is not evaluated again
+        assert batch.column(aside).tolist() == (of[x] - of[y]).tolist()
+        assert not before & batch._groups.keys()
+        batch.follow(chain[1], [second])
+        assert batch.column(second).tolist() == ((of[x] + 1) * (of[y] + 3)).tolist()
+        assert batch.column(first).tolist() == (of[x] + 1).tolist()

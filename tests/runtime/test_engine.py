@@ -172,6 +172,34 @@ def test_alone_means_that_nothing_else_rejects() -> None:
         assert stats.binomtest(round(alone), tried, q).pvalue > FALSE_ALARM
 
 
+def test_candidates_in_which_a_requirement_fails_count_as_rejected() -> None:
+    """``1 / x`` fails in the very candidates that ``x == 1`` rejects: both say the same, and neither rejects alone."""
+    text = (
+        "x, y = DiscreteRange(0, 1), Range(0, 1)\ndef same(v): return v\n"
+        "require 1 / x > 0.5 as A\nrequire same(x == 1) as B\nrequire same(y > 2) as C\n"
+    )
+    program = scenario(text)
+    program.restrict(Domain.whole(program.outline.graph.dimension))
+    (result,) = program.stream(1, seed=2, max_attempts=300)
+    assert isinstance(result, Exhausted)
+    found = rows(result)
+    assert found["A"] == found["B"]
+    assert 0.3 < found["A"][0] < 0.7
+    assert found["C"] == pytest.approx((1, 1 - found["A"][0]))
+
+
+def test_soft_requirements_keep_their_own_chances() -> None:
+    """Over scenes of which few are found at once: each holds always where it has to, and else as often as it may."""
+    text = (
+        "x, y, z = Range(0, 1), Range(0, 1), Range(0, 1)\ndef same(v): return v\nrequire same(z < 0.2)\n"
+        "require[0.9] same(x < 0.5)\nrequire[0.2] same(y < 0.5)\nparam x = x, y = y\n"
+    )
+    scenes = scenario(text).sample(1500, seed=6, lanes=64)
+    for name, chance in (("x", 0.9), ("y", 0.2)):
+        held = sum(scene.params[name] < 0.5 for scene in scenes)
+        assert stats.binomtest(held, len(scenes), (1 + chance) / 2).pvalue > FALSE_ALARM
+
+
 @pytest.mark.parametrize("lanes", [1, 64, 4096])
 def test_a_limit_of_attempts_is_exact(lanes: int) -> None:
     text = "x = Range(0, 1)\ndef same(v): return v\nrequire same(x < 0.1)\n"

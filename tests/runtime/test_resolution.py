@@ -8,7 +8,7 @@ import pytest
 
 from scenic.language.errors import InvalidScenarioError, ScenicValueError, SpecifierError
 from scenic.runtime.objects import Object, OrientedPoint
-from scenic.runtime.resolution import class_defaults, resolve
+from scenic.runtime.resolution import Resolution, class_defaults, resolution_of, resolve
 from scenic.runtime.specifiers import Specifier
 from scenic.runtime.values import Vector
 from tests.runtime.programs import failure, params, place, scene, thing
@@ -247,3 +247,38 @@ def test_defaults_that_are_shared_follow_what_is_given() -> None:
     assert plain.sensors == {"eye": 1}
     assert long.sensors == turned.sensors == {}
     assert plain.sensors is not turned.sensors is not shaped.sensors
+
+
+def shown(resolution: Resolution, specifiers: tuple[Specifier, ...]) -> list[Any]:
+    return [
+        (step.specifier(specifiers).name, step.names, step.modifies)
+        for step in resolution.steps
+        if step.default is None
+    ]
+
+
+@pytest.mark.parametrize("backwards", [False, True])
+def test_what_a_class_remembers_is_of_the_very_same_kinds(backwards: bool) -> None:
+    """Specifiers of one name that differ in what they modify, read, specify, or in the strength of that."""
+    other = specifier("first", {"width": 2})
+    sets = [
+        (second, other)
+        for second in (
+            specifier("second", {"width": 3}),
+            specifier("second", {"width": 3}, modifies="width"),
+            specifier("second", {"width": 1}),
+            specifier("second", {"length": 3}),
+            specifier("second", {"length": 3}, "width"),
+        )
+    ]
+
+    class Fresh(Object):
+        pass
+
+    for _ in range(2):
+        for specifiers in reversed(sets) if backwards else sets:
+            anew = resolve(Fresh, specifiers, class_defaults(Fresh, mode_2d=False))
+            kept = resolution_of(Fresh, specifiers, mode_2d=False)
+            assert shown(kept, specifiers) == shown(anew, specifiers)
+            assert kept is resolution_of(Fresh, specifiers, mode_2d=False)
+    assert len({str(shown(resolution_of(Fresh, each, mode_2d=False), each)) for each in sets}) == len(sets)

@@ -142,6 +142,48 @@ def test_what_is_left_does_not_grow() -> None:
     assert max(sizes[200:]) <= max(sizes[:200])
 
 
+@pytest.mark.parametrize("count", [1, 2, 3, 6])
+def test_clauses_that_others_imply_are_dropped(count: int) -> None:
+    """Of "always, one of these eventually" as many clauses are left as alternatives, not all their combinations."""
+    alternatives = tuple(Compound("eventually", (Atom(number),)) for number in range(count))
+    goal: Formula = alternatives[0] if count == 1 else Compound("or", alternatives)
+    monitor = Monitor(Compound("always", (goal,)))
+    for step in range(5):
+        read: list[int] = []
+        monitor.add(lambda index, read=read: bool(read.append(index)))  # type: ignore[misc]
+        assert [len(clause) for clause in monitor._left] == [2] * count
+        # What several clauses share is looked at once: the formula as a whole, and each alternative by itself.
+        assert all(read.count(number) == (1 if step == 0 else 2) for number in range(count))
+    # What comes true drops all clauses but one: nothing else has to be met.
+    monitor.add(lambda index: index == 0)
+    assert [len(clause) for clause in monitor._left] == [1]
+
+
+def test_what_is_written_twice_is_one_obligation() -> None:
+    def written() -> Formula:
+        return Compound("always", (Compound("eventually", (Atom(0),)),))
+
+    def eventually() -> Formula:
+        return Compound("until", (Compound("next", (Atom(1),)), Atom(2)))
+
+    monitor = Monitor(Compound("and", (written(), written(), eventually(), eventually())))
+    for _ in range(3):
+        monitor.add(lambda index: index == 1)
+        (clause,) = monitor._left
+        # "Always", "eventually", "until", and the next state's atom.
+        assert len(clause) == 4
+
+
+def test_what_is_left_of_both_sides_is_joined_and_absorbed() -> None:
+    """``(a or b) and (a or c)`` of later states is ``a or (b and c)``: two clauses, whatever the order."""
+    for order in itertools.permutations(range(3)):
+        a, b, c = (Compound("next", (Atom(number),)) for number in order)
+        for parts in itertools.permutations([Compound("or", (a, b)), Compound("or", (a, c))]):
+            monitor = Monitor(Compound("and", tuple(parts)))
+            monitor.add(lambda _: False)
+            assert sorted(len(clause) for clause in monitor._left) == [1, 2]
+
+
 def test_atoms_outside_temporal_operators_are_read_once() -> None:
     asked: list[int] = []
 
