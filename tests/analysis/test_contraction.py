@@ -508,3 +508,20 @@ def test_few_visits_are_shared_among_groups(monkeypatch):
     prune(Graph([item.node for item in items]), items)
     assert len(given) == 5
     assert sum(given[1:]) <= contraction.VISITS
+
+
+@pytest.mark.parametrize("end", [0.0, 1.0])
+def test_a_paving_may_move_one_end_alone(end):
+    """Of all boxes one is left, at an end of its axis."""
+    (domain,) = check(make("less", square_of_distance(uniform(0, 1), end), 1e-12)).parts
+    low, high = interval(domain)
+    assert low <= end <= high
+    assert (low, high) == pytest.approx((end, end), abs=1e-3)
+
+
+def test_what_moves_by_a_third_each_time_goes_on():
+    """Two numbers, each less than 0.7 of the other: they are 0 in the end."""
+    x, y = uniform(0, 1), uniform(0, 1)
+    items = [Fact(make("less", a, make("multiply", b, 0.7)), "") for a, b in ((x, y), (y, x))]
+    domain = prune(Graph([item.node for item in items]), items)
+    assert domain.upper.max() < 1e-3

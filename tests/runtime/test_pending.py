@@ -87,5 +87,6 @@ def test_rounds_take_little_time_and_grow_step_by_step() -> None:
     cheap = Pace(1 << 20)
     for lanes in (100, 200, 400):
         cheap.add(lanes, 0, 0.01 + lanes * 1e-9)
+    cheap.lanes = 1e7  # none of so many was a scene
     chosen = cheap.choose(1, 1 << 20, more=False)
     assert 400 < chosen.scenes * chosen.ahead <= 4 * 400

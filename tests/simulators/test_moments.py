@@ -319,3 +319,137 @@ scenario Sub(name):
 """
     simulate(text, 3)
     assert capsys.readouterr().out.split() == ["second", "first", "main"]
+
+
+# Limits and guards, step by step
+
+
+@pytest.mark.parametrize(
+    ("limit", "count"),
+    [
+        ("0 steps", 0),
+        ("1 steps", 1),
+        ("2 steps", 2),
+        ("2.4 steps", 3),
+        ("2.5 steps", 3),
+        ("2.6 steps", 3),
+        ("1 seconds", 2),
+        ("1.1 seconds", 3),
+        ("1.4 seconds", 3),
+    ],
+)
+@pytest.mark.parametrize("statement", ["do Forever()", "wait"])
+def test_what_lasts_a_while_ends_at_the_first_step_that_is_late_enough(
+    statement: str, limit: str, count: int
+) -> None:
+    """Limits are not rounded: after two steps of half a second 1.1 seconds are not over."""
+    text = (
+        'behavior Forever():\n    while True:\n        take "in"\nbehavior B():\n    take "before"\n'
+        f'    {statement} for {limit}\n    take "after"\nego = new Object with behavior B\n'
+    )
+    inside: tuple[str, ...] = () if statement == "wait" else ("in",)
+    done = taken(simulate(text, 8, timestep=0.5))
+    assert done[: 2 + count] == [("before",), *[inside] * count, ("after",)]
+    assert len(done) == 8
+
+
+@pytest.mark.parametrize("limit", [1, 2, 3])
+@pytest.mark.parametrize("inner", ["wait", "do Idle()", "do Idle() for 100 steps"])
+def test_a_scenario_is_over_after_its_steps_whatever_it_runs(limit: int, inner: str) -> None:
+    text = (
+        "scenario Idle():\n    compose:\n        while True:\n            wait\n"
+        f"scenario Timed():\n    setup:\n        terminate after {limit} steps\n    compose:\n"
+        f"        while True:\n            {inner}\n"
+        "scenario Main():\n    setup:\n        ego = new Object\n    compose:\n        wait\n        do Timed()\n"
+    )
+    done = simulate(text, 20)
+    assert done.result is not None
+    assert done.currentTime == 1 + limit
+
+
+def test_initial_values_are_those_of_the_step_in_which_a_scenario_starts() -> None:
+    text = (
+        "scenario Late():\n    setup:\n        record initial simulation().currentTime as begun\n"
+        "        record final simulation().currentTime as ended\n"
+        "        record simulation().currentTime as all\n"
+        "    compose:\n        wait\n        wait\n"
+        "scenario Main():\n    setup:\n        ego = new Object\n"
+        "    compose:\n        wait\n        wait\n        do Late()\n        wait\n"
+    )
+    done = simulate(text, 20)
+    assert done.records["begun"] == 2
+    assert done.records["ended"] == 4
+    assert done.records["all"] == [(2, 2), (3, 3)]
+
+
+NOTED = """
+def note(what):
+    print(what, simulation().currentTime)
+    return True
+behavior Inner():
+    precondition: note("inner precondition")
+    invariant: note("inner")
+    take "inner"
+    take "inner"
+behavior B():
+    precondition: note("precondition")
+    invariant: note("invariant")
+    take "own"
+    take "own"
+    do Inner()
+    take "own"
+ego = new Object with behavior B
+"""
+
+
+def test_guards_of_behaviors_are_asked_when_they_start_and_go_on(capsys: pytest.CaptureFixture[str]) -> None:
+    """Invariants not at the first resumption, which the start has just asked, nor while something else is being done."""
+    simulate(NOTED, 6)
+    assert capsys.readouterr().out.splitlines() == [
+        "precondition 0",
+        "invariant 0",
+        "invariant 1",
+        "invariant 2",
+        "inner precondition 2",
+        "inner 2",
+        "inner 3",
+        "inner 4",
+        "invariant 4",  # what was done is over
+        "invariant 5",
+    ]
+
+
+NOTED_SCENARIOS = """
+def note(what):
+    print(what, simulation().currentTime)
+    return True
+scenario Inner():
+    precondition: note("inner precondition")
+    invariant: note("inner")
+    setup:
+        x = 1
+        terminate after 2 steps
+scenario Main():
+    invariant: note("invariant")
+    setup:
+        ego = new Object
+    compose:
+        wait
+        wait
+        do Inner()
+        wait
+"""
+
+
+def test_guards_of_scenarios_are_asked_when_they_start_and_go_on(capsys: pytest.CaptureFixture[str]) -> None:
+    """Those of one that composes nothing in each of its steps."""
+    simulate(NOTED_SCENARIOS, 10)
+    told = [line for line in capsys.readouterr().out.splitlines() if not line.startswith("nothing")]
+    assert [line for line in told if line.startswith("inner")] == [
+        "inner precondition 2",
+        "inner 2",
+        "inner 2",
+        "inner 3",
+    ]
+    steps = [int(line.split()[1]) for line in told if line.startswith("invariant")]
+    assert steps == [0, 1, 2, 4, 5]
