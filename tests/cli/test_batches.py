@@ -15,7 +15,8 @@ import pytest
 
 import scenic
 from scenic.cli import workers
-from scenic.cli.batches import Job, WorkerDiedError, in_processes
+from scenic.cli.batches import Job, ResumeError, WorkerDiedError, continued, in_processes
+from scenic.formats.growing import GrowingFile
 from scenic.formats.json_lines import SceneLines
 from tests.cli.commands import run_here
 
@@ -271,3 +272,65 @@ def test_no_worker_outlives_a_killed_parent(folder: Path) -> None:
             return
         time.sleep(0.05)
     raise AssertionError("a worker lives on")
+
+
+@pytest.mark.parametrize(
+    ("kept", "first", "count", "done"),
+    [
+        ([], 3, 5, 0),
+        ([0], 0, 1, 1),
+        ([0, 1, 2], 0, 5, 3),
+        ([0, 1, 2], 0, 3, 3),
+        ([0, 2], 0, 5, 3),  # the scene between them was not found, and is not looked for again
+        ([2], 0, 5, 3),
+        ([3, 4], 3, 2, 2),
+        ([4], 3, 5, 2),
+        ([7], 3, 5, 5),
+        ([0, 1, 2], 0, 2, None),
+        ([8], 3, 5, None),
+        ([2, 3], 3, 5, None),
+        ([2], 3, 5, None),
+    ],
+)
+def test_a_run_goes_on_after_its_last_scene(
+    tmp_path: Path, kept: list[int], first: int, count: int, done: int | None
+) -> None:
+    """The number of scenes from ``--first`` on that need not be made; ``None`` for lines of another run."""
+    target = tmp_path / "out.jsonl"
+    target.write_text("".join(json.dumps({"digest": "d", "seed": 5, "k": k}) + "\n" for k in kept))
+    grown = GrowingFile(target, resume=True)
+    for seed in (5, None):
+        if done is None:
+            with pytest.raises(ResumeError, match="which this run does not make"):
+                continued(grown, "d", seed, first, count)
+        else:
+            assert continued(grown, "d", seed, first, count) == (5 if kept else seed, done)
+    if kept:
+        with pytest.raises(ResumeError, match="of seed 5"):
+            continued(grown, "d", 6, first, count)
+
+
+def test_the_part_of_a_killed_run_is_gone_on_with_before_the_older_file(tmp_path: Path) -> None:
+    target = tmp_path / "out.jsonl"
+    target.write_bytes(b"old\n")
+    part = tmp_path / "out.jsonl.part"
+    part.write_bytes(b"one\ntwo\nto")
+    grown = GrowingFile(target, resume=True)
+    assert grown.kept() == [b"one\n", b"two\n"]
+    with grown:
+        grown.write(b"three\n")
+    assert target.read_bytes() == b"one\ntwo\nthree\n"
+    assert not part.exists()
+
+
+def test_a_run_that_finds_nothing_leaves_an_empty_file(tmp_path: Path) -> None:
+    """Unless it is ended before: then nothing is left, or the older file."""
+    target = tmp_path / "out.jsonl"
+    with GrowingFile(target) as grown:
+        grown.write(b"")
+    assert target.read_bytes() == b""
+    target.write_bytes(b"old\n")
+    with pytest.raises(KeyboardInterrupt), GrowingFile(target) as grown:
+        raise KeyboardInterrupt
+    assert target.read_bytes() == b"old\n"
+    assert [path.name for path in tmp_path.iterdir()] == ["out.jsonl"]

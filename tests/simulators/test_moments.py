@@ -453,3 +453,17 @@ def test_guards_of_scenarios_are_asked_when_they_start_and_go_on(capsys: pytest.
     ]
     steps = [int(line.split()[1]) for line in told if line.startswith("invariant")]
     assert steps == [0, 1, 2, 4, 5]
+
+
+@pytest.mark.parametrize("limit", ["for 2 steps", "until simulation().currentTime >= 2"])
+def test_invariants_are_asked_after_a_wait_and_not_within(
+    limit: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = (
+        "def note():\n    print(simulation().currentTime)\n    return True\n"
+        f'behavior B():\n    invariant: note()\n    wait {limit}\n    take "own"\n    take "own"\n'
+        "ego = new Object with behavior B\n"
+    )
+    simulate(text, 4)
+    # Once at the start, once where the wait is over, then with each resumption.
+    assert capsys.readouterr().out.split() == ["0", "2", "3"]
