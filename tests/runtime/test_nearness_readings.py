@@ -342,3 +342,117 @@ def test_pruning_changes_no_law(name: str) -> None:
     for axis in range(2):
         assert stats.ks_2samp(places[0][:, axis], places[1][:, axis]).pvalue > 1e-3
     assert tried[0] < MOST_TRIED[name] < tried[1] / 20
+
+
+def known_place(
+    operation: Operation, payload: Any, result: float, rows: Sequence[Row | None], number: int
+) -> Bounds:
+    """Where an operand can be that is not known at all, once the others and the result are known."""
+    given = exact(rows)
+    shape = np.shape(rows[number])
+    given[number] = Bounds(np.full(shape, -np.inf), np.full(shape, np.inf))
+    assert operation.inverse is not None
+    found = operation.inverse(payload, Bounds(np.array([result]), np.array([result])), *given)
+    place = found[number]
+    assert place is not None
+    return place
+
+
+def is_box(found: Bounds, lower: Any, upper: Any) -> None:
+    """Bounds hold a box and are larger by some thousandths of a millimetre at most."""
+    for outer, inner in ((-found.lower, -np.asarray(lower)), (found.upper, np.asarray(upper))):
+        assert np.all(outer >= inner)
+        assert np.all((outer <= inner + 1e-5) | np.isinf(inner))
+
+
+@pytest.mark.parametrize("name", ["box", "ball", "disc"])
+def test_what_a_region_holds_is_known_to_be_in_its_box(name: str) -> None:
+    region, radius = {
+        "box": (BoxRegion((2, 4, 6), Vector(1, 2, 3)), [1, 2, 3]),
+        "ball": (SpheroidRegion((2, 4, 6), Vector(1, 2, 3)), [1, 2, 3]),
+        "disc": (CircularRegion(Vector(1, 2, 3), 5), [5, 5, 0]),
+    }[name]
+    columns = [column.astype(float) for column in columns_of(region)]
+    middle, half = np.array([[1.0, 2, 3]]), np.array([radius], dtype=float)
+    # What is flat holds what is above and below it.
+    held = half + (np.array([[0, 0, np.inf]]) if name == "disc" else 0.0)
+    is_box(known_place(CONTAINS, region, 1, [middle, *columns], 0), middle - held, middle + held)
+    for distance in (0.0, 3.0):
+        room = half + distance
+        is_box(known_place(DISTANCE, region, distance, [middle, *columns], 0), middle - room, middle + room)
+    # Nothing follows from what is not so.
+    given = exact([middle, *columns])
+    assert CONTAINS.inverse is not None
+    (place, *_) = CONTAINS.inverse(region, Bounds(np.zeros(1), np.ones(1)), *given)
+    assert place is None or (np.isinf(place.lower).all() and np.isinf(place.upper).all())
+
+
+def test_a_point_in_the_corner_of_a_box_is_known_to_be_beside_a_ball() -> None:
+    """Not by the box around the ball, but by the distance from it; also of some points among others."""
+    ball = SpheroidRegion((2, 2, 2))
+    columns = [column.astype(float) for column in columns_of(ball)]
+    points = np.array([[0.9, 0.9, 0.9], [0.5, 0.5, 0.5], [-0.9, 0.9, 0], [0, 0, 0.99]])
+    assert CONTAINS.bounds is not None
+    assert CONTAINS.bounds(ball, *exact([points, *columns])).upper.tolist() == [0, 1, 0, 1]
+
+
+def test_where_what_is_seen_and_who_sees_it_can_be() -> None:
+    camera, place = np.array([[1.0, 2, 3]]), np.array([[4.0, 6, 3]])
+    still = np.array([[0.0, 0, 0, 1]])
+    numbers = [np.array([number]) for number in (1.0, 1.0, 7.0, 5.0, 0.0, 0.0)]
+    views = [camera, still, *numbers, np.zeros(1)]
+    size = np.array([[2.0, 4, 4]])
+    radius = 3.0  # of the ball around a body of this size
+    for payload, target, reach in (
+        ((False, False), [place], 7.0),
+        ((True, False), [place, still, size, None], 7 + radius),
+    ):
+        is_box(known_place(SEES, payload, 1, [*views, *target], 0), place - reach, place + reach)
+        is_box(known_place(SEES, payload, 1, [*views, *target], 9), camera - reach, camera + reach)
+    endless = np.array([[0, 0, np.inf]])
+    flat = [camera, np.zeros(1), np.ones(1), np.array([7.0]), place]
+    for operation, rows, reach in (
+        (SEES_POINT_IN_PLANE, flat, 7.0),
+        (SEES_IN_PLANE, [*flat, still, size], 7 + radius),
+    ):
+        room = reach + endless
+        is_box(known_place(operation, None, 1, rows, 0), place - room, place + room)
+        is_box(known_place(operation, None, 1, rows, 4), camera - room, camera + room)
+
+
+def test_where_bodies_near_each_other_can_be() -> None:
+    """As far apart as half their sizes together and the gap on each axis."""
+    still = np.array([[0.0, 0, 0, 1]])
+    first = [np.array([[1.0, 2, 3]]), still, np.array([[2.0, 4, 6]]), None]
+    second = [np.array([[5.0, 5, 5]]), still, np.array([[1.0, 1, 3]]), None]
+    rows, half = [*first, *second], np.array([[1.5, 2.5, 4.5]])
+    for operation, result, gap in ((bodies._INTERSECT, 1.0, 0.0), (bodies._GAP, 2.0, 2.0)):
+        for mine, other in ((0, first), (4, second)):
+            other = second if mine == 0 else first
+            assert other[0] is not None
+            room = half + gap
+            is_box(known_place(operation, None, result, rows, mine), other[0] - room, other[0] + room)
+
+
+def test_a_narrow_view_hides_what_is_beside_above_and_behind_it() -> None:
+    """A ball just within each border of a turned view may be seen for all that is known, and just beyond it not."""
+    turn = Rotation.from_euler("ZXY", [0.7, 0.3, -0.4])
+    still = np.array([[0.0, 0, 0, 1]])
+    width, height = 0.6, 0.4
+    numbers = [np.array([number]) for number in (width, height, 50.0, 5.0, 0.0, 0.0)]
+    views = [np.array([[1.0, 2, 3]]), turn.as_quat()[None], *numbers, np.zeros(1)]
+    assert SEES.bounds is not None
+    for side in (-1, 1):
+        for off, seen in ((-1e-4, 1), (1e-4, 0)):
+            across, upward = np.tan(width / 2 + off), np.tan(height / 2 + off)
+            for way in ([side * across, 1, 0], [0, 1, side * upward]):
+                place = views[0] + 20 * turn.apply(way)[None]
+                assert SEES.bounds((False, False), *exact([*views, place])).upper[0] == seen
+                size = np.full((1, 3), 1e-9)
+                body = [place, still, size, None]
+                assert SEES.bounds((True, False), *exact([*views, *body])).upper[0] == seen
+    # Nothing is known of the heights that a view shows that is as wide as can be.
+    wide = [views[0], views[1], np.array([2 * np.pi]), np.array([np.pi]), *views[4:]]
+    for way in ([0, -1, 0], [0, 0, 1], [0, 0, -1], [1, 0, 0]):
+        place = views[0] + 20 * turn.apply(way)[None]
+        assert SEES.bounds((False, False), *exact([*wide, place])).upper[0] == 1

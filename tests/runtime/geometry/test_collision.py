@@ -2,8 +2,9 @@ import itertools
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
-from scenic.runtime.geometry import primitives
+from scenic.runtime.geometry import collision, primitives
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.broadphase import boxes_overlap
 from scenic.runtime.geometry.collision import Collider, collide
@@ -209,3 +210,39 @@ def test_batches_do_not_matter(batch):
         some = [body.take(np.arange(part.start, part.stop)) for body in bodies]
         found = collide(some, pairs, part.stop - part.start, exhaustive=True)
         np.testing.assert_array_equal(found.pairs, whole.pairs[part])
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_the_one_of_many_near_bodies_that_collides_is_found_whichever_it_is(turned):
+    """In a cavity many bodies must be told apart from the walls exactly; in each lane another one is in a wall."""
+    steps = np.linspace(-0.18, 0.18, 4)
+    places = np.array(list(itertools.product(steps, steps, steps)))
+    count = len(places)
+    lanes = count + 1
+    turn = Rotation.from_euler("ZXY", [0.4, 0.3, 0.9]) if turned else Rotation.identity()
+    frame, size = turn.as_quat()[None], np.full((1, 3), 0.06)
+    still = Poses(np.zeros((1, 3)), frame, np.ones((1, 3)))
+    bodies = [Body((hollow(), primitives.box()), np.zeros(lanes, dtype=np.intp), still)]
+    for number, place in enumerate(places):
+        local = np.tile(place, (lanes, 1))
+        local[number, 0] = 0.3
+        bodies.append(Body((primitives.cylinder(),), None, Poses(turn.apply(local), frame, size)))
+    expected = np.arange(lanes) == count
+    np.testing.assert_array_equal(collide(bodies, None, lanes).free, expected)
+    pairs = [(0, number + 1) for number in range(count)]
+    every = collide(bodies, pairs, lanes, exhaustive=True)
+    np.testing.assert_array_equal(every.pairs, np.eye(lanes, count, dtype=bool))
+    # Lanes that differ only in the mesh: the cavity is filled in some of them.
+    bodies[0] = Body(bodies[0].meshes, np.arange(lanes) % 2, bodies[0].poses)
+    np.testing.assert_array_equal(collide(bodies, None, lanes).free, expected & (np.arange(lanes) % 2 == 0))
+
+
+@pytest.mark.parametrize("most", [1, 7, 64])
+def test_how_much_is_looked_at_together_does_not_matter(most, monkeypatch):
+    bodies = crowd(9, 6)
+    pairs = [(i, j) for i, j in itertools.combinations(range(9), 2) if i % 4 or j % 4]
+    expected = collide(bodies, pairs, LANES, exhaustive=True).pairs
+    for name in ("_CHUNK", "_BOXES", "_MOST_ENTRIES", "_STEP", "_FEW"):
+        monkeypatch.setattr(collision, name, most)
+    np.testing.assert_array_equal(collide(bodies, pairs, LANES, exhaustive=True).pairs, expected)
+    np.testing.assert_array_equal(collide(bodies, pairs, LANES).free, ~expected.any(axis=1))
