@@ -3,6 +3,7 @@
 import dataclasses
 
 import numpy as np
+import pytest
 
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.poses import Poses
@@ -12,7 +13,7 @@ from scenic.runtime.geometry.visibility.proofs import inner_boxes
 from scenic.runtime.geometry.visibility.proving import Proof, _Cells, prove
 from scenic.runtime.geometry.visibility.views import Views
 from tests.runtime.geometry.visibility.reference import winding
-from tests.runtime.geometry.visibility.test_bodies import FRAME, fixed, scenes
+from tests.runtime.geometry.visibility.test_bodies import BOX, FRAME, fixed, quaternions, scenes
 
 
 def test_rays_see_nothing_that_is_proved_hidden_and_miss_little() -> None:
@@ -128,3 +129,55 @@ def test_what_shows_through_a_frame_is_seen_though_the_corners_of_its_box_are_hi
     assert sees_bodies(observer, behind, [Occluder(before)], 1)[0]
     full = fixed((0, 5, 0), (4, 0.2, 4))
     assert proof(observer, behind, full) == Proof.HIDDEN
+
+
+@pytest.mark.parametrize("side", [-1, 1])
+@pytest.mark.parametrize("axis", [0, 2])
+def test_what_shows_only_beside_a_narrow_view_is_hidden(axis: int, side: int) -> None:
+    """A screen covers the view, or leaves a thousandth of it open on the side to which the body reaches out of it."""
+    observer = Views.fixed((0, 0, 0), angles=(0.5, 0.5))
+    place, size = np.array([0.0, 10, 0]), np.array([2.0, 0.2, 2.0])
+    place[axis], size[axis] = side * 5.0, 9.0
+    size[2 - axis] = 1e-3  # only about the middle of a view its upper and lower borders are level
+    target = fixed(tuple(place), tuple(size))
+    edge = 4.95 * np.tan(0.25)  # of the view, at the front of the screen
+    for off, expected in ((1e-6, Proof.HIDDEN), (-1e-3, Proof.SEEN)):
+        middle, extent = np.array([0.0, 5, 0]), np.array([6.0, 0.1, 6.0])
+        middle[axis], extent[axis] = side * ((edge + off) - 2.0), 4.0
+        assert proof(observer, target, fixed(tuple(middle), tuple(extent))) == expected
+    beside = np.array([0.0, 10, 0])
+    for off, expected in ((1e-6, Proof.HIDDEN), (-1e-3, Proof.SEEN)):
+        beside[axis] = side * (10.5 * np.tan(0.25) + off + 0.5)
+        assert proof(observer, fixed(tuple(beside), (size[0] if axis else 1, 1, 1))) == expected
+
+
+@pytest.mark.parametrize("gap", [1e-6, 1e-3, 0.2])
+def test_only_what_begins_before_a_body_hides_it(gap: float) -> None:
+    for reach, seen in ((50.0, Proof.SEEN), (9.5 + gap / 2, Proof.SEEN), (9.5 - gap / 2, Proof.HIDDEN)):
+        observer = Views.fixed((0, 0, 0), angles=(1.0, 1.0), distance=reach)
+        target = fixed((0, 10, 0), (1, 1, 1))
+        assert proof(observer, target) == seen
+        for off, expected in ((gap, seen), (-gap, Proof.HIDDEN)):
+            assert proof(observer, target, fixed((0, 9.5 + off + 0.2, 0), (30, 0.4, 30))) == expected
+
+
+def test_lanes_are_proved_alone_as_together() -> None:
+    """Lanes that differ in the mesh, the size, the angle or the place of what hides, each for itself and all at once."""
+    count = 70
+    rng = np.random.default_rng(8)
+    position = np.tile([0.0, 10, 0], (count, 1)) + rng.normal(size=(count, 3)) * 2
+    size = rng.uniform(0.5, 3, (count, 3))
+    poses = Poses(position, quaternions(rng, count), size)
+    target = Body((FRAME, BOX), np.arange(count) % 2, poses)
+    walls = Poses(0.5 * position + rng.normal(size=(count, 3)) * 0.3, quaternions(rng, count), 0.7 * size)
+    wall = Body((BOX, FRAME), np.arange(count) // 2 % 2, walls)
+    observers = Views.fixed((0, 0, 0), angles=(0.4, 0.3)).spread(count)
+    together = prove(observers, target, [Occluder(wall)], count, most_cells=256)
+    assert {Proof.HIDDEN, Proof.SEEN} <= set(together.tolist())
+    for lane in range(0, count, 3):
+        one = np.array([lane])
+        alone = [
+            Body((body.meshes[body.choice[lane]],), None, body.poses.take(one)) for body in (target, wall)
+        ]
+        found = prove(observers.take(one), alone[0], [Occluder(alone[1])], 1, most_cells=256)
+        assert found[0] == together[lane]
