@@ -157,6 +157,14 @@ def format_traceback(error: BaseException) -> str:
     return "".join(lines)
 
 
+def _lines(frame: FrameType, first: int, last: int) -> str | None:
+    """Some lines as a traceback has to have them: from Python 3.13 on all, before the first. ``None`` where one is missing."""
+    lines = [
+        _line(frame, line) for line in range(first, (last if sys.version_info >= (3, 13) else first) + 1)
+    ]
+    return "\n".join(line.rstrip("\r\n") for line in lines) if all(line.strip() for line in lines) else None
+
+
 def _user_frames(step: TracebackType | None) -> Iterator[traceback.FrameSummary]:
     while step is not None:
         frame = step.tb_frame
@@ -164,12 +172,15 @@ def _user_frames(step: TracebackType | None) -> Iterator[traceback.FrameSummary]
             position = next(islice(frame.f_code.co_positions(), max(0, step.tb_lasti // 2), None), None)
             line, end_line, column, end_column = position or (step.tb_lineno, None, None, None)
             first = step.tb_lineno if line is None else line
+            shown = _lines(frame, first, first if end_line is None else end_line)
+            if shown is None:
+                end_line = end_column = None
             yield traceback.FrameSummary(
                 frame.f_code.co_filename,
                 first,
                 frame.f_code.co_name,
                 lookup_line=False,
-                line=_line(frame, first).strip() or None,
+                line=_line(frame, first).rstrip() if shown is None else shown,
                 end_lineno=end_line,
                 colno=column,
                 end_colno=end_column,
