@@ -127,6 +127,7 @@ class Scheduler:
         self._grouped = grouped
         self._known: dict[tuple[int, tuple[Node, ...]], Schedule] = {}
         self._kept: list[Schedule] = []
+        self._chains: dict[tuple[tuple[Node, ...], ...], tuple[Schedule, ...]] = {}
         self._gathers: dict[tuple[int, tuple[Node, ...]], Gather] = {}
         self._slots = 0
         self._merger: Final = Merger()
@@ -152,6 +153,13 @@ class Scheduler:
 
         A stage's nodes can be read until the next one begins; those of the last are kept.
         """
+        key = tuple(map(tuple, stages))
+        chain = self._chains.get(key)
+        if chain is None:
+            chain = self._chains[key] = self._chain(key)
+        return chain
+
+    def _chain(self, stages: Sequence[Sequence[Node]]) -> tuple[Schedule, ...]:
         places: dict[Node, Place] = {}
         steps = [self._steps(roots, places) for roots in stages]
         # When each slot is used for the last time: before a step (or the end) of a stage.
@@ -166,12 +174,10 @@ class Scheduler:
         for slot, (stage, number) in last.items():
             if stage < len(stages):
                 unused[stage][number].append(slot)
-        schedules = tuple(
+        return tuple(
             Schedule(tuple(mine), places, tuple(map(tuple, drops)))
             for mine, drops in zip(steps, unused, strict=True)
         )
-        self._kept += schedules
-        return schedules
 
     def below(self, roots: Iterable[Node]) -> frozenset[Node]:
         """What is evaluated to get some nodes when nothing is there."""
