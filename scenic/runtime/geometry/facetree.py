@@ -100,15 +100,22 @@ def _boxed(lowest: Floats, highest: Floats, faces: Indices) -> FaceTree:
     """The tree whose leaves have the triangles in this order."""
     depth = _depth(len(faces))
     starts = _starts(len(faces), depth)
+    low, high = (np.empty((3, (2 << depth) - 1)) for _ in range(2))
     # A leaf has one face, or two.
     first, last = faces[starts[:-1]], faces[starts[1:] - 1]
-    lower = [np.minimum(lowest.take(first, axis=1), lowest.take(last, axis=1))]
-    upper = [np.maximum(highest.take(first, axis=1), highest.take(last, axis=1))]
-    for _ in range(depth):
-        lower.append(np.minimum(lower[-1][:, ::2], lower[-1][:, 1::2]))
-        upper.append(np.maximum(upper[-1][:, ::2], upper[-1][:, 1::2]))
-    low, high = np.concatenate(lower[::-1], axis=1), np.concatenate(upper[::-1], axis=1)
-    return FaceTree((low + high) / 2, (high - low) / 2 + _PADDING, starts, faces)
+    leaves = slice((1 << depth) - 1, None)
+    np.minimum(lowest.take(first, axis=1), lowest.take(last, axis=1), out=low[:, leaves])
+    np.maximum(highest.take(first, axis=1), highest.take(last, axis=1), out=high[:, leaves])
+    for level in reversed(range(depth)):
+        nodes, below = slice((1 << level) - 1, (2 << level) - 1), slice((2 << level) - 1, (4 << level) - 1)
+        np.minimum(low[:, below][:, ::2], low[:, below][:, 1::2], out=low[:, nodes])
+        np.maximum(high[:, below][:, ::2], high[:, below][:, 1::2], out=high[:, nodes])
+    middle = low + high
+    middle *= 0.5
+    half = np.subtract(high, low, out=high)
+    half *= 0.5
+    half += _PADDING
+    return FaceTree(middle, half, starts, faces)
 
 
 def _depth(count: int) -> int:
