@@ -1,6 +1,7 @@
 """A random choice among regions, as a region: each lane has the one that it draws."""
 
 from collections.abc import Iterator, Sequence
+from functools import reduce
 from typing import Any, TypeVar
 
 import numpy as np
@@ -16,7 +17,6 @@ from scenic.runtime.choices import select
 from scenic.runtime.context import here
 from scenic.runtime.geometry.collision import Body
 from scenic.runtime.regions.base import Mask, Points, Region
-from scenic.runtime.regions.composite import folded
 from scenic.runtime.regions.nearness import hull_of
 from scenic.runtime.values import Orientation, Random, as_node, as_value
 
@@ -148,7 +148,7 @@ class RegionChoice(Region):
 
     def box(self, *columns: Column) -> tuple[Points, Points]:
         lower, upper = zip(*(option.box(*mine) for option, mine in self._each(columns)), strict=True)
-        return folded(np.minimum, lower), folded(np.maximum, upper)
+        return reduce(np.minimum, lower), reduce(np.maximum, upper)
 
     def extent(self, *parameters: Bounds | None) -> Bounds | None:
         return hull_of([option.extent(*mine) for option, mine in self._each(parameters)])

@@ -5,7 +5,7 @@ These are the general forms, for members of any kind with parameters of any kind
 """
 
 from abc import abstractmethod
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from functools import reduce
 from typing import Any, Final, TypeVar
 
@@ -184,17 +184,13 @@ class Composite(Region):
         return None
 
 
-def folded(function: Callable[[Any, Any], Any], parts: Sequence[Any]) -> Any:
-    """What a function of two columns makes of several; some may have a single row, and others one for each lane."""
-    return reduce(function, parts)
-
-
+# Masks and columns of members are combined two by two, as `reduce` does: some may have a single row, and others one for each lane.
 def _all(masks: Sequence[Mask]) -> Mask:
-    return np.asarray(folded(np.logical_and, masks), dtype=np.bool_)
+    return np.asarray(reduce(np.logical_and, masks), dtype=np.bool_)
 
 
 def _any(masks: Sequence[Mask]) -> Mask:
-    return np.asarray(folded(np.logical_or, masks), dtype=np.bool_)
+    return np.asarray(reduce(np.logical_or, masks), dtype=np.bool_)
 
 
 def exactly_contains(region: Region, points: Points, columns: Sequence[Column]) -> Mask:
@@ -252,13 +248,13 @@ class IntersectionRegion(Composite):
 
     def gaps(self, points: Points, *columns: Column) -> NDArray[np.float64]:
         return np.asarray(
-            folded(np.maximum, [member.gaps(points, *mine) for member, mine in self._parts(columns)])
+            reduce(np.maximum, [member.gaps(points, *mine) for member, mine in self._parts(columns)])
         )
 
     def box(self, *columns: Column) -> tuple[Points, Points]:
         boxes = [member.box(*mine) for member, mine in self._parts(columns)]
-        lower = folded(np.maximum, [low for low, _ in boxes])
-        upper = folded(np.minimum, [high for _, high in boxes])
+        lower = reduce(np.maximum, [low for low, _ in boxes])
+        upper = reduce(np.minimum, [high for _, high in boxes])
         return np.minimum(lower, upper), upper
 
     def _box_of(self, boxes: Sequence[Bounds | None]) -> Bounds | None:
@@ -342,7 +338,7 @@ class UnionRegion(Composite):
 
     def gaps(self, points: Points, *columns: Column) -> NDArray[np.float64]:
         return np.asarray(
-            folded(np.minimum, [member.gaps(points, *mine) for member, mine in self._parts(columns)])
+            reduce(np.minimum, [member.gaps(points, *mine) for member, mine in self._parts(columns)])
         )
 
     @property
@@ -351,12 +347,12 @@ class UnionRegion(Composite):
 
     def distances(self, points: Points, *columns: Column) -> NDArray[np.float64]:
         return np.asarray(
-            folded(np.minimum, [member.distances(points, *mine) for member, mine in self._parts(columns)])
+            reduce(np.minimum, [member.distances(points, *mine) for member, mine in self._parts(columns)])
         )
 
     def box(self, *columns: Column) -> tuple[Points, Points]:
         boxes = [member.box(*mine) for member, mine in self._parts(columns)]
-        return folded(np.minimum, [low for low, _ in boxes]), folded(np.maximum, [high for _, high in boxes])
+        return reduce(np.minimum, [low for low, _ in boxes]), reduce(np.maximum, [high for _, high in boxes])
 
     def _box_of(self, boxes: Sequence[Bounds | None]) -> Bounds | None:
         return hull_of(boxes)
@@ -415,4 +411,4 @@ class DifferenceRegion(Composite):
         return boxes[0]
 
 
-__all__ = ["Composite", "DifferenceRegion", "IntersectionRegion", "UnionRegion", "exactly_contains", "folded"]
+__all__ = ["Composite", "DifferenceRegion", "IntersectionRegion", "UnionRegion", "exactly_contains"]
