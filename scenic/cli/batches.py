@@ -126,6 +126,14 @@ def continued(
     return made[1], reached + 1 - first
 
 
+def _alone(lines: SceneLines, job: Job, result: Scene | Exhausted) -> Made:
+    """What comes of the part of a job that is one scene."""
+    part = replace(job, first=result.k, last=result.k + 1)
+    if isinstance(result, Exhausted):
+        return Made(part, b"", (result,), result.attempts)
+    return Made(part, lines.line(result).encode("ascii") + b"\n", (), result.attempts)
+
+
 def _make(scenario: Scenario, lines: SceneLines, job: Job) -> Made:
     text, missing, attempts = bytearray(), [], 0
     begun = time.monotonic()
@@ -190,9 +198,9 @@ def _ordered(
             if ready.failed:
                 # Raises what the worker met, here where it can be shown with its place, after what comes before.
                 for result in results_of(scenario, ready.job):
-                    if not isinstance(result, Exhausted):
-                        yield Made(ready.job, lines.line(result).encode("ascii") + b"\n", ())
-            yield ready
+                    yield _alone(lines, ready.job, result)
+            else:
+                yield ready
 
 
 def _made(

@@ -9,7 +9,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any, Final
 
-from scenic.formats.files import Waiting, refusing, writing
+from scenic.formats.files import OutputError, Waiting, refusing, writing
 from scenic.formats.json_lines import number
 from scenic.language.errors import UnsupportedError
 
@@ -54,9 +54,14 @@ class ParquetFile:
         self._schema = pyarrow.schema([(name, kinds.get(name, real)) for name in names])
         self._columns: dict[str, list[Any]] = {name: [] for name in names}
         self._waiting = Waiting(path)
-        self._writer = parquet.ParquetWriter(
-            self._waiting.stream, self._schema, compression="zstd", store_schema=False
-        )
+        try:
+            with refusing(path):
+                self._writer = parquet.ParquetWriter(
+                    self._waiting.stream, self._schema, compression="zstd", store_schema=False
+                )
+        except OutputError:
+            self._waiting.close()
+            raise
 
     def add(self, state: Mapping[str, Any]) -> None:
         """The next state."""

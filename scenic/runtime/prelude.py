@@ -502,6 +502,10 @@ class Loader:
         if path is None:
             return self._import_python(importer, name, globals, locals, fromlist or (), level)
         module = self._load(path, name, importer)
+        for item in fromlist or ():
+            # As in Python, modules of a package are among its attributes once somebody has imported them from it.
+            if not hasattr(module, item) and (found := self._modules.find(f"{name}.{item}")) is not None:
+                setattr(module, item, self._load(found, f"{name}.{item}", importer))
         if fromlist or "." not in name:
             return module
         # `import a.b` binds `a`: a namespace that leads to the module.

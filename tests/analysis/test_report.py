@@ -1,11 +1,15 @@
 """What is told of contradictions: code, places, words."""
 
+import numpy as np
+import pytest
 from graph.programs import make, one_of, uniform
 
 from scenic.analysis.facts import Fact
 from scenic.analysis.report import prove
 from scenic.graph import node as graph
+from scenic.graph.kinds import Kind
 from scenic.graph.node import Graph
+from scenic.graph.operations.distributions import Table
 from scenic.language.diagnostics import Severity
 from scenic.language.spans import Span
 
@@ -121,3 +125,48 @@ def test_what_intervals_do_not_need_is_not_blamed():
     for place in (2, 4, 6):
         (found,) = report((make("less", v, 0.5), line(place)), *needed)
         assert told(found) == ("SC700", 5, [(3, "while this is required")])
+
+
+def test_what_is_said_of_one_two_and_three_conditions_that_cannot_hold_together():
+    """Alone it never holds, or for no value of what it depends on; of several, the last is told with all others marked."""
+    x = uniform(0.0, 1.0, span=line(1))
+    y = make("sin", uniform(0.0, 0.1))
+    alone, never = (make("greater", x, 2), line(2)), (make("greater", y, 0.5), line(2))
+    two = [(make("less", x, 0.3), line(2)), (make("greater", x, 0.6), line(3))]
+    a, b = uniform(0.0, 1.0), uniform(0.0, 1.0)
+    three = [
+        (make("greater", a, 0.9), line(2)),
+        (make("greater", b, 0.8), line(3)),
+        (make("less", make("add", a, b), 1.5), line(4)),
+    ]
+    for items, words, marked in (
+        ([never], "this requirement can never hold", 0),
+        ([alone], "this requirement cannot hold for any value of what it depends on", 1),
+        (two, "this requirement cannot hold together with the others marked", 1),
+        (three, "this requirement cannot hold together with the others marked", 2),
+    ):
+        (found,) = report(*items)
+        assert found.message == words
+        assert [label.span.line for label in found.labels][-marked or 99 :] == [
+            span.line for _, span in items[:-1]
+        ] or items == [alone]
+        assert len(found.labels) == marked
+        assert found.help.startswith("no scene can meet " + ("all of the marked places" if marked else "it"))
+        built_in = [Fact(node, "a rule", span, built_in=True) for node, span in items]
+        (found,) = prove(Graph([node for node, _ in items]), built_in)
+        assert found.message == words.replace("this requirement", "'a rule', which the language requires,")
+
+
+@pytest.mark.parametrize("options", [(0.123456789, 1234567.5), (1, 2.5), (-3, 10**9)])
+def test_options_are_told_with_all_their_digits(options):
+    """However they are chosen: as nodes of their own, or from a table."""
+    draws = [make("choice", graph.axis(), payload=(0.5, 1.0), span=line(1)) for _ in range(2)]
+    chosen = make("select", draws[0], *options)
+    column = np.array(options, dtype=np.float64)
+    looked_up = make("look-up", draws[1], payload=Table(Kind.SCALAR, column))
+    for draw, value in zip(draws, (chosen, looked_up), strict=True):
+        both = make("and", make("greater", value, -(10**12)), make("greater", draw, 3))
+        (found,) = report((both, line(2)))
+        ((_, text),) = told(found)[2]
+        numbers = [float(word) for word in text.removeprefix("this choice is one of ").split(", ")]
+        assert numbers == list(options)

@@ -17,12 +17,14 @@ def run_here(
     folder: str | Path | None = None,
     variables: Mapping[str, str] | None = None,
     text: bytes = b"",
+    terminal: bool = False,
 ) -> "CompletedProcess[str]":
-    """What ``scenic`` says to arguments, and its exit code, with streams that are no terminals."""
+    """What ``scenic`` says to arguments, and its exit code; ``terminal`` says that its errors go to one, else no stream is a terminal."""
     words = [str(each) for each in arguments]
     stdin, stdout, stderr = (
         io.TextIOWrapper(io.BytesIO(data), encoding="utf-8", newline="\n") for data in (text, b"", b"")
     )
+    stderr.isatty = lambda: terminal  # type: ignore[method-assign]
     before = os.getcwd()
     os.chdir(folder or before)
     try:

@@ -7,7 +7,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +15,7 @@ import pytest
 
 import scenic
 from scenic.cli import workers
-from scenic.cli.batches import Job, ResumeError, WorkerDiedError, continued, in_processes
+from scenic.cli.batches import Job, Made, ResumeError, WorkerDiedError, continued, in_processes
 from scenic.formats.growing import GrowingFile
 from scenic.formats.json_lines import SceneLines
 from tests.cli.commands import run_here
@@ -154,6 +154,36 @@ def test_pieces_are_told_in_order_whatever_the_order_in_which_they_are_made(
     assert [json.loads(line)["k"] for line in expected.splitlines()] == list(range(5, 105))
     assert made_by(mixed, monkeypatch, job) == expected
     assert made_by(backwards, monkeypatch, job) == expected
+
+
+def test_a_piece_that_fails_in_a_process_alone_is_made_here(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whatever a process lacked: nothing is lost, neither the scenes nor word of those that were not found."""
+    scenario = scenic.scenarioFromString(
+        "x = Range(0, 1)\ndef half(v): return v < 0.5\nrequire half(x)\nego = new Object with foo x\n"
+    )
+    job = Job(seed=3, first=5, last=105, max_attempts=1, deadline=None)
+
+    def told(fails: Callable[[Job], bool]) -> tuple[bytes, list[int], list[int], int]:
+        def run(function: Any, pieces: Iterable[Job], **_others: Any) -> Iterator[Any]:
+            for number, piece in enumerate(pieces):
+                yield number, Made(piece, b"", (), failed=True) if fails(piece) else function(piece)
+
+        monkeypatch.setattr(workers, "run", run)
+        made = list(in_processes(scenario, SceneLines(), job, 2))
+        return (
+            b"".join(each.lines for each in made),
+            [each.k for piece in made for each in piece.missing],
+            [k for piece in made for k in range(piece.job.first, piece.job.last)],
+            sum(piece.attempts for piece in made),
+        )
+
+    expected = told(lambda _: False)
+    assert expected[2] == list(range(5, 105))
+    assert expected[3] == 100
+    found = [json.loads(line)["k"] for line in expected[0].splitlines()]
+    assert 20 < len(found) < 80
+    assert sorted([*found, *expected[1]]) == expected[2]
+    assert told(lambda piece: piece.first > 5) == told(lambda _: True) == expected
 
 
 @pytest.mark.parametrize("deaths", [0, 1, 3, 4])
@@ -305,9 +335,10 @@ def test_a_run_goes_on_after_its_last_scene(
                 continued(grown, "d", seed, first, count)
         else:
             assert continued(grown, "d", seed, first, count) == (5 if kept else seed, done)
-    if kept:
-        with pytest.raises(ResumeError, match="of seed 5"):
-            continued(grown, "d", 6, first, count)
+    for other in (6, 0, -5):
+        if kept:
+            with pytest.raises(ResumeError, match="of seed 5"):
+                continued(grown, "d", other, first, count)
 
 
 def test_the_part_of_a_killed_run_is_gone_on_with_before_the_older_file(tmp_path: Path) -> None:

@@ -144,7 +144,9 @@ def test_help_and_version() -> None:
     assert result.returncode == 0
     for command in ("check", "sample", "ast", "python", "lsp"):
         assert re.search(rf"^  {command} ", result.stdout, re.MULTILINE)
-    assert run("--version").stdout.startswith("scenic ")
+    shown = run("--version")
+    assert (shown.returncode, shown.stderr) == (0, "")
+    assert re.fullmatch(r"scenic \S.*\n", shown.stdout)
     assert "Exit codes" in run("check", "--help").stdout
 
 

@@ -146,6 +146,8 @@ def test_scenes_that_are_found_are_written_when_others_are_not(folder: Path) -> 
     )
     result = run(folder, "rare.scenic", "-n", 20, "--seed", 1, "--max-attempts", 5, "--no-prune")
     assert result.returncode == 3
+    several = run(folder, "rare.scenic", "-n", 20, "--seed", 1, "--max-attempts", 5, "--no-prune", "-j", 2)
+    assert (several.returncode, several.stdout, several.stderr) == (3, result.stdout, result.stderr)
     found = [json.loads(line)["k"] for line in result.stdout.splitlines()]
     assert 0 < len(found) < 20
     assert f"{20 - len(found)} scenes were not found" in result.stderr
@@ -220,6 +222,25 @@ def test_progress_is_shown_on_a_terminal_only(folder: Path) -> None:
     assert process.returncode == 0
     assert b"sampling" in shown
     assert b"/30" in shown
+
+
+@pytest.mark.parametrize("done", [0, 1, 4, 5])
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_progress_ends_when_all_scenes_are_there(folder: Path, done: int, jobs: int) -> None:
+    """Those of the run that is resumed are among them, and no scene counts twice."""
+    target = folder / f"progress-{done}-{jobs}.jsonl"
+    common = ["sample", "balls.scenic", "--seed", 1, "-o", target.name]
+    if done:
+        assert run_here([*common, "-n", done], folder=folder).returncode == 0
+    shown = run_here(
+        [*common, "-n", 5, "--resume", "-j", jobs],
+        folder=folder,
+        variables={"TERM": "xterm", "COLUMNS": "100"},
+        terminal=True,
+    )
+    assert shown.returncode == 0
+    assert re.findall(r"(\d+)/5", shown.stderr)[-1] == "5"
+    assert len(target.read_text().splitlines()) == 5
 
 
 def test_what_is_computed_of_meshes_is_kept_unless_it_must_not(tmp_path: Path) -> None:

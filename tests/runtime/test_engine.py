@@ -26,6 +26,10 @@ PROGRAMS = {
         "param x = x\n"
     ),
     "soft and rare": "x, y = Range(0, 1), Normal(0, 1)\nrequire[0.7] y > 2\nrequire x < 0.05\nparam x = x, y = y\n",
+    "faults that others reject": (
+        "n, x = DiscreteRange(0, 3), Range(0, 1)\ndef positive(v): return v > 0\ndef low(a, b): return a * b < 0.2\n"
+        "require positive(n)\nrequire low(1 / n, x)\nrequire low(x, 1 / n)\nparam n = n, x = x\n"
+    ),
     "lifted": (
         "import numpy\n@distributionFunction\ndef f(x): return (x, float(numpy.random.rand()))\n"
         "param x = f(DiscreteRange(0, 9)), y = hypot(Range(0, 1), Range(0, 1)) ** 3 % 0.1\n"
@@ -147,6 +151,15 @@ def test_the_report_of_a_program_computed_by_hand() -> None:
                 or stats.binomtest(round(1000 * fraction), 1000, expected).pvalue > FALSE_ALARM
             )
     assert [row.label for row in result.report.culprits()] == ["D"]
+    # In words: what rejects most comes first.
+    head, *lines = str(result.report).splitlines()
+    assert head.split() == ["of", "1000", "candidates:", "rejected", "alone"]
+    assert lines[0].split() == ["100.0%", f"{found['D'][1]:.1%}", "D", "(line", "7)"]
+    told = {line.split()[2]: tuple(line.split()[:2]) for line in lines}
+    assert told == {label: tuple(f"{part:.1%}" for part in parts) for label, parts in found.items()}
+    assert [row[0] for row in told.values()] == sorted(
+        (row[0] for row in told.values()), key=lambda each: -float(each[:-1])
+    )
 
 
 def test_alone_means_that_nothing_else_rejects() -> None:

@@ -76,6 +76,8 @@ PACKAGE = {
     "pkg/a.scenic": "K = 7\nnew Object at (20, 20)\nparam from_a = 1\n",
     "pkg/b.scenic": "from .a import K\nfrom . import a\nB = K + a.K\n",
     "pkg/deep/c.scenic": "from ..a import K\nC = 2 * K\n",
+    "pkg/whole/__init__.scenic": "from .part import P\nfrom ..a import K\nfrom . import part\nW = part.P * P + K - 1\n",
+    "pkg/whole/part.scenic": "P = 1\n",
 }
 
 
@@ -89,6 +91,8 @@ PACKAGE = {
         "from pkg import a\nx = a.K",
         "from pkg import b, a\nx = b.B / 2",
         "from pkg.deep import c\nx = c.C / 2",
+        "from pkg.whole import W as x",
+        "from pkg import whole\nx = whole.W",
     ],
 )
 def test_scenic_modules_in_packages(tmp_path: Path, statement: str) -> None:

@@ -278,3 +278,18 @@ def test_vectors_compare_with_tuples() -> None:
         "v = Vector(1, 2, 0)\nparam a = v == (1, 2), b = v == [1, 2, 0], c = v != (1, 3), d = v == 'x', e = len(v)\n"
         "param f = list(v), g = v[0:2], h = v[-1], i = hash(v) == hash(Vector(1, 2))"
     ) == {"a": True, "b": True, "c": True, "d": False, "e": 3, "f": [1, 2, 0], "g": (1, 2), "h": 0, "i": True}
+
+
+@pytest.mark.parametrize(
+    "value", ["Range(0.1, 0.9)", "DiscreteRange(1, 2)", "1", "True", "numpy.float64(0.5)"]
+)
+@pytest.mark.parametrize("index", range(3))
+def test_orientations_from_angles_of_all_kinds(index: int, value: str) -> None:
+    """Whichever of the angles is random, an integer, a truth value or a number of NumPy's."""
+    angles = ["0.4", "-0.3", "0.2"]
+    angles[index] = "a"
+    found = params(
+        f"import numpy\na = {value}\nparam a = a, o = Orientation.fromEuler({', '.join(angles)})\n"
+    )
+    numbers = [float(found["a"]) if angle == "a" else float(angle) for angle in angles]
+    assert_same_rotation(found["o"], euler(*numbers))

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from scenic.language.errors import InvalidScenarioError, ScenicValueError, SpecifierError
-from scenic.runtime.objects import Object, OrientedPoint
+from scenic.runtime.objects import TWO_D_DEFAULTS, Object, OrientedPoint
 from scenic.runtime.resolution import Resolution, class_defaults, resolution_of, resolve
 from scenic.runtime.specifiers import Specifier
 from scenic.runtime.values import Vector
@@ -282,3 +282,73 @@ def test_what_a_class_remembers_is_of_the_very_same_kinds(backwards: bool) -> No
             assert shown(kept, specifiers) == shown(anew, specifiers)
             assert kept is resolution_of(Fresh, specifiers, mode_2d=False)
     assert len({str(shown(resolution_of(Fresh, each, mode_2d=False), each)) for each in sets}) == len(sets)
+
+
+@pytest.mark.parametrize("base", ["", "class Base:\n    {0}\nclass Thing(Base):\n    tag: 1\n"])
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("baseOffset", (0, 0, 2)),
+        ("contactTolerance", 0.25),
+        ("requireVisible", False),
+        ("occluding", True),
+        ("height", 7),
+    ],
+)
+def test_defaults_of_the_2d_mode_give_way_to_those_of_classes(name: str, value: Any, base: str) -> None:
+    """They are the language's own: a class of the program comes before them, whether or not another one is between."""
+    definition = f"{name}: {value}"
+    classes = base.format(definition) or f"class Thing:\n    {definition}\n"
+    ego = "ego = new Object at (0, 9)\n"
+    for mode in (True, False):
+        found = getattr(thing(f"{classes}{ego}new Thing", mode2D=mode), name)
+        assert (tuple(found) if isinstance(value, tuple) else found) == value
+    assert set(TWO_D_DEFAULTS) == {"baseOffset", "contactTolerance", "requireVisible", "occluding", "height"}
+
+
+LAZY = "from scenic.core.lazy_eval import DelayedArgument\n"
+
+
+def test_lazy_defaults_read_what_modifiers_have_made_of_a_property() -> None:
+    """That such a default reads the position shows only when it is evaluated."""
+    text = (
+        f"{LAZY}here = DelayedArgument({{'position'}}, lambda context: context.position)\n"
+        "class A:\n    foo: here\n"
+        "floor = RectangularRegion((0, 0, 2), 0, 50, 50)\nego = new A "
+    )
+    for specifiers in ("at (3, 4, 9), on floor", "on floor, at (3, 4, 9)"):
+        found = thing(text + specifiers)
+        assert tuple(found.foo) == tuple(found.position) == (3, 4, 2.5 + 5e-5)
+
+
+@pytest.mark.parametrize(
+    ("text", "where"),
+    [
+        ("class A:\n    foo: needy\nego = new A\n", "4:5-4:15"),
+        ("class A:\n    foo: (1, [needy])\nego = new A\n", "4:5-4:22"),
+        ("class A:\n    foo: {'a': needy}\nclass B(A):\n    pass\nego = new B\n", "4:5-4:22"),
+        ("ego = new Object with foo needy\n", "3:18-3:32"),
+        ("ego = new Object with foo {2: (needy, 1)}\n", "3:18-3:42"),
+        ("ego = new Object at (needy, 1)\n", "3:18-3:31"),
+    ],
+)
+def test_the_place_of_a_value_that_needs_what_nobody_provides(text: str, where: str) -> None:
+    """A default's own place, even where it shows only when it is evaluated; or that of the specifier."""
+    needy = f"{LAZY}needy = DelayedArgument({{'engine'}}, lambda context: context.engine)\n"
+    error = failure(needy + text)
+    assert isinstance(error, SpecifierError)
+    assert "needs property 'engine', which nothing provides" in str(error)
+    assert place(error)[:2] == ("SC402", where)
+
+
+@pytest.mark.parametrize("wrap", ["{}", "({}, 1)", "[2, {}]", "{{'a': {}}}", "({{'a': [({},)]}}, 1)"])
+@pytest.mark.parametrize("where", ["class", "specifier"])
+def test_lazy_values_are_found_wherever_they_are(wrap: str, where: str) -> None:
+    """What they read is decided before them: a width that is given later in the statement."""
+    value = wrap.format("lazy")
+    text = f"{LAZY}lazy = DelayedArgument({{'width'}}, lambda context: context.width)\n"
+    if where == "class":
+        text += f"class A:\n    foo: {value}\nego = new A with width 3\n"
+    else:
+        text += f"ego = new Object with foo {value}, with width 3\n"
+    assert thing(text).foo == eval(value, {"lazy": 3})

@@ -1,6 +1,10 @@
 """Rules of simulations that show only in corners: who may create what, what is asked for, and what is told."""
 
 import math
+import sys
+import threading
+import time
+import warnings
 from collections.abc import Mapping, Sequence
 from types import SimpleNamespace
 from typing import Any
@@ -10,16 +14,24 @@ import pytest
 
 import scenic
 from scenic.cli.simulate import _Kept
-from scenic.language.errors import DivergenceError, InvalidScenarioError, SerializationError
+from scenic.language.errors import (
+    DivergenceError,
+    InvalidScenarioError,
+    Located,
+    ScenicValueError,
+    SerializationError,
+)
 from scenic.runtime.dynamics.recorders import Recorder
 from scenic.runtime.dynamics.requirements import Outcome
 from scenic.runtime.temporal.monitors import Verdict
+from scenic.runtime.values import Vector
 from scenic.simulators.batch import SimulatorChoiceError, choose_simulator
 from scenic.simulators.dummy import DummySimulator
 from scenic.simulators.kinematic import KinematicSimulator
-from scenic.simulators.replays import Replay
+from scenic.simulators.replays import Replay, Tape
 from scenic.simulators.results import Latest, NotKeptError
 from scenic.simulators.simulator import Simulator
+from scenic.simulators.watching import Watch
 
 from .test_interface import AGENTS, DRAWING, REJECTED, Plain, scene, simulator
 
@@ -399,3 +411,92 @@ def test_a_look_back_in_one_try_is_remembered_in_the_next() -> None:
             with pytest.raises(NotKeptError):
                 course[0]
     assert kept.looked_back()
+
+
+def test_a_recorder_that_cannot_begin_is_not_told_of_an_end() -> None:
+    """Those that have begun are told that what they kept does not count."""
+    told = []
+
+    class Telling(Recorder):
+        def __init__(self, name: str, *, begins: bool) -> None:
+            self.name = name
+            self.begins = begins
+
+        def beginRecording(self, *_arguments: Any) -> None:
+            if not self.begins:
+                raise OSError("no such device")
+
+        def recordValue(self, value: Any, step: int) -> None:
+            told.append((self.name, step))
+
+        def endRecording(self, canceled: bool) -> None:
+            told.append((self.name, canceled))
+
+    made = scenic.scenarioFromString(
+        "ego = new Object\nrecord 1 to globalParameters.first\nrecord 2 to globalParameters.second\n",
+        params={"first": Telling("first", begins=True), "second": Telling("second", begins=False)},
+    )
+    with pytest.raises(OSError, match="no such device"):
+        DummySimulator().simulate(made.sample(1, seed=0)[0], maxSteps=3)
+    assert told == [("first", True)]
+
+
+def test_the_watch_over_a_step_ends_with_it_in_other_threads_too() -> None:
+    """Nothing is said of code that has ended, or of what runs in the thread after it."""
+    said: list[str] = []
+
+    def work() -> None:
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            for _ in range(3):
+                with Watch(0.1, lambda frame: "a line", is_error=False):
+                    pass
+            time.sleep(0.2)
+            said.extend(str(each.message) for each in caught)
+            with Watch(0.02, lambda frame: "a line", is_error=False):
+                time.sleep(0.2)
+            assert "a line has run for 0.02 s" in str(caught[-1].message)
+
+    thread = threading.Thread(target=work)
+    thread.start()
+    thread.join()
+    assert said == []
+
+
+def test_what_a_simulator_of_ones_own_raises_when_it_is_made(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Errors of the language stay what they are, with their code and help; others become one of the choice."""
+    scenario = scenic.scenarioFromString("ego = new Object\n")
+    for error, code, words in (
+        (ScenicValueError("no such map", help="make one"), ScenicValueError.code, "no such map"),
+        (LookupError("no such map"), SimulatorChoiceError.code, "cannot be made: no such map"),
+        (LookupError(), SimulatorChoiceError.code, "cannot be made: LookupError"),
+    ):
+
+        def failing(error: Exception = error) -> None:
+            raise error
+
+        monkeypatch.setattr(sys.modules[__name__], "Failing", failing, raising=False)
+        with pytest.raises(Located, match=words) as caught:
+            choose_simulator(f"{__name__}:Failing", scenario)
+        assert caught.value.diagnostic().code == code
+
+
+@pytest.mark.parametrize(
+    ("expected", "actual", "differ"),
+    [
+        (1.0, 1.05, False),
+        (1.0, 1.15, True),
+        (1.0, None, True),
+        (None, 1.0, True),
+        (None, None, False),
+        ("a", "a", False),
+        ("a", "b", True),
+        (Vector(0, 0, 0), Vector(0, 0, 0.05), False),
+        (Vector(0, 0, 0), Vector(0, 0, -0.15), True),
+        (Vector(0, 0, 0), 0.0, True),
+    ],
+)
+def test_values_differ_by_more_than_the_tolerance(expected: Any, actual: Any, differ: bool) -> None:
+    """In any component, to either side; values of different kinds always do."""
+    tape = Tape(None, key=b"", keep_draws=False, keep_states=False, tolerance=0.1, go_on=False)
+    assert tape.differ(expected, actual) is differ

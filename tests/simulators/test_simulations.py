@@ -433,6 +433,33 @@ def test_arrays_and_images_are_written_as_they_are(tmp_path: Path) -> None:
     np.testing.assert_array_equal(np.asarray(Image.open(tmp_path / "0.png")), [[0, 128, 255], [0, 255, 26]])
 
 
+def test_options_are_for_what_writes_the_format(tmp_path: Path) -> None:
+    """Images take Pillow's; what a format does not know is refused."""
+    from PIL import Image
+
+    text = (
+        f"param recordFolder = {str(tmp_path)!r}\nego = new Object\n"
+        "image = [[(7 * i * j) % 256 for i in range(40)] for j in range(40)]\n"
+        "record image to Files('{kind}-{{step}}.{form}'{options})\n"
+    )
+    sizes = []
+    for kind, form, options in (
+        ("plain", "png", ", compress_level=0"),
+        ("packed", "png", ", compress_level=9"),
+        ("rough", "jpg", ", quality=1"),
+        ("fine", "jpeg", ", quality=95"),
+    ):
+        simulate(text.format(kind=kind, form=form, options=options), 1)
+        path = tmp_path / f"{kind}-0.{form}"
+        sizes.append(path.stat().st_size)
+        with Image.open(path) as image:
+            assert image.size == (40, 40)
+    assert sizes[0] > 1.2 * sizes[1]
+    assert sizes[3] > 1.2 * sizes[2]
+    with pytest.raises(TypeError, match="compress_level"):
+        simulate(text.format(kind="none", form="npy", options=", compress_level=0"), 1)
+
+
 @pytest.mark.parametrize("target", ["{step}.npy", "{simulation}.jsonl"])
 @pytest.mark.parametrize(
     "end",
