@@ -13,6 +13,7 @@ from typing import Any, Final
 import numpy as np
 
 from scenic.language.errors import MeshError
+from scenic.language.garbage import no_garbage_collection
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.reading.gltf import Neighbour, read_glb, read_gltf
 from scenic.runtime.geometry.reading.obj import read_obj
@@ -102,7 +103,8 @@ def _read(file: Path, name: str) -> Soup:
             raise MeshError(f"{name} cannot be unpacked: {error}") from None
     if file_type in _READERS:
         try:
-            return _READERS[file_type](data, lambda beside: (file.parent / beside).read_bytes())
+            with no_garbage_collection():  # text is split into lists by the ten thousand
+                return _READERS[file_type](data, lambda beside: (file.parent / beside).read_bytes())
         except NotCoveredError:
             pass
         except OSError as error:

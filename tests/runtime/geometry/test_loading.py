@@ -1,4 +1,5 @@
 import bz2
+import gc
 import gzip
 import itertools
 
@@ -30,6 +31,16 @@ def test_formats(tmp_path, suffix):
     # Some formats hold single precision.
     assert mesh.volume == pytest.approx(bumpy(3).volume, rel=1e-5)
     assert len(mesh.vertices) == len(bumpy(3).vertices)
+
+
+@pytest.mark.parametrize("suffix", ["obj", "ply"])
+def test_reading_does_not_look_for_garbage(tmp_path, suffix):
+    """What is read by the line would make Python's collector go through all that the process holds."""
+    path = export(tmp_path, f"bumpy.{suffix}", bumpy(4))
+    load_mesh(path)
+    before = sum(row["collections"] for row in gc.get_stats())
+    load_mesh(path)
+    assert sum(row["collections"] for row in gc.get_stats()) - before <= 2
 
 
 @pytest.mark.parametrize(("suffix", "pack"), [("bz2", bz2.compress), ("gz", gzip.compress)])
