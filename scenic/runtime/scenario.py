@@ -191,11 +191,14 @@ class Scenario:
         results = self._engine_of(source).scenes(tasks, max_attempts=limit, deadline=deadline, lanes=lanes)
         return self._scenes(results)
 
-    def _foresee(self, tasks: Iterable[tuple[int, int]], max_attempts: int) -> Iterator[Scene | Exhausted]:
+    def _foresee(
+        self, tasks: Iterable[tuple[int, int]], max_attempts: int, more: bool
+    ) -> Iterator[Scene | Exhausted]:
         """The same for tasks without end."""
         if self._impossible:
             return self._not_found(tasks)
-        return self._scenes(self._engine.foresee(tasks, max_attempts=self._most_attempts(max_attempts)))
+        limit = self._most_attempts(max_attempts)
+        return self._scenes(self._engine.foresee(tasks, max_attempts=limit, more=more))
 
     def _not_found(self, tasks: Iterable[tuple[int, int]]) -> Iterator[Exhausted]:
         report = None

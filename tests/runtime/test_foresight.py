@@ -62,16 +62,18 @@ def test_rounds_are_shared(monkeypatch: pytest.MonkeyPatch) -> None:
     program = scenario(PROGRAM)
     random.seed(1)
     program.generate()
-    assert set(rounds) == {1}
+    assert max(rounds) <= 4
     for _ in range(299):
         program.generate()
     assert len(rounds) < 40
     assert max(rounds) <= 256
-    asked = program._engine.candidates
-    for _ in range(3):
+    random.random()
+    program.generate()
+    rounds.clear()
+    for _ in range(5):
         random.random()
         program.generate()
-    assert program._engine.candidates - asked < 200
+    assert set(rounds) == {1}, "who draws between two scenes gets none that was looked for in vain"
 
 
 def test_other_limits_begin_anew() -> None:

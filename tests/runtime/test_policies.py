@@ -25,10 +25,12 @@ class Finding:
 
     def __init__(self, ahead: int = 3) -> None:
         self.begun: list[tuple[int, list[int]]] = []
+        self.more: list[bool] = []
         self._ahead = ahead
 
-    def __call__(self, tasks: Iterable[Task], limit: int) -> Iterator[Any]:
+    def __call__(self, tasks: Iterable[Task], limit: int, more: bool) -> Iterator[Any]:
         seeds: list[int] = []
+        self.more.append(more)
         self.begun.append((limit, seeds))
         waiting = iter(tasks)
         while some := list(islice(waiting, self._ahead)):
@@ -68,6 +70,16 @@ def test_another_seed_or_limit_begins_anew() -> None:
         (11, third),
         (11, third),
     ]
+
+
+def test_more_scenes_are_expected_until_a_stream_ends_with_its_first() -> None:
+    find = Finding()
+    foreseen = Foreseen(find)
+    for scenes in (1, 1, 2, 5, 1, 1):
+        random.random()
+        for _ in range(scenes):
+            foreseen.take(random.getrandbits(SEED_BITS), 10)
+    assert find.more == [True, False, False, True, True, False]
 
 
 def test_a_stream_that_failed_is_not_asked_again() -> None:

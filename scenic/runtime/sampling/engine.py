@@ -33,6 +33,9 @@ from scenic.runtime.sampling.stages import Stage, Stages
 DEFAULT_LANES = 4096
 REPORT_CANDIDATES = 1000
 
+_FIRST_FORESEEN = 4
+"""Scenes looked for at first where it is not known how many are wanted: a round of a few more costs hardly more."""
+
 _MOST_FORESEEN = 256
 """Scenes looked for at a time, at most, where it is not known how many are wanted."""
 
@@ -169,25 +172,27 @@ class Engine:
 
         """
         most = self._pace.most if lanes is None else lanes
-        return self._results(tasks, max_attempts, most, lambda _: most, deadline)
+        return self._results(tasks, max_attempts, most, lambda _: (most, most * 3 // 2), deadline)
 
     def foresee(
-        self, tasks: Iterable[tuple[int, int]], *, max_attempts: int
+        self, tasks: Iterable[tuple[int, int]], *, max_attempts: int, more: bool = True
     ) -> Iterator[Accepted | Exhausted]:
         """The same as `scenes` for tasks without end, of which nobody knows how many are wanted.
 
-        One is looked for at first, then more at a time the more have been wanted, as long as that takes little time.
+        A few are looked for at first (one, unless ``more`` are expected to be wanted), then more at a time the more have
+        been wanted, as long as that takes little time.
         """
         before = self.seconds
 
-        def window(given: int) -> int:
-            if not given:
-                return 1
-            # A round costs mostly the same whatever its size. So much is found in vain, if nobody wants more, as takes about
-            # as long as all before.
-            fixed, _ = self._pace.cost()
-            likely = max(16 * given + 1, self._pace.scenes_within(fixed + self.seconds - before))
-            return min(likely, _MOST_FORESEEN, self._pace.scenes_within(_FORESIGHT_SECONDS))
+        def window(given: int) -> tuple[int, int]:
+            likely = _FIRST_FORESEEN if more else 1
+            if given:
+                # A round costs mostly the same whatever its size. So much is found in vain, if nobody wants more, as takes
+                # about as long as all before.
+                fixed, _ = self._pace.cost()
+                likely = max(32 * given, self._pace.scenes_within(fixed + self.seconds - before))
+            wanted = min(likely, _MOST_FORESEEN, self._pace.scenes_within(_FORESIGHT_SECONDS))
+            return wanted, wanted * 3 // 2 if given >= _MOST_FORESEEN else wanted
 
         return self._results(tasks, max_attempts, self._pace.most, window, None)
 
@@ -196,13 +201,14 @@ class Engine:
         tasks: Iterable[tuple[int, int]],
         max_attempts: int,
         most: int,
-        window: Callable[[int], int],
+        window: Callable[[int], tuple[int, int]],
         deadline: float | None,
     ) -> Iterator[Accepted | Exhausted]:
         """Scenes in order; rounds have at most ``most`` lanes.
 
-        ``window`` says how many scenes are looked for at a time when so many have been given. Half as many more may have
-        been found, so that one that takes many attempts does not hold up the others at once.
+        ``window`` says, when so many have been given, how many scenes are looked for at a time, and how many these may be
+        together with those found already that wait for an earlier one. Where these are more, one that takes many attempts
+        does not hold up the others at once; where not, less is found in vain.
         """
         waiting = iter(tasks)
         pending = Pending(self._chances)
@@ -210,8 +216,8 @@ class Engine:
         upcoming = 0
         more = True
         while True:
-            wanted = window(upcoming)
-            missing = min(wanted, wanted * 3 // 2 - len(done)) - len(pending)
+            wanted, room = window(upcoming)
+            missing = min(wanted, room - len(done)) - len(pending)
             if missing > 0 and more:
                 added = list(islice(waiting, missing))
                 pending.add(added)
@@ -223,7 +229,7 @@ class Engine:
                 self._give_up(pending, every, "time", done)
                 pending.leave(every)
             else:
-                self._round(pending, done, max_attempts, most, more=more)
+                self._round(pending, done, max_attempts, wanted, most, more=more and room > wanted)
             while (result := done.pop(upcoming, None)) is not None:
                 if type(result) is not tuple and isinstance(result, CandidateError):
                     raise result
@@ -243,12 +249,13 @@ class Engine:
         pending: Pending,
         done: dict[int, Accepted | Exhausted | CandidateError],
         max_attempts: int,
+        wanted: int,
         most: int,
         *,
         more: bool,
     ) -> None:
         begun = time.thread_time()
-        chosen = self._pace.choose(min(len(pending), most), most, more=more)
+        chosen = self._pace.choose(min(len(pending), wanted), most, more=more)
         active = slice(chosen.scenes)
         counts = np.minimum(chosen.ahead, max_attempts - pending.attempts[active])
         owner, offset = expand(counts)

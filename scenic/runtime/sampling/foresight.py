@@ -24,15 +24,18 @@ class Foreseen:
     """The scenes of seeds drawn one after the other, as long as they are those that were to come.
 
     Args:
-        find: scenes of tasks without end, in order, each found among at most so many candidates or given up.
+        find: scenes of tasks without end, in order, each found among at most so many candidates or given up; and whether
+            to expect that more than the first one will be wanted.
 
     """
 
-    def __init__(self, find: Callable[[Iterable[Task], int], Found]) -> None:
+    def __init__(self, find: Callable[[Iterable[Task], int, bool], Found]) -> None:
         self._find = find
         self._lock = threading.Lock()
         self._limit = 0
         self._stream: Found | None = None
+        self._given = 0
+        """Scenes taken from the stream."""
         self._seeds: Iterator[int] = iter(())
         self._expected: deque[int] = deque()
         """The seeds of the scenes that come next in the stream."""
@@ -43,12 +46,13 @@ class Foreseen:
         """The scene of a seed that was drawn just now; raises what goes wrong in sampling it."""
         if not self._lock.acquire(blocking=False):
             # Another thread samples, or the program's own function has asked for a scene in the middle of another one.
-            return next(self._find([Task(seed, 0)], limit))
+            return next(self._find([Task(seed, 0)], limit, False))
         try:
             if self._stream is None or limit != self._limit or self._next_seed() != seed:
                 self._begin(seed, limit)
             self._expected.popleft()
             assert self._stream is not None
+            self._given += 1
             return next(self._stream)
         except BaseException:
             self._stream = None  # it ends with what it raises
@@ -58,10 +62,13 @@ class Foreseen:
 
     def _begin(self, seed: int, limit: int) -> None:
         """Another stream, whose first seed is this one."""
+        # Who draws numbers between one scene and the next has broken off the stream before after its first scene.
+        more = self._given != 1
+        self._given = 0
         self._limit = limit
         self._seeds = _seeds_after(random.getstate())
         self._expected, self._peeked = deque([seed]), deque([seed])
-        self._stream = self._find(self._tasks(), limit)
+        self._stream = self._find(self._tasks(), limit, more)
 
     def _next_seed(self) -> int:
         if not self._expected:

@@ -15,7 +15,7 @@ _FIXED_LANES: Final = 200
 """A round costs about what so many lanes cost more, before rounds of several sizes have been measured."""
 
 _LEAST_SHARE: Final = 0.25
-"""Lanes cost this part, at least, of what rounds take on average."""
+"""Lanes cost this part, at least, of what they would if a round cost as much as so many."""
 
 _ROUND_SECONDS: Final = 2.0
 """Rounds are cut to about this time, so that limits and interrupts are noticed soon."""
@@ -97,7 +97,7 @@ class Pace:
         else:
             slope = mean_y / (mean_x + _FIXED_LANES)  # rounds of one size tell nothing of the two parts
         # What is made once is in some rounds' times, and may hide what lanes cost: they are taken to cost a little.
-        slope = min(max(slope, _LEAST_SHARE * mean_y / mean_x), mean_y / mean_x)
+        slope = min(max(slope, _LEAST_SHARE * mean_y / (mean_x + _FIXED_LANES)), mean_y / mean_x)
         return max(mean_y - slope * mean_x, 1e-6), slope
 
     def scenes_within(self, seconds: float) -> int:
