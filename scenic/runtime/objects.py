@@ -185,7 +185,7 @@ class Point:
         cls = type(self)
         known = next(base for base in cls.__mro__ if base.__module__ == Point.__module__)
         values = {name: value for name, value in self.properties.items() if name not in _NOT_KEPT}
-        return _restored, (known, cls.__name__, values)
+        return _restored, (known, cls.__name__), values  # apart, since objects may know each other
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Any:
         made = memo[id(self)] = type(self)._make({})
@@ -445,10 +445,10 @@ _NOT_KEPT = frozenset({"behavior", "mutator", "sensors", "observations", "lastAc
 """Properties that belong to the program rather than to a pickled object."""
 
 
-def _restored(base: type[Point], name: str, values: Mapping[str, Any]) -> Any:
-    """An instance from its pickled values, of a class of its own if the program's cannot be imported."""
+def _restored(base: type[Point], name: str) -> Any:
+    """An instance still to be given its pickled values, of a class of its own if the program's cannot be imported."""
     cls: type[Any] = base if base.__name__ == name else type(name, (base,), {})
-    return cls._make({**dict.fromkeys(_NOT_KEPT & cls.scenic_properties.keys()), **values})
+    return cls._make(dict.fromkeys(_NOT_KEPT & cls.scenic_properties.keys()))
 
 
 def _corner(x: float, y: float, z: float) -> property:

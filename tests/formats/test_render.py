@@ -174,3 +174,11 @@ def test_a_picture_of_the_workspace_shows_what_stands_in_it_whole() -> None:
         # At all four corners of the workspace, so that nothing hides at a rim.
         for corner in itertools.product((-3, 5), (-1, 5), (low[2], high[2])):
             assert (np.abs(points - corner).max(axis=1) < 1e-9).any()
+
+
+def test_a_picture_of_a_workspace_with_a_height_shows_all_of_it() -> None:
+    program = "workspace = Workspace(BoxRegion(dimensions=(8, 6, 4), position=(1, 2, 3)))\nego = new Object at (1, 2, {z})\n"
+    for z in (3, 1.5, 4.5):
+        (scene,) = scenic.scenarioFromString(program.format(z=z)).sample(1, seed=0)
+        points = framed(scene, picture([scene]).scenes[0], STANDARD)
+        assert (points.min(axis=0).tolist(), points.max(axis=0).tolist()) == ([-3, -1, 1], [5, 5, 5])

@@ -65,6 +65,27 @@ def test_a_region_with_random_parameters_is_sampled() -> None:
         assert region.containsPoint((radius * 1.001, 0)) is False
 
 
+@pytest.mark.parametrize("made", ["r", "visible r"])
+def test_the_region_that_is_drawn_is_sampled_itself(made: str) -> None:
+    """Also as a member of another one."""
+    text = (
+        "ego = new Object\n"
+        "r = Uniform(CircularRegion((0, 0), Range(1, 2)), RectangularRegion((Range(3, 4), 0), 0, 1, 1))\n"
+    )
+    parts = [getattr(region, "members", [region]) for region in draws(f"{text}param x = {made}\n", n=20)]
+    found = [part for members in parts for part in members if type(part).__name__ != "ViewRegion"]
+    assert len(found) == 20
+    assert {type(region).__name__ for region in found} == {"CircularRegion", "RectangularRegion"}
+    for region in found:
+        assert not region.is_random
+        if type(region).__name__ == "CircularRegion":
+            assert 1 < region.radius < 2
+            assert region.containsPoint((region.radius * 0.999, 0)) is True
+        else:
+            assert 3 < region.position.x < 4
+            assert region.containsPoint(region.position) is True
+
+
 def test_all_of_space_cannot_be_drawn_from() -> None:
     assert isinstance(failure(REGIONS + "new Object in Uniform(disc, everywhere)"), InvalidScenarioError)
 

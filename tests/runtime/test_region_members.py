@@ -215,6 +215,9 @@ def test_ends_and_directions_of_lines() -> None:
     assert [tuple(point) for point in line] == [(0, 0, 0), (4, 0, 0), (4, 3, 0)]
     assert tuple(line[-1]) == (4, 3, 0)
     assert line.cumulativeLengths == pytest.approx([4, 7])
+    climbing = named.PathRegion(polylines=[[(0, 0, 0), (3, 0, 4), (3, 4, 7)], [(9, 9, 9), (9, 9, 8)]])
+    assert climbing.cumulativeLengths == pytest.approx([5, 10, 11])
+    assert climbing.length == pytest.approx(11)
     # Before its start and after its end, on the same straight line, a point is not on the right.
     for point, signed in (((-3, 0, 0), 3), ((4, 5, 0), 2), ((2, 1, 0), 1), ((2, -1, 0), -1), ((5, 2, 0), -1)):
         assert line.signedDistanceTo(Vector(*point)) == pytest.approx(signed)
@@ -382,3 +385,75 @@ def test_boxes_of_sides_of_several_bodies_hold_them() -> None:
         lower, upper = side.box(moved, *others)
         np.testing.assert_allclose(lower, np.array([[0, 0, 0]]) + np.arange(3)[:, np.newaxis])
         np.testing.assert_allclose(upper, np.array([[2, 4, 6]]) + np.arange(3)[:, np.newaxis])
+
+
+@pytest.mark.parametrize(
+    "made",
+    ["line.intersect(square)", "square.intersect(line)", "line.difference(square)", "beside.intersect(upon)"],
+)
+def test_parts_of_lines_look_along_their_pieces(made: str) -> None:
+    text = (
+        "line = PolylineRegion([(0, 0), (4, 0), (4, 3)])\nother = PolylineRegion([(9, 9), (9, 8)])\n"
+        "square = PolygonalRegion([(1, -1), (9, -1), (9, 1), (1, 1)])\n"
+        "beside = PolygonalRegion([(0, 0), (4, 0), (4, -1), (0, -1)])\nupon = PolygonalRegion([(0, 0), (4, 0), (4, 1), (0, 1)])\n"
+        f"r = {made}\np = new OrientedPoint in r\nparam x = (p.position, p.heading), o = r.orientation is None\n"
+    )
+    found = draws(text, n=30)
+    assert params(text)["o"] is False
+    for (x, y, _), heading in found:
+        way = math.pi / 2 if y == 0 else 0
+        turns = 1 if made.startswith("beside") else 2  # whose edge may be followed either way
+        assert math.remainder(heading + way, turns * math.pi) == pytest.approx(0, abs=1e-6)
+        assert y == 0 or x == 4
+
+
+@pytest.mark.parametrize("heading", [0.1 * number for number in range(0, 63, 7)])
+def test_regions_hold_what_is_the_same_up_to_rounding(heading: float) -> None:
+    """And nothing that sticks out by more, unless a tolerance allows it."""
+    turned = named.RectangularRegion((1e3, -2e3, 0), heading, 7, 4)
+    cos, sin = math.cos(heading), math.sin(heading)
+
+    def corners(grown: float) -> list[tuple[float, float]]:
+        parts = [(x * (3.5 + grown), y * (2 + grown)) for x, y in ((1, 1), (-1, 1), (-1, -1), (1, -1))]
+        return [(1e3 + cos * x - sin * y, -2e3 + sin * x + cos * y) for x, y in parts]
+
+    same, larger = named.PolygonalRegion(corners(0)), named.PolygonalRegion(corners(1e-6))
+    assert turned.containsRegion(same)
+    assert same.containsRegion(turned)
+    assert larger.containsRegion(turned)
+    assert not turned.containsRegion(larger)
+    assert turned.containsRegion(larger, tolerance=2e-6)
+
+
+def test_members_of_combinations_by_name() -> None:
+    first, second = MAKERS["box"](), MAKERS["ball"]()
+    cut = named.DifferenceRegion(first, second)
+    assert cut.regionA is first
+    assert cut.regionB is second
+
+
+@pytest.mark.parametrize(
+    "region",
+    [
+        "BoxRegion((2, 2, 2))",
+        "SpheroidRegion((2, 2, 2))",
+        "MeshVolumeRegion(trimesh.creation.box(), dimensions=(2, 2, 2))",
+        "MeshSurfaceRegion(trimesh.creation.box(), dimensions=(2, 2, 2))",
+        "(new Object at (0, 0, 0), with width 2, with length 2, with height 2).occupiedSpace",
+        "(new Object at (0, 0, 0), with width Range(2, 2.5), with length 2, with height 2).occupiedSpace",
+        "(new Object at (0, 0, 0), with width 2, with length 2, with height 2).topSurface",
+        "(new Object at (0, 0, 0), with width Range(2, 2.5), with length 2, with height 2).topSurface",
+        "RectangularRegion((0, 0, 1), 0.0, 2, 2)",
+        "CircularRegion((0, 0, 1), 1)",
+        "SectorRegion((0, 0, 1), 1, 0, 3)",
+        "PolygonalRegion([(-1, -1), (1, -1), (1, 1), (-1, 1)], z=1)",
+        "Uniform(BoxRegion((2, 2, 2)), CircularRegion((0, 0, 1), 1))",
+        "BoxRegion((2, 2, 2)).intersect(BoxRegion((3, 3, 3)))",
+    ],
+)
+def test_what_does_not_land_is_drawn_again(region: str) -> None:
+    """Of points to the right and left of a region about the origin, those that miss it come into no scene."""
+    text = f"import trimesh\nr = {region}\np = new OrientedPoint at (Range(-9, 9), 0.1, 5), on r\nparam x = p.position\n"
+    found = draws(text, n=30)
+    assert all(abs(place.x) <= 1.26 for place in found)
+    assert len({round(place.x, 9) for place in found}) == 30

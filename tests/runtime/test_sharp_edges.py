@@ -116,6 +116,18 @@ def test_whole_parts_of_negative_numbers() -> None:
         assert scene.params["parts"] == [int(x), round(x), x // 1, x % 1, divmod(x, 2)[0], round(x, 1)]
 
 
+def test_rounding_gives_the_type_that_python_gives() -> None:
+    """A whole number only where no digits are asked for; those may be negative."""
+    text = "x = Range(-300, 300)\nn = DiscreteRange(-300, 300)\nparam x = x, n = n\n"
+    asked = [f"round({name}{digits})" for name in "xn" for digits in ("", ", None", ", 0", ", 2", ", -2")]
+    asked += [f"{name}.__round__({digits})" for name in "xn" for digits in ("", "0", "2", "-2")]
+    for scene in scenario(text + f"param parts = [{', '.join(asked)}]\n").sample(20, seed=1):
+        expected = [eval(part, {"x": scene.params["x"], "n": scene.params["n"]}) for part in asked]
+        found = scene.params["parts"]
+        assert found == expected
+        assert list(map(type, found)) == list(map(type, expected))
+
+
 # Draws
 
 

@@ -1,5 +1,6 @@
 """Regions of cells, and what is drawn, met and held without a scenario of its own."""
 
+import itertools
 import random
 
 import numpy as np
@@ -285,3 +286,17 @@ def test_bodies_beside_cells_touch_those_that_they_reach() -> None:
                     assert cells.intersects(body) is met
                     assert body.intersects(cells) is met
     assert not cells.intersects(named.BoxRegion(dimensions=(0.5, 0.5, 0.5), position=(2, 0, 0)))
+
+
+def test_all_points_of_closed_cells_are_held() -> None:
+    """Faces, edges and corners, too, but nothing a hair beside them."""
+    filled = np.zeros((3, 3, 3), dtype=bool)
+    filled[1, 1, 1] = True
+    region = VoxelRegion(trimesh.voxel.VoxelGrid(filled, transform=np.diag([0.5, 1, 2, 1])))
+    places = np.array(list(itertools.product((-0.5, 0, 0.5), repeat=3)))
+    points = (places + 1) * (0.5, 1, 2)
+    assert region.contains_points(points).all()
+    outer = places[(places != 0).any(axis=1)]
+    assert not region.contains_points((outer * (1 + 1e-9) + 1) * (0.5, 1, 2)).any()
+    full = VoxelRegion(trimesh.voxel.VoxelGrid(np.ones((2, 2, 2), dtype=bool)))
+    assert full.contains_points(np.array(list(itertools.product((-0.5, 0, 0.5, 1, 1.5), repeat=3)))).all()

@@ -73,6 +73,28 @@ def test_a_deep_copy_has_objects_of_its_own() -> None:
     assert same.egoObject is not scene.egoObject
 
 
+@pytest.mark.parametrize("again", COPIES)
+def test_copies_of_objects_that_know_each_other_do_so_too(again: Any) -> None:
+    text = (
+        "class Friendly:\n    friend: None\n    itself: None\n"
+        "ego = new Friendly at (Range(0, 1), 0)\nother = new Friendly at (3, 0), with friend ego\n"
+        "ego.friend = other\nego.itself = ego\n"
+    )
+    scene = scenario(text).sample(1, seed=1)[0]
+    first = scene.egoObject
+    assert first.friend.friend is first
+    assert first.itself is first
+    same = again(first)
+    assert same is not first
+    assert same.position == first.position
+    owner = first if again is copy.copy else same  # which copies the object alone
+    assert (same.friend is first.friend) is (again is copy.copy)
+    assert same.friend.friend is owner
+    assert same.itself is owner
+    ego, other = again(scene).objects
+    assert (ego.friend, other.friend, ego.itself) == (other, ego, ego)
+
+
 def test_a_scenario_is_compiled_anew() -> None:
     program = scenario(PROGRAM)
     again = pickle.loads(pickle.dumps(program))

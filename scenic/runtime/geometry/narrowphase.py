@@ -146,7 +146,7 @@ class Solids:
         """
         if self._can_prove:
             return self._touch(first, first_poses, second, second_poses)
-        result = np.zeros(len(first), dtype=np.bool_)
+        result = np.empty(len(first), dtype=np.bool_)
         left = np.arange(len(first))
         count = 1
         while len(left) and not self._can_prove:
@@ -180,10 +180,10 @@ class Solids:
         result = front.touching
         first, second = front.leaves()
         products = np.where(result, 0, first.counts * second.counts)
-        few = np.flatnonzero((products > 0) & (products <= _MOST_LEAVES))
+        are_many = products > _MOST_LEAVES
+        few, many = np.flatnonzero((products > 0) & ~are_many), np.flatnonzero(are_many)
         if len(few):
             result |= self._surfaces.touch_among(front, few, pairs.forth, pairs.back)
-        many = np.flatnonzero(products > _MOST_LEAVES)
         if len(many):
             result[many] = self._surfaces_touch(pairs.take(many))
         return result

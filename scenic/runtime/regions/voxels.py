@@ -1,5 +1,6 @@
 """Regions made of equal cubes: those of a grid that are filled (the voxel region of section 9.2 of the specification)."""
 
+import itertools
 from collections.abc import Iterator
 from typing import Any, Self
 
@@ -109,12 +110,12 @@ class VoxelRegion(Region):
     def contains_points(self, points: Points, *columns: Column) -> Mask:
         place = (points - self.corner) / self.pitch
         cell = np.floor(place).astype(np.int64)
-        # A point on a face belongs to both cells at it.
         inside = self._are_filled(cell)
-        for axis in range(3):
-            below = cell.copy()
-            below[:, axis] -= place[:, axis] == cell[:, axis]
-            inside |= self._are_filled(below)
+        # A point on a face belongs to both cells at it, one at an edge or a corner to all that meet there.
+        at_border = place == cell
+        left = np.flatnonzero(at_border.any(axis=1) & ~inside)
+        for step in itertools.product((0, 1), repeat=3):
+            inside[left] |= self._are_filled(cell[left] - at_border[left] * step)
         return inside
 
     def _are_filled(self, cell: NDArray[np.int64]) -> Mask:

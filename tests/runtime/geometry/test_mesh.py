@@ -152,3 +152,18 @@ def test_a_slight_dent_is_none_of_the_hull(depth):
         assert len(mesh.hull.vertices) == (9 if sign > 0 else 8)
         heights = vertices @ mesh.hull.planes[:, :3].T + mesh.hull.planes[:, 3]
         assert (heights <= 1e-11).all()
+
+
+def test_a_mesh_keeps_what_it_was_made_of() -> None:
+    """Whatever becomes of the arrays that it was made of; and those stay the caller's."""
+    cube = primitives.box()
+    vertices = np.array(cube.vertices, dtype=np.float64, order="C")
+    faces = np.array(cube.faces, dtype=np.intp, order="C")
+    mesh = Mesh(vertices, faces)
+    vertices += 3
+    faces[0] = 0
+    np.testing.assert_array_equal(mesh.vertices, cube.vertices)
+    np.testing.assert_array_equal(mesh.faces, cube.faces)
+    for kept in (mesh.vertices, mesh.faces):
+        with pytest.raises(ValueError, match="read-only"):
+            kept[0] = 0

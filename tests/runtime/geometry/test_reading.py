@@ -149,6 +149,26 @@ def test_ply(order, faces, text, extra):
         check(ply(order, faces, text=text), "ply")
 
 
+@pytest.mark.parametrize("kind", ["ply", "text.ply", "obj", "text.stl"])
+def test_coordinates_are_as_exact_as_the_file(kind):
+    """Far from the origin single precision would move them by decimetres."""
+    corners = np.array([(4.5e6 + 1 / 3, 1e-7, -2 / 3), (4.5e6 + 1, np.pi, 0.1), (4.5e6, 1e9 + 1 / 7, 1.0)])
+    lines = ["  ".join(map(repr, corner)) for corner in corners.tolist()]
+    header = "ply\nformat {} 1.0\nelement vertex 3\n" + "".join(f"property double {axis}\n" for axis in "xyz")
+    header += "element face 1\nproperty list uchar int vertex_index\nend_header\n"
+    facet = ["solid a", "facet normal 0 0 1", "outer loop", *(f"vertex {line}" for line in lines)]
+    data = {
+        "ply": header.format("binary_big_endian").encode()
+        + corners.astype(">f8").tobytes()
+        + struct.pack(">B3i", 3, 0, 1, 2),
+        "text.ply": (header.format("ascii") + "\n".join([*lines, "3 0 1 2"])).encode(),
+        "obj": "\n".join([*(f"v {line}" for line in lines), "f 1 2 3"]).encode(),
+        "text.stl": "\n".join([*facet, "endloop", "endfacet", "endsolid a", ""]).encode(),
+    }[kind]
+    found = READERS[kind.removeprefix("text.")](data)
+    np.testing.assert_array_equal(found.vertices[found.faces], corners[np.newaxis])
+
+
 def scene_of_instances() -> trimesh.Scene:
     scene = trimesh.Scene()
     body = trimesh.Trimesh(table().vertices, table().faces, process=False)
@@ -396,6 +416,7 @@ def test_obj_lines_that_say_nothing():
         ("cut.stl", b"\0" * 80 + b"\x02\0\0\0" + b"\0" * 50, "as long as"),
         ("order.ply", b"ply\nformat cuneiform 1.0\nend_header\n", "its header has the line"),
         ("far.ply", ply("<", [(0, 1, 9)]), "vertex outside 0 to 3"),
+        ("next.ply", ply("<", [(0, 1, 2), (0, 1, 4)]), "a face with a vertex outside 0 to 3"),
         ("near.ply", ply("<", [(0, 1, 2), (0, -1, 2)]), "vertex outside 0 to 3"),
         ("cut.ply", ply("<", [(0, 1, 2)])[:-5], "ends before"),
         ("cut_text.ply", ply("<", [(0, 1, 2)], text=True)[:-4], "ends before"),

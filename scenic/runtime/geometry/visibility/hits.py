@@ -26,9 +26,6 @@ _CHUNK: Final = 1 << 18
 _EDGE: Final = 1e-12
 """By how much, in parts of a face, a ray may pass beside an edge: no ray slips between two faces."""
 
-_MARGIN: Final = 0.01
-"""How far before the unit box rays start for Embree, so that its coordinates stay small."""
-
 
 @dataclass(frozen=True)
 class Placed:
@@ -122,8 +119,8 @@ def box_span(origins: Floats, directions: Floats) -> tuple[Floats, Floats]:
 def _quick_first(mesh: Mesh, origins: Floats, directions: Floats, near: Floats) -> Floats:
     """The first hits by Embree's faces, `exact_first` where those are in doubt."""
     length = _length(directions)
-    start = np.maximum(near - _MARGIN / length, 0.0)
-    shifted = origins + start[:, None] * directions
+    # From where they enter the unit box, so that coordinates stay small.
+    shifted = origins + np.maximum(near, 0.0)[:, None] * directions
     found = mesh.derived(ray_scene).first_hits(
         shifted.astype(np.float32), (directions / length[:, None]).astype(np.float32)
     )

@@ -4,8 +4,11 @@ import dataclasses
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from scenic.runtime.geometry.bodies import Body
+from scenic.runtime.geometry.booleans import difference
+from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.poses import Poses
 from scenic.runtime.geometry.visibility.bodies import sees_bodies
 from scenic.runtime.geometry.visibility.obstacles import Occluder
@@ -14,6 +17,16 @@ from scenic.runtime.geometry.visibility.proving import Proof, _Cells, prove
 from scenic.runtime.geometry.visibility.views import Views
 from tests.runtime.geometry.visibility.reference import winding
 from tests.runtime.geometry.visibility.test_bodies import BOX, FRAME, fixed, quaternions, scenes
+
+
+def _window() -> Mesh:
+    """A unit wall with a small hole in its middle."""
+    made = difference(BOX, [Mesh(BOX.vertices * [0.05, 2, 0.05], BOX.faces)])
+    assert made is not None
+    return made.normalized()[0]
+
+
+WINDOW = _window()
 
 
 def test_rays_see_nothing_that_is_proved_hidden_and_miss_little() -> None:
@@ -181,3 +194,49 @@ def test_lanes_are_proved_alone_as_together() -> None:
         ]
         found = prove(observers.take(one), alone[0], [Occluder(alone[1])], 1, most_cells=256)
         assert found[0] == together[lane]
+
+
+@pytest.mark.parametrize("turn", [0.0, 2.0])
+def test_what_shows_only_beyond_the_range_is_not_seen(turn: float) -> None:
+    """A long wall goes out of range; a screen hides what of it is within, or a little less."""
+    frame = Rotation.from_euler("z", turn)
+
+    def turned(place: tuple[float, ...], size: tuple[float, ...]) -> Body:
+        return Body((BOX,), None, Poses.fixed(frame.apply(place), frame.as_quat(), size))
+
+    observer = Views.fixed((0, 0, 0), distance=10.0)
+    wall = turned((-3, 17, 0), (0.2, 30, 1))
+    # The end of the range, along the side of the wall that faces the observer.
+    end = np.sqrt(100 - 2.9**2)
+    for off, expected in ((0.05, False), (-1.5, True)):
+        edge = 1.0 * 2.9 / (end + off)  # at a metre ahead, the screen reaches from the left to there
+        screen = turned((-edge - 5, 1.005, 0), (10, 0.01, 20))
+        assert (proof(observer, wall, screen) == Proof.SEEN) is expected
+    assert proof(Views.fixed((0, 0, 0), distance=40.0), wall, screen) == Proof.SEEN
+
+
+def test_each_lane_is_covered_by_the_boxes_of_its_own_mesh() -> None:
+    """Through a small window only the middle of the target shows, which a frame does not have."""
+    window = Body((WINDOW,), None, Poses.fixed((0, 5, 0), size=(8, 0.1, 8)))
+    poses = Poses(
+        np.tile([0.0, 10, 0], (6, 1)), np.tile([0.0, 0, 0, 1], (6, 1)), np.tile([4.0, 1, 4], (6, 1))
+    )
+    choice = np.array([0, 1, 1, 0, 0, 1])
+    for meshes, seen in (((BOX, FRAME), 0), ((FRAME, BOX), 1)):
+        found = prove(Views.fixed((0, 0, 0)), Body(meshes, choice, poses), [Occluder(window)], 6)
+        assert found.tolist() == [Proof.SEEN if number == seen else Proof.HIDDEN for number in choice]
+
+
+@pytest.mark.parametrize("axis", [0, 2])
+@pytest.mark.parametrize("side", [-1, 1])
+def test_what_is_behind_the_observer_hides_nothing(axis: int, side: int) -> None:
+    """Within a frame, the backward ways to a body meet the bar behind, and the forward ones pass the bar ahead."""
+    way = np.zeros(3)
+    way[1], way[axis] = 10, side * 3
+    turn = Rotation.from_euler("x" if axis else "z", 90, degrees=True)
+    around = Body((FRAME,), None, Poses.fixed((0, 1.5, 0), turn.as_quat(), (7, 1, 7)))
+    target, dot = fixed(tuple(way), (0.5, 0.5, 0.5)), fixed(tuple(0.9 * way), (0.2, 0.2, 0.2))
+    observer = Views.fixed((0, 0, 0))
+    for occluders in ((around,), (around, dot)):  # which hides the middle of the target
+        assert proof(observer, target, *occluders) == Proof.SEEN
+        assert sees_bodies(observer, target, [Occluder(item) for item in occluders], 1)[0]

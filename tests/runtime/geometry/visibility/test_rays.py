@@ -338,3 +338,24 @@ def test_rays_past_corners_and_from_beside_faces_are_decided_as_in_double_precis
     np.testing.assert_allclose(quick, expected, rtol=0, atol=1e-9)
     assert 0.3 < np.isfinite(expected).mean() < 1
     assert (expected < 1e-3).any()
+
+
+@pytest.mark.parametrize("mesh", [primitives.cylinder(6), FRAME, table(), primitives.cone()])
+@pytest.mark.parametrize("scale", [1.0, 30.0, 1e6])
+def test_single_precision_finds_what_double_does(mesh: Mesh, scale: float) -> None:
+    """Also on faces in the sides of the box, along the axes, and from inside; nothing farther on is taken for the first."""
+    rng, count = np.random.default_rng(7), 400
+    origins = rng.normal(size=(count, 3))
+    origins *= scale / np.linalg.norm(origins, axis=1, keepdims=True)
+    targets = rng.uniform(-0.5, 0.5, (count, 3))
+    origins[::5, :2] = targets[::5, :2]
+    if scale == 1:
+        origins[::7] *= 0.2
+    directions = targets - origins
+    near, _ = hits.box_span(origins, directions)
+    exact = exact_first(mesh, origins, directions, near)
+    quick = hits._quick_first(mesh, origins, directions, near)
+    met = np.isfinite(exact)
+    np.testing.assert_array_equal(np.isfinite(quick), met)
+    assert 0.2 < met.mean() < 1
+    np.testing.assert_allclose(quick[met], exact[met], rtol=1e-9)
