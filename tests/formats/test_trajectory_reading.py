@@ -223,3 +223,15 @@ def test_a_document_holds_what_the_simulation_did() -> None:
     assert late == {"label": "late", "line": None, "verdict": None, "robustness": None}
     read = Trajectory(about, *(np.empty(0),) * 3, [])
     assert read.record("rows") == [[1, 2, 3], [4, 5, 6]]
+
+
+@pytest.mark.parametrize("form", ["jsonl", pytest.param("parquet", marks=needs_parquet)])
+def test_what_a_file_holds_says_how_it_is_read(folder: Path, form: str) -> None:
+    """Not its name, which may be any."""
+    (path, _) = simulated(folder, form)
+    expected = scenic.read_trajectory(path)
+    for name in ("run", "run.dat", "run.parquet.jsonl", "run.jsonl.parquet"):
+        (folder / name).write_bytes(path.read_bytes())
+        found = scenic.read_trajectory(folder / name)
+        assert found.about == expected.about
+        np.testing.assert_array_equal(found.positions, expected.positions)

@@ -7,6 +7,8 @@ import pytest
 
 from graph.programs import B, I, P, S, U, V
 from graph.readings import CASES, bounds_of, has, kind_of, narrowed, values_of
+from scenic.graph.bounds import Bounds
+from scenic.graph.operations import TABLE
 
 TINY, HUGE = 5e-324, 1.7e308
 
@@ -428,3 +430,19 @@ def test_a_number_that_scales_a_vector_has_to_suit_every_component():
         assert narrowed(of(name, *kinds), result, boxes)[place] == pytest.approx((0.5, 0.75))
     quotient = narrowed(of("divide", V, S), result, [box, (0.1, 10.0)])[1]
     assert quotient == pytest.approx((4 / 3, 2.0))
+
+
+def test_vectors_turned_onto_an_axis_keep_their_length():
+    """A component of the result is then as long as the vector: nothing of that may be cut off."""
+    rng = np.random.default_rng(5)
+    for _ in range(200):
+        target = np.eye(3)[rng.integers(3)] * rng.choice([-1, 1])
+        vector = rng.normal(size=3) * 10 ** rng.uniform(-3, 3)
+        length = np.linalg.norm(vector)
+        axis = np.cross(vector / length, target)
+        turn = np.array([*axis, 1 + vector @ target / length])
+        turn /= np.linalg.norm(turn)
+        ends = [Bounds(part[np.newaxis], part[np.newaxis]) for part in (turn, vector)]
+        found = TABLE["rotate"].bounds(None, *ends)
+        assert np.all(found.lower <= length * target + 1e-15 * length)
+        assert np.all(found.upper >= length * target - 1e-15 * length)

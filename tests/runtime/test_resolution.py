@@ -352,3 +352,16 @@ def test_lazy_values_are_found_wherever_they_are(wrap: str, where: str) -> None:
     else:
         text += f"ego = new Object with foo {value}, with width 3\n"
     assert thing(text).foo == eval(value, {"lazy": 3})
+
+
+def test_a_lazy_value_is_one_for_an_instance_however_often_it_is_given() -> None:
+    """What it draws is drawn once for each object, not once for each property."""
+    text = (
+        f"{LAZY}lazy = DelayedArgument({{'width'}}, lambda context: context.width * Range(0, 1))\n"
+        "class A:\n    foo: lazy\n    bar: [lazy, lazy]\n"
+        "ego = new A with baz lazy\nother = new A at (9, 9), with baz lazy\n"
+    )
+    ego, other = scene(text).objects
+    assert ego.foo == ego.baz == ego.bar[0] == ego.bar[1]
+    assert other.foo == other.baz == other.bar[0] == other.bar[1]
+    assert ego.foo != other.foo

@@ -15,6 +15,7 @@ from scenic.language.errors import (
     GuardViolation,
     InvalidScenarioError,
     PreconditionViolation,
+    ScenicTypeError,
     SerializationError,
     SpecifierError,
     StuckBehaviorError,
@@ -668,3 +669,78 @@ def test_a_guard_that_rejects_does_not_hold(kind: str) -> None:
 def test_files_of_no_known_kind_are_named() -> None:
     with pytest.raises(ValueError, match=r"extension '\.odd'"):
         scene_of("ego = new Object\nrecord 1 to 'run.odd'\n")
+
+
+@pytest.mark.parametrize("kind", ["precondition", "invariant"])
+@pytest.mark.parametrize("made", ["Other()", "bool(Sub())", "Watch() and True"])
+def test_nothing_that_runs_is_created_in_a_guard(kind: str, made: str) -> None:
+    text = (
+        "behavior Other():\n    take 1\nmonitor Watch():\n    wait\nscenario Sub():\n    compose:\n        wait\n"
+        f"behavior B():\n    {kind}: {made}\n    while True:\n        take 1\n"
+        "scenario Main():\n    setup:\n        ego = new Object with behavior B\n"
+    )
+    with pytest.raises(InvalidScenarioError, match="cannot be created in a condition"):
+        simulate(text, 2)
+
+
+ENDING = """
+behavior Last():
+    while True:
+        acted.append(("last", simulation().currentTime))
+        take 1
+behavior Ender():
+    take 2
+    take 3
+    {end}
+    take 4
+acted = []
+scenario Main():
+    setup:
+        ego = new Object
+        record len(acted) as acted
+        {main}
+    compose:
+        {compose}
+scenario Sub():
+    setup:
+        new Object at (5, 5), with behavior Ender
+        new Object at (9, 9), with behavior Last
+"""
+
+
+def test_a_behavior_that_ends_the_simulation_ends_it_at_once() -> None:
+    """Whatever scenario its agent is of: nobody acts in that step, and the simulator does not advance."""
+    agents = "new Object at (5, 5), with behavior Ender\n        new Object at (9, 9), with behavior Last"
+    for main, compose in (("pass", "do Sub()"), (agents, "wait for 9 steps")):
+        done = simulate(ENDING.format(end="terminate simulation", main=main, compose=compose), 9)
+        assert done.currentTime == 2
+        assert done.result is not None
+        assert done.result.terminationType is TerminationType.terminatedByBehavior
+        assert len(done.result.actions) == 2
+        assert done.records["acted"] == [(0, 0), (1, 1), (2, 2)]
+
+
+@pytest.mark.parametrize("value", ["3", "None", "'M'", "M", "B()", "Other()"])
+@pytest.mark.parametrize("place", ["top", "setup", "compose"])
+def test_only_monitors_can_be_required_as_such(value: str, place: str) -> None:
+    """Wherever that is said; the error shows the line."""
+    lines = {"top": "", "setup": "pass", "compose": "wait"} | {place: f"require monitor {value}"}
+    text = (
+        "monitor M():\n    wait\nbehavior B():\n    take 1\nscenario Other():\n    compose:\n        wait\n"
+    )
+    if place == "top":
+        text += f"ego = new Object\n{lines['top']}\n"
+    else:
+        text += f"scenario Main():\n    setup:\n        ego = new Object\n        {lines['setup']}\n    compose:\n        {lines['compose']}\n        wait\n"
+    with pytest.raises(ScenicTypeError, match="`require monitor`: expected a monitor") as caught:
+        simulate(text, 2)
+    assert caught.value.span is not None
+    assert text.splitlines()[caught.value.span.line - 1].strip() == f"require monitor {value}"
+
+
+def test_values_of_unknown_kinds_are_recorded_as_they_show_themselves(tmp_path: Path) -> None:
+    value = "Path('a'), Colour.RED, {1}, (2.5, None), ego.position"
+    text = "from pathlib import Path\nfrom enum import Enum\nclass Colour(Enum):\n    RED = 7\n"
+    simulate(text + recording(tmp_path, "run.jsonl", f"({value})"), 0)
+    (row,) = map(json.loads, (tmp_path / "run.jsonl").read_text().splitlines())
+    assert row["value"] == [repr(Path("a")), "<Colour.RED: 7>", [1], [2.5, None], [0, 0, 0]]

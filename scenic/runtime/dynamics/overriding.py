@@ -11,7 +11,7 @@ from scenic.runtime.lazy import MEMO
 from scenic.runtime.lazy import resolve as settle
 from scenic.runtime.objects import Object
 from scenic.runtime.properties import normalised
-from scenic.runtime.resolution import class_defaults, resolution_of
+from scenic.runtime.resolution import resolution_of
 from scenic.runtime.specifiers import Specifier
 from scenic.runtime.values import describe
 
@@ -38,7 +38,7 @@ class Overrides:
         """
         if not isinstance(target, Object):
             raise ScenicTypeError(f"`override`: expected an object, not {describe(target)}", span=here())
-        properties = class_defaults(type(target), mode_2d=self._run.context.mode_2d)
+        properties = type(target).scenic_properties
         known = target.__dict__
         resolution = resolution_of(type(target), specifiers, mode_2d=self._run.context.mode_2d)
         values: dict[str, Any] = {}
