@@ -178,3 +178,45 @@ def test_a_property_may_become_final_in_a_derived_class() -> None:
     ] == [5, 2]
     assert isinstance(failure(text + "new B with p 3\n"), SpecifierError)
     assert isinstance(failure(text + "class C(B):\n    p: 3\n"), InvalidScenarioError)
+
+
+def test_all_members_of_classes_of_the_program_see_the_sample() -> None:
+    """Whatever kind of member reads a random name of the program, while code is called on a sample."""
+    text = """
+from functools import cached_property
+K = Range(0, 1)
+class Box(object):
+    def method(self): return K
+    @staticmethod
+    def static(): return K
+    @classmethod
+    def of_class(cls): return K
+    @cached_property
+    def cached(self): return K
+    @property
+    def value(self): return K
+    @value.setter
+    def value(self, value): self.stored = (K, value)
+    @value.deleter
+    def value(self): self.deleted = K
+    only = property(None, lambda self, value: setattr(self, "last", K))
+box = Box()
+def use(k):
+    box.value = k
+    del box.value
+    box.only = k
+    return [k, box.method(), Box.static(), box.of_class(), box.cached, box.value, *box.stored, box.deleted, box.last]
+param x = distributionFunction(use)(K), k = K
+"""
+    for found in scenario(text).sample(3, seed=1):
+        assert found.params["x"] == [found.params["k"]] * 10
+
+
+def test_a_final_property_is_so_wherever_in_the_chain() -> None:
+    """Also where a class between, that knows nothing of it, defines a property of that name."""
+    classes = "class A(Object):\n    foo[final]: 1\nclass B(Object):\n    foo: 2\nclass C(B, A):\n    {}\n"
+    for body, line in (("foo: 3", 6), ("bar: 3", 4)):
+        error = failure(classes.format(body) + "ego = new C\n")
+        assert isinstance(error, InvalidScenarioError)
+        assert "property 'foo' is final and cannot be defined again" in str(error)
+        assert place(error)[1].startswith(f"{line}:")

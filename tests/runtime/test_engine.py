@@ -298,6 +298,16 @@ def test_a_report_is_made_of_as_many_candidates_as_were_tried(attempts: int) -> 
     assert given_up.report.candidates == min(attempts, 1000)
 
 
+def test_the_limit_of_one_scene_holds_with_and_without_a_seed() -> None:
+    program = scenario("x = Range(0, 1)\ndef same(v): return v\nrequire same(x < 0.3)\n")
+    for seed in range(12):
+        scene, tried = program.generate(seed=seed)
+        assert program.generate(maxIterations=tried, seed=seed)[0].attempts == scene.attempts == tried
+        if tried > 1:
+            with pytest.raises(RejectionException, match=f"within {tried - 1} candidate"):
+                program.generate(maxIterations=tried - 1, seed=seed)
+
+
 def test_generate_batch() -> None:
     program = scenario("x = Range(0, 1)\ndef same(v): return v\nrequire same(x < 0.3)\n")
     random.seed(0)

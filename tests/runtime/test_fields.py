@@ -239,3 +239,23 @@ def test_the_field_of_a_union_is_that_of_the_first_region_that_has_a_place() -> 
     assert found["found"] == pytest.approx([0.5, 0.5, 1.5, 3])
     assert found["none"] is None
     assert found["other"] == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize(
+    "start",
+    [
+        "Uniform((1, 2), (4, 5))",
+        "new OrientedPoint at (1, 2)",
+        "Vector(0, 0)",
+        "[0, 0]",
+        "numpy.array([1, 2])",
+    ],
+)
+def test_following_starts_wherever_that_is(start: str) -> None:
+    """At a choice, a point, the origin; and not at the ego, which is elsewhere."""
+    text = f"import numpy\n{FIELD}s = {start}\nnew Object following F from s for 3\nparam start = s\n"
+    found = scene(text)
+    at = found.params["start"]
+    place = tuple(getattr(at, "position", at))
+    expected = follow(lambda x, y: x + 0.1 * y, (place[0], place[1], 0), 3)
+    np.testing.assert_allclose(tuple(found.objects[-1].position), expected, atol=1e-9)

@@ -7,7 +7,16 @@ import pytest
 from scipy import stats
 
 from scenic.language.errors import InvalidScenarioError, ScenicTypeError
-from tests.runtime.programs import FALSE_ALARM, assert_same_rotation, draws, euler, failure, scenario, thing
+from tests.runtime.programs import (
+    FALSE_ALARM,
+    assert_same_rotation,
+    draws,
+    euler,
+    failure,
+    scenario,
+    scene,
+    thing,
+)
 
 N = 3000
 
@@ -248,3 +257,14 @@ def test_choices_follow_mutation_however_it_is_asked_for(
     for item in scenario(text).sample(5, seed=2):
         assert item.params["x"] == (3, item.egoObject.position.x)
         assert item.egoObject.position.x != 3
+
+
+def test_a_mutator_of_the_program_may_change_what_is_final_but_not_what_follows_from_others() -> None:
+    text = (
+        "class M(Mutator):\n    def appliedTo(self, o):\n        o.fixed += 1\n        o.twice = 7\n        o.position = (5, 0, 0)\n"
+        "        return o, True\n"
+        "class A:\n    fixed[final]: 1\n    twice[dynamic, final]: 2 * self.position.x\n"
+        "ego = new A with mutator M()\nmutate\n"
+    )
+    ego = scene(text).egoObject
+    assert (ego.fixed, ego.position.x, ego.twice) == (2, 5, 10)

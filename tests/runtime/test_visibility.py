@@ -255,3 +255,13 @@ def test_a_camera_on_an_outline_sees_it_whichever_way_it_looks(place: tuple[floa
             np.ones((1, 3)),
         )
         assert seen.tolist() == [True]
+
+
+@pytest.mark.parametrize("mode_2d", [False, True])
+def test_nobody_asks_whether_the_ego_sees_itself(mode_2d: bool) -> None:
+    """It need not: its camera may stand before it and look ahead."""
+    looks_ahead = "with cameraOffset (0, 5), with viewAngle 20 deg, with requireVisible True"
+    (found,) = scenic.scenarioFromString(f"ego = new Object {looks_ahead}\n", mode2D=mode_2d).sample(
+        1, seed=0
+    )
+    assert not found.egoObject.canSee(found.egoObject)

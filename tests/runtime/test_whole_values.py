@@ -3,12 +3,13 @@
 import copy
 import multiprocessing
 import pickle
+from collections.abc import Iterator
 from typing import Any
 
 import pytest
 
 from runtime.programs import scenario
-from scenic.runtime.values import Orientation, Vector
+from scenic.runtime.values import Orientation, Random, Vector
 
 PROGRAM = (
     "class Car:\n    width: 2\n    speedy: Range(0, 1)\n"
@@ -130,3 +131,64 @@ def test_a_rotation_is_that_of_the_opposite_quaternion_too() -> None:
     half = Orientation.of((1.0, 0.0, 0.0, 0.0))
     assert half == Orientation.of((-1.0, 0.0, 0.0, 0.0))
     assert hash(half) == hash(Orientation.of((-1.0, 0.0, 0.0, 0.0)))
+
+
+DRAWN = """
+behavior B(x):
+    take x
+class A:
+    foo: Range(0, 1)
+    bar: [Range(0, 1), {'a': (Range(2, 3), 'x')}]
+    positionStdDev: (Range(0.1, 0.2), 0, 0)
+    orientationStdDev: (0, Range(0.1, 0.2), 0)
+    regionContainedIn: CircularRegion((0, 0), Range(90, 100))
+    shape: Uniform(BoxShape(), ConeShape())
+ego = new A with behavior B([Range(0, 1)]), with width Range(1, 2)
+new A at (9, Range(0, 1)), with behavior Uniform(B(1), B(Range(2, 3))), with color Uniform((1, 0, 0), (0, 1, 0))
+mutate
+param p = Range(0, 1), q = [ego.foo, {'z': Range(0, 1)}], r = CircularRegion((Range(0, 1), 0), 3)
+"""
+
+
+def random_parts(value: Any, path: str, seen: dict[int, Any]) -> Iterator[str]:
+    """Where in a value something is still random."""
+    if id(value) in seen:
+        return
+    seen[id(value)] = value
+    if isinstance(value, Random):
+        yield path
+    elif isinstance(value, dict):
+        for key, item in value.items():
+            yield from random_parts(item, f"{path}[{key!r}]", seen)
+    elif isinstance(value, list | tuple | set):
+        for index, item in enumerate(value):
+            yield from random_parts(item, f"{path}[{index}]", seen)
+    elif type(value).__module__.startswith("scenic.runtime"):
+        yield from random_parts(getattr(value, "__dict__", None), path, seen)
+        arguments = getattr(value, "_arguments", None)
+        yield from random_parts(getattr(arguments, "arguments", None), f"{path}()", seen)
+
+
+def test_nothing_in_a_scene_is_random() -> None:
+    """However deep: deviations of mutators, arguments of behaviors, regions, parts of containers."""
+    for scene in scenario(DRAWN).sample(3, seed=2):
+        values: dict[str, Any] = {"params": scene.params}
+        for number, thing in enumerate(scene.objects):
+            values |= {f"{number}.{name}": value for name, value in thing.properties.items()}
+        for name, value in values.items():
+            assert list(random_parts(value, name, {})) == []
+        assert all(
+            0.1 < mutator.stddevs[place] < 0.2
+            for thing in scene.objects
+            for place, mutator in ((1, thing.mutator[0]), (0, thing.mutator[1]))
+        )
+
+
+def test_pickled_objects_leave_the_program_behind() -> None:
+    """Behaviors, mutators and sensors are the program's; all else is kept."""
+    for thing in scenario(DRAWN).sample(1, seed=2)[0].objects:
+        same = pickle.loads(pickle.dumps(thing))
+        gone = {"behavior", "mutator", "sensors", "observations", "lastActions"}
+        assert {name for name, value in same.properties.items() if value is None} >= gone
+        for name in ("foo", "bar", "position", "width", "yaw", "color", "positionStdDev"):
+            assert getattr(same, name) == getattr(thing, name)

@@ -59,6 +59,8 @@ def taken(simulation: Simulation, number: int = 0) -> list[Any]:
 
 def test_a_key_decides_all_draws() -> None:
     first, again, other = (simulate(DRAWING, key=key) for key in (b"1", b"1", b"2"))
+    empty, too = (simulate(DRAWING, key=b"") for _ in range(2))
+    assert taken(empty) == taken(too) != taken(first)
     assert taken(first) == taken(again) != taken(other)
     assert taken(first, 0) != taken(first, 1)
 
@@ -136,6 +138,9 @@ def test_damaged_data_is_refused(cut: int) -> None:
     data = scenario.simulationToBytes(done)
     with pytest.raises(SerializationError):
         scenario.simulationFromBytes(data[:cut], simulator, maxSteps=2)
+    assert done is not None
+    with pytest.raises(SerializationError):
+        simulator.replay(scene, done.getReplay()[:cut], maxSteps=2)
 
 
 # What a simulation may not touch

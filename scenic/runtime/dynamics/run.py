@@ -325,7 +325,7 @@ class Run:
             # 5. Is it over?
             if self.ending is None:
                 self._end_conditions()
-            if self.ending is None and max_steps is not None and simulation.currentTime >= max_steps:
+            if max_steps is not None and simulation.currentTime >= max_steps:
                 self._remember("timeLimit", f"reached time limit ({max_steps} steps)")
             if self.ending is not None:
                 return
