@@ -4,16 +4,20 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+import shapely
+import trimesh
 
 import scenic
 from scenic.formats.html import page
-from scenic.formats.regions import _cell_edges, _longest, bounds, outlines
+from scenic.formats.regions import _cell_edges, _longest, _mesh_lines, bounds, outlines
+from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.regions.base import everywhere, nowhere
 from scenic.runtime.regions.composite import IntersectionRegion
 from scenic.runtime.regions.lines import PathRegion
 from scenic.runtime.regions.planar import CircularRegion
 from scenic.runtime.regions.volumes import BoxRegion, SpheroidRegion
 from tests.formats.test_html import data_of
+from tests.runtime.geometry.samples import SHAPES
 
 PROGRAM = """
 import trimesh
@@ -169,3 +173,27 @@ def test_of_too_many_lines_the_longest_are_drawn_in_their_order() -> None:
     expected = np.flatnonzero(lengths > 1000)
     assert [int(line[0, 0]) for line in kept] == expected.tolist()
     assert _longest(lines[:3000]) == lines[:3000]
+
+
+@pytest.mark.parametrize("size", [(1, 1, 1), (1, 3, 0.2)])
+@pytest.mark.parametrize("name", ["box", "table", "hollow", "cone", "cylinder", "prism"])
+def test_edges_of_meshes_are_those_at_which_faces_meet_at_an_angle(
+    name: str, size: tuple[float, ...]
+) -> None:
+    """None within a flat side, however it is divided, and all others, whatever the order of the faces is."""
+    if name == "prism":
+        polygon = shapely.Polygon(
+            [(0, 0), (4, 0), (4, 3), (2, 1), (0, 3)], [[(0.5, 0.3), (1, 0.3), (0.5, 0.6)]]
+        )
+        whole = trimesh.creation.extrude_polygon(polygon, 1)
+    else:
+        whole = trimesh.Trimesh(np.array(SHAPES[name]().vertices), SHAPES[name]().faces, process=False)
+    whole.vertices *= size
+    whole = whole.subdivide().subdivide() if name in ("box", "prism") else whole
+    whole.faces = np.random.default_rng(3).permutation(whole.faces)
+    sharp = whole.face_adjacency_edges[whole.face_adjacency_angles > np.radians(25)]
+    expected = {frozenset(map(tuple, np.round(whole.vertices[pair], 9).tolist())) for pair in sharp}
+    lines = _mesh_lines(Mesh(whole.vertices, whole.faces), None, 0.0)
+    found = {frozenset(map(tuple, np.round(line, 9).tolist())) for line in lines if len(line) == 2}
+    assert expected <= found
+    assert name in ("cone", "cylinder") or found == expected  # which have sections besides

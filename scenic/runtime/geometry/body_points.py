@@ -77,15 +77,9 @@ def _nearest(body: Body, points: Floats, side: Side, threshold: float) -> tuple[
             targets = np.repeat(start, count, axis=0)
             gap = targets - nearest_on_triangles(targets, flat[:, 0], flat[:, 1], flat[:, 2])
             all_distances = np.sqrt((gap * gap).sum(axis=1))
-            if side is not None:
-                entries = (
-                    np.repeat(np.arange(len(part)), count) if len(poses) > 1 else np.zeros(len(flat), np.intp)
-                )
-                mine = side_contains(
-                    mesh, poses, side, threshold, entries, np.tile(np.arange(count), len(part))
-                )
-                all_distances = np.where(mine, all_distances, np.inf)
-            table = all_distances.reshape(len(part), count)
+            entries, faces = np.repeat(np.arange(len(part)), count), np.tile(np.arange(count), len(part))
+            mine = side_contains(mesh, poses, side, threshold, entries, faces)
+            table = np.where(mine, all_distances, np.inf).reshape(len(part), count)
             face[part] = table.argmin(axis=1)
             distance[part] = table.min(axis=1)
     return distance, face

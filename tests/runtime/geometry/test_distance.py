@@ -4,10 +4,12 @@ import shapely
 import trimesh
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.optimize import minimize
+from scipy.optimize import minimize, nnls
+from scipy.spatial import ConvexHull
 
 from scenic.runtime.geometry import distance
 from scenic.runtime.geometry.bodies import Body
+from scenic.runtime.geometry.depth import convex_depth, convex_gap
 from scenic.runtime.geometry.nearest import nearest_on_triangles
 from scenic.runtime.geometry.poses import Poses
 from scenic.runtime.geometry.segments import Segments
@@ -210,3 +212,53 @@ def test_chains_apart_are_told_apart_at_their_ends():
     for chain, first in zip(chains, (0, 59, 118), strict=True):
         assert whole.nearest(np.array([chain[0]], dtype=float))[1].tolist() == [first]
         assert whole.nearest(np.array([chain[1]], dtype=float))[1].tolist() == [first]
+
+
+def least_norm(points: np.ndarray) -> float:
+    """The distance from the origin to the hull of points, by weights that are not negative and add up to 1."""
+    heavy = 1e4
+    weights, _ = nnls(np.vstack([points.T, np.full(len(points), heavy)]), np.array([0, 0, 0, heavy]))
+    return float(np.linalg.norm(points.T @ (weights / weights.sum())))
+
+
+def differences(first: np.ndarray, second: np.ndarray) -> np.ndarray:
+    return (first[:, np.newaxis] - second).reshape(-1, 3)
+
+
+def test_distances_of_single_triangles() -> None:
+    """Whichever corners and edges are nearest: no other face makes up for a pair that is left out."""
+    rng, count = np.random.default_rng(5), 150
+    a, b = rng.normal(size=(2, count, 3, 3))
+    b += 2.5 * rng.normal(size=(count, 1, 3))
+    a[::5, :, 2], b[::5, :, 2] = 0.0, 1.0  # parallel
+    a[1::5, 2] = 0.5 * (a[1::5, 0] + a[1::5, 1])  # without an area
+    found = distance.squared_distances(list(a.swapaxes(0, 1)), list(b.swapaxes(0, 1)))
+    expected = np.array([least_norm(differences(*pair)) for pair in zip(a, b, strict=True)])
+    apart = expected > 0.05
+    assert apart.sum() > 100
+    np.testing.assert_allclose(np.sqrt(found[apart]), expected[apart], atol=1e-5)
+
+
+@pytest.mark.parametrize("corners", [(4, 4), (4, 8), (30, 5), (120, 120)])
+def test_depths_and_gaps_of_convex_solids(corners: tuple[int, int]) -> None:
+    """Against the hull of all differences; few corners, and many on round bodies, which take many rounds."""
+    rng = np.random.default_rng(6)
+    met, apart = 0, 0
+    for number in range(40):
+        first, second = (rng.normal(size=(count, 3)) for count in corners)
+        if corners[0] > 100:
+            first, second = (part / np.linalg.norm(part, axis=1, keepdims=True) for part in (first, second))
+        first *= rng.uniform(0.3, 2, 3)
+        second += rng.normal(size=3) * (0.3, 1.0, 2.5)[number % 3]
+        between = differences(first, second)
+        offset = float(ConvexHull(between).equations[:, 3].max())
+        if offset < -1e-6:
+            met += 1
+            assert convex_depth(first, second) == pytest.approx(-offset, abs=1e-7)
+            assert convex_depth(second, first) == pytest.approx(-offset, abs=1e-7)
+        elif offset > 1e-3:
+            apart += 1
+            expected = least_norm(between)
+            assert convex_gap(first, second) == pytest.approx(expected, abs=1e-4)
+            assert convex_gap(second, first) == pytest.approx(expected, abs=1e-4)
+    assert min(met, apart) >= 5

@@ -7,6 +7,8 @@ import pytest
 from scenic.graph import quaternions
 from scenic.runtime.geometry import narrowphase, primitives
 from scenic.runtime.geometry.affine import relative_map
+from scenic.runtime.geometry.booleans import difference
+from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.narrowphase import Solids, meshes_intersect
 from scenic.runtime.geometry.poses import Poses
 
@@ -233,3 +235,25 @@ def test_faces_edges_and_corners_that_just_touch(patience):
             still = Poses.fixed((0, 0, 0))
             assert solids.intersect(zero, moved, zero + 1, still)[0] == expected, (number, off)
             assert solids.intersect(zero + 1, still, zero, moved)[0] == expected, (number, off)
+
+
+@pytest.mark.parametrize("inner", ["spheroid", "hollow", "table"])
+def test_what_lies_in_walls_thinner_than_cells_is_found(inner):
+    """No cell of such a wall is solid, and none of the small body's own is where the body lies in the other's frame."""
+    wall = 0.012
+    cavity = primitives.box().vertices * (1 - 2 * wall)
+    shell = difference(primitives.box(), [Mesh(cavity, primitives.box().faces)])
+    rng = np.random.default_rng(8)
+    count = 60
+    places = rng.uniform(-0.45, 0.45, (count, 3))
+    axis, middle = rng.integers(0, 3, count), 0.5 - wall / 2
+    kind = np.arange(count) % 3  # in the wall, in the cavity, across the inner side
+    places[np.arange(count), axis] = rng.choice([-1, 1], count) * np.choose(kind, [middle, 0.45, 0.5 - wall])
+    turn = random_poses(count, 9).orientation
+    a = Poses(np.zeros((1, 3)), np.array([[0.0, 0, 0, 1]]), np.ones((1, 3)))
+    b = Poses(places, turn, np.full((1, 3), 0.004))
+    zeros = np.zeros(count, dtype=np.intp)
+    for patience in (0, np.inf):
+        solids = Solids([shell, SHAPES[inner]()], patience=patience)
+        np.testing.assert_array_equal(solids.intersect(zeros, a, zeros + 1, b), kind != 1)
+        np.testing.assert_array_equal(solids.intersect(zeros + 1, b, zeros, a), kind != 1)
