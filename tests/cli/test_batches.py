@@ -365,3 +365,22 @@ def test_a_run_that_finds_nothing_leaves_an_empty_file(tmp_path: Path) -> None:
         raise KeyboardInterrupt
     assert target.read_bytes() == b"old\n"
     assert [path.name for path in tmp_path.iterdir()] == ["out.jsonl"]
+
+
+@pytest.mark.parametrize(
+    "change", [{"digest": None}, {"seed": None}, {"seed": [1]}, {"k": None}, {"k": "x"}, {"digest": 3}, None]
+)
+@pytest.mark.parametrize("place", [0, -1])
+def test_lines_of_any_other_kind_are_refused(
+    tmp_path: Path, change: dict[str, Any] | None, place: int
+) -> None:
+    """Whatever is in the first or the last line: an error that names the file, and nothing of it is lost."""
+    rows: list[Any] = [{"digest": "d", "seed": 5, "k": k} for k in range(3)]
+    for other in ([1], 7, "text", None, {}) if change is None else (rows[place] | change,):
+        lines = [*rows]
+        lines[place] = other
+        target = tmp_path / "out.jsonl"
+        target.write_text(content := "".join(json.dumps(line) + "\n" for line in lines))
+        with pytest.raises(ResumeError, match=r"out\.jsonl"):
+            continued(GrowingFile(target, resume=True), "d", 5, 0, 9)
+        assert target.read_text() == content

@@ -137,6 +137,10 @@ def test_a_misspelt_command_names_the_one_meant() -> None:
     done = run("chek", "x.scenic")
     assert done.returncode == 2
     assert "Did you mean 'check'?" in done.stderr
+    unlike = run("zzzzzz", "x.scenic")
+    assert unlike.returncode == 2
+    assert "zzzzzz" in unlike.stderr
+    assert "mean" not in unlike.stderr
 
 
 def test_help_and_version() -> None:

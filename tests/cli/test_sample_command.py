@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 import trimesh
 
+import scenic
 from tests.cli.commands import run_here
 
 pytestmark = pytest.mark.slow
@@ -222,6 +223,23 @@ def test_progress_is_shown_on_a_terminal_only(folder: Path) -> None:
     assert process.returncode == 0
     assert b"sampling" in shown
     assert b"/30" in shown
+
+
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_progress_tells_which_part_of_the_candidates_was_accepted(folder: Path, jobs: int) -> None:
+    (folder / "third.scenic").write_text(
+        "def few(x): return x < 0.3\nego = new Object at (Range(0, 1), 0)\nrequire few(ego.x)\n"
+    )
+    shown = run_here(
+        ["sample", "third.scenic", "--seed", 1, "-n", 40, "-j", jobs, "-o", "third.jsonl"],
+        folder=folder,
+        variables={"TERM": "xterm", "COLUMNS": "100"},
+        terminal=True,
+    )
+    assert shown.returncode == 0
+    scenes = scenic.load(folder / "third.scenic").sample(40, seed=1)
+    accepted = 40 / sum(scene.attempts for scene in scenes)
+    assert float(re.findall(r"([\d.]+) accepted", shown.stderr)[-1]) == pytest.approx(accepted, rel=0.05)
 
 
 @pytest.mark.parametrize("done", [0, 1, 4, 5])

@@ -237,3 +237,46 @@ def test_files_are_complete_or_absent(folder: Path, number: int) -> None:
     for file in files:
         about, *steps = rows(file)
         assert len(steps) == about["steps"] + 1
+
+
+CHOOSING = """
+model world
+param far = 1
+scenario First():
+    setup:
+        ego = new Object with tag "first"
+        record initial (ego.tag, far_from_model, globalParameters.far, ego.height) as who
+scenario Second():
+    setup:
+        ego = new Object with tag "second"
+        record initial (ego.tag, far_from_model, globalParameters.far, ego.height) as who
+"""
+
+
+@pytest.mark.parametrize(
+    ("options", "who"),
+    [
+        (["--scenario", "First"], ["first", "world", 1, 1]),
+        (["--scenario", "Second"], ["second", "world", 1, 1]),
+        (["--scenario", "Second", "--model", "moon"], ["second", "moon", 1, 1]),
+        (["--scenario", "First", "-p", "far=3"], ["first", "world", 3, 1]),
+        (["--scenario", "First", "--2d"], ["first", "world", 1, 2]),
+    ],
+)
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_what_is_simulated_is_what_was_chosen(
+    folder: Path, options: list[str], who: list[Any], jobs: int
+) -> None:
+    """Every option of the program, in this process and in others."""
+    for model in ("world", "moon"):
+        (folder / f"{model}.scenic").write_text(
+            f"far_from_model = {model!r}\nclass Object(Object):\n    width: 2\n"
+        )
+    (folder / "choosing.scenic").write_text(CHOOSING)
+    made = run(
+        folder, "choosing.scenic", *options, "-n", 2, "--seed", 1, "--time", 1, "-j", jobs, "-o", "chosen"
+    )
+    assert made.returncode == 0, made.stderr
+    for number in range(2):
+        about, *_ = rows(folder / "chosen" / f"simulation-{number:04d}.jsonl")
+        assert about["records"]["who"] == who

@@ -113,14 +113,20 @@ def _with_status(call):
 
 
 def batch_at(
-    node_graph: Graph, points: Any, codec: Any = CODEC, *, grouped: bool = True, **options: Any
+    node_graph: Graph,
+    points: Any,
+    codec: Any = CODEC,
+    *,
+    grouped: bool = True,
+    scheduler: Scheduler | None = None,
+    **options: Any,
 ) -> Batch:
-    """A batch whose lanes are given points of the cube, ``(n, dimension)``."""
+    """A batch whose lanes are given points of the cube, ``(n, dimension)``; by a scheduler that others share, if given."""
     points = np.asarray(points, dtype=float)
     assert points.shape[1] == node_graph.dimension
     values = {node_graph.address(axis): points[:, place] for axis, place in node_graph.axes.items()}
     keys = Counter(np.arange(len(points), dtype=np.uint64))
-    return Batch(Scheduler(node_graph, grouped=grouped), Points(values, keys), codec, **options)
+    return Batch(scheduler or Scheduler(node_graph, grouped=grouped), Points(values, keys), codec, **options)
 
 
 def evaluate(node: Node, lanes: int) -> Batch:

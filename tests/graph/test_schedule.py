@@ -218,3 +218,27 @@ def test_a_chain_that_is_left_begins_anew() -> None:
         batch.follow(chain[1], [second])
         assert batch.column(second).tolist() == ((of[x] + 1) * (of[y] + 3)).tolist()
         assert batch.column(first).tolist() == (of[x] + 1).tolist()
+
+
+def test_batches_of_one_scheduler_may_be_asked_in_any_order() -> None:
+    """What is to be done for a node depends on what is there: each batch has its own."""
+    x = [axis(None, number) for number in range(3)]
+    sums = [make("add", number, 1.0) for number in x]
+    nodes = [
+        *sums,
+        make("multiply", sums[0], sums[1]),
+        make("subtract", sums[1], sums[2]),
+        make("multiply", make("subtract", sums[2], sums[0]), 2.0),
+    ]
+    graph = Graph(nodes)
+    points = np.random.default_rng(2).random((3, graph.dimension))
+    expected = {node: batch_at(graph, points).column(node) for node in nodes}
+    for grouped in (True, False):
+        scheduler = Scheduler(graph, grouped=grouped)
+        rng = np.random.default_rng(3)
+        for _ in range(60):
+            batch = batch_at(graph, points, scheduler=scheduler)
+            for place in rng.permutation(len(nodes))[: rng.integers(1, len(nodes) + 1)].tolist():
+                if rng.random() < 0.5:
+                    batch.need([nodes[place], nodes[(place + 1) % len(nodes)]])
+                np.testing.assert_array_equal(batch.column(nodes[place]), expected[nodes[place]])

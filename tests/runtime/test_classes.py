@@ -220,3 +220,15 @@ def test_a_final_property_is_so_wherever_in_the_chain() -> None:
         assert isinstance(error, InvalidScenarioError)
         assert "property 'foo' is final and cannot be defined again" in str(error)
         assert place(error)[1].startswith(f"{line}:")
+
+
+def test_functions_that_read_what_was_never_bound_are_called_all_the_same() -> None:
+    """On samples, too: only who reads the name finds that it has no value."""
+    text = (
+        "K = Range(0, 1)\ndef make():\n    def function(v):\n        return later if v > 2 else (v, K)\n"
+        "    if K is None:\n        later = 1\n    return function\n"
+        "param x = distributionFunction(make())(K)\n"
+    )
+    for found in scenario(text).sample(2, seed=1):
+        first, second = found.params["x"]
+        assert first == second

@@ -8,6 +8,7 @@ import pytest
 
 import scenic
 from scenic.language.errors import InvalidScenarioError
+from scenic.pipeline import diagnose
 
 
 def written(folder: Path, files: dict[str, str]) -> Path:
@@ -145,3 +146,34 @@ def test_errors_tell_their_line_and_text(tmp_path: Path) -> None:
             load("ego = new Object at (1, 2), at (3, 4)\n")
         assert located.value.lineno == 1
         assert located.value.text == "ego = new Object at (1, 2), at (3, 4)\n"
+
+
+def test_names_of_python_and_of_scenic_come_from_one_package(tmp_path: Path) -> None:
+    """Of a folder that is a package of Python's and has Scenic modules, too."""
+    main = written(
+        tmp_path,
+        {
+            "mixed/__init__.py": "VALUE = 3\n",
+            "mixed/helper.py": "def double(x): return 2 * x\n",
+            "mixed/a.scenic": "from . import VALUE\nfrom .helper import double\nK = double(VALUE) + 1\n",
+            "main.scenic": "from mixed import a, VALUE, helper\nfrom mixed import helper as other, a as b\n"
+            "param x = (a.K, VALUE, helper.double(2), other.double(3), b.K)\n",
+        },
+    )
+    assert first(main).params["x"] == (7, 3, 4, 6, 7)
+
+
+@pytest.mark.parametrize("error", ["ScenicValueError('bad')", "ValueError('bad')"])
+def test_a_failing_requirement_is_shown_in_the_module_that_it_is_in(tmp_path: Path, error: str) -> None:
+    """Whatever kind of error comes up on a sample."""
+    files = {
+        "module.scenic": "from helper import fail\nx = Range(0, 1)\n\nrequire fail(x)\n",
+        "helper.py": f"from scenic.language.errors import ScenicValueError\ndef fail(x): raise {error}\n",
+        "main.scenic": "import module\nego = new Object\n",
+    }
+    with pytest.raises(ValueError, match="bad") as caught:
+        first(written(tmp_path, files))
+    found = diagnose(caught.value)
+    assert found is not None
+    assert found.span is not None
+    assert (found.filename, found.span.line) == (str(tmp_path / "module.scenic"), 4)

@@ -18,6 +18,7 @@ from tests.runtime.programs import (
     euler,
     failure,
     params,
+    place,
 )
 
 A, B = np.array([1.0, -2, 3]), np.array([4.0, 5, -6])
@@ -293,3 +294,33 @@ def test_orientations_from_angles_of_all_kinds(index: int, value: str) -> None:
     )
     numbers = [float(found["a"]) if angle == "a" else float(angle) for angle in angles]
     assert_same_rotation(found["o"], euler(*numbers))
+
+
+TURN = "Orientation.fromEuler(0.3, 0, 0)"
+
+
+@pytest.mark.parametrize("operator", "*/")
+@pytest.mark.parametrize(
+    "other",
+    [
+        "{v}",
+        "{o}",
+        "Uniform({v}, (0, 0, 1))",
+        "Uniform({o}, {o})",
+        "Orientation.fromEuler(Range(0, 1), 0, 0)",
+    ],
+)
+@pytest.mark.parametrize(
+    "vector", ["Vector(1, 2, 3)", "Vector(Range(0, 1), 2, 3)", "Uniform(Vector(1, 0, 0), Vector(2, 0, 0))"]
+)
+def test_vectors_are_multiplied_and_divided_by_numbers_alone(vector: str, operator: str, other: str) -> None:
+    """Whether they are random or not; what else it is, is told."""
+    other = other.format(v="Vector(4, 5, 6)", o=TURN)
+    error = failure(f"param x = {vector} {operator} {other}\n")
+    assert isinstance(error, TypeError)
+    assert place(error)[1].startswith("1:")
+    for number in ("2", "Range(2, 2)", "Uniform(2, 2.0)"):
+        found = tuple(params(f"v = {vector}\nparam v = v, x = v {operator} {number}\n").items())
+        (_, before), (_, after) = found
+        expected = np.array(before) * 2 if operator == "*" else np.array(before) / 2
+        np.testing.assert_allclose(after, expected)

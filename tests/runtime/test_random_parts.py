@@ -1,12 +1,15 @@
 """Reaching into random choices and containers: methods, attributes, items and slices; functions that see sampled values."""
 
+import gc
 import math
+import weakref
 from collections.abc import Callable
-from typing import Any
+from typing import Any, cast
 
 import pytest
 
 from scenic.language.errors import RandomControlFlowError, ScenicValueError
+from scenic.runtime.samples import Sample
 from tests.runtime.programs import failure, place, scenario
 
 PAIR = """
@@ -327,3 +330,22 @@ def test_thresholds_of_sides_may_be_chosen() -> None:
         "param x = ego.topSurface.size"
     )
     assert len({round(item.params["x"], 6) for item in scenario(text).sample(20, seed=1)}) == 2
+
+
+def test_what_a_sample_knows_by_its_identity_lives_as_long_as_the_sample() -> None:
+    """Another value may else get the identity, and be taken for it."""
+
+    class Thing:
+        pass
+
+    sample = Sample(cast("Any", None), 0)
+    things = [Thing() for _ in range(3)]
+    watched = [weakref.ref(thing) for thing in things]
+    for thing in things:
+        sample.remember(thing, "copy")
+    del things, thing
+    gc.collect()
+    assert all(watch() is not None for watch in watched)
+    del sample
+    gc.collect()
+    assert all(watch() is None for watch in watched)

@@ -1,6 +1,7 @@
 """Rules of simulations that show only in corners: who may create what, what is asked for, and what is told."""
 
 import math
+import signal
 import sys
 import threading
 import time
@@ -500,3 +501,47 @@ def test_values_differ_by_more_than_the_tolerance(expected: Any, actual: Any, di
     """In any component, to either side; values of different kinds always do."""
     tape = Tape(None, key=b"", keep_draws=False, keep_states=False, tolerance=0.1, go_on=False)
     assert tape.differ(expected, actual) is differ
+
+
+@pytest.mark.parametrize("rejected", [False, True])
+def test_a_recorder_is_told_of_its_end_once(rejected: bool) -> None:
+    """That of a scenario which is over is not told again when the simulation ends, well or not."""
+    told = []
+
+    class Telling(Recorder):
+        def recordValue(self, value: Any, step: int) -> None:
+            told.append(step)
+
+        def endRecording(self, canceled: bool) -> None:
+            told.append(canceled)
+
+    text = (
+        "scenario Main():\n    setup:\n        ego = new Object\n        {}\n"
+        "    compose:\n        do Sub() for 2 steps\n        wait for 3 steps\n"
+        "scenario Sub():\n    setup:\n        record 1 to globalParameters.telling\n"
+    )
+    more = "require eventually ego.position.x > 3" if rejected else "pass"
+    made = scenic.scenarioFromString(text.format(more), params={"telling": Telling()})
+    done = DummySimulator().simulate(made.sample(1, seed=0)[0], maxSteps=9)
+    assert (done is None) is rejected
+    assert told == [0, 1, False]
+
+
+@pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="there is no timer to watch with")
+def test_the_watch_leaves_a_timer_that_runs_alone() -> None:
+    """It is somebody else's: neither its time nor what it calls changes, nor does anything else interrupt the code."""
+    called: list[int] = []
+    before = signal.signal(signal.SIGALRM, lambda *_: called.append(1))
+    mine = signal.getsignal(signal.SIGALRM)
+    try:
+        signal.setitimer(signal.ITIMER_REAL, 0.1)
+        with Watch(0.01, lambda frame: "a line", is_error=True):
+            assert signal.getsignal(signal.SIGALRM) is mine
+            time.sleep(0.05)
+        assert signal.getsignal(signal.SIGALRM) is mine
+        assert called == []
+        time.sleep(0.1)
+        assert called == [1]
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
