@@ -151,4 +151,5 @@ class Encoding:
         if kind is Kind.BOOLEAN:
             return self.terms.truth(bool(node.payload.column[0]))
         number = value if kind.is_boxed else node.payload.column[0].item()
-        return self.terms.real(number) if math.isfinite(number) else self.terms.fresh(Kind.SCALAR)
+        known = isinstance(number, int) or math.isfinite(number)  # there are integers that no float is
+        return self.terms.real(number) if known else self.terms.fresh(Kind.SCALAR)

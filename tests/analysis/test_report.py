@@ -66,6 +66,14 @@ def test_a_choice_is_told_by_its_options():
     assert told(found) == ("SC700", 2, [(1, "this choice is one of 1, 2")])
 
 
+def test_options_are_told_where_all_are_fixed_numbers():
+    index = make("choice", graph.axis(), payload=(0.5, 1.0), span=line(1))
+    for options, words in (((1, 2.5), "is one of 1, 2.5"), ((1, uniform(0, 1)), "takes one of its options")):
+        chosen = make("select", index, *options)
+        (found,) = report((make("and", make("greater", chosen, -9), make("greater", index, 3)), line(2)))
+        assert told(found) == ("SC700", 2, [(1, f"this choice {words}")])
+
+
 def test_contradictions_that_only_intervals_see():
     x = uniform(0.0, 0.1, span=line(1))
     (found,) = report((make("greater", x, 0.01), line(2)), (make("greater", make("sin", x), 0.5), line(3)))

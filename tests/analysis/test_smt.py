@@ -10,6 +10,7 @@ from scipy.optimize import linprog
 
 from analysis.random_programs import accepted, conditions
 from scenic.analysis import terms as terms_module
+from scenic.analysis.contraction import contract
 from scenic.analysis.facts import Fact
 from scenic.analysis.smt import judge
 from scenic.analysis.terms import Answer, Questions, SolverTerms
@@ -239,6 +240,32 @@ def test_contradictions_are_minimal_for_a_linear_program_too(seed, helpful):
         assert not possible(core)
         for left_out in core:
             assert possible(member for member in core if member != left_out)
+
+
+def test_what_is_not_decided_takes_nothing_away(monkeypatch):
+    """Of three conditions that contradict each other by two, all are told if the solver has no answer about fewer."""
+    terms = SolverTerms()
+    x = terms.fresh(Kind.SCALAR)
+    questions = Questions(terms, [], [x > terms.real(2), x < terms.real(5), x < terms.real(1)])
+    real = Questions.ask
+    monkeypatch.setattr(
+        Questions, "ask", lambda self, members: real(self, members) if len(members) == 3 else Answer.UNKNOWN
+    )
+    core = questions.contradiction([0, 1, 2])
+    monkeypatch.undo()
+    assert core is not None
+    assert questions.ask(core) is Answer.IMPOSSIBLE
+
+
+@pytest.mark.parametrize(
+    "huge", [10**400, -(10**400), 2**70, -(2**70)], ids=lambda huge: f"{huge.bit_length()} bits"
+)
+def test_integers_beyond_all_floats(huge):
+    x = uniform(0, 1)
+    cores, always = verdict(make("greater", x, huge))
+    assert (cores, always) == (([["0"]], []) if huge > 0 else ([], ["0"]))
+    less = make("less", x, huge)
+    assert not contract(Graph([less]), [Fact(less, "")]).impossible or huge < 0
 
 
 def test_nothing_is_decided_once_the_count_is_spent(monkeypatch):

@@ -1,5 +1,7 @@
 """Evaluation of graphs: order, lanes that are dropped, and the fate of lanes that fail or are rejected."""
 
+import itertools
+
 import numpy as np
 import pytest
 
@@ -53,6 +55,13 @@ def test_and_reads_from_the_left_as_far_as_needed():
 
 def test_or_reads_from_the_left_as_far_as_needed():
     assert lanes_of("or", "TTTTFFFFrrrr", "TFfrTFfrTFfr") == "TTTTTFfrrrrr"
+
+
+def test_a_conditional_has_the_fate_of_its_test_or_of_the_branch_taken():
+    rows = list(itertools.product("TFfr", repeat=3))
+    test, then, otherwise = ("".join(column) for column in zip(*rows, strict=True))
+    expected = "".join(t if t in "fr" else a if t == "T" else b for t, a, b in rows)
+    assert lanes_of("if", test, then, otherwise) == expected
 
 
 def test_three_operands():

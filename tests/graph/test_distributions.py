@@ -127,6 +127,19 @@ def test_quantile_and_cumulative_are_inverse(a, b):
     assert (np.diff(z) > 0).all()
 
 
+@pytest.mark.parametrize("far", [25.0, 35.0, 9.9e3, 1.01e4, 1e6])
+@pytest.mark.parametrize("side", [-1, 1])
+def test_quantiles_of_far_tails_rise(far, side):
+    """From one end to the other, most of them close to the end next to the mean: how far is an exponential law."""
+    a, b = sorted((side * far, side * (far + 20 / far)))
+    u = np.linspace(0.0, 1.0, 21)
+    u[[0, -1]] = 1e-15, 1 - 1e-15
+    z = conditioned_quantile(np.float64(a), np.float64(b), u)
+    assert (np.diff(z) > 0).all()
+    assert (np.abs(z[[0, -1]] - [a, b]) < 1e-3 / far).any()
+    assert (z[10] - side * far) * far * side == pytest.approx(math.log(2), rel=3 / far + 1e-4)
+
+
 @pytest.mark.parametrize(("low", "high"), [(1, 6), (0.5, 3.5), (-3, -3), (-2.0, 2)])
 def test_discrete_range_is_uniform(low, high):
     node = make("discrete range", graph.axis(), low, high)

@@ -42,6 +42,14 @@ def nested(number: int) -> Node:
     return make("add", one_of(*(term(inner + number) for inner in range(9))), float(number))
 
 
+SHARED = [axis() for _ in range(3)]
+
+
+def sharing(number: int) -> Node:
+    """Made of the same few nodes in turn, the first of which is in the last option too."""
+    return make("add", make("multiply", SHARED[number % 3 if number % 13 else 0], 2.0), number + 1.5)
+
+
 def batches(root: Node, **options: Any) -> tuple[Batch, Batch]:
     graph = Graph([root])
     source = Counter(np.arange(LANES, dtype=np.uint64))
@@ -58,8 +66,8 @@ def assert_same(merged: Batch, plain: Batch, root: Node) -> None:
     np.testing.assert_array_equal(merged.full(root)[fine[0] == OK], plain.full(root)[fine[0] == OK])
 
 
-@pytest.mark.parametrize("option", [term, uneven, risky, vectors, nested])
-@pytest.mark.parametrize("count", [2, 8, 9, 40])
+@pytest.mark.parametrize("option", [term, uneven, risky, vectors, nested, sharing])
+@pytest.mark.parametrize("count", [2, 8, 9, 10, 40])
 def test_merged_choices_have_the_same_values(option: Any, count: int) -> None:
     options = [option(number) for number in range(count)]
     if option is uneven:  # numbers of the vector kinds cannot be among those

@@ -2,6 +2,7 @@
 
 import random
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -9,8 +10,14 @@ import pytest
 from scipy import stats
 
 from scenic.graph.domain import Domain
+from scenic.graph.kinds import Kind
+from scenic.graph.operation import FAULT, OK, REJECTED
 from scenic.language.errors import RejectionException
+from scenic.runtime.sampling.checks import NodeCheck
+from scenic.runtime.sampling.engine import BATCH_BYTES, BODY_BYTES, DEFAULT_LANES, Engine
+from scenic.runtime.sampling.pending import Task
 from scenic.runtime.sampling.report import Exhausted
+from tests.graph.programs import evaluate, faulty
 from tests.runtime.programs import FALSE_ALARM, fingerprint, scenario
 
 PROGRAMS = {
@@ -343,3 +350,66 @@ def test_sampling_leaves_the_generators_alone() -> None:
 
 def test_no_scenes() -> None:
     assert scenario("ego = new Object").sample(0, seed=0) == []
+
+
+def test_every_attempt_has_draws_of_its_own() -> None:
+    """However many there are: past the size of a batch and past 16 bits."""
+    seen: list[float] = []
+    SEEN.append(seen.append)
+    program = scenario(
+        f"from {__name__} import SEEN\ndef note(v):\n    SEEN[-1](v)\n    return False\nx = Range(0, 1)\nrequire note(x)\n"
+    )
+    with pytest.raises(RejectionException):
+        program.sample(1, seed=4, max_attempts=70_000)
+    # Reports try some of them again.
+    assert len(set(seen)) == 70_000
+
+
+SEEN: list[Any] = []
+
+
+def test_the_first_error_of_the_program_is_told() -> None:
+    """Also where few candidates come so far that two checks of the program fail."""
+    text = (
+        "def first(v): raise ValueError('first')\ndef second(v): raise KeyError('second')\nx = Range(0, 1)\n"
+        "def same(v): return v\nrequire same(x) > 0.95\nrequire first(x)\nrequire second(x)\n"
+    )
+    for seed in range(30):
+        program = scenario(text)
+        for check in program._engine.plan.checks:
+            check.separate = seed % 2 == 0  # each looks at those alone that the ones before leave
+        with pytest.raises(ValueError, match="first"):
+            program.sample(1, seed=seed)
+
+
+def test_reports_do_not_depend_on_how_many_lanes_there_are() -> None:
+    program = scenario(
+        "x = Range(0, 1)\ny = Range(0, 1)\ndef same(v): return v\nrequire same(x) > 2\nrequire same(y) > 0.5\n"
+    )
+    engine = program._engine
+    report = engine.report(Task(3, 0), 500)
+    first, second = (row.rejected for row in report.rows)
+    assert first == 1
+    assert 0.4 < second < 0.6
+    engine._pace.most = 64
+    assert engine.report(Task(3, 0), 500) == report
+
+
+def test_lanes_are_bounded_by_their_memory() -> None:
+    def most(objects: int) -> int:
+        plan = replace(scenario("x = Range(0, 1)\n")._engine.plan, bodies=objects)
+        return Engine(plan)._pace.most
+
+    assert most(1) == DEFAULT_LANES
+    assert most(1000) == pytest.approx(BATCH_BYTES / (1000 * BODY_BYTES), rel=0.01)
+    assert most(10**7) == 64
+
+
+@pytest.mark.parametrize("holds", [True, False])
+def test_a_rejected_or_failed_value_meets_no_requirement(holds: bool) -> None:
+    statuses = [OK, FAULT, REJECTED, OK]
+    node = faulty(Kind.BOOLEAN, [holds] * 4, statuses, ValueError())
+    verdict = NodeCheck(node, "", None, 0).test(evaluate(node, 4))
+    failed = np.zeros(4, dtype=bool) if verdict.failed is None else verdict.failed
+    assert failed.tolist() == [False, True, False, False]
+    assert (verdict.holds & ~failed).tolist() == [holds, False, False, holds]

@@ -45,6 +45,17 @@ def test_scenes_by_sobol_are_spread_evenly() -> None:
         assert even < 0.05 * qmc.discrepancy(places(scenario.sample(256, seed=seed)))
 
 
+def test_parts_of_the_domain_are_chosen_one_by_one() -> None:
+    """Two values that are each narrowed to two parts: all four pairs of parts are drawn alike."""
+    program = scenic.scenarioFromString(
+        "x = Range(-1, 1)\ny = Range(-1, 1)\nrequire abs(x) > 0.5\nrequire abs(y) > 0.5\nego = new Object at (x, y)\n"
+    )
+    scenes = program.sample(400, seed=6, source=scenic.Sobol())
+    assert all(scene.attempts == 1 for scene in scenes)
+    signs = (places(scenes) > 0) @ [1, 2]
+    assert (np.bincount(signs, minlength=4) > 70).all()
+
+
 def test_the_law_is_the_programs_also_where_candidates_are_rejected() -> None:
     scenario = scenic.scenarioFromString(
         "x = Range(0, 1)\ny = Range(0, 1)\nrequire x * x + y * y < 1\nego = new Object at (x, y)\n"
