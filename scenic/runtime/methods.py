@@ -7,6 +7,8 @@ the graph, is the business of `scenic.runtime.values`, which fills the hooks in.
 from collections.abc import Iterator
 from typing import Any, ClassVar
 
+from scenic.runtime.lazy import Lazy, defer
+
 
 class Operand:
     """What the methods below are made of: hooks that `scenic.runtime.values` fills in."""
@@ -141,6 +143,8 @@ class VectorMethods(Operand):
 
     def distanceTo(self, other: Any) -> Any:
         """Distance to another point, or to the nearest point of a region."""
+        if isinstance(other, Lazy):
+            return defer(self.distanceTo, other)
         measure = getattr(other, "distance_from", None)
         space = getattr(other, "occupiedSpace", None)
         if space is not None:

@@ -1,5 +1,6 @@
 """Members that every kind of region has, and what is refused: names, measures, directions, fields of unions, operators."""
 
+import itertools
 import math
 from pathlib import Path
 from typing import Any
@@ -457,3 +458,106 @@ def test_what_does_not_land_is_drawn_again(region: str) -> None:
     found = draws(text, n=30)
     assert all(abs(place.x) <= 1.26 for place in found)
     assert len({round(place.x, 9) for place in found}) == 30
+
+
+def test_all_and_nothing_in_every_relation() -> None:
+    """Nothing meets nothing, not even all of space, and lies in everything."""
+    everything, none, box = named.everywhere, named.nowhere, MAKERS["box"]()
+    meets = [
+        (everything, none, False),
+        (none, none, False),
+        (everything, everything, True),
+        (everything, box, True),
+        (none, box, False),
+    ]
+    for one, other, expected in meets:
+        assert one.intersects(other) is expected
+        assert other.intersects(one) is expected
+    holds = [(everything, none), (none, none), (box, none), (everything, everything), (everything, box)]
+    for one, other in itertools.product((everything, none, box), repeat=2):
+        if one is not box or other is not box:
+            assert one.containsRegion(other) is ((one, other) in holds)
+
+
+@pytest.mark.parametrize(
+    "made", ["disc.footprint", "r", "r.union(other)", "other.intersect(r)", "other.difference(r)"]
+)
+def test_samples_of_regions_keep_names(made: str) -> None:
+    text = (
+        "disc = CircularRegion((0, 0), Range(1, 2), name='plaza')\nother = BoxRegion((2, 2, Range(2, 3)), name='hall')\n"
+        f"r = SpheroidRegion((3, 3, Range(1, 2)), name='dome')\nmade = {made}\nparam x = made, name = made.name\n"
+    )
+    for scene in scenario(text).sample(3, seed=1):
+        region = scene.params["x"]
+        assert region.name == scene.params["name"]
+        names = {"disc.footprint": None, "r": "dome"}
+        assert made not in names or names[made] is None or region.name == names[made]
+        assert {part.name for part in getattr(region, "members", ())} <= {"plaza", "hall", "dome"}
+    footprint = PLAZA_FOOTPRINT
+    assert [item.params["x"].name for item in scenario(footprint).sample(2, seed=1)] == ["below", "below"]
+
+
+PLAZA_FOOTPRINT = (
+    "from scenic.runtime.regions.planar import Footprint\n"
+    "param x = Footprint(CircularRegion((0, 0), Range(1, 2)), name='below')\n"
+)
+
+
+LAZY_CALLS = [
+    "f.followFrom({p}, 3)",
+    "f.followFrom((1, 2), {w})",
+    "f.followFrom({p}, {w})",
+    "f[{p}]",
+    "disc.containsPoint({p})",
+    "disc.distanceTo({p})",
+    "CircularRegion({p}, 2).center",
+    "CircularRegion((0, 0), {w}).radius",
+    "BoxRegion((2, 2, 2), {p}).position",
+    "Vector(1, 2).distanceTo({p})",
+    "{p}.distanceTo((1, 2))",
+    "{p}.offsetRotated({w}, (1, 2))",
+    "{p}.angleTo((1, 2))",
+    "(follow f from {p} for 2).position",
+    "(follow f from (1, 2) for {w}).heading",
+    "({p} offset along {w} by (1, 2))",
+    "(distance from {p} to (1, 2))",
+    "(distance to {p})",
+    "(angle from (1, 2) to {p})",
+    "(relative heading of {w} from 0.5)",
+    "({w} relative to 0.5)",
+    "({p} relative to (1, 2))",
+    "max({w}, 1)",
+]
+
+
+@pytest.mark.parametrize("call", LAZY_CALLS)
+def test_calls_wait_for_each_argument_that_is_not_known_yet(call: str) -> None:
+    nothing = "(f relative to 0).yaw * 0"  # which is known once the object has a place
+    lazy = call.format(p=f"(Vector(2, 3) * ({nothing} + 1))", w=f"({nothing} + 1.5)")
+    default = call.format(p="self.position", w="self.width")
+    text = (
+        "f = VectorField('f', lambda p: 0.1 * p.x)\ndisc = CircularRegion((0, 0), 2.5)\n"
+        f"class Car:\n    late: {default}\n    width: 1.5\n"
+        f"ego = new Object at (9, 9, -9)\ncar = new Car at (2, 3)\nother = new Object at (5, 5), with late {lazy}\n"
+        f"param x = {call.format(p='Vector(2, 3)', w='1.5')}\n"
+    )
+    found = scenario(text).sample(1, seed=1)[0]
+    known = found.params["x"]
+    for late in (found.objects[1].late, found.objects[2].late):
+        assert late == known or late == pytest.approx(known)
+
+
+def test_names_of_objects_that_are_drawn() -> None:
+    """Whether a class or a specifier gives the property, a choice or nobody."""
+    text = (
+        "class Named:\n    name: 'class'\nego = new Object at (Range(0, 1), 0), with name 'given'\n"
+        "new Named at (3, Range(0, 1))\nnew Object at (6, 0), with name Uniform('one', 'other')\n"
+        "new Object at (Range(9, 10), 0)\nnew Object at (12, 0), with name 'fixed'\n"
+    )
+    seen = set()
+    for scene in scenario(text).sample(12, seed=1):
+        names = [str(item) for item in scene.objects]
+        assert [repr(item) for item in scene.objects] == [f"<{name}>" for name in names]
+        assert names[0:2] + names[3:] == ["given", "class", "unnamed Object", "fixed"]
+        seen.add(names[2])
+    assert seen == {"one", "other"}

@@ -306,3 +306,21 @@ def test_what_is_in_a_volume_or_on_its_border_stays_there(volume: str) -> None:
 def test_radii_of_balls_in_boxes_and_ellipsoids() -> None:
     (found,) = draws("param x = (BoxRegion((3, 2, 5)).inradius, SpheroidRegion((3, 7, 4)).inradius)\n", n=1)
     assert found == (1, 1.5)
+
+
+def test_members_of_the_plane_count_at_their_height_alone() -> None:
+    """In draws: discs above each other share no point, and neither thins the other in their union."""
+    low, high = CircularRegion((0, 0, 0), 2), CircularRegion((1, 0, 3), 2)
+    for members in ((low, high), (high, low)):
+        _, found = drawn(IntersectionRegion(*members), n=30)
+        assert not found.any()
+        points, found = drawn(DifferenceRegion(*members), n=300)
+        assert found.all()
+        assert (points[:, 2] == members[0].center.z).all()
+        middle = (members[0].center.x + members[1].center.x) / 2
+        assert_share(np.hypot(points[:, 0] - middle, points[:, 1]) < 1.5, 1.5**2 / 2**2)
+        points, found = drawn(UnionRegion(*members), n=600)
+        assert found.all()
+        assert_share(points[:, 2] == 3, 1 / 2)
+        at_low = points[points[:, 2] == 0]
+        assert_share(np.hypot(at_low[:, 0] - 1, at_low[:, 1]) < 1, 1 / 4)

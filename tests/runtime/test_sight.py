@@ -265,8 +265,20 @@ def test_points_look_around_whatever_their_angles() -> None:
         "p = new Point with viewAngles (10 deg, 10 deg), with visibleDistance 5\n"
         "o = new OrientedPoint with viewAngles (10 deg, 10 deg), with visibleDistance 5\n"
         "param point = p.canSee((1, -4, 1)), oriented = o.canSee((1, -4, 1))\n"
+        "param above = p.canSee((0, 0, 4)), below = p.canSee((0, 1, -4)), off = o.canSee((0, 1, 4))\n"
+        "box = new Object at (0, 1, 4)\nparam thing = p.canSee(box), part = o.canSee(box)\n"
+        "random = new Point at (0, 0, Range(0, 0.1)), with viewAngles (10 deg, 10 deg), with visibleDistance 5\n"
+        "require random can see (0, 0, 4)\nrequire random can see (0, 1, -4)\nrequire random can see box\n"
     )
-    assert answers(text) == {"point": True, "oriented": False}
+    assert answers(text) == {
+        "point": True,
+        "oriented": False,
+        "above": True,
+        "below": True,
+        "off": False,
+        "thing": True,
+        "part": False,
+    }
 
 
 @pytest.mark.parametrize(("count", "seen"), [("(1, 2)", True), ("(2, 1)", False)])

@@ -25,6 +25,9 @@ from scipy import stats
 
 import scenic
 from scenic.language.errors import RejectionException, ScenicTypeError, ScenicValueError
+from scenic.runtime.geometry import primitives
+from scenic.runtime.geometry.bodies import Body
+from scenic.runtime.geometry.poses import Poses
 from tests.runtime.programs import FALSE_ALARM, draws, params
 
 FILLED = np.array([[[1, 0], [0, 1]], [[1, 1], [0, 0]]], dtype=bool)
@@ -300,3 +303,29 @@ def test_all_points_of_closed_cells_are_held() -> None:
     assert not region.contains_points((outer * (1 + 1e-9) + 1) * (0.5, 1, 2)).any()
     full = VoxelRegion(trimesh.voxel.VoxelGrid(np.ones((2, 2, 2), dtype=bool)))
     assert full.contains_points(np.array(list(itertools.product((-0.5, 0, 0.5, 1, 1.5), repeat=3)))).all()
+
+
+def test_cells_stand_where_the_grid_is_moved_to() -> None:
+    """By its transformation, whose last column is where the middle of the first cell is."""
+    transform = np.diag([0.5, 1, 2, 1.0])
+    transform[:3, 3] = (10, -20, 30)
+    region = VoxelRegion(trimesh.voxel.VoxelGrid(FILLED, transform=transform))
+    np.testing.assert_allclose(region.AABB, ((9.75, -20.5, 29), (10.75, -18.5, 33)))
+    places = np.array(list(itertools.product(range(2), repeat=3)))
+    held = region.contains_points(places * (0.5, 1, 2) + (10, -20, 30))
+    np.testing.assert_array_equal(held, FILLED[tuple(places.T)])
+    np.testing.assert_allclose(region.voxelGrid.transform, transform)
+
+
+def test_boxes_of_cells_are_counted_whole() -> None:
+    """A box that ends on faces of cells is held where all cells in it are filled."""
+    rng = np.random.default_rng(4)
+    filled = rng.random((5, 4, 6)) < 0.93
+    region = VoxelRegion(trimesh.voxel.VoxelGrid(filled))
+    ends = np.sort(np.stack([rng.integers(0, size + 1, (2, 400)) for size in filled.shape], axis=-1), axis=0)
+    first, last = ends[:, (ends[0] < ends[1]).all(axis=1)]
+    expected = np.array([filled[tuple(map(slice, *pair))].all() for pair in zip(first, last, strict=True)])
+    poses = Poses((first + last) / 2 - 0.5, np.array([[0.0, 0, 0, 1]]), (last - first).astype(float))
+    body = Body((primitives.box(),), None, poses)
+    np.testing.assert_array_equal(region.contains_bodies(body, len(first)), expected)
+    assert 0.1 < expected.mean() < 0.9

@@ -83,3 +83,14 @@ def test_edges_of_three_faces_are_open():
     twice = np.array([(0, 1, 2), (1, 0, 2), (0, 1, 2), (0, 1, 2)])
     assert topology.edge_census(twice).open_edges == 0
     assert topology.edge_census(twice).inconsistent_edges == 3
+
+
+def test_zeros_of_either_sign_are_equal():
+    cube = primitives.box()
+    corners = np.array(cube.vertices[cube.faces].reshape(-1, 3)) + 0.5
+    corners[::2] = np.where(corners[::2] == 0, -0.0, corners[::2])
+    faces = np.arange(len(corners)).reshape(-1, 3)
+    for tolerance in (0.0, 1e-9):
+        vertices, merged = topology.merge_vertices(corners, faces, tolerance=tolerance)
+        assert len(vertices) == 8
+        np.testing.assert_array_equal(vertices[merged], corners[faces])
