@@ -68,3 +68,16 @@ def test_programs_that_do_not_end(
     assert "error[SC608]" in result.stderr
     assert message in result.stderr
     assert f"program.scenic:{line}:" in result.stderr
+
+
+@pytest.mark.parametrize("option", [None, "-b", "--full-backtrace"])
+def test_all_calls_of_an_exception_are_shown_where_that_is_wanted(tmp_path: Path, option: str | None) -> None:
+    """Also of our own frames; the exit code and the diagnostic are the same."""
+    (tmp_path / "tools.py").write_text(TOOLS)
+    (tmp_path / "program.scenic").write_text("import tools\ny = tools.boom(1)\n")
+    given = [] if option is None else [option]
+    result = run_here([*given, "sample", "program.scenic", "--seed", 1], folder=tmp_path)
+    assert result.returncode == 1
+    assert "error[SC400]" in result.stderr
+    assert ("Traceback (most recent call last)" in result.stderr) is (option is not None)
+    assert ("pipeline.py" in result.stderr) is (option is not None)

@@ -43,6 +43,10 @@ def large(value: int) -> tuple[int, PickleBuffer]:
     return value, PickleBuffer(bytearray(b"%d" % value) * value)
 
 
+def several(value: int) -> list[PickleBuffer]:
+    return [PickleBuffer(b"%d/%d " % (value, place) * 10**place) for place in range(value)]
+
+
 def die_before_the_buffer(value: int) -> PickleBuffer:
     """Kills its process between an answer and what the answer leaves out."""
     if value % 2:
@@ -86,6 +90,14 @@ def test_buffers(method: str) -> None:
     found = dict(run(large, sizes, jobs=2, lost=lambda value, _: (value, PickleBuffer(b"")), method=method))
     assert {index: (size, bytes(buffer)) for index, (size, buffer) in found.items()} == {
         index: (size, b"%d" % size * size) for index, size in enumerate(sizes)
+    }
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_several_buffers_of_one_answer(method: str) -> None:
+    found = dict(run(several, range(4), jobs=2, lost=lambda *_: [], method=method))
+    assert {index: list(map(bytes, buffers)) for index, buffers in found.items()} == {
+        index: [bytes(each) for each in several(index)] for index in range(4)
     }
 
 
