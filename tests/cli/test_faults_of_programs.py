@@ -81,3 +81,34 @@ def test_all_calls_of_an_exception_are_shown_where_that_is_wanted(tmp_path: Path
     assert "error[SC400]" in result.stderr
     assert ("Traceback (most recent call last)" in result.stderr) is (option is not None)
     assert ("pipeline.py" in result.stderr) is (option is not None)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--resume"], "--resume needs the file to go on with"),
+        (["--resume", "-o", "-"], "--resume needs the file to go on with"),
+        *(
+            ([*given, *sink], "-j and --resume are for JSON Lines alone")
+            for given in (
+                ["--resume"],
+                ["-j", 2],
+                ["--resume", "-o", "out.jsonl"],
+                ["-j", 2, "-o", "out.jsonl"],
+            )
+            for sink in (["--view", "page.html"], ["--png", "images"])
+        ),
+        (["--resume", "-o", "out.glb"], "-j and --resume are for JSON Lines alone"),
+        (["-j", 2, "-o", "out.glb"], "-j and --resume are for JSON Lines alone"),
+        (["--camera", "ego"], "--camera needs a folder"),
+    ],
+)
+def test_options_that_do_not_go_together_are_wrong_usage(
+    tmp_path: Path, arguments: list[object], words: str
+) -> None:
+    """Told before anything is sampled or written."""
+    (tmp_path / "program.scenic").write_text("ego = new Object\n")
+    result = run_here(["sample", "program.scenic", "--seed", 1, *arguments], folder=tmp_path)
+    assert result.returncode == 2
+    assert words in " ".join(result.stderr.split())
+    assert [path.name for path in tmp_path.iterdir()] == ["program.scenic"]

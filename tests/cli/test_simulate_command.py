@@ -280,3 +280,17 @@ def test_what_is_simulated_is_what_was_chosen(
     for number in range(2):
         about, *_ = rows(folder / "chosen" / f"simulation-{number:04d}.jsonl")
         assert about["records"]["who"] == who
+
+
+@pytest.mark.parametrize(
+    "content", ["", "[1]", "3", "null", '"text"', "{}", '{"settings": null}', "{", "\xff"]
+)
+def test_a_file_that_is_none_of_ours_is_made_anew(folder: Path, content: str) -> None:
+    arguments = ["moving.scenic", "-n", 1, "--seed", 3, "--time", 2, "-o", "anew"]
+    assert run(folder, *arguments).returncode == 0
+    file = folder / "anew" / "simulation-0000.jsonl"
+    expected = file.read_bytes()
+    file.write_bytes(content.encode("latin-1") + b"\n")
+    made = run(folder, *arguments)
+    assert made.returncode == 0, made.stderr
+    assert file.read_bytes() == expected

@@ -235,3 +235,11 @@ def test_what_a_file_holds_says_how_it_is_read(folder: Path, form: str) -> None:
         found = scenic.read_trajectory(folder / name)
         assert found.about == expected.about
         np.testing.assert_array_equal(found.positions, expected.positions)
+
+
+def test_what_cannot_be_read_is_told(tmp_path: Path) -> None:
+    """A folder, a file that is not there, and one below a file."""
+    (tmp_path / "file").write_text("")
+    for path in (tmp_path, tmp_path / "nothing", tmp_path / "file" / "run.jsonl"):
+        with pytest.raises(MissingFileError, match="cannot read"):
+            scenic.read_trajectory(path)

@@ -1,13 +1,16 @@
 """Classes and their properties: inheritance, attributes, defaults, methods, what instances store."""
 
 import math
+from pathlib import Path
 
 import pytest
 
+import scenic
 from scenic.language.errors import InvalidScenarioError, ScenicTypeError, ScenicValueError, SpecifierError
 from scenic.language.properties import CLASSES, attributes_of, properties_of
 from scenic.runtime import objects
 from scenic.runtime.values import Orientation, Vector
+from scenic.simulators.dummy import DummySimulator
 from tests.runtime.programs import draws, failure, params, place, scenario, thing
 
 
@@ -232,3 +235,68 @@ def test_functions_that_read_what_was_never_bound_are_called_all_the_same() -> N
     for found in scenario(text).sample(2, seed=1):
         first, second = found.params["x"]
         assert first == second
+
+
+WRAPPERS = """
+import functools
+def by_closure(function):
+    def wrapped(*args): return function(*args)
+    return wrapped
+def by_cache(function):
+    known = functools.lru_cache(function)
+    def wrapped(*args): return known(*args)
+    return wrapped
+def by_wraps(function):
+    @functools.wraps(function)
+    def wrapped(*args): return function(*args)
+    return wrapped
+def by_two(function): return by_closure(by_cache(function))
+"""
+
+
+@pytest.mark.parametrize(
+    "wrapper", ["by_closure", "by_cache", "by_wraps", "by_two", "functools.lru_cache", "functools.cache"]
+)
+def test_decorated_functions_see_the_sample_and_the_simulation(tmp_path: Path, wrapper: str) -> None:
+    """Whatever a library's decorator keeps the function in."""
+    (tmp_path / "wrappers.py").write_text(WRAPPERS)
+    main = tmp_path / "main.scenic"
+    main.write_text(
+        f"import functools\nfrom wrappers import *\nK = Range(0, 1)\n@{wrapper}\ndef decorated(n): return K + n\n"
+        "def use(k): return decorated(2)\nego = new Object\n"
+        "param k = K, x = distributionFunction(use)(K)\nrecord decorated(3) as y\n"
+    )
+    for found in scenic.load(main).sample(3, seed=1):
+        assert found.params["x"] == found.params["k"] + 2
+        done = DummySimulator().simulate(found, maxSteps=1)
+        assert done is not None
+        assert [value for _, value in done.records["y"]] == [found.params["k"] + 3] * 2
+
+
+def test_classes_that_keep_a_list_of_their_kinds_are_not_made_anew() -> None:
+    """A sample makes no class of which another one would hear."""
+    text = (
+        "K = Range(0, 1)\nknown = []\nclass Base(object):\n    def __init_subclass__(cls): known.append(cls)\n"
+        "    def k(self): return K\nclass A(Base):\n    def one(self): return 1\n"
+        "item = A()\ndef use(k): return (item.one(), len(known))\nparam x = distributionFunction(use)(K)\n"
+    )
+    for found in scenario(text).sample(3, seed=1):
+        assert found.params["x"] == (1, 1)
+
+
+def test_random_defaults_of_parameters_are_drawn_wherever_they_stand() -> None:
+    """Though nothing else in the scene depends on them; each call without them gets those of the sample."""
+    text = (
+        "def use(v, k=Range(0, 1), *, m=Range(2, 3)): return (v, k, m)\n"
+        "def inner(v, pair=(Range(4, 5), [Range(6, 7)])): return pair\n"
+        "def outer(v): return use(v) + inner(v)\n"
+        "param x = distributionFunction(use)(Range(0, 1)), y = distributionFunction(outer)(Range(0, 1))\n"
+    )
+    found = [each.params for each in scenario(text).sample(4, seed=1)]
+    for each in found:
+        assert each["x"][1:] == each["y"][1:3]
+        assert 0 < each["x"][1] < 1
+        assert 2 < each["x"][2] < 3
+        assert 4 < each["y"][3] < 5
+        assert 6 < each["y"][4][0] < 7
+    assert len({each["x"][1] for each in found}) == len({each["y"][4][0] for each in found}) == 4

@@ -315,6 +315,14 @@ def test_the_limit_of_one_scene_holds_with_and_without_a_seed() -> None:
                 program.generate(maxIterations=tried - 1, seed=seed)
 
 
+def test_a_batch_tries_no_more_than_its_limit() -> None:
+    """Also where one scene is not found at all."""
+    program = scenario("x = Range(0, 1)\ndef same(v): return v\nrequire same(x < 0)\n")
+    for limit in (1, 50):
+        with pytest.raises(RejectionException, match=f"within {limit} candidate"):
+            program.generateBatch(3, maxIterations=limit)
+
+
 def test_generate_batch() -> None:
     program = scenario("x = Range(0, 1)\ndef same(v): return v\nrequire same(x < 0.3)\n")
     random.seed(0)

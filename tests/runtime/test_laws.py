@@ -383,3 +383,12 @@ def test_no_module_state_is_touched(tmp_path: Path) -> None:
     program.write_text("import beside\n")
     scenario(program.read_text(), filename=str(program)).sample(2, seed=0)
     assert "beside" not in set(sys.modules) - before
+
+
+@pytest.mark.parametrize("weight", ["-1", "-1e-300", "float('nan')", "float('inf')", "-float('inf')"])
+@pytest.mark.parametrize("first", [False, True])
+def test_weights_are_finite_numbers_from_0_on(weight: str, first: bool) -> None:
+    weights = [weight, "1"] if first else ["1", weight]
+    error = failure(f"param x = Discrete({{'a': {weights[0]}, 'b': {weights[1]}}})\n")
+    assert isinstance(error, ScenicValueError)
+    assert "a weight is a number from 0 on" in str(error)

@@ -77,6 +77,7 @@ PACKAGE = {
     "pkg/a.scenic": "K = 7\nnew Object at (20, 20)\nparam from_a = 1\n",
     "pkg/b.scenic": "from .a import K\nfrom . import a\nB = K + a.K\n",
     "pkg/deep/c.scenic": "from ..a import K\nC = 2 * K\n",
+    "pkg/deep/down/d.scenic": "from ...a import K\nfrom ..c import C\nfrom ... import a\nfrom .. import c\nD = K + C + a.K - c.C\n",
     "pkg/whole/__init__.scenic": "from .part import P\nfrom ..a import K\nfrom . import part\nW = part.P * P + K - 1\n",
     "pkg/whole/part.scenic": "P = 1\n",
 }
@@ -92,6 +93,8 @@ PACKAGE = {
         "from pkg import a\nx = a.K",
         "from pkg import b, a\nx = b.B / 2",
         "from pkg.deep import c\nx = c.C / 2",
+        "from pkg.deep.down.d import D\nx = D / 2",
+        "import pkg.deep.down.d\nx = pkg.deep.down.d.D / 2",
         "from pkg.whole import W as x",
         "from pkg import whole\nx = whole.W",
     ],
@@ -177,3 +180,23 @@ def test_a_failing_requirement_is_shown_in_the_module_that_it_is_in(tmp_path: Pa
     assert found is not None
     assert found.span is not None
     assert (found.filename, found.span.line) == (str(tmp_path / "module.scenic"), 4)
+
+
+def test_packages_on_the_path_of_python_are_loaded_once(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As single modules are: their classes are the same for every program, whatever lies beside it."""
+    files = {"usual_package/__init__.py": "class A: pass\n", "usual_package/part.py": "class B: pass\n"}
+    written(tmp_path / "usual", files)
+    monkeypatch.syspath_prepend(str(tmp_path / "usual"))
+    part = importlib.import_module("usual_package.part")
+    main = written(
+        tmp_path / "own",
+        {
+            "usual_package/__init__.py": "",
+            "usual_package/part.py": "B = None\n",
+            "main.scenic": "from usual_package.part import B\nimport usual_package\nparam x = [B, usual_package.A]\n",
+        },
+    )
+    assert first(main).params["x"] == [part.B, sys.modules["usual_package"].A]
+    assert sys.modules["usual_package.part"] is part

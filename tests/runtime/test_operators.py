@@ -19,6 +19,7 @@ from tests.runtime.programs import (
     failure,
     params,
     place,
+    scenario,
 )
 
 A, B = np.array([1.0, -2, 3]), np.array([4.0, 5, -6])
@@ -324,3 +325,33 @@ def test_vectors_are_multiplied_and_divided_by_numbers_alone(vector: str, operat
         (_, before), (_, after) = found
         expected = np.array(before) * 2 if operator == "*" else np.array(before) / 2
         np.testing.assert_allclose(after, expected)
+
+
+@pytest.mark.parametrize("condition", ["{v} < 3", "3 < {v}", "{v} >= {v}", "{v} > {o}", "1.5 <= {o}"])
+@pytest.mark.parametrize("later", [False, True])
+def test_vectors_and_orientations_have_no_order(condition: str, later: bool) -> None:
+    """Neither among themselves nor beside numbers; the error is that of the requirement."""
+    number = "Range(0, 1)" if later else "0.5"
+    shown = condition.format(v="ego.position", o="ego.orientation")
+    error = failure(f"ego = new Object at ({number}, 0), facing {number}\nrequire {shown}\n")
+    assert isinstance(error, TypeError)
+    assert place(error)[1].startswith("2:")
+
+
+@pytest.mark.parametrize("part", ["n", "1", "True", "Uniform(True, False)", "Uniform(1, 2)"])
+@pytest.mark.parametrize(
+    "place_of", ["v.x", "v[0]", "v[-3]", "v.coordinates[0]", "(v + (0, 0, 0)).x", "(1 * v).x"]
+)
+def test_components_are_floats_whatever_they_were_made_of(part: str, place_of: str) -> None:
+    text = f"n = DiscreteRange(1, 3)\nv = Vector({part}, n, 2)\nparam x = {place_of}, y = v.y\n"
+    for found in scenario(text).sample(3, seed=1):
+        assert type(found.params["x"]) is type(found.params["y"]) is float
+
+
+@pytest.mark.parametrize("bad", ["0", "float('inf')", "-float('inf')", "float('nan')"])
+@pytest.mark.parametrize("index", range(4))
+def test_what_is_no_rotation_is_refused(bad: str, index: int) -> None:
+    parts = ["0"] * 4 if bad == "0" else ["0.5"] * 4
+    parts[index] = bad
+    error = failure(f"param x = Orientation.fromQuaternion(({', '.join(parts)}))\n")
+    assert "not a rotation" in str(error)

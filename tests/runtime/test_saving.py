@@ -4,6 +4,7 @@ import io
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import scenic
@@ -202,3 +203,33 @@ def test_a_scene_is_shown_as_a_page(monkeypatch: pytest.MonkeyPatch) -> None:
         file = show()
         assert "<html" in file.read_text().lower()
         assert opened[-1] == file.as_uri()
+
+
+def test_what_is_fixed_stays_so_wherever_the_other_numbers_come_from() -> None:
+    program = scenario("x = Range(0, 1)\ny = Range(0, 1)\nparam x = x, y = y\n")
+    known = program.sample(1, seed=3)[0]
+    program.conditionOn(known, params=["x"])
+    rows = scenic.GivenPoints(np.linspace(0.1, 0.9, 16).reshape(8, 2))
+    for source in (None, scenic.Sobol(), rows):
+        found = program.sample(8, seed=1, source=source)
+        assert {each.params["x"] for each in found} == {known.params["x"]}
+        assert len({each.params["y"] for each in found}) == 8
+    for _ in range(3):
+        assert program.generate()[0].params["x"] == known.params["x"]
+
+
+def test_axes_name_the_draws_that_their_places_make() -> None:
+    """In the order of the columns of points: by the address under which a scene keeps the number, and by place."""
+    names = [f"x{number}" for number in range(7)]
+    program = scenario(
+        "".join(f"{name} = Range(0, 1)\n" for name in names) + "param all = [" + ", ".join(names) + "]\n"
+    )
+    assert sorted(axis.span.line for axis in program.axes if axis.span) == list(range(1, 8))
+    row = np.linspace(0.1, 0.7, 7)
+    (found,) = program.sample(1, seed=0, source=scenic.GivenPoints([row]))
+    kept = json.loads(program.sceneToBytes(found))["numbers"]
+    numbers = {int(address, 16): float.fromhex(number) for address, number in kept.items()}
+    for place, axis in zip(row, program.axes, strict=True):
+        assert axis.span is not None
+        assert found.params["all"][axis.span.line - 1] == place
+        assert numbers[axis.address] == place

@@ -537,6 +537,42 @@ def test_a_disk_that_is_full_leaves_no_half_files(tmp_path: Path, monkeypatch: p
     assert list(tmp_path.iterdir()) == []
 
 
+class FullStream:
+    """A stream to which nothing can be written."""
+
+    def __init__(self, stream: Any) -> None:
+        self._stream = stream
+
+    def write(self, _content: Any) -> int:
+        raise OSError(28, "No space left on device")
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._stream, name)
+
+
+@pytest.mark.parametrize("name", ["run.jsonl", "run.npz"])
+def test_a_series_that_finds_the_disk_full_names_its_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    """Although it waits in a file that has no name."""
+    from scenic.runtime.dynamics import series
+
+    real = series._unnamed
+    monkeypatch.setattr(series, "_unnamed", lambda path: FullStream(real(path)))
+    with pytest.raises(OSError, match="No space left") as caught:
+        simulate(recording(tmp_path, name), 2)
+    assert caught.value.filename == str(tmp_path / name)
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("target", ["3", "None or 3", "['a']", "ego", "Path('a.jsonl')"])
+def test_records_go_to_names_and_recorders_alone(target: str) -> None:
+    with pytest.raises(ScenicTypeError, match="expected a pattern of file names or a recorder") as caught:
+        scene_of(f"from pathlib import Path\nego = new Object\nrecord 1 to {target}\n")
+    assert caught.value.span is not None
+    assert caught.value.span.line == 3
+
+
 # Simulators
 
 

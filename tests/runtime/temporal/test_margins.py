@@ -8,6 +8,7 @@ import pytest
 from scipy.spatial import ConvexHull
 
 import scenic
+from scenic.runtime.dynamics.margins import margin
 from scenic.runtime.geometry import primitives
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.broadphase import boxes_overlap
@@ -194,3 +195,17 @@ def test_margins_of_many_corners_cost_no_more_than_a_few() -> None:
     begun = time.process_time()
     assert robustness("always wall in room", steps=3) == pytest.approx(0.5, abs=1e-3)
     assert time.process_time() - begun < 2
+
+
+def test_a_chain_has_a_margin_only_if_all_of_its_parts_have_one() -> None:
+    """It is the least of theirs; where the margin of one is not known, that of the whole is not."""
+    assert margin(("<", "<=", ">"), (1.0, 3.0, 3.5, 2.0)) == 0.5
+    assert margin(("<", ">="), (3.0, 1.0, 0.0)) == -2.0
+    for place in range(3):
+        symbols, operands = ["<"] * 3, [1.0, 2.0, 3.0, 4.0]
+        symbols[place] = "is"
+        assert margin(symbols, operands) is None
+    for place in range(4):
+        others: list[object] = [1.0, 2.0, 3.0, 4.0]
+        others[place] = "text"
+        assert margin(["<"] * 3, others) is None
