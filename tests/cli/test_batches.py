@@ -15,7 +15,7 @@ import pytest
 
 import scenic
 from scenic.cli import workers
-from scenic.cli.batches import Job, Made, ResumeError, WorkerDiedError, continued, in_processes
+from scenic.cli.batches import Job, Made, ResumeError, WorkerDiedError, _Pieces, continued, in_processes
 from scenic.formats.growing import GrowingFile
 from scenic.formats.json_lines import SceneLines
 from tests.cli.commands import run_here
@@ -384,3 +384,17 @@ def test_lines_of_any_other_kind_are_refused(
         with pytest.raises(ResumeError, match=r"out\.jsonl"):
             continued(GrowingFile(target, resume=True), "d", 5, 0, 9)
         assert target.read_text() == content
+
+
+@pytest.mark.parametrize("seconds", [1e-9, 0.8, 1e3, 1e9])
+@pytest.mark.parametrize("jobs", [2, 7])
+def test_pieces_are_a_job_whole_however_long_they_take(seconds: float, jobs: int) -> None:
+    """None is empty, and none holds more than may wait in memory."""
+    pieces = _Pieces(Job(seed=1, first=3, last=9003, max_attempts=None, deadline=None), jobs)
+    reached = 3
+    for number, piece in enumerate(pieces):
+        assert piece.first == reached < piece.last <= reached + 4096
+        assert number < 9000
+        reached = piece.last
+        pieces.learn(Made(piece, b"", (), seconds=seconds))
+    assert reached == 9003

@@ -11,6 +11,7 @@ from typing import Any
 
 import pytest
 
+import scenic
 from tests.cli.commands import run_here
 from tests.processes import interruptible
 
@@ -294,3 +295,29 @@ def test_a_file_that_is_none_of_ours_is_made_anew(folder: Path, content: str) ->
     made = run(folder, *arguments)
     assert made.returncode == 0, made.stderr
     assert file.read_bytes() == expected
+
+
+@pytest.mark.parametrize(("limit", "margin"), [(0, "0"), (-2, "2"), (-0.5, "0.5")])
+def test_margins_are_told_that_of_nothing_included(folder: Path, limit: float, margin: str) -> None:
+    (folder / "margin.scenic").write_text(
+        f"ego = new Object\nrequire always ego.position.x >= {limit} as far\n"
+    )
+    shown = run(folder, "margin.scenic", "--seed", 1, "--time", 2)
+    assert shown.returncode == 0, shown.stderr
+    assert f"far: presumably true, robustness {margin}\n" in shown.stdout
+
+
+def test_a_process_that_dies_is_a_failure_and_the_others_go_on(folder: Path) -> None:
+    (folder / "dying.scenic").write_text(
+        "import os\nbehavior B():\n    take 1\n    if ego.x > 0:\n        os._exit(9)\n"
+        "ego = new Object at (Range(-1, 1), 0), with behavior B\n"
+    )
+    signs = [scene.egoObject.x > 0 for scene in scenic.load(folder / "dying.scenic").sample(4, seed=1)]
+    assert len(set(signs)) == 2
+    shown = run(folder, "dying.scenic", "-n", 4, "--seed", 1, "--time", 2, "-j", 2, "--simulator", "dummy")
+    assert shown.returncode == 1
+    for number, dies in enumerate(signs):
+        assert (
+            f"process of simulation {number} died (exit code 9)" in " ".join(shown.stderr.split())
+        ) is dies
+        assert (f"simulation {number}: 2 steps" in shown.stdout) is not dies

@@ -100,6 +100,11 @@ def test_points_that_meet_no_requirement_are_no_scenes() -> None:
     found = list(scenario.stream(3, seed=0, source=points))
     assert [type(item).__name__ for item in found] == ["Scene", "Exhausted", "Scene"]
     assert [item.attempts for item in found] == [1, 1, 1]
+    # There is no other point for them, however many candidates may be tried.
+    again = list(scenario.stream(3, seed=0, source=points, max_attempts=9))
+    assert [(type(item).__name__, item.attempts) for item in again] == [
+        (type(item).__name__, 1) for item in found
+    ]
 
 
 def test_simulations_by_sobol_are_spread_evenly_in_time() -> None:
