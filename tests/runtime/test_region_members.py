@@ -10,6 +10,7 @@ import pytest
 import scenic.core.regions as named
 import shapely
 import trimesh
+from scipy.spatial.transform import Rotation
 
 import scenic
 from scenic.language.errors import InvalidScenarioError, ScenicTypeError, ScenicValueError, UnsupportedError
@@ -224,6 +225,7 @@ def test_ends_and_directions_of_lines() -> None:
         assert line.signedDistanceTo(Vector(*point)) == pytest.approx(signed)
     joined = line + own
     assert joined.length == pytest.approx(11)
+    assert [tuple(point) for point in joined] == [tuple(point) for part in (line, own) for point in part]
     with pytest.raises(TypeError):
         line + 3
     for chains in ([[(0, 0, 0), (math.inf, 0, 0)]], [[(0, 0, 0), (0, math.nan, 0)]], [[(1, 1, 1)]], []):
@@ -561,3 +563,58 @@ def test_names_of_objects_that_are_drawn() -> None:
         assert names[0:2] + names[3:] == ["given", "class", "unnamed Object", "fixed"]
         seen.add(names[2])
     assert seen == {"one", "other"}
+
+
+DIMENSIONS = {
+    "disc": 2, "sector": 2, "rectangle": 2, "polygon": 2, "footprint": 3, "polyline": 1, "path": 1, "box": 3, "ball": 3,
+    "volume": 3, "surface": 2, "cells": 3, "view": 3, "cut": 3,
+}  # fmt: skip
+
+
+def test_dimensions_are_those_of_the_specification() -> None:
+    for kind, dimension in DIMENSIONS.items():
+        assert MAKERS[kind]().dimension == dimension, kind
+    assert DIMENSIONS.keys() == MAKERS.keys()
+    item = thing("ego = new Object")
+    assert item.occupiedSpace.dimension == 3
+    assert item.visibleRegion.dimension == 3
+    assert item.topSurface.dimension == item.surface.dimension == 2
+    assert (named.everywhere.dimension, named.nowhere.dimension) == (math.inf, 0)
+    # So of a solid and a plate most of the draws, or all, are in the solid.
+    found = draws(
+        "ego = new Object\nr = ego.occupiedSpace.union(CircularRegion((9, 0), 3))\nparam x = (new Point in r).position\n",
+        n=20,
+    )
+    assert all(abs(place.x) <= 0.5 for place in found)
+
+
+def test_distances_of_random_combinations_from_random_points() -> None:
+    text = (
+        "x, size = Range(5, 9), Range(1, 3)\nroom = BoxRegion((size, 2, 2)).intersect(BoxRegion((8, 1, 1)))\n"
+        "param x = (x, size, room.distanceTo((x, 0, 0)))\n"
+    )
+    for place, size, distance in draws(text, n=25):
+        assert distance == pytest.approx(place - size / 2)
+
+
+@pytest.mark.parametrize("centered", [True, False])
+@pytest.mark.parametrize("kind", ["MeshVolumeRegion", "MeshSurfaceRegion"])
+def test_meshes_are_stretched_turned_and_moved_in_this_order(kind: str, centered: bool) -> None:
+    """About the middle of their box, or about the origin that their vertices have."""
+    mesh = trimesh.creation.box((1, 2, 4))
+    mesh.apply_translation((3, -1, 2))
+    size = np.array([2.0, 3.0, 5.0])
+    region = getattr(named, kind)(mesh, tuple(size), PLACE, TILT, centerMesh=centered)
+    corners = mesh.vertices - ((3, -1, 2) if centered else (0, 0, 0))
+    expected = Rotation.from_quat(TILT.q).apply(corners * (size / (1, 2, 4))) + np.array(PLACE)
+    np.testing.assert_allclose(region.AABB, (expected.min(axis=0), expected.max(axis=0)))
+    assert region.containsPoint(Vector(*expected[0])) is True
+
+
+def test_lines_and_points_of_several_members_count_alike() -> None:
+    parts = [named.PolylineRegion([(number, 0), (number, number + 1)]) for number in range(4)]
+    assert named.PolylineRegion.unionAll(parts).length == pytest.approx(10)
+    points = named.PointSetRegion("points", [(number, 0, 0) for number in range(4)])
+    numbers = (np.arange(400) + 0.5) / 400
+    drawn, _ = points.draw_points(numbers[np.newaxis], np.zeros(400, dtype=np.uint64))
+    assert np.bincount(drawn[:, 0].astype(int)).tolist() == [100] * 4

@@ -7,6 +7,7 @@ from scipy.spatial.transform import Rotation
 from scenic.graph import quaternions
 from scenic.runtime.geometry import containment, primitives
 from scenic.runtime.geometry.bodies import Body
+from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.polygons import Polygons
 from scenic.runtime.geometry.poses import Poses
 
@@ -307,3 +308,17 @@ def test_batches_do_not_matter(batch):
     np.testing.assert_array_equal(in_batches(answers, count, batch), whole)
     assert (whole.mean(axis=0) > 0).all()
     assert (whole.mean(axis=0) < 1).all()
+
+
+@pytest.mark.parametrize("place", [0.0, 0.7, 3.0])
+def test_a_body_in_parts_is_held_where_all_of_them_are(place):
+    """Two cubes apart from each other, whose surfaces do not meet the container's; only the first is always in it."""
+    cube = primitives.box()
+    for order in (1, -1):
+        parts = [cube.vertices * 0.2, cube.vertices * 0.2 + np.array([0.3 + place, 0, 0])][::order]
+        faces = np.concatenate([cube.faces, cube.faces + len(cube.vertices)])
+        pair, centre, extents = Mesh(np.concatenate(parts), faces).normalized()
+        poses = Poses.fixed(centre, size=extents)
+        for container in (SHAPES["spheroid"](), SHAPES["bumpy"]()):
+            found = containment.mesh_in_mesh(pair, poses, container, Poses.fixed((0, 0, 0), size=(2, 2, 2)))
+            assert found.tolist() == [place < 0.5]

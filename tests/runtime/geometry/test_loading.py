@@ -13,7 +13,7 @@ from scenic.runtime.geometry.booleans import difference
 from scenic.runtime.geometry.inside import contains_points
 from scenic.runtime.geometry.loading import load_mesh
 from scenic.runtime.geometry.mesh import Mesh
-from scenic.runtime.geometry.solids import proper_volume
+from scenic.runtime.geometry.solids import _any_overlap, proper_volume
 
 from .samples import FILES, bumpy, hollow, placed, real_meshes, table
 
@@ -288,3 +288,14 @@ def test_real_meshes_keep_their_volume(path):
     mesh = load_mesh(path)
     assert mesh.volume == pytest.approx(expected.volume)
     np.testing.assert_array_equal(mesh.extents, expected.extents)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_whether_boxes_of_solids_meet_is_found_in_any_order(seed):
+    rng = np.random.default_rng(seed)
+    low = rng.uniform(-3, 3, (4, 3))
+    high = low + rng.uniform(0.2, 2.5, (4, 3))
+    cube = primitives.box()
+    solids = [Mesh((cube.vertices + 0.5) * (b - a) + a, cube.faces) for a, b in zip(low, high, strict=True)]
+    meets = ((low[:, None] <= high) & (low <= high[:, None])).all(axis=2)
+    assert _any_overlap(solids) == bool(np.triu(meets, 1).any())

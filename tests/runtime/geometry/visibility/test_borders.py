@@ -1,9 +1,11 @@
 """What is seen at the borders of views, where one ray more or less decides, against casting every ray at every triangle."""
 
+import itertools
 import math
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.poses import Poses
@@ -236,3 +238,33 @@ def test_the_corner_of_a_turned_obstacle_hides(turn: float, seen: bool) -> None:
     assert sees_points(observer, np.array([[0.0, 9.0, 0.0]]), occluders, 1).tolist() == [seen]
     spot = Body((BOX,), None, Poses.fixed([0, 9, 0], [0, 0, 0, 1], [0.01, 0.01, 0.01]))
     assert sees_bodies(observer, spot, occluders, 1).tolist() == [seen]
+
+
+@pytest.mark.parametrize("turn", [(0.0, 0.0, 0.0), (0.7, 0.4, -0.3), (-2.9, 1.2, 2.0)])
+def test_directions_on_the_border_of_a_view_are_in_it(turn: tuple[float, float, float]) -> None:
+    """Up to rounding, in whatever frame; and none beyond by more."""
+    frame = Rotation.from_euler("ZXY", turn)
+    for across, upward in itertools.product((0.3, 1.0, np.pi / 2, 2.0, 3.1), (0.2, 1.0, 2.0)):
+        for off, expected in ((0.0, True), (1e-6, False), (-1e-6, True)):
+            ways = []
+            for side, height in itertools.product((-1, 1), (-0.2, 0.0, 0.4)):
+                azimuth, altitude = side * (across / 2 + off), height * upward
+                ways.append(
+                    [
+                        -np.sin(azimuth) * np.cos(altitude),
+                        np.cos(azimuth) * np.cos(altitude),
+                        np.sin(altitude),
+                    ]
+                )
+                azimuth, altitude = height * across, side * (upward / 2 + off)
+                ways.append(
+                    [
+                        -np.sin(azimuth) * np.cos(altitude),
+                        np.cos(azimuth) * np.cos(altitude),
+                        np.sin(altitude),
+                    ]
+                )
+            camera = np.array([1.0, -2, 3])
+            points = camera + 7 * frame.apply(ways)
+            observer = Views.fixed(camera, frame.as_quat(), angles=(across, upward), distance=20.0)
+            assert (observer.contain(points) == expected).all()
