@@ -104,7 +104,7 @@ class Encoding:
             self._terms_of[node] = shared[key]
 
     def _key(self, node: Node, keys: dict[Node, Any]) -> Any:
-        if node.operation not in self._table or not node.operation.pure:
+        if node.operation not in self._table:  # which are all pure
             return node
         try:
             hash(node.payload)

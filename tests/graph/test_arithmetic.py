@@ -113,6 +113,19 @@ def test_no_integer_of_what_is_not_finite(name):
     check(name, [math.inf, 1.5, math.nan])
 
 
+def test_halves_are_rounded_to_even():
+    halves = [half / 2 for half in range(-9, 10)]
+    near = [math.nextafter(half, way) for half in halves for way in (-math.inf, math.inf)]
+    for name in ("round", "int"):
+        check(name, halves + near)
+        # Numbers that are known not to be large are rounded as columns.
+        node = make(name, make("divide", source(Kind.INTEGER, range(-9, 10)), 2.0))
+        assert node.kind is Kind.INTEGER
+        assert evaluate(node, 19).full(node).tolist() == [TABLE[name].python(half) for half in halves]
+    for digits in (-1, 0, 1):
+        check("round", [*halves, *near, 15.0, 25.0, 0.25, 0.35], [digits] * (len(halves) + len(near) + 4))
+
+
 @quick
 @given(st.lists(floats, min_size=1, max_size=9), st.integers(-3, 8))
 def test_rounding_to_digits(values, digits):

@@ -127,6 +127,16 @@ def test_quantile_and_cumulative_are_inverse(a, b):
     assert (np.diff(z) > 0).all()
 
 
+def test_quantiles_stay_within_their_interval():
+    """However narrow it is, and wherever: what is rounded does not leave it."""
+    rng = np.random.default_rng(7)
+    a = rng.choice([0.0, 1.0, 3.0, 8.0, 29.0, 31.0, 200.0, 9.99e3, 2e4], 4000) * rng.choice([-1, 1], 4000)
+    b = a + np.abs(a) * rng.choice([2e-16, 1e-12, 1e-3], 4000) + rng.choice([0.0, 1e-300, 1e-9], 4000)
+    u = rng.choice([1e-15, 0.25, 0.5, 0.75, 1 - 1e-15], 4000)
+    z = conditioned_quantile(a, b, u)
+    assert ((z >= a) & (z <= b)).all()
+
+
 @pytest.mark.parametrize("far", [25.0, 35.0, 9.9e3, 1.01e4, 1e6])
 @pytest.mark.parametrize("side", [-1, 1])
 def test_quantiles_of_far_tails_rise(far, side):

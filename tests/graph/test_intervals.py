@@ -8,8 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from graph.readings import Case, bounds_of, values_of
 from scenic.graph import intervals
 from scenic.graph.bounds import Bounds, outward
+from scenic.graph.kinds import Kind
 from scenic.graph.operations import TABLE
 
 numbers = st.floats(-1e6, 1e6)
@@ -121,6 +123,21 @@ def test_azimuths_are_tight_away_from_the_seam():
     south = Bounds(np.array([[-0.1, -2.0, 0.0]]), np.array([[0.1, -1.0, 0.0]]))
     result = TABLE["azimuth"].bounds(None, south)
     assert (result.lower[0], result.upper[0]) == (-math.pi, math.pi)
+
+
+@pytest.mark.parametrize("side", [(0.0, 1.0), (-1.0, -0.0), (-1.0, 1.0), (5e-324, 1.0), (-1.0, -1e-300)])
+def test_azimuths_next_to_the_seam_hold_their_values(side):
+    """Due South is half a turn one way or the other, by the sign of a zero or of what is rounded to one."""
+    low, high = side
+    case = Case("azimuth", (Kind.VECTOR,))
+    places = [
+        x for x in (low, high, 0.0, -0.0, 5e-324, -5e-324, 1e-17, -1e-17, 0.5, -0.5) if low <= x <= high
+    ]
+    columns = [np.array([(x, y, 1.0) for x in places for y in (-5.0, -1.0)])]
+    values, fine = values_of(case, columns)
+    lower, upper = bounds_of(case, columns, [((low, -5.0, 1.0), (high, -1.0, 1.0))])
+    assert fine.all()
+    assert ((values >= lower) & (values <= upper)).all()
 
 
 def test_bounds_themselves():

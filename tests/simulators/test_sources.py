@@ -83,6 +83,22 @@ def test_scenes_by_sobol_are_functions_of_seed_and_number() -> None:
     assert places(scenario.sample(1, seed=9)).tolist() != places(whole[:1]).tolist()
 
 
+def test_what_rows_do_not_give_is_a_function_of_seed_and_number_too() -> None:
+    """The draws of the program's own functions, where candidates before are rejected in some scenes."""
+    program = scenic.scenarioFromString(
+        "import random\ndef some(v): return hash(v) % 3 == 0\ndef noise(v): return v + random.random()\nx = Range(0, 1)\n"
+        "require some(x)\ny = noise(x)\nrequire y > 0.5\nparam y = y\n"
+    )
+    for check in program._engine.plan.checks:
+        check.separate = True  # each is made in those lanes alone that the ones before leave
+    sobol = scenic.Sobol()
+    together = [scene.params["y"] for scene in program.sample(20, seed=4, source=sobol)]
+    for lanes in (1, 3):
+        assert [
+            scene.params["y"] for scene in program.sample(20, seed=4, source=sobol, lanes=lanes)
+        ] == together
+
+
 def test_an_optimiser_gives_points() -> None:
     loose = scenic.scenarioFromString(SQUARE)
     assert [axis.span.column for axis in loose.axes if axis.span] == [21, 34]
