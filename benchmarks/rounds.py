@@ -53,7 +53,7 @@ def milliseconds(engine: Engine, lanes: int, rounds: int) -> float:
         pending = Pending(inner._chances)
         pending.add([(seed, number) for number in range(lanes)])
         begun = time.thread_time()
-        inner._round(pending, {}, 10**6, lanes, more=False)
+        inner._round(pending, {}, 10**6, lanes, lanes, more=False)
         times.append(time.thread_time() - begun)
     return statistics.median(times[SETTLING:]) * 1e3
 

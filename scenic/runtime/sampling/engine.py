@@ -49,6 +49,20 @@ BODY_BYTES = 400
 """Memory that the placement of one object takes in one lane."""
 
 
+_KEPT_BYTES = (1 << 25) - (1 << 13)
+"""Nearly the largest block by which glibc sets its limits."""
+
+
+def _keep_freed_memory() -> None:
+    """Let the C library keep the memory of columns that are freed for those that come next.
+
+    Otherwise the system takes it back and gives it out again, zeroed, many times in a round: up to a fifth of the time. glibc's
+    limits follow the largest block freed so far (mallopt(3), M_MMAP_THRESHOLD). Nobody writes to this one, so it takes no
+    memory; other allocators have limits of their own.
+    """
+    np.empty(_KEPT_BYTES, dtype=np.uint8)
+
+
 @dataclass(frozen=True, slots=True)
 class Plan:
     """What to sample: the graph, where in the cube, what must hold, and the nodes that a scene is made of."""
@@ -136,6 +150,7 @@ class Engine:
         *,
         grouped: bool = True,
     ) -> None:
+        _keep_freed_memory()
         self.plan = plan
         self._source = source
         self.candidates = 0
