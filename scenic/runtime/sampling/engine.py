@@ -56,9 +56,9 @@ _KEPT_BYTES = (1 << 25) - (1 << 13)
 def _keep_freed_memory() -> None:
     """Let the C library keep the memory of columns that are freed for those that come next.
 
-    Otherwise the system takes it back and gives it out again, zeroed, many times in a round: up to a fifth of the time. glibc's
-    limits follow the largest block freed so far (mallopt(3), M_MMAP_THRESHOLD). Nobody writes to this one, so it takes no
-    memory; other allocators have limits of their own.
+    Otherwise the system takes it back and gives it out again, zeroed, many times in a round: up to a fifth of the time, by
+    where blocks happen to lie. glibc's limits follow the largest block freed so far (mallopt(3), M_MMAP_THRESHOLD). Nobody
+    writes to this one, so it takes no memory; other allocators have limits of their own.
     """
     np.empty(_KEPT_BYTES, dtype=np.uint8)
 
