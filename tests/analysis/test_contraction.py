@@ -161,16 +161,22 @@ def test_a_union_of_boxes_where_it_pays():
     assert domain.volume == pytest.approx(0.1, abs=0.02)
 
 
-def test_a_paving_that_loses_nothing_ends_soon(monkeypatch):
-    sets = []
+@pytest.fixture
+def sets(monkeypatch):
+    """How many boxes are narrowed together, each time."""
+    found = []
     narrow = contraction._Network.contract
     monkeypatch.setattr(
         contraction._Network,
         "contract",
         lambda self, boxes, *rest, **more: (
-            sets.append(len(boxes.lower)) or narrow(self, boxes, *rest, **more)
+            found.append(len(boxes.lower)) or narrow(self, boxes, *rest, **more)
         ),
     )
+    return found
+
+
+def test_a_paving_that_loses_nothing_ends_soon(sets):
     x, y, z, w = (uniform(-10, 10) for _ in range(4))
     total = make("add", make("absolute", make("subtract", x, y)), make("absolute", make("subtract", z, w)))
     assert check(make("less", total, 35.0)).is_whole
@@ -468,16 +474,7 @@ def test_unions_within_a_hull_that_is_narrower_than_the_cube():
 
 
 @pytest.mark.parametrize("extra", [0, 1])
-def test_so_many_axes_are_split_and_no_more(extra, monkeypatch):
-    sets = []
-    narrow = contraction._Network.contract
-    monkeypatch.setattr(
-        contraction._Network,
-        "contract",
-        lambda self, boxes, *rest, **more: (
-            sets.append(len(boxes.lower)) or narrow(self, boxes, *rest, **more)
-        ),
-    )
+def test_so_many_axes_are_split_and_no_more(extra, sets):
     total, *rest = (uniform(0, 1) for _ in range(contraction.SPLIT_AXES + extra))
     for draw in rest:
         total = make("add", total, draw)
