@@ -33,6 +33,11 @@ def test_the_table_is_read_only():
         TABLE["add"] = TABLE["subtract"]
 
 
+def test_every_entry_is_pure():
+    """The solver takes what the same operation makes of the same operands for one value."""
+    assert all(operation.pure for operation in TABLE.values())
+
+
 def test_every_entry_has_a_case_and_a_description():
     assert {case.name for case in CASES} == set(TABLE)
     assert all(operation.doc.endswith(".") and operation.name == name for name, operation in TABLE.items())
