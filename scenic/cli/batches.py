@@ -131,7 +131,7 @@ def _alone(lines: SceneLines, job: Job, result: Scene | Exhausted) -> Made:
     part = replace(job, first=result.k, last=result.k + 1)
     if isinstance(result, Exhausted):
         return Made(part, b"", (result,), result.attempts)
-    return Made(part, lines.line(result).encode("ascii") + b"\n", (), result.attempts)
+    return Made(part, lines.encoded(result), (), result.attempts)
 
 
 def _make(scenario: Scenario, lines: SceneLines, job: Job) -> Made:
@@ -143,7 +143,7 @@ def _make(scenario: Scenario, lines: SceneLines, job: Job) -> Made:
             if isinstance(result, Exhausted):
                 missing.append(result)
             else:
-                text += lines.line(result).encode("ascii") + b"\n"
+                text += lines.encoded(result)
     except Exception:  # noqa: BLE001 - the parent makes the job again, and shows the error with its place
         return Made(job, b"", (), failed=True)
     return Made(job, PickleBuffer(text), tuple(missing), attempts, time.monotonic() - begun)

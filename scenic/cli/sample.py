@@ -230,7 +230,7 @@ def sample(
                     for take in takers:
                         take(result)
                     if target is not None:
-                        put(lines.line(result).encode("ascii") + b"\n")
+                        put(lines.encoded(result))
                 advance(1, result.attempts)
     if missing:
         from rich.console import Console

@@ -70,6 +70,10 @@ class SceneLines:
         objects = ",".join([self._object(scene, thing, names.get(thing), numbers) for thing in things])
         return f'{_text_of(head)[:-1]},"objects":[{objects}]}}'
 
+    def encoded(self, scene: Scene) -> bytes:
+        """The line with its end, as files hold it."""
+        return self.line(scene).encode("ascii") + b"\n"
+
     def _object(self, scene: Scene, thing: SceneObject, name: str | None, numbers: Mapping[int, int]) -> str:
         origin = scene.origin(thing)
         template = self._templates.get(id(origin))
