@@ -168,7 +168,7 @@ def _lines(frame: FrameType, first: int, last: int) -> str | None:
 def _user_frames(step: TracebackType | None) -> Iterator[traceback.FrameSummary]:
     while step is not None:
         frame = step.tb_frame
-        if PRELUDE in frame.f_globals or _is_users(frame.f_code.co_filename):
+        if PRELUDE in frame.f_globals or _is_users(_file(step)):
             position = next(islice(frame.f_code.co_positions(), max(0, step.tb_lasti // 2), None), None)
             line, end_line, column, end_column = position or (step.tb_lineno, None, None, None)
             first = step.tb_lineno if line is None else line
@@ -189,8 +189,14 @@ def _user_frames(step: TracebackType | None) -> Iterator[traceback.FrameSummary]
 
 
 def raised_at(error: BaseException) -> Place | None:
-    """Where an exception was raised: the innermost line that is the user's, of the program or of a Python module."""
-    frames = list(_user_frames(error.__traceback__))
+    """Where an exception was raised: the innermost line that is the user's, of the program or of a Python module.
+
+    The script that called this library is not meant: its lines stand before all of the library's.
+    """
+    step = error.__traceback__
+    while step is not None and PRELUDE not in step.tb_frame.f_globals and _is_users(_file(step)):
+        step = step.tb_next
+    frames = list(_user_frames(step))
     if not frames or frames[-1].lineno is None:
         return None
     frame = frames[-1]
@@ -200,6 +206,10 @@ def raised_at(error: BaseException) -> Place | None:
     text = linecache.getline(frame.filename, line).encode("utf-8", "surrogatepass")
     first, last = (len(text[:end].decode("utf-8", "ignore")) for end in (column, end_column))
     return Place(frame.filename, Span(line, first, line, last))
+
+
+def _file(step: TracebackType) -> str:
+    return step.tb_frame.f_code.co_filename
 
 
 def _is_users(filename: str) -> bool:

@@ -5,7 +5,9 @@ from typing import Any
 
 import pytest
 
+import scenic
 from scenic.cli import sample
+from scenic.pipeline import diagnose
 from tests.cli.commands import run_here
 
 TOOLS = "def boom(v):\n    raise ValueError(f'boom')\ndef root(v):\n    import math\n    return math.sqrt(-1 - v)\n"
@@ -112,3 +114,10 @@ def test_options_that_do_not_go_together_are_wrong_usage(
     assert result.returncode == 2
     assert words in " ".join(result.stderr.split())
     assert [path.name for path in tmp_path.iterdir()] == ["program.scenic"]
+
+
+def test_the_script_that_called_is_no_place_of_the_fault() -> None:
+    with pytest.raises(TypeError) as caught:
+        scenic.scenarioFromString("x = Range(0, 1)\nparam y = x + 'a'\n").sample(1)
+    found = diagnose(caught.value)
+    assert found is not None and found.code == "SC501" and not found.labels

@@ -1,0 +1,17 @@
+"""Programs and expressions of the language give what was recorded."""
+
+from pathlib import Path
+
+import pytest
+
+from tests.recorded import FOLDER, expressions, hold, scenes
+
+
+@pytest.mark.parametrize("path", sorted(FOLDER.glob("programs_*.txt")), ids=lambda path: path.stem)
+def test_programs(path: Path, request: pytest.FixtureRequest) -> None:
+    hold(path, scenes, request)
+
+
+@pytest.mark.parametrize("path", sorted(FOLDER.glob("expressions_*.txt")), ids=lambda path: path.stem)
+def test_expressions(path: Path, request: pytest.FixtureRequest) -> None:
+    hold(path, expressions, request)
