@@ -120,4 +120,6 @@ def test_the_script_that_called_is_no_place_of_the_fault() -> None:
     with pytest.raises(TypeError) as caught:
         scenic.scenarioFromString("x = Range(0, 1)\nparam y = x + 'a'\n").sample(1)
     found = diagnose(caught.value)
-    assert found is not None and found.code == "SC501" and not found.labels
+    assert found is not None
+    assert found.code == "SC501"
+    assert not found.labels
