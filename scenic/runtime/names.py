@@ -150,7 +150,10 @@ class GlobalParameters:
         object.__setattr__(self, "_program", program)
 
     def __getitem__(self, name: str) -> Any:
-        parameters = self._program.parameters
+        active = current.get()
+        # A simulation knows what the random ones are.
+        owner = active.run if type(active) is RunContext else self._program
+        parameters = owner.parameters
         self._program.read_parameters.add(name)
         if name in self._program.overrides:
             return self._program.overrides[name]

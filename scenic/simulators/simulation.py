@@ -17,6 +17,7 @@ from scenic.language.errors import (
     StuckBehaviorError,
     annotate,
 )
+from scenic.language.spans import Span
 from scenic.runtime.dynamics.copies import Copies
 from scenic.runtime.dynamics.driving import Sourcing
 from scenic.runtime.dynamics.run import Run
@@ -347,17 +348,21 @@ class Simulation(ABC):
         try:
             self.createObjectInSimulator(obj)
         except SimulationCreationError as error:
-            number, scene = len(self.objects) - 1, self._original
-            if error.span is None and number < len(scene.objects):
-                error.span, error.filename = scene.place(number)
-            elif error.span is None:
-                error.span, error.filename = scene.program.places.get(id(obj), (None, None))
+            if error.span is None:
+                error.span, error.filename = self.place_of(obj)
             raise
         obj.startDynamicSimulation()
         if self._run.top.running:
             self._update(obj, first=False)
 
     _createObject = add
+
+    def place_of(self, obj: Any) -> tuple[Span | None, str | None]:
+        """Where the program creates an object: span and file, as far as they are known."""
+        number = next((index for index, item in enumerate(self.objects) if item is obj), len(self.objects))
+        if number < len(self._original.objects):
+            return self._original.place(number)
+        return self._original.program.places.get(id(obj), (None, None))
 
     def _tell(self, line: str) -> None:
         print(line)  # noqa: T201 - asked for by the user

@@ -16,7 +16,6 @@ import trimesh
 import scenic
 from tests.cli.commands import run_here
 
-pytestmark = pytest.mark.slow
 ROOT = Path(__file__).parents[2]
 
 BALLS = """
@@ -54,6 +53,7 @@ def run(folder: Path, *arguments: object) -> "subprocess.CompletedProcess[str]":
     return run_here(["sample", *arguments], folder=folder, variables={"NO_COLOR": "1", "COLUMNS": "100"})
 
 
+@pytest.mark.slow
 def test_every_output_at_once(folder: Path) -> None:
     outputs = ("-o", "balls.jsonl", "--view", "balls.html", "--png", "pictures")
     result = subprocess.run(
@@ -261,6 +261,7 @@ def test_progress_ends_when_all_scenes_are_there(folder: Path, done: int, jobs: 
     assert len(target.read_text().splitlines()) == 5
 
 
+@pytest.mark.slow
 def test_what_is_computed_of_meshes_is_kept_unless_it_must_not(tmp_path: Path) -> None:
     (tmp_path / "cones.scenic").write_text(
         "for i in range(4):\n    new Object at (Range(-1, 1), Range(-1, 1), 0), with shape ConeShape(), facing (0, 40 deg, 0)\n"

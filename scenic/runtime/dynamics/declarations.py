@@ -4,7 +4,7 @@ The same for the scenario that is compiled and for those that are set up during 
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Protocol
 
 from scenic.language.spans import Span
@@ -112,12 +112,11 @@ class RecordUse:
     every: tuple[float, str] | None = None
     after: tuple[float, str] | None = None
     to: Any = None
+    span: Span | None = None
 
     def within(self, copier: Copier) -> "RecordUse":
         """The same over the values of a simulation."""
-        return RecordUse(
-            self.value.within(copier), self.moment, self.name, self.every, self.after, copier.value(self.to)
-        )
+        return replace(self, value=self.value.within(copier), to=copier.value(self.to))
 
 
 @dataclass(slots=True)

@@ -207,7 +207,7 @@ class Dynamics:
         check_duration(after, "after", 0, span)
         check_target(to, span)
         key = name or ("record" if span is None else f"record{span.line}")
-        self._declared.records.append(RecordUse(Kept(concrete, captured), moment, key, every, after, to))
+        self._declared.records.append(RecordUse(Kept(concrete, captured), moment, key, every, after, to, span))
 
     @property
     def _declared(self) -> Any:

@@ -29,8 +29,11 @@ def plain(value: Any) -> Any:
 
 
 def as_array(value: Any) -> Any:
-    array = value if isinstance(value, np.ndarray) else np.asarray(plain(value))
-    if array.dtype == object:
+    try:
+        array = value if isinstance(value, np.ndarray) else np.asarray(plain(value))
+    except ValueError:  # lists of different lengths
+        array = None
+    if array is None or array.dtype == object:
         raise ScenicValueError("only numbers can be recorded as an array", span=here())
     return array
 

@@ -3,7 +3,7 @@
 import math
 from typing import TYPE_CHECKING, Any
 
-from scenic.language.errors import ScenicTypeError, ScenicValueError
+from scenic.language.errors import Located, ScenicTypeError, ScenicValueError
 from scenic.language.spans import Span
 from scenic.runtime.dynamics.declarations import RecordUse
 from scenic.runtime.dynamics.recorders import File, Files, Recorder, for_pattern
@@ -52,7 +52,11 @@ class Recording:
             value = self.use.value()
         self.begun = True
         if self._recorder is not None:
-            self._recorder.recordValue(value, step)
+            try:
+                self._recorder.recordValue(value, step)
+            except Located as error:
+                error.span = error.span or self.use.span
+                raise
         if isinstance(self._recorder, File | Files) and not self._run.keeps_files:
             if name not in records:
                 records[name] = self._recorder.written

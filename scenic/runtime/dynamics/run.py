@@ -6,6 +6,7 @@ from contextlib import contextmanager, suppress
 from typing import Any, Protocol
 
 from scenic.language.errors import InvalidScenarioError
+from scenic.language.spans import Span
 from scenic.runtime.context import Context, Locator, Namer, current, here
 from scenic.runtime.dynamics.activations import Activation, Termination
 from scenic.runtime.dynamics.copies import Copies
@@ -35,6 +36,9 @@ class Simulated(Protocol):
 
     def add(self, obj: Any) -> None:
         """Create an object in the simulator."""
+
+    def place_of(self, obj: Any) -> Any:
+        """Where the program creates an object: span and file, as far as they are known."""
 
     def sense(self) -> None:
         """Let every object observe."""
@@ -262,7 +266,12 @@ class Run:
         if behavior is None or (behavior._activation is not None and behavior._activation.agent is agent):
             return
         with self.within(scenario):
-            Activation(self, behavior, agent, scenario).start()
+            try:
+                Activation(self, behavior, agent, scenario).start()
+            except InvalidScenarioError as error:
+                if error.span is None:
+                    error.span, error.filename = self.simulation.place_of(agent)
+                raise
         self.note_agent(agent)
 
     def note_agent(self, agent: Any) -> None:
@@ -436,8 +445,17 @@ class Run:
                 return None
             return ()
         if output:
-            self.simulation.check_actions(agent, output)
+            try:
+                self.simulation.check_actions(agent, output)
+            except InvalidScenarioError as error:
+                error.span = error.span or self._waits_at(activation)
+                raise
         return output
+
+    def _waits_at(self, activation: Activation) -> Span | None:
+        """The place of the code of a behavior that has yielded."""
+        frame = getattr(activation.generator, "gi_frame", None)
+        return None if frame is None else self.context.locator(frame)
 
     # The end
 
