@@ -111,14 +111,16 @@ def _scene(number: int, scene: "scenic.Scene") -> str:
     for index, item in enumerate(scene.objects):
         ego = ", ego" if item is scene.egoObject else ""
         lines.append(f"  #{index} {type(item).__name__}{ego}")
-        properties = item.properties
-        lines += [
-            f"    {name}: {text}"
-            for name in sorted(properties.keys() - _FOLLOWING)
-            if (text := shown(properties[name], names)) != _usual().get(name)
-        ]
+        lines += [f"    {name}: {text}" for name, text in unusual(item, names).items()]
     lines += [f"  param {name}: {shown(value, names)}" for name, value in scene.params.items()]
     return "\n".join(lines)
+
+
+def unusual(item: Point, names: Mapping[int, str] | None = None) -> dict[str, str]:
+    """The properties of an instance that differ from those of a plain object, as texts."""
+    properties = item.properties
+    texts = {name: shown(properties[name], names) for name in sorted(properties) if name not in _FOLLOWING}
+    return {name: text for name, text in texts.items() if text != _usual().get(name)}
 
 
 _FOLLOWING = {"heading", "yaw", "pitch", "roll"}

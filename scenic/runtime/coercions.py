@@ -126,12 +126,17 @@ def _coerce_boxed(value: Random, kind: Kind, function: Callable[..., Any], what:
 
 
 def _coerce_later(value: Random, kind: Kind, function: Callable[..., Any], what: str) -> Any:
+    return when_drawn(value, kind, lambda sampled: function(sampled, what))
+
+
+def when_drawn(value: Random, kind: Kind, function: Callable[[Any], Any]) -> Any:
+    """What a function makes of the value that is drawn."""
     operation = Operation(
         f"to {kind.value}",
         always(kind),
         by_lane,
         "A coercion that has to wait for the sampled value.",
-        python=lambda sampled: function(sampled, what),
+        python=function,
     )
     return apply(operation, value)
 

@@ -3,6 +3,7 @@
 from types import MappingProxyType
 from typing import Any
 
+from scenic.graph.kinds import Kind
 from scenic.language.errors import ScenicTypeError
 from scenic.runtime.context import here
 from scenic.runtime.randoms import Random
@@ -11,7 +12,8 @@ from scenic.runtime.randoms import Random
 def describe(value: Any) -> str:
     """A value in words for a message."""
     if isinstance(value, Random):
-        return f"a random {value.node.kind.value}"
+        known = value.node.kind
+        return "a random value" if known is Kind.OTHER else f"a random {known.value}"
     if value is None:
         return "None"
     if isinstance(value, type):

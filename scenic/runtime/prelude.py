@@ -25,6 +25,7 @@ from scenic.language.errors import (
     UnsupportedError,
 )
 from scenic.runtime import conditions, mutation, names
+from scenic.runtime.choices import per_option
 from scenic.runtime.conditions import Condition
 from scenic.runtime.context import Context, current, here
 from scenic.runtime.dynamics.declarations import Kept, required
@@ -68,6 +69,20 @@ COMPARISONS: Mapping[str, str] = MappingProxyType(
         "!=": "not equal",
     }
 )
+
+
+def _behavior_of(value: Any) -> Any:
+    """What the property ``behavior`` holds: a class stands for an instance without arguments."""
+    if isinstance(value, type) and issubclass(value, Behavior):
+        return value()
+    later = isinstance(value, Random) and value.node.kind.is_boxed
+    if value is None or later or isinstance(value, Behavior):
+        return value
+    raise ScenicTypeError(
+        f"property 'behavior' must be a behavior, not {describe(value)}",
+        span=here(),
+        help="define one with `behavior NAME():`, and write `with behavior NAME()`",
+    )
 
 
 class Modules(Protocol):
@@ -218,15 +233,7 @@ class Prelude(Dynamics):
         if self._context.evaluating:
             return instance
         if isinstance(instance, Object):
-            behavior = instance.behavior
-            if isinstance(behavior, type) and issubclass(behavior, Behavior):
-                instance.__dict__["behavior"] = behavior()
-            elif behavior is not None and not isinstance(behavior, Behavior | Random):
-                raise ScenicTypeError(
-                    f"property 'behavior' must be a behavior, not {describe(behavior)}",
-                    span=here(),
-                    help="define one with `behavior NAME():`, and write `with behavior NAME()`",
-                )
+            instance.__dict__["behavior"] = per_option(instance.behavior, _behavior_of)
         sightings = [specifier.sighting for specifier in specifiers if specifier.sighting is not None]
         if self._run is not None:
             for sighting in sightings:

@@ -11,8 +11,11 @@ from graphlib import TopologicalSorter
 from types import MappingProxyType
 from typing import Any
 
+from scenic.graph.kinds import Kind
 from scenic.language.errors import InvalidScenarioError, ScenicValueError
 from scenic.language.spans import Span
+from scenic.runtime.choices import per_option
+from scenic.runtime.coercions import when_drawn
 from scenic.runtime.context import current, here
 from scenic.runtime.regions.base import Region
 from scenic.runtime.shapes import Shape
@@ -21,6 +24,7 @@ from scenic.runtime.values import (
     Vector,
     is_number,
     operate,
+    options_of,
     to_orientation,
     to_scalar,
     to_vector,
@@ -162,6 +166,16 @@ _SCALARS = frozenset(
         "contactTolerance",
     }
 )
+_TRUTHS = frozenset(
+    {
+        "allowCollisions",
+        "occluding",
+        "requireVisible",
+        "showVisibleRegion",
+        "render",
+        "viewRayDistanceScaling",
+    }
+)
 _ANGLES = frozenset({"yaw", "pitch", "roll"})
 
 
@@ -206,8 +220,34 @@ def _orientation(name: str, value: Any) -> Any:
 
 
 def _shape(name: str, value: Any) -> Any:
-    if not isinstance(value, Shape | Random):
+    if not isinstance(value, Shape):
         raise wrong_type("a shape", value, f"property {name!r}")
+    return value
+
+
+def _truth(name: str, value: Any) -> Any:
+    """Python's own rule holds; of what is random, numbers have a truth of their own."""
+    if isinstance(value, Random) and not value.node.kind.is_number:
+        raise wrong_type("a truth value", value, f"property {name!r}")
+    return value if isinstance(value, Random) else bool(value)
+
+
+def _per_drawn(normalise: Callable[[str, Any], Any], kind: Kind = Kind.OTHER) -> Callable[[str, Any], Any]:
+    """Normalises each option of a random choice, and what has no kind of its own when it is drawn."""
+
+    def applied(name: str, value: Any) -> Any:
+        if not (isinstance(value, Random) and value.node.kind.is_boxed):
+            return normalise(name, value)
+        if options_of(value):
+            return per_option(value, lambda option: applied(name, option))
+        return when_drawn(value, kind, lambda drawn: normalise(name, drawn))
+
+    return applied
+
+
+def _density(name: str, value: Any) -> Any:
+    """A number, left as it is written."""
+    _scalar(name, value)
     return value
 
 
@@ -219,8 +259,6 @@ def _container(name: str, value: Any) -> Any:
 
 def _view_angles(_name: str, value: Any) -> Any:
     """A pair of angles, at most all around."""
-    if isinstance(value, Random):
-        return value
     if not (isinstance(value, tuple | list | Vector) and len(value) in (2, 3)):
         raise wrong_type("a pair of angles", value, "property 'viewAngles'")
     limited = []
@@ -246,7 +284,7 @@ def _view_angles(_name: str, value: Any) -> Any:
 
 
 def _colour(_name: str, value: Any) -> Any:
-    if value is None or isinstance(value, Random):
+    if value is None:
         return value
     parts = tuple(value) if isinstance(value, tuple | list) else ()
     fine = len(parts) in (3, 4) and all(
@@ -289,9 +327,11 @@ _NORMAL: Mapping[str, Callable[[str, Any], Any]] = MappingProxyType(
         **dict.fromkeys(_SCALARS, _scalar),
         **dict.fromkeys(_ANGLES, _angle),
         "parentOrientation": _orientation,
-        "viewAngles": _view_angles,
-        "color": _colour,
-        "shape": _shape,
+        **dict.fromkeys(_TRUTHS, _per_drawn(_truth, Kind.BOOLEAN)),
+        "viewAngles": _per_drawn(_view_angles),
+        "viewRayDensity": _density,
+        "color": _per_drawn(_colour),
+        "shape": _per_drawn(_shape),
         "regionContainedIn": _container,
     }
 )

@@ -31,6 +31,7 @@ from scenic.runtime.values import (
     apply,
     describe,
     operate,
+    options_of,
     per_option,
     to_scalar,
     to_vector,
@@ -134,7 +135,7 @@ def _is_turned(observer: Any) -> bool:
 
 def view_operands(observer: Any) -> tuple[Any, ...]:
     """Everything that describes an observer's view, for `views_of`; of a random choice, each value is one."""
-    if isinstance(observer, Random):
+    if options_of(observer):
         return tuple(per_option(observer, partial(_view_operand, number)) for number in range(VIEW_OPERANDS))
     camera, orientation = camera_of(observer)
     horizontal, vertical = _pair(observer.viewAngles, "viewAngles")

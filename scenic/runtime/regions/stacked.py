@@ -12,6 +12,7 @@ import numpy as np
 
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import Call
+from scenic.runtime.geometry import primitives
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.poses import Indices, Poses
@@ -44,9 +45,13 @@ def body_of(position: Column, orientation: Column, size: Column, shape: Column) 
 
 
 def _meshes_of(shape: Column) -> tuple[tuple[Mesh, ...], Indices | None]:
-    """The different meshes of shapes, and which of them each has; ``None`` where there is one mesh."""
+    """The different meshes of shapes, and which of them each has; ``None`` where there is one mesh.
+
+    Where no shape could be drawn, the lane has a fault; a box stands in for it.
+    """
     numbers: dict[Mesh, int] = {}
-    choice = [numbers.setdefault(item.mesh, len(numbers)) for item in shape.ravel().tolist()]
+    meshes = (primitives.box() if item is None else item.mesh for item in shape.ravel().tolist())
+    choice = [numbers.setdefault(mesh, len(numbers)) for mesh in meshes]
     if len(numbers) == 1:
         return tuple(numbers), None
     return tuple(numbers), np.array(choice, dtype=np.intp).reshape(shape.shape)

@@ -1,0 +1,60 @@
+"""Values that a property cannot hold are refused: at once, or when they are drawn."""
+
+import pytest
+
+from tests.runtime.programs import failure, place, thing
+
+WRONG = [
+    # (property, a value that fits, one that does not, the code)
+    ("shape", "ConeShape()", "3", "SC404"),
+    ("viewAngles", "(1, 0.5)", "3", "SC404"),
+    ("viewAngles", "(1, 0.5)", "(1, 0)", "SC405"),
+    ("color", "(1, 0, 0.5)", "3", "SC405"),
+    ("color", "None", "(1, 0, 2)", "SC405"),
+]
+
+
+@pytest.mark.parametrize(("name", "fits", "wrong", "code"), WRONG)
+@pytest.mark.parametrize(
+    "form", ["{1}", "Uniform({0}, {1})", "Uniform([{0}, {1}], [{0}, {1}])[DiscreteRange(1, 1)]"]
+)
+def test_a_wrong_value_is_refused(name: str, fits: str, wrong: str, code: str, form: str) -> None:
+    program = "ego = new Object\nnew Object at (4, 5, 6), with {} {}"
+    error = failure(program.format(name, form.format(fits, wrong)))
+    assert place(error)[:1] == (code,)
+    assert place(error)[1].startswith("2:")
+    assert thing(program.format(name, form.format(fits, fits))) is not None
+
+
+@pytest.mark.parametrize("value", ["Range(0, 1)", "(Range(0, 1), 2, 3) relative to (1, 2, 3)"])
+def test_random_numbers_are_no_shapes(value: str) -> None:
+    assert place(failure(f"ego = new Object with shape {value}"))[0] == "SC404"
+
+
+@pytest.mark.parametrize("name", ["allowCollisions", "requireVisible", "occluding"])
+def test_truth_is_that_of_python(name: str) -> None:
+    """A drawn value of any type is true or false as Python says; a vector is neither."""
+    assert place(failure(f"ego = new Object with {name} Vector(Range(0, 1), 2, 3)"))[0] == "SC404"
+    drawn = "Uniform([(), (1, 2)], [(), (1, 2)])[DiscreteRange({0}, {0})]"
+    ego = "ego = new Object\n"
+    for index in (0, 1):
+        item = thing(f"{ego}new Object at (0, 5), with {name} {drawn.format(index)}")
+        assert getattr(item, name) is bool(index)
+
+
+def test_options_of_view_angles_are_limited_too() -> None:
+    with pytest.warns(UserWarning, match="truncated"):
+        item = thing("ego = new Object with viewAngles Uniform((7, 1), (7, 1))")
+    assert tuple(item.viewAngles) == (pytest.approx(6.283185307179586), 1)
+
+
+def test_a_random_behavior() -> None:
+    program = "behavior Idle():\n    wait\nego = new Object with behavior {}"
+    assert type(thing(program.format("Uniform(Idle, Idle)")).behavior).__name__ == "Idle"
+    assert place(failure(program.format("Uniform(1, 2)")))[0] == "SC404"
+    assert place(failure(program.format("Uniform(Idle(), 2)")))[0] == "SC404"
+
+
+def test_an_observer_that_is_a_random_number() -> None:
+    error = failure("param x = CircularRegion((0, 0), 3) visible from Range(1, 2)")
+    assert place(error)[0] == "SC404"

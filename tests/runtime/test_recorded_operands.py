@@ -1,0 +1,106 @@
+"""Every operator, specifier, method and function over operands of every kind gives what was recorded.
+
+A case is a template; ``{a}`` stands for each kind of operand in turn, ``{b}`` and ``{n}`` for some.
+"""
+
+import re
+from collections.abc import Iterator
+from itertools import product
+from pathlib import Path
+
+import pytest
+
+import scenic
+from scenic.runtime.objects import Point
+from tests.recorded import FOLDER, hold, said, shown, unusual
+
+KINDS = {
+    "integer": "3",
+    "float": "-0.7",
+    "bool": "True",
+    "random": "Range(0.3, 0.9)",
+    "whole": "DiscreteRange(2, 4)",
+    "pair": "(4, 5)",
+    "vector": "Vector(1.5, -2, 0.4)",
+    "moving": "(Range(1, 2), -3, 0.25)",
+    "place": "Uniform(Vector(1, 2, 3), Vector(-2, 1, 4))",
+    "turn": "Orientation.fromEuler(0.3, 0.2, -0.1)",
+    "turning": "Orientation.fromEuler(Range(0.1, 0.6), 0.2, -0.1)",
+    "point": "point",
+    "oriented": "oriented",
+    "object": "thing",
+    "one of": "Uniform(thing, ego)",
+    "mixed": "Uniform(0.5, 2)",
+    "region": "disc",
+    "field": "flow",
+    "string": "'word'",
+    "list": "[1, 2.5, -3, 4]",
+    "none": "None",
+}
+
+SECOND = {
+    "b": ("integer", "random", "moving", "turn", "one of", "region", "list"),
+    "n": ("integer", "random", "moving"),
+}
+"""Kinds of the second of two operands; fewer where most others would fail only on a sample, one by one."""
+
+PREAMBLE = """
+import math
+flow = VectorField("flow", lambda p: 0.1 * p.x - 0.2 * p.y)
+disc = CircularRegion((2, -1, 0.5), 3)
+workspace = Workspace(BoxRegion(position=(0, 0, 0), dimensions=(80, 90, 100)))
+ego = new Object at (9, -7, 1), facing (0.4, 0.1, -0.2), with width 0.6, with length 1.7, with height 0.9
+point = new Point at (6, 5, -4)
+oriented = new OrientedPoint at (-5, 8, 2), facing (1.1, -0.3, 0.2)
+thing = new Object at (-12, -9, 3), facing (-0.8, 0.35, 0.5), with width 2.2, with length 1.3, with height 0.7
+answers = {}
+def attempt(key, function):
+    try:
+        answers[key] = function()
+    except Exception as error:
+        answers[key] = error
+"""
+
+
+def expressions(template: str) -> Iterator[tuple[str, str]]:
+    """Each choice of operands of a template, as its name and its text."""
+    places = {
+        place: KINDS if place == "a" else SECOND[place] for place in "abn" if f"{{{place}}}" in template
+    }
+    for names in product(*places.values()):
+        operands = {place: f"({KINDS[name]})" for place, name in zip(places, names, strict=True)}
+        yield ", ".join(names) or "alone", template.format(**operands)
+
+
+def answers(source: str) -> str:
+    asked = list(expressions(source.rstrip("\n")))
+    found = some([text for _, text in asked])
+    return "\n".join(f"{name} -> {answer}" for (name, _), answer in zip(asked, found, strict=True))
+
+
+def some(asked: list[str]) -> list[str]:
+    """The answers of many expressions, together in one program as far as no sample has a fault."""
+    calls = "\n".join(f"attempt({number}, lambda: {text})" for number, text in enumerate(asked))
+    try:
+        scenario = scenic.scenarioFromString(f"{PREAMBLE}\n{calls}\nparam answers = answers\n")
+        (scene,) = scenario.sample(1, seed=3, max_attempts=300)
+    except Exception as error:  # noqa: BLE001 - what is said of it is the answer
+        if len(asked) == 1:
+            return [told(error)]
+        middle = len(asked) // 2
+        return some(asked[:middle]) + some(asked[middle:])
+    return [told(value) for value in scene.params["answers"].values()]
+
+
+def told(value: object) -> str:
+    if isinstance(value, Point):
+        left_out = {"allowCollisions", "tag"}
+        return ", ".join(f"{name} {text}" for name, text in unusual(value).items() if name not in left_out)
+    if not isinstance(value, Exception):
+        return shown(value)
+    return re.sub(r"^\w+ [\d:-]+ (?=SC\d\d\d )", "", said(value).split("\n")[0])
+
+
+@pytest.mark.parametrize("path", sorted(FOLDER.glob("operands_*.txt")), ids=lambda path: path.stem)
+def test_operands_of_every_kind(path: Path, request: pytest.FixtureRequest) -> None:
+    hold(path, answers, request)
