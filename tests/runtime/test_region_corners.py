@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import scenic.core.regions as named
 import shapely
+import trimesh
 
 from scenic.language.errors import RejectionException
 from scenic.runtime.fields import (
@@ -321,3 +322,9 @@ def test_distances_and_boxes_of_fixed_and_random_members() -> None:
         found = region.box(*columns)
         np.testing.assert_allclose(found[0], lower)
         np.testing.assert_allclose(found[1], upper)
+
+
+def test_a_surface_in_a_tilted_plane_has_a_box() -> None:
+    corners = np.array([(0, 0, 0), (2, 0, 1), (0, 3, 0), (2, 3, 1)], dtype=float)
+    sheet = named.MeshSurfaceRegion(trimesh.Trimesh(corners, [(0, 1, 2), (1, 3, 2)]), centerMesh=False)
+    np.testing.assert_allclose(sheet.AABB, [corners.min(axis=0), corners.max(axis=0)], atol=1e-12)

@@ -102,7 +102,7 @@ def bounds(body: Body) -> tuple[Floats, Floats]:
     lower, upper = np.empty((lanes, 3)), np.empty((lanes, 3))
     for mesh, chosen in body.by_mesh(lanes):
         # Which corner of the hull is farthest depends on how the body is turned.
-        corners = mesh.hull.vertices
+        corners = mesh.outermost
         for some in rows(len(chosen), len(corners), _CORNERS):
             part = chosen[some]
             world = body.poses.take(part).to_world(corners[np.newaxis])

@@ -162,6 +162,16 @@ class Mesh:
         found = kept("hull 1", self.digest, self._computed_hull)
         return Hull(_read_only(found["vertices"]), _read_only(found["planes"]), float(found["volume"]))
 
+    @cached_property
+    def outermost(self) -> Floats:
+        """Vertices ``(h, 3)`` of which one is farthest in any direction: those of the hull, all of a flat mesh."""
+        from scipy.spatial import QhullError
+
+        try:
+            return self.hull.vertices
+        except QhullError:  # it lies in a plane, perhaps in a tilted one
+            return self.vertices[distinct(self.faces)]
+
     def _computed_hull(self) -> Arrays:
         from scipy.spatial import ConvexHull
 

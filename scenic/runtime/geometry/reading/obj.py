@@ -23,9 +23,10 @@ def read_obj(data: bytes) -> Soup:
     lines = [line.split(None, 1) for line in data.splitlines()]
     points = [line[1] for line in lines if line[:1] == [b"v"] and len(line) == 2]
     polygons = [line[1] for line in lines if line[:1] == [b"f"] and len(line) == 2]
-    vertices = np.array([point.split()[:3] for point in points] or np.empty((0, 3)), dtype=np.float64)
-    if vertices.ndim != 2 or vertices.shape[1] != 3:
+    places = [point.split()[:3] for point in points]
+    if any(len(place) < 3 for place in places):
         raise ValueError("a vertex without three coordinates")
+    vertices = np.array(places or np.empty((0, 3)), dtype=np.float64)
     corners = [_BESIDE.sub(b"", polygon).split() for polygon in polygons]
     counts = np.array([len(corner) for corner in corners], dtype=np.intp)
     numbers = np.array([number for corner in corners for number in corner] or [], dtype=np.intp)
