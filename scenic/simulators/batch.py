@@ -13,7 +13,6 @@ from scenic.language.spelling import nearest
 from scenic.runtime.dynamics.driving import driven
 from scenic.runtime.sampling.report import Exhausted
 from scenic.runtime.scenario import Scenario
-from scenic.runtime.values import describe
 from scenic.simulators.simulation import OnState, Simulation
 from scenic.simulators.simulator import Simulator
 
@@ -78,7 +77,7 @@ _PLACES: Final = MappingProxyType(
 def _checked(made: Any, what: str) -> Simulator:
     if not callable(getattr(made, "simulate", None)):
         raise SimulatorChoiceError(
-            f"{what} is no simulator, but {describe(made)}",
+            f"{what} is no simulator, but an object of the class {type(made).__name__}",
             help="simulators derive from `scenic.simulators.simulator.Simulator`",
         )
     simulator: Simulator = made

@@ -113,6 +113,7 @@ class RecordUse:
     after: tuple[float, str] | None = None
     to: Any = None
     span: Span | None = None
+    filename: str | None = None
 
     def within(self, copier: Copier) -> "RecordUse":
         """The same over the values of a simulation."""

@@ -31,7 +31,7 @@ from scenic.runtime.temporal.monitors import Monitor as Follower
 from scenic.runtime.values import describe, is_number
 
 if TYPE_CHECKING:
-    from scenic.runtime.program import Program
+    from scenic.runtime.program import Module, Program
 
 __all__ = ["Dynamics"]
 
@@ -44,6 +44,7 @@ class Dynamics:
     CONTINUE = statements.CONTINUE
 
     _program: "Program"
+    _module: "Module"
 
     @property
     def _context(self) -> Context:
@@ -207,7 +208,10 @@ class Dynamics:
         check_duration(after, "after", 0, span)
         check_target(to, span)
         key = name or ("record" if span is None else f"record{span.line}")
-        self._declared.records.append(RecordUse(Kept(concrete, captured), moment, key, every, after, to, span))
+        kept = Kept(concrete, captured)
+        self._declared.records.append(
+            RecordUse(kept, moment, key, every, after, to, span, self._module.filename)
+        )
 
     @property
     def _declared(self) -> Any:

@@ -55,7 +55,8 @@ class Recording:
             try:
                 self._recorder.recordValue(value, step)
             except Located as error:
-                error.span = error.span or self.use.span
+                if error.span is None:
+                    error.span, error.filename = self.use.span, self.use.filename
                 raise
         if isinstance(self._recorder, File | Files) and not self._run.keeps_files:
             if name not in records:

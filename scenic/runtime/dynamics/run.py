@@ -448,14 +448,14 @@ class Run:
             try:
                 self.simulation.check_actions(agent, output)
             except InvalidScenarioError as error:
-                error.span = error.span or self._waits_at(activation)
+                error.span, error.filename = self._waits_at(activation)
                 raise
         return output
 
-    def _waits_at(self, activation: Activation) -> Span | None:
-        """The place of the code of a behavior that has yielded."""
+    def _waits_at(self, activation: Activation) -> tuple[Span | None, str | None]:
+        """The place of the code of a behavior that has yielded: span and file."""
         frame = getattr(activation.generator, "gi_frame", None)
-        return None if frame is None else self.context.locator(frame)
+        return (None, None) if frame is None else (self.context.locator(frame), frame.f_code.co_filename)
 
     # The end
 
