@@ -144,7 +144,7 @@ def shown(value: Any, names: Mapping[int, str] | None = None) -> str:
     if isinstance(value, int):
         return str(value)
     if isinstance(value, float):
-        return f"{value + 0.0:.9g}" if abs(value) > 1e-12 else "0"
+        return "0" if abs(value) <= 1e-12 else f"{value + 0.0:.9g}"
     if isinstance(value, np.generic | np.ndarray):
         return f"{type(value).__name__} {shown(value.tolist())}"
     if isinstance(value, Vector):

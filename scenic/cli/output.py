@@ -30,7 +30,7 @@ INTERNAL: Final = 70
 INTERRUPTED: Final = 130
 """Ended with Ctrl-C (128 + SIGINT, as shells have it)."""
 
-_OF_USAGE: Final = frozenset({"SC600", "SC601", "SC603", "SC604", "SC605", "SC606"})
+_OF_USAGE: Final = frozenset({"SC600", "SC601", "SC603", "SC604", "SC605", "SC606", "SC607"})
 
 
 def exit_code(diagnostics: Iterable[Diagnostic], *, failing: Collection[Severity] = (Severity.ERROR,)) -> int:

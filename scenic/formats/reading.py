@@ -71,7 +71,10 @@ def read_scenes(path: str | Path) -> Iterator[ReadScene]:
             # Line by line, so that the one that is no text is known.
             yield from scenes_of((line.decode() for line in file), str(path))
     except OSError as error:
-        raise MissingFileError(f"cannot read '{path}': {(error.strerror or str(error)).lower()}") from error
+        reason = (error.strerror or str(error)).lower()
+        raise MissingFileError(
+            f"cannot read '{path}': {reason}", code="SC600", help="check the path"
+        ) from error
 
 
 def scenes_of(lines: Iterable[str], name: str) -> Iterator[ReadScene]:

@@ -92,7 +92,10 @@ def read_trajectory(path: str | Path) -> Trajectory:
             raise ValueError(f"it is a {about['format']} file of version {about['version']}")
         return _trajectory(about, steps)
     except OSError as error:
-        raise MissingFileError(f"cannot read '{path}': {(error.strerror or str(error)).lower()}") from error
+        reason = (error.strerror or str(error)).lower()
+        raise MissingFileError(
+            f"cannot read '{path}': {reason}", code="SC600", help="check the path"
+        ) from error
     except (ValueError, KeyError, TypeError) as error:
         raise TrajectoryFileError(
             f"'{path}' holds no simulation: {error}",

@@ -132,7 +132,9 @@ def _sums(values: Any) -> str:
     flat = np.asarray(values, dtype=float).ravel()
     weights = np.arange(len(flat)) % 7 + 1
     # Nine digits would hold the noise of sums near 0.
-    return f"{np.nansum(flat):.4f} {np.nansum(flat * weights):.4f} {np.nansum(flat * flat):.4f}".replace("-0.0000", "0.0000")
+    return f"{np.nansum(flat):.4f} {np.nansum(flat * weights):.4f} {np.nansum(flat * flat):.4f}".replace(
+        "-0.0000", "0.0000"
+    )
 
 
 def _picture(path: Path) -> str:
@@ -142,7 +144,10 @@ def _picture(path: Path) -> str:
     if pixels.ndim == 2:
         pixels = pixels[:, :, np.newaxis]
     rows = [
-        " ".join("/".join(str(round(part)) for part in block.mean(axis=(0, 1))) for block in np.array_split(row, 4, axis=1))
+        " ".join(
+            "/".join(str(round(part)) for part in block.mean(axis=(0, 1)))
+            for block in np.array_split(row, 4, axis=1)
+        )
         for row in np.array_split(pixels, 3, axis=0)
     ]
     return f"{image.format} {image.size} {image.mode}: {' | '.join(rows)}"
