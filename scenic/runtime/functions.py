@@ -26,22 +26,32 @@ def _for_python(function: Callable[..., Any]) -> Callable[[Callable[..., Any]], 
 @_for_python(math.sin)
 def sin(x: Any) -> Any:
     """Sine of an angle in radians."""
-    return operate("sin", x)
+    return _of_numbers("sin", x)
 
 
 @_for_python(math.cos)
 def cos(x: Any) -> Any:
     """Cosine of an angle in radians."""
-    return operate("cos", x)
+    return _of_numbers("cos", x)
 
 
 @_for_python(math.hypot)
 def hypot(*coordinates: Any) -> Any:
     """Euclidean length of a vector given by its coordinates."""
-    for item in coordinates:
-        if not (is_number(item) or isinstance(item, Random | Lazy)):
-            raise wrong_type("numbers", item, "`hypot`")
-    return operate("hypot", *coordinates)
+    return _of_numbers("hypot", *coordinates)
+
+
+def _of_numbers(name: str, *operands: Any) -> Any:
+    if is_lazy(operands):
+        return defer(_of_numbers, name, *operands)
+    for item in operands:
+        if not (is_number(item) or (isinstance(item, Random) and _may_be_number(item))):
+            raise wrong_type("a number", item, f"`{name}`")
+    return operate(name, *operands)
+
+
+def _may_be_number(value: Random) -> bool:
+    return value.node.kind.is_number or value.node.kind.is_boxed
 
 
 def _extreme(name: str, function: Callable[..., Any]) -> Callable[..., Any]:
@@ -116,9 +126,10 @@ def convert(name: str, value: Any = 0, *rest: Any) -> Any:
     """``int``, ``float`` and ``str`` as calls in programs, also of random values."""
     if is_lazy((value, *rest)):
         return defer(convert, name, value, *rest)
-    if isinstance(value, Random) or is_random(value):
-        return operate(name, value)
     function: Callable[..., Any] = {"int": int, "float": float, "str": str}[name]
+    if is_later(value, *rest):
+        known = isinstance(value, Random) and (name == "str" or _may_be_number(value))
+        return operate(name, value) if known and not rest else call_later(function, value, *rest)
     return function(value, *rest)
 
 

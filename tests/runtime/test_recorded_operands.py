@@ -53,6 +53,8 @@ ego = new Object at (9, -7, 1), facing (0.4, 0.1, -0.2), with width 0.6, with le
 point = new Point at (6, 5, -4)
 oriented = new OrientedPoint at (-5, 8, 2), facing (1.1, -0.3, 0.2)
 thing = new Object at (-12, -9, 3), facing (-0.8, 0.35, 0.5), with width 2.2, with length 1.3, with height 0.7
+def helper(value, other=2):
+    return (value, other)
 answers = {}
 def attempt(key, function):
     try:

@@ -1,0 +1,37 @@
+"""Conversions and functions of numbers: with all their arguments, and of numbers only."""
+
+import pytest
+
+from tests.runtime.programs import failure, params, place
+
+CONVERSIONS = [
+    ("int(Uniform('10', '10'), 16)", 16),
+    ("int('12', DiscreteRange(8, 8))", 10),
+    ("float(Uniform('1.5', '1.5'))", 1.5),
+    ("int(Range(2.5, 2.6))", 2),
+    ("str(Uniform(Vector(1, 2, 3), Vector(1, 2, 3)))", "Vector(1, 2, 3)"),
+    ("str((DiscreteRange(4, 4), 2))", "(4, 2)"),
+    ("str(b'ab', 'ascii')", "ab"),
+]
+
+
+@pytest.mark.parametrize(("expression", "expected"), CONVERSIONS)
+def test_a_conversion_takes_all_that_it_is_given(expression: str, expected: object) -> None:
+    assert params(f"param x = {expression}")["x"] == expected
+
+
+VECTORS = ["Vector(1, 2, 3)", "Uniform(Vector(1, 2, 3), Vector(2, 3, 4))", "Vector(Range(0, 1), 2, 3)"]
+TURNS = ["Orientation.fromEuler(1, 2, 3)", "Orientation.fromEuler(Range(0, 1), 2, 3)"]
+
+
+@pytest.mark.parametrize("value", VECTORS + TURNS)
+@pytest.mark.parametrize("function", ["sin", "cos", "hypot", "float", "int"])
+def test_vectors_are_no_numbers(function: str, value: str) -> None:
+    error = failure(f"y = {value}\nparam x = {function}(y)")
+    assert isinstance(error, TypeError)
+    assert place(error)[1].startswith("2:")
+
+
+def test_what_waits_for_an_object_is_a_number_or_not_when_it_is_there() -> None:
+    program = "flow = VectorField('flow', lambda p: p.x)\nnew Object at (0.25, 2), with x {}(flow relative to 0.5){}"
+    assert place(failure(program.format("hypot(", ", 3)")))[0] == "SC404"
