@@ -208,14 +208,9 @@ class Dynamics:
         check_duration(after, "after", 0, span)
         check_target(to, span)
         key = name or ("record" if span is None else f"record{span.line}")
-<<<<<<< HEAD
         kept = Kept(concrete, captured)
         self._declared.records.append(
             RecordUse(kept, moment, key, every, after, to, span, self._module.filename)
-=======
-        self._declared.records.append(
-            RecordUse(Kept(concrete, captured), moment, key, every, after, to, span)
->>>>>>> 47b211f (Convert random values with all arguments, and take functions of numbers of numbers only)
         )
 
     @property
