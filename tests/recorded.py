@@ -162,7 +162,10 @@ def shown(value: Any, names: Mapping[int, str] | None = None) -> str:
     if isinstance(value, Point):
         return f"{type(value).__name__} at {shown(value.position)}"
     if isinstance(value, Region):
-        lower, upper = value.AABB
+        try:
+            lower, upper = value.AABB
+        except TypeError:
+            return f"{type(value).__name__} without a box"
         return f"{type(value).__name__} in {shown(tuple(lower))} to {shown(tuple(upper))}"
     if isinstance(value, type):
         return value.__name__

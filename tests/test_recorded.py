@@ -15,3 +15,8 @@ def test_programs(path: Path, request: pytest.FixtureRequest) -> None:
 @pytest.mark.parametrize("path", sorted(FOLDER.glob("expressions_*.txt")), ids=lambda path: path.stem)
 def test_expressions(path: Path, request: pytest.FixtureRequest) -> None:
     hold(path, expressions, request)
+
+
+def test_flat_programs(request: pytest.FixtureRequest) -> None:
+    for path in sorted(FOLDER.glob("flat_programs_*.txt")):
+        hold(path, lambda source: scenes(source, mode2D=True), request)

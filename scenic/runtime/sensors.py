@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping
 from typing import Any, ClassVar
 
-from scenic.language.errors import InvalidScenarioError
+from scenic.language.errors import InvalidScenarioError, Located
 
 DEFAULT_FIELD_OF_VIEW = 90.0
 """Horizontal opening angle of cameras that say nothing else, degrees."""
@@ -121,7 +121,7 @@ class CallbackSensor(Sensor):
 def _three(value: Any, name: str) -> tuple[float, float, float]:
     try:
         x, y, z = (float(item) for item in value)
-    except (TypeError, ValueError) as error:
+    except (TypeError, ValueError, Located) as error:
         raise InvalidScenarioError(
             f"the {name} of a sensor must be three numbers, not {value!r}",
             help="sensors are fixed on their objects: their places and sizes are not random",

@@ -12,6 +12,8 @@ from scenic.graph import intervals
 from scenic.graph.bounds import Bounds
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import Call, Operation, always
+from scenic.language.errors import ScenicTypeError
+from scenic.runtime.context import here
 from scenic.runtime.geometry import body_points, containment, distance, projection, surface
 from scenic.runtime.geometry.collision import Body, collide
 from scenic.runtime.geometry.single import gap
@@ -21,7 +23,7 @@ from scenic.runtime.regions.base import Mask, Points, Region, unsupported
 from scenic.runtime.regions.fixed_sides import FixedSide
 from scenic.runtime.regions.nearness import body_box, body_reach, grown, only_within, separation
 from scenic.runtime.regions.stacked import Stack, body_of, body_operands, placed_of
-from scenic.runtime.values import apply, is_random, operate, to_vector, uniform, vector
+from scenic.runtime.values import apply, describe, is_number, is_random, operate, to_vector, uniform, vector
 
 SIDES: Mapping[str, Side] = MappingProxyType(
     {
@@ -277,6 +279,21 @@ class Facing:
     threshold: float = 0.0
 
 
+def _pairs(thresholds: Any) -> list[tuple[float, float]]:
+    """The thresholds of an object's sides, negative and positive, for each axis."""
+    try:
+        pairs = [(lower, upper) for lower, upper in thresholds]
+    except (TypeError, ValueError):
+        pairs = []
+    if len(pairs) != 3 or not all(is_number(part) for pair in pairs for part in pair):
+        raise ScenicTypeError(
+            f"property 'sideComponentThresholds': expected three pairs of numbers, not {describe(thresholds)}",
+            span=here(),
+            help="one pair for each axis, as `((-0.5, 0.5), (-0.5, 0.5), (-0.5, 0.5))`",
+        )
+    return [(float(lower), float(upper)) for lower, upper in pairs]
+
+
 class SideSurface(Region):
     """The faces of an object's surface that look along one direction of the world, or the whole surface.
 
@@ -297,8 +314,8 @@ class SideSurface(Region):
         self.facing = Facing(SIDES[side])
         if self.facing.side is not None:
             axis, sign = self.facing.side
-            lower, upper = thresholds[axis]
-            self.facing = Facing((axis, sign), float(upper if sign > 0 else -lower))
+            lower, upper = _pairs(thresholds)[axis]
+            self.facing = Facing((axis, sign), upper if sign > 0 else -lower)
 
     @cached_property
     def _fixed(self) -> FixedSide | None:

@@ -20,7 +20,7 @@ from scenic.runtime.context import here
 from scenic.runtime.geometry.collision import Body
 from scenic.runtime.regions.base import Mask, Points, Region
 from scenic.runtime.regions.nearness import hull_of
-from scenic.runtime.regions.planar import PlanarRegion
+from scenic.runtime.regions.planar import Footprint, PlanarRegion
 
 TRIES: Final = 2_000
 """Draws of one point before a region counts as empty in a lane."""
@@ -211,6 +211,15 @@ class IntersectionRegion(Composite):
         if orientation is None and oriented is not None:
             self.has_orientation, self.orientation = True, oriented.orientation
 
+    def uniform_placement(self) -> tuple[Any, Any]:
+        if all(isinstance(member, Footprint) for member in self.members):
+            raise InvalidScenarioError(
+                "no point can be drawn from an intersection of unbounded regions",
+                span=here(),
+                help="intersect them with a bounded region, too",
+            )
+        return super().uniform_placement()
+
     def combined(self, members: Sequence[Region]) -> Region:
         result = members[0]
         for member in members[1:]:
@@ -271,6 +280,16 @@ class UnionRegion(Composite):
     def __init__(self, *members: Region, orientation: Any = None, name: str | None = None) -> None:
         super().__init__(*members, orientation=orientation, name=name)
         self.dimension = max(member.dimension for member in members)
+
+    def uniform_placement(self) -> tuple[Any, Any]:
+        for member in self.members:
+            if member.dimension == self.dimension and type(member).sizes is Region.sizes:
+                raise ScenicTypeError(
+                    f"the size of {member!r} is not known: no point of a union with it can be drawn",
+                    span=here(),
+                    help="choose among the regions, as by `Uniform(a, b)`, or use such whose parameters are fixed",
+                )
+        return super().uniform_placement()
 
     def combined(self, members: Sequence[Region]) -> Region:
         result = members[0]
