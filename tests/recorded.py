@@ -9,6 +9,7 @@ many corners that no law reaches.
 
 import difflib
 import re
+import warnings
 from collections.abc import Callable, Mapping
 from functools import cache
 from pathlib import Path
@@ -64,12 +65,15 @@ def alike(first: str, second: str) -> bool:
 
 def scenes(source: str, *, wanted: int = 3, **options: Any) -> str:
     """What a program's first scenes hold: each object's properties and each parameter; or what is said of its error."""
-    try:
-        scenario = scenic.scenarioFromString(source, **options)
-        found = scenario.sample(wanted, seed=7, max_attempts=500)
-    except Exception as error:  # noqa: BLE001 - what is said of it is the answer
-        return said(error)
-    return "\n".join(_scene(number, scene) for number, scene in enumerate(found))
+    with warnings.catch_warnings(record=True) as warned:
+        warnings.simplefilter("always")
+        try:
+            scenario = scenic.scenarioFromString(source, **options)
+            found = scenario.sample(wanted, seed=7, max_attempts=500)
+            answer = "\n".join(_scene(number, scene) for number, scene in enumerate(found))
+        except Exception as error:  # noqa: BLE001 - what is said of it is the answer
+            answer = said(error)
+    return "\n".join([*(f"warning: {warning.message}" for warning in warned), answer])
 
 
 def expressions(source: str) -> str:

@@ -75,6 +75,8 @@ class Batch:
         """Which of the first lanes each present lane is, ascending."""
         self.errors: dict[Node, Exception] = {}
         """What went wrong at a node; exact only in a batch of one lane whose nodes are evaluated singly."""
+        self.has_faults = False
+        """Whether an operation has failed in some lane."""
         self._generation = 0
         self._kept: list[NDArray[np.intp]] = []
         self._schedule: Schedule = scheduler.start
@@ -313,6 +315,7 @@ class Batch:
         if status is not None:
             if status.shape != (len(step.nodes), lanes):
                 status = np.broadcast_to(status, (len(step.nodes), lanes))
+            self.has_faults = self.has_faults or bool((status == FAULT).any())
             if lanes == 1 and len(step.nodes) == 1 and status[0, 0] == FAULT:
                 error = self._error(step, call)
                 if error is not None:

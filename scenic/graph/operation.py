@@ -198,7 +198,7 @@ class Operation:
     undeclared is an internal error. An operation that ``stacks`` evaluates the columns of several alike nodes in one
     call: it is elementwise over all leading dimensions. A ``partial`` one has readings of bounds that take operands of which
     nothing is known, and may look at some operands only: ``looks_at`` says which, from the payload. ``rewrite`` simplifies a node
-    before it is made.
+    before it is made. ``missing`` says in a user's words what there is none of where a lane has no value.
     """
 
     name: str
@@ -218,6 +218,7 @@ class Operation:
     partial: bool = False
     looks_at: Callable[[Any], slice] | None = None
     rewrite: Rewriting | None = None
+    missing: str = "value"
 
     def may_fault(self, operands: Sequence[Operand], payload: Any, kind: Kind) -> bool:
         """Whether a lane may fail at a node of this operation, given fine operands."""

@@ -117,7 +117,7 @@ def folded(operation: Operation, nodes: Sequence[Node], payload: Any) -> Any:
         raise call.error
     if call.status is not None:
         raise InvalidScenarioError(
-            f"this {operation.name} can never be drawn", span=here(), help="it rejects every sample"
+            f"there is no {operation.missing}", span=here(), help="every sample would be rejected"
         )
     return CODEC.decode(kind, column[:1])[0]
 

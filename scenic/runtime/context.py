@@ -63,6 +63,8 @@ class Context:
         """Instances that choices draw and what stands for them until they are mutated, by their identities."""
         self.sample: Any = None
         """The sample on which Python code is being called."""
+        self.concerns: Span | None = None
+        """The place of what is worked on where no line of the program runs."""
         self.looks = False
         """Whether some condition asks what is seen: it has to be made again when all objects are there."""
 
@@ -93,7 +95,8 @@ class Context:
 
     def place(self) -> Span | None:
         """Place in the program of whoever called the runtime."""
-        return self._locate(sys._getframe(1))
+        found = self._locate(sys._getframe(1))
+        return self.concerns if found is None else found
 
     @property
     def namer(self) -> Namer:

@@ -478,6 +478,7 @@ _HEADING = Operation(
     _headings,
     "The heading of a field of polygons; the candidate is rejected where it has none.",
     rejects=True,
+    missing="direction of the field",
 )
 
 
@@ -505,6 +506,7 @@ _FOLLOW_TABLE = Operation(
     _follow_table,
     "The end of a way along a field of polygons; the candidate is rejected where the way leaves them.",
     rejects=True,
+    missing="direction of the field",
 )
 
 

@@ -10,7 +10,7 @@ from typing import Any
 from scenic.graph.kinds import Kind
 from scenic.language.errors import ScenicTypeError
 from scenic.runtime.context import current, here
-from scenic.runtime.mutators import BUILT_IN
+from scenic.runtime.mutators import BUILT_IN, applied
 from scenic.runtime.objects import Point
 from scenic.runtime.opaque import call_later, see_mutated
 from scenic.runtime.program import Program
@@ -46,12 +46,15 @@ def request(targets: Iterable[Any], scale: Any) -> None:
 def apply_noise(program: Program) -> None:
     """Mutate all instances that ask for it, when the program has ended; requirements are then about what comes out."""
     mutated = False
+    context = current.get()
     for instance in program.instances:
         scale = instance.__dict__["mutationScale"]
         if is_random(scale) or scale != 0:
+            if context is not None:
+                context.concerns, _ = program.places.get(id(instance), (None, None))
             mutated |= _mutate(instance, scale)
-    context = current.get()
     if context is not None:
+        context.concerns = None
         complete(context)
     if mutated and context is not None:
         see_mutated(context)
@@ -69,7 +72,7 @@ def mutate_now(instance: Point) -> None:
         if type(mutator) in BUILT_IN:
             update(instance, mutator.noisy(instance, scale))
         elif mutator is not None:
-            _, go_on = mutator.appliedTo(instance)
+            _, go_on = applied(mutator, instance)
             if not go_on:
                 break
 
@@ -119,7 +122,7 @@ def _kind(value: Any) -> Kind | None:
 
 def _applied(instance: Any, mutators: tuple[Any, ...], names: tuple[str, ...]) -> tuple[Any, ...]:
     for mutator in mutators:
-        instance, go_on = mutator.appliedTo(instance)
+        instance, go_on = applied(mutator, instance)
         if not go_on:
             break
     return tuple(getattr(instance, name) for name in names)

@@ -3,6 +3,9 @@
 from collections.abc import Mapping
 from typing import Any
 
+from scenic.language.errors import ScenicTypeError
+from scenic.runtime.context import here
+from scenic.runtime.describing import describe
 from scenic.runtime.distributions import Normal
 from scenic.runtime.properties import update
 from scenic.runtime.values import Vector, is_number, operate, to_scalar, to_vector, vector
@@ -17,6 +20,18 @@ class Mutator:
         ``instance`` is that of one sample; it may be changed in place.
         """
         raise NotImplementedError(f"{type(self).__name__} does not say what it does (`appliedTo`)")
+
+
+def applied(mutator: Any, instance: Any) -> tuple[Any, bool]:
+    """What a mutator makes of an instance; raises `ScenicTypeError` where it gives something else."""
+    result = mutator.appliedTo(instance)
+    if isinstance(result, tuple) and len(result) == 2:
+        return result
+    raise ScenicTypeError(
+        f"`{type(mutator).__name__}.appliedTo` gives an instance and whether other mutators follow, not {describe(result)}",
+        span=here(),
+        help="end it with `return instance, True`, if those of the bases shall follow",
+    )
 
 
 class _NormalNoise(Mutator):
@@ -96,4 +111,4 @@ def _sampled_noise(mutator: Any, instance: Any) -> tuple[Any, bool]:
     return instance, True
 
 
-__all__ = ["BUILT_IN", "Mutator", "OrientationMutator", "PositionMutator"]
+__all__ = ["BUILT_IN", "Mutator", "OrientationMutator", "PositionMutator", "applied"]

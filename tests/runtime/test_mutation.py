@@ -13,6 +13,7 @@ from tests.runtime.programs import (
     draws,
     euler,
     failure,
+    place,
     scenario,
     scene,
     thing,
@@ -150,8 +151,8 @@ def test_beside_mutators_of_the_program_each_angle_has_its_own_noise() -> None:
         CUSTOM.format(go_on="")
         + "ego = new C with orientationStdDev ({}), with positionStdDev (0, 0, 0)\nmutate ego\n"
     )
-    for place, name in enumerate(("yaw", "pitch", "roll")):
-        deviations = ", ".join("0.2" if number == place else "0" for number in range(3))
+    for axis, name in enumerate(("yaw", "pitch", "roll")):
+        deviations = ", ".join("0.2" if number == axis else "0" for number in range(3))
         egos = [item.egoObject for item in scenario(text.format(deviations)).sample(200, seed=1)]
         assert normal([getattr(ego, name) for ego in egos], 0.2)
         for other in {"yaw", "pitch", "roll"} - {name}:
@@ -268,3 +269,11 @@ def test_a_mutator_of_the_program_may_change_what_is_final_but_not_what_follows_
     )
     ego = scene(text).egoObject
     assert (ego.fixed, ego.position.x, ego.twice) == (2, 5, 10)
+
+
+def test_a_mutator_that_gives_nothing_back_is_told_at_the_object() -> None:
+    error = failure(
+        "class M(Mutator):\n    def appliedTo(self, o):\n        o.position = (1, 2, 3)\n"
+        "class A:\n    mutator: M()\nego = new Object\nx = new A at (5, 5)\nmutate x\n"
+    )
+    assert place(error)[:2] == ("SC404", "7:5-7:20")

@@ -9,7 +9,8 @@ import pytest
 from scipy import stats
 
 import scenic
-from tests.runtime.programs import FALSE_ALARM, draws, fingerprint, scenario
+from scenic.language.errors import RejectionException
+from tests.runtime.programs import FALSE_ALARM, draws, failure, fingerprint, scenario
 
 ROOT = Path(__file__).parents[2]
 LANES = (1, 64, 4096)
@@ -369,3 +370,36 @@ def test_of_several_faults_of_a_candidate_the_first_in_the_program_is_told(order
             scenario(text).sample(20, seed=0, lanes=lanes)
         (note,) = caught.value.__notes__
         assert "requirement on line 6 failed" in note
+
+
+FAILING = """
+@distributionFunction
+def missing(value):
+    return {}[value]
+y = missing(Range(0, 1))
+ego = new Object with width 3, with length 3, with height 3
+new Object at (9, 9)
+"""
+
+
+@pytest.mark.parametrize(
+    "specifiers",
+    [
+        "at y",
+        "at (y, 0)",
+        "at (5, 5), facing y",
+        "at (5, 5), with width y",
+        "at (5, 5), with shape y",
+        "at (1, 1), with allowCollisions y",
+    ],
+)
+def test_what_cannot_be_computed_is_no_collision(specifiers: str) -> None:
+    """Its lanes hold anything; that this meets another object does not hide the fault."""
+    assert isinstance(failure(f"{FAILING}new Object {specifiers}\n"), KeyError)
+    others = "new Object at (20, 0)\nx = new Object at (Range(19.2, 20.8), 1.5), with height Range(1, 1.1)\n"
+    assert isinstance(failure(f"{FAILING}{others}new Object {specifiers}\n"), KeyError)
+
+
+def test_others_that_collide_reject_a_candidate_that_fails() -> None:
+    error = failure(f"{FAILING}new Object at (Range(-1, 1), 0)\nnew Object at (y, 30)\n")
+    assert isinstance(error, RejectionException)

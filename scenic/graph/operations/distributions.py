@@ -579,6 +579,7 @@ OPERATIONS = (
         solver=_discrete_solver,
         faults=_may_be_large,
         rejects=_may_be_empty,
+        missing="whole number in the range",
         stacks=True,
     ),
     Operation(

@@ -451,6 +451,7 @@ _DRAW = Operation(
     "A uniform point of a region, from uniform numbers and a key; rejected where the region is empty.",
     bounds=_point_extent,
     rejects=_may_find_none,
+    missing="point of the region",
 )
 
 

@@ -152,6 +152,7 @@ _LANDING_OR_INSIDE = Operation(
     _landing_or_inside,
     "Where a point lands in a volume; rejected where it misses.",
     rejects=True,
+    missing="place to land on",
 )
 
 
@@ -451,6 +452,7 @@ _FACE = Operation(
     _face,
     "A face of a side, by area; the candidate is rejected where the side has none.",
     rejects=_may_have_no_face,
+    missing="surface to stand on",
     stacks=True,
 )
 _FACE_POINT = Operation(
@@ -501,6 +503,7 @@ _LANDING_FACE = Operation(
     _landing_face,
     "The face of a side where a point lands; the candidate is rejected where it misses.",
     rejects=True,
+    missing="place to land on",
     stacks=True,
 )
 _LANDING_POINT = Operation(

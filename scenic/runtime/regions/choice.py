@@ -176,6 +176,7 @@ _NO_LANDING = Operation(
     "Where a point lands on an option of a choice that it misses; rejected where that option is drawn.",
     pure=False,
     rejects=True,
+    missing="place to land on",
 )
 
 

@@ -153,6 +153,7 @@ _LAND = Operation(
     _land,
     "A point of a plane; the candidate is rejected where it lies beside the region.",
     rejects=True,
+    missing="place to land on",
 )
 
 

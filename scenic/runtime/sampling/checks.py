@@ -151,11 +151,11 @@ class ObjectNodes:
         """The object's body in every lane."""
         columns = [batch.column(node) for node in self.all[:4]]
         body = body_of(*columns)
-        return replace(
-            body,
-            allow=batch.column(self.allow_collisions),
-            is_fixed=self.is_fixed,
-        )
+        allow = batch.column(self.allow_collisions)
+        for status in map(batch.status, self.all) if batch.has_faults else ():
+            # Where it could not be computed it collides with nothing: the fault is not to be taken for a rejection.
+            allow = allow if status is None else allow.astype(np.bool_) | (status != OK)
+        return replace(body, allow=allow, is_fixed=self.is_fixed)
 
     @property
     def is_fixed(self) -> bool:
@@ -218,7 +218,7 @@ class CollisionCheck:
             self._collider = Collider([item.body(batch) for item in self.objects], self.pairs)
         moving = [item for item in self.objects if not item.is_fixed]
         cast: Sequence[Body] | Crowd
-        if moving and all(item.has_one_shape for item in moving):
+        if moving and not batch.has_faults and all(item.has_one_shape for item in moving):
             cast = _crowd(batch, moving)
         else:
             cast = [item.body(batch) for item in self.objects]

@@ -3,7 +3,6 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from types import MappingProxyType
 from typing import Any, Final
 
 import numpy as np
@@ -103,7 +102,7 @@ def _drawing(outputs: Sequence[Node]) -> list[Check]:
         if _may_mark(node):
             sources[node] = None
         stack.extend(reversed(node.operands))
-    return [DrawingCheck(node, _MISSING.get(node.operation.name, "value"), _span(node)) for node in sources]
+    return [DrawingCheck(node, node.operation.missing, _span(node)) for node in sources]
 
 
 def _may_mark(node: Node) -> bool:
@@ -114,19 +113,6 @@ def _may_mark(node: Node) -> bool:
     return operation.may_fault(node.operands, node.payload, node.kind) or operation.may_reject(
         node.operands, node.payload, node.kind
     )
-
-
-_MISSING = MappingProxyType(
-    {
-        "discrete range": "whole number in the range",
-        "surface face": "surface to stand on",
-        "landing face": "place to land on, for `on`",
-        "plane projection": "place to land on, for `on`",
-        "field heading": "direction of the field",
-        "follow polygons": "direction of the field",
-    }
-)
-"""What is missing where an operation has no value."""
 
 
 def _span(node: Node) -> Span | None:
