@@ -93,7 +93,10 @@ def facts(region: Region, columns: list[Any]) -> Iterator[str]:
     near = Bounds(np.zeros(boxes), np.linspace(0, 2, boxes))
     fixed = [_bounds(column, 0.0) for column in columns]
     loose = [_bounds(column, 0.05) for column in columns]
-    for name, parameters in (("fixed", fixed), ("loose", loose)) if columns else (("fixed", fixed),):
+    other = varied(columns, rng, boxes)
+    each = [_bounds(column, 0.0) for column in other]
+    kinds = (("fixed", fixed), ("loose", loose), ("of each box", each))
+    for name, parameters in kinds if columns else kinds[:1]:
         yield f"extent, {name}: {attempt(lambda p=parameters: region.extent(*p))}"
         yield f"container extent, {name}: {attempt(lambda p=parameters: region.container_extent(*p))}"
         asked = (region, point, *parameters)

@@ -10,8 +10,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+import scenic.core.regions as named
 
 from scenic.runtime.geometry.loading import load_mesh
+from scenic.runtime.shapes import MeshShape
 from tests.recorded import FOLDER, hold
 from tests.runtime.matrices import attempt
 
@@ -213,6 +215,56 @@ def test_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, request: pytest.
         return "\n".join(lines)
 
     hold(FOLDER / "mesh_files.txt", answer, request)
+
+
+OPTIONS: list[dict[str, Any]] = [
+    {},
+    {"unify": False},
+    {"dimensions": (1, 2, 3), "position": (4, 5, 6), "rotation": (0.3, 0.2, 0.1)},
+    {"centerMesh": False, "position": (4, 5, 6), "tolerance": 0.3},
+    {"centerMesh": False, "rotation": (0.3, 0.2, 0.1), "dimensions": (1, 2, 3), "name": "some"},
+    {"orientation": None, "onDirection": (0, 0.1, 1)},
+]
+
+
+def test_what_is_made_of_files(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    for name in ("two.obj", "plain.obj", "hole.obj"):
+        text = FILES.get(name, "\n".join(FILES["plain.obj"].splitlines()[:-1]))
+        (tmp_path / name).write_text(text)
+
+    def answer(source: str) -> str:
+        name = source.strip()
+        lines = []
+        for options in OPTIONS:
+            for kind in (named.MeshVolumeRegion, named.MeshSurfaceRegion):
+                found = attempt(lambda k=kind, o=options: k.fromFile(name, **o))
+                lines.append(f"{kind.__name__} {options}: {found}")
+        for options in (
+            {},
+            {"unify": False},
+            {"scale": 2},
+            {"dimensions": (1, 2, 3), "initial_rotation": (0.3, 0.2, 0.1)},
+        ):
+            shape = attempt(lambda o=options: about(MeshShape.fromFile(Path(name), **o)))
+            lines.append(f"shape {options}: {shape}".replace(str(tmp_path), ""))
+        return "\n".join(lines)
+
+    hold(FOLDER / "made_of_files.txt", answer, request)
+
+
+def about(shape: MeshShape) -> list[Any]:
+    again = MeshShape.fromFile(Path(shape.source.path or ""))
+    return [
+        shape.dimensions,
+        shape.source.as_dict(),
+        shape.mesh,
+        shape.mesh is again.mesh,
+        shape.isConvex,
+        shape.containsCenter,
+    ]
 
 
 def test_every_file_is_asked() -> None:
