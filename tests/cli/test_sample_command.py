@@ -185,7 +185,12 @@ def test_an_interrupt_ends_it_in_one_line(folder: Path, number: signal.Signals) 
         "out.html",
     )
     with subprocess.Popen(
-        command(*arguments), cwd=folder, env=environment(), stderr=subprocess.PIPE
+        command(*arguments),
+        cwd=folder,
+        env=environment(),
+        stderr=subprocess.PIPE,
+        # Shells let what runs in the background ignore the interrupts of their terminal.
+        preexec_fn=lambda: signal.signal(number, signal.SIG_DFL),
     ) as process:
         deadline = time.monotonic() + 30
         while not any(name.endswith(".part") for name in os.listdir(folder)):
