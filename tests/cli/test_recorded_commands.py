@@ -1,15 +1,18 @@
 """Commands say, write and answer what was recorded.
 
-A case has files (``@ NAME``, then their lines), and commands (``$ WORDS``, also ``$ WORDS < FILE``; ``$tty`` as on a terminal) that
+A case has files (``@ NAME``, then their lines), and commands (``$ WORDS``, also ``$ WORDS < FILE``; ``$tty`` as on a terminal, ``$own`` in a process of its own) that
 are run one after the other in their folder.
 """
 
 import base64
 import json
+import os
 import pickle
 import re
 import shlex
 import struct
+import subprocess
+import sys
 import tempfile
 import warnings
 from pathlib import Path
@@ -55,7 +58,8 @@ def transcript(source: str) -> str:
 
 def _run(line: str, folder: Path) -> list[str]:
     terminal = line.startswith("$tty")
-    words = shlex.split(line.removeprefix("$tty").removeprefix("$"))
+    is_apart = line.startswith("$own")
+    words = shlex.split(line.partition(" ")[2])
     text = b""
     if "<" in words:
         place = words.index("<")
@@ -64,7 +68,7 @@ def _run(line: str, folder: Path) -> list[str]:
     before = _contents(folder)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        result = run_here(
+        result = (_run_apart if is_apart else run_here)(
             words,
             folder=folder,
             variables={**QUIET, **({} if terminal else {"NO_COLOR": "1"})},
@@ -81,6 +85,21 @@ def _run(line: str, folder: Path) -> list[str]:
         elif before.get(name) != after[name]:
             lines += [f"  file {name}: {each}" for each in _file(folder / name)]
     return lines
+
+
+def _run_apart(
+    words: list[str], *, folder: Path, variables: dict[str, str], text: bytes, terminal: bool
+) -> "subprocess.CompletedProcess[str]":
+    assert not terminal
+    done = subprocess.run(
+        [sys.executable, "-m", "scenic.cli.main", *words],
+        cwd=folder,
+        input=text,
+        capture_output=True,
+        env={**os.environ, **variables, "PYTHONPATH": str(Path(__file__).parents[2])},
+        check=False,
+    )
+    return subprocess.CompletedProcess(words, done.returncode, done.stdout.decode(), done.stderr.decode())
 
 
 def _contents(folder: Path) -> dict[str, bytes]:
