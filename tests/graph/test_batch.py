@@ -32,11 +32,16 @@ OK, FAULT, REJECTED = 0, 1, 2
 
 
 def lanes_of(name, *columns, **keywords):
-    """Value and status of a boolean operation over operands given as strings: T, F, f (fault), r (rejected)."""
+    """Value and status of a boolean operation over operands given as strings: T, F, f (fault), r (rejected).
+
+    A lane without a value holds anything: false here, true where ``e`` and ``q`` stand for ``f`` and ``r``.
+    """
     operands = []
     for column in columns:
-        values = [letter == "T" for letter in column]
-        statuses = [{"f": FAULT, "r": REJECTED}.get(letter, OK) for letter in column]
+        values = [letter in "Teq" for letter in column]
+        statuses = [
+            {"f": FAULT, "e": FAULT, "r": REJECTED, "q": REJECTED}.get(letter, OK) for letter in column
+        ]
         operands.append(faulty(Kind.BOOLEAN, values, statuses, ValueError(column)))
     node = make(name, *operands, **keywords)
     batch = evaluate(node, len(columns[0]))
@@ -49,12 +54,13 @@ def lanes_of(name, *columns, **keywords):
     )
 
 
-def test_and_reads_from_the_left_as_far_as_needed():
-    assert lanes_of("and", "TTTTFFFFffff", "TFfrTFfrTFfr") == "TFfrFFFFffff"
-
-
-def test_or_reads_from_the_left_as_far_as_needed():
-    assert lanes_of("or", "TTTTFFFFrrrr", "TFfrTFfrTFfr") == "TTTTTFfrrrrr"
+@pytest.mark.parametrize(("name", "decisive"), [("and", "F"), ("or", "T")])
+@pytest.mark.parametrize("count", [2, 3])
+def test_logic_reads_from_the_left_as_far_as_needed(name, decisive, count):
+    rows = list(itertools.product("TFfreq", repeat=count))
+    fates = [next((letter for letter in row if letter in decisive + "freq"), row[-1]) for row in rows]
+    expected = "".join({"e": "f", "q": "r"}.get(letter, letter) for letter in fates)
+    assert lanes_of(name, *("".join(column) for column in zip(*rows, strict=True))) == expected
 
 
 def test_a_conditional_has_the_fate_of_its_test_or_of_the_branch_taken():

@@ -13,6 +13,7 @@ from scenic.graph import intervals
 from scenic.graph.bounds import Bounds, outward
 from scenic.graph.kinds import Kind
 from scenic.graph.operations import TABLE
+from scenic.graph.operations.choosing import hull_of_possible
 
 numbers = st.floats(-1e6, 1e6)
 ends = st.tuples(numbers, numbers).map(lambda pair: (min(pair), max(pair)))
@@ -151,3 +152,22 @@ def test_bounds_themselves():
     wide = outward(np.array([1.0]), np.array([1.0]), 2)
     assert wide.lower[0] == 1 - 2.0**-52
     assert wide.upper[0] == 1 + 2.0**-51
+
+
+def test_of_no_possible_option_nothing_is_known():
+    """Where no option is possible, not even bounds that exclude each other: others find out that there is no value."""
+    options = [
+        Bounds(np.array([1.0, 2.0]), np.array([3.0, 4.0])),
+        Bounds(np.array([5.0, 6.0]), np.array([7.0, 8.0])),
+    ]
+    possible = [np.array([True, False]), np.array([True, False])]
+    found = hull_of_possible(options, possible)
+    assert found is not None
+    assert found.lower.tolist() == [1.0, -np.inf]
+    assert found.upper.tolist() == [7.0, np.inf]
+    points = [Bounds(np.array([[1.0, 2.0, 3.0]] * 2), np.array([[2.0, 3.0, 4.0]] * 2))]
+    found = hull_of_possible(points, [np.array([False, True])])
+    assert found is not None
+    assert found.lower.tolist() == [[-np.inf] * 3, [1.0, 2.0, 3.0]]
+    assert found.upper.tolist() == [[np.inf] * 3, [2.0, 3.0, 4.0]]
+    assert hull_of_possible(options, [np.array([False, False])] * 2) is None
