@@ -31,7 +31,7 @@ def _reason(error: OSError) -> str:
     return (error.strerror or str(error)).lower()
 
 
-def _is_special(path: Path) -> bool:
+def is_special(path: Path) -> bool:
     """Whether the path names a device or a pipe, to which a name cannot be given anew."""
     try:
         mode = path.stat().st_mode
@@ -88,7 +88,7 @@ def writing(path: Path) -> Iterator[BinaryIO]:
 
     Raises ``OutputError`` if the file cannot be made or written.
     """
-    if _is_special(path):
+    if is_special(path):
         try:
             with path.open("wb") as device:
                 yield device

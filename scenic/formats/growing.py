@@ -2,7 +2,8 @@
 
 While it grows it has the name of the file with ``.part`` after it, and holds whole lines but for, at most, the last one of
 a run that was killed. It gets its own name when it is complete. A run that is ended in an orderly way (Ctrl-C, an error)
-gives it its name too, with the lines that there are, unless that would replace an older file.
+gives it its name too, with the lines that there are, unless that would replace an older file. A device or a pipe is written to
+as it is.
 """
 
 import contextlib
@@ -11,7 +12,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, BinaryIO, Self
 
-from scenic.formats.files import OutputError, check_writable
+from scenic.formats.files import OutputError, check_writable, is_special
 
 if TYPE_CHECKING:
     from _typeshed import ReadableBuffer
@@ -30,7 +31,8 @@ class GrowingFile:
 
     def __init__(self, path: Path, *, resume: bool = False) -> None:
         check_writable(path)
-        self.path = path.resolve()
+        self._is_special = is_special(path)
+        self.path = path if self._is_special else path.resolve()
         self.part = self.path.with_name(f"{self.path.name}.part")
         self._replaces = self.path.exists() and not resume
         self._stream: BinaryIO | None = None
@@ -39,7 +41,7 @@ class GrowingFile:
 
     def kept(self) -> list[bytes]:
         """The whole lines of the earlier run that is resumed; a torn last line is left out."""
-        if not self._resume:
+        if not self._resume or self._is_special:
             return []
         earlier = self.part if self.part.exists() else self.path
         try:
@@ -53,6 +55,10 @@ class GrowingFile:
     def __enter__(self) -> Self:
         kept = self.kept()
         try:
+            if self._is_special:
+                # A device or a pipe keeps its name, and has no content to go on with.
+                self._stream = self.path.open("wb")
+                return self
             if self._resume and not self.part.exists() and self.path.exists():
                 os.replace(self.path, self.part)
             self._stream = self.part.open("r+b" if self._resume and self.part.exists() else "wb")
@@ -69,6 +75,8 @@ class GrowingFile:
         try:
             self._stream.write(lines)
             self._stream.flush()
+        except BrokenPipeError:
+            raise
         except OSError as error:
             raise _refusal(self.path, error) from error
         self._is_empty = self._is_empty and not memoryview(lines).nbytes
@@ -81,6 +89,8 @@ class GrowingFile:
             os.fsync(self._stream.fileno())
         with contextlib.suppress(OSError):
             self._stream.close()
+        if self._is_special:
+            return
         if self._is_empty and kind is not None:
             self.part.unlink(missing_ok=True)
         elif kind is None or not self._replaces:

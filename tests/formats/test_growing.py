@@ -1,6 +1,11 @@
 """Files that grow: what is there after a run that was ended, however it was ended, and what another run makes of it."""
 
+import os
+import stat
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from threading import Thread
 
 import pytest
 
@@ -66,3 +71,43 @@ def test_a_run_that_is_ended_keeps_its_lines_and_no_run_without_lines_leaves_any
     # The lines of the later run are those that are taken up.
     assert run(b"three\n", resume=True) == {"out": b"two\nthree\n"}
     assert run(resume=True) == {"out": b"two\nthree\n"}
+
+
+@contextmanager
+def reading(pipe: Path, read: Callable[[], object]) -> Iterator[None]:
+    """Somebody reads from a new pipe within this."""
+    os.mkfifo(pipe)
+    reader = Thread(target=read)
+    reader.start()
+    yield
+    reader.join()
+    assert stat.S_ISFIFO(pipe.stat().st_mode)
+
+
+@pytest.mark.parametrize("resume", [False, True])
+def test_a_pipe_is_written_to_and_stays(tmp_path: Path, resume: bool) -> None:
+    pipe, read = tmp_path / "pipe", list[bytes]()
+    with reading(pipe, lambda: read.append(pipe.read_bytes())):
+        file = GrowingFile(pipe, resume=resume)
+        assert file.kept() == []
+        with file:
+            for line in LINES:
+                file.write(line)
+            assert [path.name for path in tmp_path.iterdir()] == ["pipe"]
+    assert read == [WHOLE]
+
+
+def test_a_reader_that_has_gone_is_told_from_a_full_disk(tmp_path: Path) -> None:
+    pipe = tmp_path / "pipe"
+
+    def look() -> None:
+        with pipe.open("rb") as stream:
+            stream.read(1)
+
+    def write() -> None:
+        with GrowingFile(pipe) as file:
+            while True:
+                file.write(WHOLE)
+
+    with reading(pipe, look), pytest.raises(BrokenPipeError):
+        write()

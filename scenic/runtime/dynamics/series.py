@@ -66,7 +66,11 @@ def _named(path: Path) -> Path:
 
 @contextmanager
 def whole(path: Path) -> Iterator[BinaryIO]:
-    """A file that is there when it is whole."""
+    """A file that is there when it is whole; a device or a pipe keeps its name, and is written to."""
+    if path.exists() and not path.is_file():
+        with _naming(path), path.open("wb") as stream:
+            yield stream
+        return
     temporary = _named(path)
     try:
         with _naming(path), temporary.open("w+b") as stream:
