@@ -200,3 +200,20 @@ def test_packages_on_the_path_of_python_are_loaded_once(
     )
     assert first(main).params["x"] == [part.B, sys.modules["usual_package"].A]
     assert sys.modules["usual_package.part"] is part
+
+
+@pytest.mark.parametrize("name", ["x", "_x"])
+def test_random_values_of_a_module_that_a_function_looks_into(tmp_path: Path, name: str) -> None:
+    (tmp_path / "numbers_of.scenic").write_text(f"{name} = Range(0, 1)\n")
+    (tmp_path / "main.scenic").write_text(
+        "import numbers_of\n"
+        "def low():\n"
+        f"    if numbers_of.{name} < 0.3:\n"
+        "        return True\n"
+        f"    return numbers_of.{name} < 0.4\n"
+        f"require low()\nparam x = numbers_of.{name}\n"
+    )
+    scenes = scenic.scenarioFromFile(tmp_path / "main.scenic").sample(50, seed=1)
+    values = [scene.params["x"] for scene in scenes]
+    assert 0.3 < max(values) < 0.4
+    assert len(set(values)) == len(values)
