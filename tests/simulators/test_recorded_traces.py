@@ -14,6 +14,7 @@ import pytest
 import scenic
 from scenic.simulators.dummy import DummySimulation, DummySimulator
 from scenic.simulators.kinematic import KinematicSimulator
+from scenic.simulators.mujoco import MujocoSimulator
 from scenic.simulators.simulation import Simulation
 from tests.recorded import FOLDER, hold, said, shown
 
@@ -30,7 +31,12 @@ class LackingSimulation(DummySimulation):
         return self.agents[1:]
 
 
-SIMULATORS = {"dummy": DummySimulator, "kinematic": KinematicSimulator, "lacking": Lacking}
+SIMULATORS = {
+    "dummy": DummySimulator,
+    "kinematic": KinematicSimulator,
+    "lacking": Lacking,
+    "mujoco": MujocoSimulator,
+}
 
 
 @pytest.mark.parametrize("path", sorted(FOLDER.glob("traces_*.txt")), ids=lambda path: path.stem)
@@ -69,7 +75,11 @@ def trace(source: str) -> str:
 def _simulated(source: str, options: dict[str, str]) -> str:
     scenario = scenic.scenarioFromString(source)
     kind = options.get("simulator", "dummy")
-    arguments = {"drift": float(options["drift"])} if "drift" in options else {}
+    arguments: dict[str, Any] = {
+        name: options[name] if options[name].isalpha() else float(options[name])
+        for name in ("drift", "gravity", "ground", "physics_step")
+        if name in options
+    }
     simulator = SIMULATORS[kind](**arguments)  # type: ignore[operator] # of either class
     lines = []
     steps = options.get("steps", "4")
@@ -138,9 +148,22 @@ def _files() -> list[str]:
     for path in sorted(Path().rglob("*")):
         if path.is_file():
             text = path.read_text() if path.suffix in (".json", ".jsonl") else f"{path.stat().st_size > 0}"
+            if path.suffix == ".mp4":
+                text = _film(path)
             found.append(f"{path}: {text.strip()}".replace("\n", " // "))
             path.unlink()
     return found
+
+
+def _film(path: Path) -> str:
+    """Rate and size of a film, and the mean brightness of its images."""
+    import imageio_ffmpeg
+
+    frames = imageio_ffmpeg.read_frames(str(path))
+    about = next(frames)
+    # Its coding is not exact.
+    bright = [round(sum(frame) / len(frame) / 16) for frame in frames]
+    return f"{about['fps']} a second, {about['size']}, brightness {bright}"
 
 
 def _turn(turn: Any) -> str:

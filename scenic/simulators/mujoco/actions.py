@@ -3,6 +3,8 @@
 from collections.abc import Mapping
 from typing import Any
 
+from scenic.runtime.describing import wrong_type
+from scenic.runtime.objects import Object
 from scenic.runtime.values import to_vector
 from scenic.simulators.actions import Action
 from scenic.simulators.commands import Command, model_of
@@ -45,6 +47,8 @@ class Grasp(_Grip):
     """Hold an object as it is, until `Release`; nothing is held that is further away than the gripper's ``reach``."""
 
     def __init__(self, target: Any) -> None:
+        if not isinstance(target, Object):
+            raise wrong_type("an object", target, "Grasp")
         self.target = target
 
     def applyTo(self, agent: Any, simulation: Any) -> None:
