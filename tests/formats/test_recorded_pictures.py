@@ -12,7 +12,7 @@ import pytest
 from scenic.formats import regions as drawing
 from scenic.formats.backdrop import ground_color, sky_color
 from scenic.formats.buffers import Lens, look
-from scenic.formats.camera import Outlook, corners, framing, ground_height
+from scenic.formats.camera import Outlook, corners, framed, framing, ground_height
 from scenic.formats.instances import picture
 from scenic.formats.lighting import coarse_light, fine_light, own_light
 from scenic.formats.poses import euler_angles, quaternion_of, rotation_matrix
@@ -80,6 +80,16 @@ def cameras() -> Lines:
             found = framing(places, aspect, outlook)
             yield f"{outlook.azimuth} {aspect} {numbers(found.eye)} {numbers([found.right, found.up, found.ahead])} {numbers(found.tangents)}"
             yield f"rays {numbers(found.directions(np.array([-1, 0.3, 1]), np.array([0.2, -1, 0.7])))}"
+    for source in (
+        "PolylineRegion([(0, 0), (3, 1), (9, 4)])",
+        "BoxRegion((8, 6, 4), (1, 2, 3), TILT)",
+        "everywhere",
+    ):
+        scene = Scene(things(), workspace=made(f"Workspace({source})"))
+        for outlook in (Outlook(), Outlook(workspace=False), Outlook()):
+            shown = framed(scene, instances, outlook)
+            yield f"{source} {len(shown)} {numbers([shown.min(axis=0), shown.max(axis=0)])}"
+        yield f"still {scene.workspace.box()[0].tolist() if 'Poly' in source else ''}"
     yield f"heights {[ground_height(places + np.array([0, 0, z])) for z in (-3, -0.4, 0, 3, 90)]}"
 
 

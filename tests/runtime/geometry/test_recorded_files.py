@@ -13,6 +13,7 @@ import pytest
 import scenic.core.regions as named
 
 from scenic.runtime.geometry.loading import load_mesh
+from scenic.runtime.geometry.primitives import cylinder
 from scenic.runtime.shapes import MeshShape
 from tests.recorded import FOLDER, hold
 from tests.runtime.matrices import attempt
@@ -70,8 +71,9 @@ def stl(text: bool = False) -> bytes:
 def gltf(
     *, indices: str = "H", strip: bool = False, nodes: Any = None, uri: str | None = None, **change: Any
 ) -> dict[str, Any]:
-    place = np.array(POINTS, dtype="<f4").tobytes()
-    corners = [corner for face in FACES for corner in face]
+    points, faces = change.pop("mesh", (POINTS, FACES))
+    place = np.array(points, dtype="<f4").tobytes()
+    corners = [int(corner) for face in faces for corner in face]
     numbered = struct.pack(f"<{len(corners)}{indices}", *corners)
     data = place + numbered
     kinds = {"B": 5121, "H": 5123, "I": 5125}
@@ -83,7 +85,7 @@ def gltf(
         "nodes": nodes or [{"mesh": 0}],
         "meshes": [{"primitives": [primitive]}],
         "accessors": [
-            {"bufferView": 0, "componentType": 5126, "count": len(POINTS), "type": "VEC3"},
+            {"bufferView": 0, "componentType": 5126, "count": len(points), "type": "VEC3"},
             {"bufferView": 1, "componentType": kinds[indices], "count": len(corners), "type": "SCALAR"},
         ],
         "bufferViews": [
@@ -122,6 +124,7 @@ NODES = [
     {"children": [3], "matrix": [0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 2, 0, -7, 3, 1, 1]},
     {"mesh": 0, "scale": [-1, 1, 1]},
 ]
+ROUND = cylinder(90)
 BUFFER = b"".join(
     [
         np.array(POINTS, dtype="<f4").tobytes(),
@@ -137,6 +140,7 @@ FILES: dict[str, Any] = {
     "early.obj": "v 9 9 9\n" + "\n".join(obj().splitlines()[:8] + [f"f {a - 8} {b - 8} {c - 8} {d - 8}" for a, b, c, d in QUADS]),
     "outside.obj": obj() + "f 1 2 9\n",
     "zero.obj": obj() + "f 0 1 2\n",
+    "zeroback.obj": obj() + "f -8 -7 -6\nf 0 1 2\nv 5 5 5\n",
     "flat.obj": obj().replace("v 2 3 4.3", "v 2 3"),
     "word.obj": obj().replace("v 2 3 4.3", "v 2 3 x"),
     "empty.obj": "",
@@ -167,6 +171,8 @@ FILES: dict[str, Any] = {
     "capital.stl": b"  SOLID a\n" + stl(text=True).partition(b"\n")[2].replace(b"vertex", b"VERTEX"),
     "plain.gltf": gltf(),
     "bytes.gltf": gltf(indices="B"),
+    "manybytes.gltf": gltf(indices="B", mesh=(ROUND.vertices, ROUND.faces)),
+    "many.gltf": gltf(indices="I", mesh=(ROUND.vertices, ROUND.faces)),
     "long.gltf": gltf(indices="I"),
     "nodes.gltf": gltf(nodes=NODES),
     "noscene.gltf": gltf(nodes=NODES, scenes=[]),
