@@ -50,6 +50,12 @@ def sharing(number: int) -> Node:
     return make("add", make("multiply", SHARED[number % 3 if number % 13 else 0], 2.0), number + 1.5)
 
 
+def few(number: int) -> Node:
+    """Made of one, two and four different operands in turn, the same of which come again in a row and apart."""
+    inner = make("multiply", SHARED[number // 3 % 2], [2.0, 3.0, 5.0, 7.0][number % 4])
+    return make("subtract", make("add", inner, SHARED[2]), float(number % 2))
+
+
 def batches(root: Node, **options: Any) -> tuple[Batch, Batch]:
     graph = Graph([root])
     source = Counter(np.arange(LANES, dtype=np.uint64))
@@ -66,7 +72,7 @@ def assert_same(merged: Batch, plain: Batch, root: Node) -> None:
     np.testing.assert_array_equal(merged.full(root)[fine[0] == OK], plain.full(root)[fine[0] == OK])
 
 
-@pytest.mark.parametrize("option", [term, uneven, risky, vectors, nested, sharing])
+@pytest.mark.parametrize("option", [term, uneven, risky, vectors, nested, sharing, few])
 @pytest.mark.parametrize("count", [2, 8, 9, 10, 40])
 def test_merged_choices_have_the_same_values(option: Any, count: int) -> None:
     options = [option(number) for number in range(count)]
