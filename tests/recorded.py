@@ -30,8 +30,10 @@ FOLDER = Path(__file__).parent / "data" / "recorded"
 _NUMBER = re.compile(r"(?<![\w.])-?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?![\w.])")
 
 
-def hold(path: Path, answer: Callable[[str], str], request: pytest.FixtureRequest) -> None:
-    """Asserts that each source of a file gives what stands below it, but for rounding."""
+def hold(
+    path: Path, answer: Callable[[str], str], request: pytest.FixtureRequest, *, rounding: float = 1e-6
+) -> None:
+    """Asserts that each source of a file gives what stands below it, its numbers but for relative differences."""
     introduction, cases = read_cases(path)
     titles = [case.title for case in cases]
     assert len(set(titles)) == len(titles), "two cases have the same title"
@@ -48,19 +50,19 @@ def hold(path: Path, answer: Callable[[str], str], request: pytest.FixtureReques
             ]
         )
         for before, now in zip(cases, found, strict=True)
-        if not alike(before.tree or "", now.tree or "")
+        if not alike(before.tree or "", now.tree or "", rounding)
     ]
     assert not differing, "\n\n".join(differing)
 
 
-def alike(first: str, second: str) -> bool:
+def alike(first: str, second: str, rounding: float) -> bool:
     """Whether two texts are equal but for the rounding of their numbers."""
     if first.strip("\n") == second.strip("\n"):
         return True
     if _NUMBER.split(first.strip("\n")) != _NUMBER.split(second.strip("\n")):
         return False
     numbers = ([float(number) for number in _NUMBER.findall(text)] for text in (first, second))
-    return bool(np.allclose(*numbers, rtol=1e-6, atol=1e-8))
+    return bool(np.allclose(*numbers, rtol=rounding, atol=rounding / 100))
 
 
 def scenes(source: str, *, wanted: int = 3, **options: Any) -> str:
