@@ -1,6 +1,7 @@
 """Commands say, write and answer what was recorded.
 
-A case has files (``@ NAME``, then their lines), and commands (``$ WORDS``, also ``$ WORDS < FILE``; ``$tty`` as on a terminal, ``$own`` in a process of its own) that
+A case has files (``@ NAME``, then their lines), and commands (``$ WORDS``, also ``$ WORDS < FILE``; ``$tty`` as on a terminal, ``$own`` in a process of its own, ``$bare`` without
+``SCENIC_CACHE``) that
 are run one after the other in their folder.
 """
 
@@ -71,7 +72,11 @@ def _run(line: str, folder: Path) -> list[str]:
         result = (_run_apart if is_apart else run_here)(
             words,
             folder=folder,
-            variables={**QUIET, **({} if terminal else {"NO_COLOR": "1"})},
+            variables={
+                **QUIET,
+                **({} if terminal else {"NO_COLOR": "1"}),
+                **({"SCENIC_CACHE": ""} if line.startswith("$bare") else {}),
+            },
             text=text,
             terminal=terminal,
         )
