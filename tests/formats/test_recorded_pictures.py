@@ -117,7 +117,7 @@ def light() -> Lines:
         yield f"own {loosely(own.sun[::5], 0.05)} {loosely(own.sky[::5], 0.02)}"
         eyes = (
             np.tile(lens.eye, (len(pattern), 1))
-            + np.linspace(0, 0.01, len(pattern), dtype=np.float32)[:, None]
+            + np.linspace(0, 1.5, len(pattern), dtype=np.float32)[:, None]
         )
         places = look(stage, eyes.astype(np.float32), seen.directions)
         each = own_light(stage, eyes.astype(np.float32), places, pattern)
