@@ -446,6 +446,11 @@ def distances() -> Lines:
         for other in ("box", "table", "ball"):
             near = Body((meshes()[other],), None, poses(6, 4, spread=2.4))
             yield f"{name} {other} {numbers(distance.between(body, near, 6))} {numbers(distance.between(one, near, 6))}"
+    apart = poses(150, 11, spread=0.6, sizes=(0.5, 1.5))
+    away = Poses(apart.position[::-1] + np.array([1.9, 1.2, 0.9]), apart.orientation[::-1], apart.size)
+    for name, other in (("bumpy", "table"), ("cone", "bumpy")):
+        crowds = (Body((meshes()[one],), None, where) for one, where in ((name, apart), (other, away)))
+        yield f"many {name} {other} {numbers(distance.between(*crowds, 150))}"
     yield f"mixed {numbers(distance.between(mixed(50, 5, spread=2), mixed(50, 6, ('cone', 'box', 'hollow'), spread=2), 50))}"
     a, b = poses(12, 7), poses(12, 8)
     faces = [
