@@ -63,6 +63,7 @@ def trace(source: str) -> str:
     printed = io.StringIO()
     with contextlib.redirect_stdout(printed), warnings.catch_warnings(record=True) as warned:
         warnings.simplefilter("always")
+        warnings.simplefilter("ignore", ResourceWarning)
         try:
             answer = _simulated(source, options)
         except Exception as error:  # noqa: BLE001 - what is said of it is the answer
@@ -148,22 +149,9 @@ def _files() -> list[str]:
     for path in sorted(Path().rglob("*")):
         if path.is_file():
             text = path.read_text() if path.suffix in (".json", ".jsonl") else f"{path.stat().st_size > 0}"
-            if path.suffix == ".mp4":
-                text = _film(path)
             found.append(f"{path}: {text.strip()}".replace("\n", " // "))
             path.unlink()
     return found
-
-
-def _film(path: Path) -> str:
-    """Rate and size of a film, and the mean brightness of its images."""
-    import imageio_ffmpeg
-
-    frames = imageio_ffmpeg.read_frames(str(path))
-    about = next(frames)
-    # Its coding is not exact.
-    bright = [round(sum(frame) / len(frame) / 16) for frame in frames]
-    return f"{about['fps']} a second, {about['size']}, brightness {bright}"
 
 
 def _turn(turn: Any) -> str:
