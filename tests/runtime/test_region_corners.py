@@ -328,3 +328,10 @@ def test_a_surface_in_a_tilted_plane_has_a_box() -> None:
     corners = np.array([(0, 0, 0), (2, 0, 1), (0, 3, 0), (2, 3, 1)], dtype=float)
     sheet = named.MeshSurfaceRegion(trimesh.Trimesh(corners, [(0, 1, 2), (1, 3, 2)]), centerMesh=False)
     np.testing.assert_allclose(sheet.AABB, [corners.min(axis=0), corners.max(axis=0)], atol=1e-12)
+
+
+@pytest.mark.parametrize("height", [-0.5, 2])
+def test_a_line_of_the_plane_warns_of_heights_that_it_drops(height: float) -> None:
+    with pytest.warns(UserWarning, match="the z of its points is dropped"):
+        line = named.PolylineRegion([(0, 0), (1, 0, height)])
+    assert line.points == ((0, 0, 0), (1, 0, 0))
