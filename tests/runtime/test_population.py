@@ -137,3 +137,17 @@ def test_a_class_that_hides_a_property_is_refused() -> None:
     text = "class Box:\n    @property\n    def heading(self):\n        return 3\nego = new Box\n"
     with pytest.raises(scenic.SpecifierError, match="heading"):
         scenic.scenarioFromString(text)
+
+
+def test_an_object_whose_size_may_be_no_number_is_that_of_its_scene() -> None:
+    """An option of another type, though it is never drawn, keeps sizes from being columns of numbers."""
+    program = scenic.scenarioFromString(
+        "t = Range(0, 1)\nego = new Object with width Discrete({1: 1, 'a': 0, 2.5: 1}), with tag t\n"
+        "new Object at (9, 9), with tag (t, ego.width)\nparam t = t, w = ego.width\n"
+    )
+    scenes = program.sample(20, seed=1)
+    assert len({scene.params["t"] for scene in scenes}) == 20
+    for scene in scenes:
+        assert scene.objects[0].tag == scene.params["t"]
+        assert scene.objects[0].width == scene.params["w"]
+        assert scene.objects[1].tag == (scene.params["t"], scene.params["w"])
