@@ -142,7 +142,7 @@ def test_a_class_that_hides_a_property_is_refused() -> None:
 def test_an_object_whose_size_may_be_no_number_is_that_of_its_scene() -> None:
     """An option of another type, though it is never drawn, keeps sizes from being columns of numbers."""
     program = scenic.scenarioFromString(
-        "t = Range(0, 1)\nego = new Object with width Discrete({1: 1, 'a': 0, 2.5: 1}), with tag t\n"
+        "t = Range(0, 1)\nego = new Object with width Discrete({1: 1, 'a': 1e-12, 2.5: 1}), with tag t\n"
         "new Object at (9, 9), with tag (t, ego.width)\nparam t = t, w = ego.width\n"
     )
     scenes = program.sample(20, seed=1)
