@@ -631,7 +631,7 @@ def test_instability_is_told_and_leaves_no_file(tmp_path: Path, monkeypatch: pyt
 
 def test_actions_of_other_bodies_are_refused() -> None:
     with pytest.raises(InvalidScenarioError, match="cannot take these actions"):
-        run(told("Grasp(0)") + "ego = new Body with behavior B\n", 2)
+        run(told("Grasp(self)") + "ego = new Body with behavior B\n", 2)
     with pytest.raises(InvalidScenarioError, match="cannot take these actions"):
         run(told("ApplyForce((0, 0, 1))") + "ego = new Fixture with behavior B\n", 2)
 
