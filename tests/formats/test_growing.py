@@ -1,5 +1,6 @@
 """Files that grow: what is there after a run that was ended, however it was ended, and what another run makes of it."""
 
+import errno
 import os
 import stat
 from collections.abc import Callable, Iterator
@@ -9,6 +10,7 @@ from threading import Thread
 
 import pytest
 
+from scenic.formats.files import OutputError
 from scenic.formats.growing import GrowingFile
 
 LINES = [b'{"k":0}\n', b'{"k":1,"x":"\xc3\xa9"}\n', b"\n", b'{"k":3}\n']
@@ -111,3 +113,33 @@ def test_a_reader_that_has_gone_is_told_from_a_full_disk(tmp_path: Path) -> None
 
     with reading(pipe, look), pytest.raises(BrokenPipeError):
         write()
+
+
+class _Full:
+    """A stream whose disk has no space left."""
+
+    def write(self, _lines: bytes) -> int:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    def close(self) -> None:
+        pass
+
+    def fileno(self) -> int:
+        raise OSError(errno.EBADF, "Bad file descriptor")
+
+
+def test_what_is_in_the_way_is_said_in_words(tmp_path: Path) -> None:
+    path = tmp_path / "scenes.jsonl"
+    (tmp_path / "scenes.jsonl.part").mkdir()
+    with pytest.raises(OutputError) as caught, GrowingFile(path):
+        pass
+    assert caught.value.message == f"cannot write '{path}': is a directory"
+    (tmp_path / "scenes.jsonl.part").rmdir()
+    file = GrowingFile(path)
+    with file:
+        assert file._stream is not None
+        file._stream.close()
+        file._stream = _Full()  # type: ignore[assignment] # all that is needed of one
+        with pytest.raises(OutputError) as caught:
+            file.write(b"{}\n")
+    assert caught.value.message == f"cannot write '{path}': no space left on device"
