@@ -29,7 +29,7 @@ from scenic.runtime.choices import per_option
 from scenic.runtime.conditions import Condition
 from scenic.runtime.context import Context, current, here
 from scenic.runtime.dynamics.declarations import Kept, required
-from scenic.runtime.dynamics.definitions import Behavior
+from scenic.runtime.dynamics.definitions import behavior_of
 from scenic.runtime.dynamics.language import Dynamics
 from scenic.runtime.dynamics.run import RunContext
 from scenic.runtime.functions import convert
@@ -69,20 +69,6 @@ COMPARISONS: Mapping[str, str] = MappingProxyType(
         "!=": "not equal",
     }
 )
-
-
-def _behavior_of(value: Any) -> Any:
-    """What the property ``behavior`` holds: a class stands for an instance without arguments."""
-    if isinstance(value, type) and issubclass(value, Behavior):
-        return value()
-    later = isinstance(value, Random) and value.node.kind.is_boxed
-    if value is None or later or isinstance(value, Behavior):
-        return value
-    raise ScenicTypeError(
-        f"property 'behavior' must be a behavior, not {describe(value)}",
-        span=here(),
-        help="define one with `behavior NAME():`, and write `with behavior NAME()`",
-    )
 
 
 class Modules(Protocol):
@@ -233,7 +219,7 @@ class Prelude(Dynamics):
         if self._context.evaluating:
             return instance
         if isinstance(instance, Object):
-            instance.__dict__["behavior"] = per_option(instance.behavior, _behavior_of)
+            instance.__dict__["behavior"] = per_option(instance.behavior, behavior_of)
         sightings = [specifier.sighting for specifier in specifiers if specifier.sighting is not None]
         if self._run is not None:
             for sighting in sightings:

@@ -14,8 +14,10 @@ from scenic.language.diagnostics import Diagnostic
 from scenic.language.errors import InvalidScenarioError, ScenicSyntaxError, ScenicTypeError
 from scenic.language.spans import Span
 from scenic.runtime.context import current, here
+from scenic.runtime.describing import describe
+from scenic.runtime.randoms import Random
 
-__all__ = ["Behavior", "Definition", "Invocable", "ModularScenario", "Monitor", "define"]
+__all__ = ["Behavior", "Definition", "Invocable", "ModularScenario", "Monitor", "behavior_of", "define"]
 
 Guard = Callable[..., Any]
 
@@ -163,3 +165,20 @@ def define(base: type[Invocable], definition: Definition, documentation: str | N
         "_definition": definition,
     }
     return type(definition.name, (base,), members)
+
+
+def behavior_of(value: Any) -> Any:
+    """What the property ``behavior`` holds: a class stands for an instance without arguments.
+
+    Raises `ScenicTypeError` for what is no behavior, nor a random value that may be one.
+    """
+    if isinstance(value, type) and issubclass(value, Behavior):
+        return value()
+    later = isinstance(value, Random) and value.node.kind.is_boxed
+    if value is None or later or isinstance(value, Behavior):
+        return value
+    raise ScenicTypeError(
+        f"property 'behavior' must be a behavior, not {describe(value)}",
+        span=here(),
+        help="define one with `behavior NAME():`, and write `with behavior NAME()`",
+    )

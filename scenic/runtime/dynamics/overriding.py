@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 from scenic.language.errors import ScenicTypeError, SpecifierError
 from scenic.runtime.context import here
 from scenic.runtime.dynamics.activations import Activation
-from scenic.runtime.dynamics.definitions import Behavior
+from scenic.runtime.dynamics.definitions import Behavior, behavior_of
 from scenic.runtime.lazy import MEMO
 from scenic.runtime.lazy import resolve as settle
 from scenic.runtime.objects import Object
@@ -70,14 +70,7 @@ class Overrides:
     def _set(self, target: Object, name: str, value: Any) -> None:
         old = target.__dict__.get(name)
         if name == "behavior":
-            if isinstance(value, type) and issubclass(value, Behavior):
-                value = value()
-            if value is not None and not isinstance(value, Behavior):
-                raise ScenicTypeError(
-                    f"property 'behavior' must be a behavior, not {describe(value)}",
-                    span=here(),
-                    help="define one with `behavior NAME():`, and write `with behavior NAME()`",
-                )
+            value = behavior_of(value)
             if value is not None:
                 Activation(self._run, value, target, self._run.current).start()
                 self._run.note_agent(target)
