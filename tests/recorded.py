@@ -8,6 +8,7 @@ many corners that no law reaches.
 """
 
 import difflib
+import math
 import re
 import warnings
 from collections.abc import Callable, Mapping
@@ -61,8 +62,15 @@ def alike(first: str, second: str, rounding: float) -> bool:
         return True
     if _NUMBER.split(first.strip("\n")) != _NUMBER.split(second.strip("\n")):
         return False
-    numbers = ([float(number) for number in _NUMBER.findall(text)] for text in (first, second))
-    return bool(np.allclose(*numbers, rtol=rounding, atol=rounding / 100))
+    pairs = zip(_NUMBER.findall(first), _NUMBER.findall(second), strict=True)
+    return all(one == other or _is_near(one, other, rounding) for one, other in pairs)
+
+
+def _is_near(one: str, other: str, rounding: float) -> bool:
+    """Whether two numbers differ by rounding; whole ones count, or are too large for floats to tell them apart."""
+    if one.isdigit() and other.isdigit():
+        return False
+    return math.isclose(float(one), float(other), rel_tol=rounding, abs_tol=rounding / 100)
 
 
 def scenes(source: str, *, wanted: int = 3, **options: Any) -> str:
@@ -129,7 +137,7 @@ def unusual(item: Point, names: Mapping[int, str] | None = None) -> dict[str, st
     return {name: text for name, text in texts.items() if text != _usual().get(name)}
 
 
-_FOLLOWING = {"heading", "yaw", "pitch", "roll"}
+_FOLLOWING = frozenset({"heading", "yaw", "pitch", "roll"})
 """Properties that follow from the orientation."""
 
 
