@@ -6,6 +6,7 @@ Each carries a code, a place and a help line, so that the command line can show 
 import linecache
 from collections.abc import Mapping, Sequence
 from types import MappingProxyType
+from typing import Self
 
 from scenic.language.diagnostics import Diagnostic, Severity
 from scenic.language.spans import Span
@@ -34,6 +35,12 @@ class Located(Exception):
         self.help = help
         if code is not None:
             self.code = code
+
+    def at(self, place: "tuple[Span | None, str | None]") -> Self:
+        """The same problem; at a place, span and file, unless it has one."""
+        if self.span is None:
+            self.span, self.filename = place
+        return self
 
     @property
     def line(self) -> int | None:

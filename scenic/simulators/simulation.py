@@ -348,8 +348,7 @@ class Simulation(ABC):
         try:
             self.createObjectInSimulator(obj)
         except SimulationCreationError as error:
-            if error.span is None:
-                error.span, error.filename = self.place_of(obj)
+            error.at(self.place_of(obj))
             raise
         obj.startDynamicSimulation()
         if self._run.top.running:

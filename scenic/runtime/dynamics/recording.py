@@ -55,8 +55,7 @@ class Recording:
             try:
                 self._recorder.recordValue(value, step)
             except Located as error:
-                if error.span is None:
-                    error.span, error.filename = self.use.span, self.use.filename
+                error.at((self.use.span, self.use.filename))
                 raise
         if isinstance(self._recorder, File | Files) and not self._run.keeps_files:
             if name not in records:

@@ -269,8 +269,7 @@ class Run:
             try:
                 Activation(self, behavior, agent, scenario).start()
             except InvalidScenarioError as error:
-                if error.span is None:
-                    error.span, error.filename = self.simulation.place_of(agent)
+                error.at(self.simulation.place_of(agent))
                 raise
         self.note_agent(agent)
 
@@ -448,7 +447,7 @@ class Run:
             try:
                 self.simulation.check_actions(agent, output)
             except InvalidScenarioError as error:
-                error.span, error.filename = self._waits_at(activation)
+                error.at(self._waits_at(activation))
                 raise
         return output
 
