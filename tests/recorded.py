@@ -7,11 +7,11 @@ These tests say that nothing changed, not that it is right: laws and oracles are
 many corners that no law reaches.
 """
 
-import difflib
 import math
 import re
 import warnings
 from collections.abc import Callable, Mapping
+from difflib import unified_diff
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -44,16 +44,13 @@ def hold(
         return
     assert cases, "the file holds no case"
     differing = [
-        "\n".join(
-            [
-                f"{path.name}: {now.title}",
-                *difflib.ndiff((before.tree or "").splitlines(), (now.tree or "").splitlines()),
-            ]
+        "\n".join(unified_diff(before.splitlines(), now.splitlines(), case.title, "now", n=0, lineterm=""))
+        for case, before, now in (
+            (case, case.tree or "", now.tree or "") for case, now in zip(cases, found, strict=True)
         )
-        for before, now in zip(cases, found, strict=True)
-        if not alike(before.tree or "", now.tree or "", rounding)
+        if not alike(before, now, rounding)
     ]
-    assert not differing, "\n\n".join(differing)
+    assert not differing, "\n\n".join([path.name, *differing])
 
 
 def alike(first: str, second: str, rounding: float) -> bool:
