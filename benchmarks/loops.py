@@ -2,7 +2,8 @@
 
 PATH is called as in `benchmarks.compare`. Ours reads position, angles and sizes of every object of every scene; the other
 implementation's time is that of ``generate`` alone. Shown are the first 200 scenes of a loop, all that it takes to begin with
-included, the next 1,000, and ``sample(500)`` as the first call. Both run in processes of their own, in turns. FOLDER holds the meshes of
+included, beside its first 200; the next 1,000, and ``sample(500)`` as the first call, beside its scenes from the second on. Both
+run in processes of their own, in turns. FOLDER holds the meshes of
 ``loops/large_meshes.scenic`` and ``mesh_on_slab.scenic``. Run by hand on a quiet machine; nothing here is a test.
 """
 
@@ -24,7 +25,7 @@ LONG = 1000
 """Scenes of the loop that goes on: more than may have been sampled ahead when it begins."""
 BATCH = 500
 THEIRS = 200
-"""Scenes of the other implementation in a turn: some cost a hundred times as much as most, and its first ones warm up."""
+"""Scenes of the other implementation in a turn: some cost a hundred times as much as most, and its first one warms up."""
 
 
 def child(path: str, folder: str, kind: str) -> None:
@@ -70,11 +71,12 @@ def main() -> None:
         child(path, arguments.meshes, kind)
         return
     print(
-        f"{'program':14} {'reference':>10} {'first loop':>16} {'loop':>16} {'sample':>16}   loop / steady batch"
+        f"{'program':14} {'reference':>10} {'its first':>10} {'first loop':>16} {'loop':>16} {'sample':>16}"
+        "   loop / steady batch"
     )
     for name in arguments.program or PROGRAMS:
         path = str(HERE / "loops" / f"{name}.scenic")
-        theirs, ours = [], []
+        theirs, theirs_first, ours = [], [], []
         for turn in range(arguments.turns):
             extra = ["--param", f"folder={json.dumps(arguments.meshes)}"] if "mesh" in name else []
             command = [
@@ -89,6 +91,7 @@ def main() -> None:
             shown = subprocess.run([*command, *extra], capture_output=True, text=True, check=True).stdout
             seconds = [row["seconds"] for row in map(json.loads, shown.splitlines()) if "seconds" in row]
             theirs.append(statistics.fmean(seconds[1:]) * 1e3)
+            theirs_first.append(statistics.fmean(seconds) * 1e3)
             row = {}
             for kind in ("batch", "loop"):
                 mine = [sys.executable, "-m", "benchmarks.loops", "--child", path, kind, "--reference", "-"]
@@ -96,12 +99,14 @@ def main() -> None:
                 done = subprocess.run(mine, cwd=HERE.parent, capture_output=True, text=True, check=True)
                 row.update(json.loads(done.stdout))
             ours.append(row)
-        reference = statistics.median(theirs)
+        reference, reference_first = statistics.median(theirs), statistics.median(theirs_first)
         typical = {key: statistics.median(row[key] for row in ours) for key in ours[0]}
-        cells = [
-            f"{typical[key]:7.3f}ms {reference / typical[key]:5.0f}x" for key in ("first", "loop", "batch")
-        ]
-        print(f"{name:14} {reference:8.2f}ms {' '.join(cells)} {typical['loop'] / typical['steady']:8.2f}")
+        beside = {"first": reference_first, "loop": reference, "batch": reference}
+        cells = [f"{typical[key]:7.3f}ms {other / typical[key]:5.0f}x" for key, other in beside.items()]
+        print(
+            f"{name:14} {reference:8.2f}ms {reference_first:8.2f}ms {' '.join(cells)}"
+            f" {typical['loop'] / typical['steady']:8.2f}"
+        )
 
 
 if __name__ == "__main__":

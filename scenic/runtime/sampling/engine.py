@@ -33,7 +33,7 @@ from scenic.runtime.sampling.stages import Stage, Stages
 DEFAULT_LANES = 4096
 REPORT_CANDIDATES = 1000
 
-_FIRST_FORESEEN = 4
+_FIRST_FORESEEN = 8
 """Scenes looked for at first where it is not known how many are wanted: a round of a few more costs hardly more."""
 
 _MOST_FORESEEN = 256

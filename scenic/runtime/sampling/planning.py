@@ -17,6 +17,7 @@ from scenic.language.errors import InvalidScenarioError
 from scenic.language.spans import Span
 from scenic.runtime.conditions import connect, truth
 from scenic.runtime.geometry.collision import collide
+from scenic.runtime.geometry.narrowphase import recall
 from scenic.runtime.geometry.ragged import distinct
 from scenic.runtime.objects import Object
 from scenic.runtime.program import Program, Requirement
@@ -296,6 +297,8 @@ def _collisions(program: Program) -> list[Check]:
     pairs = np.stack([first, second], axis=1)[wanted & ~settled]
     if not len(pairs):
         return []
+    shapes = [nodes[index].shape for index in np.unique(pairs).tolist()]
+    recall(shape.value.mesh for shape in shapes if shape.is_constant)
     return [CollisionCheck(nodes, pairs)]
 
 

@@ -2,11 +2,15 @@ import io
 import multiprocessing
 import os
 import pickle
+import shutil
+import textwrap
 import zlib
 
 import numpy as np
 import pytest
+import trimesh
 
+import scenic
 from scenic.runtime.geometry import store
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.store import digest_of, kept
@@ -189,3 +193,23 @@ def test_meshes_are_the_same_with_a_store(folder, monkeypatch):
             np.testing.assert_array_equal(one, two)
             np.testing.assert_array_equal(one, three)
     assert len(list(folder.iterdir())) == 4
+
+
+def test_a_program_reads_what_is_kept_of_its_meshes_when_it_is_loaded(folder, tmp_path):
+    def load(name: str) -> Mesh:
+        # Another file each time, since one that was read before is not read again.
+        trimesh.Trimesh(bumpy(2).vertices, bumpy(2).faces, process=False).export(tmp_path / name)
+        text = f"""
+            shape = MeshShape.fromFile({str(tmp_path / name)!r})
+            ego = new Object with shape shape
+            new Object at (Range(1, 5), 0, 0), with shape shape
+            """
+        return scenic.scenarioFromString(textwrap.dedent(text)).objects[0].shape.mesh
+
+    first = load("first.obj")
+    assert not folder.exists()  # cells are made when they pay
+    cells = first.derived(voxels)
+    second = load("second.obj")
+    shutil.rmtree(folder)
+    np.testing.assert_array_equal(second.derived(voxels).filled, cells.filled)
+    assert not folder.exists()
