@@ -36,6 +36,7 @@ if TYPE_CHECKING:
         RejectionException,
         ScenicError,
         ScenicSyntaxError,
+        ScenicWarning,
         SpecifierError,
     )
     from scenic.pipeline import load, scenarioFromFile, scenarioFromString
@@ -59,6 +60,7 @@ _HOMES = MappingProxyType(
         "RejectionException": "scenic.language.errors",
         "ScenicError": "scenic.language.errors",
         "ScenicSyntaxError": "scenic.language.errors",
+        "ScenicWarning": "scenic.language.errors",
         "SpecifierError": "scenic.language.errors",
         "DepthSensor": "scenic.runtime.sensors",
         "RGBSensor": "scenic.runtime.sensors",
@@ -90,6 +92,7 @@ __all__ = [
     "Scene",
     "ScenicError",
     "ScenicSyntaxError",
+    "ScenicWarning",
     "Sobol",
     "SpecifierError",
     "load",

@@ -17,7 +17,7 @@ from typing import Final
 import click
 
 from scenic.cli.established import GLOBAL, translated
-from scenic.cli.output import FINDINGS, INTERNAL, INTERRUPTED, exit_code, show_diagnostics
+from scenic.cli.output import FINDINGS, INTERNAL, INTERRUPTED, exit_code, show_diagnostics, shown_warnings
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.errors import Located, ParseCompileError
 from scenic.language.spelling import nearest
@@ -138,7 +138,8 @@ def _guarded(arguments: list[str], *, backtrace: bool, debug: bool) -> int:
     """Run a command; ``backtrace`` shows all of an exception's calls, ``debug`` opens Python's debugger where it came up."""
     try:
         try:
-            result = scenic.main(arguments, prog_name="scenic", standalone_mode=False)
+            with shown_warnings():
+                result = scenic.main(arguments, prog_name="scenic", standalone_mode=False)
             code = result if isinstance(result, int) else 0
         except click.ClickException as error:
             error.show()

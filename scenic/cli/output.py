@@ -2,11 +2,14 @@
 
 import os
 import sys
-from collections.abc import Collection, Iterable
+import warnings
+from collections.abc import Collection, Iterable, Iterator
+from contextlib import contextmanager
 from typing import Final, TextIO
 
 from scenic.cli.render import Sources, render_text
 from scenic.language.diagnostics import Diagnostic, Severity
+from scenic.language.errors import ScenicWarning
 
 __all__ = [
     "CLEAN",
@@ -17,6 +20,7 @@ __all__ = [
     "exit_code",
     "has_colours",
     "show_diagnostics",
+    "shown_warnings",
     "summary",
 ]
 
@@ -54,6 +58,31 @@ def show_diagnostics(diagnostics: Iterable[Diagnostic], sources: Sources | None 
     """Show diagnostics for people on the error stream, as commands do whose output is something else."""
     found = list(diagnostics)
     sys.stderr.write(render_text(found, sources or Sources(), has_colours(sys.stderr)))
+
+
+@contextmanager
+def shown_warnings() -> Iterator[None]:
+    """Within this, what a running program is warned of is shown as all findings are, each once."""
+    seen: set[Diagnostic] = set()
+    with warnings.catch_warnings():
+        as_python = warnings.showwarning
+
+        def show(
+            message: Warning | str,
+            category: type[Warning],
+            filename: str,
+            lineno: int,
+            file: TextIO | None = None,
+            line: str | None = None,
+        ) -> None:
+            if not isinstance(message, ScenicWarning):
+                as_python(message, category, filename, lineno, file, line)
+            elif (found := message.diagnostic()) not in seen:
+                seen.add(found)
+                show_diagnostics([found])
+
+        warnings.showwarning = show
+        yield
 
 
 def summary(diagnostics: Iterable[Diagnostic]) -> str:

@@ -32,7 +32,9 @@ _FIRST_LINE: Final = 1 << 24
 """The longest first line of a file of ours that is looked at."""
 
 
-_NOTHING_KEPT: Final = "nothing of this simulation is kept; make room, and give the same command again"
+_NOTHING_KEPT: Final = (
+    "nothing of this simulation is kept; make room or name another place, and give the same command again"
+)
 
 
 class _Work:

@@ -165,6 +165,7 @@ CODES: Final = MappingProxyType(
         "SC404": "value of the wrong type",
         "SC405": "unsuitable value",
         "SC406": "module not found",
+        "SC407": "something doubtful while the program runs",
         # Found while sampling.
         "SC500": "no scene found",
         "SC501": "a requirement or property failed while sampling",

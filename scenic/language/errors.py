@@ -279,7 +279,36 @@ class StuckBehaviorError(Exception):
     """Code of a program has run for too long without taking an action or waiting."""
 
 
-class StuckBehaviorWarning(UserWarning):
+class ScenicWarning(UserWarning):
+    """Something doubtful that ends nothing; ``span`` and ``filename`` tell where, ``help`` what to do."""
+
+    code = "SC407"
+
+    def __init__(
+        self,
+        message: str,
+        *,
+        code: str | None = None,
+        span: Span | None = None,
+        filename: str | None = None,
+        help: str | None = None,
+    ) -> None:
+        super().__init__(message if help is None else f"{message}: {help}")
+        self.message = message
+        self.span = span
+        self.filename = filename
+        self.help = help
+        if code is not None:
+            self.code = code
+
+    def diagnostic(self) -> Diagnostic:
+        """The same as plain data."""
+        return Diagnostic(
+            self.code, self.message, self.span, Severity.WARNING, filename=self.filename, help=self.help
+        )
+
+
+class StuckBehaviorWarning(ScenicWarning):
     """Code of a program has run for long without taking an action or waiting."""
 
 

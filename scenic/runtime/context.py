@@ -4,17 +4,24 @@ Generated code reaches its context through the prelude that it was given. Functi
 function (``Range(0, 1)``) find it in a context variable, so that several scenarios can be compiled side by side.
 """
 
+import os
 import sys
+import warnings
 from collections import Counter
 from collections.abc import Callable, Hashable, Sequence
 from contextvars import ContextVar
+from pathlib import Path
 from types import FrameType, TracebackType
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 
 from scenic.graph.draws import address
+from scenic.language.errors import ScenicWarning
 from scenic.language.spans import Span
+
+_PACKAGE: Final = f"{Path(__file__).parents[1]}{os.sep}"
+"""Where the code of this package lies."""
 
 Locator = Callable[[FrameType | TracebackType], Span | None]
 """Where in the Scenic source a Python frame or the failure of a traceback is (`scenic.compiler.tracebacks`); passed
@@ -98,6 +105,17 @@ class Context:
         found = self._locate(sys._getframe(1))
         return self.concerns if found is None else found
 
+    def file(self) -> str | None:
+        """The file of whoever called the runtime, if that is generated code."""
+        frame = sys._getframe(1)
+        found = self._locate(frame)
+        if found is None:
+            return None
+        # From functions in between that are plain Python the same place is found.
+        while frame.f_back is not None and self._locate(frame.f_back) == found:
+            frame = frame.f_back
+        return frame.f_code.co_filename
+
     @property
     def namer(self) -> Namer:
         """What names places, for a context of the same program."""
@@ -124,6 +142,24 @@ def here() -> Span | None:
     """Place in the program of whoever called the runtime, if a program is running."""
     context = current.get()
     return None if context is None else context.place()
+
+
+def warn(message: str, *, code: str | None = None, span: Span | None = None, help: str | None = None) -> None:
+    """Issue a `ScenicWarning` of a place in the program, by default that of whoever called the runtime."""
+    context = current.get()
+    file = None if context is None else context.file()
+    span = span or here()
+    if file is not None and span is not None:
+        notice = ScenicWarning(message, code=code, span=span, filename=file, help=help)
+        warnings.warn_explicit(notice, None, file, span.line)
+    else:
+        frame: FrameType | None = sys._getframe(1)
+        while frame is not None and frame.f_code.co_filename.startswith(_PACKAGE):
+            frame = frame.f_back
+        notice = ScenicWarning(message, code=code, help=help)
+        warnings.warn_explicit(
+            notice, None, *(("<unknown>", 1) if frame is None else (frame.f_code.co_filename, frame.f_lineno))
+        )
 
 
 def next_address() -> int | None:

@@ -30,7 +30,7 @@ from scenic.runtime.regions.stacked import placed_of
 from scenic.runtime.regions.views import ViewRegion
 from scenic.runtime.regions.volumes import BoxRegion
 from scenic.runtime.shapes import BoxShape
-from scenic.runtime.sight import sees
+from scenic.runtime.sight import occluders_of, sees
 from scenic.runtime.values import (
     Orientation,
     Random,
@@ -210,9 +210,10 @@ class Point:
         proved, however little of it shows.
         """
         stored: Mapping[str, Any] = self.__dict__.get("_source", self).__dict__
+        occluders = occluders_of(occludingObjects)
         if "_planar" in stored and not certain:
-            return sees_in_plane(self, other, occludingObjects)
-        return sees(self, other, occludingObjects, certain=certain)
+            return sees_in_plane(self, other, occluders)
+        return sees(self, other, occluders, certain=certain)
 
     @property
     def corners(self) -> tuple[Any, ...]:

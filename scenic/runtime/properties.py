@@ -4,7 +4,6 @@ Section 5.2 of the specification.
 """
 
 import math
-import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from graphlib import TopologicalSorter
@@ -16,7 +15,7 @@ from scenic.language.errors import InvalidScenarioError, ScenicValueError
 from scenic.language.spans import Span
 from scenic.runtime.choices import per_option
 from scenic.runtime.coercions import when_drawn
-from scenic.runtime.context import current, here
+from scenic.runtime.context import current, here, warn
 from scenic.runtime.regions.base import Region
 from scenic.runtime.shapes import Shape
 from scenic.runtime.values import (
@@ -158,7 +157,6 @@ _SCALARS = frozenset(
         "width",
         "length",
         "height",
-        "visibleDistance",
         "viewAngle",
         "speed",
         "angularSpeed",
@@ -202,6 +200,17 @@ def _position(name: str, value: Any) -> Any:
 
 def _scalar(name: str, value: Any) -> Any:
     return value if type(value) is float else to_scalar(value, f"property {name!r}")
+
+
+def _distance(name: str, value: Any) -> Any:
+    distance = _scalar(name, value)
+    if is_number(distance) and not distance >= 0:
+        raise ScenicValueError(
+            f"property {name!r} must not be negative, but is {distance:g}",
+            span=here(),
+            help="distances are in metres",
+        )
+    return distance
 
 
 def _angle(name: str, value: Any) -> Any:
@@ -251,6 +260,22 @@ def _density(name: str, value: Any) -> Any:
     return value
 
 
+def _ray_count(name: str, value: Any) -> Any:
+    """How many rays go across and upward, or nothing; each number as it is written."""
+    if value is None:
+        return value
+    if not (isinstance(value, tuple | list) and len(value) == 2):
+        raise wrong_type("a pair of numbers", value, f"property {name!r}")
+    for count in value:
+        if is_number(_scalar(name, count)) and not count >= 1:
+            raise ScenicValueError(
+                f"property {name!r} must be at least 1, not {count:g}",
+                span=here(),
+                help="these are the numbers of rays across and upward, for example `(300, 200)`",
+            )
+    return tuple(value)
+
+
 def _container(name: str, value: Any) -> Any:
     if not isinstance(value, Region | Random | None):
         raise wrong_type("a region", value, f"property {name!r}")
@@ -272,9 +297,9 @@ def _view_angles(_name: str, value: Any) -> Any:
                     help="give them in radians, or with `deg`",
                 )
             if size > limit:
-                warnings.warn(
-                    f"view angle {size:g} is truncated to {limit:g}: the angles are at most 360 and 180 degrees",
-                    stacklevel=2,
+                warn(
+                    f"view angle {size:g} is truncated to {limit:g}",
+                    help="the angles are at most 360 and 180 degrees",
                 )
                 size = limit
         else:
@@ -326,10 +351,12 @@ _NORMAL: Mapping[str, Callable[[str, Any], Any]] = MappingProxyType(
         "position": _position,
         **dict.fromkeys(_SCALARS, _scalar),
         **dict.fromkeys(_ANGLES, _angle),
+        "visibleDistance": _distance,
         "parentOrientation": _orientation,
         **dict.fromkeys(_TRUTHS, _per_drawn(_truth, Kind.BOOLEAN)),
         "viewAngles": _per_drawn(_view_angles),
         "viewRayDensity": _density,
+        "viewRayCount": _per_drawn(_ray_count),
         "color": _per_drawn(_colour),
         "shape": _per_drawn(_shape),
         "regionContainedIn": _container,

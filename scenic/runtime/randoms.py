@@ -1,12 +1,11 @@
 """Random values: what is drawn when a scene is sampled. Each wraps a node of the value graph."""
 
-import warnings
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any, ClassVar
 
 from scenic.graph.node import Node
 from scenic.language.errors import RandomControlFlowError, RandomIndexError, ScenicTypeError
-from scenic.runtime.context import here
+from scenic.runtime.context import here, warn
 from scenic.runtime.methods import Arithmetic, OrientationMethods, VectorMethods
 from scenic.runtime.spelling import spelled
 
@@ -128,7 +127,7 @@ class Random(Arithmetic):
         return spelled(self.node)
 
     def __format__(self, spec: str) -> str:
-        warnings.warn("a random value formatted as text shows no sample", stacklevel=2)
+        warn("a random value formatted as text shows no sample")
         return repr(self)
 
     def resampled(self) -> Any:

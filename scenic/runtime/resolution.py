@@ -1,7 +1,6 @@
 """Which specifier decides which property, and the building of an instance (section 6.1 of the specification)."""
 
 import math
-import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -9,7 +8,7 @@ from typing import Any
 from scenic.language.errors import InvalidScenarioError, Located, ScenicValueError, SpecifierError
 from scenic.language.spans import Span
 from scenic.language.spelling import nearest_property
-from scenic.runtime.context import here
+from scenic.runtime.context import here, warn
 from scenic.runtime.lazy import MEMO, reads_of
 from scenic.runtime.lazy import resolve as settle
 from scenic.runtime.objects import TWO_D_DEFAULTS, Object, Point
@@ -252,10 +251,11 @@ def _check_property(
     elif hasattr(cls, name):
         raise _clash(cls, name, specifier.span)
     elif (meant := nearest_property(name, properties)) is not None:
-        line = "" if specifier.span is None else f"line {specifier.span.line}: "
-        warnings.warn(
-            f"{line}{cls.__name__} has no property {name!r}, which is now created: did you mean {meant!r}?",
-            stacklevel=2,
+        warn(
+            f"{cls.__name__} has no property {name!r}, which is now created",
+            code="SC300",
+            span=specifier.span,
+            help=f"did you mean {meant!r}?",
         )
         return True
     return False

@@ -111,6 +111,17 @@ def _looked(observer: Any, target: Any, occluders: Sequence[Any], certain: bool)
     return apply(SEES, *operands, payload=(is_object, certain))
 
 
+def occluders_of(values: Any) -> tuple[Any, ...]:
+    """Objects past which something is to be seen; raises `ScenicTypeError` for anything else."""
+    if isinstance(values, Random) or not isinstance(values, Iterable):
+        raise wrong_type("objects in a sequence", values, "what may hide others")
+    things = tuple(values)
+    for thing in things:
+        if not (thing.node.kind.is_boxed if isinstance(thing, Random) else is_body(thing)):
+            raise wrong_type("an object", thing, "what may hide others")
+    return things
+
+
 def is_body(value: Any) -> bool:
     """Whether a value is an object: something with a shape, not just a place."""
     return not isinstance(value, Random) and hasattr(type(value), "occupiedSpace")

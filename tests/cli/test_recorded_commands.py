@@ -23,6 +23,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from scenic.language.errors import ScenicWarning
 from tests.cli.commands import run_here
 from tests.recorded import FOLDER, hold
 
@@ -69,6 +70,7 @@ def _run(line: str, folder: Path) -> list[str]:
     before = _contents(folder)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
+        warnings.simplefilter("always", ScenicWarning)
         result = (_run_apart if is_apart else run_here)(
             words,
             folder=folder,

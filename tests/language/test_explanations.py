@@ -1,5 +1,6 @@
 """The pages of the diagnostic codes: every code has one, and what they show is what happens."""
 
+import warnings
 from importlib import resources
 from pathlib import Path
 
@@ -8,6 +9,7 @@ import pytest
 from scenic.compiler.check import check_text
 from scenic.compiler.fixes import apply_fixes
 from scenic.language.diagnostics import CODES, Diagnostic, Severity
+from scenic.language.errors import ScenicWarning
 from scenic.language.explanations import Explanation, explanation
 from scenic.pipeline import deep_check, diagnose, scenarioFromString
 from scenic.project.index import Project
@@ -60,14 +62,16 @@ def observed(page: Explanation, text: str, folder: Path) -> list[Diagnostic]:
         file.write_text(text)
         return list(deep_check(file))
     try:
-        scene, _ = scenarioFromString(text).generate(maxIterations=20)
+        with warnings.catch_warnings(record=True) as warned:
+            warnings.simplefilter("always")
+            scene, _ = scenarioFromString(text).generate(maxIterations=20)
         if page.code == "SC504":
             KinematicSimulator().simulate(scene, maxSteps=1)
     except Exception as error:  # noqa: BLE001 - whatever it is, it is what the user would see
         found = diagnose(error)
         assert found is not None
         return [found]
-    return []
+    return [item.message.diagnostic() for item in warned if isinstance(item.message, ScenicWarning)]
 
 
 @pytest.mark.parametrize("code", RUN)

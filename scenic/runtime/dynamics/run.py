@@ -1,13 +1,12 @@
 """One simulation as the language sees it: what runs, what has been drawn, and the procedure of a step (section 12.7)."""
 
-import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from typing import Any, Protocol
 
 from scenic.language.errors import InvalidScenarioError
 from scenic.language.spans import Span
-from scenic.runtime.context import Context, Locator, Namer, current, here
+from scenic.runtime.context import Context, Locator, Namer, current, here, warn
 from scenic.runtime.dynamics.activations import Activation, Termination
 from scenic.runtime.dynamics.copies import Copies
 from scenic.runtime.dynamics.definitions import Behavior, Invocable, ModularScenario
@@ -254,10 +253,9 @@ class Run:
         """Warn of objects that are in the simulator already, and stay where they are."""
         for target in targets:
             if id(target) in self._numbers:
-                warnings.warn(
-                    f"`mutate` has no effect on {target!r}, which the simulator has already: "
-                    "mutate objects in the setup that creates them",
-                    stacklevel=2,
+                warn(
+                    f"`mutate` has no effect on {target!r}, which the simulator has already",
+                    help="mutate objects in the setup that creates them",
                 )
 
     def start_behavior(self, agent: Any, scenario: ScenarioActivation) -> None:

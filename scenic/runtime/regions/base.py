@@ -130,16 +130,16 @@ class Region(ABC):
         A region that retries keys its further draws with the words ``keys``, ``(n,)``.
         """
         raise UndefinedSamplingException(
-            f"no point can be drawn uniformly from a {type(self).__name__}", span=here()
+            f"no point can be drawn uniformly from a region of the kind {type(self).__name__}", span=here()
         )
 
     def orientations(self, points: Points, *columns: Column) -> Column:
         """Preferred orientations ``(n, 4)`` at points of the region; only where `has_orientation`."""
-        raise unsupported(f"the orientation of a {type(self).__name__}")
+        raise unsupported(f"the orientation of a region of the kind {type(self).__name__}")
 
     def distances(self, points: Points, *columns: Column) -> NDArray[np.float64]:
         """Distances of points ``(n, 3)`` from the region, shape ``(n,)``; 0 inside."""
-        raise unsupported(f"the distance to a {type(self).__name__}")
+        raise unsupported(f"the distance to a region of the kind {type(self).__name__}")
 
     def gaps(self, points: Points, *columns: Column) -> NDArray[np.float64]:
         """How far points ``(n, 3)`` are at least from the region as a container, shape ``(n,)``; 0 where unknown."""
@@ -222,7 +222,8 @@ class Region(ABC):
         nothing lands.
         """
         raise ScenicTypeError(
-            f"nothing can be placed `on` a {type(self).__name__} by projection", span=here()
+            f"nothing can be placed `on` a region of the kind {type(self).__name__} by projection",
+            span=here(),
         )
 
     def distance_from(self, point: Any) -> Any:
@@ -307,7 +308,9 @@ class Region(ABC):
         """The corners of the bounding box along the global axes; raises ``TypeError`` where there is none."""
         lower, upper = self.box(*self.fixed_columns("the bounding box"))
         if not (np.isfinite(lower).all() and np.isfinite(upper).all()):
-            raise ScenicTypeError(f"a {type(self).__name__} has no bounding box", span=here())
+            raise ScenicTypeError(
+                f"a region of the kind {type(self).__name__} has no bounding box", span=here()
+            )
         first, last = lower[0].tolist(), upper[0].tolist()
         return (first[0], first[1], first[2]), (last[0], last[1], last[2])
 

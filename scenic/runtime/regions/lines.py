@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import Call, Operation, always
 from scenic.language.errors import ScenicTypeError, ScenicValueError
-from scenic.runtime.context import here
+from scenic.runtime.context import here, warn
 from scenic.runtime.fields import RegionField, VectorField
 from scenic.runtime.geometry.collision import Body
 from scenic.runtime.geometry.segments import Segments
@@ -165,11 +165,7 @@ class PolylineRegion(LineRegion):
         if points is not None:
             vertices = _fixed_points(points, "`PolylineRegion`")
             if any(z != 0 for _, _, z in vertices):
-                import warnings
-
-                warnings.warn(
-                    "`PolylineRegion` lies in the plane: the z of its points is dropped", stacklevel=2
-                )
+                warn("`PolylineRegion` lies in the plane: the z of its points is dropped")
             if len(vertices) < 2:
                 raise ScenicValueError("`PolylineRegion` needs at least two points", span=here())
             chains = [[(x, y, 0.0) for x, y, _ in vertices]]

@@ -56,7 +56,7 @@ class PlanarRegion(Region):
 
     def polygons_now(self) -> Any:
         """The polygon of the region with fixed parameters, shapely's."""
-        raise unsupported(f"the polygon of a {type(self).__name__}")
+        raise unsupported(f"the polygon of a region of the kind {type(self).__name__}")
 
     @property
     def polygons(self) -> Any:

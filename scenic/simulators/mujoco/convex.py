@@ -1,11 +1,11 @@
 """Solids as convex parts, since physics knows contacts of convex things only."""
 
-import warnings
 from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
 
+from scenic.runtime.context import warn
 from scenic.runtime.geometry.store import Arrays, kept
 
 __all__ = ["convex_parts"]
@@ -55,10 +55,9 @@ def _library() -> Any:
     try:
         import coacd  # optional, and slow to import
     except ImportError:
-        warnings.warn(
-            "meshes that are not convex touch with their convex hulls, since the package coacd is missing: "
-            "install scenic-lang[mujoco]",
-            stacklevel=2,
+        warn(
+            "meshes that are not convex touch with their convex hulls, since the package coacd is missing",
+            help="install scenic-lang[mujoco]",
         )
         return None
     return coacd
