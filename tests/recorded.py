@@ -83,6 +83,18 @@ def scenes(source: str, *, wanted: int = 3, **options: Any) -> str:
     return "\n".join([*(f"warning: {warning.message}" for warning in warned), answer])
 
 
+def columns(source: str, *, wanted: int = 16, **options: Any) -> str:
+    """The values of each parameter of a program over many scenes, which are looked for together, a line each."""
+    try:
+        scenario = scenic.scenarioFromString(source, **options)
+        found = scenario.sample(wanted, seed=7, max_attempts=500)
+        return "\n".join(
+            f"{name}: {' '.join(shown(scene.params[name]) for scene in found)}" for name in found[0].params
+        )
+    except Exception as error:  # noqa: BLE001 - what is said of it is the answer
+        return said(error)
+
+
 def expressions(source: str) -> str:
     """What each expression below a line of ``?`` gives in two scenes of the program above it, or what is said of its error.
 

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.recorded import FOLDER, expressions, hold, scenes
+from tests.recorded import FOLDER, columns, expressions, hold, scenes
 
 
 @pytest.mark.parametrize("path", sorted(FOLDER.glob("programs_*.txt")), ids=lambda path: path.stem)
@@ -15,6 +15,11 @@ def test_programs(path: Path, request: pytest.FixtureRequest) -> None:
 @pytest.mark.parametrize("path", sorted(FOLDER.glob("expressions_*.txt")), ids=lambda path: path.stem)
 def test_expressions(path: Path, request: pytest.FixtureRequest) -> None:
     hold(path, expressions, request)
+
+
+@pytest.mark.parametrize("path", sorted(FOLDER.glob("columns_*.txt")), ids=lambda path: path.stem)
+def test_columns(path: Path, request: pytest.FixtureRequest) -> None:
+    hold(path, columns, request)
 
 
 def test_flat_programs(request: pytest.FixtureRequest) -> None:

@@ -162,6 +162,27 @@ def test_the_oldest_go_first(folder, monkeypatch):
     assert compute.calls == 9
 
 
+def test_a_clearance_leaves_room_and_what_is_not_of_the_store(folder, monkeypatch):
+    """It takes what is past three quarters, whatever wrote it, in the order of its last use, and nothing else."""
+    most = 100_000
+    monkeypatch.setattr(store, "MOST_BYTES", most)
+    folder.mkdir()
+    files = {"old.npz": 9000, "a.arrays": 10_000, "b.arrays": 25_000, "new.npz": 27_000, "c.arrays": 26_000}
+    others = {"notes.txt": 50_000, ".half.part": 50_000}
+    for age, (name, size) in enumerate({**files, **others}.items()):
+        (folder / name).write_bytes(bytes(size))
+        os.utime(folder / name, ns=(0, 10**9 * (age + 1)))
+    (folder / "folder").mkdir()
+    kept("x", CONTENT, Counted(2000))  # 16 kB: 113 kB in all
+    left = {path.name for path in folder.iterdir() if path.name in {**files, **others, "folder": 0}}
+    assert left == {"new.npz", "c.arrays", *others, "folder"}
+    kept("y", CONTENT, Counted(2000))  # 85 kB: nothing has to go yet
+    assert {path.name for path in folder.iterdir()} >= left
+    kept("z", CONTENT, Counted(2000))
+    assert {path.name for path in folder.iterdir()} >= {"c.arrays", *others, "folder"}
+    assert not (folder / "new.npz").exists()
+
+
 def _use(folder: str, rounds: int) -> bool:
     os.environ.update(SCENIC_CACHE="", SCENIC_CACHE_DIR=folder)
     store.MOST_BYTES = 60_000
