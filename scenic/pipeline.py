@@ -24,6 +24,7 @@ from scenic.language.errors import (
     annotation,
     compile_error,
 )
+from scenic.language.garbage import keep_young
 from scenic.language.source import Source, read_source
 from scenic.language.spans import Span
 from scenic.language.spelling import nearest
@@ -299,6 +300,8 @@ def _scenario(
     if prune:
         pruning = contract(scenario.outline.graph, conditions(scenario))
         scenario.restrict(pruning.domain, impossible=[item.label for item in pruning.impossible])
+    scenario.prepare()
+    keep_young()
     return scenario
 
 

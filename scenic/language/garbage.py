@@ -6,7 +6,7 @@ from contextlib import contextmanager
 from importlib import import_module
 from types import ModuleType
 
-__all__ = ["import_lasting", "no_garbage_collection"]
+__all__ = ["import_lasting", "keep_young", "no_garbage_collection"]
 
 
 @contextmanager
@@ -27,9 +27,13 @@ def import_lasting(name: str) -> ModuleType:
     With NumPy they are some forty thousand objects, which it would look through twelve times: in the midst of whatever
     the program does next.
     """
-    wanted = gc.isenabled()
     with no_garbage_collection():
         module = import_module(name)
-        if wanted:
-            gc.collect(1)  # what is young is old from now on
+    keep_young()
     return module
+
+
+def keep_young() -> None:
+    """Tell Python's collector that what was made lately is to stay: it would look through it while the next things are made."""
+    if gc.isenabled():
+        gc.collect(1)  # what is young is old from now on

@@ -132,6 +132,10 @@ class Scenario:
         """The part of the unit cube that is sampled."""
         return self._engine.plan.domain
 
+    def prepare(self) -> None:
+        """Make what the first scene would otherwise wait for."""
+        self._engine.prepare()
+
     def restrict(self, domain: Domain, *, impossible: Sequence[str] = ()) -> None:
         """Sample from a part of the cube only. It must hold every point that meets the requirements.
 

@@ -36,6 +36,9 @@ REPORT_CANDIDATES = 1000
 _FIRST_FORESEEN = 8
 """Scenes looked for at first where it is not known how many are wanted: a round of a few more costs hardly more."""
 
+_FIRST_LANES = (8 * _FIRST_FORESEEN, 512)
+"""Sizes of a first round: of a loop, and of a batch."""
+
 _MOST_FORESEEN = 256
 """Scenes looked for at a time, at most, where it is not known how many are wanted."""
 
@@ -165,6 +168,11 @@ class Engine:
         self._stages = Stages(plan.checks, plan.outputs, self._scheduler)
         self._soft = [index for index, check in enumerate(plan.checks) if check.probability < 1]
         self._chances = np.array([plan.checks[index].probability for index in self._soft])
+
+    def prepare(self) -> None:
+        """Make what the first round would otherwise wait for."""
+        for lanes in _FIRST_LANES:
+            self._stages.expected(lanes)
 
     def scenes(
         self,

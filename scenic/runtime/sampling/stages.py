@@ -74,9 +74,13 @@ class Stages:
 
     def order(self, lanes: int) -> tuple[Stage, ...]:
         """The stages for a batch of so many lanes; the last one has no checks: it gets the outputs."""
-        self._rounds += 1
-        if self._rounds & (self._rounds - 1) == 0:
+        if self._rounds and self._rounds & (self._rounds - 1) == 0:
             self._plans.clear()  # after 1, 2, 4, 8, ... rounds
+        self._rounds += 1
+        return self.expected(lanes)
+
+    def expected(self, lanes: int) -> tuple[Stage, ...]:
+        """The same for a batch that may come: asked for before the first one, it spares that one the making."""
         size = max(1, lanes).bit_length()
         plan = self._plans.get(size)
         if plan is None:
