@@ -267,6 +267,20 @@ def test_progress_ends_when_all_scenes_are_there(folder: Path, done: int, jobs: 
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize(
+    "outputs", [["-o", "ball.glb"], ["--view", "balls.html"], ["-o", "more.jsonl", "--view", "more.html"]]
+)
+def test_progress_counts_scenes_once_wherever_they_go(folder: Path, outputs: list[str]) -> None:
+    shown = run_here(
+        ["sample", "balls.scenic", "--seed", 1, "-n", 3, *outputs],
+        folder=folder,
+        variables={"TERM": "xterm", "COLUMNS": "100"},
+        terminal=True,
+    )
+    assert shown.returncode == 0
+    assert re.findall(r"(\d+)/3", shown.stderr)[-1] == "3"
+
+
 def test_what_is_computed_of_meshes_is_kept_unless_it_must_not(tmp_path: Path) -> None:
     (tmp_path / "cones.scenic").write_text(
         "for i in range(4):\n    new Object at (Range(-1, 1), Range(-1, 1), 0), with shape ConeShape(), facing (0, 40 deg, 0)\n"

@@ -105,3 +105,40 @@ def test_without_the_library_the_extra_is_named(tmp_path: Path, monkeypatch: pyt
         record(tmp_path, "image(ego.y, 64, 96)")
     assert "scenic-lang[video]" in str(caught.value.help)
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.skipif(importlib.util.find_spec("imageio_ffmpeg") is None, reason="needs the extra [video]")
+def test_of_a_dropped_film_nothing_remains_and_of_a_saved_one_everything(tmp_path: Path) -> None:
+    path = tmp_path / "films" / "film.mp4"
+    picture = np.zeros((64, 96), dtype=np.uint8)
+
+    def film(images: int) -> Film:
+        made = Film(path, 0.1)
+        for step in range(images):
+            made.add(step, picture)
+        return made
+
+    for images in range(4):
+        film(images).drop()
+        assert list(tmp_path.rglob("*.mp4")) == []
+    saved = film(2)
+    assert list(tmp_path.rglob("film.mp4")) == []
+    saved.save()
+    saved.drop()
+    assert [each.name for each in path.parent.iterdir()] == ["film.mp4"]
+    assert len(frames(path)[2]) == 2
+    refused = film(2)
+    with pytest.raises(ValueError, match=r"not one of \(32, 96\) after \(64, 96\)"):
+        refused.add(2, picture[:32])
+    refused.drop()
+    assert [each.name for each in path.parent.iterdir()] == ["film.mp4"]
+    assert len(frames(path)[2]) == 2
+
+
+@pytest.mark.skipif(importlib.util.find_spec("imageio_ffmpeg") is None, reason="needs the extra [video]")
+def test_a_film_of_one_image_is_seen_for_a_step(tmp_path: Path) -> None:
+    film = Film(tmp_path / "film.mp4", 0.25)
+    film.add(3, np.zeros((64, 96), dtype=np.uint8))
+    film.save()
+    _, pace, shown = frames(tmp_path / "film.mp4")
+    assert (pace, len(shown)) == (4, 1)
