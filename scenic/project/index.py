@@ -330,10 +330,21 @@ class Project:
     def member(self, found: Found, name: str, *, importer: str, level: int = 0) -> Exported | Found | None:
         """What ``from m import name`` brings: a name of the module, else a module in it; ``None`` if it has neither."""
         exported = self.exports_of(found).names.get(name)
-        if exported is not None:
+        if exported is not None and not self._is_own_module(exported, found):
             return exported
         inner = self.find(f"{found.name}.{name}" if found.name else name, importer=importer, level=level)
-        return None if inner.is_missing else inner
+        # Of what is not found nothing is said: it may be made when the package is built.
+        return exported if inner.is_missing else inner
+
+    def _is_own_module(self, exported: Exported, found: Found) -> bool:
+        """Whether ``from . import name`` in a package itself binds a name: it can only bring the module of that name."""
+        module, binding = exported.module, exported.binding
+        if module is None or binding is None or module.filename != found.filename:
+            return False
+        alias, statement = self._import_of(module, binding)
+        if alias is None or alias.name != exported.name or not isinstance(statement, ast.ImportFrom):
+            return False
+        return self.found_by(statement, module.filename).filename == found.filename
 
     def follow(self, exported: Exported) -> Exported | Found:
         """The definition behind an imported name, through all modules that pass it on.
