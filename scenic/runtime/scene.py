@@ -1,7 +1,6 @@
 """Scenes: one sample of a scenario."""
 
 import sys
-import tempfile
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,6 +10,7 @@ from scenic.graph.node import Node
 from scenic.language.spans import Span
 from scenic.runtime.dumping import program_of
 from scenic.runtime.dynamics.declarations import Copier
+from scenic.runtime.files import whole
 from scenic.runtime.objects import Object, Point
 from scenic.runtime.population import Populations
 from scenic.runtime.program import Program, Requirement
@@ -225,10 +225,9 @@ class Scene:
 
     def save(self, path: str | Path) -> None:
         """Write the scene to a file, from which `Scenario.replay` takes it up again; the file is complete or absent."""
-        target = Path(path)
-        with tempfile.NamedTemporaryFile(dir=target.absolute().parent, delete=False) as file:
-            file.write(self._family.keep(self))
-        Path(file.name).replace(target)
+        content = self._family.keep(self)
+        with whole(Path(path)) as stream:
+            stream.write(content)
 
     def dump(self) -> str:
         """A program whose only scene is this one: concrete objects, no requirements."""

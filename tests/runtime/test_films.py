@@ -109,7 +109,7 @@ def test_without_the_library_the_extra_is_named(tmp_path: Path, monkeypatch: pyt
 
 @pytest.mark.skipif(importlib.util.find_spec("imageio_ffmpeg") is None, reason="needs the extra [video]")
 def test_of_a_dropped_film_nothing_remains_and_of_a_saved_one_everything(tmp_path: Path) -> None:
-    path = tmp_path / "films" / "film.mp4"
+    path = tmp_path / "film.mp4"
     picture = np.zeros((64, 96), dtype=np.uint8)
 
     def film(images: int) -> Film:

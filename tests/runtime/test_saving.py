@@ -2,6 +2,8 @@
 
 import io
 import json
+import os
+import stat
 from pathlib import Path
 
 import numpy as np
@@ -42,6 +44,32 @@ def test_a_saved_scene_is_the_same_again(tmp_path: Path, prune: bool) -> None:
             assert fingerprint(again) == fingerprint(scene)
         assert loaded.sceneToBytes(again) == loaded.sceneToBytes(scene)
     assert [file.name for file in tmp_path.iterdir() if file.suffix != ".scenic"] == ["one.scene"]
+
+
+def test_a_scene_is_saved_whole_or_not_at_all(tmp_path: Path) -> None:
+    (scene,) = scenario(PROGRAM).sample(1, seed=0)
+    data = scenario(PROGRAM).sceneToBytes(scene)
+    before = os.umask(0o027)
+    try:
+        scene.save(tmp_path / "own.scene")
+    finally:
+        os.umask(before)
+    assert (
+        stat.S_IMODE((tmp_path / "own.scene").stat().st_mode) == 0o640
+    )  # as of any new file, not for its maker alone
+    (tmp_path / "folder").mkdir()
+    with pytest.raises(IsADirectoryError):
+        scene.save(tmp_path / "folder")
+    with pytest.raises(FileNotFoundError):
+        scene.save(tmp_path / "missing" / "own.scene")
+    assert sorted(item.name for item in tmp_path.iterdir()) == ["folder", "own.scene"]
+    os.mkfifo(tmp_path / "pipe")
+    reader = os.open(tmp_path / "pipe", os.O_RDONLY | os.O_NONBLOCK)
+    try:
+        scene.save(tmp_path / "pipe")
+        assert os.read(reader, 1 << 16) == data == (tmp_path / "own.scene").read_bytes()
+    finally:
+        os.close(reader)
 
 
 def test_a_saved_scene_is_data_only(tmp_path: Path) -> None:

@@ -23,7 +23,7 @@ from scenic.language.errors import (
     annotation,
 )
 from scenic.runtime.context import current
-from scenic.runtime.dynamics.series import whole
+from scenic.runtime.files import whole
 from scenic.runtime.values import Vector
 from scenic.simulators.actions import Action
 from scenic.simulators.dummy import DummySimulation, DummySimulator
@@ -526,12 +526,12 @@ def test_files_that_are_not_whole_do_not_remain(tmp_path: Path, ended: type[Base
 
 
 def test_a_disk_that_is_full_leaves_no_half_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from scenic.runtime.dynamics import series
+    from scenic.runtime import files
 
     def full(*_: Any) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(series.os, "fsync", full)
+    monkeypatch.setattr(files.os, "fsync", full)
     with pytest.raises(OSError, match="No space left"):
         simulate(recording(tmp_path, "{step}.npy", "[1, 2]"), 2)
     assert list(tmp_path.iterdir()) == []
@@ -557,8 +557,8 @@ def test_a_series_that_finds_the_disk_full_names_its_file(
     """Although it waits in a file that has no name."""
     from scenic.runtime.dynamics import series
 
-    real = series._unnamed
-    monkeypatch.setattr(series, "_unnamed", lambda path: FullStream(real(path)))
+    real = series.unnamed
+    monkeypatch.setattr(series, "unnamed", lambda path: FullStream(real(path)))
     with pytest.raises(OSError, match="No space left") as caught:
         simulate(recording(tmp_path, name), 2)
     assert caught.value.filename == str(tmp_path / name)

@@ -14,7 +14,8 @@ import numpy as np
 from scenic.language.errors import ScenicValueError, UnsupportedError
 from scenic.runtime.context import here
 from scenic.runtime.dynamics.recorded import as_array, as_pixels, plain
-from scenic.runtime.dynamics.series import Arrays, Film, Lines, Pickled, Series, whole
+from scenic.runtime.dynamics.series import Arrays, Film, Lines, Pickled, Series
+from scenic.runtime.files import whole
 
 __all__ = ["File", "Filed", "Files", "Recorder", "for_pattern"]
 
@@ -80,6 +81,12 @@ class _Pattern(Recorder):
         )
         return Path(self.globalParams.get("recordFolder", "."), name)
 
+    def _place(self, step: int) -> Path:
+        """The same, when its folder has been made."""
+        path = self.path(step)
+        path.parent.mkdir(parents=True, exist_ok=True)
+        return path
+
 
 class File(_Pattern):
     """One file for the whole series, which is not kept in memory but for pickles."""
@@ -98,7 +105,7 @@ class File(_Pattern):
     def recordValue(self, value: Any, step: int) -> None:
         """A value at a step."""
         if self._series is None:
-            self._series = self._write(self.path(0), self.timestep, **self.options)
+            self._series = self._write(self._place(0), self.timestep, **self.options)
         self._series.add(step, value)
 
     def endRecording(self, canceled: bool) -> None:
@@ -134,7 +141,7 @@ class Files(_Pattern):
 
     def recordValue(self, value: Any, step: int) -> None:
         """Write the value."""
-        with whole(self.path(step)) as stream:
+        with whole(self._place(step)) as stream:
             self._write(stream, value, **self.options)
         self._steps.append(step)
 

@@ -4,24 +4,21 @@ What grows has no name, so that nothing of it remains however the process ends; 
 """
 
 import json
-import os
 import pickle
-import secrets
-import tempfile
 from array import array
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from pathlib import Path
 from shutil import copyfileobj
-from typing import Any, BinaryIO, Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
 from scenic.language.errors import ScenicValueError, UnsupportedError
 from scenic.runtime.context import here
 from scenic.runtime.dynamics.recorded import as_array, as_pixels, plain
+from scenic.runtime.files import named, naming, unnamed, whole
 
-__all__ = ["Arrays", "Film", "Lines", "Pickled", "Series", "whole"]
+__all__ = ["Arrays", "Film", "Lines", "Pickled", "Series"]
 
 
 class Series(Protocol):
@@ -37,64 +34,18 @@ class Series(Protocol):
         """Let nothing remain."""
 
 
-@contextmanager
-def _naming(path: Path) -> Iterator[None]:
-    """Errors of files that have no name tell this one."""
-    try:
-        yield
-    except OSError as error:
-        if error.filename is None:
-            raise OSError(error.errno, error.strerror, str(path)) from error
-        raise
-
-
-def _unnamed(path: Path) -> BinaryIO:
-    """A file in the folder of another one."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with _naming(path):
-        return tempfile.TemporaryFile(dir=path.parent)
-
-
-def _named(path: Path) -> Path:
-    """An empty file beside another one, under a name of its own."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    temporary = path.with_name(f".{path.name[:100]}.{secrets.token_hex(6)}{path.suffix}")
-    # The kernel applies the user's umask to these permissions.
-    os.close(os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666))
-    return temporary
-
-
-@contextmanager
-def whole(path: Path) -> Iterator[BinaryIO]:
-    """A file that is there when it is whole; a device or a pipe keeps its name, and is written to."""
-    if path.exists() and not path.is_file():
-        with _naming(path), path.open("wb") as stream:
-            yield stream
-        return
-    temporary = _named(path)
-    try:
-        with _naming(path), temporary.open("w+b") as stream:
-            yield stream
-            stream.flush()
-            os.fsync(stream.fileno())
-        temporary.replace(path)
-    except BaseException:
-        temporary.unlink(missing_ok=True)
-        raise
-
-
 class Lines:
     """JSON Lines: step, time and value."""
 
     def __init__(self, path: Path, timestep: float) -> None:
         self._path = path
         self._timestep = timestep
-        self._stream = _unnamed(path)
+        self._stream = unnamed(path)
 
     def add(self, step: int, value: Any) -> None:
         """Go on by a line."""
         row = {"step": step, "time": step * self._timestep, "value": plain(value)}
-        with _naming(self._path):
+        with naming(self._path):
             self._stream.write(json.dumps(row).encode() + b"\n")
 
     def save(self) -> None:
@@ -118,7 +69,7 @@ class Arrays:
         self._steps = array("q")
         self._shape: tuple[int, ...] = ()
         self._kind: np.dtype[Any] | None = None
-        self._stream = _unnamed(path)
+        self._stream = unnamed(path)
 
     def add(self, step: int, value: Any) -> None:
         """Go on by a value, of the same shape as the others."""
@@ -131,7 +82,7 @@ class Arrays:
                 help="record to a .jsonl file",
             )
         wanted = np.result_type(self._kind, found.dtype)
-        with _naming(self._path):
+        with naming(self._path):
             if wanted != self._kind:
                 self._convert(wanted)
             self._stream.write(np.ascontiguousarray(found, dtype=wanted).tobytes())
@@ -141,7 +92,7 @@ class Arrays:
         """What has been written becomes numbers of another kind."""
         with self._stream:
             values = self._values()
-            self._stream = _unnamed(self._path)
+            self._stream = unnamed(self._path)
             for value in values:
                 self._stream.write(np.asarray(value, dtype=wanted).tobytes())
         self._kind = wanted
@@ -226,7 +177,7 @@ class Film:
         assert self._first is not None
         _, first = self._first
         height, width = first.shape[:2]
-        self._file = _named(self._path)
+        self._file = named(self._path)
         fps = self._fps or 1 / (self._timestep * steps)
         self._writer = imageio_ffmpeg.write_frames(
             str(self._file), (width, height), fps=fps, macro_block_size=1
