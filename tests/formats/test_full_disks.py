@@ -2,16 +2,18 @@
 
 import errno
 import importlib.util
+import os
 from collections.abc import Callable
 from contextlib import closing
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 import pytest
 
-from scenic.formats.files import OutputError
+from scenic.formats.files import OutputError, check_folder, check_writable, make_folder, write
 from scenic.formats.trajectories import LinesFile, TrajectoryFile
 from scenic.formats.trajectory_tables import ParquetFile
+from scenic.runtime.dynamics.series import Arrays, Lines, Pickled, Series, whole
 
 FORMS = [
     LinesFile,
@@ -39,6 +41,12 @@ class Filling:
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._stream, name)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._stream.close()
 
 
 def state(step: int) -> dict[str, Any]:
@@ -81,3 +89,106 @@ def test_whenever_the_disk_gets_full(
     assert left > 2
     assert told == {f"cannot write '{path}': no space left on device"}
     assert path.exists()
+
+
+@pytest.mark.parametrize("earlier", [False, True])
+@pytest.mark.parametrize("form", [Lines, Arrays, Pickled])
+def test_whenever_the_disk_gets_full_of_what_is_recorded(
+    tmp_path: Path,
+    form: Callable[[Path, float], Series],
+    earlier: bool,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    import tempfile
+
+    real, opened = tempfile.TemporaryFile, Path.open
+    path = tmp_path / "folder" / "run"
+    kept = ["run"] if earlier else []
+    if earlier:
+        path.parent.mkdir()
+        path.write_bytes(b"earlier")
+    told = set()
+    for left in range(100):
+        with monkeypatch.context() as patched:
+            patched.setattr(
+                tempfile, "TemporaryFile", lambda left=left, **options: Filling(real(**options), left)
+            )
+            patched.setattr(
+                Path,
+                "open",
+                lambda self, mode="r", left=left: Filling(opened(self, mode), left),
+            )
+            series: Series | None = None
+            try:
+                series = form(path, 0.5)
+                for step, value in enumerate([1, 2, 2.5]):
+                    series.add(step, value)
+                series.save()
+            except OSError as refused:
+                told.add((refused.errno, refused.filename))
+                if series is not None:
+                    series.drop()
+                found = sorted(path.parent.iterdir()) if path.parent.exists() else []
+                assert [each.name for each in found] == kept
+                assert not earlier or path.read_bytes() == b"earlier"
+            else:
+                break
+    assert left >= 1
+    assert told == {(errno.ENOSPC, str(path))}
+    assert path.read_bytes() not in (b"", b"earlier")
+
+
+def test_a_full_disk_leaves_what_was_there(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    real, opened = os.fdopen, Path.open
+    path = tmp_path / "page.html"
+    for earlier in ([], ["page.html"]):
+        with monkeypatch.context() as patched:
+            patched.setattr(os, "fdopen", lambda number, mode: Filling(real(number, mode), 0))
+            patched.setattr(Path, "open", lambda self, mode="r": Filling(opened(self, mode), 0))
+            with pytest.raises(OutputError) as caught:
+                write(path, b"whole")
+            assert str(caught.value) == f"cannot write '{path}': no space left on device"
+            with pytest.raises(OSError, match="No space left") as refused, whole(path) as stream:
+                stream.write(b"whole")
+            assert refused.value.filename == str(path)
+        assert [each.name for each in tmp_path.iterdir()] == earlier
+        assert not earlier or path.read_bytes() == b"before"
+        path.write_bytes(b"before")
+
+
+def test_what_may_not_be_written_is_told_before(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also to the superuser of a test, whom the system lets do everything."""
+    file, folder = tmp_path / "file", tmp_path / "folder"
+    file.write_bytes(b"")
+    folder.mkdir()
+    for refused, lacking in ((file, os.W_OK), (folder, os.W_OK), (folder, os.X_OK)):
+        monkeypatch.setattr(
+            os,
+            "access",
+            lambda path, mode, refused=refused, lacking=lacking: path != refused or not mode & lacking,
+        )
+        checks: list[Callable[[], object]] = (
+            [lambda: check_writable(file), lambda: write(file, b"x")]
+            if refused is file
+            else [
+                lambda: check_folder(folder),
+                lambda: make_folder(folder),
+                lambda: check_writable(folder / "new"),
+                lambda: write(folder / "new", b"x"),
+            ]
+        )
+        for check in checks:
+            with pytest.raises(OutputError) as caught:
+                check()
+            expected = (
+                f"cannot write '{file}': permission denied"
+                if refused is file
+                else f"no file can be made in the folder '{folder}': permission denied"
+            )
+            assert str(caught.value) == expected
+        if refused is file:
+            check_folder(folder)
+            check_writable(folder / "new")
+        else:
+            check_writable(file)
+    assert list(folder.iterdir()) == []

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from scenic.formats import regions as drawing
-from scenic.formats.backdrop import ground_color, sky_color
+from scenic.formats.backdrop import _grid_spacing, ground_color, sky_color
 from scenic.formats.buffers import Lens, look
 from scenic.formats.camera import Outlook, corners, framed, framing, ground_height
 from scenic.formats.instances import picture
@@ -154,8 +154,36 @@ def light() -> Lines:
         yield f"image {loosely(blocks, 1.0)}"
 
 
+def grids() -> Lines:
+    """Across two decades, a little off where one spacing follows another."""
+    for reach in 12 * np.array(
+        [
+            0.073,
+            0.098,
+            0.13,
+            0.16,
+            0.3,
+            0.33,
+            0.69,
+            0.72,
+            0.98,
+            1.0,
+            1.38,
+            1.45,
+            3.1,
+            3.2,
+            7,
+            7.2,
+            9.9,
+            70,
+            72,
+        ]
+    ):
+        yield f"{reach:.5g} {_grid_spacing(reach):.7g}"
+
+
 QUESTIONS: dict[str, Callable[[], Lines]] = {
-    ask.__name__: ask for ask in (lines_of_regions, poses, cameras, light)
+    ask.__name__: ask for ask in (lines_of_regions, poses, cameras, light, grids)
 }
 
 
