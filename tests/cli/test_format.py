@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 from scenic.cli.format import format_command
+from tests.cli.commands import run_here
 
 UGLY, PRETTY = "x=1\ny = 'a'   # c\n", 'x = 1\ny = "a"  # c\n'
 
@@ -60,3 +61,21 @@ def test_a_difference_tells_of_a_missing_line_end(tmp_path: Path, capsys: pytest
     assert run("--diff", file) == 1
     lines = capsys.readouterr().out.splitlines()
     assert lines[-3:] == ["-x=1", r"\ No newline at end of file", "+x = 1"]
+
+
+@pytest.mark.parametrize("mark", [b"", b"\xef\xbb\xbf"])
+@pytest.mark.parametrize("end", [b"\n", b"\r\n"])
+@pytest.mark.parametrize("mistaken", [False, True])
+def test_mark_and_line_ends_stay_whether_in_a_file_or_from_standard_input(
+    tmp_path: Path, mark: bytes, end: bytes, mistaken: bool
+) -> None:
+    ugly = mark + (UGLY + "y = = 2\n" * mistaken).encode().replace(b"\n", end)
+    pretty = ugly if mistaken else mark + PRETTY.encode().replace(b"\n", end)
+    (tmp_path / "a.scenic").write_bytes(ugly)
+    for name, text in (("a.scenic", b""), ("-", ugly), ("-", pretty)):
+        done = run_here(["format", name], folder=tmp_path, text=text)
+        found = done.stdout.encode() if name == "-" else (tmp_path / name).read_bytes()
+        assert found == pretty
+        assert done.returncode == int(mistaken)
+    checked = run_here(["format", "--check", "-"], folder=tmp_path, text=pretty)
+    assert (checked.stdout, checked.returncode) == ("", int(mistaken))
