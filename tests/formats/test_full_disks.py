@@ -13,7 +13,8 @@ import pytest
 from scenic.formats.files import OutputError, check_folder, check_writable, make_folder, write
 from scenic.formats.trajectories import LinesFile, TrajectoryFile
 from scenic.formats.trajectory_tables import ParquetFile
-from scenic.runtime.dynamics.series import Arrays, Lines, Pickled, Series, whole
+from scenic.runtime.dynamics.series import Arrays, Lines, Pickled, Series
+from scenic.runtime.files import whole
 
 FORMS = [
     LinesFile,
@@ -104,8 +105,8 @@ def test_whenever_the_disk_gets_full_of_what_is_recorded(
     real, opened = tempfile.TemporaryFile, Path.open
     path = tmp_path / "folder" / "run"
     kept = ["run"] if earlier else []
+    path.parent.mkdir()
     if earlier:
-        path.parent.mkdir()
         path.write_bytes(b"earlier")
     told = set()
     for left in range(100):
@@ -128,8 +129,7 @@ def test_whenever_the_disk_gets_full_of_what_is_recorded(
                 told.add((refused.errno, refused.filename))
                 if series is not None:
                     series.drop()
-                found = sorted(path.parent.iterdir()) if path.parent.exists() else []
-                assert [each.name for each in found] == kept
+                assert [each.name for each in path.parent.iterdir()] == kept
                 assert not earlier or path.read_bytes() == b"earlier"
             else:
                 break
