@@ -135,6 +135,9 @@ class Module:
         binding = self.resolution.names.get("__all__")
         if binding is None:
             return None
+        for reference in self.resolution.uses("__all__"):
+            if isinstance(reference.node.ctx, ast.Load) and reference.scope.kind is ScopeKind.MODULE:
+                return None  # It may be changed in place: `__all__.append("name")`.
         names: set[str] = set()
         understood: set[ast.AST] = set()
         for node in self.tree.body:
