@@ -52,14 +52,14 @@ class Signature:
         shown: list[str] = []
         for index, parameter in enumerate(self.parameters):
             before = self.parameters[index - 1] if index else None
+            if before is not None and before.positional_only and not parameter.positional_only:
+                shown.append("/")
             if (
                 parameter.keyword_only
                 and not parameter.prefix
                 and not (before is not None and (before.keyword_only or before.prefix == "*"))
             ):
                 shown.append("*")
-            if before is not None and before.positional_only and not parameter.positional_only:
-                shown.append("/")
             shown.append(str(parameter))
         if self.parameters and self.parameters[-1].positional_only:
             shown.append("/")
