@@ -84,15 +84,22 @@ def scenes(source: str, *, wanted: int = 3, **options: Any) -> str:
 
 
 def columns(source: str, *, wanted: int = 16, **options: Any) -> str:
-    """The values of each parameter of a program over many scenes, which are looked for together, a line each."""
+    """Each parameter of a program, and where its objects are, over many scenes that are looked for together, a line each."""
     try:
         scenario = scenic.scenarioFromString(source, **options)
         found = scenario.sample(wanted, seed=7, max_attempts=500)
-        return "\n".join(
-            f"{name}: {' '.join(shown(scene.params[name]) for scene in found)}" for name in found[0].params
-        )
+        rows = {name: [scene.params[name] for scene in found] for name in found[0].params}
+        for index in range(len(found[0].objects)):
+            rows[f"#{index}"] = [scene.objects[index].position for scene in found]
+            rows[f"#{index} faces"] = [scene.objects[index].orientation for scene in found]
+        return "\n".join(f"{name}: {_column(list(map(shown, values)))}" for name, values in rows.items())
     except Exception as error:  # noqa: BLE001 - what is said of it is the answer
         return said(error)
+
+
+def _column(values: list[str]) -> str:
+    """The values, or the one that all are."""
+    return f"always {values[0]}" if len(set(values)) == 1 else " ".join(values)
 
 
 def expressions(source: str) -> str:

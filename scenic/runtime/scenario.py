@@ -13,7 +13,14 @@ from scenic.graph.domain import Domain
 from scenic.graph.draws import Counter, Lanes, Source
 from scenic.graph.node import Graph
 from scenic.graph.points import PointSet
-from scenic.language.errors import Located, RejectionException, SamplingError, SerializationError, annotate
+from scenic.language.errors import (
+    InvalidScenarioError,
+    Located,
+    RejectionException,
+    SamplingError,
+    SerializationError,
+    annotate,
+)
 from scenic.language.spans import Span
 from scenic.runtime.objects import Object
 from scenic.runtime.population import Populations
@@ -424,13 +431,33 @@ class Scenario:
         if scene is None:
             self._condition = ({}, {})
         else:
-            chosen = [self.objects[item] if isinstance(item, int) else item for item in objects]
-            values = [*chosen, *(self._program.parameters[name] for name in params)]
+            values = [*map(self._object, objects), *map(self._parameter, params)]
             nodes = Graph(dependencies(values)).nodes
             numbers, words = draws_of(scene.found, scene.lane, nodes)
             self._condition = ({**self._condition[0], **numbers}, {**self._condition[1], **words})
         self._engine = Engine(self.outline.plan(), self._conditioned(lambda lanes: Counter(lanes.keys)))
         self._foreseen = Foreseen(self._foresee)
+
+    def _object(self, item: Any) -> Any:
+        """An object, given by itself or by its place."""
+        if not isinstance(item, int):
+            return item
+        count = len(self.objects)
+        if not -count <= item < count:
+            raise InvalidScenarioError(
+                f"there is no object {item} in the scenario, which has {count}",
+                help="places count from 0, in the order of the scenario's `objects`",
+            )
+        return self.objects[item]
+
+    def _parameter(self, name: str) -> Any:
+        parameters = self._program.parameters
+        if name not in parameters:
+            raise InvalidScenarioError(
+                f"the scenario has no parameter {name!r}",
+                help=f"its parameters are {', '.join(parameters)}" if parameters else "it has none",
+            )
+        return parameters[name]
 
     def _conditioned(self, source: Callable[[Lanes], Source]) -> Callable[[Lanes], Source]:
         """A source in which what `conditionOn` says is fixed."""

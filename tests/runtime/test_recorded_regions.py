@@ -52,6 +52,7 @@ NAMES: dict[str, Any] = {
     "Vector": Vector,
     "np": np,
     "pi": math.pi,
+    "shapely": shapely,
     "trimesh": trimesh,
     "part_of": views.part_of,
     "table": table,

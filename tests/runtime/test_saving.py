@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import scenic
-from scenic.language.errors import SerializationError
+from scenic.language.errors import InvalidScenarioError, SerializationError
 from scenic.pipeline import diagnose
 from scenic.runtime.dumping import program_of
 from tests.runtime.programs import fingerprint, scenario
@@ -205,6 +205,10 @@ def test_scenes_conditioned_on_one_keep_what_was_named() -> None:
     assert len({item.params["r"]["k"] for item in later}) == 20
     assert len({item.objects[1].position.x for item in later}) == 20
     assert fingerprint(loaded.sceneFromBytes(loaded.sceneToBytes(later[3])))[1:] == fingerprint(later[3])[1:]
+    for missing in ({"objects": [99]}, {"objects": [-99]}, {"params": ["missing"]}):
+        with pytest.raises(InvalidScenarioError, match=r"no object|no parameter") as refused:
+            loaded.conditionOn(first, **missing)
+        assert refused.value.help
     loaded.conditionOn()
     assert len({item.params["p"] for item in loaded.sample(5, seed=4)}) == 5
 
