@@ -85,7 +85,7 @@ def _annotated(cls: type[ast.AST], name: str, annotation: Any) -> Field:
     options = _options(annotation)
     optional = type(None) in options
     options = [option for option in options if option is not type(None)]
-    if cls is ast.Constant and name == "value":
+    if cls in (ast.Constant, ast.MatchSingleton) and name == "value":
         return Field(name, "optional", _VALUES)
     if len(options) == 1 and typing.get_origin(options[0]) is list:
         elements = _options(typing.get_args(options[0])[0])

@@ -1,6 +1,7 @@
 """From text to a compiled Python module: parsing, resolution, lowering and Python's own compiler in one step."""
 
 import ast
+import re
 import threading
 import warnings
 from collections.abc import Callable, Mapping, Sequence
@@ -301,13 +302,17 @@ def _python_span(error: SyntaxError, source: Source) -> Span | None:
     return source.span(start)
 
 
+_LITERAL: Final = re.compile(r"with '\w+' literal")
+"""Later versions of Python say which; in all of them the message is to be the same."""
+
+
 def _python_warning(line: int, message: str, source: Source) -> Diagnostic:
     text = source.line(line)
     end = len(text.rstrip())
     span = Span(line, min(end, len(text) - len(text.lstrip())), line, end) if line >= 1 else None
     return Diagnostic(
         "SC307",
-        message,
+        _LITERAL.sub("with a literal", message),
         span,
         Severity.WARNING,
         source.filename,

@@ -121,4 +121,6 @@ def test_some_modules(module: str) -> None:
     assert spec.origin is not None
     counts: Counter[str] = Counter()
     check_module(Path(spec.origin), counts)
-    assert counts["tokens compared"] == counts["equal"] + counts["excused"] == 1
+    assert counts["equal"] + counts["excused"] == 1
+    text = Path(spec.origin).read_text(encoding="utf-8")
+    assert counts["tokens compared"] == (sys.version_info < (3, 12) or text.isascii())

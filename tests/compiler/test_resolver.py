@@ -179,10 +179,13 @@ def symtable_scopes(text: str) -> dict[str, bool]:
     """Which names of function ``f`` are its own, says CPython."""
     import symtable
 
+    # Since 3.12 the names of comprehensions are among those of the function (PEP 709), but not those of generators.
+    text = text.replace(COMPREHENSION, f"({COMPREHENSION[1:-1]})")
     function = symtable.symtable(text, "f", "exec").get_children()[0]
     return {symbol.get_name(): symbol.is_local() for symbol in function.get_symbols()}
 
 
+COMPREHENSION = "[a for b in c if (d := b)]"
 STATEMENTS = st.sampled_from(
     [
         "a = b",
@@ -199,7 +202,7 @@ STATEMENTS = st.sampled_from(
         "a: int = b",
         "try: a\n  except b as c: pass",
         "print(d := 2)",
-        "[a for b in c if (d := b)]",
+        COMPREHENSION,
         "match a:\n    case [b, *c]: pass\n    case {'x': 1, **d}: pass\n    case A(a=b): pass",
         "(a, *b), c.d, d[a] = 1",
         "lambda a, b=c: d",

@@ -1,0 +1,4 @@
+match Range:
+    case 0: pass
+    case 0: pass
+    case False: pass

@@ -1,0 +1,3 @@
+match Range:
+    case 0: pass
+    case 0, (0 | False,) as d: pass
