@@ -6,6 +6,7 @@ import math
 import multiprocessing
 import sys
 from collections.abc import Iterator
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -803,3 +804,12 @@ def test_quadrotors_fly_alike_whatever_their_mass(mass: float) -> None:
     )
     speeds = np.array(records(run(text, 20), "v"))
     np.testing.assert_allclose(speeds, 2 / 0.3 * (1 - np.exp(-0.3 * 0.05 * np.arange(21))), atol=0.01)
+
+
+def test_parts_that_are_flat_have_no_volume() -> None:
+    from scenic.simulators.mujoco.convex import _volume
+
+    box = np.array(list(product((0.0, 1.0), (0.0, 2.0), (0.0, 3.0))))
+    assert _volume(box) == pytest.approx(6)
+    for flat in (box * [1, 1, 0], box * [0, 1, 1] + [0.5, 0, 0], box[:3]):
+        assert _volume(flat) == 0
