@@ -80,6 +80,7 @@ def test_folders_are_searched() -> None:
         put(name)
     put("env/pyvenv.cfg", "")
     os.symlink("..", "a/loop")
+    os.symlink("b", "a/folder.scenic")
     os.symlink("nowhere", "a/broken.scenic")
     expected = [
         "-x.scenic",
