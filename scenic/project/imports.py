@@ -76,7 +76,7 @@ class Imports:
         if isinstance(statement, ast.Import):
             return tuple(self._project.find(alias.name, importer=importer) for alias in statement.names)
         found = self.found(statement)
-        if isinstance(statement, scenic.Model) or found.kind is not ModuleKind.NAMESPACE:
+        if isinstance(statement, scenic.Model) or found.is_missing:
             return (found,)
         inner = (self.member(alias) for alias in statement.names if alias.name != "*")
         return (found, *(each for each in inner if isinstance(each, Found)))

@@ -385,13 +385,16 @@ class Project:
 
 
 def _imports(module: Module) -> Iterator[tuple[int, str]]:
-    """Each module that a module imports: the dots before its name, and the name."""
+    """Each module that a module may import: the dots before its name, and the name."""
     nodes = module.resolution.nodes
     for node, _ in nodes(ast.Import):
         for alias in node.names:
             yield 0, alias.name
     for node, _ in nodes(ast.ImportFrom):
         yield node.level, node.module or ""
+        # Each name may be that of a module in it.
+        for alias in node.names:
+            yield node.level, f"{node.module}.{alias.name}" if node.module else alias.name
     for node, _ in nodes(scenic.Model):
         yield 0, node.name
 
