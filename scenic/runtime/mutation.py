@@ -121,7 +121,7 @@ def _kind(value: Any) -> Kind | None:
 
 
 def _applied(instance: Any, mutators: tuple[Any, ...], names: tuple[str, ...]) -> tuple[Any, ...]:
-    for mutator in mutators:
+    for mutator in mutators if instance.mutationScale != 0 else ():
         instance, go_on = applied(mutator, instance)
         if not go_on:
             break

@@ -167,6 +167,19 @@ def test_a_mutator_may_stop_the_others() -> None:
     assert {item.egoObject.position.x for item in scenario(text).sample(5, seed=1)} == {7.0}
 
 
+@pytest.mark.parametrize("scale", ["0", "Uniform(0, 2)"])
+def test_a_scale_that_is_drawn_as_zero_asks_no_mutator(scale: str) -> None:
+    text = (
+        "class Raised(Mutator):\n    def appliedTo(self, thing):\n        thing.width += 3\n        return thing, True\n"
+        f"class Thing(Object):\n    mutator[additive]: Raised()\nego = new Thing with mutationScale {scale}\n"
+    )
+    found = {
+        (item.egoObject.mutationScale, item.egoObject.width, item.egoObject.position.x == 0)
+        for item in scenario(text).sample(30, seed=1)
+    }
+    assert found == {(0.0, 1.0, True), *([(2.0, 4.0, False)] if scale != "0" else [])}
+
+
 def test_mistakes_with_mutation() -> None:
     assert isinstance(failure("ego = new Object\nmutate ego by Range(1, 2)"), ScenicTypeError)
     assert isinstance(failure("ego = new Object\nx = 3\nmutate x"), ScenicTypeError)
