@@ -125,7 +125,7 @@ def _shown_lines(text: str) -> list[str]:
 
 
 def _file(path: Path) -> list[str]:
-    match path.suffix.lower():
+    match path.suffix:
         case ".png":
             return [_picture(path)]
         case ".glb":
