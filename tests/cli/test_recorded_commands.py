@@ -125,7 +125,7 @@ def _shown_lines(text: str) -> list[str]:
 
 
 def _file(path: Path) -> list[str]:
-    match path.suffix:
+    match path.suffix.lower():
         case ".png":
             return [_picture(path)]
         case ".glb":
