@@ -14,6 +14,7 @@ import pytest
 import scenic.core.regions as named
 import shapely
 import trimesh
+from scipy.spatial.transform import Rotation
 
 from scenic.runtime.geometry.poses import Floats
 from scenic.runtime.regions.base import Region, Workspace, nowhere
@@ -209,3 +210,40 @@ def test_regions_that_move_out_of_one(holder: str, kind: str) -> None:
             if whole.distances(cloud(near), *columns_of(whole)).max() < 1e-9:
                 assert found is True
         answers.add(found)
+
+
+@pytest.mark.parametrize("first", range(3))
+@pytest.mark.parametrize("second", range(3))
+def test_any_edge_may_be_the_one_that_crosses(first: int, second: int) -> None:
+    """Of two triangles one edge each meets the other one; which corner is named first says nothing."""
+    flat = np.array([(0, 0, 0), (4, 0, 0), (0, 4, 0)])
+    steep = np.array([(2, 1, -1), (2, 1, 1), (2, -3, 0.1)])
+
+    def sheet(corners: np.ndarray, start: int) -> Region:
+        mesh = trimesh.Trimesh(np.roll(corners, start, axis=0), [(0, 1, 2)], process=False)
+        return named.MeshSurfaceRegion(mesh, centerMesh=False)
+
+    one = sheet(flat, first)
+    assert one.intersects(sheet(steep, second))
+    assert sheet(steep, second).intersects(one)
+    for beside in ((0, -1.2, 0), (0, 0, 1.2), (-3, 0, 0)):
+        assert not one.intersects(sheet(steep + beside, second))
+
+
+@pytest.mark.parametrize("axis", range(3))
+def test_a_flat_surface_keeps_its_place(axis: int) -> None:
+    """A sheet at 2 along an axis, moved, turned and stretched: where its middle and its corners are says SciPy."""
+    corners = np.roll(np.array([(2, 0, 0), (2, 4, 0), (2, 4, 1), (2, 0, 1.0)]), axis, axis=1)
+    mesh = trimesh.Trimesh(corners, [(0, 1, 2), (0, 2, 3)], process=False)
+    size = np.ptp(corners, axis=0)
+    for stretch in (1.0, 1.5):
+        region = named.MeshSurfaceRegion(mesh, tuple(stretch * size), (5, 6, 7), TILT, centerMesh=False)
+        # What is flat has no extent to be stretched, nor has the way to it.
+        factors = np.where(size > 0, stretch, 1.0)
+        turn = Rotation.from_quat([TILT.x, TILT.y, TILT.z, TILT.w])
+        world = turn.apply(corners * factors) + (5, 6, 7)
+        lower, upper = region.AABB
+        np.testing.assert_allclose((lower, upper), (world.min(axis=0), world.max(axis=0)), atol=1e-9)
+    plain = named.MeshSurfaceRegion(mesh, centerMesh=False)
+    np.testing.assert_array_equal(plain.AABB, (corners.min(axis=0), corners.max(axis=0)))
+    assert plain.distanceTo(Vector(*corners.mean(axis=0))) == 0

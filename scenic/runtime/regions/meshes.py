@@ -47,11 +47,13 @@ class _Placement:
         self.rotation = Orientation() if rotation is None else to_orientation(rotation, f"{what} rotation")
         middle = self.position
         if not centered and (centre != 0).any():
-            factors = np.divide(centre, extents, out=np.zeros(3), where=extents > 0).tolist()
+            # Along an axis in which the mesh is flat nothing stretches it, nor its distance from the origin.
             offset = vector(
                 *(
-                    operate("multiply", part, size)
-                    for part, size in zip(factors, self.dimensions, strict=True)
+                    operate("multiply", part / extent, size) if extent > 0 else part
+                    for part, extent, size in zip(
+                        centre.tolist(), extents.tolist(), self.dimensions, strict=True
+                    )
                 )
             )
             middle = operate("add", middle, operate("rotate", self.rotation, offset))
