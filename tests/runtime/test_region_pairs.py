@@ -241,7 +241,7 @@ def test_a_flat_surface_keeps_its_place(axis: int) -> None:
         # What is flat has no extent to be stretched, nor has the way to it.
         factors = np.where(size > 0, stretch, 1.0)
         turn = Rotation.from_quat([TILT.x, TILT.y, TILT.z, TILT.w])
-        world = turn.apply(corners * factors) + (5, 6, 7)
+        world = turn.apply(corners * factors) + np.array([5, 6, 7])
         lower, upper = region.AABB
         np.testing.assert_allclose((lower, upper), (world.min(axis=0), world.max(axis=0)), atol=1e-9)
     plain = named.MeshSurfaceRegion(mesh, centerMesh=False)
