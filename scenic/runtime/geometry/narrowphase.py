@@ -39,11 +39,15 @@ _TRIED: Final = 16
 
 
 def recall(meshes: Iterable[Mesh]) -> None:
-    """Read what earlier runs left on disk of closed unit meshes that are to be compared: the first comparison need not."""
+    """Make ready closed unit meshes that are to be compared, where earlier runs left on disk what takes long.
+
+    The first comparison need not wait for it then.
+    """
     for mesh in dict.fromkeys(meshes):
         if not mesh.is_box and seconds_to_make(mesh) == 0:
             mesh.derived(voxels)
             mesh.derived(face_tree)
+            _ = mesh.component_vertices
 
 
 class Solids:

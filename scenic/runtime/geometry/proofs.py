@@ -4,9 +4,10 @@ The tables of all meshes lie side by side, so that entries of different meshes a
 """
 
 from collections.abc import Sequence
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
+import numpy.typing as npt
 
 from scenic.runtime.geometry.affine import AffineMaps
 from scenic.runtime.geometry.cells import PADDING
@@ -24,8 +25,8 @@ class ProofTable:
 
     def __init__(self, meshes: Sequence[Mesh]) -> None:
         known = [mesh.derived(voxels) for mesh in meshes]
-        self._solid = np.concatenate([item.solid.ravel() for item in known])
-        self._filled = np.concatenate([item.filled.ravel() for item in known])
+        self._solid = _in_line([item.solid for item in known])
+        self._filled = _in_line([item.filled for item in known])
         # Indexed by coordinate, member and mesh; meshes with fewer members repeat their first.
         self._probes = np.stack([item.probes.T for item in known], axis=-1)
         cover = [_padded(item.cover, COVER_BOXES) for item in known]
@@ -87,6 +88,12 @@ class ProofTable:
         for _ in range(3):
             counts = counts[1] - counts[0]
         return _scattered(counts > 0, where, centre.shape[1:])
+
+
+def _in_line(tables: Sequence[npt.NDArray[Any]]) -> npt.NDArray[Any]:
+    """The elements of tables, one table after the other. One alone is not copied: it is large."""
+    flat = [table.ravel() for table in tables]
+    return flat[0] if len(flat) == 1 else np.concatenate(flat)
 
 
 def _all_axes(each: Booleans) -> Booleans:
