@@ -294,6 +294,19 @@ def test_bitwise_operators(operator: str) -> None:
     assert place(found)[1].startswith("1:5-")
 
 
+@pytest.mark.parametrize("operation", ["{} + {}", "{} - {}", "{} * {}", "{} / {}", "{} // {}", "{} ** {}"])
+@pytest.mark.parametrize("other", ["0", "0.0", "1", "1.0", "False", "True"])
+def test_numbers_that_change_no_value_change_the_type_as_in_python(operation: str, other: str) -> None:
+    """A sum with 0.0 is no integer, though it has the same value."""
+    for text in (operation.format("x", other), operation.format(other, "x")):
+        try:
+            expected = eval(text, {"x": 3})
+        except ZeroDivisionError:
+            continue
+        (scene,) = scenario(f"x = DiscreteRange(3, 3)\nparam p = {text}\n").sample(1, seed=1)
+        assert (scene.params["p"], type(scene.params["p"])) == (expected, type(expected)), text
+
+
 def test_a_random_value_in_text_warns() -> None:
     with pytest.warns(UserWarning, match="shows no sample"):
         scenario("x = f'{Range(0, 1)}'\n")

@@ -16,6 +16,7 @@ import shapely
 import trimesh
 from scipy.spatial.transform import Rotation
 
+from scenic.runtime.fields import VectorField
 from scenic.runtime.geometry.poses import Floats
 from scenic.runtime.regions.base import Region, Workspace, nowhere
 from scenic.runtime.regions.composite import Composite, UnionRegion
@@ -247,3 +248,41 @@ def test_a_flat_surface_keeps_its_place(axis: int) -> None:
     plain = named.MeshSurfaceRegion(mesh, centerMesh=False)
     np.testing.assert_array_equal(plain.AABB, (corners.min(axis=0), corners.max(axis=0)))
     assert plain.distanceTo(Vector(*corners.mean(axis=0))) == 0
+
+
+ORIENTED: dict[str, Callable[[Any], Region]] = {
+    "polygon": lambda field: named.PolygonalRegion([(0, 0), (3, 0), (3, 2), (0, 2)], orientation=field),
+    "box": lambda field: named.BoxRegion((3, 4, 5), (1, 1, 1), orientation=field),
+    "ball": lambda field: named.SpheroidRegion((4, 3, 5), (1.5, 1, 0.5), orientation=field),
+    "points": lambda field: named.PointSetRegion("p", [(1, 1, 0), (2, 0.5, 0)], orientation=field),
+    "path": lambda field: named.PathRegion(points=[(0, 0.5, 0), (2, 1, 0)], orientation=field),
+    "line": lambda field: named.PolylineRegion([(0, 0.5), (2, 1)], orientation=field),
+}
+
+
+@pytest.mark.parametrize("first", ORIENTED)
+@pytest.mark.parametrize("second", ORIENTED)
+def test_what_is_left_of_two_regions_has_the_field_of_the_first_with_any(first: str, second: str) -> None:
+    """Section 8: an intersection takes that of the first region, else that of the second; a difference that of the first."""
+    f, g = (VectorField(name, lambda place: place.x) for name in "fg")
+    for one, two in ((f, g), (f, None), (None, g)):
+        a, b = ORIENTED[first](one), ORIENTED[second](two)
+        both, left = a.intersect(b), a.difference(b)
+        if both is not nowhere:
+            assert both.orientation is (f if one else g)
+        if left is not nowhere:
+            assert left.orientation is one
+
+
+@pytest.mark.parametrize(
+    "points", [[(-9, 0.5, 1), (0, 0.5, 1), (0, 9, 1)], [(-9, 0.5, 0), (0, 0.5, 0), (0, 9, 0)]]
+)
+@pytest.mark.parametrize("kind", [named.PathRegion, named.PolylineRegion])
+def test_the_pieces_of_a_line_keep_their_directions(kind: Any, points: list[Any]) -> None:
+    if kind is named.PolylineRegion:
+        points = [(x, y) for x, y, _ in points]
+    z = points[0][2] if len(points[0]) == 3 else 0
+    inside = kind(points=points).intersect(named.BoxRegion((2, 2, 4)))
+    assert inside.length == pytest.approx(1.5)
+    for place, yaw in (((-0.7, 0.5, z), -np.pi / 2), ((0, 0.8, z), 0.0)):
+        assert inside.orientation[Vector(*place)].yaw == pytest.approx(yaw)

@@ -114,8 +114,7 @@ def region_of(geometry: Any, height: float | None, orientation: Any) -> Region:
     if lines and height is not None:
         line = shapely.MultiLineString(lines) if len(lines) > 1 else lines[0]
         if height == 0:
-            own = orientation is None or isinstance(orientation, RegionField)  # the directions of its pieces
-            return PolylineRegion(polyline=line, orientation=own or orientation)
+            return PolylineRegion(polyline=line, orientation=_of_pieces(orientation))
         return PathRegion(polylines=[[(x, y, height) for x, y, *_ in part.coords] for part in lines])
     points = [(part.x, part.y, height) for part in leaves if part.geom_type == "Point"]
     if points and height is not None:
@@ -197,17 +196,17 @@ def _exact_intersection(a: Region, b: Region) -> Region | None:
                 )
             return region_of(slice_at(solid, height).intersection(polygon), height, _field(a, b))
         if isinstance(line, LineRegion):
-            return _line_inside(line, solid)
+            return _line_inside(line, solid, _field(a, b))
     for path, above in ((a, b), (b, a)):
         if isinstance(path, PathRegion) and isinstance(above, Footprint):
             heights = [point[2] for chain in path.chains for point in chain]
             column = prism(above.polygons, min(heights) - 1, max(heights) + 1)
-            return nowhere if column is None else _line_inside(path, column)
+            return nowhere if column is None else _line_inside(path, column, _field(a, b))
     return None
 
 
-def _line_inside(line: LineRegion, solid: Mesh) -> Region:
-    """The pieces of a line inside a solid: it is cut wherever it meets the surface."""
+def _line_inside(line: LineRegion, solid: Mesh, orientation: Any) -> Region:
+    """The pieces of a line inside a solid, with an orientation field: it is cut wherever it meets the surface."""
     pieces = []
     for start, end in zip(line.pieces.starts, line.pieces.ends, strict=True):
         cuts = [0.0, *sorted(_crossings(start, end, solid)), 1.0]
@@ -220,9 +219,15 @@ def _line_inside(line: LineRegion, solid: Mesh) -> Region:
         import shapely
 
         return PolylineRegion(
-            polyline=shapely.MultiLineString([[point[:2] for point in piece] for piece in pieces])
+            polyline=shapely.MultiLineString([[point[:2] for point in piece] for piece in pieces]),
+            orientation=_of_pieces(orientation),
         )
-    return PathRegion(polylines=pieces)
+    return PathRegion(polylines=pieces, orientation=_of_pieces(orientation))
+
+
+def _of_pieces(orientation: Any) -> Any:
+    """The field of what is left of a line: where it was that of the line's own directions, those of the pieces (``True``)."""
+    return True if orientation is None or isinstance(orientation, RegionField) else orientation
 
 
 def _crossings(start: Any, end: Any, solid: Mesh) -> list[float]:
@@ -507,7 +512,7 @@ def contains_region(first: Any, second: Any, tolerance: float = 0) -> bool:
     if a.dimension < b.dimension:
         return False
     if solid_a is not None and isinstance(b, LineRegion):
-        inside = _line_inside(b, solid_a)
+        inside = _line_inside(b, solid_a, None)
         return isinstance(inside, LineRegion) and inside.length >= b.length * (1 - 1e-9) - tolerance
     raise NotImplementedError(f"whether {a!r} holds {b!r} is not known for regions of these kinds")
 
