@@ -12,12 +12,11 @@ from scenic.language.diagnostics import Diagnostic, Severity
 from scenic.language.spans import Span
 
 
-class Located(Exception):
-    """A problem with a code and a place; never raised itself."""
+class Finding(Exception):
+    """What there is to say of a program, with a code, a place (``span`` and ``filename``) and help; never raised itself."""
 
     code = "SC400"
-    program: str | None = None
-    """The text that the place is in, where it is not in a file."""
+    severity = Severity.ERROR
 
     def __init__(
         self,
@@ -35,6 +34,19 @@ class Located(Exception):
         self.help = help
         if code is not None:
             self.code = code
+
+    def diagnostic(self) -> Diagnostic:
+        """The same as plain data."""
+        return Diagnostic(
+            self.code, self.message, self.span, self.severity, filename=self.filename, help=self.help
+        )
+
+
+class Located(Finding):
+    """A problem that ends something; never raised itself."""
+
+    program: str | None = None
+    """The text that the place is in, where it is not in a file."""
 
     def at(self, place: "tuple[Span | None, str | None]") -> Self:
         """The same problem; at a place, span and file, unless it has one."""
@@ -76,12 +88,6 @@ class Located(Exception):
             lines = self.program.splitlines(keepends=True)
             return lines[self.line - 1] if self.line <= len(lines) else None
         return linecache.getline(self.filename, self.line) or None
-
-    def diagnostic(self) -> Diagnostic:
-        """The same problem as plain data."""
-        return Diagnostic(
-            self.code, self.message, self.span, Severity.ERROR, filename=self.filename, help=self.help
-        )
 
     def __str__(self) -> str:
         place = self.filename or ""
@@ -279,33 +285,14 @@ class StuckBehaviorError(Exception):
     """Code of a program has run for too long without taking an action or waiting."""
 
 
-class ScenicWarning(UserWarning):
-    """Something doubtful that ends nothing; ``span`` and ``filename`` tell where, ``help`` what to do."""
+class ScenicWarning(Finding, UserWarning):
+    """Something doubtful that ends nothing."""
 
     code = "SC407"
+    severity = Severity.WARNING
 
-    def __init__(
-        self,
-        message: str,
-        *,
-        code: str | None = None,
-        span: Span | None = None,
-        filename: str | None = None,
-        help: str | None = None,
-    ) -> None:
-        super().__init__(message if help is None else f"{message}: {help}")
-        self.message = message
-        self.span = span
-        self.filename = filename
-        self.help = help
-        if code is not None:
-            self.code = code
-
-    def diagnostic(self) -> Diagnostic:
-        """The same as plain data."""
-        return Diagnostic(
-            self.code, self.message, self.span, Severity.WARNING, filename=self.filename, help=self.help
-        )
+    def __str__(self) -> str:
+        return self.message if self.help is None else f"{self.message}: {self.help}"
 
 
 class StuckBehaviorWarning(ScenicWarning):
