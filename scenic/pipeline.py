@@ -24,7 +24,7 @@ from scenic.language.errors import (
     annotation,
     compile_error,
 )
-from scenic.language.garbage import keep_young
+from scenic.language.garbage import promote_young
 from scenic.language.source import Source, read_source
 from scenic.language.spans import Span
 from scenic.language.spelling import nearest
@@ -301,7 +301,7 @@ def _scenario(
         pruning = contract(scenario.outline.graph, conditions(scenario))
         scenario.restrict(pruning.domain, impossible=[item.label for item in pruning.impossible])
     scenario.prepare()
-    keep_young()
+    promote_young()
     return scenario
 
 

@@ -6,7 +6,7 @@ from contextlib import contextmanager
 from importlib import import_module
 from types import ModuleType
 
-__all__ = ["import_lasting", "keep_young", "no_garbage_collection"]
+__all__ = ["import_lasting", "no_garbage_collection", "promote_young"]
 
 
 @contextmanager
@@ -29,11 +29,11 @@ def import_lasting(name: str) -> ModuleType:
     """
     with no_garbage_collection():
         module = import_module(name)
-    keep_young()
+    promote_young()
     return module
 
 
-def keep_young() -> None:
+def promote_young() -> None:
     """Tell Python's collector that what was made lately is to stay: it would look through it while the next things are made."""
     if gc.isenabled():
         gc.collect(1)  # what is young is old from now on

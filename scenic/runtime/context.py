@@ -148,18 +148,23 @@ def warn(message: str, *, code: str | None = None, span: Span | None = None, hel
     """Issue a `ScenicWarning` of a place in the program, by default that of whoever called the runtime."""
     context = current.get()
     file = None if context is None else context.file()
-    span = span or here()
-    if file is not None and span is not None:
-        notice = ScenicWarning(message, code=code, span=span, filename=file, help=help)
-        warnings.warn_explicit(notice, None, file, span.line)
-    else:
-        frame: FrameType | None = sys._getframe(1)
-        while frame is not None and frame.f_code.co_filename.startswith(_PACKAGE):
-            frame = frame.f_back
+    place = span or here()
+    if file is None or place is None:
+        # No program runs: Python's own code called.
         notice = ScenicWarning(message, code=code, help=help)
-        warnings.warn_explicit(
-            notice, None, *(("<unknown>", 1) if frame is None else (frame.f_code.co_filename, frame.f_lineno))
-        )
+        file, line = _caller()
+    else:
+        notice = ScenicWarning(message, code=code, span=place, filename=file, help=help)
+        line = place.line
+    warnings.warn_explicit(notice, None, file, line)
+
+
+def _caller() -> tuple[str, int]:
+    """File and line of whoever called this package."""
+    frame: FrameType | None = sys._getframe(1)
+    while frame is not None and frame.f_code.co_filename.startswith(_PACKAGE):
+        frame = frame.f_back
+    return ("<unknown>", 1) if frame is None else (frame.f_code.co_filename, frame.f_lineno)
 
 
 def next_address() -> int | None:
