@@ -16,6 +16,7 @@ from scenic.graph.kinds import Kind
 from scenic.language.errors import InvalidScenarioError
 from scenic.runtime.context import here
 from scenic.runtime.geometry.single import meet
+from scenic.runtime.members import bind
 from scenic.runtime.mutators import OrientationMutator, PositionMutator
 from scenic.runtime.properties import Property, PropertyDefinition, combine
 from scenic.runtime.regions.base import Region
@@ -129,6 +130,8 @@ class Point:
 
     def __init_subclass__(cls, **kwargs: Any) -> None:
         super().__init_subclass__(**kwargs)
+        if cls.__module__ != Point.__module__:
+            bind(cls, Point)
         own: tuple[PropertyDefinition, ...] = cls.__dict__.get("__scenic_properties__", ())
         if own or "_definitions" not in cls.__dict__:
             cls._definitions = {definition.name: definition for definition in own}

@@ -14,8 +14,11 @@ from typing import Any, Final
 __all__ = [
     "CACHED",
     "CONTAINERS",
+    "DECORATED",
     "PRELUDE",
+    "SAMPLE",
     "content",
+    "functions_of",
     "is_own",
     "is_own_function",
     "leads_back",
@@ -27,8 +30,14 @@ __all__ = [
 PRELUDE = "__scenic__"
 """The global name by which generated code finds the prelude, through which functions read the ego."""
 
+SAMPLE = "__sample__"
+"""The global name by which functions over sampled names find their sample, weakly referenced."""
+
 CACHED: Final[type[Any]] = type(lru_cache(lambda: None))
 """What ``functools.cache`` and ``lru_cache`` make."""
+
+DECORATED: Final = (staticmethod, classmethod, property, cached_property, CACHED)
+"""What Python's own decorators make of functions."""
 
 CONTAINERS: Final = frozenset({list, dict, set, deque, defaultdict, OrderedDict, Counter})
 """Containers that a program may change in place; each has ``copy`` and ``clear``."""
@@ -39,7 +48,7 @@ def is_own_function(value: Any) -> bool:
     return isinstance(value, FunctionType) and PRELUDE in value.__globals__
 
 
-def leads_back(function: FunctionType) -> bool:
+def leads_back(function: Any) -> bool:
     """Whether a function, or one that it wraps, is a program's: a library's decorator makes such functions."""
     seen: set[int] = set()
     stack: list[Any] = [function]
@@ -82,19 +91,21 @@ def _has_below(cls: type, root: type) -> bool:
 def own_functions(cls: type) -> Iterator[FunctionType]:
     """The functions of a program among the members of a class, not counting those of its bases."""
     for member in vars(cls).values():
-        parts: list[Any]
-        match member:
-            case FunctionType():
-                parts = [member]
-            case staticmethod() | classmethod():
-                parts = [member.__func__]
-            case property():
-                parts = [member.fget, member.fset, member.fdel]
-            case cached_property():
-                parts = [member.func]
-            case _:
-                continue
-        yield from filter(is_own_function, parts)
+        yield from filter(is_own_function, functions_of(member))
+
+
+def functions_of(member: Any) -> list[Any]:
+    """The functions that a member of a class is made of."""
+    match member:
+        case FunctionType():
+            return [member]
+        case staticmethod() | classmethod() | CACHED():
+            return [member.__wrapped__]
+        case property():
+            return [part for part in (member.fget, member.fset, member.fdel) if part is not None]
+        case cached_property():
+            return [member.func]
+    return []
 
 
 def namespace(cls: type) -> dict[str, Any]:

@@ -1,7 +1,6 @@
 """Parts of random values: elements, attributes, and what calls of them give."""
 
 import functools
-import inspect
 import operator
 from collections.abc import Mapping, Sequence
 from types import BuiltinFunctionType, MappingProxyType
@@ -18,6 +17,7 @@ from scenic.graph.operations import TABLE
 from scenic.runtime.applying import apply, operate
 from scenic.runtime.choices import MISSING, MOST_OPTIONS, drawn_option, select
 from scenic.runtime.context import here
+from scenic.runtime.members import member
 from scenic.runtime.nodes import LIST, TUPLE, as_node, as_value, kind_of
 from scenic.runtime.randoms import Random
 
@@ -165,7 +165,7 @@ def _attribute_of_option(option: Node, name: str) -> Node:
 @functools.lru_cache(maxsize=1024)
 def _is_computed(cls: type, name: str) -> bool:
     """Whether an attribute is computed by code of the program, which has to see sampled values."""
-    found = inspect.getattr_static(cls, name, None)
+    found = member(cls, name)
     code = found.fget if isinstance(found, property) else getattr(found, "func", None)
     return isinstance(found, property | functools.cached_property) and not _is_of_runtime(code)
 

@@ -52,7 +52,8 @@ class Populations:
         """
         if self._linked is None:
             held = [value for item in self.objects for value in item.__dict__.values()]
-            self._linked = any(self.names.varying_methods(type(item)) for item in self.objects) or any(
+            held += [member for item in self.objects for member in self.names.members(type(item))]
+            self._linked = any(
                 isinstance(value, Point) for value in reachable([*held, *self._others], self.names)
             )
         return self._linked

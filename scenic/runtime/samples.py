@@ -8,18 +8,23 @@ methods of the program's classes, plain Python classes of the program and their 
 import abc
 import copy as shallow
 import dis
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from functools import cached_property, lru_cache, partial
 from types import CellType, CodeType, FunctionType, MethodType, ModuleType
 from typing import Any, Final, Protocol
+from weakref import ref
 
 from scenic.graph.node import Node
-from scenic.runtime.objects import PLACEMENT, Object, OrientedPoint, Point, put
+from scenic.runtime.members import members
+from scenic.runtime.objects import PLACEMENT, Point, put
 from scenic.runtime.ownership import (
     CACHED,
     CONTAINERS,
+    DECORATED,
     PRELUDE,
+    SAMPLE,
     content,
+    functions_of,
     is_own,
     is_own_function,
     namespace,
@@ -56,8 +61,8 @@ class Globals:
         self._values: dict[tuple[int, str], Any] = {}
         self._loads: dict[CodeType, tuple[str, ...]] = {}
         self._fixed: dict[int, tuple[Any, bool]] = {}
-        self._methods: dict[type, tuple[tuple[str, FunctionType], ...]] = {}
-        self._varying: dict[type, tuple[tuple[str, FunctionType], ...]] = {}
+        self._members: dict[type, list[Any]] = {}
+        self._varying: dict[type, bool] = {}
         self._owned: dict[type, bool] = {}
         self._placements: dict[int, tuple[Point, Placement]] = {}
 
@@ -93,7 +98,7 @@ class Globals:
         return found
 
     def is_fixed(self, item: Any) -> bool:
-        """Whether a function or class does the same in every sample: it reaches nothing random, and nothing bound anew."""
+        """Whether a function or class does the same in every sample: nothing that it reaches is random or bound anew."""
         known = self._fixed.get(id(item))
         if known is None:
             fixed = all(self._is_plain(value) for value in reachable([item], self))
@@ -108,7 +113,7 @@ class Globals:
         return known
 
     def _is_plain(self, value: Any) -> bool:
-        if isinstance(value, Random):
+        if isinstance(value, Random | Point):  # instances have a copy in each sample
             return False
         if not isinstance(value, FunctionType):
             return True
@@ -118,25 +123,17 @@ class Globals:
             for name, old in self.of(value)
         )
 
-    def methods(self, cls: type) -> tuple[tuple[str, FunctionType], ...]:
-        """The methods that a class of the program defines or inherits from another one of the program."""
-        if cls not in self._methods:
-            found: dict[str, FunctionType] = {}
-            for base in cls.__mro__:
-                if base not in _BUILT_IN:
-                    for name, item in vars(base).items():
-                        if is_own_function(item):
-                            found.setdefault(name, item)
-            self._methods[cls] = tuple(found.items())
-        return self._methods[cls]
+    def members(self, cls: type) -> list[Any]:
+        """The members of a class of objects that read names of the program."""
+        if cls not in self._members:
+            self._members[cls] = members(cls)
+        return self._members[cls]
 
-    def varying_methods(self, cls: type) -> tuple[tuple[str, FunctionType], ...]:
-        """Those of the `methods` of a class that are not the same in every sample."""
-        known = self._varying.get(cls)
-        if known is None:
-            varying = [(name, method) for name, method in self.methods(cls) if not self.is_fixed(method)]
-            known = self._varying[cls] = tuple(varying)
-        return known
+    def varies(self, cls: type) -> bool:
+        """Whether some of the `members` of a class are not the same in every sample."""
+        if cls not in self._varying:
+            self._varying[cls] = not all(map(self.is_fixed, self.members(cls)))
+        return self._varying[cls]
 
     def placement(self, instance: Point) -> Placement:
         """What is known of the values that are asked of every object."""
@@ -153,9 +150,6 @@ class Globals:
             nodes = tuple(as_node(value) for value in values.values()) if is_whole else ()
             known = self._placements[id(instance)] = (instance, (fixed, nodes))
         return known[1]
-
-
-_BUILT_IN = frozenset({object, Point, OrientedPoint, Object})
 
 
 def dependencies(values: Iterable[Any], names: Globals | None = None) -> list[Node]:
@@ -219,7 +213,7 @@ def _parts(value: Any, names: Globals) -> Iterator[Any]:
     """What a value is made of, as far as sampling goes."""
     if isinstance(value, Point):
         yield from value.__dict__.get("_source", value).__dict__.values()
-        yield from (method for _, method in names.methods(type(value)))
+        yield from names.members(type(value))
     elif isinstance(value, tuple | list | set | frozenset):
         yield from value
     elif isinstance(value, dict):
@@ -236,8 +230,10 @@ def _parts(value: Any, names: Globals) -> Iterator[Any]:
         if names.owns(value):
             yield from (function for base in value.__mro__ for function in own_functions(base))
             yield from namespace(value).values()
-    elif isinstance(value, CACHED):
-        yield value.__wrapped__
+        elif issubclass(value, Point):
+            yield from names.members(value)
+    elif isinstance(value, DECORATED):
+        yield from functions_of(value)
     elif isinstance(value, MethodType):
         yield from (value.__self__, value.__func__)
     elif isinstance(value, partial):
@@ -273,7 +269,7 @@ class Sample:
 
     """
 
-    __slots__ = ("_alive", "_lane", "_lanes", "_memo", "_names", "_scopes", "_whole")
+    __slots__ = ("__weakref__", "_alive", "_lane", "_lanes", "_memo", "_names", "_scopes", "_whole")
 
     def __init__(self, lanes: Lanes, lane: int, names: Globals | None = None, *, whole: bool = False) -> None:
         self._whole = whole
@@ -307,6 +303,26 @@ class Sample:
             self._alive[id(value)] = value
         return known
 
+    def member(self, member: Any, owner: type) -> Any:
+        """A member of a class of objects, of which it may ask for others."""
+        if not self._varies(owner):
+            return member
+        known = self._memo.get(id(member))
+        if known is None:
+            known = self._again(member)
+            self.remember(member, known)
+        return known
+
+    def _again(self, value: Any) -> Any:
+        """A function, or what decorators make of one, over sampled names: even if it reads none."""
+        if isinstance(value, DECORATED):
+            return self._decorated(value, self._again)
+        if (
+            isinstance(value, FunctionType) and SAMPLE not in value.__globals__
+        ):  # which is of a sample already
+            return self._function(value)
+        return self.value(value)
+
     def remember(self, value: Any, copy: Any) -> None:
         """Say what the copy of a value is while it is being made: parts of it may lead back to it."""
         self._memo[id(value)] = copy
@@ -334,13 +350,10 @@ class Sample:
             return slice(self.value(value.start), self.value(value.stop), self.value(value.step))
         if isinstance(value, FunctionType):
             return value if self._stays(value) else self._function(value)
+        if isinstance(value, DECORATED):
+            return value if self._stays(value) else self._decorated(value, self.value)
         if isinstance(value, MethodType):
             return MethodType(self.value(value.__func__), self.value(value.__self__))
-        if isinstance(value, CACHED):
-            function = self.value(value.__wrapped__)
-            if function is value.__wrapped__:
-                return value
-            return lru_cache(**value.cache_parameters())(function)
         if isinstance(value, type):
             return self._class(value) if self._names.owns(value) and not self._stays(value) else value
         if hasattr(value, "sampled") and hasattr(value, "random_parts"):
@@ -352,6 +365,10 @@ class Sample:
     def _stays(self, item: Any) -> bool:
         """Whether a function or class is the same in this sample."""
         return self._names.is_fixed(item)
+
+    def _varies(self, cls: type) -> bool:
+        """Whether members of a class of objects are not the same in this sample."""
+        return self._names.varies(cls)
 
     def _container(self, container: Any) -> Any:
         copy = container.copy()
@@ -378,9 +395,6 @@ class Sample:
         else:
             copy.__dict__.update(fixed)
         self._memo[id(instance)] = copy  # which keeps the instance alive
-        # Methods may lead back to the instance, which must find its entry then.
-        for name, method in self._names.varying_methods(type(instance)):
-            copy.__dict__[name] = MethodType(self.value(method), copy)
         return copy  # type: ignore[no-any-return] # of the class of the instance
 
     def _module(self, module: ModuleType) -> ModuleType:
@@ -405,21 +419,22 @@ class Sample:
         copy.__qualname__ = cls.__qualname__
         self.remember(cls, copy)
         for name, item in later.items():
-            setattr(copy, name, self._member(item, copy, name))
+            setattr(copy, name, self.value(item))
         abc.update_abstractmethods(copy)
         return copy
 
-    def _member(self, member: Any, owner: type, name: str) -> Any:
-        if isinstance(member, staticmethod | classmethod):
-            return type(member)(self.value(member.__func__))
-        if isinstance(member, property):
-            get, put, delete = map(self.value, (member.fget, member.fset, member.fdel))
-            return property(get, put, delete, member.__doc__)
-        if isinstance(member, cached_property):
-            copy = cached_property(self.value(member.func))
-            copy.__set_name__(owner, name)
-            return copy
-        return self.value(member)
+    def _decorated(self, value: Any, copy: Callable[[Any], Any]) -> Any:
+        """What Python's decorators make of functions, made of copies of these."""
+        if isinstance(value, property):
+            get, put, delete = map(copy, (value.fget, value.fset, value.fdel))
+            return property(get, put, delete, value.__doc__)
+        (function,) = map(copy, functions_of(value))
+        if isinstance(value, CACHED):
+            return lru_cache(**value.cache_parameters())(function)
+        made = type(value)(function)
+        if isinstance(value, cached_property):
+            made.attrname = value.attrname
+        return made
 
     def _object(self, instance: Any) -> Any:
         """The instance of a plain Python class of the program."""
@@ -461,7 +476,10 @@ class Sample:
     def _scope(self, function: FunctionType) -> dict[str, Any]:
         """Sampled names: all functions of a module share them, so that functions which call each other find each other."""
         names = function.__globals__
-        return self._scopes.setdefault(id(names), dict(names))
+        scope = self._scopes.get(id(names))
+        if scope is None:
+            scope = self._scopes[id(names)] = {**names, SAMPLE: ref(self)}
+        return scope
 
     def _fill(self, function: FunctionType, scope: dict[str, Any]) -> None:
         """Give a scope the names that a function reads."""

@@ -5,13 +5,14 @@ functions over global names that they may assign. So nothing that happens in it 
 or by another simulation.
 """
 
-from types import CodeType, FunctionType, MethodType
+from types import CodeType, FunctionType
 from typing import Any
+from weakref import ref
 
 import numpy as np
 
 from scenic.runtime.objects import Point
-from scenic.runtime.ownership import PRELUDE, is_own_function, leads_back
+from scenic.runtime.ownership import DECORATED, PRELUDE, SAMPLE, functions_of, is_own_function, leads_back
 from scenic.runtime.samples import Lanes, Sample
 
 __all__ = ["Copies"]
@@ -44,10 +45,15 @@ class Copies(Sample):
         return value.copy() if type(value) is np.ndarray else super()._sampled(value)
 
     def _stays(self, item: Any) -> bool:
+        if isinstance(item, DECORATED):
+            return all(map(self._stays, functions_of(item)))
         if not isinstance(item, FunctionType):
             return False
         # What the simulation itself defined is its own already.
         return id(item.__globals__) in self._own if is_own_function(item) else not leads_back(item)
+
+    def _varies(self, cls: type) -> bool:
+        return True
 
     def _instance(self, instance: Point) -> Any:
         source = instance.__dict__.get("_source", instance)
@@ -57,15 +63,14 @@ class Copies(Sample):
         self.remember(instance, copy)
         for name, value in instance.__dict__.items():
             copy.__dict__[name] = self.value(value)
-        for name, method in self._names.methods(type(instance)):
-            copy.__dict__[name] = MethodType(self.value(method), copy)
+        copy.__dict__["_sample"] = self
         return copy
 
     def _scope(self, function: FunctionType) -> dict[str, Any]:
         names = function.__globals__
         scope = self._scopes.get(id(names))
         if scope is None:
-            scope = self._scopes[id(names)] = dict(names)
+            scope = self._scopes[id(names)] = {**names, SAMPLE: ref(self)}
             self._own[id(scope)] = names  # Kept alive, so that identities stay unique.
             self._filled[id(names)] = {PRELUDE, "__builtins__"}
         return scope

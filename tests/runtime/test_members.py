@@ -1,0 +1,267 @@
+"""Members of a program's classes of objects: in a scene, a condition or a simulation they see what that sample holds."""
+
+import pickle
+from itertools import islice
+
+import pytest
+
+from scenic.simulators.dummy import DummySimulator
+from tests.runtime.programs import scenario, scene
+
+CLASSES = """
+import functools
+r = Range(1, 2)
+o = new Object at (30, 30), with size r
+def helper(): return r
+def of_type(x): return type(x).fixed()
+class B:
+    table = {'r': [r], 'o': o}
+    drawn = r
+    def plain(self): return r
+    def helped(self): return helper()
+    def size(self): return r
+    def default(self, x=r): return x
+    def keyword(self, *, x=r): return x
+    def explicit(self): return B.fixed()
+    def by_type(self): return type(self).fixed()
+    def by_helper(self): return of_type(self)
+    def made(self):
+        yield r
+    @property
+    def side(self): return self._side if '_side' in self.__dict__ else r
+    @side.setter
+    def side(self, value): self._side = value + r
+    @side.deleter
+    def side(self): self._side = -r
+    @property
+    def through(self): return type(self).of_class()
+    @staticmethod
+    def fixed(): return r
+    @classmethod
+    def of_class(cls): return cls.fixed()
+    @classmethod
+    def kept(cls): return cls.drawn
+    @functools.cached_property
+    def lasting(self): return r
+    @functools.cache
+    def cached(self): return r
+    def counted(self): return len(self)
+    def __len__(self): return int(r * 1000)
+    def __call__(self, times): return times * r
+    def __getitem__(self, name): return (name, r)
+    def __iter__(self): return iter([r])
+    def __contains__(self, x): return x == r
+class M:
+    def size(self): return -r
+class D(B):
+    def size(self): return super().size() + 0
+    def unbound(self): return B.plain(self)
+    @property
+    def side(self): return super().side
+    @classmethod
+    def of_class(cls): return super().of_class()
+    @staticmethod
+    def nested(): return (lambda: D.fixed())()
+class E(D, M):
+    pass
+"""
+
+EXPRESSIONS = [
+    "p.plain()",
+    "p.helped()",
+    "p.size()",
+    "p.default()",
+    "p.keyword()",
+    "p.explicit()",
+    "p.by_type()",
+    "p.by_helper()",
+    "[*p.made()][0]",
+    "p.side",
+    "p.through",
+    "p.fixed()",
+    "p.of_class()",
+    "p.kept()",
+    "p.lasting",
+    "p.cached()",
+    "p(1)",
+    "p['x'][1]",
+    "list(p)[0]",
+    "p.table['r'][0]",
+    "p.table['o'].size",
+    "p.drawn",
+    "p.unbound()",
+    "p.nested()",
+]
+
+IN_CONDITIONS = ["D.fixed()", "D.of_class()", "E.kept()", "D.drawn", "D.table['r'][0]", "B.plain(p)"]
+
+
+@pytest.mark.parametrize("cls", ["D", "E"])
+def test_members_in_scenes_and_conditions_read_the_values_of_their_sample(cls: str) -> None:
+    holds = [f"abs(({text}) - q.fixed()) < 1e-9 and ({text}) > 1.1" for text in EXPRESSIONS + IN_CONDITIONS]
+    text = "".join(f"require {hold}\n" for hold in [*holds, "len(p) > 1100", "p.fixed() in p"])
+    found = scenario(
+        f"{CLASSES}ego = new Object\nq = new B at (9, 9)\np = new {cls} at (20, 20)\nparam r = r\n{text}"
+    ).sample(5, seed=1)
+    assert len({item.params["r"] for item in found}) == 5
+    for item in found:
+        p, r = item.objects[-1], item.params["r"]
+        assert type(r) is float
+        values = [eval(text, {"p": p}) for text in EXPRESSIONS]
+        assert values == [r] * len(EXPRESSIONS)
+        assert (len(p), p.counted(), r in p, 1.5 in p) == (int(r * 1000), int(r * 1000), True, False)
+        p._side = 5
+        assert p.side == 5
+        assert item.objects[1] is p.table["o"]
+
+
+def test_properties_of_scenes_are_set_and_deleted_with_the_values_of_their_sample() -> None:
+    item = scene(f"{CLASSES}p = new B\nparam r = r", seed=3)
+    p, r = item.objects[-1], item.params["r"]
+    p.side = 10
+    assert p.side == 10 + r
+    del p.side
+    assert p.side == -r
+
+
+@pytest.mark.parametrize("part", ["getter", "setter", "deleter"])
+@pytest.mark.parametrize(("header", "made"), [("class A:", "new A at (9, 9)"), ("class A(abc.ABC):", "A()")])
+def test_each_part_of_a_property_finds_the_names_that_it_alone_reads(
+    header: str, made: str, part: str
+) -> None:
+    text = f"""
+import abc
+r = Range(1, 2)
+{header}
+    @property
+    def p(self): return {"r" if part == "getter" else 0}
+    @p.setter
+    def p(self, value): self.seen = {"r" if part == "setter" else 0}
+    @p.deleter
+    def p(self): self.gone = {"r" if part == "deleter" else 0}
+a = {made}
+ego = new Object with held a
+def look():
+    a.p = 3
+    first = a.seen
+    del a.p
+    return first + a.gone + a.p
+require look() > 1.2
+require look() == r
+param r = r
+"""
+    for item in scenario(text).sample(4, seed=3):
+        a, r = item.egoObject.held, item.params["r"]
+        a.p = 3
+        del a.p
+        assert a.p + a.seen + a.gone == r > 1.2
+
+
+def test_slots_of_all_bases_hold_the_values_of_the_sample() -> None:
+    text = """
+import abc
+class First(abc.ABC):
+    __slots__ = ("a",)
+    def held(self): return self.a
+class Second(First):
+    __slots__ = ("b",)
+class Third(Second):
+    __slots__ = ("c", "empty")
+r = Range(0, 1)
+k = Third()
+k.a, k.b, k.c = r, (r,), [r]
+def small(): return k.held() == k.a == k.b[0] == k.c[0] == r and r < 0.5
+require small()
+ego = new Object with held k
+param r = r
+"""
+    for item in scenario(text).sample(3, seed=1):
+        k, r = item.egoObject.held, item.params["r"]
+        assert (k.a, k.b, k.c, k.held()) == (r, (r,), [r], r)
+        assert not hasattr(k, "empty")
+
+
+def test_a_member_that_reads_nothing_random_is_that_of_the_program() -> None:
+    program = scenario(
+        "class A:\n    def f(self): return 1\n    k = (1, 2)\nego = new A at (Range(0, 1), 0, 0)"
+    )
+    first, second = (item.objects[0] for item in program.sample(2))
+    assert first.f.__func__ is second.f.__func__
+    assert first.k is second.k
+    assert type(first) is type(second)
+
+
+def test_what_a_class_holds_can_be_bound_anew() -> None:
+    text = (
+        "class A:\n    k = Range(0, 1)\n    items = []\nA.items.append(Range(3, 4))\nA.k = 7\nego = new A\n"
+    )
+    made = scene(f"{text}param x = ego.k, items = A.items")
+    assert made.params["x"] == made.objects[0].k == 7
+    assert 3 < made.params["items"][0] < 4
+    assert made.objects[0].items == made.params["items"]
+
+
+def test_functions_that_lead_to_definite_instances_find_those_of_their_sample() -> None:
+    text = """
+ego = new Object
+p = new Object at (9, 9)
+def is_ego(x): return x is ego
+def is_p(x): return x is p
+class A:
+    def leader(self): return ego
+    @staticmethod
+    def other(): return p
+a = new A at (20, 20)
+u = Uniform(ego, p)
+param u = u
+require is_ego(u) or is_p(u)
+require is_ego(u) if u.position.x < 5 else is_p(u)
+"""
+    for item in scenario(text).sample(10, seed=2):
+        ego, p, a = item.objects
+        assert a.leader() is ego is item.egoObject
+        assert a.other() is p
+        assert item.params["u"] in (ego, p)
+
+
+def test_members_in_a_simulation_read_and_write_the_names_of_the_simulation() -> None:
+    text = """
+r = Range(1, 2)
+count = 0
+class A:
+    @property
+    def reading(self): return (r, count)
+    @staticmethod
+    def raise_count():
+        global count
+        count += 1
+        return r
+    @classmethod
+    def twice(cls): return cls.raise_count() + cls.raise_count()
+    def __len__(self): return count
+monitor M():
+    while True:
+        assert p.twice() == 2 * r
+        assert p.reading == (r, count)
+        wait
+ego = new Object
+p = new A at (9, 9)
+require monitor M()
+record p.reading as reading
+record (len(p), A.raise_count() - r, p.r) as values
+param r = r
+"""
+    program = scenario(text.replace(", p.r)", ")"))
+    simulator = DummySimulator()
+    for item in islice(iter(program.sample(2, seed=4)), 2):
+        result = simulator.simulate(item, maxSteps=3).result
+        readings = [value for _, value in result.records["reading"]]
+        assert [value[0] for value in readings] == [item.params["r"]] * len(readings)
+        assert [count for _, count in readings] == sorted({count for _, count in readings})
+        assert all(value == (count + 1, 0) or value[1] == 0 for count, value in result.records["values"])
+        assert item.objects[1].reading == (item.params["r"], 0)
+
+
+def test_scenes_with_such_members_are_whole_values() -> None:
+    item = scene(f"{CLASSES}ego = new D at (5, 5)")
+    assert pickle.loads(pickle.dumps(item)).objects[-1].position == item.objects[-1].position
