@@ -62,6 +62,11 @@ def _operand(value: Any, what: str) -> Region:
     region = as_region(value if space is None else space)
     if region is None:
         raise ScenicTypeError(f"{what}: expected a region, not {describe(value)}", span=here())
+    return _unwrapped(region)
+
+
+def _unwrapped(region: Region) -> Region:
+    """A region itself, where it is a workspace what that is made of."""
     while isinstance(region, Workspace):
         region = region.region
     return region
@@ -328,6 +333,7 @@ def intersects(first: Any, second: Any) -> Any:
 
 def _meet(a: Region, b: Region) -> bool:
     """Whether two fixed regions share a point."""
+    a, b = _unwrapped(a), _unwrapped(b)
     if isinstance(a, Nowhere) or isinstance(b, Nowhere):
         return False
     if isinstance(a, Everywhere) or isinstance(b, Everywhere):

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from scenic.graph.bounding import forward, overall
 from scenic.graph.bounds import Bounds
 from scenic.graph.domain import Domain
+from scenic.graph.kinds import Kind
 from scenic.graph.node import Graph, Node
 from scenic.graph.operations.possibilities import is_finite
 from scenic.language.errors import InvalidScenarioError
@@ -130,13 +131,7 @@ def _finite(program: Program) -> list[Check]:
     known: dict[Node, Bounds | None] = {}
     for item in program.objects:
         span, _ = _place(program, item)
-        angles = [
-            angle
-            for angle in (item.yaw, item.pitch, item.roll)
-            # Other angles are normal as they are, and so are made of what is looked at elsewhere.
-            if isinstance(angle, Random) and angle.node.operation.name == "normalize angle"
-        ]
-        for value in (item.position, *angles):
+        for value in (item.position, item.yaw, item.pitch, item.roll):
             if isinstance(value, Random) and _may_be_infinite(value.node, known):
                 size = operate("norm" if value is item.position else "absolute", value)
                 # What is undefined is not less than anything.
@@ -170,9 +165,22 @@ def _may_be_infinite(root: Node, known: dict[Node, Bounds | None]) -> bool:
         bounds = overall(node) if are_overall else forward(node, operands)
         if node.operation.bounds is None and bounds is not None and not _is_python(node):
             bounds = Bounds(np.maximum(bounds.lower, -_FAR), np.minimum(bounds.upper, _FAR))
+        if bounds is not None and _may_be_no_turn(node, operands):
+            bounds = Bounds(np.full_like(bounds.lower, -math.inf), np.full_like(bounds.upper, math.inf))
         known[node] = bounds
     found = known[root]
-    return found is None or not bool(np.isfinite(found.lower).all() and np.isfinite(found.upper).all())
+    return found is None or not _is_bounded(found)
+
+
+def _may_be_no_turn(node: Node, operands: Sequence[Bounds | None]) -> bool:
+    """Whether it is a rotation, or an angle of one, by what may be infinite: bounds of its parts do not tell."""
+    if node.kind is not Kind.ORIENTATION and node.operation.name != "euler":
+        return False
+    return any(bounds is not None and not _is_bounded(bounds) for bounds in operands)
+
+
+def _is_bounded(bounds: Bounds) -> bool:
+    return bool(np.isfinite(bounds.lower).all() and np.isfinite(bounds.upper).all())
 
 
 def _is_python(node: Node) -> bool:
