@@ -8,6 +8,7 @@ import math
 import pickle
 import types
 from pathlib import Path
+from typing import Any
 from unittest import mock
 
 import pytest
@@ -80,6 +81,61 @@ def test_coercions_of_the_established_modules() -> None:
     for value, ty in (("a", float), ((1, 2, 3, 4), Vector), ((1, 2), Orientation), (3, str)):
         with pytest.raises(TypeError, match="what I say"):
             toType(value, ty, "what I say")
+
+
+@pytest.mark.parametrize("said", [None, "what I say"])
+@pytest.mark.parametrize(
+    ("name", "message", "types"),
+    [
+        ("toScalar", "non-scalar in scalar context", ()),
+        ("toHeading", "non-heading in heading context", ()),
+        ("toVector", "non-vector in vector context", ()),
+        ("toOrientation", "non-orientation in orientation context", ()),
+        ("toType", "wrong type", (float,)),
+        ("toTypes", "wrong type", ((float, dict, Vector),)),
+        ("coerce", "wrong type", (float,)),
+    ],
+)
+def test_coercions_say_what_they_are_told_to(
+    name: str, message: str, types: tuple[Any, ...], said: str | None
+) -> None:
+    import scenic.core.type_support as module
+
+    with pytest.raises(TypeError) as caught:
+        getattr(module, name)("a", *types, *([] if said is None else [said]))
+    assert str(caught.value) == (said or message)
+
+
+def test_a_value_is_read_as_the_first_type_that_it_can_be() -> None:
+    from scenic.core.type_support import Heading, Orientation, canCoerce, coerce, toTypes
+
+    assert toTypes((1, 2), (float, Vector, tuple)) == Vector(1, 2, 0)
+    assert type(toTypes((1, 2), (float, tuple, Vector))) is tuple
+    assert coerce(2, Orientation).yaw == 2
+    assert coerce(Orientation.fromEuler(0.5, 0, 0), Heading) == 0.5
+    assert canCoerce(2, float)
+    assert not canCoerce(2, float, exact=True)
+    assert canCoerce(2.0, float, exact=True)
+    assert canCoerce("a", str)
+    assert not canCoerce("a", float)
+
+
+@pytest.mark.parametrize(
+    ("expression", "kind"),
+    [
+        ("Range(0, 1)", "float"),
+        ("DiscreteRange(0, 1)", "int"),
+        ("Uniform(True, False)", "bool"),
+        ("Range(0, 1) @ 2", "Vector"),
+        ("Orientation.fromEuler(Range(0, 1), 0, 0)", "Orientation"),
+        ("Uniform('a', 'b')", "object"),
+        ("2", "int"),
+        ("'a'", "str"),
+    ],
+)
+def test_the_type_of_what_is_drawn_is_known(expression: str, kind: str) -> None:
+    text = f"from scenic.core.type_support import underlyingType\nparam x = underlyingType({expression}).__name__"
+    assert params(text)["x"] == kind
 
 
 def test_the_version_is_that_of_the_distribution() -> None:
@@ -206,7 +262,10 @@ def seen():
 
 def set_up():
     v.param({"q": v.globalParameters().p + 2})
+    v.mutate(scale=3)
+    scales = v.ego().mutationScale
     v.mutate(v.ego(), scale=0)
+    assert (scales, v.ego().mutationScale) == (3, 0)
     return v.isActive(), v.simulationInProgress(), v.in_initial_scenario(), v.localPath("a").name
 """
 

@@ -117,6 +117,19 @@ def test_the_error_of_a_strict_operation_is_its_first_operands():
     assert batch.errors[quotient] is first
 
 
+@pytest.mark.parametrize(
+    ("statuses", "expected"),
+    [("fr", True), ("rf", True), ("ro", False), ("of", True), ("oo", False), ("rfr", True)],
+)
+def test_a_batch_remembers_that_some_value_failed(statuses, expected):
+    marks = {"o": [OK, OK], "f": [FAULT, OK], "r": [OK, REJECTED]}
+    nodes = [faulty(Kind.SCALAR, [1, 2], marks[letter], ValueError()) for letter in statuses]
+    batch = batch_at(Graph(nodes), np.empty((2, 0)), CODEC)
+    for node in nodes:
+        batch.status(node)
+    assert batch.has_faults is expected
+
+
 def test_options_of_different_kinds_are_seen_as_what_they_are():
     vector = source(Kind.VECTOR, [[1.0, 2.0, 3.0]] * 5)
     words = np.array(["a", "b", "c", "d", "e"], dtype=object)
@@ -333,3 +346,13 @@ def test_zeros_of_either_sign_are_different_numbers():
     batch = batch_at(Graph(products), [[0.5]])
     batch.need(products)
     assert [np.signbit(batch.column(node)[0]) for node in products] == [False, True, False, True]
+
+
+def test_rows_are_those_of_the_lanes_that_are_kept():
+    nodes = (source(Kind.SCALAR, [1.0, 2.0, 3.0]), source(Kind.SCALAR, [4.0, 5.0, 6.0]))
+    batch = batch_at(Graph(nodes), np.empty((3, 0)), CODEC)
+    assert batch.tuples(nodes) == [(1, 4), (2, 5), (3, 6)]
+    assert batch.read(1, nodes[0]) == 2
+    batch.keep(np.array([False, True, True]))
+    assert batch.tuples(nodes) == [(2, 5), (3, 6)]
+    assert batch.read(1, nodes[0]) == 3

@@ -150,6 +150,22 @@ def test_quantiles_of_far_tails_rise(far, side):
     assert (z[10] - side * far) * far * side == pytest.approx(math.log(2), rel=3 / far + 1e-4)
 
 
+@pytest.mark.parametrize("far", [31.0, 300.0, 9.9e3, 1.01e4, 1e6])
+@pytest.mark.parametrize("width", [0.01, 1.0, 5.0])
+@pytest.mark.parametrize("side", [-1, 1])
+def test_quantiles_of_windows_in_a_far_tail(far, width, side):
+    """The law in the window is nearly an exponential one that is cut off there."""
+    a, b = sorted((side * far, side * (far + width / far)))
+    share = np.linspace(0.0, 1.0, 21)[1:-1]
+    z = conditioned_quantile(np.float64(a), np.float64(b), share)
+    inward = share if side > 0 else 1 - share
+    expected = -np.log1p(inward * np.expm1(-width))
+    # A narrow window far out is a few thousand floats wide.
+    np.testing.assert_allclose(
+        (np.abs(z) - far) * far, expected, rtol=5e-3, atol=1e-3 * width + 4e-16 * far**2
+    )
+
+
 @pytest.mark.parametrize(("low", "high"), [(1, 6), (0.5, 3.5), (-3, -3), (-2.0, 2)])
 def test_discrete_range_is_uniform(low, high):
     node = make("discrete range", graph.axis(), low, high)

@@ -100,6 +100,24 @@ def test_conditionals_and_choices():
     assert narrowed("select", (50, 60), (0, 1), (0, 1), (2, 9))[0] is None
 
 
+def test_options_of_which_nothing_is_known_may_give_anything():
+    def ends(name, result, *operands):
+        given = [None if item is None else box(*item) for item in operands]
+        return [
+            None if part is None else (part.lower[0], part.upper[0])
+            for part in TABLE[name].inverse(None, box(*result), *given)
+        ]
+
+    unknown = None
+    assert ends("select", (5, 6), (0, 2), (0, 1), unknown, (2, 9))[0] == (1, 2)
+    assert ends("select", (5, 6), (0, 2), unknown, (0, 1), (2, 3))[0] == (0, 0)
+    assert ends("select", (5, 6), (0, 2), (0, 1), (5, 7), unknown)[0] == (1, 2)
+    assert ends("if", (5, 6), OPEN, unknown, (0, 1))[0] == TRUE
+    assert ends("if", (5, 6), OPEN, (0, 1), unknown)[0] == FALSE
+    assert ends("if", (5, 6), OPEN, (5, 7), unknown)[0] == OPEN
+    assert ends("if", (5, 6), OPEN, unknown, (5, 7))[0] == OPEN
+
+
 def test_extremes():
     near(narrowed("minimum", (2, 3), (0, 10), (0, 10)), (2, 10), (2, 10))
     near(narrowed("minimum", (2, 3), (0, 10), (5, 10)), (2, 3), (5, 10))

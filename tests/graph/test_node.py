@@ -87,3 +87,14 @@ def test_equal_nodes_are_one_unless_what_they_carry_may_change():
     assert make_node(operation, [x], payload="name") is not make_node(operation, [x], payload="other")
     changing = ["name"]
     assert make_node(operation, [x], payload=changing) is not make_node(operation, [x], payload=changing)
+
+
+def test_objects_that_are_printed_alike_are_different_constants():
+    class Alike:
+        def __repr__(self):
+            return "alike"
+
+    first, second = Alike(), Alike()
+    choice = one_of(first, second)
+    nodes = [make("equal", choice, constant(item)) for item in (first, second, first)]
+    assert nodes[0] is nodes[2] is not nodes[1]

@@ -300,3 +300,12 @@ def test_random_defaults_of_parameters_are_drawn_wherever_they_stand() -> None:
         assert 4 < each["y"][3] < 5
         assert 6 < each["y"][4][0] < 7
     assert len({each["x"][1] for each in found}) == len({each["y"][4][0] for each in found}) == 4
+
+
+@pytest.mark.parametrize("name", ["side", "side[additive]", "side[final]", "side[dynamic, final]"])
+@pytest.mark.parametrize("operand", ["'a'", "self.width"])
+def test_an_error_in_a_default_is_told_where_it_is(name: str, operand: str) -> None:
+    value = f"distance from {operand} to 3"
+    error = failure(f"class A:\n    {name}: 1 + ({value})\nego = new A\n")
+    begin = len(f"    {name}: 1 + (") + 1
+    assert place(error)[:2] == ("SC404", f"2:{begin}-2:{begin + len(value)}")

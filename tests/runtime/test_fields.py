@@ -149,6 +149,22 @@ def test_polygonal_fields_are_followed_over_arrays() -> None:
         np.testing.assert_allclose(tuple(end), follow(heading_of_cells, (x, 2, 0), 1.5), atol=1e-9)
 
 
+@pytest.mark.parametrize("distance", ["8", "Range(8, 8)", "Uniform(8, 4)"])
+def test_ways_that_leave_the_cells_for_a_while_are_rejected(distance: str) -> None:
+    """Four steps, each of two metres or of one: that one of them begins in the gap is enough."""
+    text = (
+        "from shapely.geometry import box\n"
+        "F = PolygonalVectorField('f', [(box(0, 0, 9, 10), 0), (box(0, 11, 9, 40), 0)])\n"
+        f"y, d = Range(0, 20), {distance}\nparam x = (y, d, (follow F from (1, y) for d).position)"
+    )
+    values = draws(text, n=300)
+    for y, length, end in values:
+        assert tuple(end) == pytest.approx((1, y + length, 0))
+        assert not any(10 < y + step * length / 4 < 11 for step in range(4))
+    for before in range(4):
+        assert any(10 < y + before * 2 + 1 < 11 for y, length, _ in values if length == 8)
+
+
 def test_cells_without_heading_ask_the_function() -> None:
     text = CELLS.replace("0.5)", "None)").replace("cells)", "cells, headingFunction=lambda p: 3 * p.x)")
     for x, yaw in draws(text + "x = Range(0, 1)\nparam x = (x, (F at (x, 1)).yaw)", n=10):

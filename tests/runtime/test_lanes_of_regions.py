@@ -10,6 +10,7 @@ from scenic.graph.kinds import Column
 from scenic.language.errors import UndefinedSamplingException, UnsupportedError
 from scenic.runtime.geometry import primitives
 from scenic.runtime.geometry.bodies import Body
+from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.poses import Poses
 from scenic.runtime.regions import composite
 from scenic.runtime.regions.base import Region
@@ -18,7 +19,7 @@ from tests.runtime.geometry.samples import table
 from tests.runtime.programs import thing
 from tests.runtime.test_region_readings import NO_DISTANCE, NOT_DRAWN, REGIONS
 
-LANES = 11
+LANES = 7
 SIDES = ("top", "bottom", "left", "right", "front", "back")
 
 
@@ -136,3 +137,43 @@ def test_each_lane_gets_the_answer_that_it_gets_alone(name: str) -> None:
                     row, answer[0], rtol=1e-9, atol=1e-12, err_msg=f"{what} of lane {lane}"
                 )
     assert asked >= 5
+
+
+OCTAHEDRON = Mesh(
+    0.5 * np.vstack([np.eye(3), -np.eye(3)]),
+    [(0, 1, 2), (1, 3, 2), (3, 4, 2), (4, 0, 2), (1, 0, 5), (3, 1, 5), (4, 3, 5), (0, 4, 5)],
+)
+
+
+def _spread(column: Column) -> Column:
+    return np.repeat(column, LANES, axis=0) if len(column) == 1 else column
+
+
+@pytest.mark.parametrize("shared", ["pose", "shape and parameters"])
+@pytest.mark.parametrize("name", [name for name in MOVING if "of a tilted" not in name])
+def test_what_all_lanes_share_is_as_if_each_had_it(name: str, shared: str) -> None:
+    """Given as one row, whatever else differs from lane to lane."""
+    region, rng = MOVING[name], np.random.default_rng(4)
+    fixed = region.fixed_columns("a test")
+    columns = columns_of(region, rng) if shared == "pose" else fixed
+    lower, upper = region.box(*fixed)
+    points = np.clip(lower, -20, 20) + rng.uniform(0.2, 0.8, (LANES, 3)) * np.clip(upper - lower, 0, 9)
+    choice, poses = rng.integers(0, 2, LANES), bodies(points, rng).poses
+    if shared == "pose":
+        poses, points = poses.take(np.array([1])), points[1:2]
+    else:
+        choice = choice[1:2]
+    meshes = (OCTAHEDRON, primitives.box())
+    body = Body(meshes, choice, poses)
+    apart = Body(
+        meshes,
+        _spread(choice),
+        Poses(*(_spread(part) for part in (poses.position, poses.orientation, poses.size))),
+    )
+    own = [_spread(column) for column in columns]
+    for given, expected in (
+        (region.contains_points(points, *columns), region.contains_points(_spread(points), *own)),
+        (region.contains_bodies(body, LANES, *columns), region.contains_bodies(apart, LANES, *own)),
+        (region.meets_bodies(body, LANES, *columns), region.meets_bodies(apart, LANES, *own)),
+    ):
+        np.testing.assert_array_equal(np.broadcast_to(given, LANES), expected)

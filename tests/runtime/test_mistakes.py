@@ -29,6 +29,8 @@ MISTAKES = [
     ("x = «Object()»", "SC111", "Object is a Scenic class and cannot be called"),
     ("new Object «at 3»", "SC404", "`at`: expected a vector, not 3"),
     ("new Object «at (1, 2, 3, 4)»", "SC404", "a vector has 2 or 3 coordinates, not 4"),
+    ("new Object «at (1,)»", "SC404", "a vector has 2 or 3 coordinates, not 1"),
+    ("x = []\nnew Object «at x»", "SC404", "a vector has 2 or 3 coordinates, not 0"),
     ("new Object «in (1, 2)»", "SC404", "`in`: expected a region"),
     ("new Object «on 3»", "SC404", "`on`: expected a region, an object or a vector"),
     ("new Object «facing (1, 2)»", "SC404", "three Euler angles"),

@@ -45,6 +45,16 @@ def test_python_modules_beside_the_program_are_found_from_anywhere(tmp_path: Pat
     assert sys.path == before
 
 
+def test_what_a_program_adds_to_the_search_path_stays(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    before = ["folder", *sys.path]
+    monkeypatch.setattr(sys, "path", before[1:])
+    main = written(tmp_path, {"main.scenic": "import sys\nsys.path.insert(0, 'folder')\nego = new Object\n"})
+    first(main)
+    assert sys.path == before
+
+
 def test_modules_of_one_program_are_not_those_of_another(tmp_path: Path) -> None:
     for name, value in (("a", 1), ("b", 2)):
         written(

@@ -290,3 +290,12 @@ def test_a_mutator_that_gives_nothing_back_is_told_at_the_object() -> None:
         "class A:\n    mutator: M()\nego = new Object\nx = new A at (5, 5)\nmutate x\n"
     )
     assert place(error)[:2] == ("SC404", "7:5-7:20")
+
+
+def test_code_that_fails_while_an_object_is_mutated_is_told_where_it_is() -> None:
+    """A final dynamic property follows what is noisy by then; the place is that of its line, not of the object."""
+    error = failure(
+        "class A:\n    side[dynamic, final]: 'left' if self.position.x > 2 else 'right'\n"
+        "ego = new A at (3, 4)\nmutate\n"
+    )
+    assert place(error)[:2] == ("SC403", "2:37-2:56")

@@ -72,6 +72,8 @@ CASES: dict[str, Any] = {
     "s @ h": np.array([0.75, 1.5, 0]),
     "a relative to b": A + B,
     "a offset by b": A + B,
+    "b relative to b": B + B,
+    "b offset by a": A + B,
     "s relative to h": euler(2.25),
     "o relative to s": euler(0.75) * TURN,
     "s relative to o": TURN * euler(0.75),
@@ -327,6 +329,13 @@ def test_vectors_are_multiplied_and_divided_by_numbers_alone(vector: str, operat
         np.testing.assert_allclose(after, expected)
 
 
+@pytest.mark.parametrize("number", ["Uniform([2, 4], [2, 5])[0]", "Uniform({'k': 2}, {'k': 2})['k']"])
+def test_vectors_are_multiplied_by_what_is_a_number_when_it_is_drawn(number: str) -> None:
+    text = f"n = {number}\nparam product = Vector(1, 2, 3) * n, quotient = Vector(2, 4, 6) / n\n"
+    found = params(text)
+    assert (tuple(found["product"]), tuple(found["quotient"])) == ((2, 4, 6), (1, 2, 3))
+
+
 @pytest.mark.parametrize("condition", ["{v} < 3", "3 < {v}", "{v} >= {v}", "{v} > {o}", "1.5 <= {o}"])
 @pytest.mark.parametrize("later", [False, True])
 def test_vectors_and_orientations_have_no_order(condition: str, later: bool) -> None:
@@ -346,6 +355,47 @@ def test_components_are_floats_whatever_they_were_made_of(part: str, place_of: s
     text = f"n = DiscreteRange(1, 3)\nv = Vector({part}, n, 2)\nparam x = {place_of}, y = v.y\n"
     for found in scenario(text).sample(3, seed=1):
         assert type(found.params["x"]) is type(found.params["y"]) is float
+
+
+@pytest.mark.parametrize(
+    "later", ["Range({0}, {0})", "DiscreteRange({0}, {0})", "(({0} relative to north).yaw)", "{0}"]
+)
+@pytest.mark.parametrize("places", [(0,), (1,), (2,), (0, 1), (0, 2), (1, 2), (0, 1, 2)])
+def test_angles_of_orientations_are_known_sooner_or_later(places: tuple[int, ...], later: str) -> None:
+    angles = [
+        later.format(angle) if place in places else f"{angle}.0" for place, angle in enumerate((1, -1, 2))
+    ]
+    text = "north = VectorField('north', lambda point: 0)\n"
+    text += f"ego = new Object facing 0.3, with turned Orientation.fromEuler({', '.join(angles)})\nparam x = ego.turned"
+    assert_same_rotation(params(text)["x"], euler(1, -1, 2))
+
+
+@pytest.mark.parametrize("facing", ["170 deg", "Range(170, 170) deg", "Uniform(170 deg, 170 deg)"])
+@pytest.mark.parametrize(
+    ("expression", "degrees"),
+    [
+        ("apparent heading of p", -20),
+        ("apparent heading of q", 20),
+        ("relative heading of p from q", -20),
+        ("relative heading of q from p", 20),
+        ("relative heading of q", 160),
+        ("angle to p", -170),
+        ("angle to q", 170),
+        ("angle from q", -10),
+        ("q.position.angleWith(p.position)", 20),
+        ("p.position.angleWith(q.position)", -20),
+    ],
+)
+def test_angles_between_directions_are_within_half_a_turn(
+    expression: str, degrees: float, facing: str
+) -> None:
+    """Of `p`, South of the ego and a little to the East, and `q`, a little to the West, which face South or nearly so."""
+    text = (
+        "ego = new Object facing 30 deg, with allowCollisions True\n"
+        f"p = new OrientedPoint at Vector(0, 5, 0).rotatedBy(-170 deg), facing {facing}\n"
+        f"q = new OrientedPoint at Vector(0, 5, 0).rotatedBy(170 deg), facing -({facing})\n"
+    )
+    assert params(f"{text}param x = {expression}")["x"] == pytest.approx(math.radians(degrees))
 
 
 @pytest.mark.parametrize("bad", ["0", "float('inf')", "-float('inf')", "float('nan')"])

@@ -58,3 +58,7 @@ def test_a_random_behavior() -> None:
 def test_an_observer_that_is_a_random_number() -> None:
     error = failure("param x = CircularRegion((0, 0), 3) visible from Range(1, 2)")
     assert place(error)[0] == "SC404"
+
+
+def test_a_colour_that_is_given_as_a_list_is_kept_as_a_tuple() -> None:
+    assert thing("c = [1, 0, 0.5]\nego = new Object with color c\nc.append(3)").color == (1, 0, 0.5)

@@ -41,6 +41,10 @@ def graded(thing: Any, x: float) -> tuple[Any, ...]:
     return (thing.tag, "large" if x > 0.5 else "small", x, thing.position.x)
 
 
+def one_of(value: float, *values: float) -> float | None:
+    return value if value in values else None
+
+
 PARTS: list[tuple[str, Expected]] = [
     ("c.g(x)", lambda p: graded(p["c"], p["x"])),
     ("c.g(x=x, name='g')", lambda p: graded(p["c"], p["x"])),
@@ -57,6 +61,11 @@ PARTS: list[tuple[str, Expected]] = [
     ("filter(lambda o: o.x > 0.5, [a, b])[0].tag", lambda p: "a" if p["a"].x > 0.5 else "b"),
     ("filter(lambda o: o.position.x > x, l)[0].tag", lambda p: next(o.tag for o in p["l"] if o.x > p["x"])),
     ("len(filter(None, Uniform([0, 1], [2, 3])))", lambda p: p["value"]),
+    ("(Vector(1, 2, 3) * Uniform(1, 2.5)).z", lambda p: one_of(p["value"], 3, 7.5)),
+    ("(Uniform(1, 2.5) * Vector(1, 2, 3)).z", lambda p: one_of(p["value"], 3, 7.5)),
+    ("max(Uniform([x, 2], [1, 1]))", lambda p: one_of(p["value"], 2, 1)),
+    ("min(Uniform((3, x + 1), (1, 1)))", lambda p: one_of(p["value"], 1, p["x"] + 1)),
+    ("(Vector(1, 2, 3) / Uniform(1, 0.5)).z", lambda p: one_of(p["value"], 3, 6)),
     ("min(a, b, key=lambda o: -o.x).tag", lambda p: "b"),
     ("max([a, b], key=lambda o: (o.x < 0.5, o.x)).tag", lambda p: "a" if p["a"].x < 0.5 else "b"),
     ("max(l, key=lambda o: o.x).tag", lambda p: "b"),
@@ -232,7 +241,16 @@ def test_infinite_values_are_refused(text: str, message: str) -> None:
         "new Object at (y, 0, 0)",
         "new Object at (0, 0, y - y)",
         "new Object facing y",
+        "new Object facing (0, y, 0)",
+        "new Object facing (0.1, 0.2, y)",
+        "new Object facing toward (y - y, 3)",
+        "a = new OrientedPoint facing (0, y, 0)\nnew Object facing 1 relative to a",
+        "new Object with yaw y",
+        "new Object with pitch y",
+        "new Object with roll y",
+        "new Object with width y",
         "new Object with length y",
+        "new Object with height y",
         "a = new Object\nnew Object ahead of a by y",
     ],
 )
@@ -250,6 +268,7 @@ def test_finite_values_need_no_check() -> None:
     program = scenario(
         "a = new Object at (Range(0, 1), Normal(0, 1), 0), facing Range(0, 9), with width Range(1, 2)\n"
         "b = new Object on a, facing toward (Range(30, 40), 50)\n"
+        "new Object left of b by 2, facing (Range(0, 9), Normal(0, 1), 1) relative to b\n"
     )
     labels = [check.label for check in program.outline.checks]
     assert not [label for label in labels if "finite" in label]
@@ -332,6 +351,30 @@ def test_thresholds_of_sides_may_be_chosen() -> None:
     assert len({round(item.params["x"], 6) for item in scenario(text).sample(20, seed=1)}) == 2
 
 
+def test_what_a_sample_made_of_a_value_is_not_given_for_another() -> None:
+    sample = Sample(cast("Any", None), 0)
+    for number in range(200):  # lists of which each has the place of the one before
+        assert sample.value([[number], {"k": number}]) == [[number], {"k": number}]
+    for cls in (list, tuple, frozenset, slice):
+        for number in range(50):
+            value = slice(number, (number,)) if cls is slice else cls([number, (number,)])
+            assert sample.value(value) == value
+            del value
+
+
+def test_values_that_lead_back_to_themselves_do_so_in_a_sample() -> None:
+    sample = Sample(cast("Any", None), 0)
+    held: list[Any] = [1]
+    pair = (held, {"pair": held})
+    held.append(pair)
+    first = sample.value(pair)
+    assert first[0][1] is first
+    assert first[1]["pair"] is first[0]
+    assert first[0] is not held
+    assert sample.value(pair) is first
+    assert sample.value(held) is first[0]
+
+
 def test_what_a_sample_knows_by_its_identity_lives_as_long_as_the_sample() -> None:
     """Another value may else get the identity, and be taken for it."""
 
@@ -349,3 +392,32 @@ def test_what_a_sample_knows_by_its_identity_lives_as_long_as_the_sample() -> No
     del sample
     gc.collect()
     assert all(watch() is None for watch in watched)
+
+
+def test_options_of_functions_that_take_a_random_list() -> None:
+    text = (
+        "xs = Uniform([3, 1, -5], [2, 7, -9])\n"
+        "param xs = xs, first = max(*xs, key=abs), last = min(*xs, key=abs), plain = max(*xs),"
+        " beside = min(0.5, *xs, key=lambda x: -x)\n"
+    )
+    for item in scenario(text).sample(6, seed=1):
+        xs = item.params["xs"]
+        assert item.params["first"] == max(*xs, key=abs)
+        assert item.params["last"] == min(*xs, key=abs)
+        assert item.params["plain"] == item.params["beside"] == max(xs)
+
+
+@pytest.mark.parametrize(
+    "specifiers",
+    ["at (3, 0), with width {}", "at ({}, 0), with width 3", "at (3, 0), with width 3, with extra {}"],
+)
+def test_functions_see_objects_of_which_only_some_properties_are_random(specifiers: str) -> None:
+    text = (
+        "class A:\n    extra: 3\n"
+        "def total(o):\n    if o.width > 0:\n        return o.position.x + o.width + o.extra\n"
+        f"r = Range(1, 2)\nego = new A {specifiers.format('r')}\nrequire total(ego) > 7.5\n"
+        "param r = r\n"
+    )
+    values = [item.params["r"] for item in scenario(text).sample(50, seed=1)]
+    assert 1.5 < min(values) < 1.6
+    assert max(values) > 1.8

@@ -86,8 +86,21 @@ def test_the_region_that_is_drawn_is_sampled_itself(made: str) -> None:
             assert region.containsPoint(region.position) is True
 
 
+def test_a_workspace_that_is_drawn_meets_what_its_region_meets() -> None:
+    text = (
+        "workspace = Workspace(CircularRegion((0, 0), 5))\nfar = CircularRegion((50, 0), 3)\n"
+        "ego = new Object at (Range(1, 2), 0, 0)\nplace = Uniform(workspace, far)\n"
+        "param x = (far.containsPoint(place.center), ego intersects place, place intersects ego)\n"
+    )
+    found = draws(text, n=20)
+    assert set(found) == {(False, True, True), (True, False, False)}
+
+
 def test_all_of_space_cannot_be_drawn_from() -> None:
-    assert isinstance(failure(REGIONS + "new Object in Uniform(disc, everywhere)"), InvalidScenarioError)
+    for options in ("disc, everywhere", "everywhere, disc", "ball, plate, everywhere"):
+        error = failure(REGIONS + f"new Object in Uniform({options})")
+        assert isinstance(error, InvalidScenarioError)
+        assert "no point can be drawn uniformly from all of space" in str(error)
 
 
 def roll_of_a_tilted_top() -> float:
@@ -192,6 +205,25 @@ def test_each_lane_is_answered_by_its_own_option(order: tuple[int, ...]) -> None
         assert len(np.unique(found["contains"])) == 2 or order == (2, 1)
     assert region.dimension == max(option.dimension for option in options)
     assert region.has_orientation is all(option.has_orientation for option in options)
+
+
+def test_each_option_is_asked_of_the_shapes_of_its_own_lanes() -> None:
+    """Where the pose of the body is fixed and its shape, a unit cube or the ball in it, is not."""
+    near, around = (
+        SpheroidRegion((1.5, 1.5, 1.5)),
+        SpheroidRegion((2, 2, 2)),
+    )  # the near one misses the cube's corners
+    corner, middle, far = (BoxRegion((0.2, 0.2, 0.2), (x, x, x)) for x in (0.5, 0, 3))
+    index, shape = np.array([1, 0, 2, 0, 1, 0, 1]), np.array([0, 1, 0, 0, 1, 1, 0])
+    body = Body((primitives.box(), primitives.spheroid()), shape, Poses.fixed((0, 0, 0)))
+    holders = RegionChoice(0, [near, around, far])
+    columns = [column for option in holders.options for column in option.fixed_columns("a test")]
+    found = holders.contains_bodies(body, 7, index, *columns)
+    np.testing.assert_array_equal(found, (index == 1) | ((index == 0) & (shape == 1)))
+    touched = RegionChoice(0, [corner, middle, far])
+    columns = [column for option in touched.options for column in option.fixed_columns("a test")]
+    found = touched.meets_bodies(body, 7, index, *columns)
+    np.testing.assert_array_equal(found, (index == 1) | ((index == 0) & (shape == 0)))
 
 
 def test_a_choice_among_lines_has_the_direction_of_the_one_drawn() -> None:

@@ -253,6 +253,23 @@ def test_fields_of_combinations() -> None:
     assert found == pytest.approx((1, 1, 2, 1, 2, 2, -math.pi / 2, 1, 1, 2))
 
 
+@pytest.mark.parametrize("kind", ["UnionRegion", "IntersectionRegion", "DifferenceRegion"])
+@pytest.mark.parametrize("height", ["3", "Range(3, 4)"])
+def test_combinations_have_the_field_and_the_name_that_they_are_given(kind: str, height: str) -> None:
+    """In the place of those of their members, which may be random."""
+    text = (
+        f"from scenic.core.regions import {kind}\n"
+        "one, two = VectorField('one', lambda p: 1), VectorField('two', lambda p: 2)\n"
+        f"box = BoxRegion((4, 4, {height}), orientation=one)\nball = SpheroidRegion((2, 2, 2), (1.5, 0, 0), orientation=one)\n"
+        f"place = {kind}(box, ball, orientation=two, name='place')\n"
+        "ego = new Object in place\nparam place = place\n"
+    )
+    for found in scenario(text).sample(3, seed=1):
+        assert found.objects[0].heading == pytest.approx(2)
+        assert found.params["place"].orientation[(1, 0, 0)].yaw == 2
+        assert found.params["place"].name == "place"
+
+
 def test_directions_of_projections_are_kept() -> None:
     """Things go to a wall along its own direction, also to that of its surface or volume."""
     text = (

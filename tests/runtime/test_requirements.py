@@ -155,6 +155,21 @@ def test_the_ego_is_that_of_the_moment(read: str) -> None:
         assert scene.objects[1].x > 28
 
 
+@pytest.mark.parametrize(
+    "read", ["workspace", "same(workspace)", "space()", "again()", "(lambda: workspace)()"]
+)
+def test_the_workspace_is_that_of_the_moment(read: str) -> None:
+    text = (
+        "def same(v): return v\ndef space(): return workspace\ndef again(): return space()\n"
+        "workspace = Workspace(BoxRegion((20, 20, 20)))\nx = Range(0, 20)\n"
+        f"require Vector(x, 0, 0) not in {read}\nworkspace = Workspace(BoxRegion((30, 30, 30)))\n"
+        f"require Vector(x, 0, 0) in {read}\nworkspace = Workspace(everywhere)\nparam x = x\n"
+    )
+    values = [scene.params["x"] for scene in scenario(text).sample(50, seed=1, max_attempts=400)]
+    assert min(values) > 10
+    assert max(values) < 15
+
+
 def test_functions_that_call_each_other() -> None:
     text = (
         "def even(n): return n < y or odd(n - 2)\ndef odd(n): return not (n < y) and even(n - 2)\n"
@@ -183,6 +198,43 @@ def test_methods_see_sampled_names() -> None:
         "    def known(self): return car is self\ncar = new Car\nrequire car.slow()\nparam x = (car.speed2, limit)\n"
     )
     assert all(speed < limit for speed, limit in draws(text, n=30))
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        "    class Inner:\n        value = r\n    return Inner.value",
+        "    class Inner:\n        value = [r, r][0]\n        class Deep:\n            value = r\n    return Inner.Deep.value",
+        "    return (lambda: [r for _ in range(2)][0])()",
+        "    def inner(): return r\n    return inner()",
+        "    def inner(value=r): return value\n    return inner()",
+        "    return next(r for _ in range(2))",
+        "    try:\n        return r\n    finally:\n        pass",
+    ],
+)
+def test_names_in_nested_code_of_functions_are_those_of_the_sample(body: str) -> None:
+    text = f"r = Range(0, 1)\ndef f():\n{body}\nrequire f() < 0.3\nparam x = r\n"
+    found = scenario(text).sample(10, seed=1)
+    assert all(type(scene.params["x"]) is float and scene.params["x"] < 0.3 for scene in found)
+
+
+@pytest.mark.parametrize(
+    ("method", "use"),
+    [
+        ("distanceTo(self, other)", "ego.distanceTo(p) < 50"),
+        ("distancePast(self, other)", "ego.distancePast(p) < 50"),
+        ("relativePosition(self, other)", "ego.relativePosition(p) < 50"),
+        ("containsPoint(self, other)", "ego.containsPoint(p) < 50"),
+        ("intersects(self, other)", "ego.intersects(p) < 50"),
+        ("canSee(self, other)", "ego.canSee(p) < 50"),
+    ],
+)
+def test_methods_that_a_class_overrides_are_called_on_samples(method: str, use: str) -> None:
+    text = (
+        f"class Car:\n    def {method}: return 1 if type(other.position.x) is float else 100\n"
+        f"ego = new Car at (Range(0, 5), 0)\np = new Object at (Range(10, 15), 30)\nrequire {use}\n"
+    )
+    assert len(scenario(text).sample(2, seed=1, max_attempts=20)) == 2
 
 
 def test_points_may_be_made_in_conditions() -> None:
@@ -332,6 +384,28 @@ def test_containment_and_the_workspace() -> None:
     assert all(0.5 <= scene.objects[1].x <= 1.5 for scene in scenario(text + own).sample(20, seed=0))
     free = "new Object at (Range(4, 5), 0), with regionContainedIn everywhere\n"
     assert all(scene.objects[1].x >= 4 for scene in scenario(text + free).sample(20, seed=0))
+
+
+COMPOSITES = {
+    "disc.difference(hole)": {2, 3},
+    "disc.intersect(other)": {3},
+    "hole.union(other)": {0, 1, 3, 4, 5},
+    "Uniform(hole, other)": {0, 1, 3, 4, 5},
+}
+
+
+@pytest.mark.parametrize("container", COMPOSITES)
+@pytest.mark.parametrize("three", ["3", "Range(2.9, 3)"])
+def test_containers_of_the_plane_hold_what_is_above_them(container: str, three: str) -> None:
+    """At any height; what is taken away from one is missing there too."""
+    text = (
+        f"disc, hole = CircularRegion((0, 0), {three} + 0.5), CircularRegion((0, 0), {three} - 1.8)\n"
+        f"other = CircularRegion((4, 0), {three} - 1.5)\n"
+        "place = DiscreteRange(0, 5)\n"
+        "new Object at (place, 0, Uniform(-9, 0, 7)), with width 0.1, with length 0.1, with height 0.1, "
+        f"with regionContainedIn {container}\nparam x = place\n"
+    )
+    assert {scene.params["x"] for scene in scenario(text).sample(30, seed=2)} == COMPOSITES[container]
 
 
 def test_collisions() -> None:

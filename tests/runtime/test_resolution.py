@@ -50,6 +50,26 @@ def test_the_smaller_number_wins_whatever_the_order() -> None:
         assert owners(*pair)[0] == {"position": "strong", "parentOrientation": "weak"}
 
 
+def test_each_specifier_is_evaluated_once_whoever_reads_what_it_gives() -> None:
+    """Both where properties are specified and where they are defaults, and again for the next object."""
+    text = """
+seen = []
+def value(name, number):
+    seen.append(name)
+    return number
+class A:
+    a: value('a', 1)
+    b: value('b', self.a)
+    c: value('c', self.a + self.b)
+    d: value('d', self.a + self.b + self.c)
+for x in (0, 5):
+    made = new A at (x, 0), with e value('e', 1), with d value('d', 3)
+"""
+    found = params(f"{text}param seen = seen, sums = (made.b, made.c, made.d, made.e)")
+    assert sorted(found["seen"]) == sorted(2 * "abcde")
+    assert found["sums"] == (1, 2, 3, 1)
+
+
 def test_equal_priorities_clash_unless_a_stronger_one_takes_the_property() -> None:
     first = specifier("first", {"position": 1, "parentOrientation": 3})
     second = specifier("second", {"yaw": 1, "parentOrientation": 3})

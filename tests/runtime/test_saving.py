@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import trimesh
 
 import scenic
 from scenic.language.errors import InvalidScenarioError, SerializationError
@@ -145,6 +146,25 @@ param low = -1e400, single = ('a',)
     for old, new in zip(before.objects, again.objects, strict=True):
         assert new.shape.mesh.vertices == pytest.approx(old.shape.mesh.vertices)
         assert (new.width, new.length, new.height) == (old.width, old.length, old.height)
+
+
+@pytest.mark.parametrize(
+    "options",
+    ["", ", unify=False", ", unify=False, scale=2", ", initial_rotation=(1, 0, 0), dimensions=(1, 2, 3)"],
+)
+def test_shapes_of_files_are_dumped_as_they_are_read(tmp_path: Path, options: str) -> None:
+    """Two bodies that overlap are one or two."""
+    bodies = [trimesh.creation.box(), trimesh.creation.box().apply_translation((0.5, 0.25, 0.125))]
+    trimesh.util.concatenate(bodies).export(tmp_path / "two.obj")
+    text = f"ego = new Object with shape MeshShape.fromFile({str(tmp_path / 'two.obj')!r}{options})\n"
+    before = scene_of(text)
+    after = scene_of(before.dump())
+    old, new = before.egoObject.shape, after.egoObject.shape
+    assert len(new.mesh.faces) == len(old.mesh.faces)
+    assert (len(new.mesh.faces) == 24) is ("unify" in options)
+    assert new.mesh.vertices == pytest.approx(old.mesh.vertices)
+    assert new.dimensions == pytest.approx(old.dimensions)
+    assert new.source == old.source
 
 
 def test_two_objects_of_one_name_have_two_in_the_dump() -> None:

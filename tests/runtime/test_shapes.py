@@ -118,6 +118,16 @@ def test_files_are_read_once_until_they_change(tmp_path):
     assert shapes.MeshShape.fromFile(path, initial_rotation=(1, 0, 0)).dimensions != second.dimensions
 
 
+def test_files_that_are_written_twice_in_a_second_are_read_twice(tmp_path):
+    """Also if the second text is as long as the first."""
+    path, sizes = tmp_path / "box.obj", []
+    for count, height in enumerate((2, 3, 4)):
+        path.write_text(trimesh.creation.box((1, 1, height)).export(file_type="obj", digits=3))
+        os.utime(path, ns=(0, 1_700_000_000_000_000_000 + count * 1000))
+        sizes.append((path.stat().st_size, shapes.MeshShape.fromFile(path).dimensions[2]))
+    assert sizes == [(sizes[0][0], 2), (sizes[0][0], 3), (sizes[0][0], 4)]
+
+
 def test_from_missing_file(tmp_path):
     with pytest.raises(MeshError, match="does not exist"):
         shapes.MeshShape.fromFile(tmp_path / "nothing.obj")

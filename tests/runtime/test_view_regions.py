@@ -1,13 +1,19 @@
 """What observers have in view as regions: distances, boxes, bodies within and across the border, places nearby."""
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
 
 import scenic
+from scenic.runtime.geometry import body_points, primitives
+from scenic.runtime.geometry.bodies import Body
+from scenic.runtime.geometry.poses import Poses
 from scenic.runtime.regions.base import everywhere
-from scenic.runtime.regions.views import NearView
+from scenic.runtime.regions.views import NearView, ViewRegion
+from scenic.runtime.regions.volumes import BoxRegion
+from tests.runtime.programs import thing
 from tests.runtime.test_sight import answers, view
 
 TURNED = (
@@ -86,6 +92,26 @@ def test_bodies_in_views_of_random_angles_are_within_them() -> None:
     assert len(angles) > 2
 
 
+def test_each_observer_is_asked_of_the_shape_of_its_lane() -> None:
+    """Views of all around or of one half hold a cone at a fixed place, and not the box about it."""
+    view = ViewRegion(2, (2 * math.pi, math.pi))
+    camera, turn, _, vertical, _ = view.fixed_columns("a test")
+    angles, shape = np.array([1, 1, 2, 2, 1, 2, 1]) * np.pi, np.array([0, 1, 0, 1, 1, 1, 0])
+    body = Body((primitives.box(), primitives.cone()), shape, Poses.fixed((0, 1, 0), size=(1, 1, 2)))
+    held = view.contains_bodies(body, 7, camera, turn, angles, vertical, np.full(1, 1.83))
+    np.testing.assert_array_equal(held, shape == 1)
+
+
+@pytest.mark.parametrize("angles", [(1e-3, 1e-3), (1e-3, 1), (2, 1e-4), (2 * math.pi - 1e-3, math.pi - 1e-3)])
+def test_points_of_very_narrow_and_very_wide_views_are_in_them(angles: tuple[float, float]) -> None:
+    region = ViewRegion(4, angles, position=(1, 2, 3))
+    columns = region.fixed_columns("a test")
+    random = np.random.default_rng(6)
+    keys = random.integers(0, 1 << 63, 500, dtype=np.uint64)
+    points, _ = region.draw_points(random.random((region.draws, 500)), keys, *columns)
+    assert region.contains_points(points, *columns).all()
+
+
 def test_tall_things_may_be_farther_off_than_sight_reaches() -> None:
     text = (
         "ego = new Object with visibleDistance 10, with viewAngles (90 deg, 90 deg)\n"
@@ -102,8 +128,7 @@ def test_places_near_a_view_reach_as_far_as_the_thing_does() -> None:
         "new Object at (0, 20, 0), with width 4, with length 4, with height 2\n"
     )
     (scene,) = scenic.scenarioFromString(text).sample(1, seed=1)
-    ego, thing = scene.objects
-    near = NearView(everywhere, ego, thing)
+    near = NearView(everywhere, *scene.objects)
     assert [near.containsPoint((0, y, 0)) for y in (9.9, 12.9, 13.1)] == [True, True, False]
 
 
@@ -118,16 +143,15 @@ def test_where_few_places_fit_they_are_drawn_again_and_no_scene_is_lost() -> Non
     assert sum(scene.attempts for scene in scenes) < 1.6 * 60
 
 
-def test_places_near_a_view_are_in_the_container_and_within_reach() -> None:
-    from scenic.runtime.geometry import primitives
-    from scenic.runtime.geometry.bodies import Body
-    from scenic.runtime.geometry.poses import Poses
-    from scenic.runtime.regions.views import NearView
-    from scenic.runtime.regions.volumes import BoxRegion
-    from tests.runtime.programs import thing
+def _observer_and_seen() -> tuple[Any, Any]:
+    return (
+        thing("ego = new Object at (4, -3, 2), with visibleDistance 5, with viewAngles (1, 1)"),
+        thing("ego = new Object with width 2, with length 4, with height 4"),
+    )
 
-    observer = thing("ego = new Object at (4, -3, 2), with visibleDistance 5, with viewAngles (1, 1)")
-    seen = thing("ego = new Object with width 2, with length 4, with height 4")
+
+def test_places_near_a_view_are_in_the_container_and_within_reach() -> None:
+    observer, seen = _observer_and_seen()
     container = BoxRegion((9, 9, 9), (1, 1, 1))
     near = NearView(container, observer, seen)
     columns = near.fixed_columns("a test")
@@ -147,3 +171,21 @@ def test_places_near_a_view_are_in_the_container_and_within_reach() -> None:
         np.linalg.norm(corners - camera, axis=2) <= 8
     ).all(axis=1)
     np.testing.assert_array_equal(near.contains_bodies(body, 3000, *columns), held)
+
+
+def test_places_near_a_view_are_drawn_from_the_container_of_their_lane(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A small cone whose box has to be drawn from again in most lanes, in each about another place."""
+    monkeypatch.setattr(body_points, "TRIES", 1)
+    cone = thing("ego = new Object with shape ConeShape()").occupiedSpace
+    near = NearView(cone, *_observer_and_seen())
+    position, *rest = near.fixed_columns("a test")
+    random, lanes = np.random.default_rng(5), 40
+    places = position + 3.0 * np.arange(lanes)[:, np.newaxis] * (0, 0, 1)
+    keys = random.integers(0, 1 << 63, lanes, dtype=np.uint64)
+    points, found = near.draw_points(random.random((near.draws, lanes)), keys, places, *rest)
+    assert found is not None
+    assert found.all()
+    assert (np.abs(points - places) <= 0.5).all()
+    assert cone.contains_points(points - places + position, position, *rest[:3]).all()

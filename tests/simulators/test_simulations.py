@@ -785,3 +785,8 @@ def test_values_of_unknown_kinds_are_recorded_as_they_show_themselves(tmp_path: 
     simulate(text + recording(tmp_path, "run.jsonl", f"({value})"), 0)
     (row,) = map(json.loads, (tmp_path / "run.jsonl").read_text().splitlines())
     assert row["value"] == [repr(Path("a")), "<Colour.RED: 7>", [1], [2.5, None], [0, 0, 0]]
+
+
+def test_conditions_of_a_simulation_create_no_object() -> None:
+    with pytest.raises(InvalidScenarioError, match="cannot create an object"):
+        simulate("def made():\n    new Object at (9, 9)\nego = new Object\nterminate when made()")

@@ -1,3 +1,5 @@
+import itertools
+
 import numpy as np
 import pytest
 import shapely
@@ -262,3 +264,14 @@ def test_depths_and_gaps_of_convex_solids(corners: tuple[int, int]) -> None:
             assert convex_gap(first, second) == pytest.approx(expected, abs=1e-4)
             assert convex_gap(second, first) == pytest.approx(expected, abs=1e-4)
     assert min(met, apart) >= 5
+
+
+def test_gaps_of_boxes_in_symmetrical_positions() -> None:
+    """Whose nearest points lie on edges and corners of the simplices that are looked at; from whichever corner they are."""
+    corners = np.array(list(itertools.product((-0.5, 0.5), repeat=3)))
+    rng = np.random.default_rng(8)
+    for offset in itertools.product((-2, -1, 0, 0.5, 3), repeat=3):
+        gap = float(np.linalg.norm(np.maximum(np.abs(offset) - 1, 0)))
+        if gap > 0:
+            first, second = rng.permutation(corners), rng.permutation(corners) + offset
+            assert convex_gap(first, second) == pytest.approx(gap, abs=1e-9)

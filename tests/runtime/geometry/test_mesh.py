@@ -70,6 +70,18 @@ def test_normals_and_areas():
     assert (outwards > 0).all()
 
 
+@pytest.mark.parametrize("size", [1e-6, 1.0, 1e6])
+def test_normals_and_convexity_do_not_depend_on_the_size(size):
+    """Nor do faces without area have a normal."""
+    for name in ("cone", "table", "bumpy"):
+        mesh = SHAPES[name]()
+        scaled = Mesh(mesh.vertices * size, mesh.faces)
+        np.testing.assert_allclose(scaled.normals, mesh.normals, atol=1e-12)
+        assert (scaled.is_volume, scaled.is_convex) == (True, mesh.is_convex)
+    flat = Mesh(size * np.array([(0, 0, 0), (1, 1, 1), (2, 2, 2), (1, 0, 0)]), [(0, 1, 2), (0, 1, 3)])
+    np.testing.assert_allclose(flat.normals, [(0, 0, 0), (0, 0.5**0.5, -(0.5**0.5))], atol=1e-12)
+
+
 def test_component_vertices():
     assert len(hollow().component_vertices) == 2
     assert len(table().component_vertices) == 1
@@ -152,6 +164,13 @@ def test_a_slight_dent_is_none_of_the_hull(depth):
         assert len(mesh.hull.vertices) == (9 if sign > 0 else 8)
         heights = vertices @ mesh.hull.planes[:, :3].T + mesh.hull.planes[:, 3]
         assert (heights <= 1e-11).all()
+
+
+def test_digests_tell_vertices_and_faces_apart() -> None:
+    cube = primitives.box()
+    meshes = [cube, Mesh(cube.vertices, cube.faces[::-1]), Mesh(cube.vertices[::-1], cube.faces)]
+    assert len({mesh.digest for mesh in meshes}) == 3
+    assert Mesh(cube.vertices, cube.faces).digest == cube.digest
 
 
 def test_a_mesh_keeps_what_it_was_made_of() -> None:

@@ -126,6 +126,10 @@ def test_batches_do_not_matter(mesh, batch):
     poses = random_poses(count, 47)
     rng = np.random.default_rng(48)
     points, ways = poses.position + rng.uniform(-0.5, 0.5, (count, 3)), rng.normal(size=(count, 3))
+    # Every third point is on a side already, if there is one where the body is turned that way.
+    every = Body((mesh,), None, poses)
+    on_side = surface.draw_faces(every, (2, 1), 0.2, rng.random(count), count)
+    points[::3] = surface.face_points(every, on_side, *rng.random((2, count)))[::3]
 
     def answers(lanes):
         body = Body((mesh,), None, poses.take(lanes))

@@ -16,7 +16,7 @@ from scenic.runtime.geometry.loading import load_mesh
 from scenic.runtime.geometry.reading.gltf import read_glb, read_gltf
 from scenic.runtime.geometry.reading.obj import read_obj
 from scenic.runtime.geometry.reading.ply import read_ply
-from scenic.runtime.geometry.reading.soup import NotCoveredError, Soup
+from scenic.runtime.geometry.reading.soup import NotCoveredError, Soup, joined
 from scenic.runtime.geometry.reading.stl import read_stl
 
 from .samples import FILES, bumpy, hollow, real_meshes, table
@@ -445,3 +445,13 @@ def test_meshes_too_large_are_refused(tmp_path, monkeypatch):
     monkeypatch.setattr(loading, "_MOST_BYTES", 1 << 20)
     with pytest.raises(MeshError, match="is longer than 1 MiB"):
         load_mesh(packed)
+
+
+def test_parts_with_vertices_that_no_face_uses_are_joined() -> None:
+    """Faces keep their corners, wherever unused vertices stand in the parts before."""
+    corners = np.random.default_rng(1).random((3, 6, 3))
+    faces = [np.array([[1, 2, 3]]), np.empty((0, 3), dtype=np.intp), np.array([[0, 5, 4], [2, 1, 0]])]
+    parts = [Soup(place, of) for place, of in zip(corners, faces, strict=True)]
+    whole = joined(parts)
+    expected = [part.vertices[part.faces] for part in parts]
+    np.testing.assert_array_equal(whole.vertices[whole.faces], np.concatenate(expected))

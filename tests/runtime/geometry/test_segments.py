@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import shapely
 
+from scenic.runtime.geometry import segments
 from scenic.runtime.geometry.segments import Segments
 
 FEW_AND_MANY = (7, 95, 96, 97, 128, 400)
@@ -57,3 +58,13 @@ def test_nearest_points_of_lines(count: int) -> None:
     np.testing.assert_allclose(np.linalg.norm(place[:, :2] - points, axis=1), expected, atol=1e-12)
     pieces = shapely.linestrings(np.stack([chain[:-1], chain[1:]], axis=1)[number])
     np.testing.assert_allclose(shapely.distance(pieces, shapely.points(points)), expected, atol=1e-12)
+
+
+def test_more_pairs_than_are_looked_at_together(monkeypatch: pytest.MonkeyPatch) -> None:
+    line = Segments.of_chains([ring(7)])
+    points = np.random.default_rng(2).uniform(-9, 9, (50, 3))
+    expected = line.nearest(points)
+    for together in (1, 7, 60, 349):
+        monkeypatch.setattr(segments, "CHUNK", together)
+        for found, known in zip(line.nearest(points), expected, strict=True):
+            np.testing.assert_array_equal(found, known)

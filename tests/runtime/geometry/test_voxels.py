@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from scenic.runtime.geometry import primitives
 from scenic.runtime.geometry.cells import touched_cells
@@ -7,7 +8,7 @@ from scenic.runtime.geometry.inside import contains_points
 from scenic.runtime.geometry.nearest import nearest_on_triangles
 from scenic.runtime.geometry.voxels import PROBES, RESOLUTION, voxels
 
-from .samples import FILES, SHAPES, real_meshes, unit_mesh
+from .samples import FILES, SHAPES, placed, real_meshes, unit_mesh
 
 
 def cell_corners(index):
@@ -78,3 +79,15 @@ def test_solids_thinner_than_cells_have_interior_points():
     check(thin)
     sheet = SHAPES["table"]()
     assert contains_points(sheet, sheet.derived(voxels).probes[:16]).all()
+
+
+def test_probes_of_a_sheet_too_thin_for_steps_lie_on_it():
+    """Thinner than the step from its faces, along no axis."""
+    turn = Rotation.from_euler("xyz", [0.6, 0.5, 0.4]).as_matrix()
+    sheet = placed(primitives.box(), (0, 0, 0), (1, 1, 1e-6)).moved(turn).normalized()[0]
+    points = sheet.derived(voxels).probes
+    points = points[~contains_points(sheet, points)]
+    corners = np.repeat(sheet.triangles[None], len(points), axis=0).reshape(-1, 3, 3)
+    beside = np.repeat(points, len(sheet.faces), axis=0)
+    gap = np.linalg.norm(beside - nearest_on_triangles(beside, *np.moveaxis(corners, 1, 0)), axis=1)
+    assert (gap.reshape(len(points), -1).min(axis=1) < 1e-12).all()

@@ -209,3 +209,32 @@ def test_a_chain_has_a_margin_only_if_all_of_its_parts_have_one() -> None:
         others: list[object] = [1.0, 2.0, 3.0, 4.0]
         others[place] = "text"
         assert margin(["<"] * 3, others) is None
+
+
+@pytest.mark.parametrize(
+    ("condition", "margin"),
+    [
+        ("always ego.position.y < limit", 5 - 3),
+        ("always ego.position.y < low()", 5 - 3),
+        ("always ego.position.y < start", 9 - 3),
+        ("eventually ego.position.y > drawn", 3 - 1),
+    ],
+)
+def test_margins_are_those_of_the_values_in_the_simulation(
+    condition: str, margin: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of names as they were drawn for the scene, or as a behavior has assigned them since."""
+    program = """
+limit = 9
+start = limit
+drawn = Range(1, 1)
+def low(): return limit
+behavior Lower():
+    global limit
+    while True:
+        limit = limit - 2 if limit > 5 else 5
+        wait
+ego = new Object with behavior Lower
+"""
+    monkeypatch.setitem(globals(), "SCENE", program)
+    assert robustness(condition, steps=3) == pytest.approx(margin, abs=1e-6)

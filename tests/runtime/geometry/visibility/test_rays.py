@@ -359,3 +359,21 @@ def test_single_precision_finds_what_double_does(mesh: Mesh, scale: float) -> No
     np.testing.assert_array_equal(np.isfinite(quick), met)
     assert 0.2 < met.mean() < 1
     np.testing.assert_allclose(quick[met], exact[met], rtol=1e-9)
+
+
+def test_lines_almost_along_the_faces_of_the_box_enter_and_leave_it_where_they_do() -> None:
+    """However small a part of the direction is, its sign says which face comes first."""
+    rng, count = np.random.default_rng(8), 2000
+    tiny = rng.choice([1, -1], (count, 3)) * 10.0 ** rng.uniform(-12, 0, (count, 3))
+    directions = np.where(rng.random((count, 3)) < 0.6, tiny, rng.normal(size=(count, 3)))
+    within = rng.uniform(-0.5, 0.5, (count, 3))
+    origins = within - directions * 10.0 ** rng.uniform(-1, 6, (count, 1))
+    origins = np.where(np.abs(origins) > 10, 0.6 * np.sign(origins), origins)
+    near, far = hits.box_span(origins, directions)
+    for line in range(count):
+        spans = [
+            sorted((Fraction(side) - Fraction(start)) / Fraction(way) for side in (-0.5, 0.5))
+            for start, way in zip(origins[line].tolist(), directions[line].tolist(), strict=True)
+        ]
+        assert near[line] == pytest.approx(float(max(low for low, _ in spans)), rel=1e-12, abs=1e-12)
+        assert far[line] == pytest.approx(float(min(high for _, high in spans)), rel=1e-12, abs=1e-12)
