@@ -446,3 +446,11 @@ def test_vectors_turned_onto_an_axis_keep_their_length():
         found = TABLE["rotate"].bounds(None, *ends)
         assert np.all(found.lower <= length * target + 1e-15 * length)
         assert np.all(found.upper >= length * target - 1e-15 * length)
+
+
+def test_lengths_of_extreme_vectors_are_right_among_usual_ones():
+    rows = np.array([[3, 4, 0], [3e200, 4e200, 0], [3e-300, 0, 4e-300], [0, 0, 0], [1e308, 1e308, 0]])
+    values, _ = values_of(of("norm", V), [rows])
+    assert values.tolist() == pytest.approx([5, 5e200, 5e-300, 0, math.sqrt(2) * 1e308], rel=1e-15)
+    for row, value in zip(rows, values, strict=True):
+        assert values_of(of("norm", V), [row[np.newaxis]])[0][0] == value

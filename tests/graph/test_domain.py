@@ -197,3 +197,11 @@ def test_one_end_is_enough_to_narrow_an_axis(low, high):
     part = union([[low, high]])
     with pytest.raises(ValueError, match="two factors narrow one axis"):
         Domain(part.lower, part.upper, (part,))
+
+
+def test_an_axis_that_some_boxes_of_a_factor_narrow_is_placed_in_these():
+    part = union([[0, 0.25], [0, 1]], [[0.25, 1], [0.5, 1]])
+    domain = Domain(np.zeros((1, 2)), np.ones((1, 2)), (part,))
+    points = place(domain, np.random.default_rng(7).random((4000, 4)))
+    assert part.contains(points).all()
+    assert np.mean(points[:, 0] < 0.25) == pytest.approx(0.25 / 0.625, abs=0.03)

@@ -406,6 +406,14 @@ def test_parts_that_programs_have_to_provide() -> None:
     assert value.supportInterval() == (None, None)
 
 
+def test_values_without_an_end_on_one_side_say_where_the_other_is() -> None:
+    found = params(
+        "from scenic.core.distributions import supportInterval\ny = 1 / Range(0, 1)\n"
+        "param low = supportInterval(max(0.5, y)), high = supportInterval(min(-0.5, -y)), both = supportInterval(y)\n"
+    )
+    assert found == {"low": (0.5, None), "high": (None, -0.5), "both": (None, None)}
+
+
 def test_an_object_needs_sampling_if_anything_of_it_does() -> None:
     loaded = scenario(
         "ego = new Object at (Range(0, 1), 0)\nother = new Object at (5, 5)\nparam r = Range(0, 1), s = 3\n"

@@ -231,6 +231,12 @@ def test_scenes_conditioned_on_one_keep_what_was_named() -> None:
         assert refused.value.help
     loaded.conditionOn()
     assert len({item.params["p"] for item in loaded.sample(5, seed=4)}) == 5
+    # A loop foresees scenes; those of before count no more.
+    free = [loaded.generate()[0].params["p"] for _ in range(4)]
+    loaded.conditionOn(first, params=["p"])
+    assert {loaded.generate()[0].params["p"] for _ in range(12)} == {first.params["p"]}
+    loaded.conditionOn()
+    assert first.params["p"] not in free + [loaded.generate()[0].params["p"] for _ in range(12)]
 
 
 def test_exceptions_of_the_program_keep_their_type_and_tell_the_place() -> None:
