@@ -13,6 +13,7 @@ from scenic.runtime.context import Context, current
 from scenic.runtime.prelude import Loader
 from scenic.runtime.program import Program
 from scenic.runtime.values import Vector
+from tests.runtime.programs import params
 
 
 class NoModules:
@@ -99,3 +100,14 @@ def test_parameters_cannot_be_set(run: Callable[..., tuple[ModuleType, Program]]
 
 def test_the_initial_scenario_is_over(run: Callable[..., tuple[ModuleType, Program]]) -> None:
     assert run("early = initial scenario")[0].early is False
+
+
+def test_quotients_of_vectors_are_those_of_their_components() -> None:
+    """Not products with a reciprocal, which differ in the last bit; alone, in a program, and over lanes."""
+    row = (1.0, 3.0, 7.0)
+    found = params(
+        "n = Uniform(3, 10, 49)\nparam n = n, v = Vector(1, 3, 7) / n, w = [Vector(1, 3, 7) / k for k in (3, 10, 49)]"
+    )
+    assert tuple(found["v"]) == tuple(part / found["n"] for part in row)
+    assert [tuple(value) for value in found["w"]] == [tuple(part / k for part in row) for k in (3, 10, 49)]
+    assert tuple(Vector(*row) / 10) == (0.1, 0.3, 0.7)

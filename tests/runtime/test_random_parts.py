@@ -421,3 +421,15 @@ def test_functions_see_objects_of_which_only_some_properties_are_random(specifie
     values = [item.params["r"] for item in scenario(text).sample(50, seed=1)]
     assert 1.5 < min(values) < 1.6
     assert max(values) > 1.8
+
+
+def test_lists_that_are_written_apart_are_apart_in_scenes() -> None:
+    """However alike they are: a script may change one of them."""
+    for first, second in (("[x, 1]", "[x, 1]"), ("{'k': [x]}", "{'k': [x]}"), ("l[:1]", "l[:1]")):
+        found = (
+            scenario(f"x = Range(0, 1)\nl = Uniform([1, 2], [3, 4])\nparam a = {first}, b = {second}")
+            .sample(1)[0]
+            .params
+        )
+        assert found["a"] == found["b"]
+        assert found["a"] is not found["b"]
