@@ -217,6 +217,7 @@ def _parts(value: Any, names: Globals) -> Iterator[Any]:
     elif isinstance(value, tuple | list | set | frozenset):
         yield from value
     elif isinstance(value, dict):
+        yield from value
         yield from value.values()
     elif isinstance(value, slice):
         yield from (value.start, value.stop, value.step)

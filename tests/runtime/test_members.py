@@ -224,6 +224,13 @@ require is_ego(u) if u.position.x < 5 else is_p(u)
         assert item.params["u"] in (ego, p)
 
 
+def test_objects_as_keys_are_those_of_the_scene() -> None:
+    text = "x = Range(0, 1)\nego = new Object\np = new Object at (9, 9), with d {ego: 1, 'k': 2}\nparam d = {p: x}"
+    made = scene(text)
+    assert made.objects[1].d == {made.egoObject: 1, "k": 2}
+    assert list(made.params["d"]) == [made.objects[1]]
+
+
 def test_members_in_a_simulation_read_and_write_the_names_of_the_simulation() -> None:
     text = """
 r = Range(1, 2)
