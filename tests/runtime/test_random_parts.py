@@ -433,3 +433,26 @@ def test_lists_that_are_written_apart_are_apart_in_scenes() -> None:
         )
         assert found["a"] == found["b"]
         assert found["a"] is not found["b"]
+
+
+def test_pure_and_cached_functions_are_what_they_are_on_samples() -> None:
+    text = (
+        "import functools\nr = Range(1, 2)\n"
+        "@functools.lru_cache(typed=True)\ndef f(x, y): return (type(x).__name__, r)\n"
+        "class A:\n    def kinds(self): return f(1, 2)[0], f(1.0, 2)[0]\n"
+        "ego = new A\nparam z = TruncatedNormal(0, 0, 0, 1), w = TruncatedNormal(1, 0, 0, 1)\n"
+    )
+    found = scenario(text).sample(1)[0]
+    assert found.objects[0].kinds() == ("int", "float")
+    assert (found.params["z"], found.params["w"]) == (0, 1)
+
+
+def test_points_of_grids_lie_in_their_free_cells_whatever_marks_the_others() -> None:
+    text = (
+        "from scenic.core.regions import GridRegion\nimport numpy as np\n"
+        "grid = GridRegion('g', np.array([[0, 2], [255, 100]]), 1, 1, 0, 0)\np = new Point in grid\n"
+        "param within = grid.containsPoint(p.position), place = p.position\n"
+    )
+    found = scenario(text).sample(20, seed=1)
+    assert all(item.params["within"] for item in found)
+    assert len({tuple(item.params["place"]) for item in found}) == 1
