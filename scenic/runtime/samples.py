@@ -318,9 +318,8 @@ class Sample:
         """A function, or what decorators make of one, over sampled names: even if it reads none."""
         if isinstance(value, DECORATED):
             return self._decorated(value, self._again)
-        if (
-            isinstance(value, FunctionType) and SAMPLE not in value.__globals__
-        ):  # which is of a sample already
+        # What code of a sample has defined has its names already.
+        if isinstance(value, FunctionType) and SAMPLE not in value.__globals__:
             return self._function(value)
         return self.value(value)
 
