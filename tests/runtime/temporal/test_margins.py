@@ -32,9 +32,9 @@ cone = new Object at (0.7, 0.4), with allowCollisions True, with shape ConeShape
 """
 
 
-def robustness(condition: str, steps: int) -> float:
+def robustness(condition: str, steps: int, program: str = SCENE) -> float:
     """Of a requirement while everything moves North by a metre in each step."""
-    scene = scenic.scenarioFromString(f"{SCENE}require {condition}\n").sample(1, seed=0)[0]
+    scene = scenic.scenarioFromString(f"{program}require {condition}\n").sample(1, seed=0)[0]
     done = DummySimulator(drift=1).simulate(scene, maxSteps=steps, robustness=True)
     assert done is not None
     assert done.result is not None
@@ -78,13 +78,9 @@ def test_margins(condition: str, margin: float) -> None:
     assert robustness(condition, steps=3) == pytest.approx(margin, abs=1e-3)
 
 
-def test_what_is_round_is_as_deep_inside_as_its_hull_not_its_box(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(
-        globals(),
-        "SCENE",
-        "disc = CircularRegion((0, 0), 9)\nego = new Object with shape CylinderShape(), with width 2, with length 2\n",
-    )
-    assert robustness("always ego in disc", steps=3) == pytest.approx(5, abs=0.01)
+def test_what_is_round_is_as_deep_inside_as_its_hull_not_its_box() -> None:
+    program = "disc = CircularRegion((0, 0), 9)\nego = new Object with shape CylinderShape(), with width 2, with length 2\n"
+    assert robustness("always ego in disc", 3, program) == pytest.approx(5, abs=0.01)
 
 
 def test_the_margin_of_the_first_state_decides_outside_of_temporal_operators() -> None:
@@ -220,9 +216,7 @@ def test_a_chain_has_a_margin_only_if_all_of_its_parts_have_one() -> None:
         ("eventually ego.position.y > drawn", 3 - 1),
     ],
 )
-def test_margins_are_those_of_the_values_in_the_simulation(
-    condition: str, margin: float, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_margins_are_those_of_the_values_in_the_simulation(condition: str, margin: float) -> None:
     """Of names as they were drawn for the scene, or as a behavior has assigned them since."""
     program = """
 limit = 9
@@ -236,5 +230,4 @@ behavior Lower():
         wait
 ego = new Object with behavior Lower
 """
-    monkeypatch.setitem(globals(), "SCENE", program)
-    assert robustness(condition, steps=3) == pytest.approx(margin, abs=1e-6)
+    assert robustness(condition, 3, program) == pytest.approx(margin, abs=1e-6)
