@@ -209,10 +209,8 @@ def test_each_lane_is_answered_by_its_own_option(order: tuple[int, ...]) -> None
 
 def test_each_option_is_asked_of_the_shapes_of_its_own_lanes() -> None:
     """Where the pose of the body is fixed and its shape, a unit cube or the ball in it, is not."""
-    near, around = (
-        SpheroidRegion((1.5, 1.5, 1.5)),
-        SpheroidRegion((2, 2, 2)),
-    )  # the near one misses the cube's corners
+    near = SpheroidRegion((1.5, 1.5, 1.5))  # which misses the corners of the cube
+    around = SpheroidRegion((2, 2, 2))
     corner, middle, far = (BoxRegion((0.2, 0.2, 0.2), (x, x, x)) for x in (0.5, 0, 3))
     index, shape = np.array([1, 0, 2, 0, 1, 0, 1]), np.array([0, 1, 0, 0, 1, 1, 0])
     body = Body((primitives.box(), primitives.spheroid()), shape, Poses.fixed((0, 0, 0)))

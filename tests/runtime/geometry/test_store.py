@@ -11,7 +11,7 @@ import pytest
 import trimesh
 
 import scenic
-from scenic.runtime.geometry import primitives, store
+from scenic.runtime.geometry import store
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.store import digest_of, kept
 from scenic.runtime.geometry.voxels import voxels
@@ -235,10 +235,3 @@ def test_a_program_reads_what_is_kept_of_its_meshes_when_it_is_loaded(folder, tm
     shutil.rmtree(folder)
     np.testing.assert_array_equal(second.derived(voxels).filled, cells.filled)
     assert not folder.exists()
-
-
-def test_meshes_of_the_same_vertices_are_told_apart_by_their_faces():
-    box = primitives.box()
-    open_, turned = Mesh(box.vertices, box.faces[1:]), Mesh(box.vertices, box.faces[:, ::-1])
-    assert len({mesh.digest for mesh in (box, open_, turned)}) == 3
-    assert Mesh(box.vertices.copy(), box.faces.copy()).digest == box.digest
