@@ -27,7 +27,7 @@ from scenic.language.errors import (
 from scenic.language.garbage import promote_young
 from scenic.language.source import Source, read_source
 from scenic.language.spans import Span
-from scenic.language.spelling import nearest
+from scenic.language.spelling import nearest, nearest_attribute
 from scenic.runtime.context import Context, current
 from scenic.runtime.dynamics.definitions import ModularScenario
 from scenic.runtime.importing import beside
@@ -175,12 +175,13 @@ def diagnose(error: BaseException) -> Diagnostic | None:
             filename=place.filename,
             help="modules are .scenic files beside the program, or anything that Python can import",
         )
+    near = nearest_attribute(error)
     found = Diagnostic(
         "SC400",
         f"{type(error).__name__}: {error}",
         place.span,
         filename=place.filename,
-        help="the program raised this exception while it ran",
+        help=f"did you mean `{near}`?" if near else "the program raised this exception while it ran",
     )
     return _with_origin(found, error)
 

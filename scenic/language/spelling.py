@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 
-__all__ = ["distance", "is_slip", "nearest", "nearest_property"]
+__all__ = ["distance", "is_slip", "nearest", "nearest_attribute", "nearest_property"]
 
 
 def distance(first: str, second: str, *, limit: int) -> int:
@@ -77,3 +77,10 @@ def nearest_property(name: str, known: Iterable[str]) -> str | None:
 
 _SHORTEST = 3
 """Names of so few letters are near to all others."""
+
+
+def nearest_attribute(error: BaseException) -> str | None:
+    """The public attribute that is probably meant where one is missing; ``None`` for errors of other kinds."""
+    if not isinstance(error, AttributeError) or not isinstance(error.name, str) or error.obj is None:
+        return None
+    return nearest(error.name, (name for name in dir(error.obj) if not name.startswith("_")))

@@ -6,7 +6,7 @@ sample when it is first read: most values of most scenes are never looked at.
 """
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from copy import deepcopy
 from types import MappingProxyType
@@ -156,9 +156,16 @@ class Point:
     @property
     def properties(self) -> Mapping[str, Any]:
         """All properties and their values."""
-        stored = self.__dict__
-        names = stored.get("_source", self).__dict__.get("_names", self.scenic_properties)
-        return MappingProxyType({name: getattr(self, name) for name in names})
+        return MappingProxyType({name: getattr(self, name) for name in self._property_names()})
+
+    def _property_names(self) -> Iterable[str]:
+        names: Iterable[str] = self.__dict__.get("_source", self).__dict__.get(
+            "_names", self.scenic_properties
+        )
+        return names
+
+    def __dir__(self) -> list[str]:
+        return sorted({*super().__dir__(), *self._property_names()})
 
     def __getattr__(self, name: str) -> Any:
         # Reached only for what is not stored yet: a property of a sampled instance, or a vector's attribute.
@@ -181,7 +188,9 @@ class Point:
             position = self.position
             if hasattr(type(position), name):
                 return getattr(position, name)
-        raise AttributeError(f"{type(self).__name__} has no property or attribute {name!r}")
+        raise AttributeError(
+            f"{type(self).__name__} has no property or attribute {name!r}", name=name, obj=self
+        )
 
     def __reduce__(self) -> tuple[Any, ...]:
         """A sampled instance is pickled as its values; its class by the first base that others can import."""

@@ -101,7 +101,9 @@ def attribute(value: Random, name: str) -> Any:
     if node.kind.is_number and hasattr(0.0 if node.kind is Kind.SCALAR else 0, name):
         return apply(_GETATTR, value, name)
     if node.kind.is_number or node.kind in (Kind.VECTOR, Kind.ORIENTATION):
-        raise AttributeError(f"a random {node.kind.value} has no attribute {name!r}")
+        raise AttributeError(
+            f"a random {node.kind.value} has no attribute {name!r}", name=name, obj=type(value)
+        )
     return Random.later(getattr, value, name) if holds_instances(node) else apply(_GETATTR, value, name)
 
 

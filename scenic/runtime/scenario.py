@@ -22,6 +22,7 @@ from scenic.language.errors import (
     annotate,
 )
 from scenic.language.spans import Span
+from scenic.language.spelling import nearest_attribute
 from scenic.runtime.objects import Object
 from scenic.runtime.population import Populations
 from scenic.runtime.program import Program
@@ -309,11 +310,14 @@ class Scenario:
             cause.span = cause.span or check.span
             cause.filename = cause.filename or check.filename or self.filename
             return cause
+        near = None if cause is None else nearest_attribute(cause)
         found = SamplingError(
             f"{check.label} failed" + ("" if cause is None else f": {type(cause).__name__}: {cause}"),
             span=check.span,
             filename=check.filename or self.filename,
-            help="this came up in a sampled candidate; guard against the value, or reject it by a `require`",
+            help=f"did you mean `{near}`?"
+            if near
+            else "this came up in a sampled candidate; guard against the value, or reject it by a `require`",
         )
         if not isinstance(cause, Exception) or isinstance(cause, Located):
             return found

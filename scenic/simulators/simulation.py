@@ -18,6 +18,7 @@ from scenic.language.errors import (
     annotate,
 )
 from scenic.language.spans import Span
+from scenic.language.spelling import nearest_attribute
 from scenic.runtime.dynamics.copies import Copies
 from scenic.runtime.dynamics.driving import Sourcing
 from scenic.runtime.dynamics.run import Run
@@ -266,9 +267,10 @@ class Simulation(ABC):
             error.span = error.span or place
             error.filename = error.filename or filename
         elif place is not None and not isinstance(error, RejectSimulationException | GuardViolation):
-            words, hint = (
-                f"{type(error).__name__}: {error}",
-                "the program raised this exception during a simulation",
+            near = nearest_attribute(error)
+            words = f"{type(error).__name__}: {error}"
+            hint = (
+                f"did you mean `{near}`?" if near else "the program raised this exception during a simulation"
             )
             if isinstance(error, StuckBehaviorError):
                 words, hint = str(error), "if it only computes for long, allow it more time (`--step-limit`)"

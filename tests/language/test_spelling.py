@@ -3,7 +3,7 @@ from functools import cache
 from hypothesis import given
 from hypothesis import strategies as st
 
-from scenic.language.spelling import distance, nearest
+from scenic.language.spelling import distance, nearest, nearest_attribute
 
 WORDS = st.text("abc", max_size=6)
 
@@ -39,3 +39,21 @@ def test_nearest() -> None:
     assert nearest("zebra", ["width", "height"]) is None
     assert nearest("width", ["width"]) is None
     assert nearest("hight", ["height", "right", "light"], limit=2) == "height"
+
+
+def test_attributes_that_are_missing_remind_of_others() -> None:
+    class Wheel:
+        radius = 1
+        _raduis = 2
+
+    def missing(name: str) -> str | None:
+        try:
+            getattr(Wheel(), name)
+        except AttributeError as error:
+            return nearest_attribute(error)
+        raise AssertionError
+
+    assert missing("raduis") == "radius"
+    assert missing("banana") is None
+    assert nearest_attribute(AttributeError("raduis")) is None
+    assert nearest_attribute(NameError("raduis", name="raduis")) is None

@@ -83,6 +83,12 @@ def test_defaults_read_what_the_instance_gets() -> None:
     assert (found.length, found.width) == (6, 12)
 
 
+def test_objects_name_their_properties_and_members() -> None:
+    text = "class A:\n    foo: Range(0, 1)\n    def bar(self): return 1\nnew A with mark 3"
+    for found in (thing(text), scenario(text).objects[0]):
+        assert {"foo", "bar", "mark", "width", "corners"} <= {*dir(found)}
+
+
 def test_random_defaults_are_drawn_for_each_instance() -> None:
     text = "class A:\n    foo: Range(0, 1)\n    bar: (self.foo, self.foo)\na = new A at (0, 0)\nb = new A at (5, 5)\n"
     for first, second, pair in draws(text + "param x = (a.foo, b.foo, a.bar)", n=20):
