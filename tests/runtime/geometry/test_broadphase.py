@@ -1,3 +1,5 @@
+import itertools
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -118,3 +120,26 @@ def test_boxes_turned_alike_are_apart_only_along_their_faces():
         place = a.position + turn.apply(way)
         for b in (Poses(place, a.orientation, a.size), Poses(place, quarter, a.size[:, [1, 0, 2]])):
             np.testing.assert_array_equal(broadphase.boxes_overlap(a, b), shift > 0)
+
+
+def test_boxes_may_be_apart_along_any_pair_of_edges():
+    """An edge of the one passes over an edge of the other: only the direction across both tells that they are apart."""
+    rng = np.random.default_rng(7)
+    for first, second in itertools.product(range(3), repeat=2):
+        count = 200
+        turns = [Rotation.random(count, rng) for _ in range(2)]
+        sizes = rng.uniform(0.3, 2.0, (2, count, 3))
+        axes = [turn.as_matrix() for turn in turns]
+        across = np.cross(axes[0][:, :, first], axes[1][:, :, second])
+        across /= np.linalg.norm(across, axis=1, keepdims=True)
+        # The edges nearest to the other box, and a point within each.
+        ends = []
+        for axis, size, number, side in zip(axes, sizes, (first, second), (1, -1), strict=True):
+            corner = np.sign(side * np.einsum("nij,ni->nj", axis, across)) * size / 2
+            corner[:, number] = rng.uniform(-0.45, 0.45, count) * size[:, number]
+            ends.append(np.einsum("nij,nj->ni", axis, corner))
+        for gap in (1e-6, -1e-6):
+            a = Poses(np.zeros((1, 3)), turns[0].as_quat(), sizes[0])
+            b = Poses(ends[0] - ends[1] + gap * across, turns[1].as_quat(), sizes[1])
+            np.testing.assert_array_equal(broadphase.boxes_overlap(a, b), gap < 0)
+            np.testing.assert_array_equal(broadphase.boxes_overlap(b, a), gap < 0)

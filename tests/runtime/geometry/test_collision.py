@@ -1,4 +1,5 @@
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -179,6 +180,55 @@ def test_either_body_of_a_pair_may_allow_collisions():
     for one, other in ((allow, np.zeros(1, bool)), (np.zeros(1, bool), allow), (allow, ~allow)):
         bodies = [Body((primitives.box(),), None, at, allow=item) for item in (one, other)]
         np.testing.assert_array_equal(collide(bodies, None, lanes).free, np.broadcast_to(one | other, lanes))
+
+
+PROPERTIES = ("position", "orientation", "size", "choice", "allow")
+
+
+def differing(names: tuple[str, ...], seed: int, *, lanes: int = 12) -> Body:
+    """A body of which only these properties differ from lane to lane; it is long, so that its turn matters."""
+    rng = np.random.default_rng(seed)
+    many = random_poses(lanes, seed, spread=1.3, sizes=(0.2, 1.2))
+    parts = {
+        "position": many.position,
+        "orientation": many.orientation,
+        "size": many.size * [1, 1, 2],
+        "choice": rng.permutation(lanes) % 3,
+        "allow": rng.random(lanes) < 0.2,
+    }
+    rows = {name: part if name in names else part[:1] for name, part in parts.items()}
+    poses = Poses(rows["position"], rows["orientation"], rows["size"])
+    meshes = (primitives.box(), table(), primitives.cone())
+    return Body(meshes, rows["choice"], poses, rows["allow"] if "allow" in names else np.zeros(1, dtype=bool))
+
+
+@pytest.mark.parametrize("known", [(), (0, 2, 4), (1, 3, 5)], ids=str)
+@pytest.mark.parametrize("varied", [*((name,) for name in PROPERTIES), PROPERTIES], ids="+".join)
+def test_bodies_that_differ_in_some_properties_alone(varied, known):
+    """Beside such that differ in all others, and fixed ones; the world boxes of some are known beforehand."""
+    others = tuple(name for name in PROPERTIES if name not in varied)
+    bodies = [differing(names, seed) for seed, names in enumerate((varied, others, varied, others), 131)]
+    for seed in (135, 136):
+        still = differing((), seed)
+        bodies.append(Body(still.meshes, still.choice, still.poses, is_fixed=True))
+    for number in known:
+        bodies[number].poses.bounds()
+    pairs = list(itertools.combinations(range(len(bodies)), 2))
+    lanes = [replace(body, choice=np.broadcast_to(body.choice, 12), is_fixed=False) for body in bodies]
+    expected = one_by_one(lanes, pairs, 12)
+    assert expected.any(axis=0).mean() > 0.2
+    assert not expected.any(axis=1).all()
+    found = collide(bodies, pairs, 12, exhaustive=True)
+    np.testing.assert_array_equal(found.pairs, expected)
+    np.testing.assert_array_equal(collide(bodies, pairs, 12).free, ~expected.any(axis=1))
+    # Two alike, stacked, before the fixed ones.
+    alike = [bodies[number] for number in (0, 2, 4, 5)]
+    columns = [np.concatenate([getattr(body.poses, name) for body in alike[:2]]) for name in PROPERTIES[:3]]
+    columns += [np.concatenate([getattr(body, name) for body in alike[:2]]) for name in PROPERTIES[3:]]
+    cast, stack = Collider(alike), Crowd.stacked(2, alike[0].meshes, *columns)
+    chosen = [pairs.index((0, 2)), pairs.index((0, 4)), pairs.index((0, 5)), pairs.index((2, 4))]
+    chosen += [pairs.index((2, 5)), pairs.index((4, 5))]
+    np.testing.assert_array_equal(cast.test(stack, 12, exhaustive=True).pairs, expected[:, chosen])
 
 
 def test_unwanted_pairs_count_nowhere_among_many_lanes():
