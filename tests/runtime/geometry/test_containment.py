@@ -322,3 +322,146 @@ def test_a_body_in_parts_is_held_where_all_of_them_are(place):
         for container in (SHAPES["spheroid"](), SHAPES["bumpy"]()):
             found = containment.mesh_in_mesh(pair, poses, container, Poses.fixed((0, 0, 0), size=(2, 2, 2)))
             assert found.tolist() == [place < 0.5]
+
+
+def supports(mesh, poses, entry, normals):
+    """How far a body reaches from its position in these directions of the plane."""
+    return (world_vertices(mesh, poses, entry)[:, :2] @ normals.T).max(axis=0)
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_each_edge_of_a_convex_polygon_holds_bodies_for_itself(name):
+    """Of all edges one is overstepped or nearly so, often not the one that the box around the body oversteps most."""
+    mesh, rng, count, sides = SHAPES[name](), np.random.default_rng(64), 120, 5
+    poses = random_poses(count, 65, sizes=(0.2, 2.0))
+    lanes, polygons, held = [], [], []
+    for entry in range(count):
+        angles = 2 * np.pi * (np.arange(sides) + rng.uniform(0, 0.6, sides)) / sides
+        normals = np.stack([np.cos(angles), np.sin(angles)], axis=1)
+        slack = rng.choice([1e-5, 1e-3, 0.1], sides)
+        slack[rng.integers(sides)] = (1, -1)[entry % 2] * 1e-6
+        reach = supports(mesh, poses, entry, normals) + slack
+        after = np.roll(normals, -1, axis=0)
+        ends = np.linalg.solve(
+            np.stack([normals, after], axis=1), np.stack([reach, np.roll(reach, -1)], axis=1)[..., None]
+        )[..., 0]
+        edges = ends - np.roll(ends, 1, axis=0)
+        if (normals[:, 0] * edges[:, 1] - normals[:, 1] * edges[:, 0] > 1e-3).all():
+            lanes.append(entry)
+            polygons.append(ends)
+            held.append(entry % 2 == 0)
+    assert min(sum(held), len(held) - sum(held)) > 20
+    body = Body((mesh,), None, poses.take(np.array(lanes)))
+    found = containment.in_convex_polygon(body, np.array(polygons), len(lanes))
+    np.testing.assert_array_equal(found, held)
+    for lane in range(0, len(lanes), 8):
+        alone = body.take(np.array([lane]))
+        assert containment.in_polygons(alone, Polygons.of_points(polygons[lane]), 1)[0] == held[lane]
+
+
+@pytest.mark.parametrize("size", [(0.6, 0.6, 1.0), (2.0, 0.2, 0.5)])
+def test_a_hole_counts_wherever_it_is_under_a_body(size):
+    """Also under a corner of a box, which reaches farther out than any of its sides."""
+    shares = [-0.52, -0.48, -0.3, 0.0, 0.3, 0.48, 0.52]
+    for yaw in (0.0, 0.5):
+        turn = np.array([[np.cos(yaw), -np.sin(yaw)], [np.sin(yaw), np.cos(yaw)]])
+        places = [turn @ (np.array((x, y)) * size[:2]) for x in shares for y in shares]
+        floor = shapely.box(-9, -9, 9, 9).difference(shapely.Point(0, 0).buffer(1e-3))
+        poses = Poses(
+            np.array([(-x, -y, 0.0) for x, y in places]), yawed((0, 0, 0), yaw).orientation, np.array([size])
+        )
+        expected = [max(abs(x), abs(y)) > 0.5 for x in shares for y in shares]
+        for mesh in (primitives.box(), Mesh(primitives.box().vertices[::-1], 7 - primitives.box().faces)):
+            found = containment.in_polygons(Body((mesh,), None, poses), Polygons(floor), len(places))
+            np.testing.assert_array_equal(found, expected)
+
+
+def test_how_far_bodies_may_stick_out_of_polygons_is_the_same_along_all_edges():
+    """A billionth of a metre, however long the edge is."""
+    for extent in ((50.0, 0.02), (0.02, 50.0), (3.0, 3.0)):
+        half = np.array(extent) / 2
+        room = shapely.box(*-half, *half)
+        annex = shapely.box(half[0] - 0.01, -half[1], half[0] + 1, -half[1] + 0.005)
+        size = half.min() * np.array([0.5, 0.5, 1])
+        for axis, side in ((0, -1), (1, 1)):  # the annex is on the other sides
+            for off, held in ((0.6e-9, True), (4e-9, False)):
+                place = np.zeros(3)
+                place[axis] = side * (half[axis] - size[axis] / 2 + off)
+                body = Body((primitives.box(),), None, Poses.fixed(place, size=size))
+                for outline in (room, room.union(annex)):
+                    assert containment.in_polygons(body, Polygons(outline), 1)[0] == held
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_how_far_bodies_may_stick_out_of_solids_is_the_same_in_every_direction(turned):
+    """A billionth of a metre across each face, slanted ones and those of concave solids too."""
+    sizes, inner = np.array([10.0, 1.0, 0.1]), np.array([0.2, 0.05, 0.01])
+    turn = random_poses(1, 66).orientation if turned else np.array([[0.0, 0, 0, 1]])
+    matrix = quaternions.to_matrix(turn)[0]
+    diagonal = [np.array([x, y, 0.0]) / sizes for x in (1, -1) for y in (1, -1)]
+    solids = {
+        primitives.cylinder(4): [*diagonal, np.array([0, 0, 1.0]), np.array([0, 0, -1.0])],
+        table(): [np.array([0, 0, 1.0]), np.array([1.0, 0, 0]), np.array([0, -1.0, 0])],
+    }
+    for mesh, normals in solids.items():
+        middle = np.array([0, 0, 0.45]) * sizes if mesh is table() else np.zeros(3)
+        for normal in normals:
+            normal = normal / np.linalg.norm(normal)
+            # From the middle of the face inwards.
+            top = (mesh.vertices * sizes @ normal).max()
+            on_face = middle + normal * (top - middle @ normal)
+            if normal[0] and normal[1]:
+                on_face = np.array([np.sign(normal[0]) * 2.5, np.sign(normal[1]) * 0.25, 0])
+            for off, held in ((0.8e-9, True), (1.3e-9, False)):
+                place = on_face + normal * (off - np.abs(normal) @ inner / 2)
+                body = Body((primitives.box(),), None, Poses((matrix @ place)[None], turn, inner[None]))
+                container = Body((mesh,), None, Poses(np.zeros((1, 3)), turn, sizes[None]))
+                assert containment.in_body(body, container, 1)[0] == held, (mesh is table(), normal, off)
+
+
+def test_corners_count_however_many_there_are():
+    """One that sticks out is among the last of more than four thousand, or among the first."""
+    count = 4200
+    angles = 2 * np.pi * np.arange(count) / count
+    rim, after = np.arange(count), (np.arange(count) + 1) % count
+    faces = [
+        np.stack([rim, after, np.full(count, count)], axis=1),
+        np.stack([after, rim, np.full(count, count + 1)], axis=1),
+    ]
+    corners = np.stack([np.cos(angles), np.sin(angles), 0 * angles], axis=1) / 2
+    top = Mesh(np.concatenate([corners, [(0, 0, 0.5), (0, 0, -0.5)]]), np.concatenate(faces))
+    # Directions in which only corners beside the farthest along the axes are far out.
+    chosen = np.array([2000, 60, 60, 4140, 4140, 2200])
+    ways, off = 2 * corners[chosen], np.array([-1, 1, -1, -1, 1, 1]) * 1e-6
+    frame = quaternions.from_euler(angles[chosen], 0 * angles[chosen], 0 * angles[chosen])
+    centre = (0.5 + off - 4.5)[:, None] * ways
+    found = containment.in_box(Body((top,), None, yawed((0, 0, 0))), np.full((1, 3), 9.0), centre, frame, 6)
+    np.testing.assert_array_equal(found, off > 0)
+
+
+def test_points_on_the_surface_of_a_box_are_in_it():
+    body = Body((primitives.box(),), None, Poses.fixed((1, 2, 4), size=(2, 4, 8)))
+    ways = np.array([(x, y, z) for x in (-1, 0, 1) for y in (-1, 0, 1) for z in (-1, 0, 1)], dtype=float)
+    assert containment.contains_points(body, ways * (1, 2, 4) + (1, 2, 4)).all()
+    beyond = ways * np.nextafter((1, 2, 4), 9) * (1 + 1e-15) + (1, 2, 4)
+    np.testing.assert_array_equal(containment.contains_points(body, beyond), ~ways.any(axis=1))
+
+
+def test_the_one_mesh_that_a_body_has_in_all_lanes_is_any_of_its_meshes():
+    for number, held in ((0, True), (1, False)):
+        body = Body((primitives.box(), hollow()), np.array([number]), yawed((0, 0, 0)))
+        assert containment.contains_points(body, np.zeros((3, 3))).tolist() == [held] * 3
+        assert containment.contains_points(body.take(np.array([0])), np.zeros((1, 3))).tolist() == [held]
+        assert [mesh for mesh, _ in body.by_mesh(4)] == [body.meshes[number]]
+
+
+def test_long_bodies_in_rooms_that_are_as_long_the_other_way():
+    """The room is as wide as a body is long, but not where the body is long; all sides are along the axes."""
+    extents = np.array([(x, y, 1.0) for x in (0.2, 1.9, 2.4, 2.9) for y in (0.2, 1.9, 2.4, 2.9)])
+    poses = Poses(np.zeros((1, 3)), np.array([[0, 0, 0, 1.0]]), extents)
+    for room in ((2.0, 3.0), (3.0, 2.0), (2.5, 2.5)):
+        corners = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * np.array(room) / 2
+        expected = (extents[:, :2] < room).all(axis=1)
+        for mesh in (primitives.box(), table()):
+            found = containment.in_convex_polygon(Body((mesh,), None, poses), corners[None], len(extents))
+            np.testing.assert_array_equal(found, expected)
