@@ -168,7 +168,7 @@ def _silhouette(mesh: Mesh) -> tuple[Floats, bool]:
     import shapely
 
     outline = shadow(mesh)
-    rings = [np.asarray(ring.coords) for ring in shapely.get_rings(outline)]
+    rings = [np.asarray(ring.coords) for ring in shapely.get_rings(shapely.get_parts(outline))]
     edges = np.concatenate([np.stack([ring[:-1], ring[1:]], axis=1) for ring in rings])
     return edges, bool(outline.covers(shapely.Point(0, 0)))
 

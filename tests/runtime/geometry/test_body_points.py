@@ -1,0 +1,84 @@
+"""What balls and discs bodies hold about their positions, and points drawn from thin ones."""
+
+import numpy as np
+import pytest
+import shapely
+import shapely.affinity
+
+from scenic.runtime.geometry import body_points, primitives
+from scenic.runtime.geometry.bodies import Body
+from scenic.runtime.geometry.inside import contains_points
+from scenic.runtime.geometry.mesh import Mesh
+from scenic.runtime.geometry.nearest import nearest_on_triangles
+from scenic.runtime.geometry.poses import Poses
+from scenic.runtime.geometry.prisms import prism
+
+from .samples import hollow, random_poses, table
+
+SQUARE = shapely.box(-0.5, -0.5, 0.5, 0.5)
+OUTLINES = {
+    "square": SQUARE,
+    "slanted": shapely.Polygon([(-0.5, -0.2), (0.3, -0.5), (0.5, 0.4), (-0.1, 0.5)]),
+    "with a hole beside the middle": SQUARE.difference(shapely.box(0.1, -0.3, 0.4, 0.2)),
+    "with a hole in the middle": SQUARE.difference(shapely.box(-0.1, -0.3, 0.4, 0.2)),
+    "corner": SQUARE.difference(shapely.box(-0.1, -0.2, 0.5, 0.5)),
+    "thick corner": SQUARE.difference(shapely.box(0.2, 0.1, 0.5, 0.5)),
+    "two": shapely.MultiPolygon([shapely.box(-0.5, -0.5, 0.1, 0.5), shapely.box(0.2, -0.5, 0.5, 0.5)]),
+    "two beside the middle": shapely.MultiPolygon(
+        [shapely.box(-0.5, -0.5, -0.1, 0.5), shapely.box(0.2, -0.5, 0.5, 0.5)]
+    ),
+}
+
+
+@pytest.mark.parametrize("name", OUTLINES)
+def test_discs_about_positions_end_at_the_nearest_edge(name: str) -> None:
+    """Whatever the body is stretched to; seen from above, the edge of a hole is an edge, too."""
+    mesh = prism(OUTLINES[name], -0.5, 0.5)
+    assert mesh is not None
+    poses = random_poses(6, 1)
+    expected = []
+    for width, length, _ in poses.size:
+        outline = shapely.affinity.scale(OUTLINES[name], width, length, origin=(0, 0))
+        origin = shapely.Point(0, 0)
+        expected.append(outline.boundary.distance(origin) if outline.covers(origin) else 0.0)
+    assert all(expected) == (name not in {"with a hole in the middle", "corner", "two beside the middle"})
+    np.testing.assert_allclose(body_points.planar_inradii(Body((mesh,), None, poses)), expected, atol=1e-12)
+    # Among others, and where nothing differs from lane to lane.
+    mixed = Body((primitives.box(), mesh), np.arange(6) % 2, poses)
+    np.testing.assert_allclose(body_points.planar_inradii(mixed)[1::2], expected[1::2], atol=1e-12)
+    alone = Body((mesh,), None, poses.take(np.array([2])))
+    np.testing.assert_allclose(body_points.planar_inradii(alone), expected[2:3], atol=1e-12)
+
+
+@pytest.mark.parametrize("mesh", [primitives.box(), primitives.cone(), table(), hollow()])
+def test_balls_about_positions_end_at_the_nearest_face(mesh: Mesh) -> None:
+    poses = random_poses(6, 2)
+    found = body_points.inradii(Body((mesh,), None, poses))
+    for radius, size in zip(found, poses.size, strict=True):
+        corners = mesh.triangles * size
+        nearest = nearest_on_triangles(np.zeros((len(corners), 3)), *np.moveaxis(corners, 1, 0))
+        holds = contains_points(mesh, np.zeros((1, 3)))[0]
+        assert radius == pytest.approx(np.linalg.norm(nearest, axis=1).min() if holds else 0.0, abs=1e-12)
+
+
+def test_points_are_found_in_solids_that_fill_little_of_their_boxes() -> None:
+    """A rod from corner to corner: a hundredth of the box, in which a first point rarely lies."""
+    start, end = np.array([-0.5, -0.5, -0.5]), np.array([0.5, 0.5, 0.5])
+    ring = 0.05 * np.array([(1, -1, 0), (0, 1, -1), (-1, 0, 1)])
+    corners = np.concatenate([start + ring, end + ring])
+    sides = [(i, (i + 1) % 3, (i + 1) % 3 + 3) for i in range(3)] + [
+        (i, (i + 1) % 3 + 3, i + 3) for i in range(3)
+    ]
+    rod = Mesh(corners, np.array([(0, 2, 1), (3, 4, 5), *sides]))
+    rod = (rod if rod.volume > 0 else Mesh(rod.vertices, rod.faces[:, ::-1])).normalized()[0]
+    assert 0 < rod.volume < 1.5e-2
+    rng = np.random.default_rng(3)
+    body = Body((rod,), None, Poses.fixed((1, 2, 3), size=(2, 3, 4)))
+    points, found = body_points.draw_points(
+        body, rng.random((3, 30)), rng.integers(0, 2**63, 30).astype(np.uint64)
+    )
+    assert found.all()
+    local = (points - (1, 2, 3)) / (2, 3, 4)
+    assert contains_points(rod, local).all()
+    assert len(np.unique(local[:, 0])) == 30
+    assert abs(local.mean()) < 0.2
