@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from scenic.graph import quaternions
-from scenic.runtime.geometry import narrowphase, primitives
+from scenic.runtime.geometry import contact, narrowphase, primitives
 from scenic.runtime.geometry.affine import relative_map
 from scenic.runtime.geometry.booleans import difference
 from scenic.runtime.geometry.mesh import Mesh
@@ -257,3 +257,32 @@ def test_what_lies_in_walls_thinner_than_cells_is_found(inner):
         solids = Solids([shell, SHAPES[inner]()], patience=patience)
         np.testing.assert_array_equal(solids.intersect(zeros, a, zeros + 1, b), kind != 1)
         np.testing.assert_array_equal(solids.intersect(zeros + 1, b, zeros, a), kind != 1)
+
+
+@pytest.mark.parametrize("amount", [None, 5])
+def test_the_one_pair_of_faces_that_touch_is_found_whichever_it_is(amount, monkeypatch):
+    """All boxes of the faces meet; the faces are slanted sheets, one upon the other, of which one is bent a little."""
+    for name in ("_FIRST", "_LEAST", "_CHUNK") if amount else ():
+        monkeypatch.setattr(contact, name, amount)
+    count = 6 if amount else 36
+    sheet = np.array([(0.5, -0.2, -0.3), (-0.2, 0.5, -0.3), (-0.2, -0.2, 0.4)])
+    step = np.full(3, 1e-3)
+
+    def sheets(first, bent=()):
+        corners = sheet + (np.arange(count) + first)[:, None, None] * step
+        corners[list(bent), 2] -= 0.75 * step
+        return Mesh(corners.reshape(-1, 3), np.arange(3 * count).reshape(count, 3))
+
+    # Each sheet of the one lies a little above one of the other, and is bent down to it.
+    bent = [(), *((number,) for number in range(count)), (0, count - 1)]
+    solids = Solids([sheets(0), *(sheets(0.5, some) for some in bent)], patience=np.inf)
+    numbers = np.arange(len(bent))
+    pose = Poses(np.repeat([(1.0, 2, 3)], len(bent), axis=0), random_poses(1, 1).orientation, np.ones((1, 3)))
+    for order in (numbers, numbers[::-1]):
+        first, second = (0 * order, pose), (order + 1, pose)
+        np.testing.assert_array_equal(solids.surfaces_touch(*first, *second), order > 0)
+        np.testing.assert_array_equal(solids.surfaces_touch(*second, *first), order > 0)
+    one = pose.take(numbers[:1])
+    for number in numbers[:: 1 if amount else 5]:
+        found = solids.surfaces_touch(numbers[:1], one, numbers[number : number + 1] + 1, one)
+        assert found[0] == (number > 0)
