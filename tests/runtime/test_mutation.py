@@ -273,6 +273,19 @@ def test_choices_follow_mutation_however_it_is_asked_for(
         assert item.egoObject.position.x != 3
 
 
+def test_what_would_follow_its_own_noise_follows_the_value_without_it() -> None:
+    text = (
+        "a = new Object at (3, 4)\nb = new Object at (30, 4)\nego = a\n"
+        "a.mutationScale = Uniform(a, b).position.x\nparam x = Uniform(a, a).position.x, b = b\nmutate b\n"
+    )
+    scenes = scenario(text).sample(8, seed=2)
+    scales = [item.egoObject.mutationScale for item in scenes]
+    assert all(scale in (3, item.params["b"].position.x) for scale, item in zip(scales, scenes, strict=True))
+    assert 0 < scales.count(3) < 8
+    assert 3 not in {item.egoObject.position.x for item in scenes}
+    assert 30 not in {item.params["b"].position.x for item in scenes}
+
+
 def test_a_mutator_of_the_program_may_change_what_is_final_but_not_what_follows_from_others() -> None:
     text = (
         "class M(Mutator):\n    def appliedTo(self, o):\n        o.fixed += 1\n        o.twice = 7\n        o.position = (5, 0, 0)\n"

@@ -71,6 +71,8 @@ other = Uniform(*[[1], [2, 2]])
         ("len(sizes)", len),
         ("sizes[-1] + sizes[0]", lambda s: s[-1] + s[0]),
         ("max(*sizes, 2)", lambda s: max(*s, 2)),
+        ("max(*sizes, 2, key=lambda size: -size)", lambda s: min(*s, 2)),
+        ("max(2, *sizes, *sizes[:1], 0)", lambda s: max(2, *s)),
         ("min(sizes)", min),
         ("filter(lambda size: size > 0.7, sizes)", lambda s: [x for x in s if x > 0.7]),
         ("filter(lambda size: size > 0.7, sizes)[0] * 2", lambda s: next(x for x in s if x > 0.7) * 2),

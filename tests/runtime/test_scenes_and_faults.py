@@ -233,6 +233,14 @@ def frequencies(values: list[object], expected: dict[object, float]) -> float:
         ),
         ("xs = Uniform([], [2, 3])\nx = Uniform(*xs)", {2: 1 / 2, 3: 1 / 2}),
         ("x = Uniform(*[1, 2], *Uniform([3], [4]))", {1: 1 / 3, 2: 1 / 3, 3: 1 / 6, 4: 1 / 6}),
+        (
+            "x = Uniform(*Uniform([1, 2], [3]), *Uniform([4], [5, 6, 7]))",
+            {1: 2 / 15, 2: 2 / 15, 3: 3 / 16, 4: 5 / 24, 5: 9 / 80, 6: 9 / 80, 7: 9 / 80},
+        ),
+        (
+            "x = Uniform(*Uniform([1, 2], Uniform([3], [4, 5])))",
+            {1: 1 / 4, 2: 1 / 4, 3: 1 / 4, 4: 1 / 8, 5: 1 / 8},
+        ),
         ("x = Discrete({1: 3, 2: 0, 3: 1})", {1: 3 / 4, 3: 1 / 4}),
         ("x = DiscreteRange(2, 4, (1, 0, 3))", {2: 1 / 4, 4: 3 / 4}),
         ("x = DiscreteRange(-2.5, 1.5)", {-2: 1 / 4, -1: 1 / 4, 0: 1 / 4, 1: 1 / 4}),

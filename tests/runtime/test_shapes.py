@@ -128,6 +128,33 @@ def test_files_that_are_written_twice_in_a_second_are_read_twice(tmp_path):
     assert sizes == [(sizes[0][0], 2), (sizes[0][0], 3), (sizes[0][0], 4)]
 
 
+def test_relative_paths_start_from_where_one_is_now(tmp_path, monkeypatch):
+    """Files of one name, length and time in two folders are two files."""
+    for name, height in (("one", 2), ("other", 3)):
+        folder = tmp_path / name
+        folder.mkdir()
+        (folder / "box.obj").write_text(
+            trimesh.creation.box((1, 1, height)).export(file_type="obj", digits=3)
+        )
+        os.utime(folder / "box.obj", ns=(0, 1_700_000_000_000_000_000))
+        monkeypatch.chdir(folder)
+        shape = shapes.MeshShape.fromFile("box.obj")
+        assert shape.dimensions == (1, 1, height)
+        assert shape.source.path == str(folder / "box.obj")
+
+
+def test_overlapping_bodies_of_a_file_are_united_unless_that_is_not_wanted(tmp_path):
+    pair = trimesh.util.concatenate([trimesh.creation.box((2, 1, 1)), trimesh.creation.box((1, 2, 1))])
+    pair.export(tmp_path / "cross.obj")
+    united = shapes.MeshShape.fromFile(tmp_path / "cross.obj")
+    apart = shapes.MeshShape.fromFile(tmp_path / "cross.obj", unify=False)
+    in_memory = shapes.MeshShape(pair)
+    assert united.dimensions == apart.dimensions == in_memory.dimensions == (2, 2, 1)
+    assert united.mesh.volume == pytest.approx(3 / 4)
+    assert apart.mesh.volume == in_memory.mesh.volume == pytest.approx(4 / 4)
+    assert len(apart.mesh.faces) == len(in_memory.mesh.faces) == 24
+
+
 def test_from_missing_file(tmp_path):
     with pytest.raises(MeshError, match="does not exist"):
         shapes.MeshShape.fromFile(tmp_path / "nothing.obj")
