@@ -8,7 +8,7 @@ from typing import Any, cast
 
 import pytest
 
-from scenic.language.errors import RandomControlFlowError, ScenicValueError
+from scenic.language.errors import RandomControlFlowError, ScenicTypeError, ScenicValueError
 from scenic.runtime.samples import Sample
 from tests.runtime.programs import failure, place, scenario
 
@@ -331,6 +331,16 @@ CHOSEN = "a = new Object at (0, 0), with width 2\nb = new Object at (10, 0), wit
 def test_elements_of_chosen_containers_are_choices(text: str, values: set[float]) -> None:
     program = scenario(f"{CHOSEN}param x = {text}")
     assert {item.params["x"] for item in program.sample(60, seed=1)} == values
+
+
+@pytest.mark.parametrize("chosen", ["Uniform([a, b], [b])[0]", "Uniform(*Uniform([a, b], [b]))"])
+def test_instances_of_chosen_lists_are_known_as_places_alone(chosen: str) -> None:
+    """Before the sample nothing says that they have sides: what is beside one is beside its middle."""
+    scenes = scenario(f"{CHOSEN}c = {chosen}\nnew Object left of c by 20\nparam c = c").sample(9, seed=1)
+    gaps = {item.params["c"].position.x - item.objects[2].position.x for item in scenes}
+    assert gaps == {20.5}
+    assert {item.params["c"].width for item in scenes} == {1, 2}
+    assert isinstance(failure(f"{CHOSEN}param x = (front of {chosen})"), ScenicTypeError)
 
 
 def test_regions_of_chosen_containers_are_places() -> None:
