@@ -266,10 +266,10 @@ def test_choices_follow_mutation_however_it_is_asked_for(
 ) -> None:
     text = (
         f"class A(Object):\n    {property}\na = new A at (3, 4), {specifier}\nego = a\n"
-        f"param x = (a.position.x, Uniform(a, a).position.x)\n{statement}\n"
+        f"param x = (a.position.x, Uniform(a, a).position.x, Uniform(a, a, a).position.x)\n{statement}\n"
     )
     for item in scenario(text).sample(5, seed=2):
-        assert item.params["x"] == (3, item.egoObject.position.x)
+        assert item.params["x"] == (3, item.egoObject.position.x, item.egoObject.position.x)
         assert item.egoObject.position.x != 3
 
 

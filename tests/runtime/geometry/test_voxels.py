@@ -67,6 +67,38 @@ def test_touched_cells_hold_all_points_of_the_faces(name):
         assert {(face, cell) for cell in ((x * 9 + y) * 9 + z).tolist()} <= pairs
 
 
+@pytest.mark.parametrize("resolution", [12, 16, 32])
+def test_touched_cells_of_faces_of_every_size(resolution):
+    """In one cell or in thousands, slanted or along an axis; large ones are looked for in coarse cells first."""
+    rng = np.random.default_rng(8)
+    extents = np.concatenate([np.repeat([1, 2, 4, 5, 7, resolution], 20), np.full(40, 4)]) / resolution
+    corners = (
+        rng.uniform(-0.5, 0.5, (160, 1, 3)) + rng.uniform(-0.5, 0.5, (160, 3, 3)) * extents[:, None, None]
+    )
+    corners[::7, :, 1] = corners[::7, :1, 1]
+    # Their boxes have four cells on each axis, neither more nor fewer.
+    first = rng.integers(0, resolution - 3, (40, 3)) / resolution - 0.5
+    corners[120:] = (
+        first[:, None] + np.array([(0.1, 0.2, 3.7), (3.8, 1.9, 0.1), (1.5, 3.9, 2.2)]) / resolution
+    )
+    # Of the last ones they have five by thirteen, which is one more than four times four times four.
+    if resolution > 12:
+        corners[150:, :, 1:] = np.array([(0.2, 0.1), (0.9, 12.9), (4.8, 7.1)]) / resolution - 0.5
+        corners[150:, :, 0] = rng.uniform(0.3, 0.7, (10, 3)) / resolution - 0.5
+    corners = np.clip(corners, -0.5, 0.5)
+    found = {
+        (face, cell)
+        for faces, cells in touched_cells(corners, resolution)
+        for face, cell in zip(faces.tolist(), cells.tolist(), strict=True)
+    }
+    weights = rng.dirichlet((0.7, 0.7, 0.7), 200)
+    x, y, z = np.moveaxis(
+        np.clip(((weights @ corners + 0.5) * resolution).astype(int), 0, resolution - 1), 2, 0
+    )
+    cells = (x * resolution + y) * resolution + z
+    assert {(face, cell) for face, row in enumerate(cells.tolist()) for cell in row} <= found
+
+
 def test_touched_cells_are_few():
     """A slanted face touches a plane of cells, not its whole bounding box."""
     corners = np.array([[(-0.5, -0.5, -0.5), (0.5, -0.5, 0.5), (-0.5, 0.5, 0.49)]])
