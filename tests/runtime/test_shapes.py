@@ -4,6 +4,7 @@ import os
 import numpy as np
 import pytest
 import trimesh
+from scipy.spatial.transform import Rotation
 
 from scenic.language.errors import MeshError, ScenicTypeError, ScenicValueError
 from scenic.runtime import shapes
@@ -75,6 +76,17 @@ def test_mesh_shape_measures_after_rotation():
     low = turned.mesh.vertices[turned.mesh.vertices[:, 2] > 0.49]
     np.testing.assert_allclose(low[:, 1], -0.5)
     assert shapes.MeshShape(wedge(), dimensions=(1, 1, 1), scale=3).dimensions == (3, 3, 3)
+
+
+def test_initial_rotations_are_yaw_pitch_and_roll():
+    """Each about the axis that the ones before have turned: z, then x, then y."""
+    angles = (0.3, 0.5, 0.8)
+    shape = shapes.MeshShape(wedge(), initial_rotation=angles)
+    turned = Rotation.from_euler("ZXY", angles).apply(wedge().vertices)
+    np.testing.assert_allclose(shape.dimensions, np.ptp(turned, axis=0), rtol=1e-12)
+    middle = (turned.min(axis=0) + turned.max(axis=0)) / 2
+    unit = (turned - middle) / shape.dimensions
+    np.testing.assert_allclose(np.sort(shape.mesh.vertices, axis=0), np.sort(unit, axis=0), atol=1e-12)
 
 
 def test_mesh_shape_accepts_our_meshes():
