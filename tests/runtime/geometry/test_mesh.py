@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+import trimesh
 from scipy.spatial import ConvexHull
 
 from scenic.language.errors import MeshError
@@ -41,6 +42,27 @@ def test_known_volumes():
 def test_convex_and_box(name, convex, box):
     mesh = SHAPES[name]()
     assert (mesh.is_convex, mesh.is_box) == (convex, box)
+
+
+def test_solids_of_several_bodies_are_not_convex():
+    """However convex each of them is, and each of them a box."""
+    for shape in (primitives.box, primitives.cylinder, primitives.spheroid):
+        one, other = (placed(shape(), (x, 0, 0), (1, 1, 1)) for x in (0, 1.5))
+        faces = np.concatenate([one.faces, other.faces + len(one.vertices)])
+        pair = Mesh(np.concatenate([one.vertices, other.vertices]), faces)
+        assert pair.is_volume
+        assert not pair.is_convex
+        assert not pair.is_box
+        assert pair.hull.volume > 1.2 * pair.volume
+
+
+def test_solids_of_very_many_faces_may_be_convex():
+    """Which is then found by the hull."""
+    ball = trimesh.creation.icosphere(subdivisions=4)
+    found = Mesh(ball.vertices, ball.faces)
+    assert found.is_convex
+    assert len(found.hull.vertices) == len(ball.vertices)
+    assert found.hull.volume == pytest.approx(found.volume, rel=1e-12)
 
 
 def test_is_box_only_for_whole_boxes():
@@ -93,6 +115,30 @@ def test_flat_meshes_stay_flat():
     np.testing.assert_array_equal(extents, [4, 1, 0])
     np.testing.assert_array_equal(centre, [2, 0.5, 2])
     np.testing.assert_array_equal(unit.bounds, [[-0.5, -0.5, 0], [0.5, 0.5, 0]])
+
+
+@pytest.mark.parametrize("low", [-0.5, -0.7])
+@pytest.mark.parametrize("high", [0.5, 1.5])
+def test_all_axes_fill_the_unit_cube_exactly(low, high):
+    """Also where some of the borders are those of the unit cube already."""
+    for axis in range(3):
+        lower, upper = np.full(3, -0.5), np.full(3, 0.5)
+        lower[axis], upper[axis] = low, high
+        middles = np.random.default_rng(axis).uniform(lower, upper, (20, 3))
+        corners = np.concatenate([[lower, upper], middles])
+        unit, centre, extents = Mesh(corners, [(0, 1, 2), (3, 4, 5)]).normalized()
+        np.testing.assert_array_equal(unit.bounds, [[-0.5] * 3, [0.5] * 3])
+        np.testing.assert_allclose(unit.vertices * extents + centre, corners, atol=1e-15)
+        np.testing.assert_allclose(extents, upper - lower, atol=1e-15)
+
+
+def test_extreme_vertices_reach_the_unit_cube_whatever_the_rounding():
+    rng = np.random.default_rng(4)
+    for _ in range(200):
+        corners = rng.normal(size=(4, 3)) * rng.uniform(1e-3, 1e3, 3) + rng.normal(size=3)
+        beside = [np.nextafter(corners.min(axis=0), np.inf), np.nextafter(corners.max(axis=0), -np.inf)]
+        unit = Mesh(np.vstack([corners, beside]), [(0, 1, 2), (3, 4, 5)]).normalized()[0]
+        np.testing.assert_array_equal(unit.bounds, [[-0.5] * 3, [0.5] * 3])
 
 
 def test_normalizing_undoes_placing():

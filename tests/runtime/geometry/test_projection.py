@@ -4,6 +4,7 @@ import trimesh
 
 from scenic.runtime.geometry import primitives, projection, surface
 from scenic.runtime.geometry.bodies import Body
+from scenic.runtime.geometry.nearest import nearest_on_triangles
 from scenic.runtime.geometry.poses import Poses
 
 from .samples import SHAPES, bumpy, in_batches, random_poses, table, world_vertices, yawed
@@ -117,6 +118,28 @@ def test_near_surface_against_distances():
             assert found[entry] == (distance <= 1e-6)
             if expected:
                 assert found[entry]
+
+
+@pytest.mark.parametrize("name", SHAPES)
+@pytest.mark.parametrize("scale", [(1, 1, 1), (1e-5, 1e-5, 1e-5), (1e-5, 1, 1), (1, 2e-5, 1), (3, 1, 1e-5)])
+def test_what_is_near_the_surface_of_small_and_flat_bodies(name, scale):
+    """As near in every direction, also beyond the body's box, and of bodies hardly larger than the tolerance."""
+    count = 40
+    mesh, some = SHAPES[name](), random_poses(count, 49)
+    body = Body((mesh,), None, Poses(some.position, some.orientation, some.size * scale))
+    rng = np.random.default_rng(50)
+    ways = rng.normal(size=(count, 3))
+    ways *= rng.uniform(0, 2.5e-6, (count, 1)) / np.linalg.norm(ways, axis=1, keepdims=True)
+    faces = rng.integers(0, len(mesh.faces), count)
+    faces[::2] = np.argmax(mesh.triangles[:, :, 2].sum(axis=1))  # the topmost
+    points = surface.face_points(body, faces, *rng.random((2, count))) + ways
+    found = projection.near_surface(body, None, 0, points, count)
+    for entry in range(count):
+        corners = world_vertices(mesh, body.poses, entry)[mesh.faces]
+        beside = np.broadcast_to(points[entry], (len(corners), 3))
+        gap = np.linalg.norm(nearest_on_triangles(beside, *corners.swapaxes(0, 1)) - beside, axis=1).min()
+        assert found[entry] == (gap <= 1e-6) or abs(gap - 1e-6) < 1e-11
+    assert 0 < found.mean() < 1
 
 
 @pytest.mark.parametrize("mesh", [primitives.box(), bumpy(3)], ids=["small", "large"])
