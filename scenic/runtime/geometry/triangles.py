@@ -39,7 +39,10 @@ def separated_by_edges(first: Corners, second: Corners) -> Booleans:
     normals = [np.stack([*_cross(edges[:, 0], edges[:, 1])]) for edges in (edges_a, edges_b)]
     squares = [_dot(normal, normal) for normal in normals]
     across = _cross(*normals)
-    level = np.flatnonzero(_dot(across, across) <= _PARALLEL * _PARALLEL * squares[0] * squares[1])
+    # Of a triangle that is hardly more than a segment the normal is rounding; it may lie in the other's plane, too.
+    is_level = _dot(across, across) <= _PARALLEL * _PARALLEL * squares[0] * squares[1]
+    is_level |= np.minimum(*squares) <= (_PARALLEL * scale * scale) ** 2
+    level = np.flatnonzero(is_level)
     if len(level):
         normal = np.where(squares[0] >= squares[1], *normals)[:, np.newaxis, level]
         a, b, edges_a, edges_b = (part.take(level, axis=2) for part in (a, b, edges_a, edges_b))

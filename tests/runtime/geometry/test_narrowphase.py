@@ -215,10 +215,24 @@ def test_resting_gap():
 def test_faces_edges_and_corners_that_just_touch(patience):
     """Where all coordinates are exact, so is contact; a hair apart there is none."""
     cylinder, cone = primitives.cylinder(4), primitives.cone()
+    # A wedge has an edge along X on top and one along Y below: two of them meet in the middle of crossing edges.
+    wedge = Mesh(
+        [(-0.5, 0, 0.5), (0.5, 0, 0.5), (0, -0.5, -0.5), (0, 0.5, -0.5)],
+        [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)],
+    )
+    # This one has a splinter beside it, so that boxes tell nothing.
+    low, splinter = (
+        wedge.vertices * (1, 1, 0.5) - (0, 0, 0.25),
+        wedge.vertices * (0.1, 0.1, 1) + (0.45, 0.45, 0),
+    )
+    peaked = Mesh(np.concatenate([low, splinter]), np.concatenate([wedge.faces, wedge.faces + 4]))
+    assert wedge.is_volume
     # Upright ones stand on each other; of the four-sided prism, corners are on the axes.
     cases = [
         (cylinder, (0, 0, 1.0), cylinder, (1, 1, 1)),
         (cone, (0, 0, 1.0), table(), (1, 1, 1)),
+        (wedge, (0, 0, 1.0), wedge, (1, 1, 1)),
+        (wedge, (0, 0, 0.25), peaked, (0.25, 0.125, 0.5)),
         (cylinder, (1.0, 0, 0), cylinder, (1, 1, 1)),
         (cylinder, (0, 1.0, 0.5), cylinder, (1, 1, 1)),
         (cone, (0, 0, -0.75), cylinder, (1, 1, 0.5)),
@@ -229,7 +243,13 @@ def test_faces_edges_and_corners_that_just_touch(patience):
         solids = Solids([first, second], patience=patience)
         zero = np.zeros(1, dtype=np.intp)
         touches = number < len(cases) - 1  # the prism has no corner there
-        for off, expected in ((0.0, touches), (1e-6, False), (-1e-6, touches)):
+        for off, expected in (
+            (0.0, touches),
+            (1e-9, False),
+            (-1e-9, touches),
+            (1e-6, False),
+            (-1e-6, touches),
+        ):
             at = np.asarray(way) * (1 + off)
             moved = Poses.fixed(at, size=size)
             still = Poses.fixed((0, 0, 0))

@@ -79,7 +79,9 @@ def sides(size: float) -> list[np.ndarray]:
         faces = surface.draw_faces(some, side, threshold, uniforms[0], LANES)
         found += [
             faces,
-            surface.side_contains(bumpy(2), some.poses, side, threshold, np.arange(LANES), np.arange(LANES) * 7),
+            surface.side_contains(
+                bumpy(2), some.poses, side, threshold, np.arange(LANES), np.arange(LANES) * 7
+            ),
             surface.mean_normals(some, side, threshold, LANES) / (1 if side is None else size**2),
             surface.face_normals(some, faces),
             surface.face_orientations(some, faces),
