@@ -46,6 +46,29 @@ def test_vertical_lines_through_vertices_and_edges():
         assert not inside[radii > 0.500001].any()
 
 
+def test_vertical_lines_beside_edges_by_rounding():
+    """A line meets one of the two faces of an edge, from whichever end the edge is looked at."""
+    mesh = primitives.spheroid()
+    rng = np.random.default_rng(6)
+    starts, ends = mesh.triangles[:, 0], mesh.triangles[:, 1]
+    shares = rng.uniform(size=(len(starts), 1))
+    y = (starts + shares * (ends - starts))[:, 1]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        columns = [
+            a[:, 0] + (y - a[:, 1]) / (b[:, 1] - a[:, 1]) * (b[:, 0] - a[:, 0])
+            for a, b in ((starts, ends), (ends, starts))
+        ]
+    for column in columns:
+        for x in (column, np.nextafter(column, 1), np.nextafter(column, -1)):
+            chosen = np.flatnonzero(np.hypot(x, y) < 0.47)
+            for height, held in ((-0.1, True), (0.1, True), (-0.497, False), (0.497, False)):
+                points = np.column_stack([x[chosen], y[chosen], np.full(len(chosen), height)])
+                radii = np.linalg.norm(points, axis=1)
+                sure = radii < 0.485 if held else radii > 0.5001
+                assert sure.sum() > 500
+                assert (contains_points(mesh, points[sure]) == held).all()
+
+
 def test_grid_points_of_a_table():
     """Coordinates coincide with those of vertices, edges and vertical faces."""
     steps = np.linspace(-0.5, 0.5, 21)

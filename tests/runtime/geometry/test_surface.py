@@ -116,6 +116,23 @@ def test_draws_follow_the_uniform_number():
         assert surface.side_contains(bumpy(5), body.poses, (2, 1), 0.5, np.zeros(1, dtype=int), last)[0]
 
 
+@pytest.mark.parametrize("side", SIDES)
+@pytest.mark.parametrize("alike", [False, True])
+def test_the_least_and_the_greatest_numbers_draw_faces_of_the_side(side, alike):
+    """Not those before the first or behind the last, of bodies of one size as of many sizes."""
+    for mesh in (primitives.box(), primitives.cone(), table(), bumpy(2)):
+        poses = random_poses(200, 39)
+        if alike:
+            poses = Poses(poses.position, poses.orientation[:1], poses.size[:1])
+        body = body_of(mesh, poses)
+        usual = surface.draw_faces(body, side, 0.5, np.full(200, 0.5), 200)
+        for extreme in (1e-300, np.nextafter(1, 0)):
+            faces = surface.draw_faces(body, side, 0.5, np.array([extreme]), 200)
+            np.testing.assert_array_equal(faces < 0, usual < 0)
+            known = np.flatnonzero(faces >= 0)
+            assert surface.side_contains(mesh, poses, side, 0.5, known, faces[known]).all()
+
+
 def test_no_faces():
     body = body_of(primitives.spheroid(), random_poses(5, 28))
     uniforms = np.full(5, 0.5)
