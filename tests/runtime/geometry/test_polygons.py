@@ -43,6 +43,41 @@ def test_contains():
     np.testing.assert_array_equal(polygons.contains(x, y), [True, False, True, True, True, False, False])
 
 
+@pytest.mark.parametrize("polygon", [HOLED, SEVERAL, shapely.box(0, 0, 4, 3)])
+def test_one_point_or_disc_is_held_as_many_are(polygon):
+    """Also on corners and edges, and of polygons that were asked before."""
+    polygons = Polygons(polygon)
+    corners = shapely.get_coordinates(polygon)
+    rng = np.random.default_rng(71)
+    places = np.concatenate([corners, (corners[1:] + corners[:-1]) / 2, rng.uniform(-1, 12, (60, 2))])
+    radii = np.where(np.arange(len(places)) % 3, rng.uniform(0, 1, len(places)), 1e-3)
+    for _ in range(2):
+        one = [polygons.holds_point(x, y) for x, y in places.tolist()]
+        discs = [polygons.holds_disc(*place, radius) for place, radius in zip(places, radii, strict=True)]
+        np.testing.assert_array_equal(polygons.contains(*places.T), one)
+        np.testing.assert_array_equal(polygons.holds_discs(*places.T, radii), discs)
+    assert all(one[: len(corners)])
+    expected = [polygon.contains(shapely.Point(place).buffer(r)) for place, r in zip(places, radii, strict=True)]
+    np.testing.assert_array_equal(discs, expected)
+
+
+def test_what_sticks_out_by_rounding_is_held_nearly():
+    """As far at corners as along edges; inside a hole it is the same."""
+    square = Polygons(shapely.box(0, 0, 4, 3).difference(shapely.box(1, 1, 2, 2)))
+    outwards = np.array([(-1, 0), (0, -1), (-1, -1)])
+    for corner, sign in (((0, 0), 1), ((4, 3), -1), ((1, 1), -1), ((2, 2), 1)):
+        for off, held in ((0.9e-9, True), (-0.9e-9, True), (1.1e-9, False)):
+            if corner in ((1, 1), (2, 2)) and off > 1e-9:
+                places = np.array(corner) + sign * off * outwards[2:]  # beside a notch, not beyond its corner
+            else:
+                places = np.array(corner) + sign * off * outwards
+            assert (square.nearly_contains(*places.T) == held).all(), (corner, off)
+            triangles = np.stack([places, *[np.broadcast_to(p, places.shape) for p in ((0.5, 2.5), (0.5, 2.7))]], axis=1)
+            if sign == 1 and corner == (0, 0):
+                assert square.covers_triangles(triangles) == held
+                np.testing.assert_array_equal(square.covers_hulls(triangles), [held] * 3)
+
+
 def test_convex_corners():
     clockwise = [(0, 0), (0, 1), (1, 1), (1, 0)]
     np.testing.assert_array_equal(

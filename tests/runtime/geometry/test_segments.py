@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import shapely
 
+from scenic.graph import quaternions
 from scenic.runtime.geometry import segments
 from scenic.runtime.geometry.segments import Segments
 
@@ -58,6 +59,35 @@ def test_nearest_points_of_lines(count: int) -> None:
     np.testing.assert_allclose(np.linalg.norm(place[:, :2] - points, axis=1), expected, atol=1e-12)
     pieces = shapely.linestrings(np.stack([chain[:-1], chain[1:]], axis=1)[number])
     np.testing.assert_allclose(shapely.distance(pieces, shapely.points(points)), expected, atol=1e-12)
+
+
+@pytest.mark.parametrize("count", [3, 130])
+def test_at_a_joint_the_segment_before_it_counts(count: int) -> None:
+    """As for the nearest segment. Before the beginning it is the first segment, behind the end the last one."""
+    corners = np.column_stack([np.arange(count + 1.0), np.zeros((count + 1, 2))])
+    line = Segments.of_chains([corners, corners + 5])  # the way between the chains is none of the line
+    ways = np.arange(2 * count + 1.0)
+    number = np.concatenate([[0], np.arange(2 * count)])
+    np.testing.assert_array_equal(line.number_at(ways), number)
+    np.testing.assert_array_equal(line.at(ways)[1:], line.ends)
+    np.testing.assert_array_equal(line.at(ways)[0], corners[0])
+    np.testing.assert_array_equal(line.number_at(np.array([-3.0, 2 * count + 3])), [0, 2 * count - 1])
+    np.testing.assert_array_equal(line.at(np.array([-3.0, 2 * count + 3])), [corners[0], corners[-1] + 5])
+    np.testing.assert_allclose(line.at(ways[1:] - 0.25)[:, 0], line.ends[:, 0] - 0.25)
+    assert line.length == 2 * count
+
+
+def test_zeros_of_either_sign_are_one_place() -> None:
+    line = Segments.of_chains([[(0.0, 0, 0), (1, 0, 0), (1, 1, 0), (-0.0, 0, -0.0)]])
+    assert line.nearest(np.array([[-0.5, 0.0, 0], [-0.5, -0.5, 0]]))[1].tolist() == [0, 0]
+
+
+def test_lines_straight_up_and_down_have_no_yaw() -> None:
+    line = Segments.of_chains([[(0, 0, 0), (0, 0, 2)], [(3, 0, 2), (3, 0, 0)], [(0, 0, 0), (0, -2, 0)]])
+    ahead = quaternions.rotate(line.frames, [0, 1, 0])
+    np.testing.assert_allclose(ahead, [(0, 0, 1), (0, 0, -1), (0, -1, 0)], atol=1e-15)
+    right = quaternions.rotate(line.frames, [1, 0, 0])
+    np.testing.assert_allclose(right, [(1, 0, 0), (1, 0, 0), (-1, 0, 0)], atol=1e-15)
 
 
 def test_more_pairs_than_are_looked_at_together(monkeypatch: pytest.MonkeyPatch) -> None:
