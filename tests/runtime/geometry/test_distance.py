@@ -94,6 +94,21 @@ def test_points_and_surfaces(name):
     assert 0 < inside < COUNT
 
 
+def test_what_is_exactly_as_far_as_asked_is_found():
+    """Also at no distance at all; a hair farther it is not."""
+    body = Body((table(),), None, Poses.fixed((1, 2, 3), size=(2, 4, 1)))
+    ways = np.eye(3)[[0, 0, 1, 1, 2, 2]] * np.array([1, -1] * 3)[:, None]
+    place = ways * (1, 2, 0.5) + (1, 2, 3) + np.where(ways == 0, (0.875, -1.75, 0.453125), 0)
+    for gap in (0.0, 2.0**-40, 0.25, 3.0):
+        near = distance.to_surface(body, place + gap * ways, 6, within=gap)
+        np.testing.assert_array_equal(near.distance, gap)
+        assert (near.number >= 0).all()
+        if gap:
+            near = distance.to_surface(body, place + gap * ways, 6, within=gap * (1 - 1e-6))
+            np.testing.assert_array_equal(near.distance, np.inf)
+            assert (near.number == -1).all()
+
+
 PAIRS = [
     ("box", "box"),
     ("box", "cone"),
