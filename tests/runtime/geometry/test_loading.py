@@ -248,6 +248,52 @@ def test_very_many_triangles_are_refused(tmp_path, monkeypatch):
     assert "simplify" in caught.value.help
 
 
+@pytest.mark.parametrize(("limit", "held"), [(12, True), (11, False)])
+def test_as_many_triangles_as_allowed_are_taken(tmp_path, monkeypatch, limit, held):
+    monkeypatch.setattr(loading, "MOST_TRIANGLES", limit)
+    path = export(tmp_path, "box.stl", primitives.box())
+    if held:
+        assert load_mesh(path).is_box
+    else:
+        with pytest.raises(MeshError, match="has 12 triangles, more than 11"):
+            load_mesh(path)
+
+
+@pytest.mark.parametrize("pack", [None, bz2.compress])
+def test_files_as_long_as_allowed_are_taken(tmp_path, monkeypatch, pack):
+    """Unpacked; a byte more is too much."""
+    path = export(tmp_path, "box.stl", primitives.box())
+    length = path.stat().st_size
+    if pack is not None:
+        packed = tmp_path / "box.stl.bz2"
+        packed.write_bytes(pack(path.read_bytes()))
+        path = packed
+    monkeypatch.setattr(loading, "_MOST_BYTES", length)
+    assert load_mesh(path).is_box
+    monkeypatch.setattr(loading, "_MOST_BYTES", length - 1)
+    with pytest.raises(MeshError, match="is longer than 0 MiB"):
+        load_mesh(path)
+
+
+@pytest.mark.parametrize("name", ["my.chair.v2.stl", "CHAIR.Stl", "chair.stl.GZ", "a.b.STL.Bz2"])
+def test_names_tell_the_format_by_their_last_parts(tmp_path, name):
+    data = export(tmp_path, "box.stl", primitives.box()).read_bytes()
+    pack = {".gz": gzip.compress, ".bz2": bz2.compress}.get(name[name.rfind(".") :].lower(), bytes)
+    (tmp_path / name).write_bytes(pack(data))
+    assert load_mesh(tmp_path / name).is_box
+
+
+def test_packed_descriptions_find_their_neighbours(tmp_path):
+    """In the folder of the packed file, whatever the current folder."""
+    scene = trimesh.Scene(trimesh.creation.box())
+    for name, data in scene.export(file_type="gltf").items():
+        (tmp_path / name).write_bytes(data)
+    (description,) = tmp_path.glob("*.gltf")
+    packed = tmp_path / "packed.gltf.gz"
+    packed.write_bytes(gzip.compress(description.read_bytes()))
+    assert load_mesh(packed).is_box
+
+
 @pytest.mark.parametrize(
     ("name", "content", "message"),
     [

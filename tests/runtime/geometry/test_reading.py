@@ -169,6 +169,33 @@ def test_coordinates_are_as_exact_as_the_file(kind):
     np.testing.assert_array_equal(found.vertices[found.faces], corners[np.newaxis])
 
 
+def test_coordinates_are_of_the_type_that_the_file_declares():
+    """Written out, a number of single precision is the same as in a binary file."""
+    third = 1 / 3
+    header = HEADER.format(format="ascii") + "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+    text = header + "\n".join([f"{third!r} 0 0", "1 0 0", "0 1 0", "0 0 1", "3 0 1 2"])
+    assert read_ply(text.encode()).vertices[0, 0] == float(np.float32(third))
+    assert read_ply(text.replace("float", "double").encode()).vertices[0, 0] == third
+
+
+@pytest.mark.parametrize("start", [b"solid", b"  SOLID of an exporter", b"\0", b"solid facet vertex 1 2 3"])
+def test_what_a_binary_file_says_of_itself_does_not_matter(start):
+    corners = np.array([[(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 0, 0.5), (1, 0, 2), (0, 1, 3)]], dtype="<f4")
+    records = b"".join(struct.pack("<3f", 9, 8, 7) + part.tobytes() + b"\1\2" for part in corners)
+    found = read_stl(start.ljust(80) + struct.pack("<I", 2) + records)
+    np.testing.assert_array_equal(found.vertices[found.faces], corners)
+    assert len(read_stl(start.ljust(80) + struct.pack("<I", 0)).faces) == 0
+
+
+def test_the_first_scene_is_meant_where_none_is_named():
+    tree = gltf_triangle()
+    tree["nodes"] = [{"mesh": 0, "translation": [0, 0, height]} for height in (0, 1, 2)]
+    tree["scenes"] = [{"nodes": [1]}, {"nodes": [0, 2]}]
+    for scene, heights in ((None, {1}), (0, {1}), (1, {0, 2})):
+        data = json.dumps(tree if scene is None else {**tree, "scene": scene}).encode()
+        assert set(read_gltf(data, no_neighbour).vertices[:, 2].tolist()) == heights
+
+
 def scene_of_instances() -> trimesh.Scene:
     scene = trimesh.Scene()
     body = trimesh.Trimesh(table().vertices, table().faces, process=False)

@@ -100,6 +100,33 @@ def test_the_folder_follows_the_environment(tmp_path, monkeypatch):
     assert len(list((tmp_path / "scenic").iterdir())) == 1
 
 
+def test_without_any_word_the_folder_is_in_the_cache_at_home(tmp_path, monkeypatch):
+    for name in ("SCENIC_CACHE", "SCENIC_CACHE_DIR", "XDG_CACHE_HOME"):
+        monkeypatch.delenv(name, raising=False)
+    for name in ("HOME", "USERPROFILE"):
+        monkeypatch.setenv(name, str(tmp_path))
+    compute = Counted()
+    for _ in range(2):
+        kept("x 1", CONTENT, compute)
+    assert compute.calls == 1
+    assert len(list((tmp_path / ".cache" / "scenic").iterdir())) == 1
+
+
+def test_nothing_is_kept_where_the_store_is_off(folder, monkeypatch):
+    """Not even what an earlier run left."""
+    kept("x 1", CONTENT, Counted())
+    assert store.is_kept("x 1", CONTENT)
+    monkeypatch.setenv("SCENIC_CACHE", "off")
+    assert not store.is_kept("x 1", CONTENT)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="other systems keep rights otherwise")
+def test_others_may_not_change_what_is_kept(folder):
+    kept("x 1", CONTENT, Counted())
+    for path in (folder, *folder.iterdir()):
+        assert path.stat().st_mode & 0o077 == 0
+
+
 @pytest.mark.parametrize("damage", [b"", b"PK\x03\x04 not a zip", pickle.dumps({"a": 1})])
 def test_damaged_files_are_made_anew(folder, damage):
     compute = Counted()
