@@ -109,7 +109,7 @@ def _read(file: Path, name: str) -> Soup:
             pass
         except OSError as error:
             raise MeshError(f"{name} names a file that cannot be read: {error}") from None
-        except (ValueError, OverflowError) as error:
+        except (ValueError, OverflowError, RecursionError) as error:
             raise MeshError(f"{name} cannot be read as {file_type}: {error}") from None
     return _loaded(data, file_type, file, name, packed=unpack is not None)
 

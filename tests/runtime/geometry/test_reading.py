@@ -2,6 +2,7 @@
 
 import base64
 import bz2
+import gzip
 import io
 import json
 import struct
@@ -433,6 +434,10 @@ def test_obj_lines_that_say_nothing():
         ("word.obj", b"v 0 0 x\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "cannot be read as obj"),
         ("zero.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 0 1 2\n", "vertex outside 1 to 3"),
         ("far.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf -4 1 2\n", "vertex outside 1 to 3"),
+        ("huge.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 " + b"9" * 30, "cannot be read as obj"),
+        ("half.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 2.5\n", "cannot be read as obj"),
+        ("corrupt.obj.gz", gzip.compress(b"v 0 0 0\n" * 50, mtime=0)[:14] + b"\xff" * 30, "cannot be unpacked"),
+        ("cut.obj.gz", gzip.compress(b"v 0 0 0\n" * 50, mtime=0)[:20], "cannot be unpacked"),
         (
             "nan.obj",
             b"v 0 0 0\nv 1 0 0\nv 0 nan 0\nf 1 2 3\n",
@@ -449,6 +454,13 @@ def test_obj_lines_that_say_nothing():
         ("cut_text.ply", ply("<", [(0, 1, 2)], text=True)[:-4], "ends before"),
         ("points.ply", HEADER.format(format="ascii").encode() + b"end_header\n" + b"0 " * 12, "no faces"),
         ("json.gltf", b"{", "cannot be read as gltf"),
+        ("deep.gltf", b"[" * 100_000, "cannot be read as gltf"),
+        ("list.gltf", b"[1]", "cannot be read as gltf"),
+        ("asset.gltf", b'{"asset": 3}', "cannot be read as gltf"),
+        ("text.gltf", b"\xff\xfe{", "cannot be read as gltf"),
+        ("data.gltf", json.dumps(gltf_triangle(buffers_0_uri="data:;base64,AAA")).encode(), "as gltf: Incorrect"),
+        ("kind.gltf", json.dumps(gltf_triangle(accessors_0_componentType=9)).encode(), "description is broken"),
+        ("matrix.gltf", json.dumps(gltf_triangle(nodes_0_matrix=[1, 2])).encode(), "cannot be read as gltf"),
         ("hole.gltf", b'{"asset": {"version": "2.0"}, "scenes": [{"nodes": [3]}]}', "description is broken"),
         ("nothing.gltf", b'{"asset": {"version": "2.0"}}', "holds no triangles"),
     ],
@@ -459,6 +471,19 @@ def test_broken_files(tmp_path, name, content, message):
     with pytest.raises(MeshError, match=message) as caught:
         load_mesh(path)
     assert caught.value.code == "SC602"
+
+
+def test_what_our_readers_leave_to_trimesh_finds_its_neighbours(tmp_path):
+    tree = gltf_triangle(accessors_0_normalized=True, accessors_1_count=3)
+    data = base64.b64decode(tree["buffers"][0]["uri"].partition(",")[2])
+    tree["buffers"][0]["uri"] = "corners.bin"
+    tree["scenes"] = [{"nodes": [0]}]
+    (tmp_path / "corners.bin").write_bytes(data)
+    (tmp_path / "triangle.gltf").write_text(json.dumps(tree))
+    with pytest.raises(NotCoveredError):
+        read_gltf(json.dumps(tree).encode(), no_neighbour)
+    found = load_mesh(tmp_path / "triangle.gltf", volume=False)
+    np.testing.assert_array_equal(found.extents, (1, 1, 0))
 
 
 def test_meshes_too_large_are_refused(tmp_path, monkeypatch):

@@ -52,7 +52,8 @@ def read_gltf(data: bytes, neighbour: Neighbour) -> Soup:
 
 class _Document:
     def __init__(self, tree: Any, binary: bytes | None, neighbour: Neighbour) -> None:
-        if not isinstance(tree, dict) or not str(tree.get("asset", {}).get("version", "")).startswith("2"):
+        asset = tree.get("asset") if isinstance(tree, dict) else None
+        if not isinstance(asset, dict) or not str(asset.get("version", "")).startswith("2"):
             raise NotCoveredError("a version other than 2")
         self._tree = tree
         self._binary = binary
