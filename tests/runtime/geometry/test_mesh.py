@@ -27,6 +27,14 @@ def test_known_volumes():
     assert table().volume == pytest.approx(0.1 + 4 * 0.1 * 0.1 * 0.9)
 
 
+@pytest.mark.parametrize("place", [(1e6, -2e6, 3e6), (-1e3, 0, 0)])
+def test_volumes_of_little_solids_far_away(place):
+    for shape in (primitives.box, primitives.cone, table, hollow):
+        found = placed(shape(), place, (2**-7, 2**-8, 2**-6))
+        assert found.volume == pytest.approx(shape().volume * 2**-21, rel=1e-6)
+        assert found.is_volume
+
+
 @pytest.mark.parametrize(
     ("name", "convex", "box"),
     [
@@ -183,6 +191,19 @@ def test_derived_data_is_made_once():
 
     assert mesh.derived(build) == mesh.derived(build) == 1
     assert calls == [mesh]
+
+
+def test_derived_data_of_functions_of_one_name_is_told_apart():
+    def build(factor):
+        def built(mesh):
+            return factor * len(mesh.faces)
+
+        return built
+
+    mesh, other = Mesh(np.eye(3), [(0, 1, 2)]), Mesh(np.eye(3), [(0, 1, 2), (0, 2, 1)])
+    once, twice = build(1), build(2)
+    assert [some.derived(ask) for some in (mesh, other) for ask in (once, twice)] == [1, 2, 2, 4]
+    assert [some.derived(ask) for some in (other, mesh) for ask in (twice, once)] == [4, 2, 2, 1]
 
 
 @real_meshes

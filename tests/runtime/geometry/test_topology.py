@@ -1,7 +1,9 @@
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from scenic.runtime.geometry import primitives, topology
 from scenic.runtime.geometry.ragged import expand, group_starts, pieces, rows
@@ -37,6 +39,49 @@ def test_faults_are_counted():
 def test_components():
     labels = topology.face_components(hollow().faces, len(hollow().vertices))
     assert np.bincount(labels).tolist() == [12, 12]
+
+
+@settings(max_examples=30)
+@given(st.integers(0, 10**6))
+def test_components_against_scipy(seed):
+    """Of long strips and scattered faces, their vertices numbered at random; numbered by their first faces' vertices."""
+    rng = np.random.default_rng(seed)
+    count = int(rng.integers(3, 60))
+    strip = np.arange(count - 2)[:, np.newaxis] + np.arange(3)
+    scattered = rng.integers(0, count, (int(rng.integers(1, 30)), 3))
+    faces = (strip, scattered, np.concatenate([strip[::3], scattered[:4]]), scattered[:1])[seed % 4]
+    faces = rng.permutation(count)[rng.permutation(faces)]
+    ends = faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2).T
+    graph = coo_array((np.ones(ends.shape[1]), tuple(ends)), shape=(count, count))
+    expected = connected_components(graph, directed=False)[1][faces[:, 0]]
+    found = topology.face_components(faces, count)
+    assert len(set(zip(found.tolist(), expected.tolist(), strict=True))) == len(set(expected.tolist()))
+    assert set(found.tolist()) == set(range(len(set(expected.tolist()))))
+    least = [faces[found == label].min() for label in range(found.max() + 1)]
+    assert least == sorted(least)
+
+
+@settings(max_examples=30)
+@given(st.integers(0, 10**6))
+def test_merging_by_steps(seed):
+    """Against all pairs: groups that hang together become their first vertex, in the order of the file."""
+    rng = np.random.default_rng(seed)
+    count = int(rng.integers(3, 25))
+    vertices = rng.uniform(0, 1, (count, 3)) * (1, 0.3, 0.1)
+    faces = rng.integers(0, count, (int(rng.integers(1, 12)), 3))
+    tolerance = float(rng.choice([0.0, 0.05, 0.1, 0.3]))
+    if seed % 2:
+        vertices = vertices.round(1)
+    used = sorted(set(faces.ravel().tolist()))
+    near = np.linalg.norm(vertices[used, np.newaxis] - vertices[used], axis=2) <= tolerance
+    labels = connected_components(coo_array(near), directed=False)[1].tolist()
+    first = {label: used[labels.index(label)] for label in labels}
+    target = {vertex: first[label] for vertex, label in zip(used, labels, strict=True)}
+    expected = np.array([[target[corner] for corner in face] for face in faces.tolist()])
+    expected = expected[[len(set(face)) == 3 for face in expected.tolist()]]
+    merged, kept = topology.merge_vertices(vertices, faces, tolerance=tolerance)
+    np.testing.assert_array_equal(merged, vertices[sorted(first.values())])
+    np.testing.assert_array_equal(merged[kept], vertices[expected])
 
 
 @given(st.integers(0, 10**6))
