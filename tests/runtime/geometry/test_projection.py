@@ -102,6 +102,49 @@ def test_points_on_the_surface_stay(name):
         np.testing.assert_array_equal(projection.landing_points(body, found, points, directions), points)
 
 
+@pytest.mark.parametrize("name", ["box", "cylinder", "table", "hollow", "spheroid"])
+def test_points_on_another_side_move(name):
+    """Points stay only on the side that is asked for; in lanes of one body, of which others miss or stay."""
+    mesh = SHAPES[name]()
+    turn = random_poses(1, 51).orientation
+    body = Body((mesh,), None, Poses(np.array([[1.0, 2, 3]]), turn, np.array([[1.0, 2, 0.5]])))
+    count = 90
+    rng = np.random.default_rng(52)
+    faces = {sign: surface.draw_faces(body, (2, sign), 0.0, rng.random(count), count) for sign in (1, -1)}
+    top, bottom = (surface.face_points(body, faces[sign], *rng.random((2, count))) for sign in (1, -1))
+    kind = np.arange(count) % 4
+    start = np.select([kind[:, None] == 0, kind[:, None] == 1], [top, bottom], bottom + [0.0, 0, 9])
+    start[kind == 3] += (0, 50, 0)  # beside the body
+    found, landed = projection.project(body, (2, 1), 0.0, start, np.array([[0, 0, 0.7]]), count)
+    np.testing.assert_array_equal(landed[kind == 0], top[kind == 0])
+    assert (found[kind == 3] == -1).all()
+    rest = (kind == 1) | (kind == 2)
+    assert (found[rest] >= 0).all()
+    assert surface.side_contains(mesh, body.poses, (2, 1), 0.0, np.zeros(count, dtype=int), found)[kind < 3].all()
+    np.testing.assert_allclose(landed[rest, :2], start[rest, :2], atol=1e-12)
+    assert (np.abs(landed[rest] - start[rest])[:, 2] > 1e-3).mean() > 0.9
+    near = projection.near_surface(body, (2, 1), 0.0, start, count)
+    np.testing.assert_array_equal(near[kind < 2], (np.abs(landed - start)[:, 2] == 0)[kind < 2])
+    assert not near[kind > 1].any()
+
+
+def test_lanes_without_a_direction_miss():
+    """And change nothing for the others; with many faces, too."""
+    for mesh in (table(), bumpy(3)):
+        poses = random_poses(40, 53)
+        body = Body((mesh,), None, poses)
+        start = poses.position + np.random.default_rng(54).uniform(-0.4, 0.4, (40, 3))
+        ways = np.random.default_rng(55).normal(size=(40, 3))
+        faces, landed = projection.project(body, None, 0, start, ways, 40)
+        still = np.arange(40) % 3 == 0
+        found, place = projection.project(body, None, 0, start, np.where(still[:, None], 0.0, ways), 40)
+        assert (found[still] == -1).all()
+        np.testing.assert_array_equal(found[~still], faces[~still])
+        np.testing.assert_array_equal(place[~still], landed[~still])
+        assert (found[~still] >= 0).any()
+        assert (projection.project(body, None, 0, start, np.zeros((1, 3)), 40)[0] == -1).all()
+
+
 def test_near_surface_against_distances():
     mesh, poses = bumpy(2), random_poses(60, 44)
     rng = np.random.default_rng(45)
