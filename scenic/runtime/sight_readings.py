@@ -13,10 +13,11 @@ from scenic.graph import intervals
 from scenic.graph.bounds import Bounds, Floats
 from scenic.graph.operations.narrowing import truth
 from scenic.graph.operations.orientations import turned
+from scenic.runtime.geometry.visibility.views import FULL_ANGLE_SLACK
 from scenic.runtime.regions.nearness import SLACK, at_any_height, body_reach, near, only_within
 
-_LESS_THAN_HALF: Final = np.pi - 1e-3
-"""View angles up to here leave a cone that is convex, and not nearly flat."""
+_LESS_THAN_HALF: Final = np.pi - 2 * FULL_ANGLE_SLACK
+"""View angles up to here leave a cone that is convex, and not nearly flat; from higher ones nothing is hidden above or below."""
 
 CAMERA, ORIENTATION, HORIZONTAL, VERTICAL, DISTANCE = range(5)
 """Where the values are that describe an observer (`scenic.runtime.sight.view_operands`)."""

@@ -451,8 +451,9 @@ def test_a_narrow_view_hides_what_is_beside_above_and_behind_it() -> None:
                 size = np.full((1, 3), 1e-9)
                 body = [place, still, size, None]
                 assert SEES.bounds((True, False), *exact([*views, *body])).upper[0] == seen
-    # Nothing is known of the heights that a view shows that is as wide as can be.
-    wide = [views[0], views[1], np.array([2 * np.pi]), np.array([np.pi]), *views[4:]]
-    for way in ([0, -1, 0], [0, 0, 1], [0, 0, -1], [1, 0, 0]):
-        place = views[0] + 20 * turn.apply(way)[None]
-        assert SEES.bounds((False, False), *exact([*wide, place])).upper[0] == 1
+    # Nothing is known of the heights that a view shows that is as wide as can be, or nearly.
+    for gap in (0.0, 0.0169):
+        wide = [views[0], views[1], np.array([2 * np.pi - gap]), np.array([np.pi - gap]), *views[4:]]
+        for way in ([0, -1, 0], [0, 0, 1], [0, 0, -1], [1, 0, 0]):
+            place = views[0] + 20 * turn.apply(way)[None]
+            assert SEES.bounds((False, False), *exact([*wide, place])).upper[0] == 1

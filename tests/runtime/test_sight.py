@@ -281,6 +281,12 @@ def test_points_look_around_whatever_their_angles() -> None:
     }
 
 
+def test_whoever_looks_nearly_up_to_the_zenith_sees_what_is_there() -> None:
+    """Also for the analysis, which looks for scenes where that is required."""
+    text = "ego = new Object with viewAngles (360 deg, 179.5 deg)\nspot = new Point at (0, 0, Range(4, 5))\nrequire ego can see spot\n"
+    assert [item.attempts for item in scenic.scenarioFromString(text).sample(3, seed=1)] == [1, 1, 1]
+
+
 @pytest.mark.parametrize(("count", "seen"), [("(1, 2)", True), ("(2, 1)", False)])
 def test_rays_are_counted_across_and_then_upward(count: str, seen: bool) -> None:
     """Of a pole whose middle is hidden, two rays one above the other meet what is above and below."""

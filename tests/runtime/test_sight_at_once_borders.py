@@ -64,6 +64,15 @@ def test_points_that_nearly_leave_a_view(angles: tuple[float, float]) -> None:
         assert looking.contains(triple(TURN.apply([0, 0, 2]) + CAMERA)) is None
 
 
+@pytest.mark.parametrize(("gap", "seen"), [(0.016, True), (0.018, False)])
+def test_what_is_nearly_all_around_counts_as_that(gap: float, seen: bool) -> None:
+    looking = view((2 * math.pi - gap, math.pi - gap))
+    for way in ([0.001, -3, 0.1], [-0.001, -3, -0.1], [0, 0.001, 3], [0, 0.001, -3]):
+        point = triple(TURN.apply(way) + CAMERA)
+        assert looking.contains(point) is seen
+        assert looking.meets_ball(point, 0.001) is (None if seen else False)
+
+
 @pytest.mark.parametrize("angles", WINDOWS)
 def test_balls_that_reach_into_a_view(angles: tuple[float, float]) -> None:
     random = np.random.default_rng(2)

@@ -1,17 +1,22 @@
 """What is seen at the borders of views, where one ray more or less decides, against casting every ray at every triangle."""
 
+import dataclasses
 import itertools
 import math
+from typing import Any
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from scenic.runtime.geometry import primitives
 from scenic.runtime.geometry.bodies import Body
+from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.poses import Poses
 from scenic.runtime.geometry.visibility.bodies import sees_bodies
 from scenic.runtime.geometry.visibility.obstacles import Occluder
 from scenic.runtime.geometry.visibility.points import sees_points
+from scenic.runtime.geometry.visibility.proving import Proof, prove
 from scenic.runtime.geometry.visibility.views import Views
 from tests.runtime.geometry.visibility import reference
 from tests.runtime.geometry.visibility.test_bodies import BOX, CONE, FRAME, quaternions
@@ -268,3 +273,68 @@ def test_directions_on_the_border_of_a_view_are_in_it(turn: tuple[float, float, 
             points = camera + 7 * frame.apply(ways)
             observer = Views.fixed(camera, frame.as_quat(), angles=(across, upward), distance=20.0)
             assert (observer.contain(points) == expected).all()
+
+
+def _contacts(gap: float) -> dict[str, np.ndarray]:
+    """What observers in two hundred frames see of things that touch, but for a gap, a border or each other."""
+    count = 200
+    frames, cameras = (
+        Rotation.random(count, random_state=2),
+        np.random.default_rng(1).uniform(-50, 50, (count, 3)),
+    )
+
+    def watching(**options: Any) -> Views:
+        fixed = Views.fixed((0, 0, 0), **options).spread(count)
+        return dataclasses.replace(fixed, camera=cameras, orientation=frames.as_quat())
+
+    def place(point: tuple[float, float, float]) -> np.ndarray:
+        return cameras + frames.apply(point)
+
+    def box(middle: tuple[float, float, float], size: tuple[float, float, float], turn: float = 0) -> Body:
+        turned = frames * Rotation.from_euler("z", turn)
+        return Body((BOX,), None, Poses(place(middle), turned.as_quat(), np.array([size], dtype=float)))
+
+    narrow: Any = {"angles": (0.3, 0.3), "count": (3, 3)}
+    slab, spot = box((0, 5.5, 0), (3, 1, 3)), place((0, 9, 0))
+    behind = Occluder(box((0, 5.5 + gap, 0), (3, 1, 3)))
+    beside = Occluder(box((0.5 + gap, 4.3, 0), (1, 1, 1)))
+    edge = Occluder(box((math.sqrt(0.5) + gap, 4.3, 0), (1, 1, 1), math.pi / 4))
+    return {
+        "a point where sight ends": sees_points(watching(distance=9.0 + gap), spot, (), count),
+        "a body where sight ends": sees_bodies(watching(distance=5.0 + gap, **narrow), slab, (), count),
+        "a point on a wall": sees_points(watching(), place((0, 5, 0)), [behind], count),
+        "a body beside a wall": sees_bodies(watching(**narrow), box((0, 5.5, 0), (1, 1, 1)), [behind], count),
+        "a point behind an edge": sees_points(watching(), spot, [edge], count),
+        "a point beyond a side": sees_points(watching(), spot, [beside], count),
+    }
+
+
+def test_rounding_decides_nothing_in_whatever_frame() -> None:
+    """Things that touch are told apart from those that do not quite, and alike in all frames."""
+    apart, touching = _contacts(1e-7), _contacts(0.0)
+    within = _contacts(-1e-7)
+    assert all(seen.all() for seen in apart.values())
+    assert not any(seen.any() for seen in within.values())
+    for what, seen in touching.items():
+        if what != "a point beyond a side":
+            assert seen.all() if "ends" in what else not seen.any()
+
+
+@pytest.mark.parametrize(
+    ("mesh", "middle"),
+    [
+        *itertools.product((BOX, primitives.cylinder(4)), [(0, -0.5, 0), (0, 0.5, 0), (0.5, 0, 0)]),
+        (BOX, (0.5, -0.5, 0.5)),
+    ],
+)
+def test_a_camera_on_a_surface(mesh: Mesh, middle: tuple[float, float, float]) -> None:
+    """It sees nothing past the surface, whichever way it looks, and the body that the surface is of."""
+    body = Body((mesh,), None, Poses.fixed(middle))
+    points = np.array([[0, 0.3, 0], [0, 9, 0], [4, 1, 1], [-4, 1, 1], [0, -3, 0]], dtype=float)
+    assert not sees_points(Views.fixed((0, 0, 0)).spread(5), points, [Occluder(body)], 5).any()
+    for turn in (0.0, 1.0, math.pi):
+        observer = Views.fixed(
+            (0, 0, 0), [0, 0, math.sin(turn / 2), math.cos(turn / 2)], angles=(0.3, 0.3), count=(3, 3)
+        )
+        assert sees_bodies(observer, body, (), 1).all()
+        assert prove(observer, body, (), 1).tolist() == [Proof.SEEN]
