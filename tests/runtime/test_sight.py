@@ -281,6 +281,17 @@ def test_points_look_around_whatever_their_angles() -> None:
     }
 
 
+@pytest.mark.parametrize("pair", ["Uniform({0}, {0})", "Uniform([{0}], [{0}, 3])[0]"])
+def test_random_pairs_of_view_angles_are_across_and_upward(pair: str) -> None:
+    text = (
+        f"ego = new Object with viewAngles {pair.format('(0.2, 2.0)')}, with viewRayCount {pair.format('(2, 9)')}\n"
+        "param up = ego.canSee((0, 2, 1)), beside = ego.canSee((1, 2, 0))\n"
+        "pole = new Object at (0, 10, 9.5), with width 3\nslab = new Object at (9.5, 10), with height 3\n"
+        "param high = ego.canSee(pole), far = ego.canSee(slab)\n"
+    )
+    assert answers(text) == {"up": True, "beside": False, "high": True, "far": False}
+
+
 def test_whoever_looks_nearly_up_to_the_zenith_sees_what_is_there() -> None:
     """Also for the analysis, which looks for scenes where that is required."""
     text = "ego = new Object with viewAngles (360 deg, 179.5 deg)\nspot = new Point at (0, 0, Range(4, 5))\nrequire ego can see spot\n"

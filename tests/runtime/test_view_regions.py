@@ -189,3 +189,34 @@ def test_places_near_a_view_are_drawn_from_the_container_of_their_lane(
     assert found.all()
     assert (np.abs(points - places) <= 0.5).all()
     assert cone.contains_points(points - places + position, position, *rest[:3]).all()
+
+
+def test_places_near_a_view_are_drawn_in_each_lane_as_if_it_were_alone() -> None:
+    """Of boxes that are smaller than the view, or hold most of it; observers, ranges, angles and sizes differ."""
+    near = NearView(BoxRegion((1, 1, 1)), *_observer_and_seen())
+    random, lanes = np.random.default_rng(9), 40
+    small = np.arange(lanes) % 3 == 0
+    side = np.where(small[:, np.newaxis], 2.0, random.uniform(20, 60, (lanes, 3)))
+    middle = random.uniform(-3, 3, (lanes, 3))
+    turn = random.normal(size=(lanes, 4))
+    columns = [np.repeat(column, lanes, axis=0) for column in near.fixed_columns("a test")]
+    columns[:2] = side, middle
+    columns[-6:] = (
+        middle + random.uniform(-0.5, 0.5, (lanes, 3)) * side,
+        turn / np.linalg.norm(turn, axis=1, keepdims=True),
+        random.uniform(0.3, 6, lanes),
+        random.uniform(0.3, 3, lanes),
+        random.uniform(4, 9, lanes),
+        random.uniform(0.1, 4, lanes),
+    )
+    keys = random.integers(0, 1 << 63, lanes, dtype=np.uint64)
+    uniforms = random.random((near.draws, lanes))
+    points, found = near.draw_points(uniforms, keys, *columns)
+    assert found is not None
+    assert found.all()
+    assert (np.abs(points - middle) <= side / 2).all()
+    assert near.contains_points(points, *columns)[~small].all()
+    for lane in range(lanes):
+        one = slice(lane, lane + 1)
+        alone, _ = near.draw_points(uniforms[:, one], keys[one], *(column[one] for column in columns))
+        np.testing.assert_array_equal(alone[0], points[lane])

@@ -158,6 +158,24 @@ def test_borders_of_views_in_the_plane_belong_to_them() -> None:
     }
 
 
+def test_directions_on_the_border_of_a_view_in_the_plane_are_in_it() -> None:
+    points = {"left": (-5, 5), "right": (5, 5), "off": (5, 4.999), "end": (6, 8), "behind": (0, -0.1)}
+    seen = ", ".join(f"{name} = ego.canSee({point})" for name, point in points.items())
+    found = answers(f"ego = new Object with viewAngle 90 deg, with visibleDistance 10\nparam {seen}\n")
+    assert found == {"left": True, "right": True, "off": False, "end": True, "behind": False}
+
+
+def test_neither_an_observer_nor_what_it_looks_at_makes_the_plane_a_space() -> None:
+    """Only others that may hide something call for rays: between these few the corner in view is not met."""
+    text = (
+        "ego = new Object with viewAngle 60 deg, with visibleDistance 10, with viewRayDensity 0.02, with occluding True\n"
+        "box = new Object at (4.2, 6), with occluding True, with requireVisible False\n"
+        "other = new Object at (-8, 1), with occluding True, with requireVisible False\n"
+        "param own = ego.canSee(box, [box, ego]), other = ego.canSee(box, [box, ego, other])\n"
+    )
+    assert answers(text) == {"own": True, "other": False}
+
+
 def test_a_camera_within_an_outline_sees_it() -> None:
     text = (
         "ego = new Object with viewAngle 10 deg, with visibleDistance 1, with width 0.1, with length 0.1, with allowCollisions True\n"
