@@ -220,3 +220,40 @@ def test_places_near_a_view_are_drawn_in_each_lane_as_if_it_were_alone() -> None
         one = slice(lane, lane + 1)
         alone, _ = near.draw_points(uniforms[:, one], keys[one], *(column[one] for column in columns))
         np.testing.assert_array_equal(alone[0], points[lane])
+
+
+def test_views_of_several_shapes_answer_in_each_lane_as_if_it_were_alone() -> None:
+    view, random, lanes = ViewRegion(2, (1, 1)), np.random.default_rng(10), 15
+    turn, spin = random.normal(size=(2, lanes, 4))
+    columns = [
+        random.normal(size=(lanes, 3)),
+        turn / np.linalg.norm(turn, axis=1, keepdims=True),
+        np.array([1.0, 2 * math.pi])[np.arange(lanes) % 2],
+        np.array([math.pi, 1.2])[np.arange(lanes) % 2],
+        random.uniform(2, 4, lanes),
+    ]
+    ahead = columns[0] + random.normal(size=(lanes, 3))
+    poses = Poses(
+        ahead, spin / np.linalg.norm(spin, axis=1, keepdims=True), random.uniform(0.1, 0.6, (lanes, 3))
+    )
+    body = Body((primitives.box(), primitives.cone()), np.arange(lanes) // 3 % 2, poses)
+    uniforms, keys = random.random((view.draws, lanes)), np.zeros(lanes, dtype=np.uint64)
+
+    def answers(rows: np.ndarray[Any, Any]) -> list[Any]:
+        own, part = [column[rows] for column in columns], body.take(rows)
+        return [
+            view.distances(3 * ahead[rows], *own),
+            view.contains_points(ahead[rows], *own),
+            view.contains_bodies(part, len(rows), *own),
+            view.meets_bodies(part, len(rows), *own),
+            view.draw_points(uniforms[:, rows], keys[rows], *own)[0],
+            view.sizes(*own),
+            *view.box(*own),
+        ]
+
+    together = answers(np.arange(lanes))
+    for lane in (1, 6, 13):
+        for all_of_them, alone in zip(together, answers(np.array([lane])), strict=True):
+            assert all_of_them[lane].tolist() == pytest.approx(alone[0].tolist(), abs=1e-12)
+    for each in together[1:4]:
+        assert 0 < each.sum() < lanes
