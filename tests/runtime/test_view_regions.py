@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 import scenic
 from scenic.runtime.geometry import body_points, primitives
@@ -100,6 +101,15 @@ def test_each_observer_is_asked_of_the_shape_of_its_lane() -> None:
     body = Body((primitives.box(), primitives.cone()), shape, Poses.fixed((0, 1, 0), size=(1, 1, 2)))
     held = view.contains_bodies(body, 7, camera, turn, angles, vertical, np.full(1, 1.83))
     np.testing.assert_array_equal(held, shape == 1)
+
+
+def test_a_wire_too_thin_to_be_found_reaches_into_a_view() -> None:
+    """Where the search ends undecided, a body may be there; beside the view, where it ends sooner, it is not."""
+    view, turn = ViewRegion(5, (1.0, 0.7)), Rotation.from_euler("ZYX", [0.1, 0.2, 0.3]).as_quat()
+    columns = view.fixed_columns("a test")
+    for x, meets in ((1.9, True), (5.5, False)):
+        wire = Body((primitives.box(),), None, Poses.fixed((x, 3, 0.1), turn, (4, 1e-9, 1e-9)))
+        assert view.meets_bodies(wire, 1, *columns).tolist() == [meets]
 
 
 @pytest.mark.parametrize("angles", [(1e-3, 1e-3), (1e-3, 1), (2, 1e-4), (2 * math.pi - 1e-3, math.pi - 1e-3)])

@@ -141,6 +141,7 @@ def test_what_lies_behind_reaches_into_a_wide_view_from_either_side(side: int) -
     for gap, seen in ((0.05, True), (0.8, False)):
         observer = Views.fixed((0, 0, 0), angles=(2 * math.pi - gap, 1.0), count=(720, 41))
         assert sees_bodies(observer, plank, (), 1).tolist() == [seen]
+        assert prove(observer, plank, (), 1).tolist() == [Proof.SEEN if seen else Proof.HIDDEN]
         assert reference.sees_body(observer, plank, [], 0) is seen
 
 
