@@ -97,7 +97,7 @@ def follow(heading: object, start: tuple[float, float, float], distance: float) 
     return place
 
 
-@pytest.mark.parametrize("distance", [3.0, 27.0])
+@pytest.mark.parametrize("distance", [3.0, 25.0, 27.0])
 def test_following_a_field(distance: float) -> None:
     text = (
         FIELD
@@ -112,7 +112,7 @@ def test_following_a_field(distance: float) -> None:
 def test_following_from_random_places_agrees_lane_by_lane() -> None:
     text = (
         FIELD
-        + "s = (Range(0, 2), 1, 2)\nd = Range(1, 40)\np = follow F from s for d\nparam x = (s[0], d, p.position)"
+        + "s = (Range(0, 2), 1, 2)\nd = Uniform(Range(1, 40), 25, 30)\np = follow F from s for d\nparam x = (s[0], d, p.position)"
     )
     for x, distance, end in draws(text, n=20):
         np.testing.assert_allclose(
@@ -137,9 +137,10 @@ def test_polygonal_fields_take_the_first_cell() -> None:
 def test_polygonal_fields_reject_where_they_have_no_direction() -> None:
     values = draws(CELLS + "x = Range(-20, 20)\ny = (F at (x, 1)).yaw\nparam x = (x, y)", n=200)
     assert all(x >= 0 for x, _ in values)
-    outside = CELLS.replace("cells)", "cells, defaultHeading=1.5)")
-    values = draws(outside + "x = Range(-20, 20)\nparam x = (x, (F at (x, 1)).yaw)", n=200)
-    assert {round(yaw, 6) for x, yaw in values if x < 0} == {1.5}
+    for default in (1.5, 0):
+        outside = CELLS.replace("cells)", f"cells, defaultHeading={default})")
+        values = draws(outside + "x = Range(-20, 20)\nparam x = (x, (F at (x, 1)).yaw)", n=100)
+        assert {round(yaw, 6) for x, yaw in values if x < 0} == {default}
     assert isinstance(failure(CELLS + "param x = (F at (-1, 1)).yaw"), InvalidScenarioError)
 
 
@@ -173,7 +174,7 @@ def test_cells_without_heading_ask_the_function() -> None:
     assert isinstance(failure(broken), ScenicTypeError)
 
 
-@pytest.mark.parametrize("use", ["3 at (1, 2)", "follow 3 from (1, 2) for 4", "new Object following 3 for 4"])
+@pytest.mark.parametrize("use", ["3 at (1, 2)", "Uniform(F, 3) at (1, 2)", "follow Uniform(3, F) from (1, 2) for 4", "follow 3 from (1, 2) for 4", "new Object following 3 for 4"])
 def test_what_is_no_field_is_refused(use: str) -> None:
     assert isinstance(failure(FIELD + f"x = {use}"), ScenicTypeError)
 

@@ -55,12 +55,12 @@ def add(x, y=2): return x + y if x > 0 else None
 class K(object):
     def __init__(self, v): self.v = v
     @distributionMethod
-    def times(self, x, *, factor=1): return self.v * x * factor
+    def times(self, x, *, factor=1): return self.v * x * factor if factor > 0 else None
 x = Range(1, 2)
-param x = (x, add(x), add(3), add(x, y=x), K(3).times(x, factor=x), K(3).times(2))
+param x = (x, add(x), add(3), add(x, y=x), K(3).times(x, factor=x), K(3).times(2), K(3).times(2, factor=x))
 """
-    for x, a, b, c, d, e in draws(text, n=20):
-        np.testing.assert_allclose([a, b, c, d, e], [x + 2, 5, 2 * x, 3 * x * x, 6])
+    for x, *found in draws(text, n=20):
+        np.testing.assert_allclose(found, [x + 2, 5, 2 * x, 3 * x * x, 6, 6 * x])
 
 
 BESIDE = """

@@ -242,7 +242,7 @@ def test_ways_along_polygons_of_random_length_end_where_fixed_ones_do() -> None:
     text = """
 from shapely.geometry import box
 F = PolygonalVectorField('f', [(box(-50, 0, 50, 7), 0.5), (box(-50, 7, 50, 90), -0.75)], minSteps=3, defaultStepSize=2)
-way = Range(0.5, 20)
+way = Uniform(Range(0.5, 20), 8, 10)
 param x = (way, F.followFrom((1, 1), way), F.followFrom((1, 1), way, steps=4), F.followFrom((1, 1), way, stepSize=0.5))
 """
     field = PolygonalVectorField(
