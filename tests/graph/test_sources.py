@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from scenic.graph.draws import Counter, Lanes, Points, Source, open_unit, words_of
+from scenic.graph.draws import BOX, Counter, Lanes, Points, Source, open_unit, words_of
 from scenic.graph.node import Graph, axis
 from scenic.graph.points import GivenPoints, PointSet, Sobol
 from scenic.runtime.sampling.driving import driven
@@ -101,3 +101,11 @@ def test_rows_are_by_scene_and_the_rest_is_hashed() -> None:
     np.testing.assert_array_equal(found[:2], rows[who.scenes].T)
     np.testing.assert_array_equal(found[2:], Counter(who.keys).uniforms(ADDRESSES)[2:])
     np.testing.assert_array_equal(source.words(ADDRESSES), Counter(who.keys).words(ADDRESSES))
+
+
+def test_the_first_choice_among_boxes_is_a_number_of_the_row() -> None:
+    points, who = Sobol(), lanes()
+    where = np.array([OWN[2], BOX, BOX + 1], dtype=np.uint64)
+    found = driven(points, GRAPH)(who).uniforms(where)
+    np.testing.assert_array_equal(found[:2], points.of_scenes(np.array([2, -1]), len(OWN), who))
+    np.testing.assert_array_equal(found[2:], Counter(who.keys).uniforms(where[2:]))

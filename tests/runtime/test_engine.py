@@ -169,6 +169,21 @@ def test_the_report_of_a_program_computed_by_hand() -> None:
     )
 
 
+def test_collisions_are_reported_pair_by_pair_at_the_later_object() -> None:
+    text = "new Object\nnew Object at (9, 9)\nnew Object at (Range(-0.2, 0.2), 0)\nnew Object at (Range(9.5, 10.5), 9)\n"
+    (result,) = scenario(text).stream(1, seed=1, max_attempts=400)
+    assert isinstance(result, Exhausted)
+    always, half = result.report.rows
+    found = [(row.label, row.span.line if row.span else 0) for row in (always, half)]
+    assert found == [
+        ("collision of Object (line 1) and Object (line 3)", 3),
+        ("collision of Object (line 2) and Object (line 4)", 4),
+    ]
+    assert (always.rejected, half.alone) == (1, 0)
+    assert 0.3 < half.rejected < 0.7
+    assert always.alone == pytest.approx(1 - half.rejected)
+
+
 def test_alone_means_that_nothing_else_rejects() -> None:
     # Each of the two rejects half; together, independent: each alone rejects a quarter. The third never holds in
     # what is left of the first two.
@@ -206,6 +221,18 @@ def test_candidates_in_which_a_requirement_fails_count_as_rejected() -> None:
     assert found["A"] == found["B"]
     assert 0.3 < found["A"][0] < 0.7
     assert found["C"] == pytest.approx((1, 1 - found["A"][0]))
+
+
+def test_a_soft_requirement_that_fails_does_so_where_it_has_to_hold() -> None:
+    text = "x = Range(0, 1)\ndef bad(v): raise KeyError(v)\nrequire[0.5] bad(x)\nego = new Object\n"
+    program, outcomes = scenario(text), []
+    for number in range(16):
+        try:
+            (found,) = program.stream(1, first=number, seed=3)
+            outcomes.append(found.enforces(found.program.requirements[0]))
+        except KeyError:
+            outcomes.append(None)
+    assert set(outcomes) == {None, False}
 
 
 def test_soft_requirements_keep_their_own_chances() -> None:
