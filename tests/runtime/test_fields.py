@@ -244,6 +244,19 @@ def test_unions_of_many_regions_take_the_first_that_holds_the_point() -> None:
     assert item.heading == pytest.approx(max(0, math.ceil(item.x) - 2) / 100)
 
 
+def test_unions_of_many_regions_may_have_volumes_among_them() -> None:
+    """These hold points at their own heights, and the first that does gives the direction, as among few."""
+    text = (
+        "def square(x):\n    return PolygonalRegion([(x, 0), (x + 2, 0), (x + 2, 2), (x, 2)], "
+        "orientation=VectorField('own', lambda p: x / 100))\n"
+        "box = BoxRegion((3, 3, 3), position=(5, 1, 9), orientation=VectorField('own', lambda p: 1.5))\n"
+        "some = [square(x) for x in range(30)]\nfields = [VectorField.forUnionOf(each) for each in ([box, *some], [*some, box])]\n"
+        "param found = [field[p].yaw for field in fields for p in ((4.5, 1, 0), (4.5, 1, 9), (10.5, 1, 9))]\n"
+    )
+    (found,) = scenic.scenarioFromString(text).sample(1, seed=1)
+    assert found.params["found"] == pytest.approx([0.03, 1.5, 0.09, 0.03, 0.03, 0.09])
+
+
 def test_the_field_of_a_union_is_that_of_the_first_region_that_has_a_place() -> None:
     text = (
         "from scenic.core.regions import RectangularRegion, PolygonalRegion\nF = VectorField('F', lambda p: 0.5)\nG = VectorField('G', lambda p: p.x)\n"

@@ -7,6 +7,8 @@ import pytest
 from scipy import stats
 
 from scenic.language.errors import InvalidScenarioError, ScenicTypeError
+from scenic.runtime.mutators import OrientationMutator, PositionMutator
+from scenic.runtime.values import Vector
 from tests.runtime.programs import (
     FALSE_ALARM,
     assert_same_rotation,
@@ -165,6 +167,27 @@ def test_a_mutator_may_stop_the_others() -> None:
         + "ego = new C at (1, 0)\nmutate ego by 3\nrequire ego.position.x > 6.5\n"
     )
     assert {item.egoObject.position.x for item in scenario(text).sample(5, seed=1)} == {7.0}
+
+
+def test_beside_mutators_of_the_program_deviations_may_be_random_and_scales_negative() -> None:
+    text = CUSTOM.format(go_on="") + (
+        "ego = new C with positionStdDev (Range(1, 3), 0, 0), with orientationStdDev (0, 0, 0)\nmutate ego by -3\n"
+    )
+    egos = [item.egoObject for item in scenario(text).sample(300, seed=1)]
+    deviations = np.array([ego.positionStdDev.x for ego in egos])
+    assert stats.kstest(deviations, stats.uniform(1, 2).cdf).pvalue > FALSE_ALARM
+    noise = (np.array([ego.position.x for ego in egos]) + 2 * 3) / deviations
+    assert normal(noise, 3)
+    assert stats.spearmanr(np.abs(noise), deviations).pvalue > FALSE_ALARM
+    assert {ego.tag for ego in egos} == {1}
+
+
+def test_mutators_of_equal_deviations_are_equal() -> None:
+    one, same, other = PositionMutator((1, 2, 3)), PositionMutator(Vector(1, 2, 3)), PositionMutator((1, 2, 4))
+    assert one == same
+    assert hash(one) == hash(same)
+    assert one != other
+    assert one != OrientationMutator((1, 2, 3))
 
 
 @pytest.mark.parametrize("scale", ["0", "Uniform(0, 2)"])
