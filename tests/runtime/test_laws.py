@@ -164,8 +164,8 @@ def test_resample_draws_again_with_the_same_parameters() -> None:
 
 @pytest.mark.parametrize(
     "primitive",
-    ["Normal(0, 1)", "DiscreteRange(0, 9)", "Uniform(0, 1, 2, 3, 4, 5)", "Discrete({0: 1, 1: 1, 2: 1})",
-     "TruncatedNormal(0, 1, -1, 1)", "DiscreteRange(0, 3, [1, 1, 1, 1])"],
+    ["Normal(0, 1)", "DiscreteRange(0, 9)", "Uniform(0, 1, 2, 3, 4, 5)", "Discrete({0: 1, 1: 5, 2: 0, 3: 2})",
+     "TruncatedNormal(0, 1, -1, 1)", "DiscreteRange(0, 3, [1, 5, 0, 2])"],
 )  # fmt: skip
 def test_resample_of_every_primitive(primitive: str) -> None:
     values = draws(f"a = {primitive}\nb = resample(a)\nparam x = (a, b)", n=1000)

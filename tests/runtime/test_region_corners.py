@@ -215,6 +215,16 @@ def test_fields_have_their_default_where_no_cell_is() -> None:
             unknown[Vector(3, 0.5, 0)]
 
 
+def test_cells_of_heading_0_have_a_heading() -> None:
+    """The function is for those that have none."""
+    cell, solid = shapely.box(0, 0, 1, 1), named.BoxRegion(position=(0.5, 0.5, 0))
+    for field in (
+        PolygonalVectorField("f", [(cell, 0.0), (cell, None)], lambda _point: 0.25),
+        PolyhedronVectorField("f", [(solid, 0.0), (solid, None)], lambda _point: 0.25),
+    ):
+        assert field[Vector(0.5, 0.5, 0)].yaw == 0
+
+
 @pytest.mark.parametrize(
     ("distance", "size", "steps", "count"),
     [(12, 5, None, 4), (21, 5, None, 5), (20, 5, None, 4), (30, 1, None, 30), (30, 1, 2, 2), (3, 5, 7, 7)],

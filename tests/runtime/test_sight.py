@@ -292,6 +292,13 @@ def test_random_pairs_of_view_angles_are_across_and_upward(pair: str) -> None:
     assert answers(text) == {"up": True, "beside": False, "high": True, "far": False}
 
 
+@pytest.mark.parametrize(("aside", "seen"), [(0.7, False), (0.72, True)])
+def test_the_corner_of_a_turned_box_hides_a_place(aside: float, seen: bool) -> None:
+    """It reaches farther from the middle than any side does."""
+    text = f"ego = new Object\nwall = new Object at ({aside}, 5), facing 45 deg\nparam seen = ego.canSee((0, 9), [wall])\n"
+    assert answers(text) == {"seen": seen}
+
+
 def test_whoever_looks_nearly_up_to_the_zenith_sees_what_is_there() -> None:
     """Also for the analysis, which looks for scenes where that is required."""
     text = "ego = new Object with viewAngles (360 deg, 179.5 deg)\nspot = new Point at (0, 0, Range(4, 5))\nrequire ego can see spot\n"

@@ -132,6 +132,19 @@ def test_tall_things_may_be_farther_off_than_sight_reaches() -> None:
     assert 11 < max(distances) < 10 + math.sqrt(16 + 0.125)
 
 
+def test_in_space_things_are_visible_above_and_below_a_flat_workspace() -> None:
+    text = (
+        "workspace = Workspace(RectangularRegion((0, 0), 0, 16, 12))\n"
+        "ego = new Object with visibleDistance 5\nnew Object visible, with width 0.5, with requireVisible False\n"
+    )
+    places = np.array(
+        [list(scene.objects[1].position) for scene in scenic.scenarioFromString(text).sample(80, seed=1)]
+    )
+    assert (np.abs(places[:, :2]) <= (7.75, 5.5)).all()
+    assert places[:, 2].min() < -3
+    assert places[:, 2].max() > 3
+
+
 def test_places_near_a_view_reach_as_far_as_the_thing_does() -> None:
     text = (
         "ego = new Object with visibleDistance 10, with viewAngles (90 deg, 90 deg)\n"

@@ -54,6 +54,16 @@ def test_weights_are_the_law(statement: str, law: dict[str, float]) -> None:
     assert chisquare([found[name] for name in law], [total * share for share in law.values()]).pvalue > 1e-4
 
 
+@pytest.mark.parametrize("draw", ["Discrete({0: 0, 1: 1, 2: 3})", "DiscreteRange(0, 2, [0, 1, 3])"])
+def test_weights_are_the_law_of_what_is_drawn_at_once(draw: str) -> None:
+    text = f"behavior B():\n    take [{draw} for _ in range(800)]\nego = new Object with behavior B\n"
+    (simulation,) = runs(text, 1)
+    assert simulation.result is not None
+    found = Counter(simulation.result.actions[0][simulation.objects[0]])
+    assert set(found) == {1, 2}
+    assert chisquare([found[1], found[2]], [200, 600]).pvalue > 1e-4
+
+
 MUTATED = """
 scenario Sub():
     setup:
