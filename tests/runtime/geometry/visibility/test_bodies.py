@@ -111,6 +111,16 @@ def test_points_are_seen_as_by_the_letter() -> None:
     assert 200 < seen.sum() < 1800
 
 
+def seen_alone(observers: Views, target: Body, occluders: list[Occluder], lanes: np.ndarray) -> list[bool]:
+    """What these lanes see as the only ones."""
+    others = [
+        Occluder(item.body.take(lanes), item.active if len(item.active) == 1 else item.active[lanes])
+        for item in occluders
+    ]
+    found: list[bool] = sees_bodies(observers.take(lanes), target.take(lanes), others, len(lanes)).tolist()
+    return found
+
+
 def test_neither_batch_nor_company_changes_a_lane() -> None:
     count = 64
     observers, target, occluders = scenes(5, count)
@@ -118,19 +128,19 @@ def test_neither_batch_nor_company_changes_a_lane() -> None:
     for step in (1, 7):
         for start in range(0, count, step):
             lanes = np.arange(start, min(start + step, count))
-            part = sees_bodies(
-                observers.take(lanes),
-                Body(target.meshes, target.choice[lanes], target.poses.take(lanes)),
-                [
-                    Occluder(
-                        Body(item.body.meshes, item.body.choice[lanes], item.body.poses.take(lanes)),
-                        item.active if len(item.active) == 1 else item.active[lanes],
-                    )
-                    for item in occluders
-                ],
-                len(lanes),
-            )
-            assert part.tolist() == together[lanes].tolist()
+            assert seen_alone(observers, target, occluders, lanes) == together[lanes].tolist()
+
+
+def test_thousands_of_lanes_see_as_a_few_do() -> None:
+    """So many that they are looked at in parts; of all but the last ones the target is out of range."""
+    count, near = 1100, 80
+    observers, target, occluders = scenes(6, count)
+    lanes = np.arange(count - near, count)
+    observers.distance[: count - near] = 1e-3
+    observers.scaling[:] = np.arange(count) % 2 == 0
+    together = sees_bodies(observers, target, occluders, count)[lanes]
+    assert seen_alone(observers, target, occluders, lanes) == together.tolist()
+    assert 15 < together.sum() < 65
 
 
 def fixed(position: tuple[float, float, float], size: tuple[float, float, float] = (1, 1, 1)) -> Body:
