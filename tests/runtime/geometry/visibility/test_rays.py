@@ -377,3 +377,16 @@ def test_lines_almost_along_the_faces_of_the_box_enter_and_leave_it_where_they_d
         ]
         assert near[line] == pytest.approx(float(max(low for low, _ in spans)), rel=1e-12, abs=1e-12)
         assert far[line] == pytest.approx(float(min(high for _, high in spans)), rel=1e-12, abs=1e-12)
+
+
+@pytest.mark.parametrize("mesh", [primitives.cylinder(7), bumpy(3)])
+def test_thousands_of_rays_are_each_decided_as_among_few(mesh: Mesh) -> None:
+    rng, count = np.random.default_rng(9), 5000
+    origins = rng.normal(size=(count, 3)) * 2
+    directions = rng.uniform(-0.6, 0.6, (count, 3)) - origins
+    near, _ = hits.box_span(origins, directions)
+    together = exact_first(mesh, origins, directions, near)
+    for some in (np.arange(200), np.arange(4000, 4200), np.arange(4600, 4800)):
+        alone = exact_first(mesh, origins[some], directions[some], near[some])
+        np.testing.assert_array_equal(together[some], alone)
+    assert 0.2 < np.isfinite(together).mean() < 0.8
