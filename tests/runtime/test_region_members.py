@@ -499,6 +499,35 @@ def test_samples_of_regions_keep_names(made: str) -> None:
     assert [item.params["x"].name for item in scenario(footprint).sample(2, seed=1)] == ["below", "below"]
 
 
+@pytest.mark.parametrize("centered", [True, False])
+@pytest.mark.parametrize("kind", ["MeshVolumeRegion", "MeshSurfaceRegion"])
+def test_samples_of_regions_of_meshes_are_where_they_are_drawn(kind: str, centered: bool) -> None:
+    """Their attributes are the values of the scene, and so are circle and normals."""
+    text = (
+        "import trimesh\ncube = trimesh.creation.box((1, 2, 4))\ncube.apply_translation((5, 0, 0))\n"
+        "width, x, pitch = Range(2, 3), Range(1, 2), Range(0.1, 0.3)\n"
+        f"mesh = {kind}(cube, dimensions=(width, 1, 1), position=(x, 2, 3), rotation=(0, pitch, 0), centerMesh={centered})\n"
+        "ego = new Object at (x, 2, 30), with width width, with length 1, with height 1, facing (0, pitch, 0)\n"
+        "top = ego.topSurface\nfield = top.orientation\n"
+        "param regions = (mesh, ego.occupiedSpace, top), numbers = (width, x, pitch)\n"
+    )
+    for scene in scenario(text).sample(3, seed=1):
+        width, x, pitch = scene.params["numbers"]
+        for region, z in zip(scene.params["regions"], (3, 30, 30), strict=True):
+            assert tuple(region.position) == (x, 2, z)
+            assert tuple(region.dimensions) == (width, 1, 1)
+            assert_same_rotation(region.rotation, euler(0, pitch))
+            middle, radius = region.circumcircle
+            away = 0 if z == 30 or centered else 5 * width
+            assert tuple(middle) == pytest.approx((x + away, 2, z))
+            assert radius == pytest.approx(math.sqrt(width**2 + 2) / 2)
+            assert region.containsPoint(middle) is (region.dimension == 3)
+            if region.dimension == 2:
+                upper = middle + Vector(0, 0, 0.5)
+                for found in (region.orientation[upper], region.orientation_at(upper)):
+                    assert_same_rotation(found, euler(0, pitch))
+
+
 PLAZA_FOOTPRINT = (
     "from scenic.runtime.regions.planar import Footprint\n"
     "param x = Footprint(CircularRegion((0, 0), Range(1, 2)), name='below')\n"
@@ -609,6 +638,21 @@ def test_meshes_are_stretched_turned_and_moved_in_this_order(kind: str, centered
     expected = Rotation.from_quat(TILT.q).apply(corners * (size / (1, 2, 4))) + np.array(PLACE)
     np.testing.assert_allclose(region.AABB, (expected.min(axis=0), expected.max(axis=0)))
     assert region.containsPoint(Vector(*expected[0])) is True
+
+
+@pytest.mark.parametrize("tolerance", [1e-6, 0.25])
+@pytest.mark.parametrize("kind", ["MeshVolumeRegion", "MeshSurfaceRegion"])
+def test_what_is_within_the_tolerance_of_a_mesh_counts_as_in_it(kind: str, tolerance: float) -> None:
+    """Beside a face as beside a corner, on every side; of several points asked at once and of one alone."""
+    region = getattr(named, kind)(CUBE, (1, 2, 4), PLACE, TILT, tolerance=tolerance)
+    turn = Rotation.from_quat(TILT.q)
+    ways = np.array([way for way in itertools.product((-1, 0, 1), repeat=3) if any(way)], dtype=float)
+    unit = ways / np.linalg.norm(ways, axis=1, keepdims=True)
+    for off, inside in ((0.999, True), (1.001, False)):
+        points = turn.apply(ways * (0.5, 1, 2) + off * tolerance * unit) + np.array(PLACE)
+        found = region.contains_points(points, *region.fixed_columns("a test"))
+        assert (found == inside).all()
+        assert all(region.containsPoint(Vector(*point)) is inside for point in points)
 
 
 def test_lines_and_points_of_several_members_count_alike() -> None:

@@ -19,7 +19,7 @@ from scipy.spatial.transform import Rotation
 from scenic.runtime.fields import VectorField
 from scenic.runtime.geometry.poses import Floats
 from scenic.runtime.regions.base import Region, Workspace, nowhere
-from scenic.runtime.regions.composite import Composite, UnionRegion
+from scenic.runtime.regions.composite import Composite, DifferenceRegion, IntersectionRegion, UnionRegion
 from scenic.runtime.regions.lines import LineRegion
 from scenic.runtime.regions.planar import Footprint, PlanarRegion
 from scenic.runtime.values import Orientation, Vector
@@ -286,3 +286,46 @@ def test_the_pieces_of_a_line_keep_their_directions(kind: Any, points: list[Any]
     assert inside.length == pytest.approx(1.5)
     for place, yaw in (((-0.7, 0.5, z), -np.pi / 2), ((0, 0.8, z), 0.0)):
         assert inside.orientation[Vector(*place)].yaw == pytest.approx(yaw)
+
+
+@pytest.mark.parametrize("height", [0, 2])
+def test_an_edge_that_two_polygons_share_has_their_field(height: float) -> None:
+    f, g = (VectorField(name, lambda place: place.x) for name in "fg")
+    for one, two, expected in ((f, g, f), (f, None, f), (None, g, g)):
+        left = named.PolygonalRegion([(0, 0), (1, 0), (1, 1), (0, 1)], z=height, orientation=one)
+        right = named.PolygonalRegion([(1, 0), (2, 0), (2, 1), (1, 1)], z=height, orientation=two)
+        edge = left.intersect(right)
+        assert isinstance(edge, LineRegion)
+        assert edge.length == pytest.approx(1)
+        assert edge.orientation is expected
+        assert (edge.box()[0][0, 2], edge.box()[1][0, 2]) == (height, height)
+
+
+def test_unions_of_a_polygon_and_a_line_hold_both() -> None:
+    square = named.PolygonalRegion([(0, 0), (1, 0), (1, 1), (0, 1)])
+    line = named.PolylineRegion([(0.5, 0.5), (4, 0.5)])
+    for both in (square.union(line), line.union(square)):
+        assert both.containsPoint(Vector(0.2, 0.2, 0)) is True
+        assert both.containsPoint(Vector(3, 0.5, 0)) is True
+        assert both.containsPoint(Vector(3, 0.6, 0)) is False
+        assert both.distanceTo(Vector(5, 0.5, 0)) == pytest.approx(1)
+        # Of members of unlike dimension points are drawn from the larger ones.
+        assert cloud(both)[:, 0].max() <= 1
+
+
+def test_members_of_the_plane_hold_points_at_their_height_alone() -> None:
+    """Also those of members of combinations, whoever is asked."""
+    disc, ball = named.CircularRegion(Vector(0, 0, 0), 1), named.SpheroidRegion((2, 2, 2), Vector(9, 0, 0))
+    either = UnionRegion(disc, ball)
+    both, rest = IntersectionRegion(either, named.BoxRegion((4, 4, 30))), DifferenceRegion(either, ball)
+    for region in (disc, either, both, rest, UnionRegion(both, rest)):
+        for height, met in ((0, True), (5, False)):
+            point = named.PointSetRegion("point", [(0.2, 0.1, height), (40, 40, 40)])
+            assert region.intersects(point) is met
+            assert point.intersects(region) is met
+            assert (point.intersect(region) is not nowhere) is met
+            assert len(point.difference(region).points) == 2 - met
+            assert region.containsRegion(named.PointSetRegion("one", point.points[:1])) is met
+    # What is above and below a disc is left of a box without it.
+    left = DifferenceRegion(named.BoxRegion((2, 2, 8)), either)
+    assert np.hypot(*cloud(left)[:, :2].T).min() < 0.3

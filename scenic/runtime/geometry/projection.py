@@ -87,23 +87,30 @@ def near_surface(
     threshold: float,
     points: Floats,
     lanes: int,
+    tolerance: float = TOLERANCE,
 ) -> Booleans:
-    """Which points ``(lanes | 1, 3)`` lie within `TOLERANCE` of the side, ``(lanes,)``."""
+    """Which points ``(lanes | 1, 3)`` lie within the tolerance of the side, ``(lanes,)``."""
     result = np.zeros(lanes, dtype=np.bool_)
     for mesh, chosen in body.by_mesh(lanes):
         poses = body.poses.take(chosen)
         start = points if len(points) == 1 else points[chosen]
-        result[chosen] = _faces_near(mesh, poses, side, threshold, start, len(chosen)) >= 0
+        result[chosen] = _faces_near(mesh, poses, side, threshold, start, len(chosen), tolerance) >= 0
     return result
 
 
 def _faces_near(
-    mesh: Mesh, poses: Poses, side: Side, threshold: float, points: Floats, count: int
+    mesh: Mesh,
+    poses: Poses,
+    side: Side,
+    threshold: float,
+    points: Floats,
+    count: int,
+    tolerance: float = TOLERANCE,
 ) -> Indices:
     """The first face of the side within the tolerance of each point, ``(count,)``; -1 if there is none."""
     local = np.broadcast_to(poses.to_unit(points), (count, 3))
     size = np.broadcast_to(poses.size, (count, 3))
-    reach = TOLERANCE / size
+    reach = tolerance / size
     result = np.full(count, -1, dtype=np.intp)
     few = _few_faces(mesh, poses, side, threshold)
     for part in rows(count, 1, _CHUNK // _FEW_FACES):
@@ -123,7 +130,7 @@ def _faces_near(
             corners = [mesh.triangles[face, corner] * size[entry] for corner in range(3)]
             place = local[entry] * size[entry]
             distance = length(place - nearest_on_triangles(place, *corners))
-            within = np.flatnonzero(distance <= TOLERANCE)
+            within = np.flatnonzero(distance <= tolerance)
             first = within[first_of_each(entry[within])]
             result[entry[first]] = face[first]
     return result

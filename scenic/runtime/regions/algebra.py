@@ -120,7 +120,8 @@ def region_of(geometry: Any, height: float | None, orientation: Any) -> Region:
         line = shapely.MultiLineString(lines) if len(lines) > 1 else lines[0]
         if height == 0:
             return PolylineRegion(polyline=line, orientation=_of_pieces(orientation))
-        return PathRegion(polylines=[[(x, y, height) for x, y, *_ in part.coords] for part in lines])
+        chains = [[(x, y, height) for x, y, *_ in part.coords] for part in lines]
+        return PathRegion(polylines=chains, orientation=_of_pieces(orientation))
     points = [(part.x, part.y, height) for part in leaves if part.geom_type == "Point"]
     if points and height is not None:
         return PointSetRegion("points", points, orientation=orientation)
@@ -276,10 +277,9 @@ def union(first: Any, second: Any) -> Region:
         return b
     if not (a.is_random or b.is_random):
         flat_a, flat_b = _flat(a), _flat(b)
-        if flat_a is not None and flat_b is not None and flat_a[1] == flat_b[1]:
-            areal = not (isinstance(a, LineRegion) and isinstance(b, LineRegion))
-            if areal:
-                return region_of(flat_a[0].union(flat_b[0]), flat_a[1], field_of_union([a, b]))
+        areal = not (isinstance(a, LineRegion) or isinstance(b, LineRegion))
+        if areal and flat_a is not None and flat_b is not None and flat_a[1] == flat_b[1]:
+            return region_of(flat_a[0].union(flat_b[0]), flat_a[1], field_of_union([a, b]))
         solid_a, solid_b = _solid(a), _solid(b)
         if solid_a is not None and solid_b is not None:
             return _volume(booleans.union([solid_a, solid_b]))

@@ -68,6 +68,8 @@ class Region(ABC):
     scenic_kind: ClassVar[Kind] = Kind.REGION
     parameter_names: ClassVar[tuple[str, ...]] = ()
     """Attributes that hold the parameters, in order; a region with random ones is sampled through them."""
+    placement_names: ClassVar[tuple[str, ...]] = ()
+    """Attributes that are random where the parameters are, but need not be among them."""
     dimension: float
     """0 for points to 3 for volumes; infinite for all of space."""
     draws: int = 3
@@ -200,8 +202,8 @@ class Region(ABC):
         return apply(_ORIENTATION, to_vector(point), *self.parameters, payload=self)
 
     def random_parts(self) -> list[Any]:
-        """The parameters, for sampling."""
-        return list(self.parameters)
+        """The parameters, and what else is random with them, for sampling."""
+        return [*self.parameters, *(getattr(self, name) for name in self.placement_names)]
 
     def sampled(self, sample: Any) -> "Region":
         """The region of one sample."""
@@ -213,6 +215,8 @@ class Region(ABC):
         if self.parameter_names:
             for name, value in zip(self.parameter_names, region.parameters, strict=True):
                 setattr(region, name, value)
+        for name in self.placement_names:
+            setattr(region, name, sample.value(getattr(self, name)))
         return region
 
     def project(self, point: Any, direction: Any) -> tuple[Any, Any]:

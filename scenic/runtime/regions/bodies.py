@@ -46,6 +46,7 @@ class OccupiedSpace(Region):
 
     dimension: float = 3
     may_find_none = True
+    placement_names = ("position", "rotation", "dimensions")
 
     def __init__(self, thing: Any) -> None:
         super().__init__(*body_operands(thing), name="occupied space")
@@ -305,6 +306,7 @@ class SideSurface(Region):
     dimension: float = 2
     has_orientation = True
     may_find_none = True
+    placement_names = ("position", "rotation", "dimensions")
 
     def __init__(self, thing: Any, side: str, thresholds: Any) -> None:
         if is_random(thresholds):
@@ -317,6 +319,14 @@ class SideSurface(Region):
             axis, sign = self.facing.side
             lower, upper = _pairs(thresholds)[axis]
             self.facing = Facing((axis, sign), upper if sign > 0 else -lower)
+
+    def sampled(self, sample: Any) -> Region:
+        region = super().sampled(sample)
+        if region is not self:
+            region.__dict__.pop("_fixed", None)
+            if getattr(region.__dict__.get("orientation"), "region", None) is self:
+                region.orientation = self.algebra.own_field(region)
+        return region
 
     @cached_property
     def _fixed(self) -> FixedSide | None:
@@ -346,8 +356,9 @@ class SideSurface(Region):
 
     def contains_points(self, points: Points, *columns: Column) -> Mask:
         body = body_of(*columns)
+        side, threshold = self.facing.side, self.facing.threshold
         return projection.near_surface(
-            body, self.facing.side, self.facing.threshold, points, max(len(points), len(body))
+            body, side, threshold, points, max(len(points), len(body)), self.tolerance
         )
 
     def draw_points(self, uniforms: Column, keys: Column, *columns: Column) -> tuple[Points, Mask | None]:
@@ -398,7 +409,8 @@ class SideSurface(Region):
     @property
     def circumcircle(self) -> tuple[Any, Any]:
         """Centre and radius of the ball around the box of the whole body."""
-        return self.position, operate("divide", operate("norm", self.dimensions), 2)
+        position, _, size, _ = self.parameters
+        return position, operate("divide", operate("norm", size), 2)
 
     @property
     def boundingPolygon(self) -> Any:

@@ -111,9 +111,16 @@ class Composite(Region):
     def combined(self, members: Sequence[Region]) -> Region:
         """The same combination of other members."""
 
-    def _exactly(self, points: Points, columns: Sequence[Column]) -> list[Mask]:
+    def members_that_hold(self, points: Points, columns: Sequence[Column]) -> list[Mask]:
         """For each member, which points lie in it; of regions of the plane also at its height."""
         return [exactly_contains(member, points, mine) for member, mine in self._parts(columns)]
+
+    @abstractmethod
+    def joined(self, inside: Sequence[Mask]) -> Mask:
+        """Which points lie in the region, from which lie in its members."""
+
+    def contains_points(self, points: Points, *columns: Column) -> Mask:
+        return self.joined([member.contains_points(points, *mine) for member, mine in self._parts(columns)])
 
     @abstractmethod
     def _accept(self, points: Points, inside: Sequence[Mask], chosen: NDArray[np.intp], dice: Column) -> Mask:
@@ -161,7 +168,7 @@ class Composite(Region):
                 known[mine] = True if present is None else present
             rows = [column if len(column) == 1 else column[lane] for column in columns]
             kept = known & self._accept(
-                drawn, self._exactly(drawn, rows), chosen, open_unit(mix(own + np.uint64(5)))
+                drawn, self.members_that_hold(drawn, rows), chosen, open_unit(mix(own + np.uint64(5)))
             )
             kept_by_lane = kept.reshape(len(missing), count)
             lucky = np.flatnonzero(kept_by_lane.any(axis=1))
@@ -194,7 +201,9 @@ def _any(masks: Sequence[Mask]) -> Mask:
 
 
 def exactly_contains(region: Region, points: Points, columns: Sequence[Column]) -> Mask:
-    """Which points lie in a region, with their heights where it lies in a plane."""
+    """Which points lie in a region, with their heights where it lies in a plane, or is made of such as do."""
+    if isinstance(region, Composite):
+        return np.broadcast_to(region.joined(region.members_that_hold(points, columns)), len(points))
     inside = region.contains_points(points, *columns)
     if isinstance(region, PlanarRegion):
         inside = inside & (np.abs(points[:, 2] - region.heights(*columns)) <= LEVEL)
@@ -245,8 +254,8 @@ class IntersectionRegion(Composite):
     def _accept(self, points: Points, inside: Sequence[Mask], chosen: NDArray[np.intp], dice: Column) -> Mask:
         return _all(inside)
 
-    def contains_points(self, points: Points, *columns: Column) -> Mask:
-        return _all([member.contains_points(points, *mine) for member, mine in self._parts(columns)])
+    def joined(self, inside: Sequence[Mask]) -> Mask:
+        return _all(inside)
 
     def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
         return _all([member.contains_bodies(body, lanes, *mine) for member, mine in self._parts(columns)])
@@ -320,8 +329,8 @@ class UnionRegion(Composite):
         ]
         return np.asarray(dice * np.sum(mine, axis=0) <= 1)
 
-    def contains_points(self, points: Points, *columns: Column) -> Mask:
-        return _any([member.contains_points(points, *mine) for member, mine in self._parts(columns)])
+    def joined(self, inside: Sequence[Mask]) -> Mask:
+        return _any(inside)
 
     def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
         """Where one member holds the whole body, or several together do whose union has a closed form in that lane."""
@@ -398,8 +407,8 @@ class DifferenceRegion(Composite):
     def _accept(self, points: Points, inside: Sequence[Mask], chosen: NDArray[np.intp], dice: Column) -> Mask:
         return np.asarray(~inside[1])
 
-    def contains_points(self, points: Points, *columns: Column) -> Mask:
-        first, second = (member.contains_points(points, *mine) for member, mine in self._parts(columns))
+    def joined(self, inside: Sequence[Mask]) -> Mask:
+        first, second = inside
         return np.asarray(first & ~second)
 
     def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
