@@ -1,15 +1,18 @@
 """A random choice among regions: in specifiers, containers, conditions and values."""
 
+import math
+
 import numpy as np
 import pytest
 
-from runtime.programs import draws, failure, thing
+from runtime.programs import draws, failure, scenario, thing
 from scenic.language.errors import InvalidScenarioError
 from scenic.runtime.geometry import primitives
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.poses import Poses
 from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.choice import RegionChoice
+from scenic.runtime.regions.composite import exactly_contains
 from scenic.runtime.regions.lines import PathRegion
 from scenic.runtime.regions.planar import CircularRegion, RectangularRegion
 from scenic.runtime.regions.volumes import BoxRegion, SpheroidRegion
@@ -236,3 +239,55 @@ def test_a_choice_among_lines_has_the_direction_of_the_one_drawn() -> None:
     # Footprints of the plane, and of what is none already.
     assert RegionChoice(0, lines).footprint.options == tuple(lines)
     assert RegionChoice(0, [OPTIONS[0], OPTIONS[1]]).footprint.dimension == 3
+
+
+def test_a_choice_among_regions_with_fields_asks_that_of_the_one_drawn() -> None:
+    """Whatever gives the orientation: a field, the line itself, or a member; a field that fails elsewhere does no harm."""
+    text = (
+        "def other(p):\n    assert 4 < p.x < 5\n    return 2 * p.x\n"
+        "f, g = VectorField('f', lambda p: p.x), VectorField('g', other)\n"
+        "square = PolygonalRegion([(1, 0), (2, 0), (2, 1), (1, 1)], orientation=f)\n"
+        "later = PolygonalRegion([(4, 0), (5, 0), (5, 1), (4, 1)], orientation=g)\n"
+        "line = PolylineRegion([(7, 0), (8, 1)])\n"
+        "part = BoxRegion((1, 1, Range(1, 2)), (9.5, 0, 0), orientation=f).intersect(BoxRegion((2, 2, 2), (9.5, 0, 0)))\n"
+        "place = Uniform(square, Uniform(later, line), part)\n"
+        "ego = new Object in place, with regionContainedIn everywhere\n"
+        "there = new OrientedPoint at (Range(1.1, 4.9), 0.5, 3), on Uniform(square, later)\n"
+        "param x = [(p.position.x, p.heading) for p in (ego, there)]\n"
+    )
+    kinds = set()
+    for places in draws(text, n=40):
+        for x, heading in places:
+            expected = x if x < 4 or x > 9 else 2 * x if x < 6 else -math.pi / 4
+            assert math.remainder(heading - expected, 2 * math.pi) == pytest.approx(0, abs=1e-9)
+            kinds.add(int(x))
+    assert kinds == {1, 4, 7, 9}
+
+
+@pytest.mark.parametrize("operation", ["intersect", "union", "difference"])
+@pytest.mark.parametrize("swapped", [False, True])
+@pytest.mark.parametrize(
+    "options", ["CircularRegion((0, 0, 0), 1), BoxRegion()", "disc, CircularRegion((0, 0, 3), 1)"]
+)
+def test_a_choice_is_an_operand_as_the_region_that_it_draws(
+    operation: str, swapped: bool, options: str
+) -> None:
+    """Points are drawn from what that and the other one come to, whose dimension may depend on the option."""
+    one, other = ("choice", "box") if swapped else ("box", "choice")
+    text = (
+        "disc = CircularRegion((0, 0, 0), 1)\nbox = BoxRegion((1.6, 1.6, Range(0.9, 1)))\n"
+        f"choice = Uniform({options})\nmade = {one}.{operation}({other})\np = new Point in made\n"
+        "param choice = choice, box = box, made = made, p = p.position, meets = box.intersects(choice)\n"
+    )
+    if operation == "intersect" and "3" in options:
+        text += "require choice.center.z == 0\n"
+    kinds = set()
+    for scene in scenario(text).sample(8, seed=2):
+        drawn, box, made, point = (scene.params[name] for name in ("choice", "box", "made", "p"))
+        first, second = (drawn, box) if swapped else (box, drawn)
+        expected = getattr(first, operation)(second)
+        assert (made.dimension, type(made)) == (expected.dimension, type(expected))
+        assert exactly_contains(expected, np.array([point]), expected.fixed_columns("a test"))[0]
+        assert scene.params["meets"] is (not isinstance(drawn, CircularRegion) or drawn.height == 0)
+        kinds.add(type(drawn))
+    assert len(kinds) == (1 if "3" in options else 2)

@@ -5,7 +5,7 @@ manifold3d. Everything else, and everything random, becomes a composite region.
 """
 
 import itertools
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -24,7 +24,7 @@ from scenic.runtime.geometry.prisms import prism, shadow, slice_at
 from scenic.runtime.opaque import evaluated, later
 from scenic.runtime.regions.base import Everywhere, Mask, Nowhere, Region, Workspace, nowhere
 from scenic.runtime.regions.bodies import OccupiedSpace, SideSurface
-from scenic.runtime.regions.choice import as_region
+from scenic.runtime.regions.choice import RegionChoice, as_region
 from scenic.runtime.regions.composite import (
     Composite,
     DifferenceRegion,
@@ -58,8 +58,9 @@ from scenic.runtime.values import CODEC, Orientation, Vector, as_node, as_value,
 
 def _operand(value: Any, what: str) -> Region:
     """A region to combine: an object means the space that it fills."""
-    space = getattr(value, "occupiedSpace", None)
-    region = as_region(value if space is None else space)
+    region = as_region(value)
+    if region is None:
+        region = as_region(getattr(value, "occupiedSpace", None))
     if region is None:
         raise ScenicTypeError(f"{what}: expected a region, not {describe(value)}", span=here())
     return _unwrapped(region)
@@ -156,6 +157,18 @@ def _volume(mesh: Mesh | None, orientation: Any = None) -> Region:
     return MeshVolumeRegion(mesh, centerMesh=False, orientation=orientation)
 
 
+def _by_option(operation: Callable[[Any, Any], Region], a: Region, b: Region) -> Region | None:
+    """The choice among the results for each option, if there is one among regions whose dimensions differ, or ``None``.
+
+    Of which dimension the result is, and so which of the two points are drawn from, follows from the option.
+    """
+    if isinstance(a, RegionChoice) and not a.is_alike:
+        return RegionChoice(a.parameters[0], [operation(option, b) for option in a.options])
+    if isinstance(b, RegionChoice) and not b.is_alike:
+        return RegionChoice(b.parameters[0], [operation(a, option) for option in b.options])
+    return None
+
+
 # The operations
 
 
@@ -174,7 +187,7 @@ def intersection(first: Any, second: Any) -> Region:
         exact = _exact_intersection(a, b)
         if exact is not None:
             return exact
-    return IntersectionRegion(a, b)
+    return _by_option(intersection, a, b) or IntersectionRegion(a, b)
 
 
 def _exact_intersection(a: Region, b: Region) -> Region | None:
@@ -283,6 +296,9 @@ def union(first: Any, second: Any) -> Region:
         solid_a, solid_b = _solid(a), _solid(b)
         if solid_a is not None and solid_b is not None:
             return _volume(booleans.union([solid_a, solid_b]))
+    chosen = _by_option(union, a, b)
+    if chosen is not None:
+        return chosen
     members = [
         member
         for region in (a, b)
@@ -313,7 +329,7 @@ def difference(first: Any, second: Any) -> Region:
             solid_b = _prism_about(solid_a, flat_b[0])
         if solid_a is not None and solid_b is not None:
             return _volume(booleans.difference(solid_a, [solid_b]), _field(a))
-    return DifferenceRegion(a, b)
+    return _by_option(difference, a, b) or DifferenceRegion(a, b)
 
 
 def intersects(first: Any, second: Any) -> Any:
@@ -494,6 +510,9 @@ def contains_region(first: Any, second: Any, tolerance: float = 0) -> bool:
         return True
     if isinstance(b, Everywhere) or isinstance(a, Nowhere):
         return False
+    for region in (a, b):
+        if isinstance(region, RegionChoice):
+            region.fixed_columns("what it holds")  # which says that it is random
     if isinstance(b, PointSetRegion):
         return all(_holds(a, point) for point in b.points)
     flat_a, flat_b = _flat(a), _flat(b)

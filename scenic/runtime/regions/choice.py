@@ -61,6 +61,28 @@ class RegionChoice(Region):
         places, orientations = ([as_node(part) for part in parts] for parts in zip(*landings, strict=True))
         return select(index, places), select(index, orientations) if self.has_orientation else None
 
+    def orientation_at(self, point: Any) -> Any:
+        """That of the option that is drawn; fields that options have are asked each by itself."""
+        if not self.has_orientation or self._has_no_field:
+            return super().orientation_at(point)
+        found = [as_node(option.orientation_at(point)) for option in self.options]
+        return select(as_node(self.parameters[0]), found)
+
+    @property
+    def is_alike(self) -> bool:
+        """Whether all options are of the same dimension."""
+        return all(option.dimension == self.dimension for option in self.options)
+
+    @property
+    def _has_no_field(self) -> bool:
+        """Whether the options tell orientations by themselves, so that they can be asked over lanes."""
+        return all(
+            option._has_no_field
+            if isinstance(option, RegionChoice)
+            else getattr(option.orientation, "region", None) is option
+            for option in self.options
+        )
+
     def sampled(self, sample: Any) -> Region:
         """The region that a sample draws."""
         region: Region = self.options[sample.value(self.parameters[0])].sampled(sample)
@@ -73,7 +95,7 @@ class RegionChoice(Region):
             yield option, columns[first : first + len(option.parameters)]
             first += len(option.parameters)
 
-    def _drawn(
+    def drawn(
         self, lanes: int, columns: Sequence[Column]
     ) -> Iterator[tuple[Region, NDArray[np.intp], list[Column]]]:
         """Each option with the lanes that draw it and the columns of its parameters there."""
@@ -87,20 +109,20 @@ class RegionChoice(Region):
         lanes = _lanes(points, *columns)
         points = np.broadcast_to(points, (lanes, 3))
         result = np.zeros(lanes, dtype=np.bool_)
-        for option, chosen, mine in self._drawn(lanes, columns):
+        for option, chosen, mine in self.drawn(lanes, columns):
             result[chosen] = option.contains_points(points[chosen], *mine)
         return result
 
     def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
         result = np.zeros(lanes, dtype=np.bool_)
-        for option, chosen, mine in self._drawn(lanes, columns):
+        for option, chosen, mine in self.drawn(lanes, columns):
             part = body if len(body) == 1 else body.take(chosen)
             result[chosen] = option.contains_bodies(part, len(chosen), *mine)
         return result
 
     def meets_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
         result = np.zeros(lanes, dtype=np.bool_)
-        for option, chosen, mine in self._drawn(lanes, columns):
+        for option, chosen, mine in self.drawn(lanes, columns):
             part = body if len(body) == 1 else body.take(chosen)
             result[chosen] = option.meets_bodies(part, len(chosen), *mine)
         return result
@@ -109,14 +131,14 @@ class RegionChoice(Region):
         lanes = _lanes(points, *columns)
         points = np.broadcast_to(points, (lanes, 3))
         result = np.zeros(lanes)
-        for option, chosen, mine in self._drawn(lanes, columns):
+        for option, chosen, mine in self.drawn(lanes, columns):
             result[chosen] = option.gaps(points[chosen], *mine)
         return result
 
     def sizes(self, *columns: Column) -> NDArray[np.float64]:
         lanes = _lanes(*columns)
         result = np.zeros(lanes)
-        for option, chosen, mine in self._drawn(lanes, columns):
+        for option, chosen, mine in self.drawn(lanes, columns):
             result[chosen] = option.sizes(*mine)
         return result
 
@@ -124,14 +146,14 @@ class RegionChoice(Region):
         lanes = _lanes(points, *columns)
         points = np.broadcast_to(points, (lanes, 3))
         result = np.zeros(lanes)
-        for option, chosen, mine in self._drawn(lanes, columns):
+        for option, chosen, mine in self.drawn(lanes, columns):
             result[chosen] = option.distances(points[chosen], *mine)
         return result
 
     def draw_points(self, uniforms: Column, keys: Column, *columns: Column) -> tuple[Points, Mask | None]:
         lanes = uniforms.shape[1]
         points, known = np.zeros((lanes, 3)), np.ones(lanes, dtype=np.bool_)
-        for option, chosen, mine in self._drawn(lanes, columns):
+        for option, chosen, mine in self.drawn(lanes, columns):
             drawn, found = option.draw_points(uniforms[: option.draws, chosen], keys[chosen], *mine)
             points[chosen] = drawn
             if found is not None:
@@ -142,7 +164,7 @@ class RegionChoice(Region):
         lanes = _lanes(points, *columns)
         points = np.broadcast_to(points, (lanes, 3))
         result = np.zeros((lanes, 4))
-        for option, chosen, mine in self._drawn(lanes, columns):
+        for option, chosen, mine in self.drawn(lanes, columns):
             result[chosen] = option.orientations(points[chosen], *mine)
         return result
 

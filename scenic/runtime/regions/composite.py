@@ -18,7 +18,8 @@ from scenic.graph.kinds import Column
 from scenic.language.errors import InvalidScenarioError, ScenicTypeError
 from scenic.runtime.context import here
 from scenic.runtime.geometry.collision import Body
-from scenic.runtime.regions.base import Mask, Points, Region
+from scenic.runtime.regions.base import Mask, Points, Region, Workspace
+from scenic.runtime.regions.choice import RegionChoice
 from scenic.runtime.regions.nearness import hull_of
 from scenic.runtime.regions.planar import Footprint, PlanarRegion
 
@@ -202,8 +203,15 @@ def _any(masks: Sequence[Mask]) -> Mask:
 
 def exactly_contains(region: Region, points: Points, columns: Sequence[Column]) -> Mask:
     """Which points lie in a region, with their heights where it lies in a plane, or is made of such as do."""
+    if isinstance(region, Workspace):
+        return exactly_contains(region.region, points, columns)
     if isinstance(region, Composite):
         return np.broadcast_to(region.joined(region.members_that_hold(points, columns)), len(points))
+    if isinstance(region, RegionChoice):
+        held = np.zeros(len(points), dtype=np.bool_)
+        for option, chosen, mine in region.drawn(len(points), columns):
+            held[chosen] = exactly_contains(option, points[chosen], mine)
+        return held
     inside = region.contains_points(points, *columns)
     if isinstance(region, PlanarRegion):
         inside = inside & (np.abs(points[:, 2] - region.heights(*columns)) <= LEVEL)
