@@ -8,7 +8,8 @@ import scenic.core.regions as named
 import shapely
 import trimesh
 
-from scenic.language.errors import RejectionException
+from scenic.graph.bounds import Bounds
+from scenic.language.errors import RejectionException, ScenicTypeError
 from scenic.runtime.fields import (
     PiecewiseVectorField,
     PolygonalVectorField,
@@ -20,7 +21,7 @@ from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.poses import Poses
 from scenic.runtime.regions.composite import IntersectionRegion, UnionRegion
 from scenic.runtime.values import Orientation, Vector
-from tests.runtime.programs import draws, params, scenario
+from tests.runtime.programs import draws, failure, params, scenario
 
 TILT = Orientation.fromEuler(0.7, 0.4, -0.3)
 SQUARE_RING = shapely.box(-3, -2, 3, 2).difference(shapely.box(-1, -1, 1, 1))
@@ -345,3 +346,44 @@ def test_a_line_of_the_plane_warns_of_heights_that_it_drops(height: float) -> No
     with pytest.warns(UserWarning, match="the z of its points is dropped"):
         line = named.PolylineRegion([(0, 0), (1, 0, height)])
     assert line.points == ((0, 0, 0), (1, 0, 0))
+
+
+@pytest.mark.parametrize("heading", [-3, -0.5, 0, 0.5, 2.5])
+def test_a_sector_holds_its_tip(heading: float) -> None:
+    """And what is a hair within, or beside, its straight edges and its arc."""
+    sector = named.SectorRegion(Vector(1, 2, 3), 2, heading, 0.3)
+    assert sector.containsPoint(Vector(1, 2, 3)) is True
+    assert sector.containsPoint(Vector(1, 2, -9)) is True
+    for reach, turned, inside in (
+        (2 - 1e-9, 0.0, True), (2 + 1e-9, 0.0, False), (1, 0.15 - 1e-9, True), (1, 0.15 + 1e-9, False),
+        (1, 1e-9 - 0.15, True), (1, -1e-9 - 0.15, False), (1, math.pi, False),
+    ):  # fmt: skip
+        way = heading + turned
+        place = Vector(1 - reach * math.sin(way), 2 + reach * math.cos(way), 3)
+        assert sector.containsPoint(place) is inside
+        assert (sector.distanceTo(place) == 0) is inside
+
+
+def test_the_box_of_an_empty_intersection_is_a_point() -> None:
+    """Nothing is in it, and nothing breaks."""
+    near, far = named.BoxRegion((2, 2, 2)), named.BoxRegion((2, 2, 2), (9, 9, 9))
+    for both in (IntersectionRegion(near, far), IntersectionRegion(far, near)):
+        columns = both.fixed_columns("a test")
+        lower, upper = both.box(*columns)
+        assert (lower <= upper).all()
+        found = both.extent(*(Bounds(column, column) for column in columns))
+        assert found is not None
+        assert (found.lower <= found.upper).all()
+        assert both.containsPoint(Vector(0, 0, 0)) is False
+        assert both.size is None
+
+
+def test_unions_with_what_is_of_lower_dimension_are_drawn_from() -> None:
+    """Whatever is not known of the size of that."""
+    text = (
+        "ball = SpheroidRegion((2, 2, Range(1, 2)))\n"
+        "lens = CircularRegion((5, 0), Range(1, 2)).intersect(CircularRegion((6, 0), 1))\n"
+        "param x = ((new Point in ball.union(lens)).position, (new Point in lens.union(ball)).position)\n"
+    )
+    assert all(place.norm() <= 1 for places in draws(text, n=8) for place in places)
+    assert isinstance(failure(text.replace("ball.union(lens)", "lens.union(lens)")), ScenicTypeError)

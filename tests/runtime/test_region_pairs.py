@@ -17,6 +17,7 @@ import trimesh
 from scipy.spatial.transform import Rotation
 
 from scenic.runtime.fields import VectorField
+from scenic.runtime.geometry import primitives
 from scenic.runtime.geometry.poses import Floats
 from scenic.runtime.regions.base import Region, Workspace, nowhere
 from scenic.runtime.regions.composite import Composite, DifferenceRegion, IntersectionRegion, UnionRegion
@@ -329,3 +330,79 @@ def test_members_of_the_plane_hold_points_at_their_height_alone() -> None:
     # What is above and below a disc is left of a box without it.
     left = DifferenceRegion(named.BoxRegion((2, 2, 8)), either)
     assert np.hypot(*cloud(left)[:, :2].T).min() < 0.3
+
+
+def stretched(more: float) -> dict[str, tuple[Region, Region]]:
+    """Regions, and others that stick out of them by so much."""
+    square = named.RectangularRegion((1, 2, 3), 0, 4, 2)
+    longer = shapely.box(-1, 1, 3 + more, 3)
+    solid = named.BoxRegion((4 + more, 2, 1), (1 + more / 2, 2, 7))
+    return {
+        "disc": (named.CircularRegion((1, 2, 3), 2), named.CircularRegion((1, 2, 3), 2 + more)),
+        "rectangle": (square, named.PolygonalRegion(polygon=longer, z=3)),
+        "column of a column": (square.footprint, named.PolygonalFootprintRegion(longer)),
+        "column of a solid": (square.footprint, solid),
+        "column of a polygon": (square.footprint, named.PolygonalRegion(polygon=longer, z=-8)),
+        "solid": (named.BoxRegion((4, 2, 2)), named.PathRegion([(-1, 0, 0.5), (2 + more, 0, 0.5)])),
+    }
+
+
+@pytest.mark.parametrize("name", stretched(0))
+def test_regions_hold_what_sticks_out_by_less_than_the_tolerance(name: str) -> None:
+    for more, tolerance, expected in (
+        (0.0, 0.0, True),
+        (0.0, 0.1, True),
+        (1e-3, 0.0, False),
+        (0.05, 0.04, False),
+        (0.05, 0.06, True),
+    ):
+        whole, part = stretched(more)[name]
+        assert whole.containsRegion(part, tolerance) is expected
+
+
+@pytest.mark.parametrize(
+    ("points", "met"),
+    [
+        ([(0, 0, 2), (0, 0, 1)], True),  # up to the plane, or from it
+        ([(0, 0, 1), (0.5, 0, -4)], True),
+        ([(0, 0, 2), (0, 0, 1.001)], False),
+        ([(1, 0, 2), (1, 0, 0)], True),  # through the border
+        ([(1.001, 0, 2), (1.001, 0, 0)], False),
+        ([(-3, 0, 0), (3, 0, 2)], True),
+        ([(-3, 0, 2), (3, 0, -2)], False),  # over the square it is below the plane
+        ([(-3, 0, 0), (9, 0, 2)], False),
+        ([(-3, 0.5, 1), (3, 0.5, 1)], True),  # level
+        ([(0.5, 0.5, 1), (0.5, 5, 1)], True),
+        ([(-3, 5, 1), (3, 5, 1)], False),
+        ([(-3, 0, 1.001), (3, 0, 1.001)], False),
+        ([(9, 9, 9), (9, 9, 1), (0, 0, 1)], True),
+        ([(9, 9, 9), (9, 9, 0), (0, 0, 0)], False),
+    ],
+)
+def test_paths_through_a_plane(points: list[Any], met: bool) -> None:
+    square = named.RectangularRegion((0, 0, 1), 0, 2, 2)
+    path = named.PathRegion(points)
+    for one, other in ((path, square), (square, path)):
+        assert one.intersects(other) is met
+
+
+@pytest.mark.parametrize("turn", [Orientation(), TILT])
+@pytest.mark.parametrize("solid", ["box", "ball"])
+def test_lines_through_edges_and_corners_of_a_solid(solid: str, turn: Orientation) -> None:
+    """From every vertex to that opposite to it, through the middles of edges, and where two triangles make a face."""
+    mesh = primitives.box() if solid == "box" else primitives.spheroid()
+    kind = named.BoxRegion if solid == "box" else named.SpheroidRegion
+    size, place = np.array([2.0, 4, 3]), np.array([1.0, -2, 3])
+    region = kind(tuple(size), tuple(place), turn)
+    pairs = mesh.triangles[:, [0, 1, 2]] + mesh.triangles[:, [1, 2, 0]]
+    ways = np.unique(np.concatenate([mesh.vertices, pairs.reshape(-1, 3) / 2]), axis=0)
+    if solid == "ball":
+        ways = ways[[0, 300]]
+    rotation = Rotation.from_quat(turn.q)
+    for way in ways * size:
+        half = rotation.apply(way)
+        path = named.PathRegion([(place - 3 * half).tolist(), (place + 2 * half).tolist()])
+        assert path.intersects(region) is True
+        inside = path.intersect(region)
+        assert isinstance(inside, LineRegion)
+        assert inside.length == pytest.approx(2 * np.linalg.norm(half), rel=1e-6)

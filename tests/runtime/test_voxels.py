@@ -25,6 +25,7 @@ from scipy import stats
 
 import scenic
 from scenic.language.errors import RejectionException, ScenicTypeError, ScenicValueError
+from scenic.runtime.fields import VectorField
 from scenic.runtime.geometry import primitives
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.poses import Poses
@@ -329,3 +330,45 @@ def test_boxes_of_cells_are_counted_whole() -> None:
     body = Body((primitives.box(),), None, poses)
     np.testing.assert_array_equal(region.contains_bodies(body, len(first)), expected)
     assert 0.1 < expected.mean() < 0.9
+
+
+def test_bodies_that_just_touch_cells_meet_them() -> None:
+    """On each face of the first and the last of them."""
+    cells = VoxelRegion(trimesh.voxel.VoxelGrid(np.ones((2, 2, 2), dtype=bool)))
+    for axis, (off, end) in itertools.product(range(3), ((-1, -0.5), (1, 1.5))):
+        place = np.array([0.25, 0.25, 0.25])
+        for beyond, met in ((0.0, True), (1e-6, False)):
+            place[axis] = end + off * (0.25 + beyond)
+            body = BoxRegion((0.5, 0.5, 0.5), tuple(place.tolist()))
+            assert cells.intersects(body) is met
+            assert body.intersects(cells) is met
+
+
+def test_cells_grow_and_shrink_by_their_neighbours() -> None:
+    """Those that share a face, or whichever are named."""
+    random = np.random.default_rng(5)
+    filled = random.random((4, 5, 6)) < 0.95
+    field = VectorField("f", lambda place: place.x)
+    grid = trimesh.voxel.VoxelGrid(filled, transform=np.diag([0.5, 1, 2, 1]))
+    region = VoxelRegion(grid, orientation=field)
+    across = {(0, 0, 0), (1, 0, 0), (-1, 0, 0)}
+    faces = {tuple(way) for way in (*np.eye(3, dtype=int).tolist(), *(-np.eye(3, dtype=int)).tolist())} | {
+        (0, 0, 0)
+    }
+    cells = set(map(tuple, np.argwhere(filled).tolist()))
+    for named, steps in ((None, faces), (across, across)):
+        structure = None
+        if named is not None:
+            structure = np.zeros((3, 3, 3), dtype=bool)
+            structure[tuple(np.transpose(list(named)) + 1)] = True
+        for iterations in (1, 2, -1):
+            expected = cells
+            for _ in range(abs(iterations)):
+                moved = [{tuple(np.add(cell, step).tolist()) for cell in expected} for step in steps]
+                expected = set.union(*moved) if iterations > 0 else set.intersection(*moved)
+            found = region.dilation(iterations, structure)
+            places = np.array(sorted(expected)) * (0.5, 1, 2)
+            np.testing.assert_allclose(sorted(found.voxel_points.tolist()), places, atol=1e-12)
+            assert found.orientation is field
+            assert found.scale.tolist() == [0.5, 1, 2]
+    assert region.dilation(0) is region
