@@ -65,3 +65,15 @@ def test_a_side_without_faces_is_still_refused() -> None:
     )
     with pytest.raises(scenic.RejectionException):
         scenic.scenarioFromString(text + "new Object on base.topSurface").sample(1, seed=1, max_attempts=5)
+
+
+def test_a_surface_without_area_has_no_points() -> None:
+    """Of a box without two of its extents nothing but a line is left; without one of them both faces are."""
+    text = "import trimesh\np = new Point in MeshSurfaceRegion(trimesh.creation.box(), dimensions={})\nparam p = p.position\n"
+    with pytest.raises(scenic.RejectionException):
+        scenic.scenarioFromString(text.format("(2, 0, 0)")).sample(1, seed=1, max_attempts=5)
+    places = [
+        scene.params["p"] for scene in scenic.scenarioFromString(text.format("(2, 0, 4)")).sample(9, seed=1)
+    ]
+    assert all(place.y == 0 and abs(place.x) <= 1 and abs(place.z) <= 2 for place in places)
+    assert max(abs(place.z) for place in places) > 1

@@ -4,6 +4,7 @@ A reading is sound if the operation's own answer lies in the bounds of every box
 operands lie in the inverse of every result that they give. Boxes here touch the operands, or are just them.
 """
 
+import itertools
 from collections.abc import Iterator, Sequence
 from typing import Any
 
@@ -21,11 +22,13 @@ from scenic.runtime.regions import base, bodies
 from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.choice import RegionChoice
 from scenic.runtime.regions.composite import DifferenceRegion, IntersectionRegion, UnionRegion
-from scenic.runtime.regions.planar import CircularRegion, RectangularRegion, SectorRegion
+from scenic.runtime.regions.fixed_sides import _POINT as POINT
+from scenic.runtime.regions.fixed_sides import FixedSide
+from scenic.runtime.regions.planar import DISC_POINT, CircularRegion, RectangularRegion, SectorRegion
 from scenic.runtime.regions.scattered import PointSetRegion
-from scenic.runtime.regions.volumes import BoxRegion, SpheroidRegion
+from scenic.runtime.regions.volumes import BALL_POINT, BoxRegion, SpheroidRegion
 from scenic.runtime.sight import SEES
-from scenic.runtime.values import Random, Vector
+from scenic.runtime.values import Orientation, Random, Vector
 from scenic.runtime.visibility import _SEES as SEES_IN_PLANE
 from scenic.runtime.visibility import _SEES_POINT as SEES_POINT_IN_PLANE
 from tests.runtime.geometry.samples import SHAPES
@@ -457,3 +460,57 @@ def test_a_narrow_view_hides_what_is_beside_above_and_behind_it() -> None:
         for way in ([0, -1, 0], [0, 0, 1], [0, 0, -1], [1, 0, 0]):
             place = views[0] + 20 * turn.apply(way)[None]
             assert SEES.bounds((False, False), *exact([*wide, place])).upper[0] == 1
+
+
+ENDS = np.array([5e-324, 2.0**-64, 0.25, 0.5, 1 - 2.0**-53])
+
+
+@pytest.mark.parametrize(
+    "name", [name for name in REGIONS if name not in UNBOUNDED | {"everywhere", "nowhere"}]
+)
+def test_draws_from_the_ends_of_the_unit_interval_are_within_the_bounds(name: str) -> None:
+    region, random = REGIONS[name], np.random.default_rng(2)
+    columns = columns_of(region)
+    uniforms = random.choice(ENDS, (region.draws, 40))
+    points, found = region.draw_points(uniforms, np.arange(40, dtype=np.uint64), *columns)
+    points = points if found is None else points[found]
+    assert DRAW.bounds is not None
+    known = [*[None] * (region.draws + 1), *exact([None if c.dtype == object else c for c in columns])]
+    assert within(points, DRAW.bounds(region, *known))
+
+
+@pytest.mark.parametrize("operation", [DISC_POINT, BALL_POINT])
+def test_points_of_the_unit_disc_and_ball(operation: Operation) -> None:
+    """Bounds that hold the numbers hold the points, and are as wide as the farthest of these is off."""
+    random = np.random.default_rng(3)
+    count = 2 if operation is DISC_POINT else 3
+    for _ in range(40):
+        ends = np.sort(random.choice([*ENDS, *random.random(4)], (2, count)), axis=0)
+        numbers = ends[0] + np.linspace(0, 1, 30)[:, None] * (ends[1] - ends[0])
+        numbers = np.concatenate([ends, numbers, random.permuted(numbers, axis=0)]).clip(*ends)
+        points = operation.batch(Call((len(numbers),), None, [None] * count), *numbers.T)
+        assert operation.bounds is not None
+        found = operation.bounds(None, *(Bounds(low[None], high[None]) for low, high in ends.T))
+        assert within(points, found)
+        reach = ends[1, 0] ** (1 / count)
+        np.testing.assert_allclose(found.upper, [[reach, reach, 0 if count == 2 else reach]], rtol=1e-12)
+
+
+def test_points_on_a_side_that_is_far_off_and_tilted() -> None:
+    """Weights that sum to 1 but for rounding leave a face by no more than the bounds do."""
+    random = np.random.default_rng(4)
+    turns = (Orientation(), Orientation.fromEuler(0.7, 0.4, -0.3))
+    for turn, place in itertools.product(turns, ((1e3, -2e4, 3e2), (0.1, 0.2, 0.3))):
+        side = FixedSide.of(SHAPES["box"](), (Vector(*place), turn, Vector(3, 2, 1)), (2, 1), 0.5)
+        assert side is not None
+        payload = side._triangles
+        face = random.integers(0, len(side.areas), 300)
+        numbers = random.choice([*ENDS, *random.random(9)], (2, 300))
+        points = POINT.batch(Call((300,), payload, [None] * 3), face, *numbers)
+        assert POINT.bounds is not None
+        unit = Bounds(np.zeros(1), np.ones(1))
+        found = POINT.bounds(payload, unit, unit, unit)
+        assert within(points, found)
+        corners = side.corners.reshape(-1, 3)
+        np.testing.assert_allclose(found.lower[0], corners.min(axis=0), atol=1e-9)
+        np.testing.assert_allclose(found.upper[0], corners.max(axis=0), atol=1e-9)

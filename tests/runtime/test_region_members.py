@@ -645,14 +645,19 @@ def test_meshes_are_stretched_turned_and_moved_in_this_order(kind: str, centered
 def test_what_is_within_the_tolerance_of_a_mesh_counts_as_in_it(kind: str, tolerance: float) -> None:
     """Beside a face as beside a corner, on every side; of several points asked at once and of one alone."""
     region = getattr(named, kind)(CUBE, (1, 2, 4), PLACE, TILT, tolerance=tolerance)
-    turn = Rotation.from_quat(TILT.q)
     ways = np.array([way for way in itertools.product((-1, 0, 1), repeat=3) if any(way)], dtype=float)
     unit = ways / np.linalg.norm(ways, axis=1, keepdims=True)
-    for off, inside in ((0.999, True), (1.001, False)):
-        points = turn.apply(ways * (0.5, 1, 2) + off * tolerance * unit) + np.array(PLACE)
-        found = region.contains_points(points, *region.fixed_columns("a test"))
-        assert (found == inside).all()
-        assert all(region.containsPoint(Vector(*point)) is inside for point in points)
+    local = [ways * (0.5, 1, 2) + off * tolerance * unit for off in (1.001, 0.999)]
+    # First some that are far off, or in the very middle.
+    local = [ways * 9, ways * 0, *local]
+    points = Rotation.from_quat(TILT.q).apply(np.concatenate(local)) + np.array(PLACE)
+    expected = np.repeat([False, region.dimension == 3, False, True], len(ways))
+    columns = region.fixed_columns("a test")
+    np.testing.assert_array_equal(region.contains_points(points, *columns), expected)
+    each = [np.repeat(column, len(points), axis=0) for column in columns]
+    np.testing.assert_array_equal(region.contains_points(points, *each), expected)
+    for point, inside in list(zip(points, expected.tolist(), strict=True))[::5]:
+        assert region.containsPoint(Vector(*point)) is inside
 
 
 def test_lines_and_points_of_several_members_count_alike() -> None:

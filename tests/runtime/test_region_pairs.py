@@ -16,6 +16,7 @@ import shapely
 import trimesh
 from scipy.spatial.transform import Rotation
 
+from scenic.language.errors import InvalidScenarioError
 from scenic.runtime.fields import VectorField
 from scenic.runtime.geometry import primitives
 from scenic.runtime.geometry.poses import Floats
@@ -24,6 +25,7 @@ from scenic.runtime.regions.composite import Composite, DifferenceRegion, Inters
 from scenic.runtime.regions.lines import LineRegion
 from scenic.runtime.regions.planar import Footprint, PlanarRegion
 from scenic.runtime.values import Orientation, Vector
+from tests.runtime.programs import thing
 
 TILT = Orientation.fromEuler(0.7, 0.4, -0.3)
 FRAME = shapely.Polygon([(-2, -1.5), (2, -1.5), (2, 1.5), (-2, 1.5)], [[(-1, -1), (1, -1), (1, 1), (-1, 1)]])
@@ -406,3 +408,21 @@ def test_lines_through_edges_and_corners_of_a_solid(solid: str, turn: Orientatio
         inside = path.intersect(region)
         assert isinstance(inside, LineRegion)
         assert inside.length == pytest.approx(2 * np.linalg.norm(half), rel=1e-6)
+
+
+@pytest.mark.parametrize("side", ["left", "right", "front", "back", "top", "bottom"])
+def test_sides_meet_the_columns_that_they_are_in(side: str) -> None:
+    """Walls, which have no extent seen from above, as well as floors."""
+    item = thing("ego = new Object at (1, 2, 3), with width 2, with length 4, with height 6")
+    region = getattr(item, f"{side}Surface")
+    lower, upper = np.array(region.AABB)
+    for x, y in itertools.product((-0.08, 0.03, 1.2, 1.97), (0.03, 1.7, 3.97, 4.08)):
+        column = named.RectangularRegion((x, y), 0, 0.1, 0.1).footprint
+        near = bool((np.abs([x, y] - np.clip([x, y], lower[:2], upper[:2])) <= 0.05).all())
+        assert region.intersects(column) is near
+        assert column.intersects(region) is near
+    if side in ("top", "bottom"):
+        assert region.boundingPolygon.area == pytest.approx(8)
+    else:
+        with pytest.raises(InvalidScenarioError, match="no outline"):
+            region.boundingPolygon  # noqa: B018 - asking is the test

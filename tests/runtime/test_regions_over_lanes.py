@@ -20,7 +20,15 @@ from scenic.runtime.regions.composite import DifferenceRegion, IntersectionRegio
 from scenic.runtime.regions.planar import CircularRegion, RectangularRegion
 from scenic.runtime.regions.scattered import GridRegion
 from scenic.runtime.regions.volumes import BoxRegion, SpheroidRegion
-from tests.runtime.programs import FALSE_ALARM, draws, failure, scenario
+from tests.runtime.programs import (
+    FALSE_ALARM,
+    assert_same_rotation,
+    draws,
+    euler,
+    failure,
+    rotation,
+    scenario,
+)
 
 N = 4000
 
@@ -268,6 +276,46 @@ def test_combinations_have_the_field_and_the_name_that_they_are_given(kind: str,
         assert found.objects[0].heading == pytest.approx(2)
         assert found.params["place"].orientation[(1, 0, 0)].yaw == 2
         assert found.params["place"].name == "place"
+
+
+@pytest.mark.parametrize("width", ["2", "Range(2, 3)"])
+def test_a_field_takes_the_place_of_the_normals_of_a_surface(width: str) -> None:
+    """Where points are drawn from it and where they land on it; without a field, nothing does."""
+    text = (
+        "import trimesh\nfield, cube = VectorField('f', lambda p: 0.1 * p.x + 0.2 * p.y), trimesh.creation.box()\n"
+        f"made = [MeshSurfaceRegion(cube, ({width}, 2, 2), orientation=way) for way in (field, True, None)]\n"
+        "param x = [(p.position, p.orientation) for r in made "
+        "for p in ((new OrientedPoint in r), (new OrientedPoint at (0.3, 0.4, 5), on r))]\n"
+    )
+    for found in draws(text, n=6):
+        for number, (place, orientation) in enumerate(found):
+            if number % 2:
+                assert tuple(place) == pytest.approx((0.3, 0.4, 1))
+            if number < 2:
+                assert_same_rotation(orientation, euler(0.1 * place.x + 0.2 * place.y))
+            elif number < 4:
+                normal = np.array(place) / np.maximum(np.abs(place).max(), 1)
+                up = rotation(orientation).apply([0, 0, 1])
+                assert np.abs(up).max() == pytest.approx(1)
+                assert up @ normal > 0.6
+            else:
+                assert_same_rotation(orientation, euler(0))
+
+
+def test_a_line_may_have_the_directions_of_another_one() -> None:
+    """Those of the segment that is nearest, not its own."""
+    text = (
+        "other = PolylineRegion([(0, 1), (4, 1), (4, -9)])\n"
+        "line = PolylineRegion([(0, 0), (0, 9), (9, 9), (9, 0), (0, 0)], orientation=other.orientation)\n"
+        "path = PathRegion([(9, 0, 0), (0, 0, 0)], orientation=other.orientation)\n"
+        "points = [new OrientedPoint in r for r in (line, path)]\n"
+        "param x = [(p.x, p.y, p.heading) for p in points]\n"
+    )
+    for found in draws(text, n=20):
+        for x, y, heading in found:
+            if y == 0:
+                expected = -math.pi / 2 if x < 3 else math.pi
+                assert math.remainder(heading - expected, 2 * math.pi) == pytest.approx(0, abs=1e-9)
 
 
 def test_directions_of_projections_are_kept() -> None:

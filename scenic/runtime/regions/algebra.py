@@ -399,7 +399,7 @@ def _meet(a: Region, b: Region) -> bool:
             if shell is None:
                 return False
             if isinstance(other, Footprint):
-                return bool(other.polygons.intersects(shadow(shell)))
+                return _is_over(shell, other.polygons)
             if isinstance(other, SideSurface):
                 second = surface_in_world(other)
                 return second is not None and _edges_cross(shell, second)
@@ -438,6 +438,14 @@ def _crosses_plane(line: LineRegion, region: PlanarRegion) -> bool:
             if polygon.intersects(shapely.Point(point[:2])):
                 return True
     return False
+
+
+def _is_over(shell: Mesh, polygons: Any) -> bool:
+    """Whether a face of a surface, which may stand upright, has a point above or below polygons."""
+    import shapely
+
+    seen = shapely.convex_hull(shapely.multipoints(shell.triangles[:, :, :2]))
+    return bool(shapely.intersects(polygons, seen).any())
 
 
 def _edges_cross(one: Mesh, two: Mesh) -> bool:
@@ -550,9 +558,10 @@ def boundary(region: PlanarRegion) -> PolylineRegion:
 def outline_from_above(region: Region) -> PolygonalRegion:
     """A volume or surface seen from above, at height 0."""
     solid = surface_in_world(region) if isinstance(region, SideSurface) else _solid(region)
-    if solid is None:
+    outline = None if solid is None else shadow(solid)
+    if outline is None or outline.is_empty:
         raise InvalidScenarioError(f"{region!r} has no outline from above", span=here())
-    return PolygonalRegion(polygon=shadow(solid))
+    return PolygonalRegion(polygon=outline)
 
 
 def part_between(region: Footprint, low: float, high: float) -> Region:
