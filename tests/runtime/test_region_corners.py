@@ -7,6 +7,7 @@ import pytest
 import scenic.core.regions as named
 import shapely
 import trimesh
+from scipy import stats
 
 from scenic.graph.bounds import Bounds
 from scenic.language.errors import RejectionException, ScenicTypeError
@@ -21,7 +22,7 @@ from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.poses import Poses
 from scenic.runtime.regions.composite import IntersectionRegion, UnionRegion
 from scenic.runtime.values import Orientation, Vector
-from tests.runtime.programs import draws, failure, params, scenario
+from tests.runtime.programs import FALSE_ALARM, draws, failure, params, scenario
 
 TILT = Orientation.fromEuler(0.7, 0.4, -0.3)
 SQUARE_RING = shapely.box(-3, -2, 3, 2).difference(shapely.box(-1, -1, 1, 1))
@@ -387,3 +388,81 @@ def test_unions_with_what_is_of_lower_dimension_are_drawn_from() -> None:
     )
     assert all(place.norm() <= 1 for places in draws(text, n=8) for place in places)
     assert isinstance(failure(text.replace("ball.union(lens)", "lens.union(lens)")), ScenicTypeError)
+
+
+def test_boxes_of_sectors_are_those_of_their_points() -> None:
+    """Of any heading and angle, with the tip, both ends of the arc, and where that goes straight along an axis."""
+    random = np.random.default_rng(6)
+    count = 60
+    heading, angle = random.uniform(-9, 9, count), random.uniform(0, 8, count)
+    heading[:8], angle[:8] = np.arange(-4, 4) * math.pi / 4, np.repeat([math.pi / 2, math.pi], 4)
+    centre, radius = random.normal(size=(count, 3)), random.uniform(0.5, 3, count)
+    region = named.SectorRegion((0, 0, 0), 1, 0, 1)
+    lower, upper = region.box(centre, radius, heading, angle)
+    share = np.linspace(-0.5, 0.5, 2001)[:, np.newaxis]
+    ways = heading + share * np.minimum(angle, 2 * math.pi)
+    x, y = (np.vstack([np.zeros(count), part]) for part in (-radius * np.sin(ways), radius * np.cos(ways)))
+    np.testing.assert_allclose(
+        lower - centre, np.stack([x.min(axis=0), y.min(axis=0), 0 * radius], axis=1), atol=1e-4
+    )
+    np.testing.assert_allclose(
+        upper - centre, np.stack([x.max(axis=0), y.max(axis=0), 0 * radius], axis=1), atol=1e-4
+    )
+
+
+@pytest.mark.parametrize("turn", [Orientation(), TILT])
+def test_lines_along_faces_and_edges_of_a_box_are_in_it(turn: Orientation) -> None:
+    """Its faces belong to it; a line a millimetre beside one is not cut."""
+    box, place = named.BoxRegion((2, 4, 3), (1, 2, 3), turn), Vector(1, 2, 3)
+
+    def path(*points: tuple[float, float, float]) -> named.PathRegion:
+        return named.PathRegion([Vector(*point).rotatedBy(turn) + place for point in points])
+
+    for line, length in (
+        (path((-5, 0.3, 1.4999999), (5, 0.3, 1.4999999)), 2),
+        (path((-5, 0.3, 1.501), (5, 0.3, 1.501)), 0),
+        (path((0.2, -9, 1), (0.2, 9, 1), (0.4, 9, 1), (0.4, 0, 1)), 6),
+        (path((0.2, 0, 1), (0.2, 1, 1)), 1),
+        (path((0.2, 0, 1), (0.2, 1, 1), (0.2, 1, 9)), 1.5),
+    ):
+        inside = line.intersect(box)
+        assert (0 if inside is named.nowhere else inside.length) == pytest.approx(length, abs=1e-6)
+        assert line.intersects(box) is (length > 0)
+
+
+def test_combinations_of_three_regions_are_drawn_from_uniformly() -> None:
+    """Each of three members cuts something off, or adds a third."""
+    squares = [named.RectangularRegion((x, 0), 0, 2, 2) for x in (0, 1.5, 3)]
+    ends = [named.RectangularRegion((0, y), 0, 4, 4) for y in (0, 1, 1.5)]
+    random = np.random.default_rng(7)
+    for region, wanted in (
+        (UnionRegion(*squares), shapely.box(-1, -1, 4, 1)),
+        (IntersectionRegion(*ends), shapely.box(-2, -0.5, 2, 2)),
+        (IntersectionRegion(*ends[::-1]), shapely.box(-2, -0.5, 2, 2)),
+    ):
+        points, found = region.draw_points(
+            random.random((region.draws, 3000)),
+            random.integers(0, 1 << 62, 3000).astype(np.uint64),
+            *region.fixed_columns("a test"),
+        )
+        assert found is not None
+        assert found.all()
+        left, bottom, right, top = wanted.bounds
+        x, y = (points[:, 0] - left) / (right - left), (points[:, 1] - bottom) / (top - bottom)
+        for part in (x, y):
+            assert stats.kstest(part, "uniform").pvalue > FALSE_ALARM
+
+
+@pytest.mark.parametrize("kind", [named.PolylineRegion, named.PathRegion])
+def test_points_drawn_now_from_a_line_have_its_direction(kind: type) -> None:
+    field = VectorField("f", lambda place: place.x)
+    for orientation, expected in ((True, lambda _x: math.pi / 2), (field, lambda x: x), (None, None)):
+        line = kind([(1, 0, 0), (-2, 0, 0)], orientation=orientation)
+        assert line.has_orientation is (orientation is not None)
+        for _ in range(3):
+            point = line.uniformPointInner()
+            assert -2 <= point.x <= 1
+            if expected is None:
+                assert not hasattr(point, "heading")
+            else:
+                assert point.heading == pytest.approx(expected(point.x))

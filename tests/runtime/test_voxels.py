@@ -73,12 +73,14 @@ def test_draws_are_uniform_over_cells() -> None:
 
 
 def test_distances_are_those_to_the_boxes() -> None:
-    region = VoxelRegion(trimesh.voxel.VoxelGrid(FILLED))
-    points = np.random.default_rng(1).uniform(-3, 4, (200, 3))
-    beside = np.maximum(np.abs(points[:, None] - np.argwhere(FILLED)) - 0.5, 0)
-    expected = np.sqrt((beside**2).sum(axis=2)).min(axis=1)
-    np.testing.assert_allclose(region.distances(points), expected, atol=1e-12)
-    assert (region.gaps(points) <= expected + 1e-12).all()
+    random = np.random.default_rng(1)
+    for filled, pitch in ((FILLED, (1, 1, 1)), (random.random((6, 4, 5)) < 0.2, (0.2, 1, 4))):
+        region = VoxelRegion(trimesh.voxel.VoxelGrid(filled, transform=np.diag([*pitch, 1])))
+        points = random.uniform(-3, 4, (200, 3)) * pitch
+        beside = np.maximum(np.abs(points[:, None] - np.argwhere(filled) * pitch) - np.array(pitch) / 2, 0)
+        expected = np.sqrt((beside**2).sum(axis=2)).min(axis=1)
+        np.testing.assert_allclose(region.distances(points), expected, atol=1e-12)
+        assert (region.gaps(points) <= expected + 1e-12).all()
 
 
 def test_objects_in_cells() -> None:
