@@ -232,6 +232,17 @@ def test_items_of_vectors():
     batch = evaluate(node, 4)
     assert batch.status(node).tolist() == [0, 0, 0, 1]
     assert batch.column(node)[:3].tolist() == [1.0, 3.0, 3.0]
+    for index in range(-5, 5):
+        node = make("getitem", vectors, source(Kind.INTEGER, [index]))
+        batch = evaluate(node, 4)
+        if -3 <= index < 3:
+            assert batch.status(node) is None
+            assert set(batch.full(node).tolist()) == {[1.0, 2.0, 3.0][index]}
+        else:
+            assert batch.status(node).tolist() == [1] * 4
+    truth = source(Kind.BOOLEAN, [True, False])
+    rows = source(Kind.VECTOR, [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]])
+    assert evaluate(make("getitem", rows, truth), 2).full(make("getitem", rows, truth)).tolist() == [2.0, 4.0]
     length = make("len", vectors)
     assert evaluate(length, 4).value(length) == 3
 
@@ -241,3 +252,13 @@ def test_a_constant_operand_has_one_row():
     assert Graph([node]).dimension == 0
     assert evaluate(node, 2).column(node).tolist() == [[1.0, 1.0, 3.0], [1.0, 2.0, 3.0]]
     assert constant(Triple((1.0, 2.0, 3.0))).payload.column.shape == (1, 3)
+
+
+def test_vectors_and_orientations_are_true():
+    """Also those whose parts are all nothing: they have items, as objects have."""
+    for kind, rows in (
+        (Kind.VECTOR, [[0.0, 0.0, 0.0], [0.0, 2.0, 0.0]]),
+        (Kind.ORIENTATION, [[0.0, 0.0, 0.0, 1.0], [1.0, 0.0, 0.0, 0.0]]),
+    ):
+        node = make("truth", source(kind, rows))
+        assert evaluate(node, 2).full(node).tolist() == [True, True]

@@ -4,10 +4,12 @@ Each fit is one test at a false-alarm rate of one in ten thousand, with a fixed 
 """
 
 import math
+from fractions import Fraction
 
 import numpy as np
 import pytest
 from scipy import stats
+from scipy.special import log_ndtr
 
 from graph.programs import CODEC, batch_at, constant, faulty, make, one_of, sampled, source, uniform
 from scenic.graph import bounding
@@ -15,6 +17,7 @@ from scenic.graph import node as graph
 from scenic.graph.bounds import Bounds
 from scenic.graph.kinds import Kind
 from scenic.graph.node import Graph
+from scenic.graph.operations.distributions import Table
 from scenic.graph.operations.normal import conditioned_cumulative, conditioned_quantile
 
 ALARM = 1e-4
@@ -48,10 +51,22 @@ def test_range_keeps_within_its_ends():
         assert (values <= max(low, high)).all()
 
 
+@pytest.mark.parametrize(("low", "high"), [(0.1, 0.7), (-5.0, -7.5), (-1.7e308, 1.7e308), (1e308, -1.5e308)])
+def test_places_on_the_axis_are_shares_of_the_way(low, high):
+    """Also between ends so far apart that their distance is no float."""
+    node = uniform(source(Kind.SCALAR, [low]), source(Kind.SCALAR, [high]))
+    shares = [0.001, 0.25, 0.5, 0.9]
+    found = batch_at(Graph([node]), np.array(shares)[:, None], CODEC).full(node)
+    exact = [Fraction(low) * (1 - Fraction(share)) + Fraction(high) * Fraction(share) for share in shares]
+    np.testing.assert_allclose(found, [float(value) for value in exact], rtol=1e-14)
+
+
 def test_range_of_endless_ends_fails():
-    node = make("range", graph.axis(), 0.0, source(Kind.SCALAR, [1.0, math.inf, math.nan]))
-    batch = batch_at(Graph([node]), np.full((3, 1), 0.5), CODEC)
-    assert batch.status(node).tolist() == [0, 1, 1]
+    endless, fixed = source(Kind.SCALAR, [1.0, math.inf, math.nan, -math.inf]), 0.0
+    for ends in ((fixed, endless), (endless, fixed)):
+        node = make("range", graph.axis(), *ends)
+        batch = batch_at(Graph([node]), np.full((4, 1), 0.5), CODEC)
+        assert batch.status(node).tolist() == [0, 1, 1, 1]
 
 
 def test_range_with_random_ends():
@@ -103,16 +118,16 @@ def test_truncated_normal_in_the_far_tail_is_an_exponential(far):
 
 
 def test_truncated_normal_without_deviation():
-    node = make(
-        "truncated normal",
-        graph.axis(),
-        source(Kind.SCALAR, [1.0, 3.0]),
-        source(Kind.SCALAR, [0.0]),
-        payload=(0.0, 2.0),
-    )
-    batch = batch_at(Graph([node]), np.full((2, 1), 0.3), CODEC)
-    assert batch.status(node).tolist() == [0, 1]
-    assert batch.column(node)[0] == 1.0
+    """It is its mean, if that lies in the window, ends included."""
+    means = [1.0, 3.0, -0.5, 0.0, 2.0]
+    for deviation in (source(Kind.SCALAR, [0.0]), source(Kind.SCALAR, [0.0] * 5), 0.0, uniform(0.0, 0.0)):
+        node = make(
+            "truncated normal", graph.axis(), source(Kind.SCALAR, means), deviation, payload=(0.0, 2.0)
+        )
+        net = Graph([node])
+        batch = batch_at(net, np.full((5, net.dimension), 0.3), CODEC)
+        assert batch.status(node).tolist() == [0, 1, 1, 0, 0]
+        assert batch.column(node)[[0, 3, 4]].tolist() == [1.0, 0.0, 2.0]
 
 
 @pytest.mark.parametrize(
@@ -166,6 +181,17 @@ def test_quantiles_of_windows_in_a_far_tail(far, width, side):
     )
 
 
+@pytest.mark.parametrize("end", [-6.0, 0.5, 3.0, 29.0, 31.0, 300.0, 9.9e3, 1.01e4])
+@pytest.mark.parametrize("side", [-1, 1])
+def test_quantiles_of_half_lines(end, side):
+    """What lies beyond a quantile is its share of all beyond the end, however far out both are."""
+    share = np.array([1e-9, 0.01, 0.25, 0.5, 0.9, 1 - 1e-9])
+    a, b = (end, math.inf) if side > 0 else (-math.inf, -end)
+    z = conditioned_quantile(np.float64(a), np.float64(b), share if side > 0 else 1 - share)
+    beyond = log_ndtr(-side * z) - log_ndtr(-end)
+    np.testing.assert_allclose(beyond, np.log1p(-share), rtol=1e-6, atol=1e-12 * end**2 + 1e-9)
+
+
 @pytest.mark.parametrize(("low", "high"), [(1, 6), (0.5, 3.5), (-3, -3), (-2.0, 2)])
 def test_discrete_range_is_uniform(low, high):
     node = make("discrete range", graph.axis(), low, high)
@@ -192,6 +218,11 @@ def test_discrete_range_of_huge_ends_fails():
     node = make("discrete range", graph.axis(), 0.0, source(Kind.SCALAR, [1e300, math.nan]))
     batch = batch_at(Graph([node]), np.full((2, 1), 0.5), CODEC)
     assert batch.status(node).tolist() == [1, 1]
+    for end in (3e18, -3e18):
+        for ends in ((uniform(0.0, end), 0.0), (0.0, uniform(0.0, end))):
+            node = make("discrete range", graph.axis(), *ends)
+            batch = batch_at(Graph([node]), np.full((1, 2), 0.99), CODEC)
+            assert batch.status(node).tolist() == [1]
 
 
 def test_weights():
@@ -330,3 +361,37 @@ def test_bounds_of_kinds_hold_every_value():
         bounds = bounding.of_kind(kind)
         assert ((bounds.lower <= values) & (values <= bounds.upper)).all()
     assert bounding.of_kind(Kind.OTHER) is None
+
+
+@pytest.mark.parametrize("centre", [0.0, -0.7, 3.0, -8.0, 29.0, -31.0, 2e4])
+def test_inverses_of_windows_of_any_width_keep_what_was_drawn(centre):
+    """Shares of a narrow window lose digits, which the inverse has to allow for; of a wide one it says nearly where it was."""
+    share = np.linspace(0.0, 1.0, 401)[1:-1]
+    for width in 10.0 ** np.arange(-14, 3):
+        for mean, deviation in ((0.0, 1.0), (5.0, -0.01), (-3.0, 200.0)):
+            low, high = mean + abs(deviation) * centre, mean + abs(deviation) * (centre + width)
+            if low == high:
+                continue
+            node = make("truncated normal", graph.axis(), mean, deviation, payload=(low, high))
+            values = batch_at(Graph([node]), share[:, None], CODEC).full(node)
+            known = [Bounds.exactly(0.5), Bounds.exactly(mean), Bounds.exactly(deviation)]
+            place, *_ = node.operation.inverse(node.payload, Bounds(values, values), *known)
+            assert ((place.lower <= share) & (share <= place.upper)).all(), (width, mean)
+            if 0.1 <= width <= 10 and abs(centre) < 5:
+                inner = (values > low) & (values < high)
+                assert (place.upper - place.lower)[inner].max() < 1e-6
+
+
+def test_tables_are_equal_only_if_their_values_are_of_one_kind():
+    """Zeros look alike in every kind: whole, broken, or false."""
+    tables = [
+        Table(kind, np.array(values, dtype=kind.dtype))
+        for kind, values in (
+            (Kind.INTEGER, [0, 0]),
+            (Kind.SCALAR, [0.0, 0.0]),
+            (Kind.SCALAR, [0.0, -0.0]),
+            (Kind.BOOLEAN, [False] * 16),
+        )
+    ]
+    assert len(set(tables)) == len(tables)
+    assert Table(Kind.INTEGER, np.array([0, 0])) == tables[0]

@@ -154,6 +154,14 @@ def test_plain_data_round_trip():
         {"dimension": 1, "boxes": []},
         {"dimension": 1, "boxes": [{"5": [0, 1]}]},
         {"dimension": 1, "boxes": [{"0": [1, 0]}]},
+        {"dimension": 1, "boxes": [[0, 1]]},
+        {"dimension": 1, "boxes": [{"first": [0, 1]}]},
+        {"dimension": 1, "boxes": [{"0": [0, 0.5, 1]}]},
+        {"dimension": 1, "boxes": [{}], "factors": [[1]]},
+        {"dimension": 1, "boxes": 3},
+        {"dimension": None, "boxes": [{}]},
+        {"dimension": 2, "boxes": [{"0": [0, 0.5]}], "factors": [[{"0": [0, 0.5]}]]},
+        [],
     ],
 )
 def test_bad_data_is_refused(data):

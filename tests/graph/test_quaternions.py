@@ -76,6 +76,22 @@ def test_poles_have_no_roll(pitch, yaw, roll):
     assert same_rotation(quaternions.from_euler(*found), q)
 
 
+@pytest.mark.parametrize("side", [-1, 1])
+def test_angles_next_to_the_poles_are_those_of_the_rotation(side):
+    """All digits of yaw and roll count down to where only rounding tells them apart; there roll is 0."""
+    rng = np.random.default_rng(3)
+    for exponent in range(-12, 0):
+        tilt = side * (math.pi / 2 - 10.0**exponent)
+        turns = quaternions.from_euler(rng.uniform(-3, 3, 20), np.full(20, tilt), rng.uniform(-3, 3, 20))
+        angles = quaternions.to_euler(turns)
+        again = quaternions.from_euler(*angles)
+        apart = np.minimum(np.abs(again - turns).max(axis=1), np.abs(again + turns).max(axis=1))
+        assert (apart < (1e-9 if exponent < -8 else 1e-14)).all()
+        assert bool((angles[2] == 0).all()) is (exponent < -8)
+        for turn, *expected in zip(turns.tolist(), *angles, strict=True):
+            assert quaternions.euler_angles(tuple(turn)) == tuple(expected)
+
+
 @given(angles)
 def test_yaw_alone_leaves_exact_zeros(yaw):
     q = quaternions.from_euler(yaw, 0.0, 0.0)

@@ -108,6 +108,70 @@ def test_inverses_lose_no_consistent_value(case):
     assert narrowed_something or case.name in SELDOM_NARROWING
 
 
+def of_box(bounds: Bounds | None, number: int) -> Bounds | None:
+    """What is known of one of many boxes; a single row is that of all."""
+    if bounds is None:
+        return None
+    place = number if len(bounds.lower) > 1 else 0
+    return Bounds(bounds.lower[place : place + 1], bounds.upper[place : place + 1])
+
+
+def assert_alike(found: Bounds | None, expected: Bounds | None) -> None:
+    assert (found is None) is (expected is None)
+    if found is not None:  # library functions may round a single number otherwise than one of many
+        np.testing.assert_allclose(found.lower, expected.lower, rtol=1e-13, atol=1e-300)
+        np.testing.assert_allclose(found.upper, expected.upper, rtol=1e-13, atol=1e-300)
+
+
+@pytest.mark.parametrize("case", BOUNDED, ids=str)
+def test_boxes_do_not_depend_on_company(case):
+    """Of many boxes at a time, where one operand may be the same in all of them, each is told what it is told alone."""
+    rng = np.random.default_rng(23)
+    operation, count, operands = TABLE[case.name], 16, []
+    shared = int(rng.integers(-1, len(case.operands)))
+    for place, part in enumerate(case.operands):
+        rows = [random_bounds(part, rng) for _ in range(1 if place == shared else count)]
+        operands.append(
+            Bounds(*(np.concatenate([getattr(row, end) for row in rows]) for end in ("lower", "upper")))
+        )
+    alone = [[of_box(each, number) for each in operands] for number in range(count)]
+    with np.errstate(all="ignore"):
+        known = operation.bounds(case.payload, *operands)
+        for number in range(count):
+            assert_alike(of_box(known, number), operation.bounds(case.payload, *alone[number]))
+        if operation.inverse is None or known is None:
+            return
+        middle = np.clip((known.lower + known.upper) / 2, -1e9, 1e9)
+        for result in (Bounds(known.lower, middle), Bounds(middle, known.upper)):
+            parts = operation.inverse(case.payload, result, *operands)
+            for number in range(count):
+                mine = operation.inverse(case.payload, of_box(result, number), *alone[number])
+                for part, expected in zip(parts, mine, strict=True):
+                    assert_alike(of_box(part, number), expected)
+
+
+@pytest.mark.parametrize("case", BOUNDED, ids=str)
+def test_values_of_points_are_held_to_the_last_unit(case):
+    """Of thousands of single values: what rounding has made of them is within the bounds, and they are kept by the inverse."""
+    rng = np.random.default_rng(29)
+    columns = [draw(part, 3000, rng) for part in case.operands]
+    if case.name == "power":
+        columns = [column[:200] for column in columns]
+    node = case_node(case, columns)
+    batch = evaluate(node, len(columns[0]))
+    if node.kind.is_boxed:
+        return
+    fine, values = is_fine(batch, node), batch.full(node).astype(float)
+    points = [Bounds(column.astype(float), column.astype(float)) for column in columns]
+    known = bounding.forward(node, points)
+    assert inside(values, known)[fine].all()
+    if TABLE[case.name].inverse is not None:
+        with np.errstate(all="ignore"):
+            parts = TABLE[case.name].inverse(case.payload, Bounds(values, values), *points)
+        for part, column in zip(parts, columns, strict=True):
+            assert part is None or inside(column, part)[fine].all()
+
+
 SELDOM_NARROWING = {
     "and",
     "or",

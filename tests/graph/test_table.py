@@ -1,13 +1,15 @@
 """The table as a whole: which entry has which reading, and what every reading must be."""
 
+import itertools
 import json
+import math
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from graph.programs import CASES, case_node, draw, evaluate, is_fine, kind_of
+from graph.programs import CASES, I, Q, S, V, case_node, draw, evaluate, is_fine, kind_of
 from scenic.graph.operations import TABLE
 
 GOLDEN = Path(__file__).parent / "data" / "table.json"
@@ -171,3 +173,59 @@ def test_plain_numbers_give_the_same_bits(case):
         assert bits(np.asarray(found, dtype=values.dtype)) == bits(values[lane]), rows
         compared += 1
     assert compared or any(kind_of(part).value == "boolean" for part in case.operands)
+
+
+_SIZES = (0.0, -0.0, 1.0, -2.5, 1e200, -1e-200, 5e-324)
+AT_CORNERS = {
+    S: (
+        *(0.0, -0.0, 1.0, -3.0, 1e-300, -1e300, math.inf, -math.inf, math.nan),
+        *(math.nextafter(turns * math.pi, way) for turns in (-4, -3, -1, 1, 2, 3, 4) for way in (-99, 99)),
+        *(turns * math.pi for turns in (-3, -1, -0.5, 0.5, 1, 2, 3, 1e6 + 1)),
+    ),
+    I: (0, 1, -1, 3, -5),
+    V: (*itertools.product(_SIZES, repeat=3), (math.inf, 1.0, 0.0), (math.nan, 0.0, 0.0)),
+    Q: (*itertools.product((0.0, -0.0, 1.0, -1.0), repeat=4), (0.5, -0.5, 0.5, 0.5), (0.0, 0.6, 0.0, -0.8)),
+}
+"""Where formulas change: zeros of both signs, seams of angles, squares that vanish or overflow, half turns."""
+
+
+@pytest.mark.parametrize(
+    "case",
+    [
+        case
+        for case in CASES
+        if TABLE[case.name].scalar is not None and set(case.operands) <= AT_CORNERS.keys()
+    ],
+    ids=str,
+)
+def test_plain_numbers_at_corners_give_the_same_bits(case):
+    rng = np.random.default_rng(13)
+    options = [AT_CORNERS[part] for part in case.operands]
+    chosen = (
+        [np.arange(len(options[0]))]
+        if len(options) == 1
+        else [rng.integers(0, len(of), 400) for of in options]
+    )
+    columns = [
+        np.array(of, dtype=kind_of(part).dtype)[places]
+        for part, of, places in zip(case.operands, options, chosen, strict=True)
+    ]
+    node = case_node(case, columns)
+    batch = evaluate(node, len(columns[0]))
+    fine, values = is_fine(batch, node), batch.full(node)
+    for lane in range(len(values)):
+        rows = [
+            tuple(row) if isinstance(row, list) else row for row in (each[lane].tolist() for each in columns)
+        ]
+        if not fine[lane]:
+            with pytest.raises((ArithmeticError, ValueError)):
+                TABLE[case.name].scalar(case.payload, *rows)
+            continue
+        found = TABLE[case.name].scalar(case.payload, *rows)
+        if found is not NotImplemented:
+            found = np.asarray(found, dtype=values.dtype)
+            np.testing.assert_array_equal(found, values[lane], str(rows))
+            known = found == found  # a NaN has no sign that counts
+            np.testing.assert_array_equal(
+                np.signbit(found)[known], np.signbit(values[lane])[known], str(rows)
+            )
