@@ -7,7 +7,6 @@ counts. Numbers are real terms throughout; whole numbers are integers seen as re
 from collections.abc import Sequence
 from enum import Enum, unique
 from fractions import Fraction
-from math import isfinite
 from typing import Any, Final
 
 from scenic.graph.kinds import Kind
@@ -57,12 +56,14 @@ class SolverTerms:
         return self.either(term, self.real(1), self.real(0)) if self._z3.is_bool(term) else term
 
     def constant(self, term: Term) -> float | None:
-        """The value of a term that is a fixed number."""
+        """The value of a term that is a fixed number, unless no float is as large."""
         simple = self._z3.simplify(term)
         if not self._z3.is_rational_value(simple):
             return None
-        value = float(Fraction(simple.numerator_as_long(), simple.denominator_as_long()))
-        return value if isfinite(value) else None
+        try:
+            return float(Fraction(simple.numerator_as_long(), simple.denominator_as_long()))
+        except OverflowError:  # there are integers that no float is
+            return None
 
     def either(self, condition: Term, then: Term, otherwise: Term) -> Term:
         """``then`` where ``condition`` holds, else ``otherwise``."""

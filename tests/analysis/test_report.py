@@ -74,6 +74,14 @@ def test_options_are_told_where_all_are_fixed_numbers():
         assert told(found) == ("SC700", 2, [(1, f"this choice {words}")])
 
 
+def test_options_that_are_vectors_are_not_told():
+    index = make("choice", graph.axis(), payload=(0.5, 1.0), span=line(1))
+    table = Table(Kind.VECTOR, np.array([[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]))
+    part = make("component", make("look-up", index, payload=table), payload=0)
+    (found,) = report((make("and", make("greater", part, -9), make("greater", index, 3)), line(2)))
+    assert told(found) == ("SC700", 2, [(1, "this choice takes one of its options")])
+
+
 def test_contradictions_that_only_intervals_see():
     x = uniform(0.0, 0.1, span=line(1))
     (found,) = report((make("greater", x, 0.01), line(2)), (make("greater", make("sin", x), 0.5), line(3)))

@@ -141,6 +141,20 @@ def test_python_objects_are_left_open():
 def test_not_a_number_is_left_open():
     nan = make("minimum", constant(math.nan), constant(math.inf))
     assert verdict(make("less", nan, 1.0)) == ([], [])
+    for row in ((1.0, math.inf, 0.0), (math.nan, 0.0, 0.0), (0.0, 0.0, -math.inf)):
+        part = make("component", constant(Triple(row)), payload=1)
+        assert verdict(make("less", part, 1.0), make("greater", part, 2.0)) == ([["0", "1"]], [])
+        assert verdict(make("less", make("norm", constant(Triple(row))), 1.0)) == ([], [])
+
+
+def test_functions_of_one_name_are_different_functions():
+    x = uniform(0, 1)
+    first, second = (
+        construction.make_node(Operation("unknown", always(Kind.SCALAR), lambda call, a: a, "A test."), [x])
+        for _ in range(2)
+    )
+    assert verdict(make("less", first, 0.0), make("greater", second, 0.0)) == ([], [])
+    assert verdict(make("less", first, 0.0), make("greater", first, 0.0)) == ([["0", "1"]], [])
 
 
 @cache
@@ -266,6 +280,15 @@ def test_integers_beyond_all_floats(huge):
     assert (cores, always) == (([["0"]], []) if huge > 0 else ([], ["0"]))
     less = make("less", x, huge)
     assert not contract(Graph([less]), [Fact(less, "")]).impossible or huge < 0
+
+
+@pytest.mark.parametrize("name", ["floor divide", "modulo", "power", "round", "divide"])
+def test_operands_beyond_all_floats(name):
+    x, huge = uniform(0, 1), constant(10**400)
+    small, large = make(name, x, huge), make(name, huge, make("add", x, 1.0))
+    cores, _ = verdict(make("less or equal", small, 1.0), make("greater or equal", small, 0.0))
+    assert cores == []
+    assert verdict(make("equal", large, huge))[1] == []
 
 
 def test_nothing_is_decided_once_the_count_is_spent(monkeypatch):

@@ -26,7 +26,7 @@ from scenic.graph.domain import Domain
 from scenic.graph.draws import address
 from scenic.graph.kinds import Kind
 from scenic.graph.node import Graph
-from scenic.graph.operation import Operation, always
+from scenic.graph.operation import Call, Operation, always
 
 OK, FAULT, REJECTED = 0, 1, 2
 
@@ -356,3 +356,72 @@ def test_rows_are_those_of_the_lanes_that_are_kept():
     batch.keep(np.array([False, True, True]))
     assert batch.tuples(nodes) == [(2, 5), (3, 6)]
     assert batch.read(1, nodes[0]) == 3
+
+
+@pytest.mark.parametrize("order", list(itertools.permutations(("fault", "reject", "inherit"))))
+def test_the_worst_fate_of_a_lane_is_told_whatever_comes_first(order):
+    """Of the exceptions the first one is kept, also where a later one is of other lanes."""
+    first, second = ValueError("first"), KeyError("second")
+    call = Call((5,), None, [np.array([OK, FAULT, REJECTED, FAULT, REJECTED], dtype=np.int8), None])
+    for step in order:
+        if step == "fault":
+            call.fault(np.array([True, False, True, False, False]), first)
+            call.fault(np.array([False, True, False, False, False]), second)
+        elif step == "reject":
+            call.reject(np.array([True, False, False, True, False]))
+        else:
+            call.inherit(0, np.array([True, False, True, False, True]))
+            call.inherit(1, np.ones(5, dtype=bool))
+    assert call.status.tolist() == [REJECTED, FAULT, REJECTED, REJECTED, REJECTED]
+    assert call.error is first
+    assert call.culprit is None
+
+
+def test_the_first_operand_that_failed_is_the_culprit():
+    statuses = [np.array([status], dtype=np.int8) for status in (OK, REJECTED, FAULT, FAULT)]
+    call = Call((1,), None, statuses)
+    for position in range(4):
+        call.inherit(position, np.ones(1, dtype=bool))
+    assert call.culprit == 2
+    untouched = Call((3,), None, [])
+    untouched.reject(np.zeros(3, dtype=bool))
+    untouched.fault(np.zeros(1, dtype=bool), ValueError())
+    assert untouched.status is untouched.error is None
+
+
+@pytest.mark.parametrize("grouped", [True, False])
+def test_the_error_is_that_of_the_operand_that_failed(grouped):
+    """Not of one before it whose neighbour in a group, or whose other lanes, failed."""
+    given = KeyError("given")
+    divisors = [source(Kind.SCALAR, [value]) for value in (4.0, 0.0)]
+    fine, failed = (make("divide", 1.0, divisor) for divisor in divisors)
+    node = make("subtract", fine, faulty(Kind.SCALAR, [1.0], [FAULT], given))
+    truth = make("and", make("less", fine, 1.0), faulty(Kind.BOOLEAN, [True], [FAULT], given))
+    batch = batch_at(Graph([fine, failed, node, truth]), np.empty((1, 0)), grouped=grouped)
+    batch.need([fine, failed])
+    batch.need([node, truth])
+    assert batch.errors[node] is batch.errors[truth] is given
+    assert batch.status(fine) is None
+    assert fine not in batch.errors
+    if not grouped:
+        assert isinstance(batch.errors[failed], ZeroDivisionError)
+
+
+def test_a_settled_batch_may_lose_lanes():
+    nodes = [node for node in program() if not node.kind.is_boxed]
+    whole = sampled(nodes, 60, seed=5)
+    batch = sampled(nodes, 60, seed=5)
+    batch.need(nodes[:1])
+    batch.keep(np.arange(60) % 5 != 2)
+    batch.need(nodes)
+    batch.keep(np.arange(len(batch)) % 3 != 0)
+    batch.settle(nodes[::2])
+    for size in (20, 7, 1):
+        batch.keep(np.arange(len(batch))[-size:])
+        for node in nodes[::2]:
+            status, expected = batch.status(node), whole.status(node)
+            fine = is_fine(batch, node)
+            assert batch.full(node)[fine].tolist() == whole.full(node)[batch.rows][fine].tolist()
+            assert (status is None) is (expected is None or not expected[batch.rows].any())
+            if status is not None:
+                assert status.tolist() == expected[batch.rows].tolist()

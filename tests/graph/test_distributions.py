@@ -128,6 +128,11 @@ def test_truncated_normal_without_deviation():
         batch = batch_at(net, np.full((5, net.dimension), 0.3), CODEC)
         assert batch.status(node).tolist() == [0, 1, 1, 0, 0]
         assert batch.column(node)[[0, 3, 4]].tolist() == [1.0, 0.0, 2.0]
+    known = [Bounds(np.array([0.25]), np.array([0.5])), Bounds.exactly(1.0), Bounds.exactly(0.0)]
+    found = node.operation.bounds((0.0, 2.0), *known)
+    assert (found.lower[0], found.upper[0]) == (0.0, 2.0)
+    place, *_ = node.operation.inverse((0.0, 2.0), Bounds.exactly(1.0), *known)
+    assert not place.meet(known[0]).empty().any()
 
 
 @pytest.mark.parametrize(

@@ -180,7 +180,7 @@ AT_CORNERS = {
     S: (
         *(0.0, -0.0, 1.0, -3.0, 1e-300, -1e300, math.inf, -math.inf, math.nan),
         *(math.nextafter(turns * math.pi, way) for turns in (-4, -3, -1, 1, 2, 3, 4) for way in (-99, 99)),
-        *(turns * math.pi for turns in (-3, -1, -0.5, 0.5, 1, 2, 3, 1e6 + 1)),
+        *(turns * math.pi for turns in (-17, -13, -3, -1, -0.5, 0.5, 1, 3, 13, 17, 1e6 + 1)),
     ),
     I: (0, 1, -1, 3, -5),
     V: (*itertools.product(_SIZES, repeat=3), (math.inf, 1.0, 0.0), (math.nan, 0.0, 0.0)),
