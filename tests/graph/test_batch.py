@@ -356,6 +356,8 @@ def test_rows_are_those_of_the_lanes_that_are_kept():
     batch.keep(np.array([False, True, True]))
     assert batch.tuples(nodes) == [(2, 5), (3, 6)]
     assert batch.read(1, nodes[0]) == 3
+    for _ in range(3):  # of tuples of nodes that are there no longer nothing is left
+        assert [batch.tuples((node,)) for node in nodes] == [[(2,), (3,)], [(5,), (6,)]]
 
 
 @pytest.mark.parametrize("order", list(itertools.permutations(("fault", "reject", "inherit"))))
@@ -425,3 +427,16 @@ def test_a_settled_batch_may_lose_lanes():
             assert (status is None) is (expected is None or not expected[batch.rows].any())
             if status is not None:
                 assert status.tolist() == expected[batch.rows].tolist()
+
+
+def test_functions_are_called_where_their_operands_have_values_alone():
+    """And once, where those are the same in all lanes."""
+    seen = []
+    operation = Operation("seen", always(Kind.OTHER), lambda call, a: a, "A test.", python=seen.append)
+    values = faulty(Kind.SCALAR, [1.0, 2.0, 3.0, 4.0], np.array([OK, FAULT, REJECTED, OK]), ValueError())
+    node = construction.make_node(operation, [values])
+    assert evaluate(node, 4).status(node).tolist() == [OK, FAULT, REJECTED, OK]
+    assert seen == [1.0, 4.0]
+    node = construction.make_node(operation, [source(Kind.SCALAR, [5.0])])
+    evaluate(node, 4).column(node)
+    assert seen == [1.0, 4.0, 5.0]

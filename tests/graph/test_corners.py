@@ -1,11 +1,12 @@
 """Bounds and inverses where they are most easily wrong: at corners, seams, zeros and neighbours; and how tight they are."""
 
+import itertools
 import math
 
 import numpy as np
 import pytest
 
-from graph.programs import B, I, P, S, U, V
+from graph.programs import B, I, P, Q, S, U, V
 from graph.readings import CASES, bounds_of, has, kind_of, narrowed, values_of
 from scenic.graph.bounds import Bounds
 from scenic.graph.operations import TABLE
@@ -454,3 +455,62 @@ def test_lengths_of_extreme_vectors_are_right_among_usual_ones():
     assert values.tolist() == pytest.approx([5, 5e200, 5e-300, 0, math.sqrt(2) * 1e308], rel=1e-15)
     for row, value in zip(rows, values, strict=True):
         assert values_of(of("norm", V), [row[np.newaxis]])[0][0] == value
+
+
+def test_turns_that_undo_each_other_are_held_to_the_last_unit():
+    """Their product is no turn but for rounding, by which a part of it may be larger than 1."""
+    rng = np.random.default_rng(67)
+    turns = rng.normal(size=(3000, 4))
+    turns /= np.linalg.norm(turns, axis=1, keepdims=True)
+    back = turns * [-1, -1, -1, 1]
+    values, _ = values_of(of("compose", Q, Q), [turns, back])
+    assert (values[:, 3] > 1).any()
+    known = TABLE["compose"].bounds(None, Bounds(turns, turns), Bounds(back, back))
+    assert ((known.lower <= values) & (values <= known.upper)).all()
+    ones = np.where(values[:, 3:] > 1, values, [0.0, 0.0, 0.0, 1.0])
+    for name, payload in (("inverse", None), *(("quaternion", index) for index in range(4))):
+        known = TABLE[name].bounds(payload, Bounds(ones, ones))
+        found, _ = values_of(of(name, Q, payload=payload), [ones])
+        assert ((known.lower <= found) & (found <= known.upper)).all()
+
+
+WHOLE = [
+    *("add", "subtract", "multiply", "floor divide", "modulo", "minimum", "maximum"),
+    *("negative", "positive", "absolute", "int", "round", "float"),
+]
+HUGE_WHOLE = [sign * (2**bits + more) for bits in (3, 52, 53, 54, 60) for more in (-3, -1, 0, 1, 2, 5) for sign in (1, -1)]  # fmt: skip
+
+
+@pytest.mark.parametrize("name", WHOLE)
+def test_whole_numbers_that_no_float_is_are_held_exactly(name):
+    """Comparing Python's own numbers: as floats, a value outside could look like the end of its bounds."""
+    rng = np.random.default_rng(71)
+    operation = TABLE[name]
+    count = 2 if WHOLE.index(name) < 7 else 1
+
+    def outward_box(low, high):
+        lower, upper = float(low), float(high)
+        lower = math.nextafter(lower, -math.inf) if lower > low else lower
+        return Bounds(
+            np.array([lower]), np.array([math.nextafter(upper, math.inf) if upper < high else upper])
+        )
+
+    for _ in range(100):
+        ends = [
+            sorted(HUGE_WHOLE[place] for place in rng.integers(0, len(HUGE_WHOLE), 2)) for _ in range(count)
+        ]
+        boxes = [outward_box(*each) for each in ends]
+        with np.errstate(all="ignore"):
+            known = operation.bounds(None, *boxes)
+        for row in itertools.product(*ends):
+            try:
+                value = operation.python(*row)
+            except ArithmeticError:
+                continue
+            assert known.lower.item() <= value <= known.upper.item(), (ends, value)
+            if operation.inverse is None:
+                continue
+            with np.errstate(all="ignore"):
+                parts = operation.inverse(None, outward_box(value, value), *boxes)
+            for part, operand in zip(parts, row, strict=True):
+                assert part is None or part.lower.item() <= operand <= part.upper.item(), (ends, row)

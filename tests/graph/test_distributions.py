@@ -347,9 +347,20 @@ def test_bounds_of_whole_constants_hold_them_exactly():
         ),
     ):
         bounds = bounding.of_constant(constant(value))
-        assert bounds.lower[0] <= value <= bounds.upper[0]
+        # As whole numbers: NumPy would make a float of the value first.
+        assert int(bounds.lower[0]) <= value <= int(bounds.upper[0])
         if abs(value) <= 2**53:
             assert bounds.lower[0] == value == bounds.upper[0]
+
+
+@pytest.mark.parametrize("end", [2**53 + more for more in (-1, 0, 1, 3)] + [2**60 + 1, 2**61 - 1])
+def test_bounds_of_whole_numbers_hold_their_limits(end):
+    for values in ([0, end], [-end, 0], [-end, end]):
+        bounds = bounding.overall(source(Kind.INTEGER, values))
+        assert int(bounds.lower[0]) <= values[0]
+        assert values[1] <= int(bounds.upper[0])
+        if end <= 2**53:
+            assert [bounds.lower[0], bounds.upper[0]] == values or end == 2**53
 
 
 def test_bounds_of_kinds_hold_every_value():

@@ -1,5 +1,6 @@
 """What single inverse readings must find; that they lose nothing is tested for all of them in `test_readings`."""
 
+import itertools
 import math
 
 import numpy as np
@@ -63,6 +64,13 @@ def test_a_failed_order_says_nothing_of_what_may_be_no_number():
     assert narrowed("less", TRUE, (0, math.inf), (7, 20)) == [(0, pytest.approx(20)), (7, 20)]
 
 
+@pytest.mark.parametrize("name", ["less", "less or equal", "greater", "greater or equal"])
+@pytest.mark.parametrize("wild", [(7, math.inf), (-math.inf, 3), FREE])
+def test_a_failed_order_with_what_may_be_no_number_on_either_side(name, wild):
+    for operands in (((0, 10), wild), (wild, (0, 10))):
+        assert narrowed(name, FALSE, *operands) == list(operands)
+
+
 def test_equality():
     near(narrowed("equal", TRUE, (0, 10), (7, 20)), (7, 10), (7, 10))
     near(narrowed("not equal", FALSE, (0, 10), (7, 20)), (7, 10), (7, 10))
@@ -80,6 +88,32 @@ def test_logic():
     assert narrowed("or", TRUE, FALSE, OPEN) == [FALSE, TRUE]
     assert narrowed("or", TRUE, OPEN, OPEN) == [OPEN, OPEN]
     assert narrowed("and", TRUE, FALSE, OPEN)[0] is None
+
+
+@pytest.mark.parametrize(("name", "decisive"), [("and", 0), ("or", 1)])
+@pytest.mark.parametrize("count", [1, 2, 3])
+def test_logic_by_brute_force(name, decisive, count):
+    """Bounds and inverses are those of all values that the operands may have, of operands that are certainly evaluated."""
+    for boxes in itertools.product((TRUE, FALSE, OPEN), repeat=count):
+        rows = [row for row in itertools.product((0, 1), repeat=count) if all(low <= value <= high for value, (low, high) in zip(row, boxes, strict=True))]  # fmt: skip
+        results = [decisive if decisive in row else 1 - decisive for row in rows]
+        known = TABLE[name].bounds(None, *(box(*each) for each in boxes))
+        assert (known.lower[0], known.upper[0]) == (min(results), max(results))
+        for wanted in (TRUE, FALSE, OPEN):
+            left = [
+                row for row, result in zip(rows, results, strict=True) if wanted[0] <= result <= wanted[1]
+            ]
+            if not left:
+                continue
+            parts = TABLE[name].inverse(None, box(*wanted), *(box(*each) for each in boxes))
+            for place, part in enumerate(parts):
+                if np.isfinite(part.lower[0]) or np.isfinite(part.upper[0]):
+                    assert all(decisive not in row[:place] for row in left)
+                    met = part.meet(box(*boxes[place]))
+                    values = {row[place] for row in left}
+                    assert (met.lower[0], met.upper[0]) == (min(values), max(values))
+                else:
+                    assert any(decisive in row[:place] for row in left)
 
 
 def test_operands_that_may_not_be_evaluated_are_left_unbounded():

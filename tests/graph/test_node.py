@@ -85,6 +85,8 @@ def test_equal_nodes_are_one_unless_what_they_carry_may_change():
     operation = replace(TABLE["sin"], rewrite=None)
     assert make_node(operation, [x], payload="name") is make_node(operation, [x], payload="name")
     assert make_node(operation, [x], payload="name") is not make_node(operation, [x], payload="other")
+    namesake = replace(operation, doc="Another one of this name.")
+    assert make_node(operation, [x]) is make_node(operation, [x]) is not make_node(namesake, [x])
     changing = ["name"]
     assert make_node(operation, [x], payload=changing) is not make_node(operation, [x], payload=changing)
 

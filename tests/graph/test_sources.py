@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from scenic.graph.draws import BOX, Counter, Lanes, Points, Source, open_unit, words_of
+from scenic.graph.draws import BOX, Counter, Lanes, Points, Source, box_addresses, open_unit, words_of
 from scenic.graph.node import Graph, axis
 from scenic.graph.points import GivenPoints, PointSet, Sobol
 from scenic.runtime.sampling.driving import driven
@@ -92,6 +92,13 @@ def test_given_numbers_and_words_are_those_of_their_addresses() -> None:
     expected = hashed.words(ADDRESSES)
     expected[3] = words
     np.testing.assert_array_equal(source.words(ADDRESSES), expected)
+
+
+def test_each_factor_of_a_domain_is_chosen_by_a_draw_of_its_own() -> None:
+    several = box_addresses(5).tolist()
+    assert len({*several, *ADDRESSES.tolist()}) == 5 + len(ADDRESSES)
+    for parts in range(1, 5):  # further factors leave the choices of the first ones as they are
+        assert box_addresses(parts).tolist() == several[:parts]
 
 
 def test_rows_are_by_scene_and_the_rest_is_hashed() -> None:
