@@ -174,6 +174,28 @@ def test_limits_are_exact_for_chains_of_whole_numbers():
     assert make("int", make("divide", node, 4)).limits == (12, 15)
 
 
+@pytest.mark.parametrize(
+    ("exponents", "kind"),
+    [
+        ([0], Kind.INTEGER),
+        ([0, 3], Kind.INTEGER),
+        ([-1], Kind.SCALAR),
+        ([-3, -1], Kind.SCALAR),
+        ([-1, 0], Kind.OTHER),
+        ([-1, 2], Kind.OTHER),
+        ([3, 40], Kind.OTHER),
+    ],
+)
+def test_powers_of_integers_are_of_the_kind_that_their_exponents_say(exponents, kind):
+    """A negative exponent gives a float; what may be one or the other, or too large, is Python's own."""
+    node = make("power", source(Kind.INTEGER, [3] * len(exponents)), source(Kind.INTEGER, exponents))
+    assert node.kind is kind
+    batch = evaluate(node, len(exponents))
+    assert [batch.value(node, lane) for lane in range(len(exponents))] == [3**power for power in exponents]
+    found = [type(batch.value(node, lane)) for lane in range(len(exponents))]
+    assert found == [type(3**power) for power in exponents]
+
+
 def test_a_float_of_unknown_size_gives_no_machine_integer():
     wild = make("divide", 1.0, make("subtract", source(Kind.SCALAR, [0.5]), 0.5))
     assert make("round", wild).kind is Kind.OTHER

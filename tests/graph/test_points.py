@@ -32,6 +32,29 @@ def test_scrambled_rows_are_as_evenly_spread_as_the_sequence(seed: int) -> None:
         assert len(np.unique(np.floor(column * 1024))) == 1024
 
 
+def places_of_difference(numbers: NDArray[np.float64]) -> NDArray[np.int64]:
+    """For each two rows, by columns, how many of 20 bits are left where they first differ."""
+    bits = np.floor(numbers * 2**20).astype(np.int64)
+    return np.frexp((bits[:, np.newaxis] ^ bits).astype(np.float64))[1].astype(np.int64)
+
+
+@pytest.mark.parametrize("first", [0, 700])
+def test_rows_are_those_of_the_sequence_but_for_the_scrambling(first: int) -> None:
+    """Nested scrambling turns bits by the bits before them: where two numbers first differ, those of the sequence do."""
+    count, attempt = 3, 2
+    sobol, who = Sobol(), lanes(128, first=first, attempt=attempt)
+    sequence = qmc.Sobol(2 * 512 * 3 + 2, scramble=False, bits=20)
+    plain = (sequence.fast_forward(first) if first else sequence).random(128)
+    scenes = sobol.of_scenes(np.arange(-1, count), count, who)
+    draws = np.array([0, 5, 511])
+    simulations = sobol.of_simulations(draws, count, who)
+    for found, columns in (
+        (scenes, 2 * ((count + 1) * attempt + np.arange(count + 1))),
+        (simulations, 2 * (512 * attempt + draws) + 1),
+    ):
+        np.testing.assert_array_equal(places_of_difference(found.T), places_of_difference(plain[:, columns]))
+
+
 def test_a_number_has_the_uniform_law_whatever_its_row() -> None:
     """Over seeds: a row of a scrambled sequence is a point like any other."""
     found = np.array([rows(1, 2, seed=seed, first=5)[0] for seed in range(3000)])
