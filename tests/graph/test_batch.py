@@ -243,10 +243,16 @@ def tangle(rng, size=60):
     numbers += [uniform(-1.0, 1.0), constant(0.0), constant(-0.0), constant(2.5), constant(-1.0)]
     numbers += [faulty(Kind.SCALAR, rng.random(lanes), status, KeyError("given")) for status in statuses]
     truths = [make("less", numbers[0], 0.5), constant(True)]
+    vectors = [
+        make("vector", *numbers[:3]),
+        constant(Triple((1.0, -0.0, 2.5))),
+        constant(Triple((0.0, 0.0, 0.0))),
+    ]
     for _ in range(size):
         a, b, c = (numbers[place] for place in rng.integers(0, len(numbers), 3))
         p, q = (truths[place] for place in rng.integers(0, len(truths), 2))
-        match rng.integers(0, 9):
+        u, v = (vectors[place] for place in rng.integers(0, len(vectors), 2))
+        match rng.integers(0, 14):
             case 0 | 1 | 2:
                 numbers.append(make(str(rng.choice(["add", "multiply", "subtract"])), a, b))
             case 3:
@@ -259,9 +265,17 @@ def tangle(rng, size=60):
                 truths.append(make("less", a, b))
             case 7:
                 truths.append(make(str(rng.choice(["and", "or"])), p, q))
+            case 8 | 9:
+                vectors.append(make(str(rng.choice(["add", "subtract", "cross"])), u, v))
+            case 10:
+                vectors.append(make("multiply", v, a))
+            case 11:
+                vectors.append(make("if", p, u, v))
+            case 12:
+                numbers.append(make("component", v, payload=int(rng.integers(3))))
             case _:
                 numbers.append(make("maximum", a, b))
-    return [node for node in (*numbers, *truths) if not node.is_constant], lanes
+    return [node for node in (*numbers, *truths, *vectors) if not node.is_constant], lanes
 
 
 PAVED = 3
@@ -304,10 +318,10 @@ def test_lanes_are_what_they_are_alone(seed):
             # Zeros of both signs are told apart.
             assert batch.full(node)[fine].tobytes() == values[fine].tobytes()
             for lane in np.flatnonzero(fine):
-                assert batch.read(int(lane), node) == values[lane]
+                assert np.array_equal(batch.read(int(lane), node), values[lane])
                 if node in kept_tuple:
                     row = rows[lane if len(rows) > 1 else 0]
-                    assert row[kept_tuple.index(node)] == values[lane]
+                    assert np.array_equal(row[kept_tuple.index(node)], values[lane])
 
 
 def test_one_row_of_values_and_a_fate_for_each_lane():
