@@ -186,3 +186,45 @@ def test_options_are_told_with_all_their_digits(options):
         ((_, text),) = told(found)[2]
         numbers = [float(word) for word in text.removeprefix("this choice is one of ").split(", ")]
         assert numbers == list(options)
+
+
+def drawn(name, *operands, payload=None):
+    return make(name, graph.axis(), *operands, payload=payload, span=line(1))
+
+
+@pytest.mark.parametrize(
+    ("draw", "name", "border", "words"),
+    [
+        (drawn("range", -1.5, 0.1 + 0.2), "greater", 1, "this range is at most 0.3"),
+        (drawn("range", 123456789.125, 2e9), "less", 1, "this range is at least 123456789.125"),
+        (drawn("range", 3, -2), "less", -2, "this range is at least -2"),
+        (drawn("range", uniform(0, 1), 2.0), "greater", 3, "this range lies between its ends"),
+        (drawn("discrete range", 1, 6), "greater", 6, "this range of integers is at most 6"),
+        (drawn("discrete range", -4, 6), "less", -4, "this range of integers is at least -4"),
+        (
+            drawn("discrete range", 0, uniform(1, 2)),
+            "less",
+            0,
+            "this range of integers lies between its ends",
+        ),
+        (
+            drawn("weighted integer", payload=(7, (0.5, 0.5, 1.0))),
+            "equal",
+            8,
+            "this range of integers is never 8",
+        ),
+        (
+            drawn("weighted integer", payload=(7, (0.0, 0.5, 1.0, 1.0))),
+            "greater",
+            9,
+            "this range of integers is at most 9",
+        ),
+        (drawn("truncated normal", 0.0, 1.0, payload=(-1.0, 2.5)), "greater", 2.5, "this truncated normal is at most 2.5"),
+        (drawn("truncated normal", 0.0, 1.0, payload=(-1.0, np.inf)), "less", -1, "this truncated normal is at least -1"),
+    ],
+    ids=lambda value: value if isinstance(value, str) else "",
+)  # fmt: skip
+def test_what_a_contradiction_rests_on_is_told_in_words(draw, name, border, words):
+    (found,) = report((make(name, draw, border), line(2)))
+    assert (1, words) in told(found)[2]
+    assert len(found.labels) == 1
