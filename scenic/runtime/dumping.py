@@ -1,8 +1,10 @@
 """A scene as a program: concrete objects that compile back to the same scene."""
 
 from collections.abc import Iterator, Mapping
+from keyword import iskeyword
 from typing import Any
 
+from scenic.language.keywords import HARD_KEYWORDS
 from scenic.runtime.objects import Object, OrientedPoint, Point
 from scenic.runtime.regions.base import Everywhere, Region
 from scenic.runtime.shapes import BoxShape, ConeShape, CylinderShape, Shape, SpheroidShape
@@ -43,11 +45,12 @@ def program_of(
     """
     lines: list[str] = []
     for name, value in params.items():
+        is_word = name.isidentifier() and not iskeyword(name) and name not in HARD_KEYWORDS
+        key = name if is_word else repr(name)
         try:
-            key = name if name.isidentifier() else repr(name)
             lines.append(f"param {key} = {literal(value)}")
         except NoLiteralError:
-            lines.append(f"# param {name}: {_described(value)}")
+            lines.append(f"# param {key}: {_described(value)}")
     classes = {type(item).__name__: type(item) for item in objects if type(item) is not Object}
     for name in classes:
         lines += [f"class {name}:", "    pass"]

@@ -167,6 +167,15 @@ def test_shapes_of_files_are_dumped_as_they_are_read(tmp_path: Path, options: st
     assert new.source == old.source
 
 
+def test_parameters_of_any_name_are_dumped() -> None:
+    """Words of the language and of Python, and what is no word at all; whether their values have literals or not."""
+    names = ("class", "at", "visible", "ego", "two words", "two\nlines", "3", "it's")
+    written = ", ".join(f"{name!r} = {number}" for number, name in enumerate(names))
+    before = scene_of(f"param {written}\nparam 'odd\\nname' = CircularRegion((0, 0), 1)\n")
+    assert len(before.params) == len(names) + 1
+    assert dict(scene_of(before.dump()).params) == {name: number for number, name in enumerate(names)}
+
+
 def test_two_objects_of_one_name_have_two_in_the_dump() -> None:
     (first, second, third) = scene_of(
         "ego = new Object\nnew Object at (3, 0)\nnew Object at (6, 0)\n"
@@ -180,7 +189,11 @@ def test_what_has_no_literal_is_told_in_comments() -> None:
     """One line for each, whatever the value's text is: the dump still compiles, and nothing else is lost."""
     text = """
 import numpy
-ego = new Object with zone CircularRegion((0, 0), 2), with odd numpy.eye(9), with third PolygonalRegion([(0, 0), (1, 0), (0, 1)]), with size 7
+class Mark(Point):
+    size: 2
+other = new Object at (9, 9)
+ego = new Object with zone CircularRegion((0, 0), 2), with odd numpy.eye(9), with third PolygonalRegion([(0, 0), (1, 0), (0, 1)]), with size 7,
+    with friend other, with mark (new Mark at (1, 2)), with spot (new Point at (7, 8))
 param odd = numpy.zeros((9, 9)), place = CircularRegion((0, 0), 1), number = 5
 """
     dump = scene_of(text).dump()
@@ -190,7 +203,7 @@ param odd = numpy.zeros((9, 9)), place = CircularRegion((0, 0), 1), number = 5
         name, told = line.removeprefix("# ").split(": ", 1)
         assert len(told) <= 80
         found[name] = told
-    assert set(found) == {"param odd", "param place", "zone", "odd", "third"}
+    assert set(found) == {"param odd", "param place", "zone", "odd", "third", "friend", "mark"}
     assert found["param place"] == found["zone"] == "a CircularRegion"
     assert found["third"] == "a PolygonalRegion"
     for name, word in (("param odd", "0."), ("odd", "1.")):
@@ -198,6 +211,7 @@ param odd = numpy.zeros((9, 9)), place = CircularRegion((0, 0), 1), number = 5
         assert len(found[name]) == 80
     again = scene_of(dump)
     assert (again.egoObject.size, dict(again.params)) == (7, {"number": 5})
+    assert again.egoObject.spot.position == (7, 8)
 
 
 def test_a_saved_scene_has_all_draws_of_the_program_and_no_other() -> None:
