@@ -195,17 +195,21 @@ class Point:
     def __reduce__(self) -> tuple[Any, ...]:
         """A sampled instance is pickled as its values; its class by the first base that others can import."""
         cls = type(self)
-        known = next(base for base in cls.__mro__ if base.__module__ == Point.__module__)
-        values = {name: value for name, value in self.properties.items() if name not in _NOT_KEPT}
+        known = next(base for base in cls.__mro__ if base in (Object, OrientedPoint, Point))
+        values = {name: value for name, value in self._copied().items() if name not in _NOT_KEPT}
         return _restored, (known, cls.__name__), values  # apart, since objects may know each other
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Any:
         made = memo[id(self)] = type(self)._make({})
-        made.__dict__.update({name: deepcopy(value, memo) for name, value in self.properties.items()})
+        made.__dict__.update({name: deepcopy(value, memo) for name, value in self._copied().items()})
         return made
 
     def __copy__(self) -> Any:
-        return type(self)._make(dict(self.properties))
+        return type(self)._make(self._copied())
+
+    def _copied(self) -> dict[str, Any]:
+        """What a copy holds: the properties, and what is known of the instance beside them."""
+        return {**self.properties, **{name: self._all()[name] for name in _KNOWN if name in self._all()}}
 
     def toVector(self) -> Any:
         """The position."""
@@ -453,6 +457,9 @@ class Object(OrientedPoint):
             self.sideComponentThresholds, lambda thresholds: SideSurface(self, name, thresholds)
         )
 
+
+_KNOWN = ("_names", "_given", "_planar")
+"""What is known of an instance beside its properties: their names, which of them were given, that it is one of 2D mode."""
 
 _NOT_KEPT = frozenset({"behavior", "mutator", "sensors", "observations", "lastActions"})
 """Properties that belong to the program rather than to a pickled object."""

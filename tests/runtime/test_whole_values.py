@@ -60,6 +60,18 @@ def test_objects_keep_their_properties(again: Any) -> None:
 
 
 @pytest.mark.parametrize("again", COPIES)
+def test_copies_of_copies_have_all_properties(again: Any) -> None:
+    """Those that a specifier made, too; and what is flat stays so, and sees what is above its disc."""
+    text = "class Car:\n    speedy: Range(0, 1)\nego = new Car with size Range(5, 6)\n"
+    for flat in (False, True):
+        ego = scenario(text, mode2D=flat).sample(1, seed=1)[0].egoObject
+        same = again(again(ego))
+        assert same.properties.keys() == ego.properties.keys()
+        assert (same.size, same.speedy) == (ego.size, ego.speedy)
+        assert same.canSee((0, 45, 45)) is ego.canSee((0, 45, 45)) is flat
+
+
+@pytest.mark.parametrize("again", COPIES)
 def test_scenes_are_the_same_scenes(again: Any) -> None:
     scene = whole()
     same = again(scene)
