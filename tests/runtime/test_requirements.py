@@ -2,6 +2,7 @@
 
 import itertools
 import re
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -463,3 +464,69 @@ def test_random_sizes_are_positive(name: str) -> None:
 
 def test_branches_outside_requirements_are_refused() -> None:
     assert isinstance(failure("x = Range(0, 1)\nif x > 0.5:\n    require True"), RandomControlFlowError)
+
+
+def holds(formula: Any, trace: Sequence[Mapping[str, bool]], now: int) -> bool:
+    """Whether a formula holds at a moment of a trace whose last state goes on for ever."""
+    match formula:
+        case str():
+            return trace[now][formula]
+        case "not", part:
+            return not holds(part, trace, now)
+        case "and", one, other:
+            return holds(one, trace, now) and holds(other, trace, now)
+        case "or", one, other:
+            return holds(one, trace, now) or holds(other, trace, now)
+        case "implies", one, other:
+            return not holds(one, trace, now) or holds(other, trace, now)
+        case "next", part:
+            return holds(part, trace, min(now + 1, len(trace) - 1))
+        case "always", part:
+            return all(holds(part, trace, later) for later in range(now, len(trace)))
+        case "eventually", part:
+            return any(holds(part, trace, later) for later in range(now, len(trace)))
+        case "until", one, other:
+            return any(
+                holds(other, trace, end) and all(holds(one, trace, before) for before in range(now, end))
+                for end in range(now, len(trace))
+            )
+    raise AssertionError(formula)
+
+
+def written(formula: Any) -> str:
+    match formula:
+        case str():
+            return formula
+        case word, part:
+            return f"({word} {written(part)})"
+    word, one, other = formula
+    return f"({written(one)} {word} {written(other)})"
+
+
+ONE = ("always", "eventually", "next", "not")
+TWO = ("and", "or", "implies", "until")
+FORMULAS = [
+    *((two, "a", "b") for two in TWO),
+    *((one, (other, "a")) for one in ONE for other in ONE),
+    *((one, (two, "a", "b")) for one in ONE for two in TWO),
+    *((two, (one, "a"), "b") for one in ONE for two in TWO),
+    *((two, "a", (one, "b")) for one in ONE for two in TWO),
+    *(("not", (two, (one, "a"), (other, "b"))) for one in ONE[:2] for other in ONE[:2] for two in TWO),
+]
+STATES = [{"a": a, "b": b} for a in (False, True) for b in (False, True)]
+
+
+@pytest.mark.parametrize("formula", FORMULAS, ids=written)
+def test_a_scene_may_begin_what_a_requirement_says_of_time(formula: Any) -> None:
+    """A candidate is rejected where no course of a simulation that begins so can meet the requirement, and only there."""
+    possible = [
+        first
+        for first in STATES
+        if any(holds(formula, (first, *then), 0) for then in itertools.product(STATES, repeat=2))
+    ]
+    text = f"a, b = Uniform(False, True), Uniform(False, True)\nparam a = a, b = b\nrequire {written(formula)}\n"
+    try:
+        found = [scene.params for scene in scenario(text).sample(30, seed=1)]
+    except InvalidScenarioError:
+        found = []
+    assert [state for state in STATES if state in found] == possible
