@@ -154,6 +154,12 @@ DRAWING = {
     "whole blocks of numbers": (
         "@distributionFunction\ndef f(v): return v + float(numpy.random.rand(312).sum())\nparam x = f(Range(0, 1))\n"
     ),
+    "a state of Python's that is only looked at": (
+        "@distributionFunction\ndef f(v): return hash(random.getstate())\nparam x = f(Range(0, 1))\n"
+    ),
+    "a state of NumPy's that is only looked at": (
+        "@distributionFunction\ndef f(v): return int(numpy.random.get_state()[1].sum())\nparam x = f(Range(0, 1))\n"
+    ),
     "one number in many": (
         "@distributionFunction\ndef f(v): return v + (numpy.random.rand() if v > 0.9 else 0)\nparam x = f(Range(0, 1))\n"
     ),

@@ -331,3 +331,15 @@ def test_a_workspace_of_a_workspace_is_what_it_is_made_of() -> None:
     text = "workspace = Workspace(Workspace(everywhere))\nego = new Object\nnew Object not visible\n"
     with pytest.raises(scenic.InvalidScenarioError, match="needs to know where"):
         scenic.scenarioFromString(text)
+
+
+def test_functions_that_look_from_places_of_their_own_see_the_objects_of_each_candidate() -> None:
+    """Nothing that is random is named in them; what hides is in another place in each candidate."""
+    text = (
+        "wall = new Object at (Range(-2, 2), 5), with height 9\nx = Range(-2, 2)\n"
+        "def clear(x):\n    here = new Point at (x, 0, 0)\n    return here can see (x, 10, 0)\n"
+        "require {}clear(x)\nparam x = x, wall = wall.position.x\n"
+    )
+    for word, free in (("", True), ("not ", False)):
+        for found in scenic.scenarioFromString(text.format(word)).sample(30, seed=1):
+            assert (abs(found.params["x"] - found.params["wall"]) > 0.5) is free
