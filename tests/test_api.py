@@ -107,6 +107,11 @@ def test_parameters_are_a_read_only_mapping() -> None:
         )
     )
     assert found["c"] == (True, False, ["a", "b"], 2)
+    given = scenic.scenarioFromString(
+        "param a = 1\nparam c = ('b' in globalParameters, sorted(globalParameters), len(globalParameters))\n",
+        params={"a": 5, "b": 2},
+    )
+    assert params(given) == {"a": 5, "b": 2, "c": (True, ["a", "b"], 2)}
     for statement in ("globalParameters.a = 1", "globalParameters = 3", "globalParameters['a'] = 1"):
         with pytest.raises((Located, TypeError)):
             scenic.scenarioFromString(f"param a = 0\n{statement}\n")

@@ -1,6 +1,7 @@
 """Names of the established Python API lead to ours."""
 
 import contextlib
+import fractions
 import importlib
 import io
 import json
@@ -74,6 +75,8 @@ def test_coercions_of_the_established_modules() -> None:
     assert tuple(toVector((1, 2))) == (1, 2, 0)
     assert toType(3, Heading) == 3.0
     assert isA(Vector(1, 2), Vector)
+    assert isA(True, int)
+    assert not isA(3, float)
     assert (
         underlyingType(scenic.scenarioFromString("ego = new Object at (Range(1, 2), 3)").egoObject.position)
         is Vector
@@ -422,8 +425,12 @@ def test_small_helpers_of_the_established_modules() -> None:
     stream = io.StringIO()
     dumpAsScenicCode([1, "b", Vector(1, 2, 3)], stream)
     assert stream.getvalue() == "[1, 'b', (1.0, 2.0, 3.0)]"
+    stream = io.StringIO()
+    dumpAsScenicCode(fractions.Fraction(1, 2), stream)  # has no literal
+    assert stream.getvalue() == "Fraction(1, 2)"
     boxes = [trimesh.creation.box((1, 1, 1)), trimesh.creation.box((1, 1, 1)).apply_translation((0.5, 0, 0))]
     assert unifyMesh(trimesh.util.concatenate(boxes)).volume == pytest.approx(1.5)
+    assert repairMesh(trimesh.util.concatenate(boxes)).volume == pytest.approx(2)
     inverted = boxes[0].copy()
     inverted.invert()
     assert repairMesh(inverted).volume == pytest.approx(1)
@@ -556,6 +563,11 @@ def test_geometry_of_the_plane_by_hand() -> None:
     assert geometry.findMinMax([]) == (math.inf, -math.inf)
     for turns in (-3, 0, 1, 2):
         assert geometry.normalizeAngle(0.3 + turns * math.tau) == pytest.approx(0.3)
+    for half in (math.pi, -math.pi):
+        assert geometry.normalizeAngle(half) == half
+    assert geometry.averageVectors(Vector(0, 0, 5), (4, 8), 0.25) == (1, 2)
+    assert geometry.averageVectors(Vector(0, 0, 5), Vector(4, 8, 5)) == (2, 4)
+    assert geometry.pointIsInCone((0, 1), (0, 0), 0, 0)
 
 
 def test_polygons_of_shapely() -> None:
@@ -574,6 +586,38 @@ def test_polygons_of_shapely() -> None:
             each for part in getattr(whole, "geoms", [whole]) for each in (part.exterior, *part.interiors)
         ]
         assert drawn == [([*each.xy[0], *each.xy[1]], "b-") for each in rings]
+
+
+def test_what_is_made_of_polygons() -> None:
+    """Islands in holes, points that hardly matter, holes of any size, regions and what they are made of."""
+    geometry = importlib.import_module("scenic.core.geometry")
+    regions = importlib.import_module("scenic.core.regions")
+    outer, hole, island = shapely.box(0, 0, 9, 9), shapely.box(1, 1, 8, 8), shapely.box(3, 3, 4, 4)
+    lake = shapely.MultiPolygon([outer.difference(hole), island])
+    assert geometry.removeHoles(lake).area == 81
+    assert geometry.polygonUnion([outer.difference(hole), island], tolerance=0.01).area == pytest.approx(33)
+    for size, area in ((0.05, 81 - 0.05**2), (0.04, 81)):  # 0.0025 and 0.0016 square metres
+        pierced = outer.difference(shapely.box(2, 2, 2 + size, 2 + size))
+        assert geometry.polygonUnion([pierced, island], tolerance=1e-4).area == pytest.approx(area, abs=1e-9)
+    bent = shapely.Polygon([(0, 0), (2, 0.005), (4, 0), (4, 4), (0, 4)])
+    for tolerance, corners in ((0.01, 4), (0.001, 5)):
+        united = geometry.polygonUnion([bent, bent], tolerance=tolerance)
+        assert len(united.exterior.coords) - 1 == corners
+    plt = mock.Mock()
+    geometry.plotPolygon(outer, plt, color="red")
+    assert [(call.args[2], call.kwargs) for call in plt.plot.call_args_list] == [("r-", {"color": "red"})]
+    field = importlib.import_module("scenic.core.vectors").VectorField("field", lambda place: 0.25)
+    made = regions.regionFromShapelyObject(outer, field)
+    assert made.orientation is field
+    line = shapely.LineString([(0, 0), (3, 4)])
+    assert regions.toPolygon(line) is None
+    assert regions.toPolygon(outer) is outer
+    assert regions.toPolygon(regions.PolylineRegion([(0, 0), (3, 4)])).equals(line)
+    assert regions.toPolygon(made).equals(outer)
+    assert regions.toPolygon(3) is None
+    assert isinstance(regions.convertToFootprint(made), PolygonalFootprintRegion)
+    box = regions.BoxRegion()
+    assert regions.convertToFootprint(box) is box
 
 
 def test_values_are_read_as_types() -> None:
@@ -614,6 +658,14 @@ def test_helpers_of_python() -> None:
     one, other = Counted(), Counted()
     assert (one.whole(), one.whole(), other.whole(), one.whole()) == (1, 1, 2, 1)
     assert (alone(), alone()) == (3, 3)
+
+    class Nothing:
+        @utils.cached_method
+        def whole(self) -> None:
+            calls.append("nothing")
+
+    nothing = Nothing()
+    assert (nothing.whole(), nothing.whole(), calls[3:]) == (None, None, ["nothing"])
     assert utils.argsToString((1, "a"), {"b": 2.5}) == "1, 'a', b=2.5"
     assert utils.argsToString(()) == ""
     delayed = lazy.DelayedArgument({"x", "y"}, lambda item: item.x + item.y)

@@ -416,15 +416,12 @@ def test_values_without_an_end_on_one_side_say_where_the_other_is() -> None:
 
 def test_an_object_needs_sampling_if_anything_of_it_does() -> None:
     loaded = scenario(
-        "ego = new Object at (Range(0, 1), 0)\nother = new Object at (5, 5)\nparam r = Range(0, 1), s = 3\n"
+        "ego = new Object with width Range(1, 2)\nother = new Object at (5, 5)\n"
+        "param r = Range(0, 1), s = 3, disc = CircularRegion((0, 0), Range(1, 2)), fixed = CircularRegion((0, 0), 1)\n"
     )
     ego, other = loaded.objects
-    assert [needsSampling(item) for item in (ego, other, *loaded.params.values())] == [
-        True,
-        False,
-        True,
-        False,
-    ]
+    found = [needsSampling(item) for item in (ego, other, *loaded.params.values())]
+    assert found == [True, False, True, False, True, False]
 
 
 def test_lifted_functions_keep_their_name_and_words() -> None:

@@ -104,15 +104,18 @@ ego = new Object with raised 3, at (1, 2), with height 2
 def test_what_is_printed_depends_on_the_verbosity(capsys: pytest.CaptureFixture[str]) -> None:
     import scenic
 
-    text = "verbosePrint('one')\nverbosePrint('two', 3, level=2, indent=False, sep='-')\nego = new Object\n"
+    text = "verbosePrint('one')\nverbosePrint('two', 3, level=2, indent=False, sep='-')\n"
+    text += (
+        "verbosePrint('a\\nb', end='.')\nimport sys\nverbosePrint('no', file=sys.stderr)\nego = new Object\n"
+    )
     scenario(text)
-    assert capsys.readouterr().out == ""
+    assert capsys.readouterr() == ("", "")
     scenic.setDebuggingOptions(verbosity=2)
     try:
         scenario(text)
     finally:
         scenic.setDebuggingOptions(verbosity=0)
-    assert capsys.readouterr().out == "  one\ntwo-3\n"
+    assert capsys.readouterr() == ("  one\ntwo-3\n  a\n  b.", "  no\n")
 
 
 def test_a_misspelt_property_is_warned_of() -> None:

@@ -524,7 +524,9 @@ def test_a_scene_may_begin_what_a_requirement_says_of_time(formula: Any) -> None
         for first in STATES
         if any(holds(formula, (first, *then), 0) for then in itertools.product(STATES, repeat=2))
     ]
-    text = f"a, b = Uniform(False, True), Uniform(False, True)\nparam a = a, b = b\nrequire {written(formula)}\n"
+    text = (
+        f"a, b = Uniform(False, True), Uniform(False, True)\nparam a = a, b = b\nrequire {written(formula)}\n"
+    )
     try:
         found = [scene.params for scene in scenario(text).sample(30, seed=1)]
     except InvalidScenarioError:
