@@ -11,8 +11,9 @@ from typing import Any
 from scenic.language.errors import InvalidScenarioError, ScenicTypeError
 from scenic.runtime.context import current, here
 from scenic.runtime.fields import field_of, frame_at, is_field, relative_to
-from scenic.runtime.lazy import defer, is_lazy
+from scenic.runtime.lazy import defer, definite, is_lazy
 from scenic.runtime.objects import SIDES, Object, OrientedPoint, Point, oriented_point
+from scenic.runtime.opaque import call_later
 from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.bodies import gap_between
 from scenic.runtime.regions.choice import as_region
@@ -78,12 +79,14 @@ def _is_scalar(value: Any) -> bool:
     return is_number(value) or isinstance(value, Random)
 
 
-def _relative_to(_ego: Ego, value: Any, frame: Any) -> Any:
+def _relative_to(value: Any, frame: Any) -> Any:
     """Section 7.1: the first row of the table that fits."""
     if type(value) is Vector and type(frame) is Vector:
         return value + frame
     if is_field(value) or is_field(frame):
         return relative_to(value, frame)
+    if _is_open(value) or _is_open(frame):
+        return call_later(_relative_when_drawn, value, frame)
     oriented = [is_kind(operand, OrientedPoint) for operand in (value, frame)]
     if all(oriented):
         raise ScenicTypeError(
@@ -107,6 +110,19 @@ def _relative_to(_ego: Ego, value: Any, frame: Any) -> Any:
         span=here(),
         help="it takes two vectors, two orientations or headings, or an oriented point and one of these",
     )
+
+
+def _is_open(value: Any) -> bool:
+    """Whether it shows only when a random value is drawn what it is for `relative to`."""
+    if not isinstance(value, Random) or not value.node.kind.is_boxed:
+        return False
+    options = options_of(value)
+    known = all(map(_is_scalar, options)) or all(map(_is_place, options))
+    return not options or not known or any(map(_is_open, options))
+
+
+def _relative_when_drawn(value: Any, frame: Any) -> Any:
+    return definite(_relative_to(value, frame), "`relative to` a field")
 
 
 def _is_place(value: Any) -> bool:
@@ -247,8 +263,8 @@ OPERATORS: Mapping[str, Callable[..., Any]] = MappingProxyType(
         "at": _field_at,
         "follow": _follow,
         "@": _vector,
-        "relative to": _relative_to,
-        "offset by": lambda ego, base, offset: _relative_to(ego, base, offset),
+        "relative to": lambda _ego, value, frame: _relative_to(value, frame),
+        "offset by": lambda _ego, base, offset: _relative_to(base, offset),
         "offset along": _offset_along,
         "relative position": _relative_position,
         "relative heading": _relative_heading,

@@ -185,6 +185,47 @@ def test_operators_on_choices_of_different_types() -> None:
             assert_is(found[f"c{index}"], CASES[case], case)
 
 
+FRAMES = [case for case in CASES if "relative to" in case or "offset by" in case]
+
+
+@pytest.mark.parametrize("hidden", ["absho", "p", "abshop"])
+def test_what_relative_to_means_is_decided_when_its_operands_are_drawn(hidden: str) -> None:
+    """Of a value that a function of the program gives nothing is known before."""
+    text = "told = distributionFunction(lambda value, _: value)\n"
+    text += "".join(f"{name} = told({name}, Range(0, 1))\n" for name in hidden)
+    listed = "".join(f"param c{index} = {case}\n" for index, case in enumerate(FRAMES))
+    found = params(setting(FIXED) + text + listed)
+    for index, case in enumerate(FRAMES):
+        assert_is(found[f"c{index}"], CASES[case], case)
+
+
+def test_options_of_different_types_are_relative_each_in_its_way() -> None:
+    text = (
+        "p = new OrientedPoint at (1, 2), facing 0.5\nn = DiscreteRange(0, 3)\n"
+        "x = Uniform([0.25, Orientation.fromEuler(0.25, 0, 0), (0, 2), 'no'], [0.25] * 4)[n]\n"
+        "y = Uniform(0.25, Orientation.fromEuler(0.25, 0, 0))\n"
+        "param n = n, x = x relative to p, y = y relative to 0.5, z = 0.5 relative to y\nrequire n < 3\n"
+    )
+    seen = set()
+    for scene in scenario(text).sample(40, seed=1):
+        found, n = scene.params["x"], scene.params["n"]
+        seen.add((n, type(found).__name__))
+        if isinstance(found, float):
+            assert found == pytest.approx(0.75)
+        elif isinstance(found, Orientation):
+            assert_same_rotation(found, euler(0.75))
+        else:
+            assert tuple(found.position) == pytest.approx((1 - 2 * math.sin(0.5), 2 + 2 * math.cos(0.5), 0))
+            assert found.heading == pytest.approx(0.5)
+        for name in "yz":
+            assert_same_rotation(scene.params[name], euler(0.75))
+    assert seen == {(0, "float"), (1, "float"), (2, "float"), (1, "Orientation"), (2, "OrientedPoint")}
+    field = "F = VectorField('F', lambda place: 0.5)\nf = distributionFunction(lambda _: F)\n"
+    error = failure(f"{field}param x = f(Range(0, 1)) relative to 0.5\n")
+    assert isinstance(error, InvalidScenarioError)
+    assert place(error)[1].startswith("3:")
+
+
 def test_operators_need_an_ego_only_where_they_mean_it() -> None:
     for case in ("distance to (1, 2)", "angle from (1, 2)", "altitude to (1, 2)", "relative heading of 1",
                  "relative position of (1, 2)", "distance past (1, 2)"):  # fmt: skip
