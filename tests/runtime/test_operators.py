@@ -258,6 +258,8 @@ def test_operators_need_an_ego_only_where_they_mean_it() -> None:
         "(1, 2) offset along 'north' by (3, 4)",
         "p intersects p",
         "3 intersects everywhere",
+        "everywhere intersects 3",
+        "everywhere intersects p",
     ],
 )
 def test_wrong_operands_are_type_errors_with_a_place(expression: str) -> None:

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 import scenic
 from scenic.runtime.visibility import _sees
+from tests.runtime.programs import scene
 
 
 def sector(x: float, y: float, heading: float, angle: float, distance: float) -> shapely.Geometry:
@@ -283,3 +284,20 @@ def test_nobody_asks_whether_the_ego_sees_itself(mode_2d: bool) -> None:
         1, seed=0
     )
     assert not found.egoObject.canSee(found.egoObject)
+
+
+@pytest.mark.parametrize(
+    "condition",
+    [
+        "(ego can see {place})",
+        "all([ego can see {place} for _ in range(1)])",
+        "((new Point at (0, 2)) can see {place})",
+        "ego.canSee({place})",
+    ],
+)
+def test_the_height_of_what_is_looked_at_counts_only_in_space(condition: str) -> None:
+    """Whether the condition is a formula or code: in 2D mode a place 45 metres away stays in view however high it is."""
+    text = "ego = new Object\nrequire {}" + condition + "\n"
+    assert scene(text.format("", place="(0, 45, 0)")) is not None
+    assert scene(text.format("not ", place="(0, 45, 45)")) is not None
+    assert scene(text.format("", place="(0, 45, 45)"), mode2D=True) is not None
