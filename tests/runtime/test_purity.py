@@ -84,6 +84,29 @@ def test_what_choices_among_lists_give(text: str, meaning: Callable[[list[float]
         assert type(found) is type(meaning(sizes))
 
 
+@pytest.mark.parametrize(
+    "text", ["one + other", "max(one, other, [0])", "filter(None, one) + other", "one[0:] + other[0:]"]
+)
+def test_choices_that_are_drawn_apart_stay_apart(text: str) -> None:
+    """Also if they have as many options; of one draw, options go together."""
+    shown = "one = Uniform([1], [2])\nother = {}\nparam x = (one, other, " + text + ")"
+    for other, pairs in (("Uniform([3], [4])", 4), ("filter(lambda n: n > 1, one)", 2)):
+        found = draws(shown.format(other), n=40)
+        assert len({(tuple(one), tuple(second)) for one, second, _ in found}) == pairs
+        for one, second, result in found:
+            values = {"one": one, "other": second}
+            expected = eval(text, {"filter": lambda f, items: list(filter(f, items))}, values)
+            assert result == expected
+
+
+def test_an_option_that_rejects_does_so_only_where_it_is_drawn() -> None:
+    text = (
+        "def f(items):\n    if len(items) > 2: raise RejectionException\n    return len(items)\n"
+        "param x = filter(f, Uniform([[1]], [[1, 2]], [[1, 2, 3]]))"
+    )
+    assert {tuple(map(tuple, found)) for found in draws(text, n=40)} == {((1,),), ((1, 2),)}
+
+
 def test_an_option_that_fails_does_so_only_where_it_is_drawn() -> None:
     text = CHOICES + "require len(sizes) > 1\nparam x = sizes[1]"
     assert set(draws(text, n=40)) == {2, 1.5}
@@ -142,5 +165,18 @@ def test_generators_are_as_before() -> None:
 def test_data_are_what_no_program_changes() -> None:
     for value in (1, "a", None, (1, [2.5, {3}]), {"a": [1, {2: (3,)}]}, Vector(1, 2, 3), slice(1, 2)):
         assert _is_data(value)
-    for value in (object(), [object()], {"a": object()}, {object(): 1}, (1, {"a": {"b": object()}}), len):
+
+    class Own(list[int]):
+        """May do anything, as its length."""
+
+    for value in (
+        Own([1]),
+        [Own()],
+        object(),
+        [object()],
+        {"a": object()},
+        {object(): 1},
+        (1, {"a": {"b": object()}}),
+        len,
+    ):
         assert not _is_data(value)

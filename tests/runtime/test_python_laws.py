@@ -190,3 +190,32 @@ def test_code_that_draws_is_a_function_of_the_seed(what: str) -> None:
         found.add(tuple(results))
         assert results[: len(results) // 2] == results[len(results) // 2 :]
     assert len(found) == 1
+
+
+def test_a_program_goes_on_as_before_when_it_has_drawn_a_sample_of_its_own() -> None:
+    """Random values wait for scenes, and objects can be made."""
+    text = (
+        "f = distributionFunction(lambda value: value + 1)\nx = f(Range(0, 1))\nfirst = x.sample()\n"
+        "most = max([Range(2, 3), Range(0, 1)], key=lambda value: value)\nego = new Object\n"
+        "param first = first, x = x, most = most\n"
+    )
+    one, other = (found.params for found in scenario(text).sample(2, seed=1))
+    assert one["first"] == other["first"]
+    assert 1 < one["first"] < 2
+    assert one["x"] != other["x"]
+    assert one["most"] != other["most"]
+    assert 2 < one["most"] < 3
+
+
+def test_functions_on_samples_find_everything_definite() -> None:
+    """Also objects that are random in the program: what is made of them there does not wait for another sample."""
+    text = (
+        "def far(*things): return max(*things, key=lambda thing: thing.position.x)\n"
+        "def kept(*things): return filter(lambda thing: thing.position.x > 0.5, things)\n"
+        "def number(thing): return int(thing.position.x * 100)\n"
+        "a = new Object at (Range(0, 1), 0)\nb = new Object at (Range(0, 1), 5)\n"
+        "require far(a, b) is a\nrequire len(kept(a, b)) == 1\nrequire number(b) < 40\n"
+    )
+    for found in scenario(text).sample(20, seed=1):
+        a, b = (item.position.x for item in found.objects)
+        assert b < 0.4 < 0.5 < a

@@ -214,7 +214,9 @@ def test_ends_and_directions_of_lines() -> None:
     own = named.PolylineRegion([(0, 0), (4, 0)], orientation=VectorField("f", lambda point: point.x))
     assert own.end.heading == pytest.approx(4 - 2 * math.pi)
     assert own.start.heading == pytest.approx(0)
-    tilted = named.PolylineRegion([(0, 0), (3, 4)], orientation=VectorField("tilted", lambda _: (0.3, 0.2, 0.1)))
+    tilted = named.PolylineRegion(
+        [(0, 0), (3, 4)], orientation=VectorField("tilted", lambda _: (0.3, 0.2, 0.1))
+    )
     for end in (tilted.start, tilted.end):
         assert (end.yaw, end.pitch, end.roll) == pytest.approx((0.3, 0.2, 0.1))
         assert end.parentOrientation == Orientation()

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 import scenic
 from scenic.runtime.visibility import _sees
-from tests.runtime.programs import scene
+from tests.runtime.programs import thing
 
 
 def sector(x: float, y: float, heading: float, angle: float, distance: float) -> shapely.Geometry:
@@ -298,6 +298,6 @@ def test_nobody_asks_whether_the_ego_sees_itself(mode_2d: bool) -> None:
 def test_the_height_of_what_is_looked_at_counts_only_in_space(condition: str) -> None:
     """Whether the condition is a formula or code: in 2D mode a place 45 metres away stays in view however high it is."""
     text = "ego = new Object\nrequire {}" + condition + "\n"
-    assert scene(text.format("", place="(0, 45, 0)")) is not None
-    assert scene(text.format("not ", place="(0, 45, 45)")) is not None
-    assert scene(text.format("", place="(0, 45, 45)"), mode2D=True) is not None
+    assert thing(text.format("", place="(0, 45, 0)")) is not None
+    assert thing(text.format("not ", place="(0, 45, 45)")) is not None
+    assert thing(text.format("", place="(0, 45, 45)"), mode2D=True) is not None
