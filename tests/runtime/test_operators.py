@@ -451,3 +451,51 @@ def test_what_is_no_rotation_is_refused(bad: str, index: int) -> None:
     parts[index] = bad
     error = failure(f"param x = Orientation.fromQuaternion(({', '.join(parts)}))\n")
     assert "not a rotation" in str(error)
+
+
+def test_rotations_are_those_of_scipy() -> None:
+    """Of any length of their quaternion; as one of theirs and back."""
+    turn = euler(2.5, -0.3, 0.2)
+    quaternion = turn.as_quat()
+    for found in (
+        Orientation.fromQuaternion(quaternion),
+        Orientation.fromQuaternion(quaternion * 3),
+        Orientation.fromQuaternion(quaternion * -1e-3),
+        Orientation(turn),
+        Orientation.fromEuler(2.5, -0.3, 0.2),
+    ):
+        for same in (found, Orientation(found.r), Orientation(found.getRotation())):
+            assert_same_rotation(same, turn)
+            assert np.linalg.norm(same.q) == pytest.approx(1)
+            assert same.q == (same.x, same.y, same.z, same.w)
+            assert same.eulerAngles == (same.yaw, same.pitch, same.roll) == pytest.approx((2.5, -0.3, 0.2))
+    drawn = params(
+        "o = Orientation.fromEuler(Range(2.5, 2.5), -0.3, 0.2)\nparam o = o, q = o.q, e = o.eulerAngles"
+    )
+    assert drawn["q"] == pytest.approx(drawn["o"].q)
+    assert drawn["e"] == pytest.approx((2.5, -0.3, 0.2))
+    assert Orientation() == Orientation(None) == Orientation.fromEuler(0, 0, 0)
+    for other in (0, "", (), quaternion):
+        with pytest.raises(ScenicTypeError, match="rotation of SciPy"):
+            Orientation(other)
+
+
+@pytest.mark.parametrize("digits", ["", ", 0", ", 1", ", -1", ", None"])
+def test_numbers_are_rounded_as_by_python(digits: str) -> None:
+    """To an integer without a number of digits alone."""
+    found = params(
+        f"x = Range(10, 99)\nparam x = x, n = round(x{digits}), m = x.__round__({digits[2:]}), d = round(37.25{digits})\n"
+    )
+    for value, rounded in (("x", "n"), ("x", "m"), (37.25, "d")):
+        expected = eval(f"round(x{digits})", {"x": found.get(value, value)})
+        assert (found[rounded], type(found[rounded])) == (expected, type(expected))
+
+
+@pytest.mark.parametrize("index", ["0", "2", "-1", "-3", "3", "-4", ":2", "1:", "::-1", "-1:", "True"])
+@pytest.mark.parametrize("row", ["(1.0, 2.0, 3.0)", "(Range(1, 1), 2.0, 3.0)"])
+def test_vectors_have_the_parts_of_triples(index: str, row: str) -> None:
+    text = f"v = Vector(*{row})\nparam x = v[{index}]\n"
+    if index in ("3", "-4"):
+        assert isinstance(failure(text), IndexError)
+    else:
+        assert params(text)["x"] == eval(f"(1.0, 2.0, 3.0)[{index}]")

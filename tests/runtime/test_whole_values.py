@@ -51,9 +51,10 @@ def test_shapes_that_were_looked_at_can_be_copied(again: Any) -> None:
 
 @pytest.mark.parametrize("again", COPIES)
 def test_objects_keep_their_properties(again: Any) -> None:
-    car = whole().egoObject
+    car, other = whole().objects
     same = again(car)
     assert type(same).__name__ == "Car"
+    assert type(again(other)) is type(other)
     for name in ("position", "yaw", "width", "speedy", "velocity", "visibleDistance"):
         assert getattr(same, name) == getattr(car, name), name
     assert same.corners == car.corners
