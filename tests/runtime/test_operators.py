@@ -45,6 +45,13 @@ RANDOM = {
     "eyaw": "Range(0.4, 0.4)",
     "pyaw": "Range(2.5, 2.5)",
 }
+NUMPY = FIXED | {
+    "a": "numpy.array([1, -2, 3])",
+    "s": "numpy.float64(0.75)",
+    "h": "numpy.float32(1.5)",
+    "eyaw": "numpy.float64(0.4)",
+    "pyaw": "numpy.float32(2.5)",
+}
 MIXED = FIXED | {
     "a": "Uniform((1, -2, 3), Vector(1, -2, 3), [1, -2, 3], new Point at (1, -2, 3))",
     "b": "Uniform(Vector(4, 5, -6), new Object at (4, 5, -6), with allowCollisions True)",
@@ -55,6 +62,7 @@ TURN = euler(0.3, 0.2, 0.1)
 
 def setting(operands: dict[str, str]) -> str:
     return (
+        "import numpy\n"
         f"ego = new Object at (7, 8, 9), facing ({operands['eyaw']}, 0.3, -0.2), with allowCollisions True,\n"
         "    with width 2, with length 4, with height 6\n"
         f"p = new OrientedPoint at (-3, 2, 1), facing ({operands['pyaw']}, -0.3, 0.2)\n"
@@ -163,7 +171,7 @@ def assert_is(found: Any, expected: Any, case: str) -> None:
         assert found == pytest.approx(expected, abs=1e-9), case
 
 
-@pytest.mark.parametrize("operands", [FIXED, RANDOM], ids=["fixed", "random"])
+@pytest.mark.parametrize("operands", [FIXED, RANDOM, NUMPY], ids=["fixed", "random", "numpy"])
 def test_operators(operands: dict[str, str]) -> None:
     listed = "".join(f"param c{index} = {case}\n" for index, case in enumerate(CASES))
     listed = listed.replace("b.", "Vector(*b)." if operands is MIXED else "b.")
