@@ -1,10 +1,16 @@
 """Mistakes that users make: the code, the place (marked by quotation marks) and the words of what they are told."""
 
 import re
+import sys
+import warnings
+from pathlib import Path
 
 import pytest
+from scenic.core.regions import PolylineRegion
 
+import scenic
 from scenic.language.diagnostics import CODES
+from scenic.language.errors import ScenicWarning
 from scenic.pipeline import diagnose
 from tests.runtime.programs import failure, marked
 
@@ -98,3 +104,40 @@ def test_a_missing_new_before_at() -> None:
     found = diagnose(failure("ego = Object at (1, 2)"))
     assert found is not None
     assert "new" in f"{found.message} {found.help}"
+
+
+def test_warnings_tell_the_place_of_what_they_mean(tmp_path: Path) -> None:
+    """In the module that it stands in, whoever calls it: functions of the program, of Python, or a script."""
+    (tmp_path / "helper.py").write_text("def call(function):\n    return function()\n")
+    (tmp_path / "part.scenic").write_text(
+        "x = 1\ndef line():\n    return PolylineRegion([(0, 0, 1), (1, 0)])\nfirst = line()\n"
+    )
+    (tmp_path / "main.scenic").write_text(
+        "import part\nimport helper\nsecond = part.line()\nthird = helper.call(lambda:\n"
+        "    PolylineRegion([(0, 0, 1), (2, 0)]))\nego = new Object with color None, with widht 3\n"
+        "def wide():\n    thing = new Object at (9, 9),\n        with viewAngles (7, 1)\n    return thing\nwide()\n"
+        "text = [f'{Range(0, 1)}' for _ in range(1)]\n"
+    )
+    with warnings.catch_warnings(record=True) as found:
+        warnings.simplefilter("always")
+        scenic.scenarioFromFile(tmp_path / "main.scenic")
+        here = sys._getframe().f_lineno + 1
+        PolylineRegion([(0, 0, 1), (1, 0)])
+    told = []
+    for warning in found:
+        file, message = Path(warning.filename), warning.message
+        assert isinstance(message, ScenicWarning)
+        place = None if message.span is None else (message.span.line, message.span.column)
+        if place:
+            assert (message.span.line, message.filename) == (warning.lineno, warning.filename)
+        told.append((file.name, place, message.code))
+    assert told == [
+        ("part.scenic", (3, 11), "SC407"),
+        ("part.scenic", (3, 11), "SC407"),
+        ("main.scenic", (5, 4), "SC407"),
+        ("main.scenic", (6, 34), "SC300"),
+        ("main.scenic", (8, 12), "SC407"),
+        ("main.scenic", (12, 10), "SC407"),
+        (Path(__file__).name, None, "SC407"),
+    ]
+    assert found[-1].lineno == here
