@@ -15,7 +15,7 @@ PROGRAM = (
     "class Car:\n    width: 2\n    speedy: Range(0, 1)\n"
     "ego = new Car at (Range(0, 1), 2, 3), facing Range(0, 1)\n"
     "other = new Object at (9, 9), with shape CylinderShape()\n"
-    "r = CircularRegion((1, 2, 3), Range(1, 2))\nparam r = r, x = [Range(0, 1), {'a': ego.position}]\n"
+    "r = CircularRegion((1, 2, 3), Range(1, 2))\nparam r = r, x = [Range(0, 1), {'a': ego.position}], spot = front of ego\n"
 )
 
 
@@ -35,6 +35,10 @@ def test_values_are_equal_again(again: Any) -> None:
     assert again(scene.params["r"]).center == (1, 2, 3)
     assert again(scene.params["r"]).radius == scene.params["r"].radius
     assert (again(other.shape).mesh.vertices == other.shape.mesh.vertices).all()
+    spot = scene.params["spot"]
+    assert (again(spot).position, again(spot).orientation) == (car.front.position, car.orientation)
+    assert again(spot).properties.keys() == spot.properties.keys()
+    assert (again(spot).yaw, again(spot).viewAngles) == (spot.yaw, spot.viewAngles)
     assert again(other.shape).source.as_dict() == {"kind": "cylinder", "sections": 24}
 
 
