@@ -187,9 +187,9 @@ class ScenicEnv(gymnasium.Env[Observed, Any]):
         wanted = observations if isinstance(observations, Mapping) else {agent: observations}
         self._watched = [(owner, name) for owner, names in wanted.items() for name in names]
         self.action_space = actions.space
-        self.observation_space = self._observation_space(dict(bounds or {}))
+        self.observation_space = self._observation_space(bounds or {})
 
-    def _observation_space(self, bounds: dict[str, tuple[float, float]]) -> spaces.Dict:
+    def _observation_space(self, bounds: Mapping[str, tuple[float, float]]) -> spaces.Dict:
         """The kinds of the observations, read off a scene."""
         scene = self._scene(0, 0)
         named = _named(scene.names, scene.objects, scene.egoObject)
@@ -202,7 +202,7 @@ class ScenicEnv(gymnasium.Env[Observed, Any]):
                     help=f"objects go by the names of their variables; here: {known}",
                 )
             key = f"{owner}.{name}"
-            found[key] = _box(named[owner], name, bounds.pop(key, bounds.pop(name, None)))
+            found[key] = _box(named[owner], name, bounds.get(key, bounds.get(name)))
         if self._name not in named:
             raise InvalidScenarioError(
                 f"the program has no agent {self._name!r}", help=f"its objects are {', '.join(named)}"

@@ -68,6 +68,16 @@ def test_spaces_come_from_actions_and_properties() -> None:
     assert observed["ego.position"] == gymnasium.spaces.Box(-np.inf, np.inf, (3,), np.float64)
     assert observed["ego.yaw"] == gymnasium.spaces.Box(-np.pi, np.pi, (1,), np.float64)
     assert observed["ego.speed"] == gymnasium.spaces.Box(0, 2, (1,), np.float64)
+    both = {"ego": ["speed", "heading"], "prey": ["speed", "pitch", "roll"]}
+    several = environment(observations=both, bounds={"speed": (0, 2), "prey.speed": (1, 3)}).observation_space
+    assert isinstance(several, gymnasium.spaces.Dict)
+    assert several["ego.speed"] == gymnasium.spaces.Box(0, 2, (1,), np.float64)
+    assert several["prey.speed"] == gymnasium.spaces.Box(1, 3, (1,), np.float64)
+    for angle in ("ego.heading", "prey.pitch", "prey.roll"):
+        assert several[angle] == gymnasium.spaces.Box(-np.pi, np.pi, (1,), np.float64)
+    alike = environment(observations=both, bounds={"speed": (0, 2)}).observation_space
+    assert isinstance(alike, gymnasium.spaces.Dict)
+    assert alike["ego.speed"] == alike["prey.speed"] == several["ego.speed"]
     discrete = environment(actions=Choice([SetWheelSpeeds(1, 1), [], [SetWheelSpeeds(0, 1)]]))
     assert discrete.action_space == gymnasium.spaces.Discrete(3)
 

@@ -14,7 +14,7 @@ from scenic.runtime.context import current
 from scenic.runtime.ownership import CONTAINERS, SAMPLE, functions_of, leads_back
 from scenic.runtime.randoms import Random
 
-__all__ = ["bind", "member", "members"]
+__all__ = ["bind", "member", "members", "sample_of"]
 
 
 class _Member:
@@ -32,7 +32,7 @@ class _Member:
         """The member in the sample of an instance, or of the innermost code that runs in one."""
         sample = None if instance is None else instance.__dict__.get("_sample")
         if sample is None:
-            sample = _sample_of(sys._getframe(2))
+            sample = sample_of(sys._getframe(2))
         if sample is None:
             return self.member
         return sample.member(self.member, owner if instance is None else type(instance))
@@ -59,7 +59,7 @@ class _Value(_Member):
         return self._of(instance, owner)
 
 
-def _sample_of(frame: FrameType | None) -> Any:
+def sample_of(frame: FrameType | None) -> Any:
     """The sample whose names code reads, or else of what a condition is evaluated on."""
     while frame is not None:
         kept = frame.f_globals.get(SAMPLE)

@@ -9,7 +9,8 @@ the graph; during a simulation the context draws at once, and conditions are eva
 """
 
 import builtins
-from collections.abc import Callable, Mapping, Sequence
+import sys
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from types import CodeType, MappingProxyType, ModuleType
@@ -35,9 +36,11 @@ from scenic.runtime.dynamics.run import RunContext
 from scenic.runtime.functions import convert
 from scenic.runtime.importing import beside, forget_stranger
 from scenic.runtime.lazy import definite
+from scenic.runtime.members import sample_of
 from scenic.runtime.methods import OrientationMethods, VectorMethods
 from scenic.runtime.objects import Object, Point
 from scenic.runtime.operators import OPERATORS, operation
+from scenic.runtime.ownership import PRELUDE
 from scenic.runtime.program import Module, Program, Requirement
 from scenic.runtime.properties import ATTRIBUTES, PropertyDefinition
 from scenic.runtime.regions.base import Region, Workspace, everywhere
@@ -92,6 +95,11 @@ class Prelude(Dynamics):
         self._program = program
         self._module = module
         self._modules = modules
+
+    @property
+    def modules(self) -> Iterable[ModuleType]:
+        """The modules of the language that the program has imported."""
+        return self._modules.loaded
 
     # As a value that functions of the program reach: what they read of it is the ego
 
@@ -455,6 +463,12 @@ class Loader:
         self._folder = "."
         self._loaded: dict[Path, ModuleType] = {}
         self._states: dict[Path, Module] = {}
+        self._packages: dict[str, ModuleType] = {}
+
+    @property
+    def loaded(self) -> Iterable[ModuleType]:
+        """The modules that have been imported."""
+        return self._loaded.values()
 
     def run(
         self, code: CodeType, filename: str, scope: Mapping[str, Any] | None = None
@@ -499,17 +513,33 @@ class Loader:
             # As in Python, modules of a package are among its attributes once somebody has imported them from it.
             if not hasattr(module, item) and (found := self._modules.find(f"{name}.{item}")) is not None:
                 setattr(module, item, self._load(found, f"{name}.{item}", importer))
-        if fromlist or "." not in name:
+        if fromlist:
             return module
-        # `import a.b` binds `a`: a namespace that leads to the module.
-        package = ModuleType(name.partition(".")[0])
-        holder = package
-        for part in name.split(".")[1:-1]:
-            child = ModuleType(part)
-            setattr(holder, part, child)
-            holder = child
-        setattr(holder, name.rpartition(".")[2], module)
-        return package
+        # `import a.b` binds `a`, by whose attributes all modules are found that are imported so.
+        while "." in name:
+            name, _, last = name.rpartition(".")
+            package = self._package(name, importer)
+            setattr(package, last, module)
+            module = package
+        return module
+
+    def _package(self, name: str, importer: Module) -> ModuleType:
+        """The module of a package: that of its file, if somebody has imported it, or else one that only leads to its parts."""
+        path = self._modules.find(name)
+        if path is not None and path in self._loaded:
+            return self._load(path, name, importer)
+        if name not in self._packages:
+            self._packages[name] = ModuleType(name)
+            # So it is known as one of the program's, whose values are sampled.
+            vars(self._packages[name])[PRELUDE] = importer.scope[PRELUDE]
+        return self._present(self._packages[name])
+
+    @staticmethod
+    def _present(module: ModuleType) -> ModuleType:
+        """The module in the sample, or the running simulation, whose code imports it."""
+        sample = sample_of(sys._getframe(1))
+        own: ModuleType = module if sample is None else sample.value(module)
+        return own
 
     def _import_python(
         self,
@@ -540,20 +570,27 @@ class Loader:
         return holder
 
     def _load(self, path: Path, name: str, importer: Module, *, is_model: bool = False) -> ModuleType:
-        if path not in self._loaded:
+        active = current.get()
+        loaded = self._loaded
+        if isinstance(active, RunContext) and path not in loaded:
+            loaded = active.run.modules
+        if path not in loaded:
             module = ModuleType(name)
-            self._loaded[path] = module
+            loaded[path] = module
+            if isinstance(active, RunContext):
+                active.run.copies.adopt(module)
             package = name if path.stem == "__init__" else name.rpartition(".")[0]
             state = self._states[path] = Module(
                 str(path), is_model=is_model or importer.is_model, package=package
             )
             self._execute(self._modules.code(path), module, state)
-        state = self._states[path]
-        if importer.ego is None:
-            importer.ego = state.ego
-        if importer.workspace is None:
-            importer.workspace = state.workspace
-        return self._loaded[path]
+        if not isinstance(active, RunContext):
+            state = self._states[path]
+            if importer.ego is None:
+                importer.ego = state.ego
+            if importer.workspace is None:
+                importer.workspace = state.workspace
+        return self._present(loaded[path])
 
     def use_model(self, name: str, scope: dict[str, Any], importer: Module) -> None:
         """Give a module everything that a model defines."""

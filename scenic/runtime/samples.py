@@ -60,6 +60,7 @@ class Globals:
     def __init__(self) -> None:
         self._values: dict[tuple[int, str], Any] = {}
         self._loads: dict[CodeType, tuple[str, ...]] = {}
+        self._imports: dict[CodeType, frozenset[str]] = {}
         self._fixed: dict[int, tuple[Any, bool]] = {}
         self._members: dict[type, list[Any]] = {}
         self._varying: dict[type, bool] = {}
@@ -96,6 +97,21 @@ class Globals:
             )
             found = self._loads[code] = tuple(dict.fromkeys(loads)) if code.co_names else ()
         return found
+
+    def imported(self, function: FunctionType) -> list[ModuleType]:
+        """The program's modules that a function of the program, or code nested in it, may import when it is called."""
+        prelude = function.__globals__.get(PRELUDE)
+        if prelude is None:
+            return []
+        code = function.__code__
+        words = self._imports.get(code)
+        if words is None:
+            words = self._imports[code] = frozenset(_imported_names(code))
+        return (
+            [module for module in prelude.modules if module.__name__.rpartition(".")[2] in words]
+            if words
+            else []
+        )
 
     def is_fixed(self, item: Any) -> bool:
         """Whether a function or class does the same in every sample: nothing that it reaches is random or bound anew."""
@@ -165,6 +181,16 @@ def mention(values: Iterable[Any], names: Globals, word: str) -> bool:
     )
 
 
+def _imported_names(code: CodeType) -> Iterator[str]:
+    """The parts of names that code, or code nested in it, may import."""
+    if any(step.opname == "IMPORT_NAME" for step in dis.get_instructions(code)):
+        for name in code.co_names:
+            yield from name.split(".")
+    for item in code.co_consts:
+        if isinstance(item, CodeType):
+            yield from _imported_names(item)
+
+
 def _mentions(code: CodeType, word: str) -> bool:
     return word in code.co_names or any(
         item == word or (isinstance(item, CodeType) and _mentions(item, word)) for item in code.co_consts
@@ -223,6 +249,7 @@ def _parts(value: Any, names: Globals) -> Iterator[Any]:
         yield from (value.start, value.stop, value.step)
     elif isinstance(value, FunctionType):
         yield from (item for _, item in names.of(value))
+        yield from names.imported(value)
         yield from (content(cell) for cell in value.__closure__ or ())
         yield from value.__defaults__ or ()
         yield from (value.__kwdefaults__ or {}).values()

@@ -154,9 +154,12 @@ class Tape:
 
     # States
 
-    def begin_state(self) -> None:
-        """The properties of a step follow."""
+    def begin_state(self, step: int) -> None:
+        """The properties of a step follow, those of objects that enter within it last."""
+        self._step = step
         self._state = []
+        if self._keep_states:
+            self._states.append(self._state)
 
     def note(self, simulation: Any, obj: Any, names: Sequence[str]) -> None:
         """The properties of one object; raises `DivergenceError` where they differ from the replayed ones."""
@@ -176,12 +179,6 @@ class Tape:
             if len(expected) != len(numbers) or simulation.valuesHaveDiverged(obj, name, old, new):
                 number = simulation.objects.index(obj)
                 self._diverged(f"{name} of object {number} is {new!r}, was {old!r}")
-
-    def end_state(self, step: int) -> None:
-        """The properties of a step are complete."""
-        self._step = step + 1
-        if self._keep_states:
-            self._states.append(self._state)
 
     def differ(self, expected: Any, actual: Any) -> bool:
         """Whether two values of a property differ by more than the tolerance."""

@@ -434,10 +434,9 @@ class Simulation(ABC):
 
     def updateObjects(self, *, first: bool = False) -> None:
         """Read the dynamic properties of all objects back from the simulator."""
-        self._tape.begin_state()
+        self._tape.begin_state(self.currentTime)
         for obj in self.objects:
             self._update(obj, first=first)
-        self._tape.end_state(self.currentTime)
 
     def _update(self, obj: Any, *, first: bool) -> None:
         cls = type(obj)

@@ -9,6 +9,7 @@ import pytest
 import scenic
 from scenic.language.errors import InvalidScenarioError
 from scenic.pipeline import diagnose
+from scenic.simulators.dummy import DummySimulator
 
 
 def written(folder: Path, files: dict[str, str]) -> Path:
@@ -227,3 +228,103 @@ def test_random_values_of_a_module_that_a_function_looks_into(tmp_path: Path, na
     values = [scene.params["x"] for scene in scenes]
     assert 0.3 < max(values) < 0.4
     assert len(set(values)) == len(values)
+
+
+def test_modules_of_one_package_are_all_found_by_its_name(tmp_path: Path) -> None:
+    files = {"pkg/c.scenic": "K = 8\n", "pkg/deep/e.scenic": "K = 9\n"}
+    for statements in ("import pkg.a\nimport pkg.c", "import pkg.c, pkg.a"):
+        text = f"{statements}\nimport pkg.deep.e, pkg.deep.c\nparam x = (pkg.a.K, pkg.c.K, pkg.deep.e.K, pkg.deep.c.C)\nego = new Object\n"
+        assert first(written(tmp_path, {**PACKAGE, **files, "main.scenic": text})).params["x"] == (
+            7,
+            8,
+            9,
+            14,
+        )
+    text = "import pkg.whole\nimport pkg.whole.part\nparam x = (pkg.whole.W, pkg.whole.part.P)\nego = new Object\n"
+    assert first(written(tmp_path, {**PACKAGE, "main.scenic": text})).params["x"] == (7, 1)
+
+
+def test_what_is_imported_within_a_function_is_sampled(tmp_path: Path) -> None:
+    text = """
+import lib as unused
+def small():
+    def inner():
+        import lib
+        return lib.r < 1.5
+    return inner()
+require small()
+param r = unused.r
+ego = new Object
+"""
+    main = written(tmp_path, {"lib.scenic": COUNTING, "main.scenic": text})
+    scenes = scenic.scenarioFromFile(main).sample(4, seed=0)
+    assert all(1 < scene.params["r"] < 1.5 for scene in scenes)
+
+
+COUNTING = """
+count = 0
+items = []
+r = Range(1, 2)
+def more():
+    global count
+    count += 1
+    items.append(count)
+    return count
+"""
+
+
+@pytest.mark.parametrize(
+    "statement",
+    ["import pkg.lib as lib", "from pkg import lib", "import pkg.lib\nlib = pkg.lib"],
+    ids=["as", "from", "name"],
+)
+def test_what_functions_read_of_modules_in_packages_is_sampled(tmp_path: Path, statement: str) -> None:
+    way = "pkg.lib" if statement.startswith("import pkg.lib\n") else "lib"
+    text = f"{statement}\ndef small(): return {way}.r < 1.5\nrequire small()\nparam r = lib.r\nego = new Object\n"
+    main = written(tmp_path, {"pkg/lib.scenic": COUNTING, "main.scenic": text})
+    scenes = scenic.scenarioFromFile(main).sample(8, seed=0)
+    assert all(1 < scene.params["r"] < 1.5 for scene in scenes)
+    assert len({scene.params["r"] for scene in scenes}) == 8
+
+
+@pytest.mark.parametrize(
+    ("top", "within"),
+    [
+        ("import lib", "pass"),
+        ("import pkg.lib", "lib = pkg.lib"),
+        ("import lib", "import lib as mine\n    lib.r"),
+        ("import lib as unused", "import lib"),
+        ("import pkg.lib", "import pkg.lib as lib"),
+        ("", "import lib"),
+        ("", "import pkg.lib\n    lib = pkg.lib"),
+        ("", "from pkg import lib"),
+    ],
+)
+def test_each_simulation_has_one_copy_of_each_module(tmp_path: Path, top: str, within: str) -> None:
+    """Whether its names are asked of the module or of its functions, and wherever it is imported."""
+    text = f"""
+{top}
+behavior B():
+    {within}
+    for _ in range(2):
+        lib.more()
+        take lib.count, list(lib.items), lib.more(), lib.r
+        lib.count += 10
+ego = new Object with behavior B
+"""
+    main = written(tmp_path, {"lib.scenic": COUNTING, "pkg/lib.scenic": COUNTING, "main.scenic": text})
+    for scene in scenic.scenarioFromFile(main).sample(2, seed=0):
+        drawn = []
+        for key in (b"1", b"1", b"2"):
+            done = DummySimulator().simulate(scene, maxSteps=2, key=key)
+            assert done is not None
+            assert done.result is not None
+            first_one, second = (step[scene.egoObject] for step in done.result.actions)
+            assert first_one[:3] == (1, [1], 2)
+            assert second[:3] == (13, [1, 2, 13], 14)
+            assert first_one[3] == second[3]
+            drawn.append(first_one[3])
+        assert 1 < drawn[0] < 2
+        # What only the simulation imports is drawn within it, by its key; all else with the scene.
+        assert len(set(drawn)) == (1 if top else 2)
+        assert drawn[0] == drawn[1]

@@ -129,6 +129,73 @@ def test_simulations_are_data() -> None:
     scenario.simulationFromBytes(data, DummySimulator(drift=2), maxSteps=4, **going_on)
 
 
+ENTERING = """
+behavior B():
+    while True:
+        take Range(0, 1)
+scenario Main():
+    setup:
+        ego = new Object
+    compose:
+        wait
+        do Sub() for 2 steps
+        do Sub()
+scenario Sub():
+    setup:
+        new Object at ({x}, 5), with behavior B
+        new Object at (9 + simulation().currentTime, simulation().currentTime), with behavior B
+    compose:
+        while True:
+            wait
+"""
+
+
+def test_objects_that_enter_later_are_compared_as_they_were_then() -> None:
+    """With those that entered in the same step of the replay, although all have moved on since."""
+    scene = scene_of(ENTERING.format(x="5 + 100 * simulation().currentTime"))
+    first = DummySimulator(drift=1).simulate(scene, maxSteps=6, enableDivergenceCheck=True)
+    assert first is not None
+    again = DummySimulator(drift=1).replay(scene, first.getReplay(), maxSteps=9, enableDivergenceCheck=True)
+    assert [taken(again, number)[:6] for number in range(5)] == [taken(first, number) for number in range(5)]
+    other = scene_of(
+        ENTERING.format(x="5 + 100 * simulation().currentTime + (simulation().currentTime == 3)")
+    )
+    with pytest.raises(
+        DivergenceError, match=r"step 3: position of object 3 is Vector\(306, .* was Vector\(305, "
+    ):
+        DummySimulator(drift=1).replay(other, first.getReplay(), maxSteps=6, enableDivergenceCheck=True)
+
+
+def test_global_generators_give_the_same_in_a_replay() -> None:
+    text = (
+        "import random, numpy\nbehavior B():\n    while True:\n        take random.random(), float(numpy.random.rand())\n"
+        "ego = new Object with behavior B\n"
+    )
+    scene = scene_of(text)
+    first = simulate(text, 3)
+    again = DummySimulator().replay(scene, first.getReplay(), maxSteps=3)
+    assert again is not None
+    assert taken(again) == taken(first)
+
+
+def test_a_simulator_may_say_itself_what_diverges() -> None:
+    asked = []
+
+    class Lenient(DummySimulation):
+        def valuesHaveDiverged(self, obj: Any, prop: str, expected: Any, actual: Any) -> bool:
+            asked.append((self.objects.index(obj), prop, expected, actual))
+            return prop == "position" and bool(actual.y > expected.y + 2)
+
+    scene = scene_of(DRAWING)
+    first = DummySimulator(drift=1).simulate(scene, maxSteps=4, enableDivergenceCheck=True)
+    assert first is not None
+    options: dict[str, Any] = {"name": "x", "timestep": 1, "enableDivergenceCheck": True}
+    Lenient(scene, drift=2, maxSteps=2, replay=first.getReplay(), **options)
+    assert (1, "position", Vector(5, 1, 0), Vector(5, 2, 0)) in asked
+    with pytest.raises(DivergenceError, match="diverged at step 3: position of object 0"):
+        Lenient(scene, drift=2, maxSteps=4, replay=first.getReplay(), **options)
+
+
 @pytest.mark.parametrize("cut", [0, 3, 10, -1, -9])
 def test_damaged_data_is_refused(cut: int) -> None:
     scenario = scenic.scenarioFromString(DRAWING)
@@ -171,6 +238,30 @@ def test_simulations_interleave() -> None:
     while going:
         going = [run for run in going if run.advanceOnce()]
     assert [taken(run) for run in runs] == [[(1,), (2,), (3,)]] * 2
+
+
+def test_each_of_several_simulations_writes_its_own_files(tmp_path: Path) -> None:
+    """Although the program makes the recorders once for all of them."""
+    text = (
+        f"from scenic.runtime.dynamics.recorders import File, Files\nparam recordFolder = {str(tmp_path)!r}\nego = new Object\n"
+        "record ego.position.y to File('{simulation}.jsonl')\nrecord ego.position.y to Files('{simulation}-{step}.json')\n"
+    )
+    scene = scene_of(text)
+    runs = [
+        DummySimulation(scene, drift=drift, maxSteps=steps, name=str(drift), timestep=1, deferred=True)
+        for drift, steps in ((1, 3), (2, 1))
+    ]
+    for run in runs:
+        run.begin()
+    going = runs
+    while going:
+        going = [run for run in going if run.advanceOnce()]
+    for drift, steps in ((1, 3), (2, 1)):
+        rows = map(json.loads, (tmp_path / f"{drift}.jsonl").read_text().splitlines())
+        assert [row["value"] for row in rows] == [drift * step for step in range(steps + 1)]
+        for step in range(steps + 1):
+            assert json.loads((tmp_path / f"{drift}-{step}.json").read_text()) == drift * step
+    assert len(list(tmp_path.iterdir())) == 8
 
 
 def test_nothing_survives_a_failure() -> None:

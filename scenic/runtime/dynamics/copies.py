@@ -5,7 +5,8 @@ functions over global names that they may assign. So nothing that happens in it 
 or by another simulation.
 """
 
-from types import CodeType, FunctionType
+from collections.abc import Iterable
+from types import CodeType, FunctionType, ModuleType
 from typing import Any
 from weakref import ref
 
@@ -27,13 +28,21 @@ class Copies(Sample):
 
     """
 
-    __slots__ = ("_codes", "_filled", "_own")
+    __slots__ = ("_codes", "_filled", "_modules", "_own")
 
     def __init__(self, lanes: Lanes, lane: int) -> None:
         super().__init__(lanes, lane)
         self._filled: dict[int, set[str]] = {}
         self._own: dict[int, dict[str, Any]] = {}
         self._codes: dict[CodeType, frozenset[str]] = {}
+        self._modules: dict[int, ModuleType] = {}
+
+    def adopt(self, module: ModuleType) -> None:
+        """A module is about to run that the simulation is the first to import, and that is its own therefore."""
+        names = vars(module)
+        names[SAMPLE] = ref(self)
+        self._own[id(names)] = names
+        self.remember(module, module)
 
     def remember(self, value: Any, copy: Any) -> None:
         """Say what the copy of a value is while it is being made; the copy is its own."""
@@ -66,19 +75,34 @@ class Copies(Sample):
         copy.__dict__["_sample"] = self
         return copy
 
+    def _module(self, module: ModuleType) -> ModuleType:
+        copy = self._space(vars(module))
+        self.remember(module, copy)
+        self._fill_in([name for name in vars(module) if not name.startswith("__")], vars(module))
+        return copy
+
     def _scope(self, function: FunctionType) -> dict[str, Any]:
-        names = function.__globals__
-        scope = self._scopes.get(id(names))
-        if scope is None:
-            scope = self._scopes[id(names)] = {**names, SAMPLE: ref(self)}
+        return vars(self._space(function.__globals__))
+
+    def _space(self, names: dict[str, Any]) -> ModuleType:
+        """The module whose names functions over these names read and write, so that both ways to them lead to the same."""
+        module = self._modules.get(id(names))
+        if module is None:
+            module = self._modules[id(names)] = ModuleType("")
+            scope = vars(module)
+            scope.update(names)
+            scope[SAMPLE] = ref(self)
             self._own[id(scope)] = names  # Kept alive, so that identities stay unique.
             self._filled[id(names)] = {PRELUDE, "__builtins__"}
-        return scope
+        return module
 
     def _fill(self, function: FunctionType, scope: dict[str, Any]) -> None:
-        names = function.__globals__
-        filled = self._filled[id(names)]
-        for name in self._globals_of(function.__code__):
+        self._fill_in(self._globals_of(function.__code__), function.__globals__)
+
+    def _fill_in(self, wanted: Iterable[str], names: dict[str, Any]) -> None:
+        """Give the simulation its values of some names."""
+        filled, scope = self._filled[id(names)], vars(self._modules[id(names)])
+        for name in wanted:
             if name not in filled:
                 # Only once: the simulation may have assigned it since.
                 filled.add(name)

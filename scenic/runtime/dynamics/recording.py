@@ -1,6 +1,7 @@
 """``record``: values of expressions, kept in the result of a simulation and written to files (section 12.8)."""
 
 import math
+from copy import copy
 from typing import TYPE_CHECKING, Any
 
 from scenic.language.errors import Located, ScenicTypeError, ScenicValueError
@@ -32,6 +33,8 @@ class Recording:
         if use.to is not None:
             run.recordings.append(self)
             recorder = use.to if isinstance(use.to, Recorder) else for_pattern(use.to)
+            if type(recorder) in (File, Files):
+                recorder = copy(recorder)  # Other simulations of the program may be running.
             simulation = run.simulation
             recorder.beginRecording(use, simulation.name, simulation.timestep, run.parameters)
             self._recorder = recorder

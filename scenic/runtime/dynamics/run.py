@@ -2,6 +2,8 @@
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
+from pathlib import Path
+from types import ModuleType
 from typing import Any, Protocol
 
 from scenic.language.errors import InvalidScenarioError
@@ -126,6 +128,8 @@ class Run:
         self.scenarios: list[ScenarioActivation] = []
         """Those that run, in the order in which they started."""
         self.followed: list[Followed] = []
+        self.modules: dict[Path, ModuleType] = {}
+        """Those of the language that it is the first to import."""
         self.parameters: dict[str, Any] = {
             name: copies.value(value) for name, value in program.parameters.items()
         }
