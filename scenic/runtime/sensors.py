@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from typing import Any, ClassVar
 
 from scenic.language.errors import InvalidScenarioError, Located
+from scenic.runtime.carriers import Carrier
 
 DEFAULT_FIELD_OF_VIEW = 90.0
 """Horizontal opening angle of cameras that say nothing else, degrees."""
@@ -87,7 +88,7 @@ class SSSensor(CameraSensor):
     outputs = ("semantic", "instance")
 
 
-class GroundTruthSensor(Sensor):
+class GroundTruthSensor(Carrier, Sensor):
     """Observes a value as it is at each step: a function is called, anything else is taken as it stands."""
 
     def __init__(self, value: Any) -> None:

@@ -3,11 +3,13 @@
 from abc import ABC, abstractmethod
 from typing import Any
 
+from scenic.runtime.carriers import Carrier
+
 __all__ = ["Action"]
 
 
-class Action(ABC):
-    """Base of actions."""
+class Action(Carrier, ABC):
+    """Base of actions. What a program has made before the simulation holds sampled values within it."""
 
     def canBeTakenBy(self, agent: Any) -> bool:
         """Whether an agent is able to take the action."""

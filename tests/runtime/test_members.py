@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import pytest
 
-from scenic.simulators.dummy import DummySimulator
+from scenic.simulators.dummy import DummySimulation, DummySimulator
 from tests.runtime.programs import scenario, scene
 
 CLASSES = """
@@ -266,6 +266,54 @@ param r = r
         assert found == [((r, count), count) for count in counts]
         assert [after - before for before, after in pairwise(counts)] == [2, 2, 2]
         assert item.objects[1].reading == (r, 0)
+
+
+def test_simulators_ask_members_for_the_values_of_the_simulation() -> None:
+    """Those of objects of the scene and of those that enter later, although no code of the program is running."""
+    program = scenario("""
+r = Range(1, 2)
+count = 0
+class A:
+    sizes = [r]
+    @property
+    def reading(self): return (r, count)
+    def plain(self): return (r, count)
+    @staticmethod
+    def fixed(): return (r, count)
+    def __len__(self): return count
+behavior B():
+    global count
+    while True:
+        count += 1
+        take 1
+param r = r
+scenario Main():
+    setup:
+        ego = new A with behavior B
+    compose:
+        wait
+        do Sub()
+scenario Sub():
+    setup:
+        new A at (9, 9)
+    compose:
+        while True:
+            wait
+""")
+
+    class Asking(DummySimulation):
+        def step(self) -> None:
+            for thing in self.objects:
+                wanted = (self.scene.params["r"], self.currentTime + 1)
+                assert thing.reading == thing.plain() == thing.fixed() == wanted
+                assert (thing.sizes, len(thing)) == ([wanted[0]], wanted[1])
+            asked.append(len(self.objects))
+
+    for item in program.sample(2, seed=4):
+        asked: list[int] = []
+        Asking(item, maxSteps=3, name="x", timestep=1)
+        assert asked == [1, 2, 2]
+        assert item.objects[0].reading == (item.params["r"], 0)
 
 
 def test_scenes_with_such_members_are_whole_values() -> None:

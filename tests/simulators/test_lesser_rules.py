@@ -26,11 +26,13 @@ from scenic.runtime.dynamics.recorders import Recorder
 from scenic.runtime.dynamics.requirements import Outcome
 from scenic.runtime.temporal.monitors import Verdict
 from scenic.runtime.values import Vector
+from scenic.simulators.actions import Action
 from scenic.simulators.batch import SimulatorChoiceError, choose_simulator
 from scenic.simulators.dummy import DummySimulator
 from scenic.simulators.kinematic import KinematicSimulator
 from scenic.simulators.replays import Replay, Tape
 from scenic.simulators.results import Latest, NotKeptError
+from scenic.simulators.simulation import Simulation
 from scenic.simulators.simulator import Simulator
 from scenic.simulators.watching import Watch
 
@@ -545,3 +547,74 @@ def test_the_watch_leaves_a_timer_that_runs_alone() -> None:
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0)
         signal.signal(signal.SIGALRM, before)
+
+
+class Push(Action):
+    """An action of a Python module, which holds what it is given."""
+
+    __slots__ = ("much", "of")
+
+    def __init__(self, of: Any, much: Any) -> None:
+        self.of, self.much = of, much
+        self.own = [self]
+
+    def applyTo(self, agent: Any, simulation: Any) -> None:
+        assert self.own == [self]
+        thing = self.of() if callable(self.of) else self.of
+        thing.__dict__["position"] += self.much
+
+
+def test_actions_made_before_the_simulation_hold_its_objects_and_values() -> None:
+    """Whoever defined them; those in which nothing is random stay what they are."""
+    text = f"""
+from tests.simulators.test_lesser_rules import Push
+from scenic.simulators.commands import SetVelocity
+r = Range(1, 2)
+other = new Object at (Range(5, 6), 5)
+def found(): return other
+class Own(Push):
+    def applyTo(self, agent, simulation):
+        super().applyTo(agent, simulation)
+        assert self.much == (0, 0, r)
+behavior B(*actions):
+    while True:
+        take actions
+plain = SetVelocity((0, 0, 0))
+ego = new Object with behavior B(Push(other, (r, 0, 0)), Push(found, (0, r, 0)), Own(other, (0, 0, r))), with plain plain
+param r = r, plain = plain
+"""
+
+    class Acting(Plain):
+        def executeActions(self, allActions: Mapping[Any, Sequence[Any]]) -> None:
+            Simulation.executeActions(self, allActions)
+
+    made = scenic.scenarioFromString(text)
+    for one in made.sample(2, seed=0):
+        assert one.egoObject.plain is one.params["plain"] is made.sample(1, seed=7)[0].params["plain"]
+        begin, r = one.objects[1].position, one.params["r"]
+        for _ in range(2):
+            done = simulator(Acting).simulate(one, maxSteps=2)
+            assert done is not None
+            assert done.result is not None
+            assert tuple(done.result.finalState[1]) == pytest.approx(
+                (begin.x + 2 * r, begin.y + 2 * r, 2 * r)
+            )
+        assert one.objects[1].position == begin
+
+
+@pytest.mark.parametrize("model", ["point", "bicycle", "differential"])
+def test_commands_with_random_numbers_may_be_arguments_of_behaviors(model: str) -> None:
+    action = {
+        "point": "SetVelocity((0, r, 0))",
+        "bicycle": "SetThrottle(2 * r)",
+        "differential": "SetWheelSpeeds(r, r)",
+    }[model]
+    text = (
+        "from scenic.simulators.commands import *\nbehavior B(action):\n    take action\nr = Range(1, 2)\nparam r = r\n"
+        f"ego = new Object with dynamics '{model}', with behavior B({action})\n"
+    )
+    for one in scenic.scenarioFromString(text).sample(2, seed=1):
+        done = KinematicSimulator(timestep=1).simulate(one, maxSteps=1)
+        assert done is not None
+        assert done.result is not None
+        assert done.result.finalState[0].y == pytest.approx(one.params["r"])

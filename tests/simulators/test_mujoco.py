@@ -426,6 +426,15 @@ record ({taker}.holding, {held}.holding) as held
     assert not any(other for _, other in states)
 
 
+def test_what_is_to_be_held_may_be_named_when_the_gripper_is_made() -> None:
+    small = "with width 0.1, with length 0.1, with height 0.1"
+    text = (
+        f"behavior Hold(action):\n    take action\ncup = new Body at (0, 0, 0.88), {small}\n"
+        f"ego = new Gripper at (0, 0, 1), {small}, with behavior Hold(Grasp(cup))\nrecord ego.holding as held\n"
+    )
+    assert records(run(text, 2), "held") == [False, True, True]
+
+
 def test_guided_bodies_do_not_fall() -> None:
     done = run(told("SetVelocity((0, 1, 0.5))") + "ego = new Gripper at (0, 0, 2), with behavior B\n", 40)
     np.testing.assert_allclose(last(done)[0], [0, 2, 3], atol=0.03)

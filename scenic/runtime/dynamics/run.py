@@ -220,6 +220,7 @@ class Run:
 
     def create(self, instance: Any) -> None:
         """A new instance of the running program."""
+        instance.__dict__["_sample"] = self.copies  # Members read it where code of a simulator asks for them.
         if not isinstance(instance, Object):
             return
         scenario = self._creating
