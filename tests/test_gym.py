@@ -186,6 +186,42 @@ record 0 as reward
     assert observation["ego.observations.depth"].min() == pytest.approx(3, abs=1e-5)
 
 
+def test_depth_is_seen_within_its_bounds() -> None:
+    text = (
+        "from scenic import DepthSensor\nego = new Object with sensors {'depth': DepthSensor(width=16, height=12)}\n"
+        "new Object at (0, 4)\n"
+    )
+    given: dict[str, Any] = {
+        "actions": Choice([[]]),
+        "observations": ["observations.depth"],
+        "reward": lambda _: 0,
+    }
+    seen = []
+    for bounds in ({}, {"observations.depth": (3.1, 5)}):
+        env = environment(text, bounds=bounds, **given)
+        low, high = next(iter(bounds.values()), (0, np.inf))
+        assert env.observation_space["ego.observations.depth"] == gymnasium.spaces.Box(
+            low, high, (12, 16), np.float32
+        )
+        seen.append(env.reset(seed=0)[0]["ego.observations.depth"])
+    np.testing.assert_allclose(seen[1], np.clip(seen[0], np.float32(3.1), 5))
+    assert seen[1].dtype == np.float32
+
+
+@pytest.mark.parametrize(
+    ("moment", "rewards"), [("", [1, 2, 3]), ("initial", [0, 0, 0]), ("every 2 steps", [0, 2, 2])]
+)
+def test_the_latest_value_of_a_record_is_the_reward(moment: str, rewards: list[float]) -> None:
+    text = (
+        f"ego = new Object\nrecord {moment} simulation().currentTime as reward\n"
+        if moment == "initial"
+        else (f"ego = new Object\nrecord simulation().currentTime {moment} as reward\n")
+    )
+    env = environment(text, actions=Choice([[]]), observations=["position"])
+    env.reset(seed=0)
+    assert [env.step(0)[1] for _ in range(3)] == rewards
+
+
 def test_render_shows_the_present() -> None:
     env = environment(render_mode="rgb_array", image_size=(40, 30))
     env.reset(seed=0)

@@ -132,11 +132,29 @@ def test_a_camera_that_is_not_there_is_named_with_those_that_are() -> None:
 
 
 @pytest.mark.parametrize(
-    "options", [{"width": 0}, {"height": 1.5}, {"attributes": {"fov": 180}}, {"rotation": (1, 2)}]
+    "options",
+    [
+        {"width": 0},
+        {"width": 16385},
+        {"height": 0},
+        {"height": 16385},
+        {"height": 1.5},
+        {"attributes": {"fov": 180}},
+        {"attributes": {"fov": 0}},
+        {"attributes": {"fov": True}},
+        {"rotation": (1, 2)},
+    ],
 )
 def test_sensors_refuse_what_makes_no_camera(options: dict[str, object]) -> None:
     with pytest.raises(scenic.InvalidScenarioError):
         RGBSensor(**options)  # type: ignore[arg-type]
+
+
+def test_sensors_may_be_as_small_and_as_large_as_they_say() -> None:
+    for width, height, angle in ((1, 16384, 0.5), (16384, 1, 179)):
+        sensor = RGBSensor(width=width, height=height, attributes={"fov": angle})
+        assert (sensor.width, sensor.height) == (width, height)
+        assert sensor.fieldOfView == pytest.approx(math.radians(angle))
 
 
 def test_run_lengths_go_down_the_columns() -> None:

@@ -120,6 +120,16 @@ OPAQUE = [
     ("from collections import namedtuple\nt = namedtuple('T', 'u v')(x, 2)\ndef f(): return t.u", "f() > 0.7"),
     ("def f(): return filter(lambda v: v > 0.7, [x])", "f()"),
     ("def f(): return max([x, 0.7], key=lambda v: v)", "f() != 0.7"),
+    ("def f(v=x): return v > 0.7", "f()"),
+    ("def f(*, v=x): return v > 0.7", "f()"),
+    ("def f(): return f.v[0] > 0.7\nf.v = [x]", "f()"),
+    ("from functools import partial\ndef f(a, b): return a > b\nf = partial(f, 0.3, b=1 - x)", "f()"),
+    ("s = slice(0, 1, x)\ndef f(): return s.step > 0.7", "f()"),
+    ("s = slice(x, 1)\ndef f(): return s.start > 0.7", "f()"),
+    ("s = {x: 1}\ndef f(): return next(iter(s)) > 0.7", "f()"),
+    ("class K(object):\n    __slots__ = ('v',)\n    def g(self): return self.v > 0.7\nk = K()\nk.v = x", "k.g()"),
+    ("class K(object):\n    def g(self): return x > 0.7\nf = K().g", "f()"),
+    ("class K(object):\n    def __init__(self, v): self.v = v\n    def g(self): return self.v > 0.7\nf = K(x).g", "f()"),
 ]  # fmt: skip
 
 

@@ -2,6 +2,7 @@
 
 import io
 import json
+import math
 import os
 import stat
 from pathlib import Path
@@ -90,7 +91,13 @@ def test_data_of_another_program_or_damaged_is_refused() -> None:
     assert fingerprint(scenario(PROGRAM + "\n").sceneFromBytes(data, verify=False)) == fingerprint(scene)
     with pytest.raises(SerializationError, match="other random values"):
         scenario("x = Range(0, 1)\nparam x = x").sceneFromBytes(data, verify=False)
+    name, number = next(iter(json.loads(data)["numbers"].items()))
+    borders = [
+        data.replace(f'"{name}":"{number}"'.encode(), f'"{name}":"{value.hex()}"'.encode())
+        for value in (0.0, 1.0, math.nan)
+    ]
     for broken in (
+        *borders,
         b"",
         b"{}",
         b"\xff",

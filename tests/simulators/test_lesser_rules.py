@@ -7,6 +7,7 @@ import threading
 import time
 import warnings
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -21,6 +22,7 @@ from scenic.language.errors import (
     Located,
     ScenicValueError,
     SerializationError,
+    annotation,
 )
 from scenic.runtime.dynamics.recorders import Recorder
 from scenic.runtime.dynamics.requirements import Outcome
@@ -225,6 +227,111 @@ def test_simulators_give_exactly_what_they_are_asked_for(change: str) -> None:
 
     with pytest.raises(RuntimeError, match="mood" if change == "more" else "yaw"):
         simulator(Wrong).simulate(scene(AGENTS), maxSteps=2)
+
+
+@pytest.mark.parametrize(
+    ("default", "given", "fine"),
+    [
+        ("True", False, True),
+        ("True", 1, False),
+        ("True", 0.5, False),
+        ("0.5", True, False),
+        ("0.5", 2, True),
+        ("2", 2.5, True),
+        ("'calm'", "glad", True),
+        ("'calm'", ["glad"], False),
+        ("['calm']", ["glad"], True),
+        ("['calm']", "glad", False),
+        ("'calm'", None, False),
+        ("(1, 2, 3)", Vector(1, 2, 3), False),
+        ("Vector(1, 2, 3)", Vector(4, 5, 6), True),
+        ("Vector(1, 2, 3)", (4, 5, 6), False),
+        ("Vector(1, 2, 3)", 4, False),
+    ],
+)
+def test_properties_keep_the_type_of_their_default(default: str, given: Any, fine: bool) -> None:
+    class Telling(Plain):
+        def getProperties(self, obj: Any, properties: Any) -> Mapping[str, Any]:
+            found = dict(super().getProperties(obj, properties))
+            return {**found, "mood": given} if self.currentTime else found
+
+    one = scene(
+        f"class Moody:\n    mood[dynamic]: {default}\nego = new Moody\nrecord final ego.mood as mood\n"
+    )
+    if fine:
+        done = simulator(Telling).simulate(one, maxSteps=1)
+        assert done is not None
+        assert done.records["mood"] == given
+    else:
+        with pytest.raises(RuntimeError, match=r"gave property 'mood' of .* a value of type"):
+            simulator(Telling).simulate(one, maxSteps=1)
+
+
+def test_a_look_back_is_behind_whatever_came_of_it() -> None:
+    """Raised while it was handled, or from it."""
+
+    def failed(raising: Any) -> BaseException:
+        try:
+            raising()
+        except Exception as error:  # noqa: BLE001 - what comes of it is looked at
+            return error
+        raise AssertionError
+
+    def looking() -> None:
+        Latest("state")[0]
+
+    def handling() -> None:
+        try:
+            looking()
+        except LookupError:
+            raise ValueError("something else")  # noqa: B904 - as programs do
+
+    def passing() -> None:
+        try:
+            looking()
+        except LookupError as error:
+            raise ValueError("something else") from error
+
+    for raising in (looking, handling, passing):
+        assert NotKeptError.behind(failed(raising))
+    assert not NotKeptError.behind(failed(lambda: [][0]))
+    assert not NotKeptError.behind(None)
+
+
+def test_an_error_of_a_module_names_its_file(tmp_path: Path) -> None:
+    """Where it was raised, not what led there."""
+    (tmp_path / "lib.scenic").write_text(
+        "def g(x):\n    y = x + 1\n    return 1 / (x - x)\nbehavior C(x):\n    wait\n    take g(x)\n"
+    )
+    for text, file, line in (
+        ("from lib import g\nbehavior B():\n    take g(1)\n", "lib.scenic", 3),
+        ("import lib\nbehavior B():\n    do lib.C(2)\n", "lib.scenic", 3),
+        ("import lib\nbehavior B():\n    wait\n    do lib.C(2)\n    take (lib.count)\n", "lib.scenic", 3),
+        ("import lib\nbehavior B():\n    take len(lib.count)\n", "main.scenic", 3),
+    ):
+        main = tmp_path / "main.scenic"
+        main.write_text(f"{text}ego = new Object with behavior B\n")
+        (one,) = scenic.scenarioFromFile(main).sample(1, seed=0)
+        with pytest.raises((ZeroDivisionError, AttributeError)) as caught:
+            DummySimulator().simulate(one, maxSteps=4)
+        found = annotation(caught.value)
+        assert found is not None
+        assert found.span is not None
+        assert (Path(str(found.filename)).name, found.span.line) == (file, line)
+
+
+def test_what_enters_in_2d_mode_lies_in_the_plane() -> None:
+    text = (
+        "scenario Main():\n    setup:\n        ego = new Object at (1, 2)\n    compose:\n        do Sub()\n"
+        "scenario Sub():\n    setup:\n        thing = new Object at (5, 5, 3), with heading 40 deg\n"
+        "        record initial (thing.position, thing.heading) as thing\n    compose:\n        wait\n"
+    )
+    (one,) = scenic.scenarioFromString(text, mode2D=True).sample(1, seed=0)
+    done = DummySimulator().simulate(one, maxSteps=2)
+    assert done is not None
+    place, heading = done.records["thing"]
+    assert tuple(place) == (5, 5, 0)
+    assert heading == pytest.approx(math.radians(40))
 
 
 def test_replays_with_something_behind_them_are_damaged() -> None:
@@ -566,7 +673,7 @@ class Push(Action):
 
 def test_actions_made_before_the_simulation_hold_its_objects_and_values() -> None:
     """Whoever defined them; those in which nothing is random stay what they are."""
-    text = f"""
+    text = """
 from tests.simulators.test_lesser_rules import Push
 from scenic.simulators.commands import SetVelocity
 r = Range(1, 2)

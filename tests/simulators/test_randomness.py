@@ -64,6 +64,22 @@ def test_weights_are_the_law_of_what_is_drawn_at_once(draw: str) -> None:
     assert chisquare([found[1], found[2]], [200, 600]).pvalue > 1e-4
 
 
+@pytest.mark.parametrize(("place", "chance"), [("behavior", 0.2), ("behavior", 0.7), ("setup", 0.3)])
+def test_a_requirement_within_a_simulation_counts_with_its_chance(place: str, chance: float) -> None:
+    """One that never holds rejects so many simulations."""
+    count, statement = 150, f"require[{chance}] simulation() is None"
+    if place == "behavior":
+        text = f"behavior B():\n    wait\n    {statement}\nego = new Object with behavior B\n"
+    else:
+        text = (
+            "scenario Main():\n    setup:\n        ego = new Object\n    compose:\n        do Sub()\n"
+            f"scenario Sub():\n    setup:\n        {statement}\n    compose:\n        wait\n"
+        )
+    rejected = count - len(runs(text, count, steps=2))
+    # Four standard deviations.
+    assert abs(rejected - chance * count) <= 4 * (count * chance * (1 - chance)) ** 0.5
+
+
 MUTATED = """
 scenario Sub():
     setup:

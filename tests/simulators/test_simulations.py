@@ -530,6 +530,29 @@ def test_arrays_and_images_are_written_as_they_are(tmp_path: Path) -> None:
     np.testing.assert_array_equal(np.asarray(Image.open(tmp_path / "0.png")), [[0, 128, 255], [0, 255, 26]])
 
 
+@pytest.mark.parametrize(
+    ("image", "mode"),
+    [
+        ("[[0, 9], [255, 3]]", "L"),
+        ("[[[1, 2, 3]], [[4, 5, 255]]]", "RGB"),
+        ("[[[1, 2, 3, 255], [5, 6, 7, 128]]]", "RGBA"),
+    ],
+)
+def test_images_have_as_many_channels_as_they_are_given(tmp_path: Path, image: str, mode: str) -> None:
+    from PIL import Image
+
+    simulate("import numpy\n" + recording(tmp_path, "{step}.png", f"numpy.array({image})"), 0)
+    with Image.open(tmp_path / "0.png") as found:
+        assert found.mode == mode
+        np.testing.assert_array_equal(np.asarray(found), eval(image))
+
+
+@pytest.mark.parametrize("shape", [(2, 3, 2), (2, 3, 5), (2,), (2, 3, 3, 3)])
+def test_what_is_no_image_is_refused(tmp_path: Path, shape: tuple[int, ...]) -> None:
+    with pytest.raises(ValueError, match="an image is an array of shape"):
+        simulate("import numpy\n" + recording(tmp_path, "{step}.png", f"numpy.zeros({shape})"), 0)
+
+
 def test_options_are_for_what_writes_the_format(tmp_path: Path) -> None:
     """Images take Pillow's; what a format does not know is refused."""
     from PIL import Image

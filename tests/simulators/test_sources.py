@@ -212,6 +212,45 @@ def test_a_draw_says_where_it_is_made() -> None:
     ]
 
 
+def test_agents_that_enter_later_are_told_apart_by_their_places() -> None:
+    text = """
+behavior B():
+    while True:
+        take Range(0, 1)
+scenario Main():
+    setup:
+        ego = new Object
+        new Object at (3, 3), with behavior B
+    compose:
+        wait
+        do Sub()
+scenario Sub():
+    setup:
+        new Object at (5, 5)
+        new Object at (7, 7), with behavior B
+        new Object at (9, 9), with behavior B
+    compose:
+        while True:
+            wait
+"""
+    (scene,) = scenic.scenarioFromString(text).sample(1, seed=0)
+    earlier = DummySimulator().simulate(scene, maxSteps=3, key=b"1")
+    assert earlier is not None
+    for kept in (1, 3, 4):
+        done = DummySimulator().simulate(
+            scene, maxSteps=3, key=b"2", source=scenic.Conditioned(earlier.getReplay(), agents=[kept])
+        )
+        assert done is not None
+        for number in (1, 3, 4):
+            pair = [
+                [step[agent] for step in each.result.actions]
+                for each in (done, earlier)
+                for agent in [each.objects[number]]
+            ]
+            assert len(pair[0][-1]) == 1
+            assert (pair[0] == pair[1]) is (number == kept)
+
+
 def test_the_choice_of_a_box_is_a_draw_of_its_own() -> None:
     """Where analysis leaves several boxes of the cube, rows fill each of them evenly."""
     scenario = scenic.scenarioFromString("x = Range(0, 1)\nparam x = x\nrequire x < 0.2 or x > 0.8\n")

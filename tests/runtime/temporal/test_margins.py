@@ -78,6 +78,41 @@ def test_margins(condition: str, margin: float) -> None:
     assert robustness(condition, steps=3) == pytest.approx(margin, abs=1e-3)
 
 
+HOLES = """
+import trimesh
+ring = MeshShape(trimesh.creation.annulus(2, 4, 1, sections=32), dimensions=(8, 8, 1))
+zone = CircularRegion((0, 0), 9).difference(CircularRegion((0, 0), 1, resolution=64))
+spot = new OrientedPoint at (0, 5)
+ego = new Object with shape ring, with width 8, with length 8, with allowCollisions True
+block = new Object at (3, 0), with width 0.5, with length 0.5, with height 0.5, with allowCollisions True
+plate = new Object with width 4, with length 4, with allowCollisions True
+"""
+
+
+@pytest.mark.parametrize(
+    ("condition", "margin"),
+    [
+        ("spot in zone", 4),
+        ("not (spot in CircularRegion((0, 9), 1, resolution=256))", 3),
+        ("eventually spot.position not in zone or True", math.inf),
+        # Of concave shapes no depth is known, whichever of the two is one.
+        ("ego intersects block", math.inf),
+        ("block intersects ego", math.inf),
+        # Over a hole all corners are within, and yet it is not known by how much the whole is not.
+        ("plate not in zone", math.inf),
+        ("ego.position not in zone", 1),
+    ],
+)
+def test_margins_where_there_are_holes(condition: str, margin: float) -> None:
+    assert robustness(condition, 0, HOLES) == pytest.approx(margin, abs=1e-2)
+
+
+def test_a_condition_that_fails_to_be_computed_holds_neither_as_it_is_nor_negated() -> None:
+    program = "table = {0: 1}\nego = new Object\n"
+    for condition in ("table[ego.y] > 3", "not (table[ego.y] > 3)", "not (table[ego.y] > 3 and ego.y < 9)"):
+        assert robustness(f"always (ego.y < 9 or {condition})", 3, program) == pytest.approx(6)
+
+
 def test_what_is_round_is_as_deep_inside_as_its_hull_not_its_box() -> None:
     program = "disc = CircularRegion((0, 0), 9)\nego = new Object with shape CylinderShape(), with width 2, with length 2\n"
     assert robustness("always ego in disc", 3, program) == pytest.approx(5, abs=0.01)
