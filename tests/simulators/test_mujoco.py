@@ -573,6 +573,51 @@ scenario Later():
     np.testing.assert_allclose(last(late, 1)[0], [5, 5, 0.06], atol=1e-3)
 
 
+ACTING = """
+behavior Acting(*actions):
+    for action in actions:
+        take action
+        wait
+small = 0.1
+class Small(Body):
+    width: small
+    length: small
+    height: small
+scenario Main():
+    setup:
+        cup = new Small at (0, 0, 1.2), facing (20 deg, 30 deg, 0), with density 10
+        ego = new Gripper at (0, 0, 1), with width small, with length small, with height small, with reach 0.2,
+            with behavior Acting(SetVelocity((0, 0, 0.2)), Grasp(cup), SetVelocity((0.3, 0, 0.1)))
+        new Gripper at (5, 0, 1), with behavior Acting(SetVelocity((0.2, 0, 0)), SetAcceleration((0.5, 0.2, 0)))
+        new Robot at (10, 0, 0.06), with behavior Acting(SetWheelSpeeds(0.3, 0.5))
+        new Small at (15, 0, 1), with mass 4, with behavior Acting(ApplyForce((0, 3, 40), (0, 0, 0.1)))
+        new Quadrotor at (20, 0, 5), with behavior Acting(Fly(11, 0.1, 0.2, 0.4))
+        record ego.holding as held
+    compose:
+        wait for 8 steps
+        {late}
+        while True:
+            wait
+scenario Later():
+    setup:
+        new Gripper at (50, 50, 0.5)
+        new Robot at (60, 50, 0.06)
+    compose:
+        wait
+"""
+
+
+def test_what_acts_goes_on_while_others_come() -> None:
+    """What is held stays where it is in the hand, and all commands are in force."""
+    alone, late = (run(ACTING.format(late=text), 14) for text in ("pass", "do Later()"))
+    assert [len(poses) for poses in late.poses[7:10]] == [6, 8, 8]
+    assert records(alone, "held") == records(late, "held") == [False] * 3 + [True] * 12
+    for first, second in zip(alone.poses, late.poses, strict=True):
+        for (place, turn), (other, other_turn) in zip(first, second, strict=False):
+            np.testing.assert_allclose(tuple(place), tuple(other), atol=1e-9)
+            assert turn.approxEq(other_turn, 1e-9)
+
+
 def test_the_command_simulates(tmp_path: Path) -> None:
     (tmp_path / "program.scenic").write_text(MODEL + BOUNCING)
     for folder, jobs in (("one", 1), ("two", 2)):

@@ -86,7 +86,10 @@ class MujocoSimulation(Simulation):
                     self.model = spec.compile()
                     self.data = mujoco.MjData(self.model)
                 else:
+                    grips = self.model.eq_data.copy()
                     self.model, self.data = spec.recompile(self.model, self.data)
+                    # How what is held stands to its gripper; welds of the new object come behind.
+                    self.model.eq_data[: len(grips)] = grips
         except ValueError as error:
             what = " ".join(str(error).split())
             raise SimulationCreationError(
