@@ -6,6 +6,7 @@ arrays of points.
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from copy import copy
 from functools import cached_property, partial
 from typing import Any, Final
 
@@ -62,6 +63,31 @@ class VectorField:
         self.valueType = Orientation
         self.minSteps = minSteps
         self.defaultStepSize = defaultStepSize
+
+    def _asked(self) -> dict[str, Any]:
+        """The functions that it was given, by the names of the attributes that hold them."""
+        held = {name: self.__dict__.get(name) for name in ("value", "headingFunction")}
+        return {
+            name: function
+            for name, function in held.items()
+            if function is not None and getattr(function, "__self__", None) is not self
+        }
+
+    def random_parts(self) -> list[Any]:
+        """Functions, which may read random values, for sampling."""
+        return list(self._asked().values())
+
+    def sampled(self, sample: Any) -> "VectorField":
+        """The field whose functions read sampled values; itself where they read none."""
+        asked = self._asked()
+        functions = {name: sample.value(function) for name, function in asked.items()}
+        if all(functions[name] is function for name, function in asked.items()):
+            return self
+        field = copy(self)
+        if "value" not in asked:
+            functions["value"] = field._value  # type: ignore[attr-defined] # it is computed by a method of its own
+        field.__dict__.update(functions)
+        return field
 
     def __getitem__(self, position: Any) -> Any:
         """The orientation at a point."""
@@ -272,6 +298,9 @@ class RegionField(VectorField):
     def __init__(self, region: Any) -> None:
         self.region = region
         super().__init__(f"orientation of {region!r}", region.own_orientation)
+
+    def _asked(self) -> dict[str, Any]:
+        return {}
 
     def __getitem__(self, position: Any) -> Any:
         place = to_vector(position, f"field {self.name!r}")

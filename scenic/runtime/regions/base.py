@@ -202,15 +202,20 @@ class Region(ABC):
         return apply(_ORIENTATION, to_vector(point), *self.parameters, payload=self)
 
     def random_parts(self) -> list[Any]:
-        """The parameters, and what else is random with them, for sampling."""
-        return [*self.parameters, *(getattr(self, name) for name in self.placement_names)]
+        """The parameters, what else is random with them, and the field of orientations, for sampling."""
+        placement = (getattr(self, name) for name in self.placement_names)
+        return [*self.parameters, *placement, self.__dict__.get("orientation")]
 
     def sampled(self, sample: Any) -> "Region":
         """The region of one sample."""
-        if not self.is_random:
+        own = self.__dict__.get("orientation")
+        orientation = sample.value(own)
+        if not self.is_random and orientation is own:
             return self
         region = copy(self)
         region.__dict__.pop("_single", None)
+        if orientation is not own:
+            region.orientation = orientation
         region.parameters = tuple(sample.value(value) for value in self.parameters)
         if self.parameter_names:
             for name, value in zip(self.parameter_names, region.parameters, strict=True):
