@@ -663,10 +663,10 @@ class Push(Action):
 
     def __init__(self, of: Any, much: Any) -> None:
         self.of, self.much = of, much
-        self.own = [self]
+        self.me, self.own = self, [self]
 
     def applyTo(self, agent: Any, simulation: Any) -> None:
-        assert self.own == [self]
+        assert self.me is self.own[0] is self
         thing = self.of() if callable(self.of) else self.of
         thing.__dict__["position"] += self.much
 
