@@ -20,6 +20,8 @@ BY_METHOD = """\
 class Counting:
     def where(self):
         return ego.position.x
+    def whose(self):
+        return ego
 ego = new Object at (Range(0, 1), 0, 0)
 new Counting at (3, 0, 0)
 """
@@ -63,6 +65,7 @@ def test_an_object_is_one_however_it_is_reached(text: str) -> None:
 def test_a_method_finds_the_objects_of_its_own_scene() -> None:
     for scene in scenic.scenarioFromString(BY_METHOD).sample(5, seed=1):
         assert scene.objects[1].where() == scene.objects[0].position.x
+        assert scene.objects[1].whose() is scene.objects[0]
 
 
 def test_what_a_script_sets_stays_in_one_scene() -> None:
@@ -100,6 +103,22 @@ def test_copies_of_scenes_made_together_have_objects_of_their_own() -> None:
         assert not {*map(id, scene.objects)} & {*map(id, again.objects)}
         assert not hasattr(again.objects[0], "mark")
         assert told(again) == told(scene)
+
+
+def test_scenes_of_all_parts_of_a_batch_have_their_own_objects() -> None:
+    """Of many objects those of few scenes are made at a time: of 600 scenes here in four parts."""
+    text = (
+        "x = Range(0, 1)\nparam x = x\nego = new Object at (x, 0, 0), with width x + 1\n"
+        "for i in range(20):\n    new Object at (3 * i + 3, x, 0), with allowCollisions True\n"
+        "new Object at (99, 0, 0), with tag x\n"
+    )
+    program = scenic.scenarioFromString(text)
+    scenes = program.sample(600, seed=3)
+    for scene in [*scenes[300:], *scenes[:300][::-1], *map(deepcopy, scenes[::50])]:
+        x = scene.params["x"]
+        assert (scene.egoObject.position.x, scene.egoObject.width, scene.objects[21].tag) == (x, x + 1, x)
+        assert [item.position.y for item in scene.objects[1:21]] == [x] * 20
+    assert len({id(item) for scene in scenes for item in scene.objects}) == 600 * 22
 
 
 def test_scenes_are_freed_as_soon_as_nobody_holds_them() -> None:
