@@ -50,12 +50,47 @@ def test_all_others_are_called_on_samples(function: Callable[..., Any]) -> None:
     assert not is_pure(function)
 
 
-def test_a_store_into_an_argument_is_an_effect() -> None:
-    def store(x: list[int]) -> list[int]:
-        x[0] = 1
-        return x
+def _stores_a_part(x: Any) -> Any:
+    x[0] = 1
+    return x
 
-    assert not is_pure(store)
+
+def _stores_an_attribute(x: Any) -> Any:
+    x.y = 1
+    return x
+
+
+def _deletes_a_part(x: Any) -> Any:
+    del x[0]
+    return x
+
+
+def _deletes_an_attribute(x: Any) -> Any:
+    del x.y
+    return x
+
+
+def _changes_within(x: Any) -> Any:
+    return [(lambda z: z.pop())(y) for y in x]
+
+
+@pytest.mark.parametrize(
+    "function",
+    [
+        _stores_a_part,
+        _stores_an_attribute,
+        _deletes_a_part,
+        _deletes_an_attribute,
+        _changes_within,
+        lambda x: _changes_within(x),
+        lambda x: x.sort(),
+        lambda x: sorted(x, key=lambda y: y.pop()),
+        lambda x, *, seen=(1, LIST): seen,
+    ],
+)
+def test_what_changes_others_is_an_effect(function: Callable[..., Any]) -> None:
+    """Wherever it is done: in the function, in one that stands in it, in one that it calls."""
+    assert not is_pure(function)
 
 
 CHOICES = """

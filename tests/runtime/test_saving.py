@@ -4,8 +4,10 @@ import io
 import json
 import math
 import os
+import pickle
 import stat
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -110,6 +112,36 @@ def test_data_of_another_program_or_damaged_is_refused() -> None:
         found = diagnose(caught.value)
         assert found is not None
         assert (found.code, bool(found.help)) == ("SC607", True)
+
+
+OPTIONS: list[dict[str, Any]] = [
+    {},
+    {"params": {"p": 1}},
+    {"scenario": "Other"},
+    {"mode2D": True},
+    {"model": "other_world"},
+]
+
+
+def test_every_option_is_told_apart(tmp_path: Path) -> None:
+    """By what a scene remembers of the program, and by a scenario that is pickled."""
+    for name, place in (("usual_world", 3), ("other_world", 4)):
+        (tmp_path / f"{name}.scenic").write_text(f"PLACE = {place}\n")
+    text = "model usual_world\nparam p = 0\nscenario {}():\n    setup:\n        ego = new Object at ({}, PLACE, 7)\n"
+    text = text.format("Main", "Range(0, 1)") + text.format("Other", "Range(5, 6)").split("\n", 2)[2]
+    options: list[dict[str, Any]] = [{"filename": str(tmp_path / "p.scenic"), **each} for each in OPTIONS]
+    programs = [scenario(text, **each) for each in options]
+    scenes = [program.sample(1, seed=0)[0] for program in programs]
+    found = [(int(scene.egoObject.x), *scene.egoObject.position[1:], scene.params["p"]) for scene in scenes]
+    assert found == [(0, 3, 7, 0), (0, 3, 7, 1), (5, 3, 7, 0), (0, 3, 0, 0), (0, 4, 7, 0)]
+    for one, scene in zip(programs, scenes, strict=True):
+        data = one.sceneToBytes(scene)
+        for other in programs:
+            if other is not one:
+                with pytest.raises(SerializationError, match="another program"):
+                    other.sceneFromBytes(data)
+        again = pickle.loads(pickle.dumps(one))
+        assert fingerprint(again.sceneFromBytes(data)) == fingerprint(scene)
 
 
 def test_a_dumped_scene_compiles_back_to_itself() -> None:
