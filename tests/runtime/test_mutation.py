@@ -1,6 +1,7 @@
 """Noise on mutated objects (section 10.5 of the specification)."""
 
 import math
+from itertools import permutations
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from scipy import stats
 from scenic.language.errors import InvalidScenarioError, ScenicTypeError
 from scenic.runtime.mutators import OrientationMutator, PositionMutator
 from scenic.runtime.values import Vector
+from scenic.simulators.dummy import DummySimulator
 from tests.runtime.programs import (
     FALSE_ALARM,
     assert_same_rotation,
@@ -60,6 +62,26 @@ def test_final_properties_follow_and_others_stay() -> None:
     assert item.heading == item.orientation.yaw == pytest.approx(item.yaw)
     assert item.tag == 7
     assert tuple(item.velocity) == pytest.approx((0, 2, 0))
+
+
+@pytest.mark.parametrize("names", list(permutations("abc")))
+def test_what_follows_from_others_does_so_in_turn(names: tuple[str, str, str]) -> None:
+    """Whatever the names and the order of definitions: after mutation, and at each step of a simulation."""
+    first, second, third = names
+    lines = (
+        f"    {third}[dynamic, final]: self.{second} + 1\n",
+        f"    {second}[dynamic, final]: self.{first} * 2 + self.heading\n",
+        f"    {first}[dynamic, final]: self.position.y\n",
+    )
+    for definitions in (lines, lines[::-1]):
+        text = f"class A:\n{''.join(definitions)}ego = new A at (5, 0), facing 1\nmutate\nrecord ego.{third} as end\n"
+        item = scene(text)
+        ego = item.egoObject
+        assert getattr(ego, third) == ego.position.y * 2 + ego.orientation.yaw + 1
+        done = DummySimulator(drift=3).simulate(item, maxSteps=2)
+        assert done is not None
+        found = [value for _, value in done.records["end"]]
+        assert found == [state[0].y * 2 + ego.orientation.yaw + 1 for state in done.trajectory]
 
 
 def test_requirements_see_the_noise_wherever_they_stand_and_captured_values_do_not() -> None:
