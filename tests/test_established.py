@@ -47,6 +47,51 @@ def test_every_name_of_every_module_is_found(name: str) -> None:
         _ = module.nothing_of_this_name
 
 
+OTHERWISE = {
+    "ASTParseError": "ScenicSyntaxError",
+    "AllRegion": "Everywhere",
+    "CoercionFailure": "ScenicTypeError",
+    "Constructible": "Point",
+    "DynamicScenario": "ModularScenario",
+    "EmptyRegion": "Nowhere",
+    "InconsistentScenarioError": "InvalidScenarioError",
+    "LazilyEvaluable": "Lazy",
+    "Object2D": "Object",
+    "Options": "Discrete",
+    "OrientedPoint2D": "OrientedPoint",
+    "Point2D": "Point",
+    "PythonCompileError": "ScenicSyntaxError",
+    "Samplable": "Random",
+    "ScenicParseError": "ScenicSyntaxError",
+    "VectorDistribution": "RandomVector",
+    "coerceToAny": "toTypes",
+    "isLazy": "is_lazy",
+    "monotonicDistributionFunction": "distributionFunction",
+    "repairMesh": "proper_mesh",
+    "requiredProperties": "reads_of",
+    "simulation": "running_simulation",
+    "unifyMesh": "united_mesh",
+    "valueInContext": "resolve",
+}
+"""Names of the established modules for what is called otherwise here."""
+
+
+@pytest.mark.parametrize("module", list(MODULES))
+def test_what_is_found_is_what_the_name_says(module: str) -> None:
+    for entry in importlib.import_module(module).__all__:
+        found = getattr(lookup(module, entry), "__name__", entry)
+        assert found == OTHERWISE.get(entry, entry)
+
+
+def test_values_of_the_established_modules() -> None:
+    import scenic.core.regions as regions
+    import scenic.core.vectors as vectors
+
+    assert regions.everywhere.containsPoint((1, 2, 3))
+    assert not regions.nowhere.containsPoint((1, 2, 3))
+    assert vectors.globalOrientation.eulerAngles == (0, 0, 0)
+
+
 def test_one_module_holds_every_name_of_the_language() -> None:
     module = importlib.import_module("scenic.syntax.veneer")
     own = {"globalParameters", "localPath", "abs", "str", "int", "float"}
