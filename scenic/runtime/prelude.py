@@ -484,7 +484,7 @@ class Loader:
     def _execute(self, code: CodeType, module: ModuleType, state: Module) -> None:
         prelude = Prelude(self._context, self._program, state, self)
         scope = state.scope = module.__dict__
-        scope["__scenic__"] = prelude
+        scope[PRELUDE] = prelude
         scope["__file__"] = state.filename
         scope["__builtins__"] = names.builtin_names(
             self._program, state.filename, lambda *args: self._import(state, *args)
@@ -524,9 +524,9 @@ class Loader:
         return module
 
     def _package(self, name: str, importer: Module) -> ModuleType:
-        """The module of a package: that of its file, if somebody has imported it, or else one that only leads to its parts."""
+        """The module of a package: that of its file, or else one that only leads to its parts."""
         path = self._modules.find(name)
-        if path is not None and path in self._loaded:
+        if path is not None and (path.stem == "__init__" or path in self._loaded):
             return self._load(path, name, importer)
         if name not in self._packages:
             self._packages[name] = ModuleType(name)

@@ -108,6 +108,9 @@ PACKAGE = {
         "import pkg.deep.down.d\nx = pkg.deep.down.d.D / 2",
         "from pkg.whole import W as x",
         "from pkg import whole\nx = whole.W",
+        "import pkg.a\nimport pkg.deep.c\nimport pkg.deep.down.d\nx = pkg.a.K * pkg.deep.c.C / pkg.deep.down.d.D",
+        "import pkg.whole\nimport pkg.whole.part\nx = pkg.whole.W * pkg.whole.part.P",
+        "import pkg.whole.part\nx = pkg.whole.W * pkg.whole.part.P",
     ],
 )
 def test_scenic_modules_in_packages(tmp_path: Path, statement: str) -> None:
@@ -213,19 +216,22 @@ def test_packages_on_the_path_of_python_are_loaded_once(
     assert sys.modules["usual_package.part"] is part
 
 
+@pytest.mark.parametrize("module", ["numbers_of", "some.numbers_of", "some.more.numbers_of"])
 @pytest.mark.parametrize("name", ["x", "_x"])
-def test_random_values_of_a_module_that_a_function_looks_into(tmp_path: Path, name: str) -> None:
-    (tmp_path / "numbers_of.scenic").write_text(f"{name} = Range(0, 1)\n")
-    (tmp_path / "main.scenic").write_text(
-        "import numbers_of\n"
-        "def low():\n"
-        f"    if numbers_of.{name} < 0.3:\n"
-        "        return True\n"
-        f"    return numbers_of.{name} < 0.4\n"
-        f"require low()\nparam x = numbers_of.{name}\n"
+def test_random_values_of_a_module_that_a_function_looks_into(tmp_path: Path, module: str, name: str) -> None:
+    main = written(
+        tmp_path,
+        {
+            f"{module.replace('.', '/')}.scenic": f"{name} = Range(0, 1)\n",
+            "main.scenic": f"import {module}\n"
+            "def low():\n"
+            f"    if {module}.{name} < 0.3:\n"
+            "        return True\n"
+            f"    return {module}.{name} < 0.4\n"
+            f"require low()\nparam x = {module}.{name}\n",
+        },
     )
-    scenes = scenic.scenarioFromFile(tmp_path / "main.scenic").sample(50, seed=1)
-    values = [scene.params["x"] for scene in scenes]
+    values = [scene.params["x"] for scene in scenic.scenarioFromFile(main).sample(50, seed=1)]
     assert 0.3 < max(values) < 0.4
     assert len(set(values)) == len(values)
 
