@@ -1,7 +1,7 @@
 """The engine: which scenes come out, whatever the batch; limits and reports; that pruning keeps the law."""
 
 import random
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -361,6 +361,29 @@ def test_generate_batch() -> None:
     random.seed(0)
     with pytest.raises(RejectionException):
         program.generateBatch(20, maxIterations=iterations - 1)
+
+
+NEVER = "def never(v): return v > 1\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "ask", "tried"),
+    [
+        ("x = Range(0, 1)\nrequire never(x)\n", lambda program: program.generate(), 2000),
+        ("x = Range(0, 1)\nrequire never(x)\n", lambda program: program.generate(7), 7),
+        ("x = Range(0, 1)\nrequire never(x)\n", lambda program: program.generate(seed=3), 2000),
+        ("x = Range(0, 1)\nrequire never(x)\n", lambda program: program.generateBatch(2, 30), 30),
+        ("x = Range(0, 1)\nrequire never(x)\n", lambda program: program.sample(2, max_attempts=30), 30),
+        ("x = Range(0, 1)\nrequire never(x)\n", lambda program: program.sample(), 100_000),
+        ("import random\nrequire never(random.random())\n", lambda program: program.sample(), 1000),
+        ("import random\nrequire never(random.random())\n", lambda program: program.sample(max_attempts=9), 9),
+        ("def f(): return False\nrequire f()\n", lambda program: program.generate(), 1000),
+        ("def f(): return False\nrequire f()\n", lambda program: program.generateBatch(1), 1000),
+    ],
+)
+def test_how_long_a_scene_is_looked_for(text: str, ask: Callable[[Any], Any], tried: int) -> None:
+    with pytest.raises(RejectionException, match=f"within {tried} candidates"):
+        ask(scenario(NEVER + text))
 
 
 def test_what_is_restricted_is_so_at_once() -> None:
