@@ -35,8 +35,8 @@ scenario Later():
 """
 
 
-def simulated(steps: int = 80) -> Any:
-    scene = scenic.scenarioFromString(PROGRAM).sample(1, seed=1)[0]
+def simulated(steps: int = 80, text: str = PROGRAM) -> Any:
+    scene = scenic.scenarioFromString(text).sample(1, seed=1)[0]
     done = KinematicSimulator().simulate(scene, maxSteps=steps, keep_poses=True, robustness=True, key=b"1")
     assert done is not None
     return done
@@ -81,3 +81,40 @@ def test_what_is_the_same_is_on_the_page_once() -> None:
     assert (len(data["meshes"]), len(data["outlines"])) == (len(one["meshes"]), len(one["outlines"]))
     assert data["scenes"][2] == json.loads(json.dumps(one["scenes"][0]))
     assert "a &lt;page&gt;" in text
+
+
+OTHER = """
+from scenic.simulators.kinematic import *
+first = CircularRegion((0, 0, 0), 3)
+zone = RectangularRegion((5, 5, 0), 0, 4, 4)
+last = CircularRegion((9, 9, 0), 2)
+ground = new Object at (0, 0, -3), with render False
+ego = new Object at (1, 2, 3), with shape SpheroidShape(), with occupied (first, zone, last)
+new Object at (4, 5, 6), with width 2, with length 2, with height 2
+"""
+
+
+def test_scenes_of_other_programs_keep_their_own_meshes_and_regions() -> None:
+    alone = [data_of(simulated(15)), data_of(simulated(1, OTHER))]
+    text = course_page("both", alone)
+    held = re.search(r'<script id="data" type="application/json">(.*?)</script>', text, re.DOTALL)
+    assert held is not None
+    data = json.loads(held[1])
+    kept = json.loads(json.dumps(alone))
+    for own, scene in zip(kept, data["scenes"], strict=True):
+        (before,) = own["scenes"]
+        for old, new in zip(before["objects"], scene["objects"], strict=True):
+            assert own["meshes"][old["mesh"]] == data["meshes"][new["mesh"]]
+        assert before["regions"].keys() == scene["regions"].keys()
+        for name, number in before["regions"].items():
+            assert own["outlines"][number] == data["outlines"][scene["regions"][name]]
+        if before["workspace"] is not None:
+            assert own["outlines"][before["workspace"]] == data["outlines"][scene["workspace"]]
+    assert [scene["workspace"] is None for scene in data["scenes"]] == [False, True]
+
+
+def test_what_is_not_drawn_takes_no_pose() -> None:
+    (scene,) = data_of(simulated(1, OTHER))["scenes"]
+    poses = np.frombuffer(base64.b64decode(scene["course"]["poses"]), dtype="<f4").reshape(2, 2, 7)
+    assert [thing["position"] for thing in scene["objects"]] == [(1, 2, 3), (4, 5, 6)]
+    np.testing.assert_allclose(poses[0, :, :3], [(1, 2, 3), (4, 5, 6)], atol=1e-6)

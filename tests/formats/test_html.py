@@ -5,13 +5,15 @@ from html.parser import HTMLParser
 from typing import Any
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from scenic.formats.html import page
 from scenic.formats.regions import bounds, outlines, view_outline
 from scenic.runtime.geometry.visibility.views import Views
+from scenic.runtime.regions.base import Workspace
 from scenic.runtime.regions.planar import CircularRegion, PolygonalRegion, RectangularRegion
 from scenic.runtime.regions.volumes import BoxRegion, SpheroidRegion
-from tests.formats.stand_ins import BALL, Chair, Object, Scene
+from tests.formats.stand_ins import BALL, Chair, Object, Scene, Turn
 
 
 class Outline(HTMLParser):
@@ -96,6 +98,29 @@ def test_the_ego_its_view_and_the_workspace_are_on_the_page() -> None:
     assert np.linalg.norm(points - [1, 1, 0], axis=1).max() < 5.001
     outline = data_of(page([scene], "one"))["outlines"][found["workspace"]]
     assert np.ptp(np.array(outline[0]), axis=0).tolist() == [4, 6, 0]
+
+
+def test_a_view_turns_with_its_object_and_begins_at_its_camera() -> None:
+    offset = np.array([0.5, 2, 1])
+    turn = Turn.by(0.7, 0.4, -0.3)
+    seen = {"viewAngles": (1.0, 0.6), "visibleDistance": 5, "showVisibleRegion": True}
+    thing = Object(
+        position=(10, 20, 30), orientation=turn, others={**seen, "cameraOffset": tuple(offset.tolist())}
+    )
+    (found,) = data_of(page([Scene([thing])], "one"))["scenes"]
+    points = np.concatenate([np.array(line) for line in found["objects"][0]["view"]])
+    frame = Rotation.from_quat([turn.x, turn.y, turn.z, turn.w])
+    local = frame.inv().apply(points - [10, 20, 30]) - offset
+    np.testing.assert_allclose(local, np.concatenate(view_outline(1.0, 0.6, 5)), atol=1e-3)
+
+
+def test_the_region_of_the_workspace_is_shown_as_such_alone() -> None:
+    region = RectangularRegion((0, 0, 2), 0, 4, 6)
+    scene = Scene([Object()], workspace=Workspace(region))
+    scene.regions = {"room": region, "alike": RectangularRegion((0, 0, 2), 0, 4, 6)}  # type: ignore[attr-defined] # as scenes of programs have
+    data = data_of(page([scene], "one"))
+    assert data["scenes"][0]["regions"] == {"alike": 0}
+    assert (data["scenes"][0]["workspace"], len(data["outlines"])) == (0, 1)
 
 
 def test_lines_of_a_view_are_on_its_border() -> None:

@@ -376,7 +376,11 @@ NEVER = "def never(v): return v > 1\n"
         ("x = Range(0, 1)\nrequire never(x)\n", lambda program: program.sample(2, max_attempts=30), 30),
         ("x = Range(0, 1)\nrequire never(x)\n", lambda program: program.sample(), 100_000),
         ("import random\nrequire never(random.random())\n", lambda program: program.sample(), 1000),
-        ("import random\nrequire never(random.random())\n", lambda program: program.sample(max_attempts=9), 9),
+        (
+            "import random\nrequire never(random.random())\n",
+            lambda program: program.sample(max_attempts=9),
+            9,
+        ),
         ("def f(): return False\nrequire f()\n", lambda program: program.generate(), 1000),
         ("def f(): return False\nrequire f()\n", lambda program: program.generateBatch(1), 1000),
     ],
