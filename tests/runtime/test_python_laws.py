@@ -90,6 +90,26 @@ def test_specifiers_of_the_program_obey_the_rules_of_resolution() -> None:
     assert isinstance(failure(short + "new Object with beside ego"), ScenicTypeError)
 
 
+def test_specifiers_of_the_program_wait_for_what_their_arguments_read() -> None:
+    """Here for a width that is given after them, and for the place at which a field is asked."""
+    text = """
+from scenic import specifier
+from scenic.core.lazy_eval import DelayedArgument
+@specifier(tag=1)
+def marked(self, first, second=0):
+    return {"tag": (first, second)}
+wide = DelayedArgument({"width"}, lambda context: context.width)
+field = VectorField("f", lambda place: place.x)
+a = new Object with marked wide, with width 5
+b = new Object with marked (1, (0.5 relative to field)), at (0.25, 9)
+c = new Object with marked [wide, 2], at (0, 20), with width 7
+"""
+    a, b, c = scene(text).objects
+    assert a.tag == (5, 0)
+    assert (b.tag[0], b.tag[1].yaw) == (1, pytest.approx(0.75))
+    assert c.tag == ([7, 2], 0)
+
+
 def test_a_specifier_of_the_program_may_modify_what_another_gives() -> None:
     text = """
 from scenic import specifier
@@ -99,6 +119,23 @@ def raised(self, gap):
 ego = new Object with raised 3, at (1, 2), with height 2
 """
     assert tuple(scene(text).egoObject.position) == (1, 2, 4)
+
+
+@pytest.mark.parametrize("given", [1, 2, 3])
+def test_what_a_modifier_may_not_modify_is_that_of_the_stronger_or_first(given: int) -> None:
+    text = f"""
+from scenic import specifier
+@specifier(position=1, tag=2, modifies=("position",))
+def raised(self):
+    return {{"position": self.position + (0, 0, 3), "tag": "raised"}}
+@specifier(tag={given})
+def told(self):
+    return {{"tag": "told"}}
+"""
+    for specifiers in ("with raised (), with told (), at (1, 2)", "at (1, 2), with told (), with raised ()"):
+        item = scene(f"{text}ego = new Object {specifiers}").egoObject
+        assert tuple(item.position) == (1, 2, 3)
+        assert item.tag == ("raised" if given == 3 else "told")
 
 
 def test_what_is_printed_depends_on_the_verbosity(capsys: pytest.CaptureFixture[str]) -> None:
