@@ -65,8 +65,8 @@ def test_a_run_that_is_ended_keeps_its_lines_and_no_run_without_lines_leaves_any
             fail()
         return names(tmp_path)
 
-    assert run() == {}
-    assert run(b"one\n") == {"out": b"one\n"}
+    assert run() == run(b"") == {}
+    assert run(b"one\n", b"") == {"out": b"one\n"}
     # What would replace an older file waits beside it.
     assert run() == {"out": b"one\n"}
     assert run(b"two\n") == {"out": b"one\n", "out.part": b"two\n"}

@@ -12,6 +12,7 @@ from scenic.formats.regions import bounds, outlines, view_outline
 from scenic.runtime.geometry.visibility.views import Views
 from scenic.runtime.regions.base import Workspace
 from scenic.runtime.regions.planar import CircularRegion, PolygonalRegion, RectangularRegion
+from scenic.runtime.regions.views import ViewRegion
 from scenic.runtime.regions.volumes import BoxRegion, SpheroidRegion
 from tests.formats.stand_ins import BALL, Chair, Object, Scene, Turn
 
@@ -138,12 +139,18 @@ def test_outlines_span_the_regions_they_show() -> None:
         (PolygonalRegion([(0, 0), (4, 0), (0, 3)], z=1), (0, 0, 1), (4, 3, 1)),
         (BoxRegion((2, 4, 6), position=(1, 1, 1)), (0, -1, -2), (2, 3, 4)),
         (SpheroidRegion((2, 4, 6)), (-1, -2, -3), (1, 2, 3)),
+        (ViewRegion(5, (2 * np.pi, np.pi), position=(1, 2, 3)), (-4, -3, -2), (6, 7, 8)),
+        (ViewRegion(5, (7, 4), position=(1, 2, 3), rotation=0.3), (-4, -3, -2), (6, 7, 8)),
     ):
         found = bounds(region)
         assert found is not None
         assert np.allclose(found, (low, high))
         points = np.concatenate(outlines(region))
         assert np.allclose((points.min(axis=0), points.max(axis=0)), (low, high), atol=0.01)
+    # A view of 270 degrees goes around, though less far behind; the box that is known of it is that of the ball.
+    points = np.concatenate(outlines(ViewRegion(5, (1.5 * np.pi, 1.0), position=(1, 2, 3), rotation=np.pi)))
+    low, high = (-4, -3, 3 - 5 * np.sin(0.5)), (6, 2 + 5 / np.sqrt(2), 3 + 5 * np.sin(0.5))
+    assert np.allclose((points.min(axis=0), points.max(axis=0)), (low, high), atol=0.01)
     assert outlines(None) == []
     assert bounds(None) is None
 

@@ -66,6 +66,16 @@ def test_numbers_of_a_box_that_is_partly_hidden() -> None:
     assert [depths.min(), depths.max()] == pytest.approx([4, 5])
 
 
+def test_what_is_far_down_in_an_image_that_is_higher_than_wide() -> None:
+    """Its front in rows 27 and 28, its top, which narrows, in rows 25 and 26."""
+    found, _ = seen(ahead(4, 0.1, -3.12, (2, 1, 1)), size=(20, 40))
+    (crate,) = found.labels
+    assert (crate.pixels, crate.full_pixels) == (19, 5 + 5 + 5 + 4)
+    assert crate.box is not None
+    assert crate.full_box is not None
+    assert crate.box.as_list() == crate.full_box.as_list() == [8, 25, 5, 4]
+
+
 def test_the_nearest_part_of_something_slanting_is_told() -> None:
     plank = ahead(4, 0, 0, (2, 1, 1))
     plank.orientation = Turn.by(0.4)
