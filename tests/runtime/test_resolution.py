@@ -11,7 +11,7 @@ from scenic.runtime.objects import TWO_D_DEFAULTS, Object, OrientedPoint
 from scenic.runtime.resolution import Resolution, class_defaults, resolution_of, resolve
 from scenic.runtime.specifiers import Specifier
 from scenic.runtime.values import Vector
-from tests.runtime.programs import failure, params, place, scene, thing
+from tests.runtime.programs import failure, params, place, scenario, scene, thing
 
 
 def specifier(
@@ -195,6 +195,13 @@ def test_points_may_have_no_size() -> None:
     assert params("p = new Point with width 0\nparam w = p.width")["w"] == 0
 
 
+@pytest.mark.parametrize("specifiers", ["with wdth 1, with tag 2", "with tag 2, with wdth 1"])
+def test_a_name_that_looks_misspelt_is_told_each_time(specifiers: str) -> None:
+    with pytest.warns(UserWarning, match="'wdth'") as told:
+        scenario(f"for i in range(3):\n    new Object at (3 * i, 0), {specifiers}")
+    assert len(told) == 3
+
+
 # The 2D mode
 
 
@@ -215,6 +222,13 @@ def test_2d_places_are_flat_when_others_read_them() -> None:
     assert aside.z == 0
     kept = thing(text + "class A:\n    foo: self.position\nnew A at (9, 9, 9)", mode2D=True)
     assert tuple(kept.foo) == (9, 9, 0)
+
+
+def test_2d_points_are_where_they_are() -> None:
+    """Only objects are flat."""
+    text = "p = new Point at (1, 2, 3)\nq = new OrientedPoint at (4, 5, 6)\nego = new Object at (7, 8, 9)\n"
+    found = params(f"{text}param p = p.position, q = q.position, r = ego.position", mode2D=True)
+    assert (found["p"], found["q"], found["r"]) == ((1, 2, 3), (4, 5, 6), (7, 8, 0))
 
 
 def test_2d_headings() -> None:
