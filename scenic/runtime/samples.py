@@ -8,6 +8,7 @@ methods of the program's classes, plain Python classes of the program and their 
 import abc
 import copy as shallow
 import dis
+from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from functools import cached_property, lru_cache, partial
 from types import CellType, CodeType, FunctionType, MethodType, ModuleType
@@ -240,7 +241,7 @@ def _parts(value: Any, names: Globals) -> Iterator[Any]:
     if isinstance(value, Point):
         yield from value.__dict__.get("_source", value).__dict__.values()
         yield from names.members(type(value))
-    elif isinstance(value, tuple | list | set | frozenset):
+    elif isinstance(value, tuple | list | set | frozenset | deque):
         yield from value
     elif isinstance(value, dict):
         yield from value

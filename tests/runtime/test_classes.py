@@ -279,6 +279,19 @@ def test_decorated_functions_see_the_sample_and_the_simulation(tmp_path: Path, w
         assert [value for _, value in done.records["y"]] == [found.params["k"] + 3] * 2
 
 
+def test_abstract_classes_are_so_in_a_sample_until_their_methods_are_given() -> None:
+    text = (
+        "import abc\nK = Range(0, 1)\n"
+        "class Base(abc.ABC):\n    @abc.abstractmethod\n    def k(self): return K\n"
+        "class Whole(Base):\n    def k(self): return K\n"
+        "class Part(Base):\n    def other(self): return K\n"
+        "def use(k):\n    try:\n        Part()\n    except TypeError:\n        return Whole().k()\n"
+        "param x = distributionFunction(use)(K), k = K\n"
+    )
+    for found in scenario(text).sample(3, seed=1):
+        assert found.params["x"] == found.params["k"]
+
+
 def test_classes_that_keep_a_list_of_their_kinds_are_not_made_anew() -> None:
     """A sample makes no class of which another one would hear."""
     text = (

@@ -476,3 +476,48 @@ def test_points_of_grids_lie_in_their_free_cells_whatever_marks_the_others() -> 
     found = scenario(text).sample(20, seed=1)
     assert all(item.params["within"] for item in found)
     assert len({tuple(item.params["place"]) for item in found}) == 1
+
+
+HOLDERS = [
+    # (definitions, where the value is in what `held` is on a sample)
+    ("held = R", "held"),
+    ("held = [(R,)]", "held[0][0]"),
+    ("held = {'k': [R]}", "held['k'][0]"),
+    ("held = {R: 1}", "list(held)[0]"),
+    ("held = {R}", "list(held)[0]"),
+    ("held = frozenset([R])", "list(held)[0]"),
+    ("held = slice(R, 1, 2)", "held.start"),
+    ("held = slice(0, R, 2)", "held.stop"),
+    ("held = slice(0, 1, R)", "held.step"),
+    ("held = collections.deque([1, R])", "held[1]"),
+    ("held = collections.OrderedDict(k=R)", "held['k']"),
+    ("held = collections.namedtuple('Pair', 'a b')(1, R)", "held.b"),
+    ("held = functools.partial(pow, R)", "held(1)"),
+    ("held = functools.partial(dict, k=R)", "held()['k']"),
+    ("def held(k=R): return k", "held()"),
+    ("def held(*, k=R): return k", "held()"),
+    ("def held(): return held.k\nheld.k = R", "held()"),
+    ("def around(k):\n    return lambda: k\nheld = around(R)", "held()"),
+    ("class A(object):\n    k = R\n    def f(self): return self.k\nheld = A", "held().f()"),
+    ("class A(object):\n    def f(self): return self.k\nheld = A()\nheld.k = R", "held.f()"),
+    ("class A(object):\n    __slots__ = 'k'\n    def f(self): return self.k\nheld = A()\nheld.k = R", "held.f()"),
+    ("class A(object):\n    def f(self): return self.k\na = A()\na.k = R\nheld = a.f", "held()"),
+    ("class A(object):\n    @property\n    def p(self, k=R): return k\nheld = A()", "held.p"),
+    ("class A(object):\n    @staticmethod\n    def f(k=R): return k\nheld = A", "held.f()"),
+    ("@functools.cache\ndef held(k=R): return k", "held()"),
+    ("class A:\n    k: R\nheld = new A", "held.k"),
+    ("class A:\n    k = R\nheld = new A", "held.k"),
+    ("class A:\n    def f(self, k=R): return k\nheld = new A", "held.f()"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("definition", "value"), HOLDERS)
+def test_what_only_a_holder_knows_is_drawn_for_it(definition: str, value: str) -> None:
+    """A function that is called on samples finds it there, though nothing else in the scene needs it."""
+    text = (
+        f"import functools, collections\n{definition.replace('R', 'Range(2, 3)', 1)}\n"
+        f"@distributionFunction\ndef use(_): return {value}\nparam x = use(Range(0, 1))\n"
+    )
+    found = {item.params["x"] for item in scenario(text).sample(4, seed=1)}
+    assert len(found) == 4
+    assert all(type(x) is float and 2 < x < 3 for x in found)
