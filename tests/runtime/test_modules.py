@@ -140,6 +140,15 @@ def test_models_give_names_and_defaults_of_parameters(tmp_path: Path) -> None:
     assert scenario.sample(1, seed=0)[0].params["x"].size == 8
 
 
+def test_what_a_model_imports_gives_defaults_of_parameters_too(tmp_path: Path) -> None:
+    files = {
+        "deeper.scenic": "param a = 8, b = 9\n",
+        "world.scenic": "import deeper\nparam b = 2, c = 3\n",
+        "main.scenic": "param a = 5\nmodel world\nimport deeper\nparam d = 6\n",
+    }
+    assert first(written(tmp_path, files)).params == {"a": 5, "b": 9, "c": 3, "d": 6}
+
+
 def test_a_missing_model_is_an_error(tmp_path: Path) -> None:
     with pytest.raises(InvalidScenarioError, match="no world model"):
         first(written(tmp_path, {"main.scenic": "model nothing_here\n"}))

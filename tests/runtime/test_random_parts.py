@@ -516,7 +516,7 @@ def test_what_only_a_holder_knows_is_drawn_for_it(definition: str, value: str) -
     """A function that is called on samples finds it there, though nothing else in the scene needs it."""
     text = (
         f"import functools, collections\n{definition.replace('R', 'Range(2, 3)', 1)}\n"
-        f"@distributionFunction\ndef use(_): return {value}\nparam x = use(Range(0, 1))\n"
+        f"@distributionFunction\ndef use(_): return float({value})\nparam x = use(Range(0, 1))\n"
     )
     found = {item.params["x"] for item in scenario(text).sample(4, seed=1)}
     assert len(found) == 4
