@@ -174,7 +174,16 @@ def test_cells_without_heading_ask_the_function() -> None:
     assert isinstance(failure(broken), ScenicTypeError)
 
 
-@pytest.mark.parametrize("use", ["3 at (1, 2)", "Uniform(F, 3) at (1, 2)", "follow Uniform(3, F) from (1, 2) for 4", "follow 3 from (1, 2) for 4", "new Object following 3 for 4"])
+@pytest.mark.parametrize(
+    "use",
+    [
+        "3 at (1, 2)",
+        "Uniform(F, 3) at (1, 2)",
+        "follow Uniform(3, F) from (1, 2) for 4",
+        "follow 3 from (1, 2) for 4",
+        "new Object following 3 for 4",
+    ],
+)
 def test_what_is_no_field_is_refused(use: str) -> None:
     assert isinstance(failure(FIELD + f"x = {use}"), ScenicTypeError)
 

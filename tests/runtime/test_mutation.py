@@ -205,7 +205,11 @@ def test_beside_mutators_of_the_program_deviations_may_be_random_and_scales_nega
 
 
 def test_mutators_of_equal_deviations_are_equal() -> None:
-    one, same, other = PositionMutator((1, 2, 3)), PositionMutator(Vector(1, 2, 3)), PositionMutator((1, 2, 4))
+    one, same, other = (
+        PositionMutator((1, 2, 3)),
+        PositionMutator(Vector(1, 2, 3)),
+        PositionMutator((1, 2, 4)),
+    )
     assert one == same
     assert hash(one) == hash(same)
     assert one != other

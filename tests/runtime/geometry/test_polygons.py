@@ -57,7 +57,9 @@ def test_one_point_or_disc_is_held_as_many_are(polygon):
         np.testing.assert_array_equal(polygons.contains(*places.T), one)
         np.testing.assert_array_equal(polygons.holds_discs(*places.T, radii), discs)
     assert all(one[: len(corners)])
-    expected = [polygon.contains(shapely.Point(place).buffer(r)) for place, r in zip(places, radii, strict=True)]
+    expected = [
+        polygon.contains(shapely.Point(place).buffer(r)) for place, r in zip(places, radii, strict=True)
+    ]
     np.testing.assert_array_equal(discs, expected)
 
 
@@ -72,7 +74,9 @@ def test_what_sticks_out_by_rounding_is_held_nearly():
             else:
                 places = np.array(corner) + sign * off * outwards
             assert (square.nearly_contains(*places.T) == held).all(), (corner, off)
-            triangles = np.stack([places, *[np.broadcast_to(p, places.shape) for p in ((0.5, 2.5), (0.5, 2.7))]], axis=1)
+            triangles = np.stack(
+                [places, *[np.broadcast_to(p, places.shape) for p in ((0.5, 2.5), (0.5, 2.7))]], axis=1
+            )
             if sign == 1 and corner == (0, 0):
                 assert square.covers_triangles(triangles) == held
                 np.testing.assert_array_equal(square.covers_hulls(triangles), [held] * 3)

@@ -120,7 +120,9 @@ def test_points_on_another_side_move(name):
     assert (found[kind == 3] == -1).all()
     rest = (kind == 1) | (kind == 2)
     assert (found[rest] >= 0).all()
-    assert surface.side_contains(mesh, body.poses, (2, 1), 0.0, np.zeros(count, dtype=int), found)[kind < 3].all()
+    assert surface.side_contains(mesh, body.poses, (2, 1), 0.0, np.zeros(count, dtype=int), found)[
+        kind < 3
+    ].all()
     np.testing.assert_allclose(landed[rest, :2], start[rest, :2], atol=1e-12)
     assert (np.abs(landed[rest] - start[rest])[:, 2] > 1e-3).mean() > 0.9
     near = projection.near_surface(body, (2, 1), 0.0, start, count)

@@ -173,7 +173,9 @@ def test_coordinates_are_as_exact_as_the_file(kind):
 def test_coordinates_are_of_the_type_that_the_file_declares():
     """Written out, a number of single precision is the same as in a binary file."""
     third = 1 / 3
-    header = HEADER.format(format="ascii") + "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+    header = (
+        HEADER.format(format="ascii") + "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+    )
     text = header + "\n".join([f"{third!r} 0 0", "1 0 0", "0 1 0", "0 0 1", "3 0 1 2"])
     assert read_ply(text.encode()).vertices[0, 0] == float(np.float32(third))
     assert read_ply(text.replace("float", "double").encode()).vertices[0, 0] == third
@@ -436,7 +438,11 @@ def test_obj_lines_that_say_nothing():
         ("far.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf -4 1 2\n", "vertex outside 1 to 3"),
         ("huge.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 " + b"9" * 30, "cannot be read as obj"),
         ("half.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 2.5\n", "cannot be read as obj"),
-        ("corrupt.obj.gz", gzip.compress(b"v 0 0 0\n" * 50, mtime=0)[:14] + b"\xff" * 30, "cannot be unpacked"),
+        (
+            "corrupt.obj.gz",
+            gzip.compress(b"v 0 0 0\n" * 50, mtime=0)[:14] + b"\xff" * 30,
+            "cannot be unpacked",
+        ),
         ("cut.obj.gz", gzip.compress(b"v 0 0 0\n" * 50, mtime=0)[:20], "cannot be unpacked"),
         (
             "nan.obj",
@@ -458,8 +464,16 @@ def test_obj_lines_that_say_nothing():
         ("list.gltf", b"[1]", "cannot be read as gltf"),
         ("asset.gltf", b'{"asset": 3}', "cannot be read as gltf"),
         ("text.gltf", b"\xff\xfe{", "cannot be read as gltf"),
-        ("data.gltf", json.dumps(gltf_triangle(buffers_0_uri="data:;base64,AAA")).encode(), "as gltf: Incorrect"),
-        ("kind.gltf", json.dumps(gltf_triangle(accessors_0_componentType=9)).encode(), "description is broken"),
+        (
+            "data.gltf",
+            json.dumps(gltf_triangle(buffers_0_uri="data:;base64,AAA")).encode(),
+            "as gltf: Incorrect",
+        ),
+        (
+            "kind.gltf",
+            json.dumps(gltf_triangle(accessors_0_componentType=9)).encode(),
+            "description is broken",
+        ),
         ("matrix.gltf", json.dumps(gltf_triangle(nodes_0_matrix=[1, 2])).encode(), "cannot be read as gltf"),
         ("hole.gltf", b'{"asset": {"version": "2.0"}, "scenes": [{"nodes": [3]}]}', "description is broken"),
         ("nothing.gltf", b'{"asset": {"version": "2.0"}}', "holds no triangles"),
