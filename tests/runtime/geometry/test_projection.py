@@ -113,7 +113,7 @@ def test_points_on_another_side_move(name):
     faces = {sign: surface.draw_faces(body, (2, sign), 0.0, rng.random(count), count) for sign in (1, -1)}
     top, bottom = (surface.face_points(body, faces[sign], *rng.random((2, count))) for sign in (1, -1))
     kind = np.arange(count) % 4
-    start = np.select([kind[:, None] == 0, kind[:, None] == 1], [top, bottom], bottom + [0.0, 0, 9])
+    start = np.select([kind[:, None] == 0, kind[:, None] == 1], [top, bottom], bottom + np.array([0.0, 0, 9]))
     start[kind == 3] += (0, 50, 0)  # beside the body
     found, landed = projection.project(body, (2, 1), 0.0, start, np.array([[0, 0, 0.7]]), count)
     np.testing.assert_array_equal(landed[kind == 0], top[kind == 0])
