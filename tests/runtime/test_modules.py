@@ -285,6 +285,10 @@ def more():
     count += 1
     items.append(count)
     return count
+behavior Jump():
+    global count
+    count += 100
+    take count
 """
 
 
@@ -325,16 +329,19 @@ behavior B():
         lib.more()
         take lib.count, list(lib.items), lib.more(), lib.r
         lib.count += 10
+    do lib.Jump()
+    take lib.count, lib.more()
 ego = new Object with behavior B
 """
     main = written(tmp_path, {"lib.scenic": COUNTING, "pkg/lib.scenic": COUNTING, "main.scenic": text})
     for scene in scenic.scenarioFromFile(main).sample(2, seed=0):
         drawn = []
         for key in (b"1", b"1", b"2"):
-            done = DummySimulator().simulate(scene, maxSteps=2, key=key)
+            done = DummySimulator().simulate(scene, maxSteps=4, key=key)
             assert done is not None
             assert done.result is not None
-            first_one, second = (step[scene.egoObject] for step in done.result.actions)
+            first_one, second, *jump = (step[scene.egoObject] for step in done.result.actions)
+            assert jump == [(124,), (124, 125)]
             assert first_one[:3] == (1, [1], 2)
             assert second[:3] == (13, [1, 2, 13], 14)
             assert first_one[3] == second[3]

@@ -676,13 +676,14 @@ def test_actions_made_before_the_simulation_hold_its_objects_and_values() -> Non
     text = """
 from tests.simulators.test_lesser_rules import Push
 from scenic.simulators.commands import SetVelocity
-r = Range(1, 2)
+r, alone = Range(1, 2), Range(3, 4)
 other = new Object at (Range(5, 6), 5)
 def found(): return other
 class Own(Push):
     def applyTo(self, agent, simulation):
         super().applyTo(agent, simulation)
         assert self.much == (0, 0, r)
+        assert type(alone) is float
 behavior B(*actions):
     while True:
         take actions
