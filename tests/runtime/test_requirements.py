@@ -238,6 +238,20 @@ def test_methods_that_a_class_overrides_are_called_on_samples(method: str, use: 
     assert len(scenario(text).sample(2, seed=1, max_attempts=20)) == 2
 
 
+@pytest.mark.parametrize(
+    "condition", ["car == 3", "3 == car", "not car != 3", "car > 2", "2 < car", "car >= 3 and 3 <= car"]
+)
+def test_what_a_class_says_of_comparisons_is_asked_of_samples(condition: str) -> None:
+    text = (
+        "class Car:\n    tag: DiscreteRange(1, 3)\n"
+        "    def __eq__(self, other): return self.tag == other\n    def __hash__(self): return id(self)\n"
+        "    def __gt__(self, other): return True if self.tag > other else False\n"
+        "    def __ge__(self, other): return True if self.tag >= other else False\n"
+        f"car = new Car\nego = car\nrequire {condition}\n"
+    )
+    assert {item.egoObject.tag for item in scenario(text).sample(8, seed=1)} == {3}
+
+
 def test_points_may_be_made_in_conditions() -> None:
     text = (
         "ego = new Object at (Range(0, 1), 0)\ndef f():\n    p = new OrientedPoint at (3, 0)\n"

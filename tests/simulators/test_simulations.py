@@ -303,6 +303,27 @@ scenario Sub():
     assert width == size + 1
 
 
+def test_parameters_of_a_simulation_are_its_own() -> None:
+    """Whether or not those of the scene were looked at before; afterwards these are as they were."""
+    text = (
+        "ego = new Object at (Range(0, 1), 0)\nparam leader = ego, log = [ego]\n"
+        "monitor M():\n    while True:\n        globalParameters.log.append(3)\n        wait\n"
+        "require monitor M()\n"
+        "record (simulation().scene.params['leader'] is ego, simulation().scene.params['log'][0] is ego) as same\n"
+        "record len(simulation().scene.params['log']) as count\n"
+    )
+    for look in (True, False):
+        (scene,) = scenic.scenarioFromString(text).sample(1, seed=1)
+        assert not look or scene.params["log"] == [scene.egoObject]
+        for _ in range(2):
+            done = DummySimulator(drift=1).simulate(scene, maxSteps=2)
+            assert done is not None
+            assert [value for _, value in done.records["same"]] == [(True, True)] * 3
+            assert [value for _, value in done.records["count"]] == [1, 2, 3]
+        assert scene.params["leader"] is scene.egoObject
+        assert scene.params["log"] == [scene.egoObject]
+
+
 # Requirements
 
 
