@@ -1,8 +1,11 @@
 """Values that a property cannot hold are refused: at once, or when they are drawn."""
 
+import math
+
 import pytest
 
-from tests.runtime.programs import failure, place, thing
+from scenic.language.errors import ScenicValueError
+from tests.runtime.programs import failure, params, place, thing
 
 WRONG = [
     # (property, a value that fits, one that does not, the code)
@@ -62,3 +65,37 @@ def test_an_observer_that_is_a_random_number() -> None:
 
 def test_a_colour_that_is_given_as_a_list_is_kept_as_a_tuple() -> None:
     assert thing("c = [1, 0, 0.5]\nego = new Object with color c\nc.append(3)").color == (1, 0, 0.5)
+
+
+EDGES = [
+    # (property, the last value that fits, one that does not)
+    ("visibleDistance", "0", "-1e-300"),
+    ("viewRayCount", "(1, 1)", "(1, 0.999)"),
+    ("viewRayCount", "None", "(0.999, 1)"),
+    ("color", "(0, 1, 0)", "(0, 1, 1.001)"),
+    ("color", "(1, 0, 1, 0)", "(-0.001, 0, 1, 0)"),
+    ("color", "(0, 0, 0, 1)", "(0, 0)"),
+    ("viewAngles", "(2 * math.pi, math.pi)", "(0, 1)"),
+    ("viewAngles", "(1e-300, 1e-300)", "(1, -1)"),
+    ("width", "1e-9", "0"),
+    ("length", "1e300", "math.inf"),
+    ("yaw", "-math.pi", "math.inf"),
+    ("position", "(1e300, 0, 0)", "(0, 0, math.nan)"),
+]
+
+
+@pytest.mark.parametrize(("name", "fits", "wrong"), EDGES)
+def test_the_last_value_that_fits(name: str, fits: str, wrong: str) -> None:
+    """It is kept as it is, without a warning; the next one is refused."""
+    text = "import math\nego = new Object with {0} {1}\nparam x = ego.{0}"
+    assert params(text.format(name, fits))["x"] == eval(fits, {"math": math})
+    assert isinstance(failure(text.format(name, wrong)), ScenicValueError)
+
+
+@pytest.mark.parametrize("angle", [4.0, -4.0, 7.0, -7.0, 3.5, 100.0])
+@pytest.mark.parametrize("name", ["yaw", "pitch", "roll"])
+def test_angles_are_stored_within_half_a_turn(name: str, angle: float) -> None:
+    found = params(f"p = new OrientedPoint with {name} {angle}\nparam x = p.{name}")["x"]
+    assert abs(found) <= math.pi
+    assert math.isclose(math.cos(found), math.cos(angle), abs_tol=1e-9)
+    assert math.isclose(math.sin(found), math.sin(angle), abs_tol=1e-9)
