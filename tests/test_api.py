@@ -76,6 +76,20 @@ def test_scenes() -> None:
     assert (empty.egoObject, empty.objects) == (None, ())
 
 
+def test_names_of_objects_are_those_of_the_first_variables_that_hold_them() -> None:
+    scene = scenic.scenarioFromString(
+        "first = new Object\nsecond = first\ncars = [new Object at (x, 0) for x in (3, 6)]\n"
+        "pair = (cars[0], new Object at (9, 0))\nego = cars[1]\n_own = new Object at (12, 0)\n"
+        "new Object at (15, 0)\nplace = new Point at (1, 2)\n"
+        "disc, _hidden, all_of_it = CircularRegion((0, 0), 1), CircularRegion((0, 0), 2), everywhere\n"
+    ).sample(1, seed=0)[0]
+    found = {item.position.x: name for item, name in scene.names.items()}
+    assert found == {0: "first", 3: "cars[0]", 6: "cars[1]", 9: "pair[1]", 12: "_own"}
+    assert set(scene.regions) == {"disc"}
+    alone = scenic.scenarioFromString("ego = new Object").sample(1, seed=0)[0]
+    assert alone.names == {alone.egoObject: "ego"}
+
+
 # Parameters
 
 
