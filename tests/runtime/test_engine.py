@@ -444,6 +444,19 @@ def test_the_first_error_of_the_program_is_told() -> None:
             program.sample(1, seed=seed)
 
 
+@pytest.mark.parametrize("reverse", [False, True])
+def test_of_values_that_fail_together_the_first_is_told(reverse: bool) -> None:
+    """Whichever of them the engine looks at first, by what they have cost."""
+    program = scenario(
+        "@distributionFunction\ndef first(v): raise KeyError(v)\n@distributionFunction\ndef second(v): raise ValueError(v)\n"
+        "x = Range(0, 1)\nparam a = first(x), b = second(x)\n"
+    )
+    for number, check in enumerate(program._engine.plan.checks):
+        check.cost = 1000.0 - number if reverse else number
+    with pytest.raises(KeyError):
+        program.sample(1, seed=1)
+
+
 def test_reports_do_not_depend_on_how_many_lanes_there_are() -> None:
     program = scenario(
         "x = Range(0, 1)\ny = Range(0, 1)\ndef same(v): return v\nrequire same(x) > 2\nrequire same(y) > 0.5\n"

@@ -370,9 +370,10 @@ class Engine:
                 passes = verdict.holds
                 if verdict.failed is not None:
                     passes = passes | verdict.failed
-                    earlier = verdict.failed & (check.position < failed_at[rows])
+                    place = check.position * len(checks) + index  # checks of one position by their numbers
+                    earlier = verdict.failed & (place < failed_at[rows])
                     failures[rows[earlier]] = index
-                    failed_at[rows[earlier]] = check.position
+                    failed_at[rows[earlier]] = place
                 seconds = shared + time.perf_counter() - begun
                 self._stages.measure(index, len(rows), seconds, int(np.count_nonzero(passes)))
                 alive &= passes
