@@ -128,7 +128,14 @@ def test_a_tolerance_counts() -> None:
     """Points that count as in a region though they lie beside it, in whatever the region is part of."""
     dots = PointSetRegion("dots", [(0, 0, 0), (1, 0, 0)], tolerance=0.5)
     other = BoxRegion((1, 1, 1), Vector(9, 9, 9))
-    for region in (dots, UnionRegion(dots, other), DifferenceRegion(dots, other), base.Workspace(dots)):
+    for region in (
+        *(dots, UnionRegion(dots, other), UnionRegion(other, dots), UnionRegion(other, dots, other)),
+        *(
+            DifferenceRegion(dots, other),
+            IntersectionRegion(BoxRegion((9, 9, 9)), dots),
+            base.Workspace(dots),
+        ),
+    ):
         columns = columns_of(region)
         point = np.array([[1.4999, 0, 0]])
         assert region.contains_points(point, *columns).all()

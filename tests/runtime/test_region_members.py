@@ -163,6 +163,26 @@ def test_the_orientation_of_an_intersection_is_that_of_the_first_member_with_one
         assert heading == pytest.approx(0.1 * x)
 
 
+def test_what_is_drawn_from_combinations_has_the_orientation_of_a_member() -> None:
+    """Of an intersection the first one's with any, of a difference the first one's, of a union none."""
+    text = (
+        "import numpy\nf = VectorField('f', lambda p: 0.1 * p.x)\n"
+        "disc, wide = CircularRegion((4, 0), Range(2, 3)), CircularRegion((4, 0), Range(20, 30))\n"
+        "street = PolygonalRegion([(0, -4), (9, -4), (9, 4), (0, 4)], orientation=f)\n"
+        "grid = GridRegion('grid', numpy.zeros((2, 3)), 2, 1, 3, 0, orientation=f)\n"
+        "table = new Object at (4, 0, 2), facing (0, 0.3, 0), with width 9, with length 9\n"
+        "top, column = table.topSurface, disc.footprint\n"
+        "of_field = [street.intersect(disc), disc.intersect(street), street.difference(disc), grid.intersect(column)]\n"
+        "of_table = [top.intersect(column), column.intersect(top), top.difference(column)]\n"
+        "of_none = [wide.difference(street), disc.union(street), street.union(disc)]\n"
+        "param x = [(p.x, p.orientation) for p in [new OrientedPoint in r for r in of_field + of_table + of_none]]\n"
+    )
+    for found in draws(text, n=4):
+        turns = [euler(0.1 * x) for x, _ in found[:4]] + [euler(0, 0.3)] * 3 + [euler(0)] * 3
+        for (_, orientation), expected in zip(found, turns, strict=True):
+            assert_same_rotation(orientation, expected)
+
+
 def test_unions_of_fields_take_the_first_region_with_one() -> None:
     left = named.PolygonalRegion(
         [(0, 0), (2, 0), (2, 2), (0, 2)], orientation=VectorField("l", lambda _point: 1)

@@ -302,6 +302,10 @@ def test_an_edge_that_two_polygons_share_has_their_field(height: float) -> None:
         assert edge.length == pytest.approx(1)
         assert edge.orientation is expected
         assert (edge.box()[0][0, 2], edge.box()[1][0, 2]) == (height, height)
+        beyond = named.PolygonalRegion([(1, 1), (2, 1), (2, 2), (1, 2)], z=height, orientation=two)
+        corner = left.intersect(beyond)
+        assert corner.points.tolist() == [[1, 1, height]]
+        assert corner.orientation is expected
 
 
 def test_unions_of_a_polygon_and_a_line_hold_both() -> None:
