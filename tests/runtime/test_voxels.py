@@ -74,9 +74,15 @@ def test_draws_are_uniform_over_cells() -> None:
 
 def test_distances_are_those_to_the_boxes() -> None:
     random = np.random.default_rng(1)
-    for filled, pitch in ((FILLED, (1, 1, 1)), (random.random((30, 5, 5)) < 0.03, (0.2, 2, 2))):
+    # Of the last two cells that with the nearer middle is the farther one.
+    two = np.zeros((9, 2, 2), dtype=bool)
+    two[0, 1, 1] = two[8, 0, 0] = True
+    for filled, pitch in (
+        *((FILLED, (1, 1, 1)), (random.random((6, 4, 5)) < 0.2, (0.2, 1, 4))),
+        (two, (0.2, 2, 2)),
+    ):
         region = VoxelRegion(trimesh.voxel.VoxelGrid(filled, transform=np.diag([*pitch, 1])))
-        points = random.uniform(-3, 4, (200, 3)) * pitch
+        points = np.concatenate([np.zeros((1, 3)), random.uniform(-3, 4, (200, 3)) * pitch])
         beside = np.maximum(np.abs(points[:, None] - np.argwhere(filled) * pitch) - np.array(pitch) / 2, 0)
         expected = np.sqrt((beside**2).sum(axis=2)).min(axis=1)
         np.testing.assert_allclose(region.distances(points), expected, atol=1e-12)
