@@ -58,6 +58,19 @@ def test_what_is_not_constrained_is_whole() -> None:
         assert scenario(text).domain.is_whole
 
 
+@pytest.mark.parametrize(
+    "condition", ["v % n == 1", "v // v == 1", "2 / v == 1", "o - v == 1", "-o == 1", "abs(v) == 1"]
+)
+def test_what_python_does_not_define_is_told_when_it_is_sampled(condition: str) -> None:
+    program = scenario(
+        "x, n = Range(0, 1), DiscreteRange(1, 3)\nv, o = Vector(x, 1, 2), Orientation.fromEuler(x, 0, 0)\n"
+        f"require {condition}\n"
+    )
+    assert program.domain.is_whole
+    with pytest.raises(TypeError):
+        program.sample(1, seed=1)
+
+
 def test_one_constraint_leaves_the_other_axes_alone() -> None:
     domain = scenario(
         "x, y, z = Range(0, 1), Range(0, 2), Range(0, 1)\nrequire y > 0.5\nparam p = (x, y, z)\n"

@@ -9,7 +9,7 @@ from graph.programs import Triple, constant, make, one_of, uniform
 from scenic.graph import bounding
 from scenic.graph.construction import make_node
 from scenic.graph.kinds import Kind, boxed, join
-from scenic.graph.node import Graph, axis
+from scenic.graph.node import Graph, Node, axis
 from scenic.graph.operations import TABLE
 
 
@@ -70,6 +70,15 @@ def test_bounds_of_the_whole_cube():
     assert (mixed.lower[0], mixed.upper[0]) == pytest.approx((2, 3.5))
     assert bounding.overall(one_of(1, "word")) is None
     assert bounding.overall(constant(Triple((1.0, 2.0, 3.0)))).lower.tolist() == [[1.0, 2.0, 3.0]]
+
+
+def test_bounds_of_a_node_that_is_completed_are_those_of_its_operands():
+    """Also where somebody asked for them before."""
+    node = Node(TABLE["negative"], (uniform(0, 1),), Kind.SCALAR)
+    for low, high in ((0, 1), (5, 6)):
+        node.complete((uniform(low, high),), None)
+        bounds = bounding.overall(node)
+        assert (bounds.lower[0], bounds.upper[0]) == pytest.approx((-high, -low))
 
 
 def test_bounds_of_the_whole_cube_give_up_after_some_nodes():

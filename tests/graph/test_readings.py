@@ -5,9 +5,23 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from graph.programs import CASES, S, U, case_node, draw, evaluate, is_fine, kind_of, random_bounds, source
+from graph.programs import (
+    CASES,
+    Case,
+    Q,
+    S,
+    U,
+    V,
+    case_node,
+    draw,
+    evaluate,
+    is_fine,
+    kind_of,
+    random_bounds,
+    source,
+)
 from scenic.analysis.smt import Encoding
-from scenic.analysis.terms import Answer, Questions
+from scenic.analysis.terms import Answer, Questions, SolverTerms
 from scenic.graph import bounding
 from scenic.graph.bounds import Bounds
 from scenic.graph.construction import make_node
@@ -259,3 +273,30 @@ def test_unknown_readings_say_nothing():
     encoding = Encoding([node])
     questions = Questions(encoding.terms, [], [encoding.truth(node), ~encoding.truth(node)])
     assert questions.ask([0]) is questions.ask([1]) is Answer.POSSIBLE
+
+
+UNDEFINED = {
+    "add": [(V, S), (S, V), (V, Q), (Q, Q)],
+    "subtract": [(V, S), (Q, V), (Q, Q)],
+    "multiply": [(V, V), (Q, S), (S, Q), (Q, V)],
+    "divide": [(S, V), (V, V), (Q, S), (V, Q)],
+    **{key: [(V, S), (S, V), (V, V), (Q, S)] for key in ("floor divide", "modulo", "power")},
+    **{key: [(Q,)] for key in ("negative", "positive")},
+    "absolute": [(V,), (Q,)],
+    "int": [(V,), (Q,)],
+    "round": [(V,), (V, S), (Q,)],
+}
+
+
+@pytest.mark.parametrize("name", UNDEFINED)
+def test_nothing_is_said_where_python_defines_no_such_operation(name):
+    """Each lane fails there, which is for sampling to tell; of boxes of any number nothing is known."""
+    terms = SolverTerms()
+    for kinds in UNDEFINED[name]:
+        columns = [np.ones((2, *kind.trailing)) for kind in kinds]
+        node = case_node(Case(name, kinds), columns)
+        boxes = [Bounds(column - 0.5, column + 0.5) for column in columns]
+        assert bounding.forward(node, boxes) is None, kinds
+        assert bounding.forward(node, [of_box(each, 0) for each in boxes]) is None, kinds
+        fixed = [terms.real(1.0) if kind is S else (terms.real(1.0),) * kind.trailing[0] for kind in kinds]
+        assert TABLE[name].solver(terms, None, *fixed) is None, kinds

@@ -7,12 +7,20 @@ from scenic.graph.kinds import Kind
 from scenic.graph.operation import SolverReading, Terms
 
 
-def componentwise(function: Callable[..., Any]) -> SolverReading:
-    """A reading of numbers that treats vectors component by component, and a number beside a vector as three."""
+def componentwise(function: Callable[..., Any], *vectors: tuple[bool, ...]) -> SolverReading:
+    """A reading of numbers, and of vectors component by component, where those stand as in one of ``vectors``.
+
+    A number beside a vector counts as three. Elsewhere Python does not define the operation, and nothing is known.
+    """
 
     def reading(terms: Terms, _payload: Any, *operands: Any) -> Any:
-        if not any(isinstance(operand, tuple) for operand in operands):
+        pattern = tuple(isinstance(operand, tuple) for operand in operands)
+        if not any(pattern):
             return function(terms, *(terms.number(operand) for operand in operands))
+        if pattern not in vectors or any(
+            is_tuple and len(operand) != 3 for is_tuple, operand in zip(pattern, operands, strict=True)
+        ):
+            return None
         triples = [
             operand if isinstance(operand, tuple) else (terms.number(operand),) * 3 for operand in operands
         ]

@@ -14,7 +14,13 @@ from scenic.graph.node import Node
 from scenic.graph.operation import Call, Operation, Terms, always, by_lane
 from scenic.graph.operations.encoding import componentwise
 from scenic.graph.operations.narrowing import before_rounding
-from scenic.graph.operations.numbers import arithmetic_kind, as_integers, fail_as_python, lane_by_lane
+from scenic.graph.operations.numbers import (
+    arithmetic_kind,
+    as_integers,
+    fail_as_python,
+    lane_by_lane,
+    where_defined,
+)
 from scenic.graph.operations.possibilities import may_divide_by_zero
 
 
@@ -205,7 +211,7 @@ OPERATIONS = (
         _floor_divide,
         "Python's `//`; dividing by zero is a fault.",
         python=operator.floordiv,
-        bounds=_floor_divide_bounds,
+        bounds=where_defined(_floor_divide_bounds),
         inverse=_floor_divide_inverse,
         solver=componentwise(_floor_divide_solver),
         faults=may_divide_by_zero,
@@ -217,7 +223,7 @@ OPERATIONS = (
         _modulo,
         "Python's `%`; dividing by zero is a fault.",
         python=operator.mod,
-        bounds=_modulo_bounds,
+        bounds=where_defined(_modulo_bounds),
         solver=componentwise(_modulo_solver),
         faults=may_divide_by_zero,
         stacks=True,
@@ -235,7 +241,7 @@ OPERATIONS = (
         _power,
         "Python's `**`; where that is complex or not defined, a fault.",
         python=operator.pow,
-        bounds=_power_bounds,
+        bounds=where_defined(_power_bounds),
         inverse=_power_inverse,
         solver=componentwise(_power_solver),
         faults=True,
@@ -247,7 +253,7 @@ OPERATIONS = (
         _round,
         "Python's `round`, with or without a number of digits.",
         python=round,
-        bounds=_round_bounds,
+        bounds=where_defined(_round_bounds),
         inverse=_round_inverse,
         solver=componentwise(_round_solver),
         faults=lambda operands, _payload: len(operands) > 1,
@@ -259,7 +265,7 @@ OPERATIONS = (
         _int,
         "Python's `int` of a number: broken parts are cut off.",
         python=int,
-        bounds=_int_bounds,
+        bounds=where_defined(_int_bounds),
         inverse=_int_inverse,
         solver=componentwise(_int_solver),
         stacks=True,

@@ -6,6 +6,7 @@ from typing import Any, Final
 import numpy as np
 
 from scenic.graph.bounding import whole_limits
+from scenic.graph.bounds import Bounds
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.node import Node
 from scenic.graph.operation import BoundsReading, Call, KindRule
@@ -26,6 +27,22 @@ def arithmetic_kind(reading: BoundsReading) -> KindRule:
         return Kind.INTEGER if whole_limits(reading, operands, payload) is not None else Kind.OTHER
 
     return rule
+
+
+def where_defined(reading: BoundsReading, *vectors: tuple[bool, ...]) -> BoundsReading:
+    """A bounds reading of numbers, and of vectors where those stand as in one of ``vectors``.
+
+    Elsewhere Python does not define the operation, and nothing is known.
+    """
+
+    def bounds(payload: Any, *operands: Bounds) -> Bounds | None:
+        shapes = [operand.lower.shape[1:] for operand in operands]
+        pattern = tuple(shape == (3,) for shape in shapes)
+        if any(shapes) and (pattern not in vectors or (4,) in shapes):
+            return None
+        return reading(payload, *operands)
+
+    return bounds
 
 
 def as_integers(column: Column) -> Column:
