@@ -138,4 +138,5 @@ def random_key() -> Any:
     drawn = uniform_draw()
     if drawn is None:
         return Random(key(here(), next_address()))
-    return as_value(constant(drawn, Kind.KEY, int(drawn * 2.0**52)))
+    # As a value it would be a number again, and no word.
+    return Random(constant(drawn, Kind.KEY, int(drawn * 2.0**52)))

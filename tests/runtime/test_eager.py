@@ -6,6 +6,7 @@ from types import CodeType, ModuleType
 
 import numpy as np
 import pytest
+from scipy import stats
 
 from scenic.compiler.compile import compile_text
 from scenic.language.errors import InvalidScenarioError, RejectionException
@@ -13,7 +14,7 @@ from scenic.runtime.context import Context, current
 from scenic.runtime.prelude import Loader
 from scenic.runtime.program import Program
 from scenic.runtime.values import Vector
-from tests.runtime.programs import params
+from tests.runtime.programs import FALSE_ALARM, draws, params
 
 
 class NoModules:
@@ -73,6 +74,32 @@ def test_the_same_specifiers_give_concrete_objects(
 def test_every_run_draws_anew(run: Callable[..., tuple[ModuleType, Program]]) -> None:
     assert run("x = Range(0, 1)", seed=1)[0].x != run("x = Range(0, 1)", seed=2)[0].x
     assert run("x = Range(0, 1)", seed=1)[0].x == run("x = Range(0, 1)", seed=1)[0].x
+
+
+@pytest.mark.parametrize(
+    "region",
+    [
+        "BoxRegion(dimensions=(2, 2, 2))",
+        "SpheroidRegion()",
+        "MeshVolumeRegion(mesh=trimesh.creation.cone(1, 2))",
+        "BoxRegion(dimensions=(2, 2, 2)).difference(BoxRegion(dimensions=(1, 1, 1)))",
+        "CircularRegion((0, 0), 2)",
+        "BoxRegion(dimensions=(2, 2, 2)).getSurfaceRegion()",
+        "PathRegion([(0, 0, 0), (3, 4, 5)])",
+    ],
+)
+def test_points_of_regions_are_drawn_apart_and_evenly(
+    region: str, run: Callable[..., tuple[ModuleType, Program]]
+) -> None:
+    """None comes twice, and they spread as those of scenes do."""
+    module, _ = run(
+        f"import trimesh\nr = {region}\nplaces = [tuple((new Point in r).position) for _ in range(60)]"
+    )
+    assert len(set(module.places)) == 60
+    assert all(module.r.containsPoint(place) for place in module.places)
+    usual = np.array(draws(f"import trimesh\nparam x = (new Point in {region}).position", n=200))
+    for found, expected in zip(np.array(module.places).T, usual.T, strict=True):
+        assert np.ptp(expected) == 0 or stats.ks_2samp(found, expected).pvalue > FALSE_ALARM
 
 
 def test_requirements_are_checked_at_once(run: Callable[..., tuple[ModuleType, Program]]) -> None:
