@@ -256,3 +256,16 @@ def test_functions_on_samples_find_everything_definite() -> None:
     for found in scenario(text).sample(20, seed=1):
         a, b = (item.position.x for item in found.objects)
         assert b < 0.4 < 0.5 < a
+
+
+def test_a_sample_that_fails_or_is_rejected_says_so() -> None:
+    text = (
+        "n = Range(0, 1)\nfails = distributionFunction(lambda value: {}[value])(n)\n"
+        "none = DiscreteRange(2 + n / 9, 2.5)\nboth = [none, fails]\nego = new Object\n"
+        "found = []\nfor value in (fails, none, both, n):\n"
+        "    try:\n        found.append(value.sample() if value is not both else (none + fails).sample())\n"
+        "    except Exception as error:\n        found.append(type(error).__name__)\nparam found = found\n"
+    )
+    *failed, number = scene(text).params["found"]
+    assert failed == ["KeyError", "RejectionException", "RejectionException"]
+    assert 0 < number < 1

@@ -17,6 +17,7 @@ import scenic
 from scenic.language.errors import InvalidScenarioError, SerializationError
 from scenic.pipeline import diagnose
 from scenic.runtime.dumping import program_of
+from scenic.runtime.files import whole
 from tests.runtime.programs import fingerprint, scenario
 from tests.runtime.programs import scene as scene_of
 
@@ -67,6 +68,12 @@ def test_a_scene_is_saved_whole_or_not_at_all(tmp_path: Path) -> None:
     with pytest.raises(FileNotFoundError):
         scene.save(tmp_path / "missing" / "own.scene")
     assert sorted(item.name for item in tmp_path.iterdir()) == ["folder", "own.scene"]
+    for stop in (KeyboardInterrupt, ValueError):
+        with pytest.raises(stop), whole(tmp_path / "own.scene") as stream:
+            stream.write(b"a part")
+            raise stop
+    assert sorted(item.name for item in tmp_path.iterdir()) == ["folder", "own.scene"]
+    assert (tmp_path / "own.scene").read_bytes() == data
     os.mkfifo(tmp_path / "pipe")
     reader = os.open(tmp_path / "pipe", os.O_RDONLY | os.O_NONBLOCK)
     try:
