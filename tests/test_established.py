@@ -243,8 +243,28 @@ def test_values_are_shown_as_programs_write_them() -> None:
         ("Uniform('a', 2)", "Uniform('a', 2)"),
         ("Discrete({1: 2, 3: 4})", "Discrete({1: 0.333333, 3: 0.666667})"),
         ("Range(0, 1) @ 2", "Vector(Range(0, 1), 2, 0)"),
+        *[
+            (f"(Range(1, 2) {sign} 3)", f"(Range(1, 2) {sign} 3)")
+            for sign in ("-", "*", "/", "//", "%", "**")
+        ],
+        *[
+            (f"{name}(Range(1, 2))", f"{name}(Range(1, 2))")
+            for name in ("sin", "cos", "abs", "round", "int", "str")
+        ],
+        *[(f"{name}(Range(1, 2), 1.5)", f"{name}(Range(1, 2), 1.5)") for name in ("max", "min", "hypot")],
         ("Range(0, 1).real", "<random other: attribute>"),
+        ("Discrete({1: 1.02, 3: 1})", "Discrete({1: 0.50495, 3: 0.49505})"),
         ("Uniform(*range(20))", "Uniform(0, 1, 2, 3, 4, 5, 6, 7, ...)"),
+        ("Uniform(*range(8))", "Uniform(0, 1, 2, 3, 4, 5, 6, 7)"),
+        ("Uniform('a', *range(7))", "Uniform('a', 0, 1, 2, 3, 4, 5, 6)"),
+        ("Uniform('a', *range(8))", "Uniform('a', 0, 1, 2, 3, 4, 5, 6, ...)"),
+        (
+            "Discrete({n: n + 1 for n in range(9)})",
+            (
+                "Discrete({0: 0.0222222, 1: 0.0444444, 2: 0.0666667, 3: 0.0888889, 4: 0.111111, 5: 0.133333, 6: 0.155556,"
+                " 7: 0.177778, ...})"
+            ),
+        ),
     ],
 )
 def test_random_values_are_shown_as_expressions(text: str, shown: str) -> None:

@@ -93,6 +93,22 @@ def test_parts_of_random_values(text: str, expected: Expected) -> None:
     assert len(drawn) >= 5
 
 
+@pytest.mark.parametrize(
+    ("option", "taken"),
+    [("{%s}", "pop()"), ("[%s]", "pop()"), ("{1: %s}", "pop(1)"), ("[{%s}]", "pop().pop()")],
+)
+def test_what_is_taken_out_of_a_container_of_objects_is_there_in_the_next_scene(
+    option: str, taken: str
+) -> None:
+    text = (
+        f"held = Uniform([{option % 'a'}], [{option % 'b'}])[i * 0]\n"
+        f"param value = held.{taken}.side, left = len(held)\n"
+    )
+    found = [item.params for item in scenario(PAIR + text).sample(12, seed=5)]
+    assert {each["value"] for each in found} == {"west", "east"}
+    assert {each["left"] for each in found} == {1}
+
+
 @pytest.mark.parametrize("text", [text for text, _ in PARTS if "Uniform(" not in text])
 def test_parts_in_requirements(text: str) -> None:
     """A requirement that the value is what it is holds in the same scenes as none, and its opposite in none."""
