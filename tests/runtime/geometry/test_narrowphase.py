@@ -257,6 +257,25 @@ def test_faces_edges_and_corners_that_just_touch(patience):
             assert solids.intersect(zero + 1, still, zero, moved)[0] == expected, (number, off)
 
 
+@pytest.mark.parametrize("patience", [0, np.inf])
+def test_touching_the_wall_of_a_cavity_counts_however_both_are_turned(patience):
+    """Rounding moves faces in one plane through each other or apart; a thousand times as far off they are apart."""
+    count = 30 * 4 * 3
+    around, size = random_poses(count, 31, spread=3), np.array([0.25, 0.125, 0.2])
+    walls = Poses(around.position, around.orientation, np.ones((1, 3)))
+    lane = np.arange(count)
+    axis, side = lane % 4 % 3, np.where(lane % 4 < 3, 1, -1)
+    off = np.array([0.0, 1e-12, -1e-12])[lane // 4 % 3]
+    local = np.zeros((count, 3))
+    local[lane, axis] = side * (0.25 - size[axis] / 2 - off)
+    place = walls.position + np.einsum("nij,nj->ni", walls.matrix, local)
+    little, zeros = Poses(place, walls.orientation, size[np.newaxis]), np.zeros(count, dtype=np.intp)
+    for mesh in (primitives.cylinder(4), table()):
+        solids = Solids([mesh, hollow()], patience=patience)
+        np.testing.assert_array_equal(solids.intersect(zeros, little, zeros + 1, walls), off <= 0)
+        np.testing.assert_array_equal(solids.intersect(zeros + 1, walls, zeros, little), off <= 0)
+
+
 @pytest.mark.parametrize("inner", ["spheroid", "hollow", "table"])
 def test_what_lies_in_walls_thinner_than_cells_is_found(inner):
     """No cell of such a wall is solid, and none of the small body's own is where the body lies in the other's frame."""
