@@ -10,7 +10,7 @@ from typing import Any
 from scenic.graph.kinds import Kind
 from scenic.language.errors import ScenicTypeError
 from scenic.runtime.context import current, here
-from scenic.runtime.mutators import BUILT_IN, applied
+from scenic.runtime.mutators import BUILT_IN, KEPT, active, applied, is_built_in
 from scenic.runtime.objects import Point
 from scenic.runtime.opaque import call_later, see_mutated
 from scenic.runtime.program import Program
@@ -24,7 +24,6 @@ from scenic.runtime.values import (
     is_random,
     operate,
     to_orientation,
-    to_scalar,
     to_vector,
 )
 
@@ -78,15 +77,13 @@ def mutate_now(instance: Point) -> None:
 
 
 def _mutate(instance: Point, scale: Any) -> bool:
-    given = instance.__dict__["mutator"]
-    mutators = given if isinstance(given, tuple | list) else (given,)
-    active = [mutator for mutator in mutators if mutator is not None]
-    if all(type(mutator) in BUILT_IN for mutator in active):
-        for mutator in active:
+    mutators = active(instance)
+    if is_built_in(mutators):
+        for mutator in mutators:
             update(instance, mutator.noisy(instance, scale))
     else:
-        update(instance, _by_python(instance, active))
-    return bool(active)
+        update(instance, _by_python(instance, mutators))
+    return bool(mutators)
 
 
 def _by_python(instance: Point, mutators: list[Any]) -> Mapping[str, Any]:
@@ -104,16 +101,10 @@ def _by_python(instance: Point, mutators: list[Any]) -> Mapping[str, Any]:
             value = to_vector(value)
         elif isinstance(old, Orientation) or _kind(old) is Kind.ORIENTATION:
             value = to_orientation(value)
-        elif is_number(old) and not isinstance(old, bool):
-            value = to_scalar(value)
-        elif name in _KEPT:
+        elif name in KEPT:
             continue
         changes[name] = value
     return changes
-
-
-_KEPT = frozenset({"shape", "behavior", "sensors", "mutator", "regionContainedIn", "lastActions"})
-"""Properties that mutation leaves alone: the graph needs to know them."""
 
 
 def _kind(value: Any) -> Kind | None:

@@ -1,6 +1,6 @@
 """What adds noise to mutated instances (section 10.5 of the specification)."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from scenic.language.errors import ScenicTypeError
@@ -84,6 +84,19 @@ class OrientationMutator(_NormalNoise):
 
 BUILT_IN = (PositionMutator, OrientationMutator)
 """Mutators whose noise is part of the value graph."""
+KEPT = frozenset({"shape", "behavior", "sensors", "mutator", "regionContainedIn", "lastActions"})
+"""Properties that mutation leaves alone: the graph needs to know them."""
+
+
+def active(instance: Any) -> list[Any]:
+    """The mutators of an instance, in order."""
+    given = instance.__dict__.get("mutator")  # what a side of an object is made of has none
+    return [item for item in (given if isinstance(given, tuple | list) else (given,)) if item is not None]
+
+
+def is_built_in(mutators: Iterable[Any]) -> bool:
+    """Whether all mutators are those of the language."""
+    return all(type(mutator) in BUILT_IN for mutator in mutators)
 
 
 def _noise(deviations: Any, scale: Any) -> list[Any]:
@@ -111,4 +124,13 @@ def _sampled_noise(mutator: Any, instance: Any) -> tuple[Any, bool]:
     return instance, True
 
 
-__all__ = ["BUILT_IN", "Mutator", "OrientationMutator", "PositionMutator", "applied"]
+__all__ = [
+    "BUILT_IN",
+    "KEPT",
+    "Mutator",
+    "OrientationMutator",
+    "PositionMutator",
+    "active",
+    "applied",
+    "is_built_in",
+]

@@ -179,7 +179,7 @@ _ANGLES = frozenset({"yaw", "pitch", "roll"})
 
 def normalised(name: str, value: Any) -> Any:
     """A property's value as instances store it: vectors, scalars and angles in (-pi, pi] by name."""
-    normalise = _NORMAL.get(name)
+    normalise = NORMAL.get(name)
     return value if normalise is None else normalise(name, value)
 
 
@@ -345,7 +345,7 @@ def update(instance: Any, changes: Mapping[str, Any]) -> None:
         settle(name)
 
 
-_NORMAL: Mapping[str, Callable[[str, Any], Any]] = MappingProxyType(
+NORMAL: Mapping[str, Callable[[str, Any], Any]] = MappingProxyType(
     {
         **dict.fromkeys(_VECTORS, _vector),
         "position": _position,
@@ -362,3 +362,4 @@ _NORMAL: Mapping[str, Callable[[str, Any], Any]] = MappingProxyType(
         "regionContainedIn": _container,
     }
 )
+"""What becomes of the values that properties of the language are given, by name."""

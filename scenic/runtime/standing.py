@@ -6,15 +6,20 @@ ended: until then a stand-in has nodes to be completed in the place of what may 
 """
 
 from types import CodeType
-from typing import Any
+from typing import Any, Final
 
 from scenic.graph.construction import make_node
-from scenic.graph.kinds import Column, Kind
+from scenic.graph.kinds import Column, Kind, boxed
 from scenic.graph.node import Graph, Node
-from scenic.graph.operation import Call, Operation
+from scenic.graph.operation import Call, Operation, always
 from scenic.runtime.context import Context, current, here
+from scenic.runtime.mutators import KEPT, active, is_built_in
 from scenic.runtime.objects import Point
-from scenic.runtime.values import Random, as_node, as_value
+from scenic.runtime.properties import NORMAL
+from scenic.runtime.values import CODEC, Random, as_node, as_value
+
+_OF_KNOWN_KINDS: Final = NORMAL.keys() | KEPT
+"""Properties that are of the same kind whatever a mutator gives."""
 
 __all__ = ["complete", "may_mutate", "stand_in"]
 
@@ -41,7 +46,12 @@ def stand_in(instance: Any) -> Any:
 
 def _made(instance: Point) -> Point:
     stored = instance.__dict__
-    values = {name: _late(value) for name, value in stored.items() if name in instance.scenic_properties}
+    by_python = not is_built_in(active(instance))
+    values = {
+        name: _of_any_kind(value) if by_python and name not in _OF_KNOWN_KINDS else _late(value)
+        for name, value in stored.items()
+        if name in instance.scenic_properties
+    }
     return type(instance)._make({**stored, **values})
 
 
@@ -55,12 +65,22 @@ def _late(value: Any) -> Any:
     return as_value(make_node(_LATE, [node], node.kind, here()))
 
 
+def _of_any_kind(value: Any) -> Any:
+    """A value of which nothing is known: a mutator of the program's own may give anything, but leaves places what they are."""
+    kind = as_node(value).kind
+    if kind not in (Kind.VECTOR, Kind.ORIENTATION):
+        kind = Kind.OTHER
+    return as_value(make_node(_LATE, [as_node(value)], kind, here()))
+
+
 def complete(context: Context) -> None:
     """Give all stand-ins the values that instances have now that mutation is over."""
     for instance, copy in context.stand_ins.values():
         for name, value in copy.__dict__.items():
             if isinstance(value, Random) and value.node.operation is _LATE:
                 new = as_node(instance.__dict__[name])
+                if value.node.kind is Kind.OTHER and not new.kind.is_boxed:
+                    new = make_node(_BOXED, [new], new.kind, here())
                 if new.kind is value.node.kind and not _depends(new, value.node):
                     value.node.complete((new,), value.node.payload)
 
@@ -80,6 +100,13 @@ _LATE = Operation(
     "A property of an instance as a choice draws it, mutated; payload its kind.",
     pure=False,
     stacks=True,
+)
+
+_BOXED = Operation(
+    "boxed",
+    always(Kind.OTHER),
+    lambda call, column: boxed(CODEC.decode(call.payload, column)),
+    "A value of a known kind as a Python object; payload its kind.",
 )
 
 Random.stand_in = staticmethod(stand_in)

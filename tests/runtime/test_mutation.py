@@ -292,6 +292,25 @@ def test_a_choice_draws_instances_as_mutated(text: str, drawn: bool) -> None:
         assert place == pytest.approx(tuple(item.egoObject.position) if drawn else (3, 4, 0))
 
 
+@pytest.mark.parametrize("scale", [0, 1])
+def test_a_choice_draws_what_mutators_of_the_program_make_of_any_property(scale: int) -> None:
+    text = (
+        "class M(Mutator):\n    def appliedTo(self, item):\n        item.count += 10\n        item.flag = not item.flag\n"
+        "        item.share += 100\n        item.word = item.word * 2\n        return item, False\n"
+        "class A:\n    count: 3\n    flag: True\n    share: Range(0, 1)\n    word: 'a'\n    mutator: M()\n"
+        f"a = new A\nmutate a by {scale}\nc = Uniform(a, a)\n"
+        "param x = (c.count, c.flag, c.share, c.word, c.count + c.share)\n"
+    )
+    drawn = scene(text)
+    count, flag, share, word, total = drawn.params["x"]
+    (item,) = drawn.objects
+    assert (count, flag, word) == ((13, False, "aa") if scale else (3, True, "a"))
+    assert type(count) is int
+    assert share // 100 == scale
+    assert total == count + share
+    assert (count, flag, share, word) == (item.count, item.flag, item.share, item.word)
+
+
 def test_what_is_specified_by_a_choice_follows_the_mutated_instance() -> None:
     text = "a = new Object at (3, 4)\nego = a\nb = new Object left of Uniform(a, a) by 1\nmutate a"
     for item in scenario(text).sample(5, seed=2):
