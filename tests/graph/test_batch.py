@@ -454,3 +454,13 @@ def test_functions_are_called_where_their_operands_have_values_alone():
     node = construction.make_node(operation, [source(Kind.SCALAR, [5.0])])
     evaluate(node, 4).column(node)
     assert seen == [1.0, 4.0, 5.0]
+
+
+def test_an_index_that_failed_has_the_fate_of_no_option():
+    """Whatever number stands in its place."""
+    index = faulty(Kind.INTEGER, [0, 1, 0, 1], np.array([FAULT, FAULT, REJECTED, OK]), ValueError())
+    rejected = faulty(Kind.SCALAR, [1.0] * 4, np.array([REJECTED] * 4), ValueError())
+    node = make("select", index, rejected, source(Kind.SCALAR, [5.0, 6.0, 7.0, 8.0]))
+    batch = evaluate(node, 4)
+    assert batch.status(node).tolist() == [FAULT, FAULT, REJECTED, OK]
+    assert batch.value(node, 3) == 8.0

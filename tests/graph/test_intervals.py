@@ -171,3 +171,7 @@ def test_of_no_possible_option_nothing_is_known():
     assert found.lower.tolist() == [[-np.inf] * 3, [1.0, 2.0, 3.0]]
     assert found.upper.tolist() == [[np.inf] * 3, [2.0, 3.0, 4.0]]
     assert hull_of_possible(options, [np.array([False, False])] * 2) is None
+    mixed = [Bounds.exactly(2.0), Bounds.exactly([1.0, 2.0, 3.0])]
+    for order in (mixed, mixed[::-1]):  # a number or a vector
+        assert hull_of_possible(order, [np.array([True])] * 2) is None
+        assert hull_of_possible(order, [np.array([True]), np.array([False])]) is not None
