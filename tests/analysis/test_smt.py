@@ -136,6 +136,8 @@ def test_python_objects_are_left_open():
     word = source(Kind.OTHER, np.array(["a"], dtype=object))
     assert verdict(make("equal", word, "a"), make("not equal", word, "a")) == ([], [])
     assert verdict(make("greater", one_of(1, "a", word), 5)) == ([], [])
+    # Nor is anything said of conditions that are no truth values.
+    assert verdict(word, uniform(0, 1), make("vector", 1.0, 2.0, uniform(0, 1))) == ([], [])
 
 
 def test_not_a_number_is_left_open():
