@@ -44,6 +44,13 @@ def test_python_modules_beside_the_program_are_found_from_anywhere(tmp_path: Pat
     before = list(sys.path)
     assert first(main).egoObject.position.x == 6
     assert sys.path == before
+    loaded = sys.modules["helper_one"]
+    assert first(main).egoObject.position.x == 6
+    assert sys.modules["helper_one"] is loaded
+    main.write_text(f"{main.read_text()}raise KeyError('x')\n")
+    with pytest.raises(KeyError):
+        first(main)
+    assert sys.path == before
 
 
 def test_what_a_program_adds_to_the_search_path_stays(
@@ -67,6 +74,27 @@ def test_modules_of_one_program_are_not_those_of_another(tmp_path: Path) -> None
         )
     found = [first(tmp_path / name / "main.scenic").params["x"] for name in "abab"]
     assert found == [1, 2, 1, 2]
+
+
+def test_packages_of_one_program_are_not_those_of_another(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """With all their parts, and without others whose names only begin alike."""
+    written(tmp_path / "usual", {"same_package_too.py": ""})
+    monkeypatch.syspath_prepend(str(tmp_path / "usual"))
+    usual = importlib.import_module("same_package_too")
+    for name, value in (("a", 1), ("b", 2)):
+        written(
+            tmp_path / name,
+            {
+                "same_package/__init__.py": "",
+                "same_package/part.py": f"VALUE = {value}\n",
+                "main.scenic": "from same_package.part import VALUE\nparam x = VALUE\n",
+            },
+        )
+    found = [first(tmp_path / name / "main.scenic").params["x"] for name in "abab"]
+    assert found == [1, 2, 1, 2]
+    assert sys.modules["same_package_too"] is usual
 
 
 def test_modules_on_the_path_of_python_are_loaded_once(
