@@ -76,6 +76,18 @@ def test_modules_of_one_program_are_not_those_of_another(tmp_path: Path) -> None
     assert found == [1, 2, 1, 2]
 
 
+def test_a_module_beside_the_program_comes_before_one_on_the_path_of_python(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    written(tmp_path / "usual", {"own_first.py": "VALUE = 1\n"})
+    monkeypatch.syspath_prepend(str(tmp_path / "usual"))
+    main = written(
+        tmp_path / "own",
+        {"own_first.py": "VALUE = 2\n", "main.scenic": "import own_first\nparam x = own_first.VALUE\n"},
+    )
+    assert first(main).params["x"] == 2
+
+
 def test_packages_of_one_program_are_not_those_of_another(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

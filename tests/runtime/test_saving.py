@@ -51,6 +51,20 @@ def test_a_saved_scene_is_the_same_again(tmp_path: Path, prune: bool) -> None:
     assert [file.name for file in tmp_path.iterdir() if file.suffix != ".scenic"] == ["one.scene"]
 
 
+def test_files_may_have_long_names_and_errors_name_theirs(tmp_path: Path) -> None:
+    (scene,) = scenario(PROGRAM).sample(1, seed=0)
+    path = tmp_path / f"{'long' * 60}.scene"
+    scene.save(path)
+    assert [item.name for item in tmp_path.iterdir()] == [path.name]
+    for error, name in (
+        (OSError(28, "No space left on device"), str(path)),
+        (FileNotFoundError(2, "missing", "other"), "other"),
+    ):
+        with pytest.raises(OSError, match=error.strerror) as caught, whole(path):
+            raise error
+        assert (caught.value.errno, caught.value.filename) == (error.errno, name)
+
+
 def test_a_scene_is_saved_whole_or_not_at_all(tmp_path: Path) -> None:
     (scene,) = scenario(PROGRAM).sample(1, seed=0)
     data = scenario(PROGRAM).sceneToBytes(scene)
