@@ -51,6 +51,12 @@ def test_a_saved_scene_is_the_same_again(tmp_path: Path, prune: bool) -> None:
     assert [file.name for file in tmp_path.iterdir() if file.suffix != ".scenic"] == ["one.scene"]
 
 
+def _begin(path: Path, stop: type[BaseException]) -> None:
+    with whole(path) as stream:
+        stream.write(b"a part")
+        raise stop
+
+
 def test_files_may_have_long_names_and_errors_name_theirs(tmp_path: Path) -> None:
     (scene,) = scenario(PROGRAM).sample(1, seed=0)
     path = tmp_path / f"{'long' * 60}.scene"
@@ -83,9 +89,8 @@ def test_a_scene_is_saved_whole_or_not_at_all(tmp_path: Path) -> None:
         scene.save(tmp_path / "missing" / "own.scene")
     assert sorted(item.name for item in tmp_path.iterdir()) == ["folder", "own.scene"]
     for stop in (KeyboardInterrupt, ValueError):
-        with pytest.raises(stop), whole(tmp_path / "own.scene") as stream:
-            stream.write(b"a part")
-            raise stop
+        with pytest.raises(stop):
+            _begin(tmp_path / "own.scene", stop)
     assert sorted(item.name for item in tmp_path.iterdir()) == ["folder", "own.scene"]
     assert (tmp_path / "own.scene").read_bytes() == data
     os.mkfifo(tmp_path / "pipe")
