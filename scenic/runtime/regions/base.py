@@ -68,7 +68,7 @@ class Region(ABC):
     scenic_kind: ClassVar[Kind] = Kind.REGION
     parameter_names: ClassVar[tuple[str, ...]] = ()
     """Attributes that hold the parameters, in order; a region with random ones is sampled through them."""
-    placement_names: ClassVar[tuple[str, ...]] = ()
+    _placement_names: ClassVar[tuple[str, ...]] = ()
     """Attributes that are random where the parameters are, but need not be among them."""
     dimension: float
     """0 for points to 3 for volumes; infinite for all of space."""
@@ -203,7 +203,7 @@ class Region(ABC):
 
     def random_parts(self) -> list[Any]:
         """The parameters, what else is random with them, and the field of orientations, for sampling."""
-        placement = (getattr(self, name) for name in self.placement_names)
+        placement = (getattr(self, name) for name in self._placement_names)
         return [*self.parameters, *placement, self.__dict__.get("orientation")]
 
     def sampled(self, sample: Any) -> "Region":
@@ -220,7 +220,7 @@ class Region(ABC):
         if self.parameter_names:
             for name, value in zip(self.parameter_names, region.parameters, strict=True):
                 setattr(region, name, value)
-        for name in self.placement_names:
+        for name in self._placement_names:
             setattr(region, name, sample.value(getattr(self, name)))
         return region
 

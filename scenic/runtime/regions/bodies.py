@@ -46,7 +46,7 @@ class OccupiedSpace(Region):
 
     dimension: float = 3
     may_find_none = True
-    placement_names = ("position", "rotation", "dimensions")
+    _placement_names = ("position", "rotation", "dimensions")
 
     def __init__(self, thing: Any) -> None:
         super().__init__(*body_operands(thing), name="occupied space")
@@ -306,7 +306,7 @@ class SideSurface(Region):
     dimension: float = 2
     has_orientation = True
     may_find_none = True
-    placement_names = ("position", "rotation", "dimensions")
+    _placement_names = ("position", "rotation", "dimensions")
 
     def __init__(self, thing: Any, side: str, thresholds: Any) -> None:
         if is_random(thresholds):
