@@ -108,11 +108,9 @@ class Globals:
         words = self._imports.get(code)
         if words is None:
             words = self._imports[code] = frozenset(_imported_names(code))
-        return (
-            [module for module in prelude.modules if module.__name__.rpartition(".")[2] in words]
-            if words
-            else []
-        )
+        if not words:
+            return []
+        return [module for module in prelude.modules if module.__name__.rpartition(".")[2] in words]
 
     def is_fixed(self, item: Any) -> bool:
         """Whether a function or class does the same in every sample: nothing that it reaches is random or bound anew."""

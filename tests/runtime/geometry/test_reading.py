@@ -150,6 +150,24 @@ def test_ply(order, faces, text, extra):
         check(ply(order, faces, text=text), "ply")
 
 
+@pytest.mark.parametrize("is_last", [False, True])
+def test_elements_of_other_names_are_passed_over_only_where_nothing_follows(is_last):
+    face, other = (
+        "element face 1\nproperty list uchar int vertex_index\n",
+        "element strip 1\nproperty list uchar int marks\n",
+    )
+    vertex = "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+    header, rows = ([vertex, face, other], ["0 0 0 1 0 0 0 1 0", "3 0 1 2", "2 9 9"])
+    if not is_last:
+        header, rows = [face, other, vertex], ["3 0 1 2", "2 9 9", "0 0 0 1 0 0 0 1 0"]
+    text = "ply\nformat ascii 1.0\n" + "".join(header) + "end_header\n" + "\n".join(rows)
+    if is_last:
+        np.testing.assert_array_equal(read_ply(text.encode()).vertices, [(0, 0, 0), (1, 0, 0), (0, 1, 0)])
+    else:
+        with pytest.raises(NotCoveredError, match="element `strip`"):
+            read_ply(text.encode())
+
+
 @pytest.mark.parametrize("kind", ["ply", "text.ply", "obj", "text.stl"])
 def test_coordinates_are_as_exact_as_the_file(kind):
     """Far from the origin single precision would move them by decimetres."""

@@ -51,7 +51,8 @@ def read_ply(data: bytes) -> Soup:
     counts: Indices | None = None
     values = np.array(data[body:].split(), dtype=np.float64) if not order else None
     place = 0 if values is not None else body
-    for element in elements:
+    last = max((i for i, element in enumerate(elements) if element.name in ("vertex", "face")), default=-1)
+    for element in elements[: last + 1]:
         lists = [item for item in element.properties if item.length is not None]
         if not lists:
             if values is not None:
@@ -64,7 +65,7 @@ def read_ply(data: bytes) -> Soup:
                 corners, counts, place = _text_lists(values, place, element)
             else:
                 corners, counts, place = _binary_lists(data, place, element, order)
-        elif counts is None:
+        else:
             raise NotCoveredError(f"element `{element.name}`")
     if counts is None:
         raise ValueError("no faces")
