@@ -925,3 +925,19 @@ def test_values_of_unknown_kinds_are_recorded_as_they_show_themselves(tmp_path: 
 def test_conditions_of_a_simulation_create_no_object() -> None:
     with pytest.raises(InvalidScenarioError, match="cannot create an object"):
         simulate("def made():\n    new Object at (9, 9)\nego = new Object\nterminate when made()")
+
+
+def test_long_chains_of_objects_are_copied() -> None:
+    """Each is a property of the next; they are more than Python's stack would hold."""
+    text = (
+        "class Car:\n    leader: None\nprevious = new Car at (0, -5), with foo Range(-1, 0)\nfor i in range(600):\n"
+        "    previous = new Car at (2 * i, 0), with foo Range(i, i + 1), with leader previous\n"
+        "ego = previous\ndef followed():\n    found = [ego]\n    while found[-1].leader is not None:\n"
+        "        found.append(found[-1].leader)\n    return [item.foo for item in found]\n"
+        "record followed() as values\n"
+    )
+    done = simulate(text, 1)
+    assert done.result is not None
+    expected = sorted((item.foo for item in done.scene.objects), reverse=True)
+    assert len(expected) == 601
+    assert done.result.records["values"] == [(0, expected), (1, expected)]

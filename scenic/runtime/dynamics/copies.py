@@ -7,7 +7,7 @@ or by another simulation.
 
 from collections.abc import Iterable
 from types import CodeType, FunctionType, ModuleType
-from typing import Any
+from typing import Any, Final
 from weakref import ref
 
 import numpy as np
@@ -17,6 +17,9 @@ from scenic.runtime.ownership import DECORATED, PRELUDE, SAMPLE, functions_of, i
 from scenic.runtime.samples import Lanes, Sample
 
 __all__ = ["Copies"]
+
+_DEEPEST: Final = 50
+"""Instances within properties of instances that are copied at once; Python's stack would not hold a long chain."""
 
 
 class Copies(Sample):
@@ -28,7 +31,7 @@ class Copies(Sample):
 
     """
 
-    __slots__ = ("_codes", "_filled", "_modules", "_own")
+    __slots__ = ("_codes", "_depth", "_filled", "_modules", "_own", "_waiting")
 
     def __init__(self, lanes: Lanes, lane: int) -> None:
         super().__init__(lanes, lane)
@@ -36,6 +39,8 @@ class Copies(Sample):
         self._own: dict[int, dict[str, Any]] = {}
         self._codes: dict[CodeType, frozenset[str]] = {}
         self._modules: dict[int, ModuleType] = {}
+        self._depth = 0
+        self._waiting: list[tuple[Point, Any]] = []
 
     def adopt(self, module: ModuleType) -> None:
         """A module is about to run that the simulation is the first to import, and that is its own therefore."""
@@ -70,10 +75,21 @@ class Copies(Sample):
             return self.value(source)
         copy = object.__new__(type(instance))
         self.remember(instance, copy)
+        self._waiting.append((instance, copy))
+        if self._depth < _DEEPEST:
+            self._depth += 1
+            try:
+                while self._waiting:
+                    self._complete(*self._waiting.pop())
+            finally:
+                self._depth -= 1
+        return copy
+
+    def _complete(self, instance: Point, copy: Any) -> None:
+        """Give a copy the values of its own."""
         for name, value in instance.__dict__.items():
             copy.__dict__[name] = self.value(value)
         copy.__dict__["_sample"] = self
-        return copy
 
     def _module(self, module: ModuleType) -> ModuleType:
         copy = self._space(vars(module))
