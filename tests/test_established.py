@@ -729,6 +729,17 @@ def test_helpers_of_python() -> None:
         def whole(self) -> None:
             calls.append("nothing")
 
+    class Alike:
+        @utils.cached_method
+        def _area(self) -> int:
+            return 5
+
+        @utils.cached_method
+        def area(self) -> int:
+            return 2 * int(self._area())
+
+    alike = Alike()
+    assert (alike.area(), alike._area(), alike.area()) == (10, 5, 10)
     nothing = Nothing()
     assert (nothing.whole(), nothing.whole(), calls[3:]) == (None, None, ["nothing"])
     assert utils.argsToString((1, "a"), {"b": 2.5}) == "1, 'a', b=2.5"

@@ -109,3 +109,11 @@ def test_objects_that_are_printed_alike_are_different_constants():
     choice = one_of(first, second)
     nodes = [make("equal", choice, constant(item)) for item in (first, second, first)]
     assert nodes[0] is nodes[2] is not nodes[1]
+
+
+def test_numbers_of_the_same_bytes_are_different_constants():
+    x = make_node(TABLE["int"], [uniform(1, 5)])
+    assert x.kind is Kind.INTEGER
+    kinds = [make("multiply", x, constant(zero)).kind for zero in (0, 0.0, 0, 0.0)]
+    assert kinds == [Kind.INTEGER, Kind.SCALAR] * 2
+    assert make("less", x, constant(0)) is not make("less", x, constant(0.0))

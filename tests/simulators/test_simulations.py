@@ -941,3 +941,28 @@ def test_long_chains_of_objects_are_copied() -> None:
     expected = sorted((item.foo for item in done.scene.objects), reverse=True)
     assert len(expected) == 601
     assert done.result.records["values"] == [(0, expected), (1, expected)]
+
+
+def test_a_condition_that_raises_is_over() -> None:
+    """What a behavior does after it has caught the exception draws as before."""
+    text = (
+        "behavior B():\n    try:\n        require 1 / simulation().currentTime > 0\n    except ZeroDivisionError:\n"
+        "        pass\n    take Range(1, 2)\nego = new Object with behavior B\n"
+    )
+    done = simulate(text, 1)
+    assert done.result is not None
+    ((action,),) = done.result.actions[0].values()
+    assert 1 <= action <= 2
+
+
+def test_the_ego_of_a_scenario_is_not_that_of_others() -> None:
+    parts = "".join(
+        f"scenario {name}():\n    setup:\n        {statement}\n        terminate after 1 steps\n"
+        for name, statement in (
+            ("First", "ego = new Object at (5, 0)"),
+            ("Second", "new Object at ego offset by (0, 3)"),
+        )
+    )
+    text = f"scenario Main():\n    setup:\n        new Object\n    compose:\n        do First()\n        do Second()\n{parts}"
+    with pytest.raises(InvalidScenarioError, match="ego object is used before it is set"):
+        simulate(text)

@@ -130,6 +130,24 @@ def test_points_on_another_side_move(name):
     assert not near[kind > 1].any()
 
 
+def test_lanes_of_several_meshes_are_those_of_each_alone():
+    """Some points stay on the surface, some are moved, some miss."""
+    meshes, rng = (primitives.box(), table(), primitives.cone()), np.random.default_rng(54)
+    choice, poses = np.arange(30) % 3, random_poses(30, 55)
+    body = Body(meshes, choice, poses)
+    faces = surface.draw_faces(body, None, 0, rng.random(30), 30)
+    points = surface.face_points(body, faces, *rng.random((2, 30)))
+    points[rng.random(30) < 0.6] += (0, 0, 0.1)
+    points[rng.random(30) < 0.2] += (90, 0, 0)
+    found, landed = projection.project(body, None, 0, points, np.array([[0, 0, 1.0]]), 30)
+    assert len({*np.sign(found + 0.5)}) == 2
+    for lane in range(30):
+        own = Body((meshes[choice[lane]],), None, poses.take([lane]))
+        face, place = projection.project(own, None, 0, points[[lane]], np.array([[0, 0, 1.0]]), 1)
+        assert face[0] == found[lane]
+        np.testing.assert_array_equal(place[0], landed[lane])
+
+
 def test_lanes_without_a_direction_miss():
     """And change nothing for the others; with many faces, too."""
     for mesh in (table(), bumpy(3)):

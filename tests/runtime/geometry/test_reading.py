@@ -409,7 +409,8 @@ def test_what_descriptions_may_say(path, value, error):
 
 
 def test_files_in_one_piece():
-    text = json.dumps(gltf_triangle(buffers_0_uri=None)).encode()
+    named = {**gltf_triangle(buffers_0_uri=None), "extras": {"name": "Tür"}}
+    text = json.dumps(named, ensure_ascii=False).encode()
     text += b" " * (-len(text) % 4)
     buffer = base64.b64decode(gltf_triangle()["buffers"][0]["uri"].partition(",")[2])
     buffer += b"\0" * (-len(buffer) % 4)
