@@ -206,6 +206,8 @@ def _weight(weight: Any) -> float:
 def _cumulative(weights: Sequence[float]) -> tuple[float, ...]:
     """Cumulative probabilities; the last is exactly 1."""
     total = sum(weights)
+    if math.isinf(total):
+        return _cumulative([weight / max(weights) for weight in weights])
     sums = list(itertools.accumulate(weight / total for weight in weights))
     return (*sums[:-1], 1.0)
 

@@ -400,7 +400,7 @@ def _oriented(function: Callable[[Any], Any], point: Any) -> Any:
 
 def _steps(distance: float, law: Law) -> int:
     steps, least, size = law
-    return steps if steps is not None else max(least, math.ceil(distance / size))
+    return steps if steps is not None else max(least, 1, math.ceil(distance / size))
 
 
 def _followed(function: Callable[[Any], Any], point: Any, distance: float, law: Law) -> Any:
@@ -516,7 +516,7 @@ def _follow_table(call: Call, points: Column, distance: Column) -> Column:
     lanes = max(len(points), len(distance))
     place = np.array(np.broadcast_to(points, (lanes, 3)))
     length = np.broadcast_to(distance, lanes)
-    counts = np.full(lanes, steps) if steps is not None else np.maximum(least, np.ceil(length / size))
+    counts = np.full(lanes, steps) if steps is not None else np.maximum(max(least, 1), np.ceil(length / size))
     missing = np.zeros(lanes, dtype=np.bool_)
     for step in range(int(counts.max(initial=0))):
         moving = np.flatnonzero(step < counts)

@@ -298,3 +298,17 @@ def test_following_starts_wherever_that_is(start: str) -> None:
     place = tuple(getattr(at, "position", at))
     expected = follow(lambda x, y: x + 0.1 * y, (place[0], place[1], 0), 3)
     np.testing.assert_allclose(tuple(found.objects[-1].position), expected, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    "field", ["VectorField('f', lambda p: 0.5", "PolygonalVectorField('f', [(area, 0.5)]"]
+)
+@pytest.mark.parametrize("length", ["0", "3", "-3", "Uniform(0, 3, -3)"])
+def test_a_field_that_asks_for_no_least_number_of_steps_takes_one(field: str, length: str) -> None:
+    """Also for a way of no length, and backwards."""
+    text = (
+        f"from shapely.geometry import box\narea = box(-9, -9, 9, 9)\nF = {field}, minSteps=0)\nlength = {length}\n"
+        "place = follow F from (1, 2) for length\nparam x = (length, place.position)\n"
+    )
+    for way, place in draws(text, n=6):
+        assert tuple(place) == pytest.approx((1 - way * math.sin(0.5), 2 + way * math.cos(0.5), 0))

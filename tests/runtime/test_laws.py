@@ -402,6 +402,13 @@ def test_no_module_state_is_touched(tmp_path: Path) -> None:
     assert "beside" not in set(sys.modules) - before
 
 
+@pytest.mark.parametrize(
+    "choice", ["Discrete({1: 1e308, 2: 1e308, 3: 1e308})", "DiscreteRange(1, 3, [1e308, 1e308, 1e308])"]
+)
+def test_weights_may_sum_to_more_than_any_number(choice: str) -> None:
+    assert_frequencies(draws(f"param x = {choice}", n=600), {1: 1, 2: 1, 3: 1})
+
+
 @pytest.mark.parametrize("weight", ["-1", "-1e-300", "float('nan')", "float('inf')", "-float('inf')"])
 @pytest.mark.parametrize("first", [False, True])
 def test_weights_are_finite_numbers_from_0_on(weight: str, first: bool) -> None:
