@@ -51,8 +51,11 @@ def read_ply(data: bytes) -> Soup:
     counts: Indices | None = None
     values = np.array(data[body:].split(), dtype=np.float64) if not order else None
     place = 0 if values is not None else body
-    last = max((i for i, element in enumerate(elements) if element.name in ("vertex", "face")), default=-1)
-    for element in elements[: last + 1]:
+    missing = {"vertex", "face"}
+    for element in elements:
+        if not missing:
+            break  # what comes behind them may be of any form
+        missing.discard(element.name)
         lists = [item for item in element.properties if item.length is not None]
         if not lists:
             if values is not None:
