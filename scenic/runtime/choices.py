@@ -92,6 +92,14 @@ def options_of(value: Any) -> tuple[Any, ...]:
     return ()
 
 
+def is_open(value: Any) -> bool:
+    """Whether a random value, or some option of it, can be of any type until it is drawn (section 4.3)."""
+    if not isinstance(value, Random) or not value.node.kind.is_boxed:
+        return False
+    options = options_of(value)
+    return not options or any(map(is_open, options))
+
+
 def per_option(value: Any, function: Callable[[Any], Any]) -> Any:
     """``function`` of a value; of each option where the value is a random choice, and the choice among the results."""
     if isinstance(value, Random) and value.node.operation is TABLE["select"]:

@@ -62,7 +62,7 @@ class Context:
         """Whether the node of a requirement's condition is being made."""
         self.objects: list[Any] = []
         """The objects of the scenario so far, in order of creation: what may stand in the way of a look."""
-        self.calls: list[tuple[Any, list[Any]]] = []
+        self.calls: list[tuple[Any, tuple[Any, ...]]] = []
         """The nodes of calls that are made on samples, each with the instances that it sees."""
         self.mutates = False
         """Whether some module may mutate instances."""

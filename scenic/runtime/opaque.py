@@ -19,7 +19,7 @@ from scenic.language.errors import InvalidScenarioError, RejectionException
 from scenic.runtime.context import Context, current, here, next_address
 from scenic.runtime.objects import Point
 from scenic.runtime.randomness import is_as, preserved, seed_globals
-from scenic.runtime.samples import Globals, Sample, dependencies, mention, reachable
+from scenic.runtime.samples import Globals, Reach, Sample, dependencies, mention, reachable
 from scenic.runtime.values import CODEC, Random, as_value
 
 
@@ -33,7 +33,7 @@ class _Habit:
 
 
 @dataclass(frozen=True, slots=True)
-class OpaqueCode:
+class OpaqueCode(Reach):
     """A function with its arguments, the nodes behind both, and where it runs.
 
     ``names`` are the global names that functions in reach read, as they were when this was made. ``looks`` says that they may
@@ -73,12 +73,11 @@ def later(
     operands = (own, *dependencies(reads, seen))
     habit = _Habit()
     habit.draws = any(mention(reads, seen, word) for word in _STATE_READERS)
-    code = OpaqueCode(function, tuple(args), keywords, operands, seen, context, looks, habit)
+    instances = tuple(value for value in reachable(reads, seen) if isinstance(value, Point))
+    code = OpaqueCode(instances, function, tuple(args), keywords, operands, seen, context, looks, habit)
     node = make_node(operation, operands, code, here())
-    if context is not None and context.is_symbolic:
-        instances = [value for value in reachable(reads, seen) if isinstance(value, Point)]
-        if instances:
-            context.calls.append((node, instances))
+    if instances and context is not None and context.is_symbolic:
+        context.calls.append((node, instances))
     return node
 
 
@@ -214,7 +213,7 @@ class Calls:
         same = [self._is_same(item) for item in code.args]
         always_function = self._is_same(code.function)
         for lane in self.present:
-            sample = Sample(self.lanes, lane, code.names)
+            sample = Sample(self.lanes, lane, code.names, of_call=True)
             if context is not None:
                 context.sample = sample
             if self.seeding:

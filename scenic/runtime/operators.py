@@ -19,13 +19,14 @@ from scenic.runtime.regions.bodies import gap_between
 from scenic.runtime.regions.choice import as_region
 from scenic.runtime.regions.views import part_of
 from scenic.runtime.sight import sees
-from scenic.runtime.specifiers import Ego, is_kind, region_of
+from scenic.runtime.specifiers import Ego, is_kind, is_unknown, region_of
 from scenic.runtime.values import (
     Random,
     Vector,
     binary,
     describe,
     is_number,
+    is_open,
     is_orientation,
     is_vector,
     operate,
@@ -85,7 +86,7 @@ def _relative_to(value: Any, frame: Any) -> Any:
         return value + frame
     if is_field(value) or is_field(frame):
         return relative_to(value, frame)
-    if _is_open(value) or _is_open(frame):
+    if _is_undecided(value) or _is_undecided(frame):
         return call_later(_relative_when_drawn, value, frame)
     oriented = [is_kind(operand, OrientedPoint) for operand in (value, frame)]
     if all(oriented):
@@ -112,17 +113,21 @@ def _relative_to(value: Any, frame: Any) -> Any:
     )
 
 
-def _is_open(value: Any) -> bool:
+def _is_undecided(value: Any) -> bool:
     """Whether it shows only when a random value is drawn what it is for `relative to`."""
     if not isinstance(value, Random) or not value.node.kind.is_boxed:
         return False
     options = options_of(value)
-    known = all(map(_is_scalar, options)) or all(map(_is_place, options))
-    return not options or not known or any(map(_is_open, options))
+    return is_open(value) or not (all(map(_is_scalar, options)) or all(map(_is_place, options)))
 
 
 def _relative_when_drawn(value: Any, frame: Any) -> Any:
     return definite(_relative_to(value, frame), "`relative to` a field")
+
+
+def _when_drawn(operator: Callable[..., Any], *operands: Any) -> Any:
+    """What an operator gives once it shows what its operands, none of which is left out, are (section 4.3)."""
+    return call_later(operator, None, *operands)
 
 
 def _is_place(value: Any) -> bool:
@@ -136,12 +141,16 @@ def _offset_along(_ego: Ego, base: Any, direction: Any, offset: Any) -> Any:
 
 
 def _field_at(_ego: Ego, field: Any, position: Any) -> Any:
+    if is_open(field):
+        return _when_drawn(_field_at, field, position)
     place = to_vector(position, "`at`")
     return field_of(field, "`at`")[place]
 
 
 def _follow(ego: Ego, field: Any, origin: Any, distance: Any) -> Any:
     start = to_vector(ego() if origin is None else origin, "`follow ... from`")
+    if is_open(field):
+        return _when_drawn(_follow, field, start, distance)
     way = field_of(field, "`follow`")
     end = way.followFrom(start, to_scalar(distance, "`follow ... for`"))
     return oriented_point(end, way[end])
@@ -164,9 +173,11 @@ def _global_yaw(value: Any) -> Any:
 
 
 def _apparent_heading(ego: Ego, target: Any, origin: Any) -> Any:
+    start = _place(ego() if origin is None else origin, "`apparent heading`")
+    if is_unknown(target, OrientedPoint):
+        return _when_drawn(_apparent_heading, target, start)
     if not is_kind(target, OrientedPoint):
         raise wrong_type("an oriented point", target, "`apparent heading of`")
-    start = _place(ego() if origin is None else origin, "`apparent heading`")
     line = _azimuth(_minus(target.position, start))
     return _normal(_minus(target.heading, line))
 
@@ -176,6 +187,8 @@ def _distance(ego: Ego, origin: Any, target: Any) -> Any:
     end = ego() if target is None else target
     if isinstance(start, _PLACES) and isinstance(end, _PLACES):
         return _distance_between(_place(start, "`distance`"), _place(end, "`distance`"))
+    if is_open(start) or is_open(end):
+        return _when_drawn(_distance, start, end)
     for near, far in ((start, end), (end, start)):
         region = as_region(near)
         if region is not None:
@@ -185,6 +198,8 @@ def _distance(ego: Ego, origin: Any, target: Any) -> Any:
 
 def _minimum_distance(ego: Ego, origin: Any, target: Any) -> Any:
     first, second = (ego() if operand is None else operand for operand in (origin, target))
+    if is_unknown(first) or is_unknown(second):
+        return _when_drawn(_minimum_distance, first, second)
     for operand in (first, second):
         if not is_kind(operand, Object):
             raise wrong_type("an object", operand, "`minimum distance`")
@@ -193,6 +208,8 @@ def _minimum_distance(ego: Ego, origin: Any, target: Any) -> Any:
 
 def _distance_past(ego: Ego, target: Any, reference: Any) -> Any:
     point = ego() if reference is None else reference
+    if is_unknown(point, OrientedPoint):
+        return _when_drawn(_distance_past, target, point)
     if not is_kind(point, OrientedPoint):
         raise wrong_type("an oriented point", point, "`distance past ... of`")
     return point.distancePast(to_vector(target, "`distance past`"))
@@ -213,6 +230,8 @@ def _altitude(ego: Ego, origin: Any, target: Any) -> Any:
 
 def _intersects(_ego: Ego, left: Any, right: Any) -> Any:
     one, other = (as_region(operand) or operand for operand in (left, right))
+    if is_unknown(one) or is_unknown(other):
+        return _when_drawn(_intersects, left, right)
     for operand in (one, other):
         if not isinstance(operand, Region) and not is_kind(operand, Object):
             raise wrong_type("an object or a region", operand, "`intersects`")
@@ -241,7 +260,9 @@ def _part_in_view(ego: Ego, region: Any, viewer: Any, *, seen: bool) -> Region:
 
 
 def _side(name: str, attribute: str) -> Callable[..., Any]:
-    def build(_ego: Ego, target: Any) -> Any:
+    def build(_ego: Ego | None, target: Any) -> Any:
+        if is_unknown(target):
+            return _when_drawn(build, target)
         if not is_kind(target, Object):
             raise wrong_type("an object", target, f"`{name}`")
         return getattr(target, attribute)

@@ -12,6 +12,7 @@ import builtins
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
+from operator import eq, ge, gt, le, lt, ne
 from pathlib import Path
 from types import CodeType, MappingProxyType, ModuleType
 from typing import Any, Protocol
@@ -46,9 +47,9 @@ from scenic.runtime.properties import ATTRIBUTES, PropertyDefinition
 from scenic.runtime.regions.base import Region, Workspace, everywhere
 from scenic.runtime.regions.choice import as_region
 from scenic.runtime.resolution import build
-from scenic.runtime.samples import Sample
+from scenic.runtime.samples import Sample, may_return_instances
 from scenic.runtime.sight import sees
-from scenic.runtime.specifiers import BUILDERS, Specifier, UserSpecifier, specify
+from scenic.runtime.specifiers import BUILDERS, Specifier, UserSpecifier, is_kind, is_unknown, specify
 from scenic.runtime.spreading import spread
 from scenic.runtime.standing import may_mutate
 from scenic.runtime.temporal.formulas import is_temporal
@@ -71,6 +72,9 @@ COMPARISONS: Mapping[str, str] = MappingProxyType(
         "==": "equal",
         "!=": "not equal",
     }
+)
+_COMPARED: Mapping[str, Callable[[Any, Any], Any]] = MappingProxyType(
+    {"<": lt, "<=": le, ">": gt, ">=": ge, "==": eq, "!=": ne}
 )
 
 
@@ -400,6 +404,8 @@ class Prelude(Dynamics):
 
     def compare(self, operator: str, left: Any, right: Any) -> Any:
         """``left operator right`` as a truth value, which may be random."""
+        if may_return_instances(left) or may_return_instances(right):
+            return Random.later(_COMPARED[operator], left, right)
         if is_random(left) or is_random(right):
             return operate(COMPARISONS[operator], left, right)
         if isinstance(left, Point) or isinstance(right, Point):
@@ -409,11 +415,10 @@ class Prelude(Dynamics):
     def contains(self, item: Any, container: Any) -> Any:
         """``item in container``: containment in a region, else Python's."""
         region = as_region(container)
-        if region is not None:
-            return (
-                region.containsObject(item) if hasattr(item, "occupiedSpace") else region.containsPoint(item)
-            )
-        raise conditions.NotSymbolicError
+        # Of a value that is unknown until it is drawn, the draw has to tell whether all of it has to lie in the region.
+        if region is None or is_unknown(item):
+            raise conditions.NotSymbolicError
+        return region.containsObject(item) if is_kind(item, Object) else region.containsPoint(item)
 
     def all_of(self, *values: Any) -> Any:
         """``and`` of truth values inside an expression."""

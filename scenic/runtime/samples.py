@@ -10,12 +10,13 @@ import copy as shallow
 import dis
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
 from functools import cached_property, lru_cache, partial
 from types import CellType, CodeType, FunctionType, MethodType, ModuleType
 from typing import Any, Final, Protocol
 from weakref import ref
 
-from scenic.graph.node import Node
+from scenic.graph.node import Graph, Node
 from scenic.runtime.members import members
 from scenic.runtime.objects import PLACEMENT, Point, put
 from scenic.runtime.ownership import (
@@ -167,6 +168,21 @@ class Globals:
         return known[1]
 
 
+@dataclass(frozen=True, slots=True)
+class Reach:
+    """The data of a node that calls code of the program: the instances in reach of the code, which its result may hold."""
+
+    instances: tuple[Point, ...]
+
+
+def may_return_instances(value: Any) -> bool:
+    """Whether a value comes from code of the program that has instances in reach: each call has copies of its own."""
+    if not isinstance(value, Random) or not value.node.kind.is_boxed:
+        return False
+    calls = (node.payload for node in Graph([value.node]).nodes if isinstance(node.payload, Reach))
+    return any(call.instances for call in calls)
+
+
 def dependencies(values: Iterable[Any], names: Globals | None = None) -> list[Node]:
     """The nodes whose values decide the sampled values of ``values``, in order of discovery."""
     walk = reachable(values, Globals() if names is None else names)
@@ -218,7 +234,10 @@ _PLAIN = frozenset({*_NUMBERS_AND_TEXT, bool, type(None), CodeType, Vector, Orie
 
 
 def _boxed_constants(root: Node, seen: dict[int, Any]) -> list[Any]:
-    """Python objects among the constants below a node: a choice among instances needs the instances' nodes."""
+    """Python objects among the constants below a node: a choice among instances needs the instances' nodes.
+
+    So does a call of the program's code, which may return what it was given.
+    """
     values: list[Any] = []
     stack = [root]
     while stack:
@@ -227,6 +246,8 @@ def _boxed_constants(root: Node, seen: dict[int, Any]) -> list[Any]:
             if node.kind.is_boxed:
                 values.append(node.value)
         elif not node.is_axis:
+            if isinstance(node.payload, Reach):
+                values.extend(node.payload.instances)
             for operand in node.operands:
                 if id(operand) not in seen:
                     seen[id(operand)] = operand
@@ -293,13 +314,33 @@ class Sample:
         lane: which of the lanes this sample is.
         names: the global names that functions of the program read; by default as they are now.
         whole: whether objects get their place and size at once, as they are sure to be asked for them.
+        of_call: whether it is for the arguments of a call, so that its copies of instances mean nothing beyond.
 
     """
 
-    __slots__ = ("__weakref__", "_alive", "_lane", "_lanes", "_memo", "_names", "_scopes", "_whole")
+    __slots__ = (
+        "__weakref__",
+        "_alive",
+        "_lane",
+        "_lanes",
+        "_memo",
+        "_names",
+        "_of_call",
+        "_scopes",
+        "_whole",
+    )
 
-    def __init__(self, lanes: Lanes, lane: int, names: Globals | None = None, *, whole: bool = False) -> None:
+    def __init__(
+        self,
+        lanes: Lanes,
+        lane: int,
+        names: Globals | None = None,
+        *,
+        whole: bool = False,
+        of_call: bool = False,
+    ) -> None:
         self._whole = whole
+        self._of_call = of_call
         self._lanes = lanes
         self._lane = lane
         self._names = Globals() if names is None else names
@@ -409,8 +450,12 @@ class Sample:
         return copy
 
     def _instance(self, instance: Point) -> Point:
-        if "_source" in instance.__dict__:
-            return instance
+        source = instance.__dict__.get("_source")
+        if source is not None:
+            # What a call of the program's code returns is the instance that it was given, not the copy for the call.
+            maker = instance.__dict__["_sample"]
+            is_argument = isinstance(maker, Sample) and maker is not self and maker._of_call
+            return self.value(source) if is_argument else instance
         copy: Any = object.__new__(type(instance))
         copy._source = instance
         copy._sample = self

@@ -30,6 +30,7 @@ from scenic.runtime.values import (
     Vector,
     apply,
     describe,
+    is_open,
     operate,
     options_of,
     per_option,
@@ -55,6 +56,9 @@ def sees(observer: Any, target: Any, occluders: Iterable[Any], *, certain: bool 
 
 
 def _sees(observer: Any, target: Any, occluders: Sequence[Any], certain: bool) -> Any:
+    if is_open(observer) or is_open(target):
+        # Which of the objects it is, if any, only the draw shows.
+        return Random.later(sees, observer, target, occluders, certain=certain)
     found = None if certain else _at_once(observer, target, occluders)
     return _looked(observer, target, occluders, certain) if found is None else found
 

@@ -28,9 +28,11 @@ from scenic.runtime.values import (
     as_value,
     describe,
     is_number,
+    is_open,
     is_orientation,
     is_vector,
     operate,
+    options_of,
     to_heading,
     to_orientation,
     to_scalar,
@@ -85,6 +87,11 @@ def is_kind(value: Any, cls: type[Point]) -> bool:
             return False
         return all(is_kind(as_value(option), cls) for option in value.node.operands[1:])
     return isinstance(value, cls)
+
+
+def is_unknown(value: Any, cls: type[Point] = Object) -> bool:
+    """Whether only the draw shows if a random value is an instance of a class (section 4.3)."""
+    return is_open(value) or len({is_kind(option, cls) for option in options_of(value)}) > 1
 
 
 def region_of(value: Any, what: str) -> Region:

@@ -11,7 +11,7 @@ values, tells the classes.
 """
 
 from scenic.runtime.applying import apply, binary, fixed_batch, folded, operate, random_key, unary, uniform
-from scenic.runtime.choices import options_of, over_options, per_option
+from scenic.runtime.choices import is_open, options_of, over_options, per_option
 from scenic.runtime.coercions import (
     to_heading,
     to_orientation,
@@ -46,6 +46,7 @@ __all__ = [
     "folded",
     "holds_instances",
     "is_number",
+    "is_open",
     "is_orientation",
     "is_random",
     "is_vector",

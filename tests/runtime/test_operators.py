@@ -193,18 +193,52 @@ def test_operators_on_choices_of_different_types() -> None:
             assert_is(found[f"c{index}"], CASES[case], case)
 
 
-FRAMES = [case for case in CASES if "relative to" in case or "offset by" in case]
+LANGUAGE = list(CASES)[: list(CASES).index("b.norm()")]
 
 
-@pytest.mark.parametrize("hidden", ["absho", "p", "abshop"])
-def test_what_relative_to_means_is_decided_when_its_operands_are_drawn(hidden: str) -> None:
+@pytest.mark.parametrize("hidden", ["absho", "p", "e", "abshope"])
+def test_what_operators_mean_is_decided_when_their_operands_are_drawn(hidden: str) -> None:
     """Of a value that a function of the program gives nothing is known before."""
-    text = "told = distributionFunction(lambda value, _: value)\n"
+    cases = [case for case in LANGUAGE if "deg" not in case]
+    text = "e = ego\ntold = distributionFunction(lambda value, _: value)\n"
     text += "".join(f"{name} = told({name}, Range(0, 1))\n" for name in hidden)
-    listed = "".join(f"param c{index} = {case}\n" for index, case in enumerate(FRAMES))
-    found = params(setting(FIXED) + text + listed)
-    for index, case in enumerate(FRAMES):
+    text += "".join(f"param c{index} = {case.replace(' ego', ' e')}\n" for index, case in enumerate(cases))
+    found = params(setting(FIXED) + text)
+    for index, case in enumerate(cases):
         assert_is(found[f"c{index}"], CASES[case], case)
+
+
+def test_operators_say_what_is_wrong_with_an_operand_that_is_drawn() -> None:
+    text = "told = distributionFunction(lambda value: value)\nx = told(Range(1, 1))\nego = new Object\nparam p = "
+    cases = {
+        "front of x": "an object",
+        "apparent heading of x": "an oriented point",
+        "x intersects ego": "an object or a region",
+        "minimum distance from ego to x": "an object",
+        "distance past (0, 0) of x": "an oriented point",
+        "x at (1, 2)": "a vector field",
+        "follow x from (1, 2) for 3": "a vector field",
+        "distance from x to ego": "a vector",
+    }
+    for case, expected in cases.items():
+        error = failure(text + case + "\n")
+        assert isinstance(error, ScenicTypeError), case
+        assert f"expected {expected}, not 1" in str(error), case
+        assert place(error)[1].startswith("4:11-"), case
+
+
+def test_fields_and_regions_that_are_drawn_are_asked_then() -> None:
+    text = (
+        "told = distributionFunction(lambda value, _: value)\nego = new Object at (3, 0, 0.5)\n"
+        "F = told(VectorField('F', lambda place: 0.5), Range(0, 1))\nD = told(CircularRegion((0, 0), 2), Range(0, 1))\n"
+        "param f = F at (1, 2), g = (follow F from (1, 2) for 3).position, far = distance from D to (5, 0)\n"
+        "param near = distance from (1, 0) to D, met = D intersects ego, same = ego intersects D\n"
+    )
+    found = params(text)
+    assert_same_rotation(found["f"], euler(0.5))
+    assert tuple(found["g"]) == pytest.approx((1 - 3 * math.sin(0.5), 2 + 3 * math.cos(0.5), 0))
+    assert (found["far"], found["near"]) == (3, 0)
+    assert found["met"] is found["same"] is False
 
 
 def test_options_of_different_types_are_relative_each_in_its_way() -> None:

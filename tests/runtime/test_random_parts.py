@@ -8,7 +8,7 @@ from typing import Any, cast
 
 import pytest
 
-from scenic.language.errors import RandomControlFlowError, ScenicTypeError, ScenicValueError
+from scenic.language.errors import RandomControlFlowError, ScenicValueError
 from scenic.runtime.samples import Sample
 from tests.runtime.programs import failure, place, scenario
 
@@ -360,13 +360,14 @@ def test_elements_of_chosen_containers_are_choices(text: str, values: set[float]
 
 
 @pytest.mark.parametrize("chosen", ["Uniform([a, b], [b])[0]", "Uniform(*Uniform([a, b], [b]))"])
-def test_instances_of_chosen_lists_are_known_as_places_alone(chosen: str) -> None:
-    """Before the sample nothing says that they have sides: what is beside one is beside its middle."""
+def test_specifiers_take_instances_of_chosen_lists_for_places(chosen: str) -> None:
+    """Before the draw nothing says that they have sides: what is beside one is beside its middle. Operators wait for it."""
     scenes = scenario(f"{CHOSEN}c = {chosen}\nnew Object left of c by 20\nparam c = c").sample(9, seed=1)
     gaps = {item.params["c"].position.x - item.objects[2].position.x for item in scenes}
     assert gaps == {20.5}
     assert {item.params["c"].width for item in scenes} == {1, 2}
-    assert isinstance(failure(f"{CHOSEN}param x = (front of {chosen})"), ScenicTypeError)
+    asked = scenario(f"{CHOSEN}c = {chosen}\nparam c = c, x = (right of c).position.x").sample(9, seed=1)
+    assert {(item.params["c"].width, item.params["x"]) for item in asked} == {(2, 1), (1, 10.5)}
 
 
 def test_regions_of_chosen_containers_are_places() -> None:
@@ -537,3 +538,59 @@ def test_what_only_a_holder_knows_is_drawn_for_it(definition: str, value: str) -
     found = {item.params["x"] for item in scenario(text).sample(4, seed=1)}
     assert len(found) == 4
     assert all(type(x) is float and 2 < x < 3 for x in found)
+
+
+def test_what_code_returns_is_the_instance_that_it_was_given() -> None:
+    """Through calls, containers, choices, properties, objects of plain classes and mutation, in scenes and requirements."""
+    program = scenario(
+        "told = distributionFunction(lambda *values: values[0])\n"
+        "ego = new Object at (0, 0)\n"
+        "o = new Object at (Range(3, 8), 5), with foo 3\n"
+        "q = new Object at (-9, Range(5, 9)), with friend o\n"
+        "mutate o\n"
+        "class Holder(object):\n    def __init__(self, value): self.value = value\n"
+        "x = told(o, Range(0, 1))\ny = told([x, o, ego], x)\nz = Uniform(x, y[2])\nw = told(y, z)[1]\n"
+        "f = told(q).friend\nh = told(Holder(x), Range(0, 1)).value\n"
+        "param x = x, y = y, z = z, w = w, f = f, h = h, n = x.foo, place = x.position, gap = distance from x to o\n"
+        "require x is o and y[0] is o and y[2] is ego and w is o and f is o and h is o\n"
+        "require z in [o, ego] and (z == o or z == ego) and not (z != o and z != ego)\n"
+        "require x == o\nrequire not (x == ego)\nrequire o == x\nrequire x in y\n"
+    )
+    ends = set()
+    for scene in program.sample(20, seed=3):
+        ego, thing, _ = scene.objects
+        found = scene.params
+        assert found["x"] is found["w"] is found["f"] is found["h"] is thing
+        assert list(map(id, found["y"])) == list(map(id, [thing, thing, ego]))
+        assert found["place"] == thing.position
+        assert (found["gap"], found["n"]) == (0, 3)
+        ends.add(found["z"] is thing)
+        assert found["z"] is thing or found["z"] is ego
+    assert ends == {True, False}
+
+
+def test_objects_that_code_returns_neither_hide_themselves_nor_are_points() -> None:
+    text = (
+        "told = distributionFunction(lambda value, _: value)\nego = new Object at (0, 0)\n"
+        "o = new Object at (5, Range(-1, 1)), with width 2\nx = told(o, Range(0, 1))\np = told((5, 0), Range(0, 1))\n"
+        "disc = CircularRegion((5, 0), 1.2)\n"
+    )
+    # Its centre is always in the disc; a corner of it is, at (1, 0.5) from there, where it is off the axis by less than 0.1633.
+    asked = {
+        "require ego can see x": 1,
+        "require x can see ego": 1,
+        "require x.position in disc": 1,
+        "require p in disc": 1,
+        "require disc.containsPoint(x)": 1,
+        "require x in disc": math.sqrt(1.2**2 - 1) - 0.5,
+        "require not (x in disc)": 1 - (math.sqrt(1.2**2 - 1) - 0.5),
+    }
+    for requirement, share in asked.items():
+        found = [scene.objects[1].position.y for scene in scenario(text + requirement).sample(50, seed=1)]
+        edge = math.sqrt(1.2**2 - 1) - 0.5
+        if share < 0.5:
+            assert max(map(abs, found)) < edge, requirement
+        elif share < 1:
+            assert min(map(abs, found)) > edge, requirement
+        else:
+            assert max(found) - min(found) > 1, requirement

@@ -303,6 +303,34 @@ scenario Sub():
     assert width == size + 1
 
 
+def test_what_code_returns_is_an_object_of_the_simulation() -> None:
+    text = """
+told = distributionFunction(lambda *values: values[0])
+behavior B(thing, things):
+    for _ in range(3):
+        take thing is things[1] is o, (distance from thing to o), thing.position.y
+    o.seen = 5
+    take thing.seen, things[1].seen, o.seen
+ego = new Object
+class Car:
+    seen: 1
+o = new Car at (Range(3, 8), 5)
+mutate o
+x = told(o, Range(0, 1))
+ego.behavior = B(x, told([1, x], Range(0, 1)))
+record (x is o) as same
+require always x is o
+"""
+    done = DummySimulator(drift=1).simulate(scene_of(text), maxSteps=4)
+    assert done is not None
+    assert done.result is not None
+    moves = taken(done)
+    assert [step[:2] for step in moves[:3]] == [(True, 0)] * 3
+    assert moves[0][2] < moves[1][2] < moves[2][2]
+    assert moves[3] == (5, 5, 5)
+    assert [same for _, same in done.result.records["same"]] == [True] * 5
+
+
 def test_parameters_of_a_simulation_are_its_own() -> None:
     """Whether or not those of the scene were looked at before; afterwards these are as they were."""
     text = (
