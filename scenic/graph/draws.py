@@ -7,7 +7,7 @@ So no draw depends on which others there are, in which order they are asked for,
 """
 
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Final, Protocol, Self
@@ -54,8 +54,15 @@ def box_addresses(parts: int) -> Words:
 
 
 def seed_word(seed: int) -> np.uint64:
-    """The 64-bit word that stands for a seed, which may be any integer."""
-    return np.uint64(address("seed", int(seed)))
+    """The 64-bit word that stands for a seed, which may be any integer: ``address("seed", seed)``."""
+    word: np.uint64 = seed_words([seed])[0]
+    return word
+
+
+def seed_words(seeds: Iterable[int]) -> Words:
+    """The words ``(n,)`` of seeds, as `seed_word` gives them."""
+    digests = [hashlib.blake2b(b"('seed', %d)" % seed, digest_size=8).digest() for seed in seeds]
+    return np.frombuffer(b"".join(digests), dtype="<u8").astype(np.uint64)
 
 
 def scene_keys(seeds: Words, scenes: NDArray[np.int64]) -> Words:

@@ -101,8 +101,11 @@ def is_open(value: Any) -> bool:
 
 
 def per_option(value: Any, function: Callable[[Any], Any]) -> Any:
-    """``function`` of a value; of each option where the value is a random choice, and the choice among the results."""
+    """``function`` of a value; of each option where the value is a random choice, and the choice among the results.
+
+    Options that are choices themselves are taken apart likewise.
+    """
     if isinstance(value, Random) and value.node.operation is TABLE["select"]:
         index, *options = value.node.operands
-        return select(index, [as_node(function(drawn_option(option))) for option in options])
+        return select(index, [as_node(per_option(drawn_option(option), function)) for option in options])
     return function(value)

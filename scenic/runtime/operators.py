@@ -173,11 +173,12 @@ def _global_yaw(value: Any) -> Any:
 
 
 def _apparent_heading(ego: Ego, target: Any, origin: Any) -> Any:
-    start = _place(ego() if origin is None else origin, "`apparent heading`")
-    if is_unknown(target, OrientedPoint):
-        return _when_drawn(_apparent_heading, target, start)
-    if not is_kind(target, OrientedPoint):
+    waits = is_unknown(target, OrientedPoint)
+    if not (waits or is_kind(target, OrientedPoint)):
         raise wrong_type("an oriented point", target, "`apparent heading of`")
+    start = _place(ego() if origin is None else origin, "`apparent heading`")
+    if waits:
+        return _when_drawn(_apparent_heading, target, start)
     line = _azimuth(_minus(target.position, start))
     return _normal(_minus(target.heading, line))
 

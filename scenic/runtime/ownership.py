@@ -15,6 +15,8 @@ __all__ = [
     "CACHED",
     "CONTAINERS",
     "DECORATED",
+    "EGOLESS",
+    "EGOLESS_OPERATORS",
     "PRELUDE",
     "SAMPLE",
     "content",
@@ -29,6 +31,12 @@ __all__ = [
 
 PRELUDE = "__scenic__"
 """The global name by which generated code finds the prelude, through which functions read the ego."""
+
+EGOLESS: Final = frozenset({"convert", "spread"})
+"""What functions call of the prelude without reading the ego or the workspace."""
+
+EGOLESS_OPERATORS: Final = frozenset({"deg", "@", "at", "relative to", "offset by", "offset along"})
+"""Operators of the prelude that never mean the ego."""
 
 SAMPLE = "__sample__"
 """The global name by which functions over sampled names find their sample, weakly referenced."""

@@ -23,6 +23,8 @@ from scenic.runtime.ownership import (
     CACHED,
     CONTAINERS,
     DECORATED,
+    EGOLESS,
+    EGOLESS_OPERATORS,
     PRELUDE,
     SAMPLE,
     content,
@@ -92,12 +94,7 @@ class Globals:
         """The names that code looks up among globals: not those of attributes, which the program may use for others."""
         found = self._loads.get(code)
         if found is None:
-            loads = (
-                step.argval
-                for step in dis.get_instructions(code)
-                if "GLOBAL" in step.opname or step.opname == "LOAD_NAME"
-            )
-            found = self._loads[code] = tuple(dict.fromkeys(loads)) if code.co_names else ()
+            found = self._loads[code] = tuple(dict.fromkeys(_loads(code))) if code.co_names else ()
         return found
 
     def imported(self, function: FunctionType) -> list[ModuleType]:
@@ -194,6 +191,17 @@ def mention(values: Iterable[Any], names: Globals, word: str) -> bool:
     return any(
         _mentions(value.__code__, word) for value in reachable(values, names) if is_own_function(value)
     )
+
+
+def _loads(code: CodeType) -> Iterator[str]:
+    """Global names that code looks up; not the prelude where it only calls what does not depend on the ego."""
+    steps = list(dis.get_instructions(code))
+    for index, step in enumerate(steps):
+        if "GLOBAL" in step.opname or step.opname == "LOAD_NAME":
+            member, first = (after.argval for after in (*steps[index + 1 : index + 3], step, step)[:2])
+            is_egoless = member in EGOLESS or (member == "operation" and first in EGOLESS_OPERATORS)
+            if step.argval != PRELUDE or not is_egoless:
+                yield step.argval
 
 
 def _imported_names(code: CodeType) -> Iterator[str]:
@@ -526,11 +534,21 @@ class Sample:
         """The function over sampled globals, closure and defaults."""
         own = PRELUDE in function.__globals__
         scope = self._scope(function) if own else function.__globals__
-        cells = tuple(CellType() for _ in function.__closure__ or ())
-        copy = FunctionType(function.__code__, scope, function.__name__, None, cells or None)
+        stays = self._stays(function)
+        cells = (
+            (function.__closure__ or ()) if stays else tuple(CellType() for _ in function.__closure__ or ())
+        )
+        defaults = function.__defaults__ if stays else None
+        copy = FunctionType(function.__code__, scope, function.__name__, defaults, cells or None)
         copy.__doc__ = function.__doc__
         copy.__qualname__ = function.__qualname__
         self.remember(function, copy)
+        if (
+            stays
+        ):  # It reads nothing of the sample itself, but what it calls may ask for the sample of its caller.
+            copy.__kwdefaults__ = function.__kwdefaults__
+            copy.__dict__.update(function.__dict__)
+            return copy
         if own:
             self._fill(function, scope)
         for new, old in zip(cells, function.__closure__ or (), strict=True):

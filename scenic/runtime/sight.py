@@ -22,7 +22,7 @@ from scenic.runtime.geometry.visibility.points import sees_points
 from scenic.runtime.geometry.visibility.proving import Proof, prove
 from scenic.runtime.geometry.visibility.single import View, sees_body, sees_point
 from scenic.runtime.geometry.visibility.views import Views
-from scenic.runtime.regions.stacked import body_of, body_operands, placed_of
+from scenic.runtime.regions.stacked import body_of, body_operands, is_body, placed_of
 from scenic.runtime.sight_readings import TARGET, sees_bounds, sees_inverse, sees_looks_at
 from scenic.runtime.values import (
     Orientation,
@@ -124,11 +124,6 @@ def occluders_of(values: Any) -> tuple[Any, ...]:
         if not (thing.node.kind.is_boxed if isinstance(thing, Random) else is_body(thing)):
             raise wrong_type("an object", thing, "what may hide others")
     return things
-
-
-def is_body(value: Any) -> bool:
-    """Whether a value is an object: something with a shape, not just a place."""
-    return not isinstance(value, Random) and hasattr(type(value), "occupiedSpace")
 
 
 def camera_of(observer: Any) -> tuple[Any, Any]:

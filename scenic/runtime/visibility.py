@@ -8,8 +8,8 @@ import numpy as np
 from scenic.graph import quaternions
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import Call, Operation, always
-from scenic.runtime.regions.stacked import body_operands
-from scenic.runtime.sight import camera_of, is_body, sees, view_operands
+from scenic.runtime.regions.stacked import body_operands, is_body
+from scenic.runtime.sight import camera_of, sees, view_operands
 from scenic.runtime.sight_readings import sees_in_plane_bounds, sees_in_plane_inverse
 from scenic.runtime.values import apply, is_random, per_option, to_scalar, to_vector
 

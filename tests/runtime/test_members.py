@@ -5,6 +5,9 @@ from itertools import pairwise
 
 import pytest
 
+from scenic.runtime.operators import OPERATORS
+from scenic.runtime.ownership import EGOLESS, EGOLESS_OPERATORS
+from scenic.runtime.prelude import Prelude
 from scenic.simulators.dummy import DummySimulation, DummySimulator
 from tests.runtime.programs import scenario, scene
 
@@ -189,6 +192,65 @@ def test_a_member_that_reads_nothing_random_is_that_of_the_program() -> None:
     assert first.f.__func__ is second.f.__func__
     assert first.k is second.k
     assert type(first) is type(second)
+
+
+def test_methods_that_read_nothing_random_themselves_keep_their_defaults_and_find_the_sample() -> None:
+    """What they call by the type of an object asks for the sample of its caller."""
+    text = (
+        "total = Range(3, 4)\nclass Car:\n    @classmethod\n    def limit(cls): return total\n"
+        "    def ask(self, n=2, *, k=3):\n        'Asks.'\n        return type(self).limit() * n + k\n"
+        "    ask.unit = 'm'\n"
+        "    def told(self): return self.ask.unit, self.ask.__doc__, self.ask.__name__, self.ask.__qualname__\n"
+        "ego = new Car\nparam a = ego.ask(), b = ego.ask(5, k=1), told = ego.told(), total = total\n"
+        "require ego.ask() > 3 + 2 * 3.5\n"
+    )
+    for found in scenario(text).sample(10, seed=1):
+        total, ego = found.params["total"], found.objects[0]
+        assert total > 3.5
+        assert found.params["a"] == ego.ask() == 2 * total + 3
+        assert found.params["b"] == ego.ask(5, k=1) == 5 * total + 1
+        assert found.params["told"] == ("m", "Asks.", "ask", "Car.ask")
+
+
+@pytest.mark.parametrize(
+    ("body", "reads_ego"),
+    [
+        ("str(x) + str(int(x))", False),
+        ("max(*[x, 2])", False),
+        ("x deg", False),
+        ("x @ 2", False),
+        ("F at (x, 2)", False),
+        ("(x, 0) offset by (1, 2)", False),
+        ("1 relative to x", False),
+        ("(x, 0) offset along 30 deg by (1, 2)", False),
+        ("str(ego.position.x)", True),
+        ("distance to (x, 2)", True),
+        ("angle from (x, 2)", True),
+        ("relative heading of x", True),
+        ("distance past (x, 2)", True),
+        ("(follow F from ego for x).position", True),
+        ("(lambda: (distance to (x, 2)) deg)()", True),
+    ],
+)
+def test_methods_are_those_of_a_sample_only_where_they_may_read_the_ego(body: str, reads_ego: bool) -> None:
+    text = (
+        f"F = VectorField('F', lambda place: 0)\nclass A:\n    def f(self, x=3): return {body}\n"
+        f"ego = new A at (Range(0, 1), Range(0, 1), 0), facing Range(0, 1)\nx = 3\nparam p = {body}"
+    )
+    first, second = scenario(text).sample(2)
+    methods = [item.objects[0].f for item in (first, second)]
+    assert [method() for method in methods] == [first.params["p"], second.params["p"]]
+    assert (methods[0].__func__ is methods[1].__func__) == (not reads_ego)
+    assert (methods[0]() == methods[1]()) == (not reads_ego)
+
+
+def test_what_is_called_of_the_prelude_without_an_ego_has_none() -> None:
+    """By the code of the prelude itself, which keeps ego and workspace in its module."""
+    for name in EGOLESS:
+        assert not {"_module", "_ego", "ego", "workspace", "_context"} & set(
+            getattr(Prelude, name).__code__.co_names
+        )
+    assert set(OPERATORS) >= EGOLESS_OPERATORS
 
 
 def test_what_a_class_holds_can_be_bound_anew() -> None:

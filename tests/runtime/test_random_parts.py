@@ -8,7 +8,7 @@ from typing import Any, cast
 
 import pytest
 
-from scenic.language.errors import RandomControlFlowError, ScenicValueError
+from scenic.language.errors import RandomControlFlowError, ScenicTypeError, ScenicValueError
 from scenic.runtime.samples import Sample
 from tests.runtime.programs import failure, place, scenario
 
@@ -594,3 +594,62 @@ def test_objects_that_code_returns_neither_hide_themselves_nor_are_points() -> N
             assert min(map(abs, found)) > edge, requirement
         else:
             assert max(found) - min(found) > 1, requirement
+
+
+DRAWN_THINGS = (
+    "told = distributionFunction(lambda value, _: value)\n"
+    "ego = new Object at (0, 0)\no = new Object at (5, 5)\n"
+    "near = CircularRegion((5, 5), 1)\nfar = CircularRegion((50, 5), 1)\nhall = CircularRegion((0, 0), 30)\n"
+)
+
+
+@pytest.mark.parametrize(
+    ("asked", "answers"),
+    [
+        ("o.intersects(told(near, Range(0, 1)))", {True}),
+        ("o.intersects(told(far, Range(0, 1)))", {False}),
+        ("o.intersects(Uniform(near, far))", {True, False}),
+        ("o.intersects(Uniform(o, far))", {True, False}),
+        ("o.intersects(Uniform(Uniform(near, o), told(far, Range(0, 1))))", {True, False}),
+        ("near.intersects(told(o, Range(0, 1)))", {True}),
+        ("near.intersects(told(ego, Range(0, 1)))", {False}),
+        ("near.intersects(Uniform(o, far, ego))", {True, False}),
+        ("Uniform(near, far).intersects(told(o, Range(0, 1)))", {True, False}),
+        ("near.containsObject(told(o, Range(0, 1)))", {True}),
+        ("far.containsObject(told(o, Range(0, 1)))", {False}),
+        ("near.containsObject(Uniform(told(o, Range(0, 1)), ego))", {True, False}),
+        ("Uniform(Uniform(o, ego), told(o, Range(0, 1))).canSee((50.2, 5))", {True, False}),
+    ],
+)
+def test_methods_take_objects_and_regions_that_are_known_when_drawn(asked: str, answers: set[bool]) -> None:
+    found = scenario(f"{DRAWN_THINGS}param p = {asked}\n").sample(20, seed=1)
+    assert {item.params["p"] for item in found} == answers
+
+
+@pytest.mark.parametrize(
+    ("asked", "wanted"),
+    [
+        ("o.intersects(told(3, Range(0, 1)))", "a region, not 3"),
+        ("o.intersects(Uniform(near, (1, 2)))", "a region, not (1, 2)"),
+        ("hall.containsObject(told(near, Range(0, 1)))", "an object, not CircularRegion"),
+        ("hall.containsObject(Uniform(o, near))", "an object, not CircularRegion"),
+        ("hall.containsObject(3)", "an object, not 3"),
+    ],
+)
+def test_methods_say_what_they_cannot_take(asked: str, wanted: str) -> None:
+    error = failure(f"{DRAWN_THINGS}param p = {asked}\n")
+    assert isinstance(error, ScenicTypeError)
+    assert f"expected {wanted}" in str(error)
+    assert place(error)[1].startswith("7:11-")
+
+
+def test_observers_may_be_choices_of_choices() -> None:
+    text = (
+        "near = new Object at (0, 0), with visibleDistance 5\nfar = new Object at (90, 0), with visibleDistance 5\n"
+        "ego = new Object at (-50, 0), with friend Uniform(near, far)\n"
+        "x = Uniform(Uniform(near, far), Uniform(ego, ego).friend)\n"
+        "seen = new Object at (0, 3), visible from x\nhidden = new Object at (90, 4), not visible from x\n"
+        "param x = x, view = CircularRegion((0, 0), 2) visible from x\n"
+    )
+    for item in scenario(text).sample(20, seed=2):
+        assert item.params["x"] is item.objects[1]

@@ -6,6 +6,7 @@ manifold3d. Everything else, and everything random, becomes a composite region.
 
 import itertools
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -48,12 +49,24 @@ from scenic.runtime.regions.planar import (
     PolygonalRegion,
 )
 from scenic.runtime.regions.scattered import PointSetRegion
+from scenic.runtime.regions.stacked import is_body
 from scenic.runtime.regions.views import ViewRegion
 from scenic.runtime.regions.volumes import BoxRegion, PlacedVolume
 from scenic.runtime.regions.voxels import VoxelRegion
 from scenic.runtime.regions.voxels import voxelized as cells_of
 from scenic.runtime.shapes import Shape, ShapeSource
-from scenic.runtime.values import CODEC, Orientation, Vector, as_node, as_value, describe
+from scenic.runtime.values import (
+    CODEC,
+    Orientation,
+    Random,
+    Vector,
+    as_node,
+    as_value,
+    describe,
+    is_open,
+    options_of,
+    per_option,
+)
 
 
 def _operand(value: Any, what: str) -> Region:
@@ -334,6 +347,10 @@ def difference(first: Any, second: Any) -> Region:
 
 def intersects(first: Any, second: Any) -> Any:
     """Whether two regions or objects share a point; random where one of them is."""
+    if is_open(second):
+        return Random.later(intersects, first, second)
+    if options_of(second) and as_region(second) is None and not is_body(second):
+        return per_option(second, partial(intersects, first))
     a, b = _operand(first, "`intersects`"), _operand(second, "`intersects`")
     if isinstance(a, Nowhere) or isinstance(b, Nowhere):
         return False

@@ -38,7 +38,7 @@ from scenic.runtime.regions.knowledge import (
 )
 from scenic.runtime.regions.nearness import SLACK, at_any_height
 from scenic.runtime.regions.single import Single
-from scenic.runtime.regions.stacked import Stack, body_operands, placed_of
+from scenic.runtime.regions.stacked import Stack, body_operands, is_body, placed_of
 from scenic.runtime.spelling import plain_number
 from scenic.runtime.values import (
     OrientedVector,
@@ -46,11 +46,15 @@ from scenic.runtime.values import (
     Vector,
     apply,
     as_node,
+    is_open,
     is_random,
+    options_of,
+    per_option,
     random_key,
     to_vector,
     uniform,
     vector,
+    wrong_type,
 )
 
 Points = NDArray[np.float64]
@@ -264,6 +268,12 @@ class Region(ABC):
 
     def containsObject(self, thing: Any) -> Any:
         """Whether the region holds the whole of an object."""
+        if not is_body(thing):
+            if is_open(thing):
+                return Random.later(self.containsObject, thing)
+            if options_of(thing):
+                return per_option(thing, self.containsObject)
+            raise wrong_type("an object", thing, "`containsObject`")
         if (single := self.at_once) is not None and (body := placed_of(thing)) is not None:
             held = single.holds_body(body)
             if held is not None:
@@ -278,7 +288,7 @@ class Region(ABC):
 
     def intersects(self, other: Any) -> Any:
         """Whether the region shares a point with another, or with an object."""
-        if hasattr(type(other), "occupiedSpace") and (single := self.at_once) is not None:
+        if is_body(other) and (single := self.at_once) is not None:
             body = placed_of(other)
             met = None if body is None else single.meets_body(body)
             if met is not None:
@@ -370,7 +380,7 @@ class Region(ABC):
         return OrientedVector.make(point, self.orientation_at(to_vector(point)).yaw)
 
     def __contains__(self, item: Any) -> Any:
-        return self.containsObject(item) if hasattr(item, "occupiedSpace") else self.containsPoint(item)
+        return self.containsObject(item) if is_body(item) else self.containsPoint(item)
 
     def __str__(self) -> str:
         return f"<{type(self).__name__}{'' if self.name is None else f' {self.name}'}>"

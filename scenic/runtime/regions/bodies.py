@@ -22,7 +22,7 @@ from scenic.runtime.lazy import is_lazy
 from scenic.runtime.regions.base import Mask, Points, Region, unsupported
 from scenic.runtime.regions.fixed_sides import FixedSide
 from scenic.runtime.regions.nearness import body_box, body_reach, grown, only_within, separation
-from scenic.runtime.regions.stacked import Stack, body_of, body_operands, placed_of
+from scenic.runtime.regions.stacked import Stack, body_of, body_operands, is_body, placed_of
 from scenic.runtime.values import apply, describe, is_number, is_random, operate, to_vector, uniform, vector
 
 SIDES: Mapping[str, Side] = MappingProxyType(
@@ -133,7 +133,7 @@ class OccupiedSpace(Region):
 
     def intersects(self, other: Any) -> Any:
         """Whether another object's space, or a region, shares a point with this one."""
-        if hasattr(other, "occupiedSpace"):
+        if is_body(other):
             return apply(_INTERSECT, *self.parameters, *body_operands(other))
         return super().intersects(other)
 

@@ -18,7 +18,15 @@ from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.poses import Indices, Poses
 from scenic.runtime.geometry.single import Placed, placed
 from scenic.runtime.shapes import Shape
-from scenic.runtime.values import Orientation, Vector, to_scalar, vector
+from scenic.runtime.values import Orientation, Random, Vector, options_of, to_scalar, vector
+
+
+def is_body(value: Any) -> bool:
+    """Whether a value certainly is an object, something with a shape: for a choice, every option."""
+    options = options_of(value)
+    if options:
+        return all(map(is_body, options))
+    return not isinstance(value, Random) and hasattr(type(value), "occupiedSpace")
 
 
 def body_operands(thing: Any) -> tuple[Any, Any, Any, Any]:

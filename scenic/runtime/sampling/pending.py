@@ -6,7 +6,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from scenic.graph.draws import Counter, Words, address, scene_keys, seed_word
+from scenic.graph.draws import Counter, Words, address, scene_keys, seed_words
 
 
 class Task(NamedTuple):
@@ -66,12 +66,7 @@ class Pending:
         numbers = range(self._next, self._next + len(tasks))
         self._next = numbers.stop
         seeds, ks = zip(*tasks, strict=True)
-        words = {seed: seed_word(seed) for seed in set(seeds)}
-        seed = (
-            np.array([words[seed] for seed in seeds], dtype=np.uint64)
-            if len(words) > 1
-            else np.full(len(tasks), words[seeds[0]], dtype=np.uint64)
-        )
+        seed = np.broadcast_to(seed_words(seeds[:1] if len(set(seeds)) == 1 else seeds), len(seeds))
         k = np.array(ks, dtype=np.int64)
         key = scene_keys(seed, k)
         inactive = Counter(key).uniforms(self._addresses) >= self._chances[:, np.newaxis]
