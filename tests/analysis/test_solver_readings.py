@@ -124,3 +124,27 @@ def test_the_solver_allows_the_value_and_no_other(case):
         if told and asked.result is not None:
             other = 1 - values[lane] if boolean else values[lane] + 0.5
             assert not asked.may_be(other), (fixed, [column[lane] for column in columns], other)
+
+
+LIMITS = {
+    "sin": 1,
+    "cos": 1,
+    "normalize angle": np.pi,
+    "azimuth": np.pi,
+    "altitude": np.pi / 2,
+    "normalized": 1,
+}
+"""Between which two numbers, one the negative of the other, values of operations lie whose solver reading knows no more."""
+
+
+@pytest.mark.parametrize("case", [case for case in SOLVED if case.name in LIMITS], ids=str)
+def test_the_solver_knows_limits_of_what_it_leaves_open(case):
+    limit, terms = LIMITS[case.name], SolverTerms()
+    columns = operands_of(case)
+    values, fine = values_of(case, columns)
+    for lane in np.flatnonzero(fine)[:3]:
+        asked = Asked(terms, case, [column[lane] for column in columns], (False,) * len(columns))
+        assert asked.may_be(values[lane])
+        for beyond in (limit + 0.01, -limit - 0.01):
+            places = np.eye(3) if values.ndim > 1 else [1.0]
+            assert not any(asked.may_be(beyond * np.asarray(place)) for place in places)

@@ -17,6 +17,7 @@ from scenic.runtime.sampling.checks import NodeCheck
 from scenic.runtime.sampling.engine import BATCH_BYTES, BODY_BYTES, DEFAULT_LANES, Engine
 from scenic.runtime.sampling.pending import Task
 from scenic.runtime.sampling.report import Exhausted
+from scenic.runtime.scenario import DEFAULT_ATTEMPTS
 from tests.graph.programs import evaluate, faulty
 from tests.runtime.programs import FALSE_ALARM, fingerprint, scenario
 
@@ -284,6 +285,15 @@ def test_a_program_without_randomness_is_tried_once() -> None:
     (result,) = scenario("def f(): return 1 > 2\nrequire f() as never\n").stream(1, seed=0)
     assert isinstance(result, Exhausted)
     assert result.attempts == 1000
+
+
+def test_more_attempts_than_usual_are_made_where_they_are_wanted() -> None:
+    """What is so rare is looked for no shorter than asked, and no longer."""
+    program = scenario("x = Range(0, 1)\nrequire (x * 1e6) % 1 < 1e-12 as rare\n")
+    most = DEFAULT_ATTEMPTS + 7
+    (result,) = program.stream(1, seed=0, max_attempts=most)
+    assert isinstance(result, Exhausted)
+    assert (result.reason, result.attempts) == ("attempts", most)
 
 
 def test_functions_may_be_the_only_random_thing() -> None:

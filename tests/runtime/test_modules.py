@@ -53,6 +53,27 @@ def test_python_modules_beside_the_program_are_found_from_anywhere(tmp_path: Pat
     assert sys.path == before
 
 
+def test_methods_are_the_programs_through_any_decorator_of_a_library(tmp_path: Path) -> None:
+    """What else the decorator holds, functions of its own among it, hides them as little as other decorators do."""
+    main = written(
+        tmp_path,
+        {
+            "library.py": "import functools\ndef plain(x): return x\ndef other(x): return x\n"
+            "def marked(function, before=plain, update=other):\n"
+            "    def wrapper(*args): return update(function(*map(before, args)))\n    return wrapper\n"
+            "def cached(function): return functools.cache(marked(function))\n",
+            "main.scenic": "from library import marked, cached\nr = Range(1, 2)\nclass A:\n"
+            "    @marked\n    def one(self): return r\n    @marked\n    @marked\n    def two(self): return r\n"
+            "    @cached\n    def three(self): return r\n"
+            "ego = new A\nparam r = r, found = [ego.one(), ego.two(), ego.three()]\n",
+        },
+    )
+    found = first(main)
+    ego, r = found.objects[0], found.params["r"]
+    assert 1 < r < 2
+    assert [*found.params["found"], ego.one(), ego.two(), ego.three()] == [r] * 6
+
+
 def test_what_a_program_adds_to_the_search_path_stays(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

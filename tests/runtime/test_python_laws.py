@@ -31,6 +31,19 @@ def test_a_distribution_of_the_program(options: str) -> None:
     assert all(np.isclose(after, d + 1) and again == d for _, d, after, again in values)
 
 
+def test_laws_see_what_is_drawn_even_if_it_is_nothing() -> None:
+    text = """
+class Told(Distribution):
+    def __init__(self, *values):
+        super().__init__(*values)
+        self.values = values
+    def sampleGiven(self, value):
+        return [repr(value[item]) for item in self.values]
+param x = Told(Uniform(0, 0), Uniform(False, False), Uniform([], []), Uniform(None, None), Uniform("", ""), 0)
+"""
+    assert draws(text, n=3) == [["0", "False", "[]", "None", "''", "0"]] * 3
+
+
 def test_resampling_draws_anew_from_the_same_dependencies() -> None:
     values = draws(LAW + "d = Shifted(low)\nparam x = (low, d, resample(d))", n=300)
     assert all(low <= d <= low + 1 and low <= e <= low + 1 and d != e for low, d, e in values)

@@ -92,6 +92,31 @@ def test_measures_of_volumes_of_meshes() -> None:
         assert volume.voxelized(0.5).size >= volume.size * 0.9
 
 
+def test_polylines_are_made_of_what_shapely_calls_lines() -> None:
+    outline = shapely.Polygon([(0, 0), (4, 0), (4, 3)])
+    ring = named.PolylineRegion(polyline=outline.exterior)
+    both = named.PolylineRegion(polyline=shapely.MultiLineString([[(0, 0), (4, 0)], [(4, 0), (4, 3)]]))
+    assert ring.length == pytest.approx(12)
+    assert both.length == pytest.approx(7)
+    for region, through in ((ring, True), (both, False)):
+        assert region.containsPoint((2, 0))
+        assert region.containsPoint((4, 1.5))
+        assert region.containsPoint((2, 1.5)) is through
+
+
+def test_meshes_that_are_inside_out_are_turned() -> None:
+    inward = trimesh.creation.box((2, 2, 2))
+    inward.invert()
+    volume = named.MeshVolumeRegion(inward, position=(5, 5, 5))
+    assert volume.size == pytest.approx(8)
+    assert volume.mesh.volume == pytest.approx(8)
+    corner = volume.intersect(named.BoxRegion(position=(6, 6, 6), dimensions=(2, 2, 2)))
+    assert corner.size == pytest.approx(1)
+    assert volume.difference(named.BoxRegion(position=(6, 6, 6), dimensions=(2, 2, 2))).size == pytest.approx(
+        7
+    )
+
+
 def test_measures_of_views() -> None:
     view = named.ViewRegion(3, (2 * math.pi, math.pi), position=PLACE, rotation=TILT)
     assert tuple(view.position) == tuple(PLACE)

@@ -318,6 +318,19 @@ def test_scenes_conditioned_on_one_keep_what_was_named() -> None:
     assert first.params["p"] not in free + [loaded.generate()[0].params["p"] for _ in range(12)]
 
 
+def test_objects_are_named_by_their_places_among_those_of_scenes() -> None:
+    """The ego comes first there, not in the program."""
+    loaded = scenario("a = new Object at (Range(0, 1), 5)\nego = new Object at (Range(0, 1), 9)\n")
+    (first,) = loaded.sample(1, seed=3)
+    for place in (0, 1, -1):
+        loaded.conditionOn()
+        loaded.conditionOn(first, objects=[place])
+        later = loaded.sample(5, seed=4)
+        for number, item in enumerate(first.objects):
+            found = {thing.objects[number].position.x for thing in later}
+            assert (found == {item.position.x}) == (number == place % 2)
+
+
 def test_exceptions_of_the_program_keep_their_type_and_tell_the_place() -> None:
     text = "x = Range(0, 1)\ndef f(v):\n    return {}[v]\nrequire f(x)\n"
     with pytest.raises(KeyError) as caught:

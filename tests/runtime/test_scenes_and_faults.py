@@ -427,3 +427,13 @@ def test_what_cannot_be_computed_is_no_collision(specifiers: str) -> None:
 def test_others_that_collide_reject_a_candidate_that_fails() -> None:
     error = failure(f"{FAILING}new Object at (Range(-1, 1), 0)\nnew Object at (y, 30)\n")
     assert isinstance(error, RejectionException)
+
+
+def test_a_sum_is_rejected_where_either_part_is() -> None:
+    """Also as an option: the empty range rejects the candidates that draw it."""
+    text = (
+        "n = DiscreteRange(0, 1)\nm = DiscreteRange(0, 1)\n"
+        "x = Uniform(DiscreteRange(1, n) + DiscreteRange(1, m), 7)\nparam p = (n, m, x)\n"
+    )
+    found = {item.params["p"] for item in scenario(text).sample(100, seed=1)}
+    assert found == {(1, 1, 2), *((n, m, 7) for n in (0, 1) for m in (0, 1))}

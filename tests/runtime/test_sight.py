@@ -196,6 +196,19 @@ def test_certain_answers_find_what_is_between_rays() -> None:
         assert scene.params == {"rays": False, "proved": True}
 
 
+def test_what_cannot_be_proved_to_be_seen_is_not_certainly_seen() -> None:
+    """Two boxes that touch hide all, but no single one of them does, wherever the directions are divided."""
+    text = (
+        "ego = new Object with width 0.1, with length 0.1\n"
+        "left = new Object at (-2, 5, 0), with width 4, with length 0.1, with height 4, with allowCollisions True\n"
+        "right = new Object at (2, 5, 0), with width 4, with length 0.1, with height 4, with allowCollisions True\n"
+        "box = new Object at (Range(-0.01, 0.01), 10, 0), with width 2\n"
+        "param proved = ego.canSee(box, [left, right], certain=True), alone = ego.canSee(box, [left], certain=True)\n"
+    )
+    for scene in scenic.scenarioFromString(text).sample(3, seed=1):
+        assert scene.params == {"proved": False, "alone": True}
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     [

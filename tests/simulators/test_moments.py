@@ -419,6 +419,20 @@ def test_guards_of_behaviors_are_asked_when_they_start_and_go_on(capsys: pytest.
     ]
 
 
+@pytest.mark.parametrize("limit", ["for 1 steps", "until simulation().currentTime >= 3"])
+def test_guards_are_asked_when_what_was_done_has_run_out(
+    limit: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    simulate(NOTED.replace("do Inner()", f"do Inner() {limit}"), 5)
+    assert capsys.readouterr().out.splitlines()[3:] == [
+        "invariant 2",
+        "inner precondition 2",
+        "inner 2",
+        "invariant 3",
+        "invariant 4",
+    ]
+
+
 NOTED_SCENARIOS = """
 def note(what):
     print(what, simulation().currentTime)

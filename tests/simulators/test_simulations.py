@@ -331,6 +331,25 @@ require always x is o
     assert [same for _, same in done.result.records["same"]] == [True] * 5
 
 
+@pytest.mark.parametrize("word", ["visible", "not visible"])
+def test_objects_that_enter_are_seen_as_their_specifiers_say(word: str) -> None:
+    text = f"""
+scenario Main():
+    setup:
+        ego = new Object
+    compose:
+        do Sub()
+scenario Sub():
+    setup:
+        new Object at (9, PLACE), {word} from ego
+    compose:
+        wait
+"""
+    for place, seen in (("0", True), ("990", False)):
+        done = DummySimulator().simulate(scene_of(text.replace("PLACE", place)), maxSteps=2)
+        assert (done is not None) == (seen == (word == "visible")), (place, word)
+
+
 def test_parameters_of_a_simulation_are_its_own() -> None:
     """Whether or not those of the scene were looked at before; afterwards these are as they were."""
     text = (

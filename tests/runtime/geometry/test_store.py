@@ -151,6 +151,18 @@ def test_a_wrong_byte_is_noticed(folder, place):
     assert compute.calls == 1
 
 
+@pytest.mark.parametrize("place", [9_000, 70_000, -1])
+def test_a_wrong_byte_of_a_long_file_is_noticed(folder, place):
+    long = {"a": np.arange(20_000.0)}
+    kept("x 1", CONTENT, lambda: long)
+    (path,) = folder.iterdir()
+    content = bytearray(path.read_bytes())
+    assert len(content) > 100_000
+    content[place] ^= 1
+    path.write_bytes(content)
+    np.testing.assert_array_equal(kept("x 1", CONTENT, lambda: long)["a"], long["a"])
+
+
 def test_objects_are_never_unpickled(folder):
     kept("x 1", CONTENT, Counted())
     (path,) = folder.iterdir()
