@@ -33,6 +33,7 @@ from scenic.runtime.values import (
     is_vector,
     operate,
     options_of,
+    per_option,
     to_heading,
     to_orientation,
     to_scalar,
@@ -214,6 +215,10 @@ def scalar_or_vector(value: Any, what: str, *, axis: int) -> Any:
         parts: list[Any] = [0, 0, 0]
         parts[axis] = value
         return vector(*parts)
+    if options_of(value) and value.node.kind.is_boxed:
+        return to_vector(per_option(value, partial(scalar_or_vector, what=what, axis=axis)), what)
+    if is_open(value):
+        return to_vector(Random.later(scalar_or_vector, value, what, axis=axis), what)
     return to_vector(value, what)
 
 

@@ -6,6 +6,7 @@ import weakref
 from collections.abc import Callable
 from typing import Any, cast
 
+import numpy as np
 import pytest
 
 from scenic.language.errors import RandomControlFlowError, ScenicTypeError, ScenicValueError
@@ -641,6 +642,32 @@ def test_methods_say_what_they_cannot_take(asked: str, wanted: str) -> None:
     assert isinstance(error, ScenicTypeError)
     assert f"expected {wanted}" in str(error)
     assert place(error)[1].startswith("7:11-")
+
+
+@pytest.mark.parametrize("value", ["2.5", "(1, 2, 3)"])
+@pytest.mark.parametrize(
+    "hidden", ["told(X, Range(0, 1))", "Uniform(X, X)", "Uniform(told(X, Range(0, 1)), X)"]
+)
+def test_displacements_are_numbers_or_vectors_when_they_are_drawn(value: str, hidden: str) -> None:
+    def places(distance: str) -> list[tuple[float, ...]]:
+        text = DRAWN_THINGS + "".join(
+            f"new Object {words} by {distance}, with allowCollisions True\n"
+            for words in ("left of (1, 1)", "ahead of ego", "above o", "beyond (10, 10)", "beyond o")
+        )
+        return [tuple(item.position) for item in scenario(text).sample(1, seed=1)[0].objects]
+
+    np.testing.assert_allclose(places(hidden.replace("X", value)), places(value), atol=1e-9)
+
+
+def test_displacements_of_both_kinds_may_be_options_of_one_choice() -> None:
+    text = f"{DRAWN_THINGS}d = Uniform(2, (1, 2, 3))\nnew Object ahead of ego by d\nparam d = d\n"
+    found = scenario(text).sample(20, seed=1)
+    expected = {2: (0, 3, 0), (1, 2, 3): (1, 3, 3)}
+    assert {item.params["d"] for item in found} == set(expected)
+    assert all(tuple(item.objects[2].position) == expected[item.params["d"]] for item in found)
+    error = failure(f"{DRAWN_THINGS}new Object left of ego by told('far', Range(0, 1))\n")
+    assert isinstance(error, ScenicTypeError)
+    assert "`left of ... by`: expected a vector, not 'far'" in str(error)
 
 
 def test_observers_may_be_choices_of_choices() -> None:
