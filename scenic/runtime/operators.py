@@ -17,6 +17,7 @@ from scenic.runtime.opaque import call_later
 from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.bodies import gap_between
 from scenic.runtime.regions.choice import as_region
+from scenic.runtime.regions.drawn import DrawnRegion
 from scenic.runtime.regions.views import part_of
 from scenic.runtime.sight import sees
 from scenic.runtime.specifiers import Ego, is_kind, is_unknown, region_of
@@ -256,8 +257,14 @@ def _can_see(_ego: Ego, viewer: Any, target: Any) -> Any:
 
 
 def _part_in_view(ego: Ego, region: Any, viewer: Any, *, seen: bool) -> Region:
-    what = "`visible`" if seen else "`not visible`"
-    return part_of(region_of(region, what), ego() if viewer is None else viewer, seen=seen)
+    observer = ego() if viewer is None else viewer
+    if is_open(region) or is_open(observer):
+        return DrawnRegion.made(_part_of, region, observer, seen=seen)
+    return _part_of(region, observer, seen=seen)
+
+
+def _part_of(region: Any, observer: Any, *, seen: bool) -> Region:
+    return part_of(region_of(region, "`visible`" if seen else "`not visible`"), observer, seen=seen)
 
 
 def _side(name: str, attribute: str) -> Callable[..., Any]:

@@ -17,11 +17,13 @@ from scenic.runtime.choices import per_option
 from scenic.runtime.coercions import when_drawn
 from scenic.runtime.context import current, here, warn
 from scenic.runtime.regions.base import Region
+from scenic.runtime.regions.drawn import DrawnRegion
 from scenic.runtime.shapes import Shape
 from scenic.runtime.values import (
     Random,
     Vector,
     is_number,
+    is_open,
     operate,
     options_of,
     to_orientation,
@@ -279,6 +281,8 @@ def _ray_count(name: str, value: Any) -> Any:
 def _container(name: str, value: Any) -> Any:
     if not isinstance(value, Region | Random | None):
         raise wrong_type("a region", value, f"property {name!r}")
+    if isinstance(value, Random) and is_open(value):
+        return DrawnRegion.of(value, f"property {name!r}")
     return value
 
 

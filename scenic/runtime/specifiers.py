@@ -20,6 +20,8 @@ from scenic.runtime.lazy import Lazy, defer, reads_of, resolve
 from scenic.runtime.objects import Object, OrientedPoint, Point
 from scenic.runtime.regions.base import Everywhere, Region, Workspace
 from scenic.runtime.regions.choice import as_region
+from scenic.runtime.regions.drawn import DrawnRegion
+from scenic.runtime.regions.scattered import PointSetRegion
 from scenic.runtime.regions.views import place_near
 from scenic.runtime.sight import Sighting
 from scenic.runtime.values import (
@@ -98,6 +100,8 @@ def is_unknown(value: Any, cls: type[Point] = Object) -> bool:
 def region_of(value: Any, what: str) -> Region:
     """A region; raises `ScenicTypeError` for anything else."""
     region = as_region(value)
+    if region is None and is_open(value):
+        return DrawnRegion.of(value, what)
     if region is None:
         raise wrong_type("a region", value, what)
     return region
@@ -139,7 +143,7 @@ def on(_ego: Ego, target: Any) -> Specifier:
     surface = target.onSurface if is_kind(target, Object) else target
     reads = ("baseOffset", "contactTolerance", "onDirection")
     priorities = {"position": 1}
-    region = as_region(surface)
+    region = DrawnRegion.made(_surface, surface) if is_open(surface) else as_region(surface)
     if region is not None:
         if region.has_orientation:
             priorities["parentOrientation"] = 2
@@ -170,6 +174,16 @@ def on(_ego: Ego, target: Any) -> Specifier:
         return rest(instance, *region.project(instance.position, instance.onDirection))
 
     return _specifier("on", priorities, evaluate, *reads, modifiable=frozenset({"position"}), modify=modify)
+
+
+def _surface(target: Any) -> Region:
+    """What a drawn value is for `on`."""
+    surface = target.onSurface if isinstance(target, Object) else target
+    if isinstance(surface, Region):
+        return surface
+    if is_vector(surface) or hasattr(surface, "toVector"):
+        return PointSetRegion("place", [to_vector(surface, "`on`")])
+    raise wrong_type("a region, an object or a vector", surface, "`on`")
 
 
 def offset_by(ego: Ego, offset: Any) -> Specifier:

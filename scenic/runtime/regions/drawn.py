@@ -1,0 +1,141 @@
+"""A region of which nothing is known before it is drawn, as code of the program returns one."""
+
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from scenic.graph.draws import mix, open_unit, words_of
+from scenic.graph.kinds import Column
+from scenic.language.errors import InvalidScenarioError, RejectionException
+from scenic.runtime.geometry.collision import Body
+from scenic.runtime.regions.base import Mask, Points, Region
+from scenic.runtime.values import Orientation, Random, operate, to_orientation, to_vector, wrong_type
+
+_MOST_DRAWS = 64
+"""More uniform numbers than a point of any region takes that is drawn from at once."""
+
+
+class DrawnRegion(Region):
+    """A region that is known when it is drawn; where that has no preferred orientations, those are the global ones.
+
+    Args:
+        value: the random value, which certainly is a region.
+
+    """
+
+    dimension = 3
+    draws = 0
+    may_find_none = True
+    has_orientation = True
+
+    def __init__(self, value: Random) -> None:
+        super().__init__(value)
+
+    @classmethod
+    def made(cls, make: Callable[..., Region], /, *args: Any, **keywords: Any) -> Self:
+        """What a function makes of values once they are drawn."""
+        return cls(Random.later(make, *args, **keywords))
+
+    @classmethod
+    def of(cls, value: Random, what: str) -> Self:
+        """What a random value of unknown type is where the language wants a region; where it is none, that is a fault."""
+        return cls.made(_wanted, value, what)
+
+    @property
+    def footprint(self) -> Region:
+        return DrawnRegion.made(_footprint, self.parameters[0])
+
+    def sampled(self, sample: Any) -> Region:
+        region: Region = sample.value(self.parameters[0])
+        return region
+
+    def orientation_at(self, point: Any) -> Any:
+        return to_orientation(Random.later(_orientation_at, self.parameters[0], point))
+
+    def project(self, point: Any, direction: Any) -> tuple[Any, Any]:
+        landing = Random.later(_landing, self.parameters[0], point, direction)
+        place, orientation = operate("getitem", landing, 0), operate("getitem", landing, 1)
+        return to_vector(place), to_orientation(orientation)
+
+    def contains_points(self, points: Points, *columns: Column) -> Mask:
+        lanes = max(len(points), len(columns[0]))
+        points = np.broadcast_to(points, (lanes, 3))
+        result = np.zeros(lanes, dtype=np.bool_)
+        for region, chosen, mine in _each(lanes, columns[0]):
+            result[chosen] = region.contains_points(points[chosen], *mine)
+        return result
+
+    def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
+        result = np.zeros(lanes, dtype=np.bool_)
+        for region, chosen, mine in _each(lanes, columns[0]):
+            part = body if len(body) == 1 else body.take(chosen)
+            result[chosen] = region.contains_bodies(part, len(chosen), *mine)
+        return result
+
+    def meets_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
+        result = np.zeros(lanes, dtype=np.bool_)
+        for region, chosen, mine in _each(lanes, columns[0]):
+            part = body if len(body) == 1 else body.take(chosen)
+            result[chosen] = region.meets_bodies(part, len(chosen), *mine)
+        return result
+
+    def distances(self, points: Points, *columns: Column) -> NDArray[np.float64]:
+        lanes = max(len(points), len(columns[0]))
+        points = np.broadcast_to(points, (lanes, 3))
+        result = np.zeros(lanes)
+        for region, chosen, mine in _each(lanes, columns[0]):
+            result[chosen] = region.distances(points[chosen], *mine)
+        return result
+
+    def draw_points(self, uniforms: Column, keys: Column, *columns: Column) -> tuple[Points, Mask | None]:
+        """How many numbers a point takes is known only now: they follow from the keys, and so do further keys."""
+        lanes = uniforms.shape[1]
+        keys = np.broadcast_to(keys, lanes)
+        points, known = np.zeros((lanes, 3)), np.ones(lanes, dtype=np.bool_)
+        for region, chosen, mine in _each(lanes, columns[0]):
+            numbers = open_unit(words_of(keys[chosen], _NUMBERS[: region.draws]))
+            drawn, found = region.draw_points(numbers, mix(keys[chosen]), *mine)
+            points[chosen] = drawn
+            if found is not None:
+                known[chosen] = found
+        return points, known
+
+
+_NUMBERS = np.arange(1, _MOST_DRAWS, dtype=np.uint64)
+
+
+def _wanted(value: Any, what: str) -> Region:
+    if not isinstance(value, Region):
+        raise wrong_type("a region", value, what)
+    return value
+
+
+def _each(lanes: int, column: Column) -> Iterator[tuple[Region, NDArray[np.intp], Sequence[Column]]]:
+    """Each region that some lane draws, with those lanes and the columns of its parameters, which are fixed by now."""
+    regions: dict[int, Region] = {}
+    numbers = np.empty(len(column), dtype=np.int64)
+    for lane, region in enumerate(column.tolist()):
+        if region is not None:
+            regions[id(region)] = region
+        numbers[lane] = id(region)
+    numbers = np.broadcast_to(numbers, lanes)
+    for number, region in regions.items():
+        yield region, np.flatnonzero(numbers == number), region.fixed_columns("what it holds")
+
+
+def _footprint(region: Region) -> Region:
+    return region.footprint
+
+
+def _orientation_at(region: Region, point: Any) -> Any:
+    return region.orientation_at(point) if region.has_orientation else Orientation()
+
+
+def _landing(region: Region, point: Any, direction: Any) -> tuple[Any, Any]:
+    try:
+        place, orientation = region.project(point, direction)
+    except InvalidScenarioError as error:  # in a program of which nothing is random that is a mistake
+        raise RejectionException(str(error)) from error
+    return place, Orientation() if orientation is None else orientation
