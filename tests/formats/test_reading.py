@@ -34,6 +34,26 @@ def test_scenes_come_back(tmp_path: Path) -> None:
         assert read.objects[1].name == "other"
 
 
+@pytest.mark.parametrize("scale", ["1", "0.5", "0", "Uniform(0, 1)"])
+def test_scenes_are_written_as_they_were_mutated(tmp_path: Path, scale: str) -> None:
+    text = (
+        "import random\nclass M(Mutator):\n    def appliedTo(self, thing):\n"
+        "        thing.count += random.random()\n        thing.word = thing.word + str(random.random())\n        return thing, True\n"
+        "class A:\n    count: 3\n    word: 'a'\n    mutator[additive]: M()\n"
+        f"ego = new Object\nother = new A at (9, 9), with mutationScale {scale}\n"
+    )
+    scenes = scenic.scenarioFromString(text).sample(6, seed=2)
+    file = tmp_path / "scenes.jsonl"
+    lines = SceneLines(("a.scenic", "0123"))
+    file.write_text("".join(lines.line(scene) + "\n" for scene in scenes))
+    for scene, read in zip(scenes, scenic.read_scenes(file), strict=True):
+        thing, item = scene.objects[1], read.objects[1]
+        assert item.position == tuple(thing.position)
+        for name in ("count", "word", "yaw", "mutationScale"):
+            assert item.properties[name] == getattr(thing, name)
+        assert (thing.count > 3) is (thing.word != "a") is (thing.mutationScale != 0)
+
+
 @pytest.mark.parametrize(
     "text", ["{", "[]", "{}", '{"format":"scenic-scene","version":99,"objects":[],"ego":null}', "\n"]
 )

@@ -2,7 +2,7 @@
 
 import pytest
 
-from tests.runtime.programs import failure, params, place
+from tests.runtime.programs import draws, failure, params, place
 
 CONVERSIONS = [
     ("int(Uniform('10', '10'), 16)", 16),
@@ -35,3 +35,19 @@ def test_vectors_are_no_numbers(function: str, value: str) -> None:
 def test_what_waits_for_an_object_is_a_number_or_not_when_it_is_there() -> None:
     program = "flow = VectorField('flow', lambda p: p.x)\nnew Object at (0.25, 2), with x {}(flow relative to 0.5){}"
     assert place(failure(program.format("hypot(", ", 3)")))[0] == "SC404"
+
+
+def test_floats_become_the_integers_that_they_are() -> None:
+    """Also those above 2**53, to which no fraction is left, up to where integers of 64 bits end."""
+    text = "x = Range(2.0**52, 2.0**61)\ny = -x\nparam p = (x, int(x), round(x), int(y), round(y), x // 1, int(x / 2**40))\n"
+    for x, *found in draws(text.replace("p =", "x ="), n=20):
+        assert found == [int(x), round(x), -int(x), -round(x), x // 1, int(x / 2**40)]
+
+
+def test_integers_beyond_all_of_the_machine_stay_what_they_are() -> None:
+    """On either side, definite and drawn."""
+    for number in (10**30, -(10**30), 2**63, -(2**63), 2**63 - 1, -(2**63) - 1):
+        text = f"a = Uniform({number}, {number})\nparam x = (a, a + 1, -a, Uniform({number}, 1), {number})\n"
+        for found, more, less, either, own in draws(text, n=3):
+            assert (found, more, less, own) == (number, number + 1, -number, number)
+            assert either in (number, 1)

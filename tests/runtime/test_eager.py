@@ -138,3 +138,14 @@ def test_quotients_of_vectors_are_those_of_their_components() -> None:
     assert tuple(found["v"]) == tuple(part / found["n"] for part in row)
     assert [tuple(value) for value in found["w"]] == [tuple(part / k for part in row) for k in (3, 10, 49)]
     assert tuple(Vector(*row) / 10) == (0.1, 0.3, 0.7)
+
+
+def test_vectors_equal_rows_of_their_numbers() -> None:
+    """A pair stands for one at z = 0."""
+    vector, flat = Vector(1, 2, 5), Vector(1, 2, 0)
+    assert vector == (1, 2, 5) == vector
+    assert vector == [1, 2, 5]
+    assert flat == (1, 2)
+    assert flat == [1, 2]
+    for other in ((1, 2), (1, 2, 4), (1, 3, 5), (1,), (), (1, 2, 5, 0), [1, 2], "125", 1):
+        assert vector != other

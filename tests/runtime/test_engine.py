@@ -273,6 +273,8 @@ def test_what_is_proven_impossible_is_not_sampled() -> None:
     assert [(item.reason, item.attempts) for item in results if isinstance(item, Exhausted)] == [
         ("impossible", 0)
     ] * 2
+    later = scenario("x = Range(0, 1)\nrequire x > 2 as far\n").stream(2, seed=7, first=5)
+    assert [(item.seed, item.k) for item in later if isinstance(item, Exhausted)] == [(7, 5), (7, 6)]
     with pytest.raises(RejectionException, match="no scene exists: the requirements cannot hold together"):
         scenario("x = Range(0, 1)\nrequire x > 2 as far\n").sample(1)
 

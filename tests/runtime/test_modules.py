@@ -74,6 +74,19 @@ def test_methods_are_the_programs_through_any_decorator_of_a_library(tmp_path: P
     assert [*found.params["found"], ego.one(), ego.two(), ego.three()] == [r] * 6
 
 
+def test_what_a_package_defines_comes_before_its_modules(tmp_path: Path) -> None:
+    main = written(
+        tmp_path,
+        {
+            "pkg/__init__.scenic": "foo = 3\n",
+            "pkg/foo.scenic": "x = 4\n",
+            "pkg/bar.scenic": "x = 5\n",
+            "main.scenic": "from pkg import foo, bar\nego = new Object\nparam foo = foo, bar = bar.x\n",
+        },
+    )
+    assert first(main).params == {"foo": 3, "bar": 5}
+
+
 def test_what_a_program_adds_to_the_search_path_stays(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

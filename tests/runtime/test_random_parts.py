@@ -597,6 +597,32 @@ def test_objects_that_code_returns_neither_hide_themselves_nor_are_points() -> N
             assert max(found) - min(found) > 1, requirement
 
 
+@pytest.mark.parametrize(
+    ("containers", "index", "lacks"),
+    [
+        ("{'a': 1}, {'a': 2, 'b': 3}", "'b'", "KeyError"),
+        ("[1], [2, 3]", "1", "IndexError"),
+        ("(1, 3), (2,), [5, 3]", "1", "IndexError"),
+        ("[1, 3], {1: 3}, {2: 4}", "1", "KeyError"),
+    ],
+)
+def test_what_some_options_lack_is_missed_where_they_are_drawn(
+    containers: str, index: str, lacks: str
+) -> None:
+    program = scenario(f"c = Uniform({containers})\nparam c = str(c), x = c[{index}]\n")
+    drawn, failed = set(), set()
+    for seed in range(40):
+        try:
+            (item,) = program.sample(1, seed=seed)
+        except LookupError as error:
+            failed.add(type(error).__name__)
+        else:
+            drawn.add(item.params["c"])
+            assert item.params["x"] == 3
+    assert failed == {lacks}
+    assert drawn
+
+
 DRAWN_THINGS = (
     "told = distributionFunction(lambda value, _: value)\n"
     "ego = new Object at (0, 0)\no = new Object at (5, 5)\n"

@@ -117,6 +117,22 @@ def test_meshes_that_are_inside_out_are_turned() -> None:
     )
 
 
+@pytest.mark.parametrize("angle", [2 * math.pi, 7.0])
+def test_a_sector_of_the_full_turn_is_a_disc(angle: float) -> None:
+    sector, disc = named.SectorRegion((1, 2), 3, 0.4, angle), named.CircularRegion((1, 2), 3)
+    assert sector.polygons.is_valid
+    assert sector.polygons.symmetric_difference(disc.polygons).area < 1e-9
+    text = (
+        f"r = SectorRegion((1, 2), 3, 0.4, {angle})\nways = [i * 45 deg for i in range(9)]\n"
+        "ego = new Object at (90, 90)\n"
+        "param held = [r.containsObject(new Object at (1 + sin(w), 2 + cos(w)), with allowCollisions True, with width x) for w in ways for x in (0.5, Range(0.5, 0.6))]\n"
+        "param out = r.containsObject(new Object at (1 + 2.6, 2), with allowCollisions True)\n"
+    )
+    found = scenario(text).sample(1, seed=1)[0].params
+    assert found["held"] == [True] * 18
+    assert found["out"] is False
+
+
 def test_measures_of_views() -> None:
     view = named.ViewRegion(3, (2 * math.pi, math.pi), position=PLACE, rotation=TILT)
     assert tuple(view.position) == tuple(PLACE)
@@ -296,6 +312,14 @@ def test_ends_and_directions_of_lines() -> None:
         ),
         (lambda: named.PolylineRegion(polyline=shapely.LineString()), ScenicValueError),
         (lambda: named.PolylineRegion(polyline=shapely.Point(0, 0)), ScenicValueError),
+        (
+            lambda: named.PolylineRegion(
+                polyline=shapely.GeometryCollection(
+                    [shapely.LineString([(0, 0), (1, 1)]), shapely.Point(0, 0)]
+                )
+            ),
+            ScenicValueError,
+        ),
         (lambda: named.PolylineRegion([(0, 0), (0, 0)]), ScenicValueError),
         (lambda: named.GridRegion("g", [0, 0], 1, 1, 0, 0), ScenicValueError),
         (lambda: named.MeshVolumeRegion(CUBE, dimensions=(1, 0, 1)), ScenicValueError),

@@ -318,6 +318,16 @@ def test_scenes_conditioned_on_one_keep_what_was_named() -> None:
     assert first.params["p"] not in free + [loaded.generate()[0].params["p"] for _ in range(12)]
 
 
+def test_a_scene_is_that_of_its_own_program_whoever_writes_it() -> None:
+    one, other = (scenario(f"ego = new Object at (Range(0, {end}), 0)\n") for end in (1, 2))
+    (scene,) = one.sample(1, seed=3)
+    data = other.sceneToBytes(scene)
+    assert data == one.sceneToBytes(scene)
+    assert fingerprint(one.sceneFromBytes(data)) == fingerprint(scene)
+    with pytest.raises(SerializationError):
+        other.sceneFromBytes(data)
+
+
 def test_objects_are_named_by_their_places_among_those_of_scenes() -> None:
     """The ego comes first there, not in the program."""
     loaded = scenario("a = new Object at (Range(0, 1), 5)\nego = new Object at (Range(0, 1), 9)\n")

@@ -14,7 +14,7 @@ from scenic.runtime.geometry.poses import Poses
 from scenic.runtime.regions.base import everywhere
 from scenic.runtime.regions.views import NearView, ViewRegion
 from scenic.runtime.regions.volumes import BoxRegion
-from tests.runtime.programs import thing
+from tests.runtime.programs import params, thing
 from tests.runtime.test_sight import answers, view
 
 TURNED = (
@@ -280,3 +280,17 @@ def test_views_of_several_shapes_answer_in_each_lane_as_if_it_were_alone() -> No
             assert all_of_them[lane].tolist() == pytest.approx(alone[0].tolist(), abs=1e-12)
     for each in together[1:4]:
         assert 0 < each.sum() < lanes
+
+
+def test_what_of_all_space_is_not_in_view() -> None:
+    text = (
+        "ego = new Object with visibleDistance 10, with viewAngle 90 deg\nworkspace = Workspace()\n"
+        "param p = [everywhere_seen.containsPoint(x) for x in PLACES], q = [unseen.containsPoint(x) for x in PLACES]\n"
+    )
+    places = "[(0, 5), (0, 11), (0, -5), (4, 5), (6, 5)]"
+    for region in ("everywhere", "workspace"):
+        names = f"everywhere_seen = visible {region}\nunseen = not visible {region}\n"
+        head, tail = text.split("param")
+        found = params(f"{head}{names}param{tail}".replace("PLACES", places))
+        assert found["p"] == [True, False, False, True, False]
+        assert found["q"] == [False, True, True, False, True]

@@ -138,6 +138,19 @@ def test_what_occludes_in_2d_mode_hides() -> None:
         scenic.scenarioFromString(text.format(True), mode2D=True).generate(maxIterations=50)
 
 
+def test_what_may_occlude_in_2d_mode_hides_where_it_does() -> None:
+    text = (
+        "ego = new Object with requireVisible False\n"
+        "wall = new Object at (0, 4), with width 8, with length 0.5, with occluding Uniform(True, False), with requireVisible False\n"
+        "box = new Object at (0, Range(8, 9)), with requireVisible False\n"
+        "require ego can see box\nrequire not (ego can see (0, 8)) or wall.occluding is False\n"
+    )
+    scenes = scenic.scenarioFromString(text, mode2D=True).sample(10, seed=1)
+    assert {scene.objects[1].occluding for scene in scenes} == {False}
+    hidden = scenic.scenarioFromString(text.replace("require ego", "require not ego", 1), mode2D=True)
+    assert {scene.objects[1].occluding for scene in hidden.sample(10, seed=1)} == {True}
+
+
 def answers(text: str) -> dict[str, object]:
     return dict(scenic.scenarioFromString(text, mode2D=True).sample(1, seed=1)[0].params)
 

@@ -560,6 +560,12 @@ def test_arrays_tell_the_steps_at_which_they_were_recorded(tmp_path: Path) -> No
     assert found["times"].tolist() == [1, 1.5, 2]
 
 
+def test_pickled_series_tell_the_steps_at_which_they_were_recorded(tmp_path: Path) -> None:
+    text = f"param recordFolder = {str(tmp_path)!r}\nego = new Object\nrecord simulation().currentTime every 2 steps after 3 steps to 'run.pickle'\n"
+    simulate(text, 9)
+    assert pickle.loads((tmp_path / "run.pickle").read_bytes()) == [(4, 4), (6, 6), (8, 8)]
+
+
 def test_series_may_be_pickled(tmp_path: Path) -> None:
     """As pairs of step and value; nothing is there before the end, or after a rejection."""
     simulate(recording(tmp_path, "run.pickle", "(simulation().currentTime, 'x')"), 2)

@@ -2,6 +2,7 @@ import bz2
 import gc
 import gzip
 import itertools
+import json
 
 import numpy as np
 import pytest
@@ -348,3 +349,25 @@ def test_whether_boxes_of_solids_meet_is_found_in_any_order(seed):
     solids = [Mesh((cube.vertices + 0.5) * (b - a) + a, cube.faces) for a, b in zip(low, high, strict=True)]
     meets = ((low[:, None] <= high) & (low <= high[:, None])).all(axis=2)
     assert _any_overlap(solids) == bool(np.triu(meets, 1).any())
+
+
+def test_meshes_that_nodes_place_and_repeat_are_where_these_say(tmp_path):
+    """As other readers tell them: three copies of a box, one of them turned and stretched."""
+    scene = trimesh.Scene()
+    scene.add_geometry(trimesh.creation.box((1, 2, 3)), geom_name="box", node_name="first")
+    moved = trimesh.transformations.translation_matrix((10, 0, 0))
+    turned = trimesh.transformations.rotation_matrix(np.pi / 2, (0, 0, 1)) @ np.diag([1, 1, 4, 1.0])
+    turned[:3, 3] = (0, 20, 0)
+    for name, matrix in (("second", moved), ("third", turned)):
+        scene.graph.update(frame_to=name, matrix=matrix, geometry="box")
+    for name, content in scene.export(file_type="gltf").items():
+        (tmp_path / name).write_bytes(content)
+    own = tmp_path / "model.gltf"
+    data = json.loads(own.read_text())
+    data["meshes"][0]["primitives"][0]["targets"] = [{}]  # which our own reader leaves to others
+    (tmp_path / "left.gltf").write_text(json.dumps(data))
+    for file in (own, tmp_path / "left.gltf"):
+        mesh = load_mesh(file)
+        lower, upper = np.array(mesh.vertices).min(axis=0), np.array(mesh.vertices).max(axis=0)
+        np.testing.assert_allclose((lower, upper), [(-1, -1, -6), (10.5, 20.5, 6)], atol=1e-6)
+        assert len(mesh.faces) == 36

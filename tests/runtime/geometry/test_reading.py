@@ -115,6 +115,28 @@ HEADER = "ply\nformat {format} 1.0\ncomment made by hand\nelement vertex 4\nprop
 CORNERS = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 2.5)]
 
 
+@pytest.mark.parametrize("order", ["<", ">", "text"])
+def test_faces_of_ply_files_may_have_several_values_behind_their_corners(order: str) -> None:
+    faces = [(0, 1, 2), (0, 1, 3), (1, 2, 3, 0)]
+    name = {"<": "binary_little_endian", ">": "binary_big_endian", "text": "ascii"}[order]
+    header = (
+        HEADER.format(format=name) + f"element face {len(faces)}\nproperty list uchar int vertex_indices\n"
+    )
+    header += "property uchar red\nproperty short group\nproperty uchar blue\nend_header\n"
+    if order == "text":
+        lines = [" ".join(map(str, corner)) for corner in CORNERS]
+        lines += [" ".join(map(str, (len(face), *face, 7, 8, 9))) for face in faces]
+        content = (header + "\n".join(lines) + "\n").encode()
+    else:
+        content = header.encode() + b"".join(struct.pack(f"{order}fff", *corner) for corner in CORNERS)
+        content += b"".join(
+            struct.pack(f"{order}B{len(face)}iBhB", len(face), *face, 7, 8, 9) for face in faces
+        )
+    found = read_ply(content)
+    np.testing.assert_array_equal(found.faces, [(0, 1, 2), (0, 1, 3), (1, 2, 3), (1, 3, 0)])
+    np.testing.assert_array_equal(found.vertices, CORNERS)
+
+
 def ply(order: str, faces, *, kind="int", extra=False, text=False) -> bytes:
     name = "ascii" if text else {"<": "binary_little_endian", ">": "binary_big_endian"}[order]
     header = HEADER.format(format=name) + ("property uchar red\n" * extra) + f"element face {len(faces)}\n"
