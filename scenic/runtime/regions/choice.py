@@ -15,15 +15,15 @@ from scenic.graph.operations import TABLE
 from scenic.language.errors import InvalidScenarioError
 from scenic.runtime.choices import select
 from scenic.runtime.context import here
-from scenic.runtime.geometry.collision import Body
 from scenic.runtime.regions.base import Mask, Points, Region
 from scenic.runtime.regions.nearness import hull_of
+from scenic.runtime.regions.varying import VaryingRegion
 from scenic.runtime.values import Orientation, Random, as_node, as_value
 
 _Part = TypeVar("_Part")
 
 
-class RegionChoice(Region):
+class RegionChoice(VaryingRegion):
     """One of several regions.
 
     Args:
@@ -105,51 +105,6 @@ class RegionChoice(Region):
             if len(chosen):
                 yield option, chosen, [part if len(part) == 1 else part[chosen] for part in mine]
 
-    def contains_points(self, points: Points, *columns: Column) -> Mask:
-        lanes = _lanes(points, *columns)
-        points = np.broadcast_to(points, (lanes, 3))
-        result = np.zeros(lanes, dtype=np.bool_)
-        for option, chosen, mine in self.drawn(lanes, columns):
-            result[chosen] = option.contains_points(points[chosen], *mine)
-        return result
-
-    def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
-        result = np.zeros(lanes, dtype=np.bool_)
-        for option, chosen, mine in self.drawn(lanes, columns):
-            part = body if len(body) == 1 else body.take(chosen)
-            result[chosen] = option.contains_bodies(part, len(chosen), *mine)
-        return result
-
-    def meets_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
-        result = np.zeros(lanes, dtype=np.bool_)
-        for option, chosen, mine in self.drawn(lanes, columns):
-            part = body if len(body) == 1 else body.take(chosen)
-            result[chosen] = option.meets_bodies(part, len(chosen), *mine)
-        return result
-
-    def gaps(self, points: Points, *columns: Column) -> NDArray[np.float64]:
-        lanes = _lanes(points, *columns)
-        points = np.broadcast_to(points, (lanes, 3))
-        result = np.zeros(lanes)
-        for option, chosen, mine in self.drawn(lanes, columns):
-            result[chosen] = option.gaps(points[chosen], *mine)
-        return result
-
-    def sizes(self, *columns: Column) -> NDArray[np.float64]:
-        lanes = _lanes(*columns)
-        result = np.zeros(lanes)
-        for option, chosen, mine in self.drawn(lanes, columns):
-            result[chosen] = option.sizes(*mine)
-        return result
-
-    def distances(self, points: Points, *columns: Column) -> NDArray[np.float64]:
-        lanes = _lanes(points, *columns)
-        points = np.broadcast_to(points, (lanes, 3))
-        result = np.zeros(lanes)
-        for option, chosen, mine in self.drawn(lanes, columns):
-            result[chosen] = option.distances(points[chosen], *mine)
-        return result
-
     def draw_points(self, uniforms: Column, keys: Column, *columns: Column) -> tuple[Points, Mask | None]:
         lanes = uniforms.shape[1]
         points, known = np.zeros((lanes, 3)), np.ones(lanes, dtype=np.bool_)
@@ -159,14 +114,6 @@ class RegionChoice(Region):
             if found is not None:
                 known[chosen] = found
         return points, known if self.may_find_none else None
-
-    def orientations(self, points: Points, *columns: Column) -> Column:
-        lanes = _lanes(points, *columns)
-        points = np.broadcast_to(points, (lanes, 3))
-        result = np.zeros((lanes, 4))
-        for option, chosen, mine in self.drawn(lanes, columns):
-            result[chosen] = option.orientations(points[chosen], *mine)
-        return result
 
     def box(self, *columns: Column) -> tuple[Points, Points]:
         lower, upper = zip(*(option.box(*mine) for option, mine in self._each(columns)), strict=True)
@@ -212,7 +159,3 @@ def as_region(value: Any) -> Region | None:
     regions = [as_region(option) for option in options]
     known = [region for region in regions if region is not None]
     return RegionChoice(index, known) if len(known) == len(regions) else None
-
-
-def _lanes(*columns: Column) -> int:
-    return max(len(column) for column in columns)

@@ -9,15 +9,15 @@ from numpy.typing import NDArray
 from scenic.graph.draws import mix, open_unit, words_of
 from scenic.graph.kinds import Column
 from scenic.language.errors import InvalidScenarioError, RejectionException
-from scenic.runtime.geometry.collision import Body
 from scenic.runtime.regions.base import Mask, Points, Region
+from scenic.runtime.regions.varying import VaryingRegion
 from scenic.runtime.values import Orientation, Random, operate, to_orientation, to_vector, wrong_type
 
 _MOST_DRAWS = 64
 """More uniform numbers than a point of any region takes that is drawn from at once."""
 
 
-class DrawnRegion(Region):
+class DrawnRegion(VaryingRegion):
     """A region that is known when it is drawn; where that has no preferred orientations, those are the global ones.
 
     Args:
@@ -59,42 +59,27 @@ class DrawnRegion(Region):
         place, orientation = operate("getitem", landing, 0), operate("getitem", landing, 1)
         return to_vector(place), to_orientation(orientation)
 
-    def contains_points(self, points: Points, *columns: Column) -> Mask:
-        lanes = max(len(points), len(columns[0]))
-        points = np.broadcast_to(points, (lanes, 3))
-        result = np.zeros(lanes, dtype=np.bool_)
-        for region, chosen, mine in _each(lanes, columns[0]):
-            result[chosen] = region.contains_points(points[chosen], *mine)
-        return result
-
-    def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
-        result = np.zeros(lanes, dtype=np.bool_)
-        for region, chosen, mine in _each(lanes, columns[0]):
-            part = body if len(body) == 1 else body.take(chosen)
-            result[chosen] = region.contains_bodies(part, len(chosen), *mine)
-        return result
-
-    def meets_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
-        result = np.zeros(lanes, dtype=np.bool_)
-        for region, chosen, mine in _each(lanes, columns[0]):
-            part = body if len(body) == 1 else body.take(chosen)
-            result[chosen] = region.meets_bodies(part, len(chosen), *mine)
-        return result
-
-    def distances(self, points: Points, *columns: Column) -> NDArray[np.float64]:
-        lanes = max(len(points), len(columns[0]))
-        points = np.broadcast_to(points, (lanes, 3))
-        result = np.zeros(lanes)
-        for region, chosen, mine in _each(lanes, columns[0]):
-            result[chosen] = region.distances(points[chosen], *mine)
-        return result
+    def drawn(
+        self, lanes: int, columns: Sequence[Column]
+    ) -> Iterator[tuple[Region, NDArray[np.intp], Sequence[Column]]]:
+        (column,) = columns
+        regions: dict[int, Region] = {}
+        numbers = np.empty(len(column), dtype=np.int64)
+        for lane, region in enumerate(column.tolist()):
+            if region is not None:  # what has been rejected has none
+                regions[id(region)] = region
+            numbers[lane] = id(region)
+        numbers = np.broadcast_to(numbers, lanes)
+        for number, region in regions.items():
+            # By now its parameters are fixed.
+            yield region, np.flatnonzero(numbers == number), region.fixed_columns("what it holds")
 
     def draw_points(self, uniforms: Column, keys: Column, *columns: Column) -> tuple[Points, Mask | None]:
         """How many numbers a point takes is known only now: they follow from the keys, and so do further keys."""
         lanes = uniforms.shape[1]
         keys = np.broadcast_to(keys, lanes)
         points, known = np.zeros((lanes, 3)), np.ones(lanes, dtype=np.bool_)
-        for region, chosen, mine in _each(lanes, columns[0]):
+        for region, chosen, mine in self.drawn(lanes, columns):
             numbers = open_unit(words_of(keys[chosen], _NUMBERS[: region.draws]))
             drawn, found = region.draw_points(numbers, mix(keys[chosen]), *mine)
             points[chosen] = drawn
@@ -110,19 +95,6 @@ def _wanted(value: Any, what: str) -> Region:
     if not isinstance(value, Region):
         raise wrong_type("a region", value, what)
     return value
-
-
-def _each(lanes: int, column: Column) -> Iterator[tuple[Region, NDArray[np.intp], Sequence[Column]]]:
-    """Each region that some lane draws, with those lanes and the columns of its parameters, which are fixed by now."""
-    regions: dict[int, Region] = {}
-    numbers = np.empty(len(column), dtype=np.int64)
-    for lane, region in enumerate(column.tolist()):
-        if region is not None:
-            regions[id(region)] = region
-        numbers[lane] = id(region)
-    numbers = np.broadcast_to(numbers, lanes)
-    for number, region in regions.items():
-        yield region, np.flatnonzero(numbers == number), region.fixed_columns("what it holds")
 
 
 def _footprint(region: Region) -> Region:
