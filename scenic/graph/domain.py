@@ -156,6 +156,8 @@ class Domain:
             lower, upper = np.zeros((len(boxes), dimension)), np.ones((len(boxes), dimension))
             for number, box in enumerate(boxes):
                 for axis, (low, high) in box.items():
+                    if int(axis) < 0:
+                        raise IndexError(f"axis {axis}")
                     lower[number, int(axis)], upper[number, int(axis)] = low, high
         except (KeyError, TypeError, IndexError, AttributeError) as error:
             raise ValueError(f"not a domain: {error}") from error

@@ -213,3 +213,33 @@ def test_an_axis_that_some_boxes_of_a_factor_narrow_is_placed_in_these():
     points = place(domain, np.random.default_rng(7).random((4000, 4)))
     assert part.contains(points).all()
     assert np.mean(points[:, 0] < 0.25) == pytest.approx(0.25 / 0.625, abs=0.03)
+
+
+def test_plain_data_hold_what_is_narrowed_alone():
+    """The ends of an axis where either is not that of the cube, and factors where there are any."""
+    part = union([[0, 0.25], [0, 1], [0.5, 1]], [[0.25, 1], [0.5, 0.75], [0, 1]])
+    boxes = [{"0": [0.0, 0.25], "2": [0.5, 1.0]}, {"0": [0.25, 1.0], "1": [0.5, 0.75]}]
+    assert part.to_data() == {"dimension": 3, "boxes": boxes}
+    whole = Domain(np.zeros((1, 3)), np.ones((1, 3)), (part,))
+    assert whole.to_data() == {"dimension": 3, "boxes": [{}], "factors": [boxes]}
+    assert Domain.whole(2).to_data() == {"dimension": 2, "boxes": [{}]}
+
+
+@pytest.mark.parametrize(
+    ("lower", "upper"),
+    [
+        (np.zeros(2), np.ones(2)),
+        (np.zeros((1, 2)), np.ones((2, 2))),
+        (np.zeros((1, 2)), np.ones((1, 3))),
+        (np.zeros((0, 2)), np.ones((0, 2))),
+    ],
+)
+def test_corners_are_of_the_same_boxes(lower, upper):
+    with pytest.raises(ValueError, match="not boxes: corners of shapes"):
+        Domain(lower, upper)
+
+
+@pytest.mark.parametrize("axis", ["-1", "2"])
+def test_axes_that_the_cube_does_not_have_are_refused(axis):
+    with pytest.raises(ValueError, match="not a domain"):
+        Domain.from_data({"dimension": 2, "boxes": [{axis: [0.25, 0.5]}]})

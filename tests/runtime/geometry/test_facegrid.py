@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 
+from scenic.runtime.geometry.cells import touched_cells
 from scenic.runtime.geometry.facegrid import face_grid
 from scenic.runtime.geometry.nearest import nearest_on_triangles
 
@@ -50,3 +51,25 @@ def test_sharing_cells():
     grid = mesh.derived(face_grid)
     assert set(range(50)) <= set(grid.sharing_cells(mesh.triangles[:50]).tolist())
     assert len(grid.sharing_cells(mesh.triangles[:1])) < len(mesh.faces) / 10
+
+
+@pytest.mark.parametrize("mesh", [table(), bumpy(3)], ids=["small", "large"])
+def test_faces_that_share_cells_are_those_of_the_same_cells(mesh):
+    grid = mesh.derived(face_grid)
+
+    def cells_of(triangles):
+        cells = [set() for _ in triangles]
+        for which, cell in touched_cells(triangles, grid.resolution):
+            for one, other in zip(which.tolist(), cell.tolist(), strict=True):
+                cells[one].add(other)
+        return cells
+
+    rng = np.random.default_rng(10)
+    own = cells_of(mesh.triangles)
+    for size in (0.02, 0.3):
+        triangles = np.clip(
+            rng.uniform(-0.5, 0.5, (5, 1, 3)) + rng.uniform(-size, size, (5, 3, 3)), -0.5, 0.5
+        )
+        wanted = set().union(*cells_of(triangles))
+        expected = [face for face, cells in enumerate(own) if cells & wanted]
+        assert grid.sharing_cells(triangles).tolist() == expected

@@ -1,3 +1,6 @@
+import copy
+import pickle
+
 import numpy as np
 import pytest
 import trimesh
@@ -253,3 +256,71 @@ def test_a_mesh_keeps_what_it_was_made_of() -> None:
     for kept in (mesh.vertices, mesh.faces):
         with pytest.raises(ValueError, match="read-only"):
             kept[0] = 0
+
+
+def test_the_unit_meshes_are_the_solids_that_they_are_called() -> None:
+    """Vertices by their coordinates; no vertex is unused, and no face but those of the surface."""
+    halves = (-0.5, 0.5)
+    assert {tuple(row) for row in primitives.box().vertices.tolist()} == {
+        (x, y, z) for x in halves for y in halves for z in halves
+    }
+    rims = {}
+    for sections in (24, 32):
+        angles = 2 * np.pi * np.arange(sections) / sections
+        rims[sections] = 0.5 * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    cylinder, cone = primitives.cylinder().vertices, primitives.cone().vertices
+    np.testing.assert_allclose(cylinder[:48, :2], np.concatenate([rims[24]] * 2), atol=1e-15)
+    assert cylinder[:, 2].tolist() == [-0.5] * 24 + [0.5] * 24 + [-0.5, 0.5]
+    np.testing.assert_array_equal(cylinder[0], (0.5, 0, -0.5))
+    np.testing.assert_allclose(cone[:32, :2], rims[32], atol=1e-15)
+    np.testing.assert_array_equal(cone[32:], [(0, 0, -0.5), (0, 0, 0.5)])
+    assert (cone[:32, 2] == -0.5).all()
+    for mesh in (primitives.box(), primitives.cylinder(), primitives.cone(), primitives.spheroid()):
+        np.testing.assert_array_equal(np.unique(mesh.faces), np.arange(len(mesh.vertices)))
+        assert ((mesh.normals * mesh.triangles.mean(axis=1)).sum(axis=1) > 0.1).all()
+        assert mesh.areas.min() > 1e-3
+        middle = mesh.triangles.mean(axis=1)
+        assert len({tuple(row) for row in np.round(middle, 9).tolist()}) == len(mesh.faces)
+
+
+def test_the_ball_is_a_finely_divided_icosahedron() -> None:
+    """Turned so that its twelve corners lie in the planes of two axes; as trimesh divides one."""
+    ball = primitives.spheroid()
+    oracle = trimesh.creation.icosphere(subdivisions=3, radius=0.5)
+    np.testing.assert_allclose(np.linalg.norm(ball.vertices, axis=1), 0.5, atol=1e-15)
+    counts = np.bincount(ball.faces.ravel())
+    assert sorted(counts.tolist()) == [5] * 12 + [6] * 630
+    corners = np.sort(np.abs(ball.vertices[counts == 5]), axis=1)
+    golden = (1 + 5**0.5) / 2
+    np.testing.assert_allclose(
+        corners, np.broadcast_to(0.5 * np.array([0, 1, golden]) / (1 + golden**2) ** 0.5, (12, 3))
+    )
+    assert ball.volume == pytest.approx(oracle.volume, rel=1e-12)
+    np.testing.assert_allclose(np.sort(ball.areas), np.sort(oracle.area_faces), rtol=1e-9)
+    lattice = {tuple(row) for row in (np.round(ball.vertices, 9) + 0.0).tolist()}
+    assert lattice == {tuple(row) for row in (np.round(-ball.vertices, 9) + 0.0).tolist()}
+    assert lattice >= {(0.5, 0, 0), (0, 0.5, 0), (0, 0, 0.5)}
+
+
+def test_copies_of_a_mesh_are_the_mesh_and_carry_nothing_derived_elsewhere() -> None:
+    mesh = Mesh(table().vertices, table().faces)
+    assert copy.copy(mesh) is mesh
+    assert copy.deepcopy([mesh])[0] is mesh
+    mesh.derived(lambda given: lambda: given)  # which nothing can pickle
+    again = pickle.loads(pickle.dumps(mesh))
+    np.testing.assert_array_equal(again.vertices, mesh.vertices)
+    np.testing.assert_array_equal(again.faces, mesh.faces)
+    assert again != mesh
+    assert again.digest == mesh.digest
+    assert repr(mesh) == f"<Mesh of {len(mesh.vertices)} vertices, {len(mesh.faces)} faces>"
+
+
+def test_what_is_no_solid_is_not_convex_however_convex_it_looks() -> None:
+    cube = primitives.box()
+    for faces in (
+        cube.faces[1:],
+        cube.faces[:, ::-1],
+        np.concatenate([cube.faces[:1, ::-1], cube.faces[1:]]),
+    ):
+        mesh = Mesh(cube.vertices, faces)
+        assert (mesh.is_volume, mesh.is_convex, mesh.is_box) == (False, False, False)

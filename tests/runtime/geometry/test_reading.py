@@ -562,3 +562,198 @@ def test_parts_with_vertices_that_no_face_uses_are_joined() -> None:
     whole = joined(parts)
     expected = [part.vertices[part.faces] for part in parts]
     np.testing.assert_array_equal(whole.vertices[whole.faces], np.concatenate(expected))
+
+
+PLY_TYPES = {
+    **dict.fromkeys(("char", "int8"), "b"),
+    **dict.fromkeys(("uchar", "uint8"), "B"),
+    **dict.fromkeys(("short", "int16"), "h"),
+    **dict.fromkeys(("ushort", "uint16"), "H"),
+    **dict.fromkeys(("int", "int32"), "i"),
+    **dict.fromkeys(("uint", "uint32"), "I"),
+    **dict.fromkeys(("float", "float32"), "f"),
+    **dict.fromkeys(("double", "float64"), "d"),
+}
+
+
+@pytest.mark.parametrize("sizes", [(3, 3), (2, 3, 0, 4)])
+@pytest.mark.parametrize("order", "<>")
+def test_each_type_of_ply_is_as_wide_as_it_says(order, sizes):
+    """Coordinates in another order than usual, and lists whose lengths and numbers are of each type."""
+    place = {"<": "binary_little_endian", ">": "binary_big_endian"}[order]
+    corners = np.array([(1, 2, 3), (5, 4, 6), (9, 7, 8), (11, 12, 10), (0, 0, 0)])
+    faces = [tuple((first + i) % 4 for i in range(size)) for first, size in enumerate(sizes)]
+    expected = [(face[0], face[i], face[i + 1]) for face in faces for i in range(1, len(face) - 1)]
+    for name, code in PLY_TYPES.items():
+        header = (
+            f"ply\r\nformat {place} 1.0\r\nobj_info made by hand\r\n\r\nelement vertex {len(corners)}\r\n"
+        )
+        header += "".join(f"property {name} {axis}\r\n" for axis in "zxy")
+        whole = name if code not in "fd" else "uchar"
+        header += f"element face {len(faces)}\r\nproperty list {whole} {whole} vertex_index\r\nend_header\r\n"
+        body = b"".join(struct.pack(f"{order}3{code}", z, x, y) for x, y, z in corners.tolist())
+        part = PLY_TYPES[whole]
+        body += b"".join(struct.pack(f"{order}{1 + len(face)}{part}", len(face), *face) for face in faces)
+        found = read_ply(header.encode() + body)
+        np.testing.assert_array_equal(found.vertices, corners)
+        np.testing.assert_array_equal(found.faces, expected)
+
+
+def test_large_numbers_of_whole_types_are_exact():
+    """Whole numbers of 32 bits are coordinates as they stand, of either sign."""
+    header = "ply\nformat ascii 1.0\nelement vertex 3\nproperty uint x\nproperty int y\nproperty double z\n"
+    header += "element face 1\nproperty list uchar int vertex_index\nend_header\n"
+    text = header + "4294967295 -2147483648 1e300 0 0 0 1 1 1 3 0 1 2"
+    np.testing.assert_array_equal(read_ply(text.encode()).vertices[0], (4294967295, -2147483648, 1e300))
+
+
+@pytest.mark.parametrize("text", [False, True])
+@pytest.mark.parametrize("sizes", [(0, 3), (3, 0), (2, 1, 3), (3, 2)])
+def test_faces_of_few_vertices_have_no_triangles(sizes, text):
+    faces = [(0, 1, 2)[:size] for size in sizes]
+    found = read_ply(ply("<", faces, text=text))
+    np.testing.assert_array_equal(found.faces, [(0, 1, 2)])
+
+
+@pytest.mark.parametrize("text", [False, True])
+def test_files_without_faces_have_vertices_alone(text):
+    found = read_ply(ply(">", [], text=text))
+    assert found.faces.shape == (0, 3)
+    np.testing.assert_array_equal(found.vertices, CORNERS)
+
+
+WHOLE = ply("<", [(0, 1, 2)], text=True)
+
+
+@pytest.mark.parametrize(
+    ("data", "message"),
+    [
+        (WHOLE[1:], "does not begin with `ply`"),
+        (b"\n" + WHOLE, "does not begin with `ply`"),
+        (WHOLE.replace(b"end_header", b"comment"), "its header has no end"),
+        (WHOLE[: WHOLE.index(b"end_header") + 10], "its header has no end"),
+        (WHOLE.replace(b"format ascii 1.0\n", b""), "names no known format"),
+        (WHOLE.replace(b"property float x", b"property float u"), "no vertices with `x`, `y` and `z`"),
+        (WHOLE.replace(b"property float z", b"property float w"), "no vertices with `x`, `y` and `z`"),
+        (WHOLE.replace(b"element vertex", b"element corner"), "no vertices with `x`, `y` and `z`"),
+        (WHOLE.replace(b"float x", b"quad x"), "its header has the line `property quad x`"),
+        (WHOLE.replace(b"list uchar", b"list byte"), "its header has the line `property list byte"),
+        (WHOLE.replace(b"uchar int", b"uchar word"), "its header has the line `property list uchar word"),
+        (WHOLE.replace(b"element vertex 4\n", b""), "its header has the line `property float x`"),
+        (WHOLE.replace(b"vertex 4", b"vertex -1"), "its header has the line `element vertex -1`"),
+        (WHOLE.replace(b"face 1", b"face -1"), "its header has the line `element face -1`"),
+        (WHOLE.replace(b"face 1", b"face 2"), "it ends before its last face"),
+        (ply("<", [(0, 1, 2)] * 3, text=True)[:-16] + b"\n", "it ends before its last face"),
+        (WHOLE.replace(b"3 0 1 2", b"-1 0 1 2"), "it ends before its last face"),
+        (WHOLE.replace(b"3 0 1 2", b"1e300 0 1 2"), None),
+        (ply("<", [(0, 1, 2)] * 2)[:-16], "it ends before its last element"),
+        (ply("<", [(0, 1, 2), (0, 1)])[:-1], "it ends before its last element"),
+    ],
+)
+def test_what_is_wrong_with_a_ply_file_is_told(data, message):
+    with pytest.raises((ValueError, OverflowError), match=message):
+        read_ply(data)
+
+
+@pytest.mark.parametrize("text", [False, True])
+def test_more_faces_than_a_file_could_hold_are_not_waited_for(tmp_path, text):
+    """Nor is memory taken for them."""
+    path = tmp_path / "boast.ply"
+    path.write_bytes(
+        ply("<", [(0, 1, 2)], text=text).replace(b"element face 1\n", b"element face 99999999999999\n")
+    )
+    with pytest.raises(MeshError, match="it ends before its last face"):
+        load_mesh(path)
+
+
+@pytest.mark.parametrize("faces", [[(-1, b"\0" * 4), (3, struct.pack("<3i", 0, 1, 2))], [(-4, b"")]])
+def test_lists_of_negative_length_are_refused(faces):
+    header = HEADER.format(format="binary_little_endian")
+    header += f"element face {len(faces)}\nproperty list char int vertex_indices\nend_header\n"
+    body = np.array(CORNERS, dtype="<f4").tobytes()
+    body += b"".join(struct.pack("<b", size) + rest for size, rest in faces)
+    with pytest.raises(ValueError, match=f"a face of {faces[0][0]} vertices"):
+        read_ply(header.encode() + body)
+
+
+def test_negative_vertex_numbers_are_refused(tmp_path):
+    """Which signed numbers could be; also where no solid is asked for."""
+    tree = gltf_triangle(accessors_1_componentType=5120, accessors_1_count=3)
+    tree["scenes"] = [{"nodes": [0]}]
+    for numbers, held in (((0, 1, 2), True), ((0, 1, 5), False), ((0, 1, 127), False), ((0, -1, 2), False)):
+        corners = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 1, 0), (2, 1, 0)], dtype="<f4").tobytes()
+        data = corners + np.array(numbers, dtype="<i1").tobytes() + b"\0" * 7
+        tree["buffers"][0]["uri"] = "data:;base64," + base64.b64encode(data).decode()
+        path = tmp_path / f"{numbers[1]} {numbers[2]}.gltf"
+        path.write_text(json.dumps(tree))
+        if held:
+            assert len(load_mesh(path, volume=False).faces) == 1
+        else:
+            with pytest.raises(MeshError, match="a triangle with a vertex outside 0 to 4"):
+                load_mesh(path, volume=False)
+
+
+def test_nodes_stand_one_below_the_other_in_the_order_of_the_file():
+    """Where no scene is told, from those on that are below none; deep trees are no circles."""
+    tree = gltf_triangle()
+    tree["nodes"] = [
+        {"children": [3, 1], "mesh": 0, "translation": [0, 0, 1]},
+        {"mesh": 0, "translation": [0, 0, 10]},
+        {"mesh": 0, "translation": [0, 0, 100]},
+        {"mesh": 0, "translation": [0, 0, 20], "children": [4]},
+        {"mesh": 0, "translation": [0, 0, 40]},
+    ]
+    found = read_gltf(json.dumps(tree).encode(), no_neighbour)
+    assert found.vertices[::5, 2].tolist() == [1, 21, 61, 11, 100]
+    tree["scenes"] = [{}]
+    assert len(read_gltf(json.dumps(tree).encode(), no_neighbour).faces) == 0
+    tree["scenes"] = []
+    for depth, held in ((257, True), (258, False)):
+        tree["nodes"] = [{"children": [number + 1], "translation": [1, 0, 0]} for number in range(depth - 1)]
+        tree["nodes"].append({"mesh": 0})
+        data = json.dumps(tree).encode()
+        if held:
+            assert read_gltf(data, no_neighbour).vertices[0].tolist() == [depth - 1, 0, 0]
+        else:
+            with pytest.raises(ValueError, match="circle"):
+                read_gltf(data, no_neighbour)
+
+
+def test_neighbours_are_asked_for_once_and_by_their_names():
+    tree = gltf_triangle(buffers_0_uri="the%20corners%2B.bin")
+    tree["buffers"].append({"byteLength": 10, "uri": "faces.bin"})
+    tree["bufferViews"][1] = {"buffer": 1, "byteLength": 10}
+    tree["nodes"] *= 2
+    files = {
+        "the corners+.bin": base64.b64decode(gltf_triangle()["buffers"][0]["uri"].partition(",")[2]),
+        "faces.bin": np.array([4, 3, 2, 1, 0], dtype="<u2").tobytes(),
+    }
+    asked = []
+
+    def neighbour(name):
+        asked.append(name)
+        return files[name]
+
+    assert read_gltf(json.dumps(tree).encode(), neighbour).faces.tolist() == [[4, 3, 2], [9, 8, 7]]
+    assert asked == list(files)
+
+
+@pytest.mark.parametrize("mode", [4, 5])
+def test_mirrored_bodies_keep_their_outsides(mode):
+    """Whatever the mirror: an axis, all of them, a parent's; two mirrors are none."""
+    tree = gltf_triangle(meshes_0_primitives_0_mode=mode)
+    identity = np.diag([1.0, 1, 1, 1])
+    plain = read_gltf(json.dumps(tree).encode(), no_neighbour)
+    for inner, outer, mirrored in (
+        ((-1, 1, 1), (1, 1, 1), True),
+        ((1, 1, 1), (1, -2, 1), True),
+        ((-1, -1, -1), (1, 1, 1), True),
+        ((-1, -1, 1), (1, 1, 1), False),
+        ((-1, 1, 1), (1, 1, -3), False),
+    ):
+        matrix = identity.copy()
+        matrix[:3, :3] = np.diag(outer)
+        tree["nodes"] = [{"matrix": matrix.ravel().tolist(), "children": [1]}, {"mesh": 0, "scale": inner}]
+        found = read_gltf(json.dumps(tree).encode(), no_neighbour)
+        np.testing.assert_array_equal(found.vertices, plain.vertices * inner * outer)
+        np.testing.assert_array_equal(found.faces, plain.faces[:, ::-1] if mirrored else plain.faces)

@@ -274,3 +274,69 @@ def test_a_program_reads_what_is_kept_of_its_meshes_when_it_is_loaded(folder, tm
     shutil.rmtree(folder)
     np.testing.assert_array_equal(second.derived(voxels).filled, cells.filled)
     assert not folder.exists()
+
+
+def test_empty_words_of_the_environment_say_nothing(tmp_path, monkeypatch):
+    for name in ("SCENIC_CACHE", "SCENIC_CACHE_DIR", "XDG_CACHE_HOME"):
+        monkeypatch.setenv(name, "")
+    monkeypatch.setattr(store.Path, "home", lambda: tmp_path)
+    kept("x 1", CONTENT, Counted())
+    assert store.is_kept("x 1", CONTENT)
+    assert len(list((tmp_path / ".cache" / "scenic").iterdir())) == 1
+
+
+def test_the_folder_that_is_named_counts_before_any_other(folder, tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "other"))
+    kept("x 1", CONTENT, Counted())
+    assert len(list(folder.iterdir())) == 1
+    assert not (tmp_path / "other").exists()
+
+
+def test_without_a_home_nothing_is_kept(monkeypatch):
+    for name in ("SCENIC_CACHE", "SCENIC_CACHE_DIR", "XDG_CACHE_HOME"):
+        monkeypatch.delenv(name, raising=False)
+
+    def nowhere():
+        raise RuntimeError("there is no home")
+
+    monkeypatch.setattr(store.Path, "home", nowhere)
+    compute = Counted()
+    for _ in range(2):
+        np.testing.assert_array_equal(kept("x 1", CONTENT, compute)["a"], [0, 1, 2])
+    assert compute.calls == 2
+    assert not store.is_kept("x 1", CONTENT)
+
+
+@pytest.mark.parametrize("error", [OSError, KeyboardInterrupt])
+def test_what_could_not_be_written_whole_leaves_nothing_behind(folder, monkeypatch, error):
+    """A full disk takes no result away; who interrupts is heard."""
+
+    def fail(_one, _other):
+        raise error
+
+    monkeypatch.setattr(store.os, "replace", fail)
+    if error is OSError:
+        np.testing.assert_array_equal(kept("x 1", CONTENT, Counted())["a"], [0, 1, 2])
+    else:
+        with pytest.raises(KeyboardInterrupt):
+            kept("x 1", CONTENT, Counted())
+    assert list(folder.iterdir()) == []
+
+
+def test_as_many_bytes_as_allowed_are_kept(folder, monkeypatch):
+    """A byte more, and the oldest go until three quarters are left."""
+    kept("x", CONTENT, Counted(1000))
+    (path,) = folder.iterdir()
+    size = path.stat().st_size
+    monkeypatch.setattr(store, "MOST_BYTES", 4 * size)
+    for name in "abc":
+        (folder / f"{name}.npz").write_bytes(bytes(size))
+        os.utime(folder / f"{name}.npz", ns=(0, ord(name)))
+    path.unlink()
+    kept("x", CONTENT, Counted(1000))
+    assert len(list(folder.iterdir())) == 4
+    (folder / "b.npz").write_bytes(bytes(size + 1))
+    os.utime(folder / "b.npz", ns=(0, ord("b")))
+    path.unlink()
+    kept("x", CONTENT, Counted(1000))
+    assert {each.name for each in folder.iterdir()} == {"c.npz", path.name}

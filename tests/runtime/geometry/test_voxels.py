@@ -5,6 +5,7 @@ from scipy.spatial.transform import Rotation
 from scenic.runtime.geometry import primitives
 from scenic.runtime.geometry.cells import touched_cells
 from scenic.runtime.geometry.inside import contains_points
+from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.nearest import nearest_on_triangles
 from scenic.runtime.geometry.voxels import PROBES, RESOLUTION, voxels
 
@@ -123,3 +124,55 @@ def test_probes_of_a_sheet_too_thin_for_steps_lie_on_it():
     beside = np.repeat(points, len(sheet.faces), axis=0)
     gap = np.linalg.norm(beside - nearest_on_triangles(beside, *np.moveaxis(corners, 1, 0)), axis=1)
     assert (gap.reshape(len(points), -1).min(axis=1) < 1e-12).all()
+
+
+def test_the_cells_of_a_box_need_no_looking() -> None:
+    """They are those of a box that nobody knows for one, for a vertex in the middle of each face; its shell is solid too."""
+    cube = primitives.box()
+    middles = np.concatenate([0.5 * np.eye(3), -0.5 * np.eye(3)])
+    vertices = np.concatenate([cube.vertices, middles])
+    faces = []
+    for pair in cube.faces.reshape(6, 6):
+        apex = 8 + int(np.abs(middles - vertices[pair].mean(axis=0)).sum(axis=1).argmin())
+        corners = pair.reshape(2, 3).tolist()
+        edges = [(face[i], face[(i + 1) % 3]) for face in corners for i in range(3)]
+        faces += [(a, b, apex) for a, b in edges if (b, a) not in edges]
+    other = Mesh(vertices, np.array(faces))
+    assert other.is_volume
+    assert cube.is_box
+    assert not other.is_box
+    known, looked = cube.derived(voxels), other.derived(voxels)
+    np.testing.assert_array_equal(known.filled, looked.filled)
+    np.testing.assert_array_equal(known.cover, looked.cover)
+    inner = (slice(1, -1),) * 3
+    assert known.solid.all()
+    assert known.solid.shape == looked.solid.shape
+    assert looked.solid[inner].all()
+
+
+def test_a_box_is_probed_at_its_middle_its_corners_and_its_faces() -> None:
+    probes = primitives.box().derived(voxels).probes
+    inside = np.abs(probes).max(axis=1) < 0.49
+    assert inside.tolist() == [True] * 15 + [False] * (PROBES - 15)
+    amounts = np.sort(np.abs(probes[:15]), axis=1)
+    zeros = (amounts == 0).sum(axis=1)
+    assert sorted(zeros.tolist()) == [0] * 8 + [2] * 6 + [3]
+    assert np.unique(np.abs(probes[:15])).tolist() == [0, 0.45]
+    assert len({tuple(row) for row in probes[:15].tolist()}) == 15
+    np.testing.assert_allclose(np.abs(probes[15:]).max(axis=1), 0.5, atol=1e-12)
+
+
+@pytest.mark.parametrize("thickness", [0.02, 0.005])
+def test_solids_thinner_than_cells_are_probed_within(thickness: float) -> None:
+    """All over them: at the two ends, next to either surface, and never twice at one place."""
+    turn = Rotation.from_euler("xyz", [0.6, 0.5, 0.4]).as_matrix()
+    slab = placed(primitives.cylinder(8), (0, 0, 0), (1, 1, thickness))
+    mesh = slab.moved(turn).normalized()[0]
+    found = mesh.derived(voxels)
+    assert not found.solid.any()
+    held = contains_points(mesh, found.probes)
+    assert held[:8].all()
+    places = found.probes[held]
+    apart = np.linalg.norm(places[:, None] - places, axis=2)[~np.eye(len(places), dtype=bool)]
+    assert apart.min() > 1e-6
+    assert apart.max() > 0.5

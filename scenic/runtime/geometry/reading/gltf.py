@@ -111,7 +111,7 @@ class _Document:
             corners = self._accessor(primitive["indices"]).astype(np.intp).ravel()
         else:
             corners = np.arange(len(vertices), dtype=np.intp)
-        if len(corners) and corners.max() >= len(vertices):
+        if len(corners) and (corners.min() < 0 or corners.max() >= len(vertices)):
             raise ValueError(f"a triangle with a vertex outside 0 to {len(vertices) - 1}")
         if mode == _TRIANGLES:
             return Soup(vertices, corners[: len(corners) // 3 * 3].reshape(-1, 3))

@@ -95,7 +95,7 @@ def _header(data: bytes) -> tuple[str, list[_Element], int]:
         match line.split():
             case ["format", kind, _] if kind in _ORDERS:
                 order = _ORDERS[kind]
-            case ["element", name, count]:
+            case ["element", name, count] if int(count) >= 0:
                 elements.append(_Element(name, int(count), []))
             case ["property", "list", length, kind, name] if elements and {length, kind} <= _TYPES.keys():
                 elements[-1].properties.append(_Property(name, _TYPES[kind], _TYPES[length]))
@@ -132,6 +132,8 @@ def _text_lists(
     values: npt.NDArray[np.float64], place: int, element: _Element
 ) -> tuple[Indices, Indices, int]:
     before, after = _around_list(element)
+    if element.count > len(values) - place:  # each takes a value at least
+        raise ValueError("it ends before its last face")
     starts = np.empty(element.count, dtype=np.intp)
     counts = np.empty(element.count, dtype=np.intp)
     for number in range(element.count):
@@ -161,10 +163,14 @@ def _binary_lists(data: bytes, place: int, element: _Element, order: str) -> tup
         rows = np.frombuffer(data[place:end], dtype=record)
         if (rows["length"] == 3).all():
             return rows["corners"].astype(np.intp).ravel(), np.full(element.count, 3, dtype=np.intp), end
+    if element.count * length.itemsize > len(data) - place:
+        raise ValueError("it ends before its last face")
     parts, counts = [], np.empty(element.count, dtype=np.intp)
     for face in range(element.count):
         place += lead.itemsize
         size = int(np.frombuffer(_enough(data[place : place + length.itemsize], length.itemsize), length)[0])
+        if size < 0:
+            raise ValueError(f"a face of {size} vertices")
         place += length.itemsize
         width = size * number.itemsize
         parts.append(np.frombuffer(_enough(data[place : place + width], width), number))
