@@ -147,7 +147,9 @@ class GivenPoints:
     retries = False
 
     def __init__(self, rows: ArrayLike) -> None:
-        given = np.array(rows, dtype=np.float64, ndmin=2)
+        given = np.array(rows, dtype=np.float64)
+        if given.ndim < 2:  # one row; no numbers at all are no row
+            given = given.reshape(min(given.size, 1), given.size)
         if given.ndim != 2 or not ((given > 0) & (given < 1)).all():
             raise ValueError("points of the unit cube are rows of numbers between 0 and 1, both excluded")
         self._width = given.shape[1]

@@ -284,6 +284,36 @@ def test_integers_beyond_all_floats(huge):
     assert not contract(Graph([less]), [Fact(less, "")]).impossible or huge < 0
 
 
+BEYOND = 2**53
+DRAWN = {
+    "choice": lambda first: one_of(first, first + 1, first + 2),
+    "select": lambda first: one_of(first, first + 1, first + 2, make("discrete range", graph.axis(), 5, 6)),
+    "discrete range": lambda first: make("discrete range", graph.axis(), first, first + 2),
+    "weighted integer": lambda first: make(
+        "weighted integer", graph.axis(), payload=(first, (0.25, 0.5, 1.0))
+    ),
+}
+
+
+@pytest.mark.parametrize("first", [BEYOND - 1, BEYOND, -BEYOND - 2, 2**60 + 5])
+@pytest.mark.parametrize("name", DRAWN)
+def test_draws_of_whole_numbers_that_no_float_is_may_be_each_of_them(name, first):
+    """And no other: neither verdicts nor domains round them."""
+    for place in range(3):
+        drawn = DRAWN[name](first)
+        for condition in (make("equal", drawn, first + place), make("less or equal", first + place, drawn)):
+            assert verdict(condition)[0] == []
+            network = Graph([condition])
+            found = contract(network, [Fact(condition, "")])
+            assert not found.impossible
+            points = np.random.default_rng(place).random((200, network.dimension))
+            met = accepted(network, points, [Fact(condition, "")])
+            assert met.any()
+            assert found.domain.contains(points)[met].all()
+    for other in (first - 1, first + 3):
+        assert verdict(make("equal", DRAWN[name](first), other)) == ([["0"]], [])
+
+
 @pytest.mark.parametrize("name", ["floor divide", "modulo", "power", "round", "divide"])
 def test_operands_beyond_all_floats(name):
     x, huge = uniform(0, 1), constant(10**400)

@@ -134,3 +134,28 @@ def test_the_next_sequence_is_another_one() -> None:
     for sequence in (1, 2, 3):
         later = Sobol().of_scenes(axes, 2, lanes(4, first=5 + sequence * 2**20))
         assert not np.isclose(first, later).any()
+
+
+def test_no_rows_are_given_for_no_scene() -> None:
+    """A single row may be written without its brackets, and a row without numbers leaves all of them to others."""
+    assert [len(GivenPoints(rows)) for rows in ([], [[]], 0.5, [0.5, 0.25], [[0.5], [0.25]])] == [
+        0,
+        1,
+        1,
+        1,
+        2,
+    ]
+    assert len(GivenPoints(np.zeros((0, 3)))) == 0
+    with pytest.raises(IndexError, match="no row for scene 0: 0 rows"):
+        GivenPoints([]).of_scenes(np.array([0]), 1, lanes(1))
+    with pytest.raises(IndexError, match="no row for scene 0: 0 rows"):
+        GivenPoints([]).of_simulations(np.array([0]), 1, lanes(1))
+    assert GivenPoints([0.5, 0.25]).of_scenes(np.array([1, 0]), 2, lanes(1)).tolist() == [[0.25], [0.5]]
+    assert np.isnan(GivenPoints([[]]).of_scenes(np.array([0]), 1, lanes(1))).all()
+
+
+def test_given_rows_are_kept_as_they_were() -> None:
+    rows = np.array([[0.25, 0.5]])
+    points = GivenPoints(rows)
+    rows[:] = 0.75
+    assert points.of_scenes(np.array([0, 1]), 2, lanes(1)).tolist() == [[0.25], [0.5]]

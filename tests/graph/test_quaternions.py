@@ -172,3 +172,27 @@ def test_euler_angles_of_floats_equal_those_of_arrays_in_every_bit() -> None:
     alone = np.array([[quaternions.euler_angle(row, index) for index in range(3)] for row in rows])
     for angles in (found, alone):
         np.testing.assert_array_equal(angles.view(np.int64), expected.view(np.int64))
+
+
+def test_angles_of_floats_equal_those_of_arrays_about_every_seam() -> None:
+    """A few units in the last place on either side of odd multiples of half a turn, near and far."""
+    seams = [
+        turns * math.pi for turns in (*range(-41, 42, 2), 10**6 + 1, -(10**6) - 1, 1e15 + 1, 1e17, -1e300)
+    ]
+    angles = [0.0, -0.0, 1.0, -4.0]
+    for seam in seams:
+        for way in (-math.inf, math.inf):
+            angle = seam
+            for _ in range(4):
+                angles.append(angle)
+                angle = math.nextafter(angle, way)
+    expected = quaternions.normalize_angle(np.array(angles))
+    found = np.array([quaternions.normal_angle(angle) for angle in angles])
+    np.testing.assert_array_equal(found.view(np.int64), expected.view(np.int64))
+    assert (np.abs(found) <= math.pi).all()
+    turns = np.array([math.remainder(angle, math.tau) for angle in angles])
+    near = np.abs(angles) < 200
+    apart = np.abs(np.exp(1j * turns[near]) - np.exp(1j * found[near]))
+    assert apart.max() < 1e-13
+    for angle in (math.inf, -math.inf, math.nan):
+        assert math.isnan(quaternions.normal_angle(angle))

@@ -4,6 +4,7 @@ Every one is monotone in its axis, so that an interval of values is an interval 
 pruning possible.
 """
 
+import math
 from collections.abc import Sequence
 from typing import Any, Final
 
@@ -20,6 +21,7 @@ from scenic.graph.operations.choosing import can_give, choose, hull_of_possible,
 from scenic.graph.operations.encoding import chain, disjunction
 from scenic.graph.operations.narrowing import Mask, before_rounding, where
 from scenic.graph.operations.normal import conditioned_cumulative, conditioned_quantile
+from scenic.graph.operations.numbers import EXACT
 from scenic.graph.operations.possibilities import is_finite
 
 FIRST: Final = 5e-324
@@ -128,18 +130,20 @@ def _lookup(call: Call, index: Column) -> Column:
     return found
 
 
-def _within(payload: Table, index: Bounds) -> tuple[Floats, Mask]:
-    """The table's values, and which of them each box admits, ``(m, values)``."""
+def _within(payload: Table, index: Bounds) -> tuple[Bounds, Mask]:
+    """The table's values, one a row, and which of them each box admits, ``(m, values)``."""
     places = np.arange(len(payload.column))
     mask = (index.lower[:, np.newaxis] <= places) & (places <= index.upper[:, np.newaxis])
-    return payload.column.astype(np.float64), mask
+    values = payload.column.astype(np.float64)
+    is_exact = payload.kind is not Kind.INTEGER or bool((np.abs(payload.column) <= EXACT).all())
+    return Bounds(values, values) if is_exact else outward(values, values), mask
 
 
 def _lookup_bounds(payload: Table, index: Bounds) -> Bounds:
     values, mask = _within(payload, index)
-    wide = mask if values.ndim == 1 else mask[..., np.newaxis]
-    lower = np.where(wide, values, np.inf).min(axis=1)
-    upper = np.where(wide, values, -np.inf).max(axis=1)
+    wide = mask if values.lower.ndim == 1 else mask[..., np.newaxis]
+    lower = np.where(wide, values.lower, np.inf).min(axis=1)
+    upper = np.where(wide, values.upper, -np.inf).max(axis=1)
     # No value of the table in some box: bounds of nothing are for the caller to find elsewhere.
     nothing = lower > upper
     return Bounds(np.where(nothing, -np.inf, lower), np.where(nothing, np.inf, upper))
@@ -147,9 +151,9 @@ def _lookup_bounds(payload: Table, index: Bounds) -> Bounds:
 
 def _lookup_inverse(payload: Table, result: Bounds, index: Bounds) -> list[Bounds]:
     values, mask = _within(payload, index)
-    fits = (result.lower[:, np.newaxis] <= values) & (values <= result.upper[:, np.newaxis])
-    mask = mask & (fits if values.ndim == 1 else fits.all(axis=2))
-    places = np.arange(values.shape[0], dtype=np.float64)
+    fits = (result.lower[:, np.newaxis] <= values.upper) & (values.lower <= result.upper[:, np.newaxis])
+    mask = mask & (fits if fits.ndim == 2 else fits.all(axis=2))
+    places = np.arange(len(payload.column), dtype=np.float64)
     return [Bounds(np.where(mask, places, np.inf).min(axis=1), np.where(mask, places, -np.inf).max(axis=1))]
 
 
@@ -157,7 +161,7 @@ def _lookup_solver(terms: Terms, payload: Table, index: Any) -> Any:
     if payload.kind is Kind.BOOLEAN:
         options: list[Any] = [terms.real(float(value)) == terms.real(1) for value in payload.column]
     elif payload.column.ndim == 1:
-        options = [terms.real(float(value)) for value in payload.column]
+        options = [terms.real(value) for value in payload.column.tolist()]
     else:
         options = [tuple(terms.real(float(part)) for part in value) for value in payload.column]
     return chain(terms, index, options)
@@ -450,13 +454,21 @@ def _position_inverse(result: Bounds, cumulative: Any) -> Bounds:
 
 def _weighted_bounds(payload: Any, axis: Bounds) -> Bounds:
     first, cumulative = payload
-    place = _position_bounds(axis, cumulative)
-    return Bounds(first + place.lower, first + place.upper)
+    place, room = _position_bounds(axis, cumulative), _room(first, cumulative)
+    return Bounds(first + place.lower - room, first + place.upper + room)
 
 
 def _weighted_inverse(payload: Any, result: Bounds, _axis: Bounds) -> list[Bounds]:
     first, cumulative = payload
-    return [_position_inverse(Bounds(result.lower - first, result.upper - first), cumulative)]
+    room = _room(first, cumulative)
+    place = Bounds(result.lower - first - room, result.upper - first + room)
+    return [_position_inverse(place, cumulative)]
+
+
+def _room(first: int, cumulative: Any) -> float:
+    """How far floats may be off the whole numbers from ``first`` on, one for each weight."""
+    most = max(abs(first), abs(first + len(cumulative)))
+    return math.ulp(most) if most > EXACT else 0.0
 
 
 def _weighted_solver(terms: Terms, payload: Any, _axis: Any) -> Any:

@@ -143,3 +143,18 @@ def test_boxes_may_be_apart_along_any_pair_of_edges():
             b = Poses(ends[0] - ends[1] + gap * across, turns[1].as_quat(), sizes[1])
             np.testing.assert_array_equal(broadphase.boxes_overlap(a, b), gap < 0)
             np.testing.assert_array_equal(broadphase.boxes_overlap(b, a), gap < 0)
+
+
+@pytest.mark.parametrize("fixed", [None, 0, 1])
+def test_how_many_boxes_are_looked_at_together_does_not_matter(fixed, monkeypatch):
+    """Also where one of them is the same everywhere."""
+    a, b = random_poses(700, 3), random_poses(700, 4)
+    if fixed == 0:
+        a = random_poses(1, 3, same_size=True)
+    elif fixed == 1:
+        b = random_poses(1, 4, same_size=True)
+    whole = broadphase.boxes_overlap(a, b)
+    assert 0 < whole.sum() < 700
+    for chunk in (699, 700, 100, 33):
+        monkeypatch.setattr(broadphase, "_CHUNK", chunk)
+        np.testing.assert_array_equal(broadphase.boxes_overlap(a, b), whole)
