@@ -243,3 +243,12 @@ def test_corners_are_of_the_same_boxes(lower, upper):
 def test_axes_that_the_cube_does_not_have_are_refused(axis):
     with pytest.raises(ValueError, match="not a domain"):
         Domain.from_data({"dimension": 2, "boxes": [{axis: [0.25, 0.5]}]})
+
+
+def test_one_bad_box_among_good_ones_is_refused():
+    for box in ([0.5, 0.5], [0.6, 0.4], [-0.5, 0.5], [0.5, 1.5]):
+        for place in range(2):
+            boxes = [[[0.0, 0.25]]]
+            boxes.insert(place, [box])
+            with pytest.raises(ValueError, match="volume"):
+                union(*boxes)

@@ -82,3 +82,27 @@ def test_points_are_found_in_solids_that_fill_little_of_their_boxes() -> None:
     assert contains_points(rod, local).all()
     assert len(np.unique(local[:, 0])) == 30
     assert abs(local.mean()) < 0.2
+
+
+@pytest.mark.parametrize("side", [None, (0, 1), (1, -1), (2, 1), (2, -1)])
+@pytest.mark.parametrize("threshold", [0.3, 2.0])
+def test_boxes_of_sides_hold_the_faces_that_look_there(
+    side: tuple[int, int] | None, threshold: float
+) -> None:
+    """Of all faces where a side has none, or is not told."""
+    for mesh in (table(), primitives.cone()):
+        poses = random_poses(8, 3)
+        for lane in range(8):
+            alone = poses.take(np.array([lane]))
+            corners = alone.to_world(mesh.triangles[None])[0]
+            normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+            normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+            mine = (
+                np.ones(len(normals), dtype=bool)
+                if side is None
+                else side[1] * normals[:, side[0]] >= threshold
+            )
+            mine = mine if mine.any() else np.ones(len(normals), dtype=bool)
+            lower, upper = body_points.side_bounds(Body((mesh,), None, alone), side, threshold)
+            np.testing.assert_allclose(lower, corners[mine].min(axis=(0, 1))[None], atol=1e-12)
+            np.testing.assert_allclose(upper, corners[mine].max(axis=(0, 1))[None], atol=1e-12)

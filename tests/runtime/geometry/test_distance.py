@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scipy.optimize import minimize, nnls
 from scipy.spatial import ConvexHull
 
-from scenic.runtime.geometry import distance
+from scenic.runtime.geometry import distance, single
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.depth import convex_depth, convex_gap
 from scenic.runtime.geometry.nearest import nearest_on_triangles
@@ -290,3 +290,65 @@ def test_gaps_of_boxes_in_symmetrical_positions() -> None:
         if gap > 0:
             first, second = rng.permutation(corners), rng.permutation(corners) + offset
             assert convex_gap(first, second) == pytest.approx(gap, abs=1e-9)
+
+
+def test_depths_of_cubes_by_hand() -> None:
+    """The least way out, along whichever axis it is; nothing where they only touch or are apart."""
+    corners = np.array(list(itertools.product((-0.5, 0.5), repeat=3)))
+    for offset, depth in (
+        ((0, 0, 0), 1),
+        ((0.75, 0, 0), 0.25),
+        ((0.75, -0.875, 0), 0.125),
+        ((0, 0, -0.5), 0.5),
+        ((1, 0, 0), 0),
+        ((1, 1, -1), 0),
+        ((1.5, 0, 0), 0),
+        ((0.25, -1.125, 0.5), 0),
+    ):
+        assert convex_depth(corners, corners + np.array(offset)) == pytest.approx(depth, abs=1e-9)
+
+
+def test_what_lies_in_one_plane_has_no_depth() -> None:
+    """Along an axis or tilted: what has no thickness is left by no way at all. What has one is left by the nearest."""
+    cube = np.array(list(itertools.product((-0.5, 0.5), repeat=3)))
+    square = cube * (1, 1, 0)
+    assert convex_depth(square, square + np.array([0.25, 0.5, 0])) == 0
+    tilted = square @ np.linalg.qr(np.random.default_rng(1).normal(size=(3, 3)))[0]
+    assert convex_depth(tilted, tilted) == pytest.approx(0, abs=1e-9)
+    assert convex_depth(square, cube + np.array([0, 0, 0.375])) == pytest.approx(0.125)
+
+
+def test_gaps_of_two_bodies_are_those_over_lanes() -> None:
+    """As far as one pair alone is decided: nothing is said of what is not convex, or so near that it may touch."""
+    shapes = [SHAPES[name]() for name in ("box", "cone")]
+    rng = np.random.default_rng(9)
+    said, met = 0, 0
+    for a, b in itertools.product(shapes, repeat=2):
+        poses = [random_poses(12, int(rng.integers(1000)), spread=0.7) for _ in range(2)]
+        expected = distance.between(
+            *(Body((mesh,), None, pose) for mesh, pose in zip((a, b), poses, strict=True)), 12
+        )
+        for lane in range(12):
+            one, other = (
+                single.placed(
+                    *(tuple(part[lane].tolist()) for part in (pose.position, pose.orientation, pose.size)),
+                    mesh,
+                )
+                for mesh, pose in zip((a, b), poses, strict=True)
+            )
+            found = single.gap(one, other)
+            if found is not None:
+                assert found == pytest.approx(expected[lane], abs=1e-7)
+                said += found > 0
+                met += found == 0
+            else:
+                assert expected[lane] == pytest.approx(0, abs=1e-7)
+    assert min(said, met) >= 5
+    cube = SHAPES["box"]()
+    still = (0.0, 0.0, 0.0, 1.0)
+    places = [
+        single.placed((x, 0.0, 0.0), still, (1.0, 1.0, 1.0), cube) for x in (0.0, 0.5, 1.0, 1.0 + 1e-13, 1.25)
+    ]
+    assert [single.gap(places[0], place) for place in places] == [0, 0, None, None, 0.25]
+    far = single.placed((9.0, 0.0, 0.0), still, (1.0, 1.0, 1.0), table())
+    assert [single.gap(*pair) for pair in ((places[0], far), (far, places[0]), (far, far))] == [None] * 3

@@ -325,8 +325,24 @@ def test_bad_files(tmp_path, name, content, message):
 
 
 def test_a_directory(tmp_path):
-    with pytest.raises(MeshError, match="cannot be read"):
+    with pytest.raises(MeshError, match=r"cannot be read: [^:]*$"):
         load_mesh(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("error", "words"), [(OSError(5, "Input error"), "Input error"), (OSError("no luck"), "no luck")]
+)
+def test_why_a_file_cannot_be_read_is_told(tmp_path, monkeypatch, error, words):
+    """In the words of the system alone; its numbers and the name, which is told anyway, are left out."""
+    path = export(tmp_path, "box.stl", primitives.box())
+
+    def fail(_self, *_rest):
+        raise error
+
+    monkeypatch.setattr(type(path), "read_bytes", fail)
+    monkeypatch.setattr(type(path), "open", fail)
+    with pytest.raises(MeshError, match=f"box.stl` cannot be read: {words}$"):
+        load_mesh(path)
 
 
 @real_meshes
