@@ -351,3 +351,58 @@ def test_what_no_draw_reaches_is_impossible_on_either_side(name):
             assert [item.phrase for item in core.supports] == [f"{words} {end:g}"]
             assert judge([Fact(make(within, node, end), "")]).tautologies
     assert verdict(make("less or equal", node, low)) == ([], [])
+
+
+def truth():
+    return make("less", uniform(0, 1), 0.5)
+
+
+def two_or_three():
+    return make("discrete range", graph.axis(), 2, 3)
+
+
+MIXED = {
+    "truth or number": (lambda: one_of(truth(), 5.0), {0, 1, 5}),
+    "number or truth": (lambda: one_of(5.0, truth()), {0, 1, 5}),
+    "truth or whole number": (lambda: one_of(truth(), two_or_three()), {0, 1, 2, 3}),
+    "truth or true": (lambda: one_of(truth(), True), {0, 1}),
+    "one branch is a truth": (lambda: make("if", truth(), True, 3.0), {1, 3}),
+    "the other is": (lambda: make("if", truth(), two_or_three(), truth()), {0, 1, 2, 3}),
+    "vector or number": (lambda: one_of(Triple((1.0, 2.0, 3.0)), uniform(0, 1)), None),
+    "number or vector": (lambda: make("if", truth(), 4, Triple((1.0, 2.0, 3.0))), None),
+}
+
+
+@pytest.mark.parametrize("name", MIXED)
+def test_choices_among_different_kinds_may_be_each_of_their_values(name):
+    """A truth value counts as a number among numbers; of vectors among numbers nothing is said."""
+    build, possible = MIXED[name]
+    for value in (-1, 0, 1, 2, 3, 4, 5, 0.5):
+        told = verdict(make("equal", build(), value))[0]
+        assert told == ([] if possible is None or value in possible else [["0"]])
+
+
+def test_vectors_are_equal_component_by_component():
+    """And never equal to a number, nor out of reach where any component may differ."""
+    x = uniform(0, 1)
+    for place in range(3):
+        parts = [1.0, 2.0, 3.0]
+        parts[place] = make("add", x, parts[place])
+        moving = make("vector", *parts)
+        fixed = [1.0, 2.0, 3.0]
+        fixed[place] += 0.5
+        same = make("equal", moving, Triple(fixed))
+        assert verdict(same) == ([], [])
+        assert verdict(same, make("equal", x, 0.25))[0] == [["0", "1"]]
+        assert verdict(same, make("equal", x, 0.5))[0] == []
+        for other in range(3):
+            apart = list(fixed)
+            apart[other] += 1.0
+            assert verdict(make("equal", moving, Triple(apart)))[0] == [["0"]]
+            assert verdict(make("not equal", moving, Triple(apart)))[1] == ["0"]
+        assert verdict(make("equal", moving, x))[0] == [["0"]]
+        assert verdict(make("not equal", x, moving))[1] == ["0"]
+        item = make("getitem", moving, place)
+        assert verdict(make("greater", item, place + 2.0))[0] == [["0"]]
+        assert verdict(make("less", make("getitem", moving, place - 3), place + 1.0))[0] == [["0"]]
+        assert verdict(make("equal", make("len", moving), 3))[1] == ["0"]

@@ -1,5 +1,6 @@
 """Numbers in batches against Python's own, over all floats and integers."""
 
+import itertools
 import math
 import operator
 
@@ -284,3 +285,39 @@ def test_vectors_and_orientations_are_true():
     ):
         node = make("truth", source(kind, rows))
         assert evaluate(node, 2).full(node).tolist() == [True, True]
+
+
+SIGNS = {"less": "<", "less or equal": "<=", "greater": ">", "greater or equal": ">="}
+ONE, TURN = [[1.0, 2.0, 3.0]], [[0.0, 0.0, 0.0, 1.0]]
+
+
+@pytest.mark.parametrize("name", COMPARISONS)
+def test_vectors_and_orientations_have_no_order(name):
+    """They are equal or not, also to what is of another kind; the error names the sign that was written."""
+    parts = [(Kind.VECTOR, ONE), (Kind.ORIENTATION, TURN), (Kind.SCALAR, [1.0]), (Kind.INTEGER, [1])]
+    for one, other in itertools.product(parts, repeat=2):
+        if one[0].trailing or other[0].trailing:
+            for lanes in (1, 3):
+                node = make(
+                    name, *(source(kind, rows * count) for (kind, rows), count in ((one, lanes), (other, 1)))
+                )
+                batch = evaluate(node, lanes)
+                if name in ("equal", "not equal"):
+                    expected = (one is other) is (name == "equal")
+                    assert is_fine(batch, node).all()
+                    assert batch.full(node).tolist() == [expected] * lanes
+                else:
+                    assert batch.status(node).tolist() == [1] * lanes
+                    if lanes == 1:
+                        assert type(batch.errors[node]) is TypeError
+                        assert f"'{SIGNS[name]}'" in str(batch.errors[node])
+
+
+def test_large_whole_numbers_are_compared_and_divided_by_their_values():
+    """Neighbours that are one float are still two numbers, against each other and against floats."""
+    large = [2**53 + place for place in (-1, 0, 1, 2)] + [-(2**53) - 1, 2**61 + 1]
+    pairs = list(itertools.product(large, repeat=2))
+    for name in (*COMPARISONS, "divide"):
+        check(name, *map(list, zip(*pairs, strict=True)))
+        check(name, [a for a, _ in pairs], [float(b) for _, b in pairs])
+        check(name, [float(a) for a, _ in pairs], [b for _, b in pairs])

@@ -464,3 +464,24 @@ def test_an_index_that_failed_has_the_fate_of_no_option():
     batch = evaluate(node, 4)
     assert batch.status(node).tolist() == [FAULT, FAULT, REJECTED, OK]
     assert batch.value(node, 3) == 8.0
+
+
+@pytest.mark.parametrize("fate", ["fault", "reject"])
+def test_an_operation_that_does_not_say_that_it_fails_is_found_out(fate):
+    """Nobody would look at the fate of its lanes."""
+
+    def batch(call, a):
+        if fate == "fault":
+            call.fault(np.ones(1, dtype=bool), ValueError("a test"))
+        else:
+            call.reject(np.ones(1, dtype=bool))
+        return a
+
+    told = Operation("honest", always(Kind.SCALAR), batch, "A test.", faults=True, rejects=True)
+    hidden = Operation("liar", always(Kind.SCALAR), batch, "A test.")
+    x = uniform(0, 1)
+    node = construction.make_node(told, [x])
+    assert sampled([node], 2).status(node).tolist() == [FAULT if fate == "fault" else REJECTED] * 2
+    silent = construction.make_node(hidden, [x])
+    with pytest.raises(AssertionError, match="liar failed or rejected a lane"):
+        sampled([silent], 2).status(silent)
