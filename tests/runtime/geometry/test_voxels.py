@@ -176,3 +176,17 @@ def test_solids_thinner_than_cells_are_probed_within(thickness: float) -> None:
     apart = np.linalg.norm(places[:, None] - places, axis=2)[~np.eye(len(places), dtype=bool)]
     assert apart.min() > 1e-6
     assert apart.max() > 0.5
+
+
+def test_a_shell_that_no_cell_has_its_middle_in_is_probed_right_under_its_faces() -> None:
+    """A millimetre below them, in a shell of four; spread over all sides."""
+    cube = primitives.box()
+    vertices = np.concatenate([cube.vertices, 0.992 * cube.vertices])
+    shell = Mesh(vertices, np.concatenate([cube.faces, cube.faces[:, ::-1] + 8]))
+    assert shell.is_volume
+    probes = shell.derived(voxels).probes
+    assert contains_points(shell, probes).tolist()[:16] == [True] * 16
+    heights = np.abs(probes[:16]).max(axis=1)
+    assert set(np.round(heights, 9).tolist()) <= {0.499, 0.497}
+    sides = {(int(np.abs(row).argmax()), bool(row[np.abs(row).argmax()] > 0)) for row in probes[:16]}
+    assert len(sides) == 6
