@@ -291,3 +291,17 @@ def test_a_choice_is_an_operand_as_the_region_that_it_draws(
         assert scene.params["meets"] is (not isinstance(drawn, CircularRegion) or drawn.height == 0)
         kinds.add(type(drawn))
     assert len(kinds) == (1 if "3" in options else 2)
+
+
+@pytest.mark.parametrize("made", ["disc.union(choice)", "choice.union(disc)"])
+def test_points_of_a_union_with_a_choice_are_drawn_from_what_is_larger_in_that_scene(made: str) -> None:
+    """From the disc beside a line, and from the box beside the disc."""
+    text = (
+        "disc = CircularRegion((0, 0), Range(1, 2))\nchoice = Uniform(PolylineRegion([(9, 0), (9, 5)]), BoxRegion((1, 1, 1), (20, 0, 0)))\n"
+        f"made = {made}\nx = (new Point in made).position\nparam x = (x.x, choice.dimension, made)\n"
+    )
+    found = draws(text, n=20)
+    assert {dimension for _, dimension, _ in found} == {1, 3}
+    for x, dimension, region in found:
+        assert (abs(x) <= 2) is (dimension == 1)
+        assert region.dimension == max(2, dimension)

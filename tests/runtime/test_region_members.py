@@ -10,6 +10,7 @@ import pytest
 import scenic.core.regions as named
 import shapely
 import trimesh
+from scenic.core.distributions import Range
 from scipy.spatial.transform import Rotation
 
 import scenic
@@ -742,3 +743,115 @@ def test_lines_and_points_of_several_members_count_alike() -> None:
     numbers = (np.arange(400) + 0.5) / 400
     drawn, _ = points.draw_points(numbers[np.newaxis], np.zeros(400, dtype=np.uint64))
     assert np.bincount(drawn[:, 0].astype(int)).tolist() == [100] * 4
+
+
+def test_the_direction_of_a_path_is_that_of_its_nearest_piece_in_space() -> None:
+    path = named.PathRegion(polylines=[[(0, 0, 0), (4, 0, 0)], [(0, 1, 5), (0, 5, 9)]])
+    assert_same_rotation(path.defaultOrientation(Vector(0, 2, 6)), euler(0, math.pi / 4))
+    assert_same_rotation(path.defaultOrientation((0, 2, 0)), euler(-math.pi / 2))
+
+
+def test_vertices_of_polygons_come_by_part_and_those_of_holes_last() -> None:
+    ring = shapely.Polygon([(0, 0), (9, 0), (0, 9)], [[(1, 1), (2, 1), (1, 2)]])
+    other = shapely.Polygon([(20, 0), (21, 0), (20, 1)])
+    region = named.PolygonalRegion(polygon=shapely.MultiPolygon([ring, other]), z=2.5)
+    parts = region.polygons.geoms
+    rings = [*(part.exterior for part in parts), *(hole for part in parts for hole in part.interiors)]
+    assert len(rings) == 3
+    assert region.points == tuple((x, y, 2.5) for ring in rings for x, y in ring.coords)
+    assert len(region.points) == 12
+    assert sorted(set(region.points[-4:])) == [(1, 1, 2.5), (1, 2, 2.5), (2, 1, 2.5)]
+
+
+def test_measures_of_discs_of_random_radius_are_random() -> None:
+    text = "r = CircularRegion((1, 2), Range(1, 3))\nparam x = (r.radius, r.inradius, r.circumcircle, r.center, r)\n"
+    for radius, inradius, (middle, around), center, region in draws(text, n=3):
+        assert radius == inradius == around == region.inradius
+        assert tuple(middle) == tuple(center) == (1, 2, 0)
+
+
+def test_members_of_combinations_are_told_in_their_order() -> None:
+    parts = (MAKERS["box"](), MAKERS["ball"](), MAKERS["cells"]())
+    assert named.IntersectionRegion(*parts).regions == named.UnionRegion(*parts).regions == parts
+    assert named.DifferenceRegion(*parts[:2]).regions == parts[:2]
+
+
+def test_what_combinations_are_given_is_also_that_of_their_samples() -> None:
+    """The field, which goes before those of members, and the name."""
+    text = (
+        "from scenic.core.regions import DifferenceRegion, IntersectionRegion, UnionRegion\n"
+        "f, g = VectorField('f', lambda p: 0.1 * p.x), VectorField('g', lambda p: 3)\n"
+        "street = PolygonalRegion([(0, 0), (4, 0), (4, 3)], orientation=g)\ndisc = CircularRegion((2, 1), Range(2, 3))\n"
+        "rs = [{}(street, disc, orientation=f, name='mine')]\n"
+        "rs += [{}(disc, street, orientation=f, name='mine')]\n"
+        "param x = [(r, (new OrientedPoint in r)) for r in rs]\n"
+    )
+    for kind in ("IntersectionRegion", "UnionRegion", "DifferenceRegion"):
+        for found in draws(text.format(kind, kind), n=2):
+            for region, point in found:
+                assert region.name == "mine"
+                assert type(region).__name__ == kind
+                assert_same_rotation(point.orientation, euler(0.1 * point.x))
+                assert region.orientation[Vector(5, 0, 0)].yaw == pytest.approx(0.5)
+
+
+def test_distances_of_combinations_are_told_of_many_points_of_one_and_of_one_of_many() -> None:
+    """In whichever of points, parameters and both the lanes differ."""
+
+    def room(width: Any) -> IntersectionRegion:
+        return IntersectionRegion(named.BoxRegion((width, 2, 2)), named.BoxRegion((8, 1, 1)))
+
+    region = room(Range(1, 9))
+    alike = [room(width).fixed_columns("a test") for width in (2, 4, 6)]
+    each = [np.concatenate(columns) for columns in zip(*alike, strict=True)]
+    points = np.array([(5.0, 0, 0), (7, 0, 0), (0, 0, 2.5)])
+    for found, expected in (
+        (region.distances(points, *alike[0]), [4, 6, 2]),
+        (region.distances(points[:1], *each), [4, 3, 2]),
+        (region.distances(points, *each), [4, 5, 2]),
+    ):
+        np.testing.assert_allclose(found, expected)
+
+
+def test_parts_of_columns_and_columns_around_them() -> None:
+    column = named.CircularRegion((1, 2, 9), 3).footprint
+    for bounded in (column.boundFootprint(5, 4), column.approxBoundFootprint(5, 4)):
+        np.testing.assert_allclose(bounded.AABB, ((-2, -1, 3), (4, 5, 7)), atol=0.05)
+    for distance, held in ((1, True), (-1, False)):
+        grown = column.buffer(distance)
+        assert grown.containsPoint(Vector(1 + 2.5, 2, -40)) is held
+        assert grown.containsPoint(Vector(1 + 3.5, 2, -40)) is held
+        assert grown.containsPoint(Vector(1 + 1.5, 2, 40)) is True
+
+
+def test_things_land_on_views_along_directions() -> None:
+    """On a ball of radius 3, seen all around, as on any solid: from outside, and not from inside."""
+    view = named.ViewRegion(3, (2 * math.pi, math.pi), position=PLACE)
+    for point, direction, place in (
+        ((1, 2, 13), None, (1, 2, 6)),
+        ((1, 2, -9), (0, 0, 1), (1, 2, 0)),
+        ((9, 2, 3), (1, 0, 0), (4, 2, 3)),
+        ((1, -9, 3), (0, 1, 0), (1, -1, 3)),
+        ((1.5, 2, 3), None, (1.5, 2, 3)),
+    ):
+        landed, _ = view.project(Vector(*point), direction and Vector(*direction))
+        np.testing.assert_allclose(tuple(landed), place, atol=0.01)
+        assert tuple(view.projectVector(Vector(*point), direction)) == tuple(landed)
+    assert view.projectVector(Vector(9, 2, 3), (0, 0, 1)) is None
+
+
+def test_views_wider_than_a_half_turn_are_not_convex() -> None:
+    for angle, convex in ((1.0, True), (3.0, True), (4.7, False)):
+        view = named.ViewRegion(3, (angle, 3.1415927), position=PLACE)
+        assert view.isConvex is convex
+        hull = view.mesh.convex_hull.volume
+        assert bool(view.mesh.volume > 0.99 * hull) is convex
+        assert view.mesh.volume == pytest.approx(18 * angle, rel=0.02)
+        # A sector is seen from above.
+        assert view.boundingPolygon.area == pytest.approx(4.5 * angle, rel=0.02)
+        assert view.boundingPolygon.polygons.contains(shapely.Point(1, 3))
+        if convex:  # the middle of its box is half its reach ahead
+            assert view.inradius == pytest.approx(1.5 * math.sin(angle / 2), rel=0.01)
+        assert view.voxelized(0.25).dimension == view.getVolumeRegion().dimension == 3
+        assert view.voxelized(0.25).scale.tolist() == [0.25] * 3
+        assert view.getSurfaceRegion().dimension == 2

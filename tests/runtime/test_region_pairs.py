@@ -16,7 +16,7 @@ import shapely
 import trimesh
 from scipy.spatial.transform import Rotation
 
-from scenic.language.errors import InvalidScenarioError
+from scenic.language.errors import InvalidScenarioError, ScenicTypeError
 from scenic.runtime.fields import VectorField
 from scenic.runtime.geometry import primitives
 from scenic.runtime.geometry.poses import Floats
@@ -430,3 +430,59 @@ def test_sides_meet_the_columns_that_they_are_in(side: str) -> None:
     else:
         with pytest.raises(InvalidScenarioError, match="no outline"):
             region.boundingPolygon  # noqa: B018 - asking is the test
+
+
+@pytest.mark.parametrize("operation", ["intersect", "union", "difference", "intersects", "containsRegion"])
+def test_what_is_no_region_has_nothing_in_common_with_one(operation: str) -> None:
+    with pytest.raises(ScenicTypeError, match=rf"^`{operation}`: expected a region, not .*'wall'"):
+        getattr(named.BoxRegion(), operation)("wall")
+
+
+def test_columns_of_several_parts_keep_them_all() -> None:
+    left, right = (named.RectangularRegion((x, 0, 4), 0, 2, 2).footprint for x in (-2, 2))
+    wide = named.RectangularRegion((0, 0), 0, 4, 1).footprint
+    both = left.union(right)
+    for region, area in ((both, 8), (both.intersect(wide), 2), (both.difference(wide), 6)):
+        assert isinstance(region, Footprint)
+        assert region.polygons.area == pytest.approx(area)
+        for x, z in ((-1.5, 4), (1.5, -7)):
+            assert region.containsPoint(Vector(x, 0, z)) is (area != 6)
+            assert region.containsPoint(Vector(x, 0.8, z)) is (area != 2)
+        assert region.containsPoint(Vector(0, 0, 4)) is False
+
+
+@pytest.mark.parametrize("height", [0, 2])
+def test_several_edges_that_polygons_share_look_along_themselves(height: float) -> None:
+    plate = named.PolygonalRegion([(0, 0), (4, 0), (4, 3), (0, 3)], z=height)
+    around = named.PolygonalRegion(
+        polygon=shapely.box(-9, -9, 9, 9).difference(shapely.box(0, 0, 4, 4)), z=height
+    )
+    for edges in (plate.intersect(around), around.intersect(plate)):
+        assert isinstance(edges, LineRegion)
+        assert edges.length == pytest.approx(4 + 3 + 3)
+        assert (edges.box()[0][0, 2], edges.box()[1][0, 2]) == (height, height)
+        for place, along in (((2, 0, height), (1, 0)), ((0, 2, height), (0, 1)), ((4, 1, height), (0, 1))):
+            yaw = edges.orientation[Vector(*place)].yaw
+            assert abs(-np.sin(yaw) * along[0] + np.cos(yaw) * along[1]) == pytest.approx(1)
+
+
+def test_a_path_of_several_chains_meets_what_one_of_them_meets() -> None:
+    far, near = [(9, 9, 0), (9, 8, 1)], [(-3, 0.5, 7), (3, 0.5, 8)]
+    column = named.RectangularRegion((0, 0), 0, 2, 2).footprint
+    plate, box = named.RectangularRegion((0, 0, 7.5), 0, 2, 2), named.BoxRegion((2, 2, 2), (0, 0, 7))
+    for chains, met in (([far, near], True), ([near, far], True), ([far], False), ([far, far[::-1]], False)):
+        path = named.PathRegion(polylines=chains)
+        for region in (column, plate, box):
+            assert path.intersects(region) is met
+            assert region.intersects(path) is met
+
+
+@pytest.mark.parametrize("height", [-1.5, 0, 1.5])
+def test_what_is_left_of_a_disc_without_a_ball_is_outside_it_at_that_height(height: float) -> None:
+    """A ball of radius 2, whose cut at 1.5 has a radius of 1.32."""
+    rest = named.CircularRegion((0, 0, height), 3).difference(named.SpheroidRegion((4, 4, 4)))
+    for x, met in ((0.5, False), (1.6, height != 0), (2.3, True), (3.5, False)):
+        spot = named.CircularRegion((x, 0, height), 0.1)
+        assert rest.intersects(spot) is met
+        assert spot.intersects(rest) is met
+    assert rest.intersects(named.CircularRegion((2.3, 0, height + 1), 0.1)) is False

@@ -7,7 +7,7 @@ import pytest
 
 import scenic
 from scenic.formats.labels import body_of
-from scenic.language.errors import Located
+from scenic.language.errors import Located, ScenicTypeError
 from scenic.runtime.geometry.visibility.bodies import sees_bodies
 from scenic.runtime.geometry.visibility.obstacles import Occluder
 from scenic.runtime.geometry.visibility.points import sees_points
@@ -356,3 +356,66 @@ def test_functions_that_look_from_places_of_their_own_see_the_objects_of_each_ca
     for word, free in (("", True), ("not ", False)):
         for found in scenic.scenarioFromString(text.format(word)).sample(30, seed=1):
             assert (abs(found.params["x"] - found.params["wall"]) > 0.5) is free
+
+
+LOOKERS = """
+ego = new Object with visibleDistance 20, with allowCollisions True
+blind = new Object at (0, -30, 0), with visibleDistance 1
+wall = new Object at ({x}, 3, 0), with width 3, with height 3, with length 0.1, with occluding {hides}, with allowCollisions True
+box, far, beside = new Object at (0, 6, 0), new Object at (0, 60, 0), new Object at (9, 0, 0)
+"""
+
+
+@pytest.mark.parametrize(
+    ("x", "hides"), [("0", "True"), ("Range(-9, 9)", "True"), ("0", "Uniform(True, False)")]
+)
+def test_what_hides_by_chance_is_looked_at_in_each_scene(x: str, hides: str) -> None:
+    """Halfway to a box of a metre, a wall of three hides all of it up to 1.22 metres aside, its middle up to 1.5."""
+    text = LOOKERS.format(x=x, hides=hides) + (
+        "seen = [ego.canSee(box, [wall]), ego.canSee((0, 6, 0), [wall]), ego.canSee(beside, (wall,)), ego.canSee(far, [wall])]\n"
+        "certain = [ego.canSee(box, [wall], certain=True), ego.canSee(far, [wall], certain=True)]\n"
+        "one, other = Uniform(box, far), Uniform(ego, blind)\n"
+        "param wall = wall, seen = seen, certain = certain, one = one, drawn = ego.canSee(one, [wall])\n"
+        "param other = other, through = other.canSee(box, [wall]), sure = other.canSee(one, [wall], certain=True)\n"
+    )
+    answers = set()
+    for scene in scenic.scenarioFromString(text).sample(40, seed=3):
+        found = scene.params
+        off = abs(found["wall"].x) if found["wall"].occluding else 9.0
+        box, place, beside, far = found["seen"]
+        if abs(off - 1.22) > 0.05:
+            assert box is (off > 1.22)
+        if not 1.17 < off < 1.8:
+            assert found["certain"][0] is box
+        if abs(off - 1.5) > 0.01:
+            assert place is (off > 1.5)
+        assert (beside, far, found["certain"][1]) == (True, False, False)
+        assert found["drawn"] is (found["one"].y < 50 and box)
+        assert found["through"] is (found["other"].y == 0 and box)
+        assert found["sure"] is (found["other"].y == 0 and found["one"].y < 50 and found["certain"][0])
+        answers.add((box, found["drawn"], found["through"]))
+    assert len(answers) >= (1 if (x, hides) == ("0", "True") else 3)
+
+
+@pytest.mark.parametrize("values", ["3", "ego", "[3]", "[ego, (1, 2)]", "Uniform(ego, box)", "[Range(0, 1)]"])
+def test_only_objects_hide_others(values: str) -> None:
+    text = f"ego = new Object\nbox = new Object at (0, 6, 0)\nparam x = ego.canSee(box, {values})\n"
+    with pytest.raises(ScenicTypeError, match="what may hide others"):
+        scenic.scenarioFromString(text).sample(1, seed=0)
+
+
+def test_observers_of_a_choice_look_with_eyes_of_their_own() -> None:
+    """Each with its place, its turn, its angles, its distance and its rays."""
+    text = (
+        "ego = new Object at (0, 0, 0), facing 90 deg, with viewAngles (40 deg, 20 deg), with visibleDistance 5, with cameraOffset (0, 1, 0)\n"
+        "other = new Object at (20, 0, 0), with viewAngles (80 deg, 90 deg), with visibleDistance 9\n"
+        "eye = Uniform(ego, other)\n"
+        "places = [(-5.9, 0, 0), (-6.1, 0, 0), (-4, 1, 0), (-4, 1.2, 0), (-4, 0, 0.5), (-4, 0, 0.6), (20, 8.9, 0), (20, 9.1, 0), (24, 5, 0), (20, 4, 3.9)]\n"
+        "param x = (eye.x, [eye.canSee(p) for p in places], [eye.visibleRegion.containsPoint(p) for p in places])\n"
+    )
+    seen = {0: [1, 0, 1, 0, 1, 0, 0, 0, 0, 0], 20: [0, 0, 0, 0, 0, 0, 1, 0, 1, 1]}
+    drawn = [scene.params["x"] for scene in scenic.scenarioFromString(text).sample(12, seed=2)]
+    assert {x for x, _, _ in drawn} == {0, 20}
+    for x, looked, held in drawn:
+        assert looked == list(map(bool, seen[x]))
+        assert held == looked

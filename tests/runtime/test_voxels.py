@@ -380,3 +380,48 @@ def test_cells_grow_and_shrink_by_their_neighbours() -> None:
             assert found.orientation is field
             assert found.scale.tolist() == [0.5, 1, 2]
     assert region.dilation(0) is region
+
+
+def test_the_mesh_of_cells_keeps_their_place_field_and_name() -> None:
+    field = VectorField("f", lambda place: place.x)
+    transform = np.diag([0.5, 1, 2, 1.0])
+    transform[:3, 3] = (10, -20, 30)
+    grid = trimesh.voxel.VoxelGrid(FILLED, transform=transform)
+    mesh = VoxelRegion(grid, orientation=field, name="blocks").mesh
+    np.testing.assert_allclose(mesh.AABB, ((9.75, -20.5, 29), (10.75, -18.5, 33)))
+    assert mesh.orientation is field
+    assert mesh.name == "blocks"
+    assert VoxelRegion(grid).mesh.has_orientation is False
+    points = (np.random.default_rng(2).uniform(-0.7, 1.7, (300, 3))) * (0.5, 1, 2) + (10, -20, 30)
+    held = mesh.contains_points(points, *mesh.fixed_columns("points"))
+    np.testing.assert_array_equal(held, VoxelRegion(grid).contains_points(points))
+
+
+def test_the_middles_of_cells_are_found_by_their_search_tree() -> None:
+    transform = np.diag([0.5, 1, 2, 1.0])
+    transform[:3, 3] = (10, -20, 30)
+    region = VoxelRegion(trimesh.voxel.VoxelGrid(FILLED, transform=transform))
+    assert region.scale.tolist() == [0.5, 1, 2]
+    middles = np.argwhere(FILLED) * (0.5, 1, 2) + (10, -20, 30)
+    np.testing.assert_allclose(region.voxel_points, middles)
+    off = 0.1 * np.eye(3)[np.arange(4) % 3]
+    distances, numbers = region.kdTree.query(middles + off)
+    np.testing.assert_allclose(distances, 0.1)
+    assert numbers.tolist() == [0, 1, 2, 3]
+
+
+@pytest.mark.parametrize("order", [(0, 1, 2), (2, 0, 1), (1, 2, 0)])
+def test_each_body_is_asked_of_the_empty_cells_that_it_reaches_itself(order: tuple[int, ...]) -> None:
+    """Some of all that the bodies reach together are reached by none, or by one that is not held already."""
+    filled = np.ones((9, 3, 3), dtype=bool)
+    filled[0, 0, 0] = filled[4, 0, 0] = filled[8, 2, 2] = False
+    region = VoxelRegion(trimesh.voxel.VoxelGrid(filled))
+    # Each box reaches an empty cell; the ball in the second does not. Nobody reaches that in the middle.
+    places = np.array([(0.6, 0.6, 0.6), (6.8, 0.8, 0.8), (7.4, 1.4, 1.4)])[list(order)]
+    body = Body(
+        (primitives.spheroid(),), None, Poses(places, np.array([[0.0, 0, 0, 1]]), np.full((1, 3), 2.0))
+    )
+    held = region.contains_bodies(body, 3).tolist()
+    assert held == [[False, True, False][number] for number in order]
+    alone = [region.contains_bodies(body.take(np.array([lane])), 1)[0] for lane in range(3)]
+    assert alone == held
