@@ -38,6 +38,16 @@ def _moving() -> dict[str, Region]:
         "union": composite.UnionRegion(box, item.occupiedSpace, disc),
         "intersection": composite.IntersectionRegion(item.occupiedSpace, ball),
         "difference": composite.DifferenceRegion(rectangle, item.occupiedSpace),
+        "choice among surfaces": RegionChoice(1, [item.topSurface, item.surface, item.leftSurface]),
+        "union with a choice": composite.UnionRegion(
+            disc, RegionChoice(1, [rectangle, disc, item.topSurface])
+        ),
+        "intersection with a choice": composite.IntersectionRegion(
+            box, RegionChoice(1, [ball, disc, item.occupiedSpace])
+        ),
+        "difference with a choice": composite.DifferenceRegion(
+            rectangle, RegionChoice(1, [disc, ball, item.occupiedSpace])
+        ),
         "union of flats": composite.UnionRegion(disc, rectangle),
         "footprint of a rectangle": rectangle.footprint,
     }
@@ -127,7 +137,7 @@ def test_each_lane_gets_the_answer_that_it_gets_alone(name: str) -> None:
             alone = Body(body.meshes, body.choice[one], body.poses.take(one))  # type: ignore[index] # a choice is given
             answers = reading(points[one], alone, numbers[:, one], keys[one], *mine)
             rows = [given[lane if len(given) > 1 else 0] for given in together]
-            if what in ("box", "container") and "of a" in name:
+            if what in ("box", "container") and ("of a" in name or "surfaces" in name):
                 # That of a side is closer where the body is fixed.
                 assert (rows[0] <= answers[0][0] + 1e-9).all()
                 assert (rows[1] >= answers[1][0] - 1e-9).all()

@@ -219,6 +219,9 @@ def test_operators_say_what_is_wrong_with_an_operand_that_is_drawn() -> None:
         "x at (1, 2)": "a vector field",
         "follow x from (1, 2) for 3": "a vector field",
         "distance from x to ego": "a vector",
+        "minimum distance from x": "an object",
+        "top front left of x": "an object",
+        "ego intersects x": "an object or a region",
     }
     for case, expected in cases.items():
         error = failure(text + case + "\n")
@@ -541,3 +544,33 @@ def test_vectors_have_the_parts_of_triples(index: str, row: str) -> None:
         assert isinstance(failure(text), IndexError)
     else:
         assert params(text)["x"] == eval(f"(1.0, 2.0, 3.0)[{index}]")
+
+
+@pytest.mark.parametrize("value", ["'3'", "ego", "None", "[3]", "True and 'north'"])
+def test_only_numbers_are_degrees(value: str) -> None:
+    error = failure(f"ego = new Object\nparam x = ({value}) deg\n")
+    assert isinstance(error, ScenicTypeError)
+    assert "`deg`: expected a number, not" in str(error)
+    assert place(error)[1].startswith("2:11-")
+
+
+def test_what_is_left_out_is_the_ego_also_of_operands_that_are_drawn() -> None:
+    """The ego as it is where the operator stands, not where its operand is drawn."""
+    text = (
+        "told = distributionFunction(lambda value, _: value)\nhidden = Range(0, 1)\n"
+        "ego = new Object at (1, 2, 3), facing (0.4, 0.3, -0.2)\n"
+        "box = new Object at (7, 2, 3), facing 0.5, with length 2\n"
+        "b, D = told(box, hidden), told(CircularRegion((9, 2, 3), 2), hidden)\n"
+        "drawn = [(apparent heading of b), (minimum distance to b), (distance to D), (distance past b),\n"
+        "    (relative heading of b), (angle to b), (altitude to b), (relative position of b)]\n"
+        "known = [(apparent heading of box), (minimum distance to box),\n"
+        "    (distance to CircularRegion((9, 2, 3), 2)), (distance past box), (relative heading of box), (angle to box),\n"
+        "    (altitude to box), (relative position of box)]\n"
+        "ego = new Object at (-40, 30, 20), facing 2\n"
+        "param drawn = drawn, known = known\n"
+    )
+    found = params(text)
+    for drawn, known in zip(found["drawn"], found["known"], strict=True):
+        assert drawn == known or drawn == pytest.approx(known)
+    assert found["known"][2] == 6
+    assert_angles_equal(found["known"][0], 0.5 + math.pi / 2)

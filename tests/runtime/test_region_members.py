@@ -19,6 +19,7 @@ from scenic.runtime.fields import VectorField
 from scenic.runtime.geometry import primitives
 from scenic.runtime.geometry.segments import Segments
 from scenic.runtime.geometry.single import placed
+from scenic.runtime.regions.base import Workspace
 from scenic.runtime.regions.composite import IntersectionRegion
 from scenic.runtime.shapes import BoxShape, ConeShape, CylinderShape, MeshShape, SpheroidShape
 from scenic.runtime.values import Orientation, Vector
@@ -855,3 +856,114 @@ def test_views_wider_than_a_half_turn_are_not_convex() -> None:
         assert view.voxelized(0.25).dimension == view.getVolumeRegion().dimension == 3
         assert view.voxelized(0.25).scale.tolist() == [0.25] * 3
         assert view.getSurfaceRegion().dimension == 2
+
+
+def test_workspaces_answer_as_the_region_that_they_are_made_of() -> None:
+    """Also where they are drawn from, landed on and looked along, in each scene its way."""
+    line = named.PathRegion(polylines=[[(0, 0, 0), (3, 0, 3)], [(9, 0, 0), (9, 5, 0)]])
+    space = Workspace(Workspace(line))
+    points = np.array([(1.0, 0, 1), (9, 2, 0), (2, 0, 2)])
+    turns = [euler(-math.pi / 2, math.pi / 4), euler(0), euler(-math.pi / 2, math.pi / 4)]
+    for found, turn in zip(space.orientations(points), turns, strict=True):
+        assert_same_rotation(Orientation.of(found.tolist()), turn)
+    assert (space.dimension, space.dimensionality, space.size) == (1, 1, pytest.approx(5 + 3 * math.sqrt(2)))
+    disc = named.CircularRegion(PLACE, 2)
+    ground = Workspace(disc)
+    assert ground.footprint.containsPoint(Vector(1, 3, 70)) is True
+    assert ground.dimensionality == 2
+    assert isinstance(ground.footprint, type(disc.footprint))
+    box = thing(
+        "ego = new Object at (1, 2, 3), facing (0, 0.3, 0), with width 4, with length 4, with height 2"
+    )
+    for direction in (None, (0, 0, 1), (0, 1, 0), (0.1, 0.2, 1)):
+        for point in (Vector(1, 2, 9), Vector(1.5, 2.5, 3.2), Vector(1, 9, 3)):
+            for region in (box.occupiedSpace, box.topSurface, disc):
+                found, known = (each.projectVector(point, direction) for each in (Workspace(region), region))
+                assert found == known
+    text = (
+        "from scenic.core.regions import PathRegion\n"
+        "workspace = Workspace(PathRegion(polylines=[[(0, 0, 0), (3, 0, 3)], [(9, 0, 0), (9, 5, 0)]]))\n"
+        "place = new OrientedPoint in workspace\nparam x = (place.x, place.orientation)\n"
+    )
+    found = draws(text, n=12)
+    for x, orientation in found:
+        assert_same_rotation(orientation, euler(0) if x == 9 else euler(-math.pi / 2, math.pi / 4))
+    assert len({x == 9 for x, _ in found}) == 2
+
+
+def test_points_drawn_now_have_the_heading_of_their_region_there() -> None:
+    field = VectorField("f", lambda place: (place.x / 9, 0.4, 0.2))
+    region = named.PolygonalRegion([(0, 0), (4, 0), (4, 3)], orientation=field)
+    for point in (region.uniformPointInner(), region.orient(Vector(3, 1, 0)), region.orient((2.5, 1, 0))):
+        assert point.heading == pytest.approx(point.x / 9)
+    assert type(MAKERS["disc"]().uniformPointInner()) is Vector
+    text = "from scenic.core.regions import Region\nr = CircularRegion((20, 0, 1), 2)\np = Region.uniformPointIn(r)\nparam x = p\n"
+    found = draws(text, n=5)
+    assert len(set(found)) == 5
+    assert all(named.CircularRegion((20, 0, 1), 2).containsPoint(point) and point.z == 1 for point in found)
+
+
+def test_nothing_is_in_or_on_or_of_the_empty_region() -> None:
+    nothing, item = named.nowhere, thing("ego = new Object")
+    assert (nothing.size, nothing.dimensionality, repr(nothing)) == (0, 0, "nowhere")
+    for region in (named.EmptyRegion("void"), named.AllRegion("void"), named.EmptyRegion(name="void")):
+        assert (region.name, repr(region), region.parameters) == ("void", "void", ())
+    assert nothing.containsObject(item) is nothing.containsPoint(item.position) is False
+    assert nothing.distanceTo(item.position) == math.inf
+    for call in ("new Object on nowhere", "new Object in nowhere", "new Object at (0, 0, 0), on nowhere"):
+        error = failure(f"ego = new Object at (9, 9, 9)\n{call}\n")
+        assert isinstance(error, InvalidScenarioError)
+        assert "empty region" in str(error)
+    assert nothing.projectVector(item.position, None) is None
+    # All of space is where one is already.
+    assert tuple(named.everywhere.projectVector(Vector(1, 2, 3), (1, 0, 0))) == (1, 2, 3)
+    assert tuple(thing("ego = new Object at (1, 2, 3), on everywhere").position) == pytest.approx(
+        (1, 2, 3.5), abs=0.6
+    )
+
+
+def test_sides_alone_bound_no_volume() -> None:
+    item = thing(
+        "ego = new Object at (1, 2, 3), facing (0.7, 0.4, -0.3), with width 2, with length 4, with height 6"
+    )
+    for side in ("top", "bottom", "left", "right", "front", "back"):
+        region = getattr(item, f"{side}Surface")
+        assert region.isConvex is False
+        assert region.getSurfaceRegion() is region
+        middle, radius = region.circumcircle
+        assert tuple(middle) == (1, 2, 3)
+        assert radius == pytest.approx(math.sqrt(4 + 16 + 36) / 2)
+    assert item.surface.isConvex is True
+    hollow = thing(
+        "from tests.runtime.geometry.samples import SHAPES\nego = new Object with shape MeshShape(SHAPES['hollow']())"
+    )
+    assert hollow.surface.isConvex is hollow.occupiedSpace.isConvex is False
+
+
+@pytest.mark.parametrize(
+    "thresholds", ["3", "((0, 1), (0, 1))", "((0, 1), (0, 1), (0, 'a'))", "(0, 1, 2)", "None"]
+)
+def test_thresholds_of_sides_are_three_pairs(thresholds: str) -> None:
+    error = failure(
+        f"ego = new Object with sideComponentThresholds {thresholds}\nnew Object on ego.topSurface\n"
+    )
+    assert isinstance(error, ScenicTypeError)
+    assert "expected three pairs of numbers" in str(error)
+
+
+def test_thresholds_of_sides_are_no_formulas() -> None:
+    text = "x = Range(0, 1)\nego = new Object with sideComponentThresholds ((-x, x), (-x, x), (-x, x))\nnew Object on ego.topSurface\n"
+    assert isinstance(failure(text), UnsupportedError)
+
+
+def test_distances_between_things_are_known_to_be_at_least_those_of_their_boxes() -> None:
+    text = (
+        "ego = new Object at (0, 0, 0)\nother = new Object at (Range(5, 9), Range(-1, 1), 0), with width Range(1, 2)\n"
+        "near, close = minimum distance from other, ego.distanceTo(other.position)\n"
+        "param x = near, low = near.supportInterval()[0], high = near.supportInterval()[1]\n"
+    )
+    for item in scenario(text).sample(5, seed=1):
+        low, high = item.params["low"], item.params["high"]
+        assert low == pytest.approx(5 - 1 - 0.5, abs=1e-5)
+        assert high is None or high >= 8 or high == math.inf
+        assert low <= item.params["x"] <= 8

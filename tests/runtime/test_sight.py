@@ -191,9 +191,14 @@ def test_certain_answers_find_what_is_between_rays() -> None:
         "right = new Object at (2.0007, 5, 0), with width 4, with length 0.1, with height 4\n"
         "box = new Object at (Range(0.79, 0.81), 10, 0), with width 2\n"
         "param rays = ego.canSee(box, [left, right]), proved = ego.canSee(box, [left, right], certain=True)\n"
+        "param drawn = [ego.canSee(Uniform(box, box), [left, right], certain=sure) for sure in (False, True)]\n"
+        "param eyes = [Uniform(ego, ego).canSee(box, [left, right], certain=sure) for sure in (False, True)]\n"
+        "told = distributionFunction(lambda value, _: value)(box, Range(0, 1))\n"
+        "param told = [ego.canSee(told, [left, right], certain=sure) for sure in (False, True)]\n"
     )
     for scene in scenic.scenarioFromString(text).sample(3, seed=1):
-        assert scene.params == {"rays": False, "proved": True}
+        both = [False, True]
+        assert scene.params == {"rays": False, "proved": True, "drawn": both, "eyes": both, "told": both}
 
 
 def test_what_cannot_be_proved_to_be_seen_is_not_certainly_seen() -> None:

@@ -495,6 +495,9 @@ class Everywhere(Region):
 
     dimension = np.inf
 
+    def __init__(self, name: str | None = None) -> None:
+        super().__init__(name=name)
+
     def __repr__(self) -> str:
         return self.name or "everywhere"
 
@@ -527,6 +530,9 @@ class Nowhere(Region):
     """The empty region."""
 
     dimension = 0
+
+    def __init__(self, name: str | None = None) -> None:
+        super().__init__(name=name)
 
     def __repr__(self) -> str:
         return self.name or "nowhere"
