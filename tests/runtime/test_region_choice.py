@@ -12,7 +12,7 @@ from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.poses import Poses
 from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.choice import RegionChoice
-from scenic.runtime.regions.composite import exactly_contains
+from scenic.runtime.regions.composite import DifferenceRegion, exactly_contains
 from scenic.runtime.regions.lines import PathRegion
 from scenic.runtime.regions.planar import CircularRegion, RectangularRegion
 from scenic.runtime.regions.volumes import BoxRegion, SpheroidRegion
@@ -235,6 +235,14 @@ def test_a_choice_among_lines_has_the_direction_of_the_one_drawn() -> None:
     found = region.orientations(np.zeros((1, 3)), index)
     for lane, number in enumerate(index):
         np.testing.assert_array_equal(found[lane], lines[number].orientations(np.zeros((1, 3)))[0])
+    # One that all lanes draw is asked of the point of each.
+    bend = RegionChoice(0, [lines[0], PathRegion([(0, 0, 0), (4, 0, 0), (4, 4, 0)])])
+    points = np.array([(1.0, 0, 0), (4, 3, 0), (2, 0, 0)])
+    found = bend.orientations(points, np.array([1]))
+    np.testing.assert_array_equal(found, bend.options[1].orientations(points))
+    found = bend.orientations(points[[0, 2, 1]], np.array([1, 0, 1]))
+    for lane, (option, place) in enumerate(((1, 0), (0, 2), (1, 1))):
+        np.testing.assert_array_equal(found[lane], bend.options[option].orientations(points[[place]])[0])
     assert not RegionChoice(0, [lines[0], OPTIONS[0]]).has_orientation
     # Footprints of the plane, and of what is none already.
     assert RegionChoice(0, lines).footprint.options == tuple(lines)
@@ -305,3 +313,21 @@ def test_points_of_a_union_with_a_choice_are_drawn_from_what_is_larger_in_that_s
     for x, dimension, region in found:
         assert (abs(x) <= 2) is (dimension == 1)
         assert region.dimension == max(2, dimension)
+
+
+def test_points_count_at_the_height_of_the_option_of_their_lane() -> None:
+    low, high = CircularRegion(Vector(0, 0, 0), 2), CircularRegion(Vector(0, 0, 3), 1)
+    region = RegionChoice(0, [low, high, BoxRegion((2, 2, 2))])
+    index = np.array([1, 0, 2, 1, 0, 2, 1])
+    places = [(0.5, 0, 3), (1.5, 0, 0), (0.5, 0, 0.5), (0.5, 0, 0), (0.5, 0, 3), (0, 0, 3), (1.5, 0, 3)]
+    points, expected = np.array(places), np.array([True, True, True, False, False, False, False])
+    columns = [column for option in region.options for column in option.fixed_columns("a test")]
+    for order in (np.arange(7), np.arange(7)[::-1], np.array([3, 0, 6, 1, 4, 2, 5])):
+        found = exactly_contains(region, points[order], [index[order], *columns])
+        np.testing.assert_array_equal(found, expected[order])
+        assert found.dtype == np.bool_
+        # What is left of all that is around has the others.
+        rest = DifferenceRegion(BoxRegion((9, 9, 9)), region)
+        around = rest.regionA.fixed_columns("a test")
+        held = exactly_contains(rest, points[order], [*around, index[order], *columns])
+        np.testing.assert_array_equal(held, ~expected[order])

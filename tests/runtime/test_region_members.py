@@ -17,10 +17,12 @@ import scenic
 from scenic.language.errors import InvalidScenarioError, ScenicTypeError, ScenicValueError, UnsupportedError
 from scenic.runtime.fields import VectorField
 from scenic.runtime.geometry import primitives
+from scenic.runtime.geometry.bodies import Body
+from scenic.runtime.geometry.poses import Poses
 from scenic.runtime.geometry.segments import Segments
 from scenic.runtime.geometry.single import placed
 from scenic.runtime.regions.base import Workspace
-from scenic.runtime.regions.composite import IntersectionRegion
+from scenic.runtime.regions.composite import IntersectionRegion, UnionRegion
 from scenic.runtime.shapes import BoxShape, ConeShape, CylinderShape, MeshShape, SpheroidShape
 from scenic.runtime.values import Orientation, Vector
 from tests.runtime.geometry.samples import SHAPES
@@ -967,3 +969,61 @@ def test_distances_between_things_are_known_to_be_at_least_those_of_their_boxes(
         assert low == pytest.approx(5 - 1 - 0.5, abs=1e-5)
         assert high is None or high >= 8 or high == math.inf
         assert low <= item.params["x"] <= 8
+
+
+def test_unions_hold_and_meet_in_each_lane_the_body_of_that_lane() -> None:
+    """Two blocks beside each other hold a body across their seam where they touch, each alone what is in it."""
+
+    def blocks(x: Any) -> Any:
+        return named.UnionRegion(
+            named.BoxRegion((2, 2, 2), (-1, 0, 0)), named.BoxRegion((2, 2, 2), (x, 0, 0))
+        )
+
+    seconds = np.array([1.0, 1.5, 0.75, 1.0, 1.0, 1.5])
+    places = np.array([0.0, 0.0, 0.1, 1.2, 2.7, 1.5])
+    held = [True, False, True, True, False, True]
+    met = [True, True, True, True, False, True]
+    each = [
+        np.concatenate(columns)
+        for columns in zip(*(blocks(x).fixed_columns("a test") for x in seconds), strict=True)
+    ]
+    poses = Poses(
+        np.stack([places, 0 * places, 0 * places], axis=1), np.array([[0.0, 0, 0, 1]]), np.full((1, 3), 0.8)
+    )
+    body = Body((primitives.box(),), None, poses)
+    for order in (np.arange(6), np.arange(6)[::-1], np.array([3, 0, 4, 1, 5, 2])):
+        mine, part = [column[order] for column in each], body.take(order)
+        region = blocks(Range(0, 2))
+        assert region.contains_bodies(part, 6, *mine).tolist() == [held[lane] for lane in order]
+        assert region.meets_bodies(part, 6, *mine).tolist() == [met[lane] for lane in order]
+    fixed = UnionRegion(named.BoxRegion((2, 2, 2), (-1, 0, 0)), named.CircularRegion((9, 0), 2))
+    columns = fixed.fixed_columns("a test")
+    assert fixed.contains_bodies(body, 6, *columns).tolist() == [False] * 6
+    assert fixed.meets_bodies(body, 6, *columns).tolist() == [True, True, True, False, False, False]
+    inside = Body((primitives.box(),), None, Poses.fixed((9, 0, 4)))
+    assert fixed.contains_bodies(inside, 1, *columns).tolist() == [True]
+
+
+@pytest.mark.parametrize(
+    "made",
+    [
+        "PolygonalRegion([(0, 0), (4, 0), (4, 3)], orientation=F)",
+        "BoxRegion((2, 2, 2), (3, 0, 0), orientation=F)",
+        "CircularRegion((3, 0), 1).intersect(PolygonalRegion([(-9, -9), (9, -9), (9, 9), (-9, 9)], orientation=F))",
+        "CircularRegion((3, 0), Range(1, 2)).intersect(PolygonalRegion([(-9, -9), (9, -9), (9, 9), (-9, 9)], orientation=F))",
+        "PathRegion([(0, 0, 0), (3, 0, 4)], orientation=F)",
+    ],
+)
+def test_fields_of_regions_may_be_drawn(made: str) -> None:
+    text = (
+        "from scenic.core.regions import PathRegion\n"
+        "f, g = VectorField('f', lambda p: 0.1 * p.x), VectorField('g', lambda p: 0.7)\nF = Uniform(f, g)\n"
+        f"r = {made}\np = new OrientedPoint in r\nparam x = (p, r, F, r.orientation)\n"
+    )
+    drawn = draws(text, n=16)
+    assert {field.name for _, _, field, _ in drawn} == {"f", "g"}
+    for point, region, field, orientation in drawn:
+        expected = 0.7 if field.name == "g" else 0.1 * point.x
+        assert point.heading == pytest.approx(expected)
+        assert region.orientation is orientation is field
+        assert region.orientation_at(point.position).yaw == pytest.approx(expected)

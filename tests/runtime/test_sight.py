@@ -402,10 +402,20 @@ def test_what_hides_by_chance_is_looked_at_in_each_scene(x: str, hides: str) -> 
     assert len(answers) >= (1 if (x, hides) == ("0", "True") else 3)
 
 
-@pytest.mark.parametrize("values", ["3", "ego", "[3]", "[ego, (1, 2)]", "Uniform(ego, box)", "[Range(0, 1)]"])
-def test_only_objects_hide_others(values: str) -> None:
+@pytest.mark.parametrize(
+    ("values", "expected"),
+    [
+        ("3", "objects in a sequence, not 3"),
+        ("ego", "objects in a sequence"),
+        ("Uniform(ego, box)", "objects in a sequence"),
+        ("[3]", "an object, not 3"),
+        ("[ego, (1, 2)]", "an object"),
+        ("[Range(0, 1)]", "an object"),
+    ],
+)
+def test_only_objects_hide_others(values: str, expected: str) -> None:
     text = f"ego = new Object\nbox = new Object at (0, 6, 0)\nparam x = ego.canSee(box, {values})\n"
-    with pytest.raises(ScenicTypeError, match="what may hide others"):
+    with pytest.raises(ScenicTypeError, match=f"what may hide others: expected {expected}"):
         scenic.scenarioFromString(text).sample(1, seed=0)
 
 
@@ -424,3 +434,19 @@ def test_observers_of_a_choice_look_with_eyes_of_their_own() -> None:
     for x, looked, held in drawn:
         assert looked == list(map(bool, seen[x]))
         assert held == looked
+
+
+def test_angles_that_are_drawn_are_those_that_are_looked_in() -> None:
+    """From one that sees a place to one that does not, across and upward."""
+    text = (
+        "a = Range(0.5, 0.8)\nacross = new Object at (0, 0, 0), with viewAngles (a, 1), with allowCollisions True\n"
+        "upward = new Object at (0, 0, 0), with viewAngles (1, a), with allowCollisions True\n"
+        "ego = new Object at (0, -9, 0)\nparam a = a, across = [across.canSee((x, 3, 0)) for x in (-1, 1)]\n"
+        "param upward = [upward.canSee((0, 3, z)) for z in (-1, 1)]\n"
+    )
+    answers = set()
+    for scene in scenic.scenarioFromString(text).sample(20, seed=1):
+        seen = bool(scene.params["a"] / 2 > math.atan(1 / 3))
+        assert scene.params["across"] == scene.params["upward"] == [seen, seen]
+        answers.add(seen)
+    assert answers == {True, False}
