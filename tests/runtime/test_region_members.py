@@ -960,15 +960,15 @@ def test_thresholds_of_sides_are_no_formulas() -> None:
 
 def test_distances_between_things_are_known_to_be_at_least_those_of_their_boxes() -> None:
     text = (
-        "ego = new Object at (0, 0, 0)\nother = new Object at (Range(5, 9), Range(-1, 1), 0), with width Range(1, 2)\n"
+        "ego = new Object at (0, 0, 0)\nother = new Object at (Range(5, 9e5), Range(-1, 1), 0), with width Range(1, 2)\n"
         "near, close = minimum distance from other, ego.distanceTo(other.position)\n"
         "param x = near, low = near.supportInterval()[0], high = near.supportInterval()[1]\n"
     )
     for item in scenario(text).sample(5, seed=1):
         low, high = item.params["low"], item.params["high"]
         assert low == pytest.approx(5 - 1 - 0.5, abs=1e-5)
-        assert high is None or high >= 8 or high == math.inf
-        assert low <= item.params["x"] <= 8
+        assert high is None or high >= 9e5 - 1
+        assert item.params["x"] >= low
 
 
 def test_unions_hold_and_meet_in_each_lane_the_body_of_that_lane() -> None:
