@@ -75,11 +75,6 @@ class Poses:
             taken.__dict__["_bounds"] = _take(lower, entries), _take(upper, entries)
         return taken
 
-    def with_matrix(self, matrix: Floats) -> "Poses":
-        """The same poses, told the rotation matrices ``(n | 1, 3, 3)`` of their orientations."""
-        self.__dict__["matrix"] = matrix
-        return self
-
     def to_world(self, points: Floats) -> Floats:
         """Unit-frame points ``(n | 1, ..., 3)`` in the world."""
         scaled = points * _spread(self.size, points)
