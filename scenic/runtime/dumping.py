@@ -4,6 +4,8 @@ from collections.abc import Iterator, Mapping
 from keyword import iskeyword
 from typing import Any
 
+import numpy as np
+
 from scenic.language.keywords import HARD_KEYWORDS
 from scenic.runtime.objects import Object, OrientedPoint, Point
 from scenic.runtime.regions.base import Everywhere, Region
@@ -84,10 +86,15 @@ def _instance(name: str, item: Any) -> Iterator[str]:
 
 def literal(value: Any) -> str:
     """A value as an expression of the language; raises `NoLiteralError` where there is none."""
-    if value is None or isinstance(value, bool | int | str):
+    if isinstance(value, np.generic):
+        value = value.item()
+    if value is None or isinstance(value, bool):
         return repr(value)
-    if isinstance(value, float):
-        return repr(value) if abs(value) < float("inf") else f"float('{value}')"
+    for kind in (int, str, float):
+        if isinstance(value, kind):
+            # Classes derived of these, such as enumerations, show themselves in ways that are no expressions.
+            text = kind.__repr__(value)
+            return text if kind is not float or abs(value) < float("inf") else f"float({text!r})"
     if isinstance(value, Vector):
         return f"({value.x!r}, {value.y!r}, {value.z!r})"
     if isinstance(value, Orientation):

@@ -277,6 +277,12 @@ def test_what_is_proven_impossible_is_not_sampled() -> None:
     assert [(item.seed, item.k) for item in later if isinstance(item, Exhausted)] == [(7, 5), (7, 6)]
     with pytest.raises(RejectionException, match="no scene exists: the requirements cannot hold together"):
         scenario("x = Range(0, 1)\nrequire x > 2 as far\n").sample(1)
+    program = scenario("x = Range(0, 1)\nrequire x > 2 as far\n")
+    for _ in range(2):  # with seeds of Python's, too, and again
+        with pytest.raises(
+            RejectionException, match="no scene exists: the requirements cannot hold together"
+        ):
+            program.generate()
 
 
 def test_a_program_without_randomness_is_tried_once() -> None:

@@ -1,5 +1,6 @@
 """Scenes kept as data and as programs, and taken up again."""
 
+import copy
 import io
 import json
 import math
@@ -393,3 +394,109 @@ def test_axes_name_the_draws_that_their_places_make() -> None:
         assert axis.span is not None
         assert found.params["all"][axis.span.line - 1] == place
         assert numbers[axis.address] == place
+
+
+def test_numbers_and_texts_of_any_type_are_dumped_as_what_they_are() -> None:
+    """Those of NumPy, and of classes derived from Python's own, such as enumerations, show themselves otherwise."""
+    before = scene_of("""
+import collections, enum, numpy
+class Kind(enum.IntEnum):
+    CAR = 7
+class Name(str):
+    def __repr__(self): return '<name>'
+class Metres(float):
+    def __repr__(self): return '2.5 m'
+Pair = collections.namedtuple('Pair', 'first second')
+param kind = Kind.CAR, name = Name("it's"), long = Metres(2.5), endless = Metres('-inf'), pair = Pair(1, [2, (3,)])
+param single = numpy.float32(0.1), double = numpy.float64(0.1), whole = numpy.int64(2**53 + 1), yes = numpy.bool_(True)
+param nested = {1: [numpy.float64(1), numpy.float64('inf')], 'none': None, (1, 2): {'a': numpy.uint8(9)}, 2: [], 3: {}, 4: ()}
+param missing = float('nan'), own = True, other = 2**70, small = 5e-324, text = numpy.str_('t'), imaginary = numpy.complex128(1)
+ego = new Object with width numpy.float64(2), with kind Kind.CAR, with zone everywhere, with marks [numpy.int32(3)]
+""")
+    dump = before.dump()
+    assert [line for line in dump.splitlines() if "#" in line] == ["# param imaginary: np.complex128(1+0j)"]
+    again = scene_of(dump)
+    found = dict(again.params)
+    assert math.isnan(found.pop("missing"))
+    assert found == {
+        "kind": 7,
+        "name": "it's",
+        "long": 2.5,
+        "endless": -math.inf,
+        "pair": (1, [2, (3,)]),
+        "single": float(np.float32(0.1)),
+        "double": 0.1,
+        "whole": 2**53 + 1,
+        "yes": True,
+        "nested": {1: [1, math.inf], "none": None, (1, 2): {"a": 9}, 2: [], 3: {}, 4: ()},
+        "own": True,
+        "other": 2**70,
+        "small": 5e-324,
+        "text": "t",
+    }
+    assert (found["yes"], found["own"]) == (True, True)
+    assert {type(found["yes"]), type(found["own"])} == {bool}
+    ego = again.egoObject
+    assert (ego.width, ego.kind, ego.marks) == (2, 7, [3])
+    assert ego.zone is before.egoObject.zone  # everywhere
+
+
+def test_what_is_fixed_first_stays_so_unless_it_is_fixed_anew() -> None:
+    """Numbers and words: those of a volume have both."""
+    program = scenario("""
+ego = new Object in MeshVolumeRegion(ConeShape().mesh, dimensions=(3, 3, 3))
+other = new Object in MeshVolumeRegion(ConeShape().mesh, dimensions=(3, 3, 3), position=(9, 0, 0))
+param x = Range(0, 1), y = Range(0, 1)
+""")
+    first, second = program.sample(2, seed=3)
+    kept = json.loads(program.sceneToBytes(first))
+    assert kept["numbers"]
+    assert kept["words"]
+
+    def values() -> set[tuple[Any, ...]]:
+        return {
+            (tuple(item.objects[0].position), tuple(item.objects[1].position), *item.params.values())
+            for item in program.sample(4, seed=9)
+        }
+
+    program.conditionOn(first, objects=[program.objects[0]])  # an object itself
+    program.conditionOn(first, params=["x"])
+    program.conditionOn(second, objects=[-1], params=["y"])
+    expected = (
+        tuple(first.objects[0].position),
+        tuple(second.objects[1].position),
+        first.params["x"],
+        second.params["y"],
+    )
+    assert values() == {expected}
+    program.conditionOn(second, objects=[0], params=["x"])
+    assert values() == {
+        (
+            tuple(second.objects[0].position),
+            tuple(second.objects[1].position),
+            second.params["x"],
+            second.params["y"],
+        )
+    }
+    program.conditionOn()
+    assert len(values()) == 4
+
+
+def test_what_holds_an_object_is_its_own_region_or_else_the_workspace() -> None:
+    program = scenario("""
+workspace = Workspace(RectangularRegion((0, 0), 0, 9, 9))
+ego = new Object
+inner = new Object at (3, 3), with regionContainedIn CircularRegion((3, 3), 2)
+""")
+    ego, inner = program.objects
+    assert program.containerOfObject(ego) is program.workspace.region
+    assert program.containerOfObject(inner) is inner.regionContainedIn
+    (free,) = (bare := scenario("ego = new Object\n")).objects
+    assert bare.containerOfObject(free).containsPoint((1e9, 0, 0))
+
+
+def test_copies_of_a_scenario_are_itself() -> None:
+    """What was sampled before changes nothing; so there is nothing to keep apart, and nothing random to rename."""
+    program = scenario(PROGRAM)
+    for again in (copy.copy(program), copy.deepcopy(program), copy.deepcopy([program])[0]):
+        assert again is program

@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 
 import scenic
+from scenic.language.errors import ScenicTypeError, ScenicValueError
 from scenic.simulators.dummy import DummySimulation, DummySimulator
 from scenic.simulators.results import TerminationType
 from tests.simulators.test_simulations import scene_of, simulate, taken
@@ -59,6 +60,211 @@ def test_weights_of_what_may_not_start_do_not_count() -> None:
 def test_nothing_of_weight_zero_may_start() -> None:
     text = CHOICES.format(weights='Take("a"): 0, Take("b"): 0')
     assert DummySimulator().simulate(scene_of(text), maxSteps=2) is None
+
+
+@pytest.mark.parametrize(
+    ("weight", "error"),
+    [
+        ("-1", ScenicValueError),
+        ("-1e-300", ScenicValueError),
+        ("float('nan')", ScenicValueError),
+        ("float('inf')", ScenicValueError),
+        ("'much'", ScenicTypeError),
+        ("None", ScenicTypeError),
+        ("[1]", ScenicTypeError),
+    ],
+)
+def test_weights_are_numbers_from_zero_on_in_statements_as_in_distributions(
+    weight: str, error: type[Exception]
+) -> None:
+    """Wherever the wrong one is among the others; and whether or not it belongs to what may start."""
+    for options in (
+        f'Take("a"): {weight}, Take("b"): 1',
+        f'Take("b"): 1, Take("a"): {weight}',
+        f'Take("b"): 1, Never(): {weight}',
+    ):
+        for word in ("choose", "shuffle"):
+            with pytest.raises(error, match=f"`do {word}`: a weight is a number"):
+                simulate(CHOICES.replace("choose", word).format(weights=options), 1)
+    with pytest.raises(error, match="a weight is a"):
+        simulate(f"ego = new Object\nparam x = Discrete({{'b': 1, 'a': {weight}}})\n", 1)
+
+
+def test_weights_may_be_true_and_tiny() -> None:
+    for weights in ('Take("a"): True, Take("b"): False', 'Take("b"): 0, Take("a"): 5e-324'):
+        assert taken(simulate(CHOICES.format(weights=weights), 2)) == [("a",), ("a",)]
+
+
+# Durations
+
+
+@pytest.mark.parametrize("duration", ["True", "'2'", "None", "(1, 2)"])
+@pytest.mark.parametrize("unit", ["steps", "seconds"])
+def test_durations_are_numbers(duration: str, unit: str) -> None:
+    for statement in (f"do A() for {duration} {unit}", f"wait for {duration} {unit}"):
+        text = f"behavior A():\n    take 1\nbehavior B():\n    {statement}\n    take 2\nego = new Object with behavior B\n"
+        with pytest.raises(ScenicTypeError, match=f"`for`: expected a number of {unit}"):
+            simulate(text, 1)
+    with pytest.raises(ScenicTypeError, match=f"`terminate after`: expected a fixed number of {unit}"):
+        simulate(f"ego = new Object\nterminate after {duration} {unit}\n", 1)
+
+
+# Scenarios in parallel
+
+
+@pytest.mark.parametrize(
+    ("parts", "after"),
+    [
+        ("A(2)", 2),
+        ("A(2), A(2)", 2),
+        ("A(1), A(2)", 2),
+        ("A(2), A(1), A(3)", 3),
+        ("A(0), A(0)", 0),
+        ("A(0), A(1)", 1),
+    ],
+)
+def test_what_follows_scenarios_in_parallel_starts_with_the_end_of_the_last(parts: str, after: int) -> None:
+    text = f"""
+scenario Main():
+    setup:
+        ego = new Object
+    compose:
+        do {parts}
+        do Next()
+scenario A(n):
+    compose:
+        for i in range(n):
+            wait
+        if False:
+            wait
+scenario Next():
+    setup:
+        record simulation().currentTime as begun
+    compose:
+        wait
+"""
+    assert simulate(text, 9).records["begun"] == [(after, after)]
+
+
+# What a compose block asks for while it runs
+
+
+@pytest.mark.parametrize(
+    ("formula", "holds"),
+    [
+        ("always ego.position.y != 0", True),  # what was before does not count
+        ("always ego.position.y != 1", False),  # the step in which it is asked for does
+        ("always ego.position.y != 2", False),
+        ("eventually ego.position.y == 1", True),
+        ("eventually ego.position.y == 0", False),
+        ("next ego.position.y == 2", True),
+        ("next ego.position.y == 1", False),
+    ],
+)
+def test_requirements_of_a_compose_block_begin_with_the_step_that_asks_for_them(
+    formula: str, holds: bool
+) -> None:
+    text = f"""
+scenario Main():
+    setup:
+        ego = new Object
+    compose:
+        wait
+        require {formula}
+        wait
+        wait
+"""
+    done = DummySimulator(drift=1).simulate(scene_of(text), maxSteps=9)
+    assert (done is not None) is holds
+
+
+def test_monitors_of_a_compose_block_begin_with_the_step_that_asks_for_them() -> None:
+    """Those that have ended before end nothing for the others."""
+    text = """
+times = []
+monitor Over():
+    if False:
+        wait
+monitor Short():
+    wait
+monitor M(name):
+    while True:
+        times.append((name, simulation().currentTime))
+        wait
+scenario Main():
+    setup:
+        ego = new Object
+        require monitor Over()
+        require monitor M("first")
+        require monitor Short()
+        require monitor M("second")
+        record final list(times) as times
+    compose:
+        wait
+        require monitor M("late")
+        wait
+        wait
+"""
+    found = simulate(text, 9).records["times"]
+    expected = {(name, time) for name in ("first", "second") for time in range(3)} | {
+        ("late", 1),
+        ("late", 2),
+    }
+    assert len(found) == len(set(found)) == 8
+    assert set(found) == expected
+
+
+@pytest.mark.parametrize(
+    ("statements", "reason"),
+    [
+        (("terminate simulation", "terminate simulation"), 1),
+        (("terminate", "terminate"), 1),
+        (("terminate simulation", "terminate"), 0),
+        (("terminate", "terminate simulation"), 1),
+    ],
+)
+def test_of_several_monitors_the_last_that_asks_for_the_most_gives_the_reason(
+    statements: tuple[str, str], reason: int
+) -> None:
+    text = "".join(f"monitor M{number}():\n    {line}\n" for number, line in enumerate(statements))
+    text += "ego = new Object\nrequire monitor M0()\nrequire monitor M1()\n"
+    result = simulate(text, 3).result
+    assert result is not None
+    assert result.terminationType is TerminationType.terminatedByMonitor
+    assert result.terminationReason == f'"{statements[reason]}" executed on line {2 + 2 * reason}'
+
+
+def test_a_workspace_is_that_of_its_scenario_and_of_what_that_runs() -> None:
+    text = """
+workspace = Workspace(RectangularRegion((0, 0), 0, 90, 90))
+scenario Main():
+    setup:
+        ego = new Object
+        record workspace.region.width as main
+    compose:
+        wait
+        do Sub() for 2 steps
+        do Inner("after") for 1 steps
+scenario Sub():
+    setup:
+        workspace = Workspace(RectangularRegion((0, 0), 0, 40, 40))
+        record workspace.region.width as sub
+    compose:
+        do Inner("within")
+scenario Inner(name):
+    setup:
+        record (name, workspace.region.width) as inner
+    compose:
+        while True:
+            wait
+"""
+    scene = scene_of(text)
+    for _ in range(2):  # of one simulation nothing is left for the next
+        done = DummySimulator().simulate(scene, maxSteps=9)
+        assert done is not None
+        assert set(recorded(done, "main")) == {90}
+        assert recorded(done, "sub") == [40, 40]
+        assert recorded(done, "inner") == [("within", 40), ("within", 40), ("after", 90)]
 
 
 # Overrides

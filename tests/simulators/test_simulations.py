@@ -16,6 +16,7 @@ from scenic.language.errors import (
     InvalidScenarioError,
     PreconditionViolation,
     ScenicTypeError,
+    ScenicValueError,
     SerializationError,
     SpecifierError,
     StuckBehaviorError,
@@ -385,6 +386,24 @@ def test_soft_requirements_count_only_where_they_were_active() -> None:
         assert DummySimulator().simulate(scene, maxSteps=1) is not None
         assert scene.egoObject.x > 0.5 or not scene.enforces(requirement)
     assert any(scene.enforces(requirement) for scene in scenes)
+
+
+def test_soft_requirements_that_always_hold_take_no_turn_of_others() -> None:
+    """However many of them stand before, between and behind those of which chance decides."""
+    text = (
+        "ego = new Object at (Range(0, 1), Range(0, 1))\nrequire[0.3] True\nrequire[0.5] ego.x > 0.5\n"
+        "require[0.9] 1 < 2\nrequire ego.x < 5\nrequire[0.5] ego.y > 0.5\nrequire[0.2] True\n"
+    )
+    scenario = scenic.scenarioFromString(text)
+    sure, x, sure_too, hard, y, last = scenario.requirements
+    scenes = scenario.sample(40, seed=3)
+    for scene in scenes:
+        assert all(map(scene.enforces, (sure, sure_too, hard, last)))
+        assert scene.egoObject.x > 0.5 or not scene.enforces(x)
+        assert scene.egoObject.y > 0.5 or not scene.enforces(y)
+    assert {(scene.enforces(x), scene.enforces(y)) for scene in scenes} == {
+        (one, other) for one in (True, False) for other in (True, False)
+    }
 
 
 def test_requirements_have_verdicts_and_robustness() -> None:
@@ -973,6 +992,69 @@ def test_values_of_unknown_kinds_are_recorded_as_they_show_themselves(tmp_path: 
     simulate(text + recording(tmp_path, "run.jsonl", f"({value})"), 0)
     (row,) = map(json.loads, (tmp_path / "run.jsonl").read_text().splitlines())
     assert row["value"] == [repr(Path("a")), "<Colour.RED: 7>", [1], [2.5, None], [0, 0, 0]]
+
+
+def test_what_libraries_and_the_language_compute_is_recorded_as_plain_data(tmp_path: Path) -> None:
+    expected = {
+        "numpy.int64(2**53 + 1)": 2**53 + 1,
+        "numpy.float32(0.5)": 0.5,
+        "numpy.bool_(True)": True,
+        "numpy.array([[1, 2], [3, 4]])": [[1, 2], [3, 4]],
+        "[numpy.array(7), (numpy.uint8(9),)]": [7, [9]],
+        "{3: (ego.position, numpy.int64(2)), None: {'a': {5}}, (1, 2): frozenset()}": {
+            "3": [[0, 0, 0], 2],
+            "None": {"a": [5]},
+            "(1, 2)": [],
+        },
+        "ego.orientation": [0, 0, 0.5**0.5, 0.5**0.5],
+        "new Point at (1, 2, 3)": [1, 2, 3],
+        "1 + 2j": "(1+2j)",
+    }
+    text = f"import numpy\nparam recordFolder = {str(tmp_path)!r}\nego = new Object facing 90 deg\n"
+    for number, value in enumerate(expected):
+        text += f"record {value} to 'lines-{number}.jsonl'\nrecord {value} to 'one-{number}-{{step}}.json'\n"
+    simulate(text, 0)
+    for number, value in enumerate(expected.values()):
+        alone = json.loads((tmp_path / f"one-{number}-0.json").read_text())
+        assert json.loads((tmp_path / f"lines-{number}.jsonl").read_text())["value"] == alone
+        assert alone == (pytest.approx(value) if number == 6 else value)
+
+
+@pytest.mark.parametrize(
+    ("values", "kind"),
+    [
+        ([1, 2, 3], "i"),
+        ([1, 2.5, 3, 4.5], "f"),  # numbers stay those of the wider kind
+        ([1, 2.5, "numpy.array(3j)", 4, 0.5], "c"),
+        ([True, 2, False], "i"),
+        ([2**53 + 1, True], "i"),
+        (["'a'", "'abc'", "'b'"], "U"),
+        (["numpy.float32(0.5)", 0.1], "f"),
+        ([[1, 2], [0.5, 3], [4, 5]], "f"),
+        ([[], []], "f"),
+    ],
+)
+def test_arrays_are_of_the_widest_kind_of_all_values(tmp_path: Path, values: list[Any], kind: str) -> None:
+    """Whichever of them it first comes with: those before and after it are as they were."""
+    written = "[" + ", ".join(map(str, values)) + "]"
+    text = f"import numpy\nvalues = {written}\n" + recording(
+        tmp_path, "run.npz", "values[simulation().currentTime]"
+    )
+    simulate(text, len(values) - 1)
+    found = np.load(tmp_path / "run.npz")["values"]
+    expected = np.array(eval(written, {"numpy": np}))
+    assert found.dtype.kind == kind
+    assert found.shape == expected.shape
+    np.testing.assert_array_equal(found, expected)
+
+
+@pytest.mark.parametrize("value", ["None", "[[1], [1, 2]]", "{1: 2}", "2**70", "[{}, 1]", "[None, 1.5]"])
+def test_what_is_no_array_of_numbers_is_recorded_to_none(tmp_path: Path, value: str) -> None:
+    for name in ("run.npz", "run-{step}.npy"):
+        with pytest.raises(ScenicValueError, match="only numbers can be recorded as an array") as caught:
+            simulate(recording(tmp_path, name, value), 1)
+        assert caught.value.span is not None
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_conditions_of_a_simulation_create_no_object() -> None:

@@ -1,5 +1,6 @@
 """The statements that take time, as generators to which code delegates (sections 12.2 and 12.4)."""
 
+import math
 from collections.abc import Callable, Generator, Iterator, Sequence
 from types import GeneratorType
 from typing import Any, Final, cast
@@ -152,8 +153,10 @@ def _weighted(targets: Sequence[Any], what: str) -> list[tuple[Any, float]]:
                 raise ScenicTypeError(
                     f"`do {what}`: a weight is a number, not {describe(weight)}", span=here()
                 )
-            if not weight >= 0:
-                raise ScenicValueError(f"`do {what}`: a weight cannot be negative", span=here())
+            if not 0 <= weight < math.inf:
+                raise ScenicValueError(
+                    f"`do {what}`: a weight is a number from 0 on, not {weight}", span=here()
+                )
         return options
     return [(target, 1.0) for target in targets]
 

@@ -72,6 +72,25 @@ def robustness(condition: str, steps: int, program: str = SCENE) -> float:
         ("always ego not in far", 12.5),  # by its corner that is farthest from there
         ("always not (ego intersects wall)", 5),
         ("always ego.name == 'ego'", math.inf),
+        # A vector on either side, and places of the plane.
+        ("always (4, 0, 0) != ego.position", 4),
+        ("always ego.position != (0, -4)", 4),
+        ("always (3, -4) != ego.position", 5),
+        # What has no distance just holds, as it is or negated.
+        ("always (1, 2) != (1, 3)", math.inf),
+        ("always ego.name < 'f'", math.inf),
+        ("always not (ego.name < 'a')", math.inf),
+        ("always ego.name in ['ego']", math.inf),
+        ("always ego.name not in ('wall', 'block')", math.inf),
+        ("always ego intersects zone", math.inf),
+        ("always ego in everywhere", math.inf),
+        ("always ego.position not in nowhere", math.inf),
+        ("always ego != wall", math.inf),
+        ("always 1 > ego.position.x >= -3", 1),
+        # A point as its place, and lines, that have no inside.
+        ("always (new Point at (0, 1)) in zone", 4),
+        ("always wall.position not in PolylineRegion([(-3, -9), (-3, 99)])", 3),
+        ("always ego.position in PolylineRegion([(0, -9), (0, 99)])", math.inf),
     ],
 )
 def test_margins(condition: str, margin: float) -> None:
