@@ -1,5 +1,6 @@
 """A scene as a program: concrete objects that compile back to the same scene."""
 
+import math
 from collections.abc import Iterator, Mapping
 from keyword import iskeyword
 from typing import Any
@@ -90,11 +91,14 @@ def literal(value: Any) -> str:
         value = value.item()
     if value is None or isinstance(value, bool):
         return repr(value)
-    for kind in (int, str, float):
-        if isinstance(value, kind):
-            # Classes derived of these, such as enumerations, show themselves in ways that are no expressions.
-            text = kind.__repr__(value)
-            return text if kind is not float or abs(value) < float("inf") else f"float({text!r})"
+    # Classes derived of these, such as enumerations, show themselves in ways that are no expressions.
+    if isinstance(value, int):
+        return int.__repr__(value)
+    if isinstance(value, str):
+        return str.__repr__(value)
+    if isinstance(value, float):
+        text = float.__repr__(value)
+        return text if math.isfinite(value) else f"float({text!r})"
     if isinstance(value, Vector):
         return f"({value.x!r}, {value.y!r}, {value.z!r})"
     if isinstance(value, Orientation):

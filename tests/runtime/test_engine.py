@@ -506,3 +506,21 @@ def test_a_rejected_or_failed_value_meets_no_requirement(holds: bool) -> None:
     failed = np.zeros(4, dtype=bool) if verdict.failed is None else verdict.failed
     assert failed.tolist() == [False, True, False, False]
     assert (verdict.holds & ~failed).tolist() == [holds, False, False, holds]
+
+
+def test_objects_of_a_scene_are_its_own_whether_anything_in_them_is_random() -> None:
+    """Also those that are the same in all scenes of a batch, and in later ones."""
+    program = scenario(
+        "ego = new Object at (Range(0, 1), 0)\nnew Object at (9, 9), with marks [1]\n"
+        "new Object at (Range(20, 30), 9), with marks [1]\n"
+    )
+    scenes = program.sample(6, seed=0)
+    for item in scenes[0].objects[1:]:
+        item.marks.append(2)
+        item.kind = "changed"
+    for later in (*scenes[1:], *program.sample(6, seed=0)):
+        for item in later.objects[1:]:
+            assert item.marks == [1]
+            assert not hasattr(item, "kind")
+    assert [item.marks for item in scenes[0].objects[1:]] == [[1, 2], [1, 2]]
+    assert len({id(item) for scene in scenes for item in scene.objects}) == 18

@@ -79,6 +79,18 @@ CONDITIONS = [
     "(relative position of other)[0] > 0",
     "ego.corners[0].x > other.corners[1].x",
     "other.position == other.position and ego != either",
+    "either == other",
+    "ego == either or ego == other",
+    "not (ego == other) and either != other",
+    "(x if limit > 0.5 else 1 - x) < 0.5",
+    "(x if limit < 0.5 else 1 - x) < 0.4",
+    "(x < 0.5 if n > 2 else n)",
+    "(x > 0.5 or n > 2) == (ego.foo > 0.5)",
+    "(not (x > 0.5 or n > 3)) == (ego.foo > 0.5 and n < 3)",
+    "(x > 0.5 and n) == 1",
+    "[1, 2, 2].count(n) == 2",
+    "'a-b'.find(other.tag) == 2",
+    "{1: 2}.get(n, 0) == 2",
 ]
 
 
@@ -106,6 +118,32 @@ def test_a_condition_means_the_same_however_it_is_written(condition: str, tmp_pa
     assert max(attempts) > 1, "the condition rejects nothing"
     for way, found in zip(ways, prints, strict=True):
         assert found == prints[0], way
+
+
+@pytest.mark.parametrize(
+    ("name", "body", "condition"),
+    [
+        ("abs", "-v", "abs(x) < -0.5"),
+        ("max", "min(v, *w)", "max(x, 0.5) == 0.5"),
+        ("round", "v", "round(x) > 0.5"),
+        ("min", "max(v, *w)", "min(x, 0.5) > 0.5"),
+        ("len", "x", "len('a') > 0.5"),
+        ("sin", "v", "sin(x) > 0.5"),
+    ],
+)
+def test_functions_of_the_programs_own_count_whatever_their_names_usually_mean(
+    name: str, body: str, condition: str
+) -> None:
+    """Defined by the program, or bound within a function that makes the requirement."""
+    head = "from math import sin\nx = Range(0, 1)\nparam x = x\n"
+    for text in (
+        f"{head}def {name}(v, *w): return {body}\nrequire {condition}\n",
+        f"{head}{name} = lambda v, *w: {body}\nrequire {condition}\n",
+        f"{head}def made({name}):\n    require {condition}\nmade(lambda v, *w: {body})\n",
+    ):
+        values = [scene.params["x"] for scene in scenario(text).sample(40, seed=0)]
+        assert 0.5 < min(values) < 0.6
+        assert max(values) > 0.9
 
 
 def test_random_branches_are_fine_in_functions_of_conditions() -> None:

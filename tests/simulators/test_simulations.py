@@ -24,6 +24,7 @@ from scenic.language.errors import (
     annotation,
 )
 from scenic.runtime.context import current
+from scenic.runtime.dynamics.recorders import for_pattern
 from scenic.runtime.files import whole
 from scenic.runtime.values import Vector
 from scenic.simulators.actions import Action
@@ -122,6 +123,10 @@ def test_simulations_are_data() -> None:
     data = scenario.simulationToBytes(first)
     again = scenario.simulationFromBytes(data, simulator, maxSteps=6, enableDivergenceCheck=True)
     assert taken(again)[:4] == taken(first)
+    other = scenic.scenarioFromString(DRAWING + "\n")
+    with pytest.raises(SerializationError, match="another program"):
+        other.simulationFromBytes(data, simulator, maxSteps=4)
+    assert taken(other.simulationFromBytes(data, simulator, verify=False, maxSteps=4)) == taken(first)
     with pytest.raises(DivergenceError, match="step 1: position of object 0"):
         scenario.simulationFromBytes(data, DummySimulator(drift=2), maxSteps=4, enableDivergenceCheck=True)
     tolerant = {"enableDivergenceCheck": True, "divergenceTolerance": 100}
@@ -703,6 +708,23 @@ def test_what_was_whole_before_a_rejection_goes_too(tmp_path: Path, target: str)
     assert rejected != text
     assert DummySimulator().simulate(scene_of(rejected), maxSteps=5) is None
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("name", ["run.jsonl", "run.npz", "run.pickle", "run-{step}.json"])
+def test_recorders_of_files_may_be_used_by_others(tmp_path: Path, name: str) -> None:
+    """A recorder of the program may hand on what it is told: of a run that is cancelled nothing remains."""
+    recorder = for_pattern(name)
+    for number, canceled in enumerate((False, True, False)):
+        folder = tmp_path / str(number)
+        recorder.beginRecording({}, "run", 0.5, {"recordFolder": str(folder)})
+        for step in (0, 2):
+            recorder.recordValue(step + number, step)
+        recorder.endRecording(canceled)
+        found = sorted(contents(folder)) if folder.exists() else []
+        expected = ["run-0.json", "run-2.json"] if "step" in name else [name]
+        assert found == ([] if canceled else expected)
+    if "step" in name:
+        assert [json.loads((tmp_path / "2" / f"run-{step}.json").read_text()) for step in (0, 2)] == [2, 4]
 
 
 def contents(folder: Path) -> dict[str, bytes]:

@@ -81,6 +81,8 @@ def robustness(condition: str, steps: int, program: str = SCENE) -> float:
         ("always ego.name < 'f'", math.inf),
         ("always not (ego.name < 'a')", math.inf),
         ("always ego.name in ['ego']", math.inf),
+        ("always ego.position not in [(4, 0, 0)]", math.inf),
+        ("always ego not in [wall, block]", math.inf),
         ("always ego.name not in ('wall', 'block')", math.inf),
         ("always ego intersects zone", math.inf),
         ("always ego in everywhere", math.inf),

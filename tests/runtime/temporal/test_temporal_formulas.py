@@ -275,3 +275,9 @@ def test_robustness_of_each_operator() -> None:
     assert robustness(Compound("until", (a, b)), trace) == 1.0
     assert robustness(Compound("implies", (a, b)), trace) == -1.0
     assert robustness(Compound("next", (a,)), trace[:1]) == -math.inf
+
+
+def test_before_the_first_state_nothing_is_known() -> None:
+    for form in (formula("a"), formula(("always", "a")), formula(("not", ("eventually", "a")))):
+        assert Robustness(form).value is None
+        assert Monitor(form).verdict is None
