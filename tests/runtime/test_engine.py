@@ -511,7 +511,8 @@ def test_a_rejected_or_failed_value_meets_no_requirement(holds: bool) -> None:
 def test_objects_of_a_scene_are_its_own_whether_anything_in_them_is_random() -> None:
     """Also those that are the same in all scenes of a batch, and in later ones."""
     program = scenario(
-        "ego = new Object at (Range(0, 1), 0)\nnew Object at (9, 9), with marks [1]\n"
+        "x = Range(0, 1)\nclass Post:\n    def read(self): return x\n"
+        "ego = new Object at (x, 0)\nnew Post at (9, 9), with marks [1]\n"
         "new Object at (Range(20, 30), 9), with marks [1]\n"
     )
     scenes = program.sample(6, seed=0)
@@ -524,3 +525,4 @@ def test_objects_of_a_scene_are_its_own_whether_anything_in_them_is_random() -> 
             assert not hasattr(item, "kind")
     assert [item.marks for item in scenes[0].objects[1:]] == [[1, 2], [1, 2]]
     assert len({id(item) for scene in scenes for item in scene.objects}) == 18
+    assert [scene.objects[1].read() for scene in scenes] == [scene.egoObject.x for scene in scenes]

@@ -223,6 +223,21 @@ def test_what_a_model_imports_gives_defaults_of_parameters_too(tmp_path: Path) -
     assert first(written(tmp_path, files)).params == {"a": 5, "b": 9, "c": 3, "d": 6}
 
 
+@pytest.mark.parametrize("statement", ["from own import *", "model own"])
+def test_functions_that_a_module_gives_count_whatever_their_names_usually_mean(
+    tmp_path: Path, statement: str
+) -> None:
+    """Also in conditions, where those of Python are understood without being called."""
+    files = {
+        "own.scenic": "def max(*values): return min(values)\ndef abs(value): return -value\n",
+        "main.scenic": f"{statement}\nx = Range(0, 1)\nrequire abs(x) < -0.5\nrequire max(x, 0.8) < 0.8\nparam x = x\n",
+    }
+    main = written(tmp_path, files)
+    values = [scene.params["x"] for scene in scenic.scenarioFromFile(main).sample(60, seed=0)]
+    assert 0.5 < min(values) < 0.55
+    assert 0.75 < max(values) < 0.8
+
+
 def test_a_missing_model_is_an_error(tmp_path: Path) -> None:
     with pytest.raises(InvalidScenarioError, match="no world model"):
         first(written(tmp_path, {"main.scenic": "model nothing_here\n"}))

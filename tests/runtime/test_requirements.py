@@ -26,6 +26,8 @@ SETTING = (
     "disc = CircularRegion((0, 0), 1.5)\nx = Range(0, 1)\nn = DiscreteRange(0, 5)\nxs = Uniform([1, 2], [3, 4, 5])\n"
     "either = Uniform(ego, other)\nlimit = 0.6\nparam x = x, n = n, xs = xs\n"
     "def same(v): return v\n"
+    "def nearest(v): return ego if v < limit else other\n"
+    "class Judge(object):\n    def likes(self, v): return type(v) is float and v < 0.5\njudge = Judge()\n"
 )
 CONDITIONS = [
     "x < 0.5",
@@ -91,6 +93,13 @@ CONDITIONS = [
     "[1, 2, 2].count(n) == 2",
     "'a-b'.find(other.tag) == 2",
     "{1: 2}.get(n, 0) == 2",
+    "nearest(x) == ego",
+    "ego == nearest(x)",
+    "other != nearest(x) and nearest(x) in (3, ego)",
+    "nearest(x) == nearest(ego.foo)",
+    "nearest(x).position.x > 0",
+    "judge.likes(x)",
+    "not judge.likes(ego.foo)",
 ]
 
 

@@ -629,6 +629,27 @@ def test_arrays_and_images_are_written_as_they_are(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
+    ("image", "expected"),
+    [
+        ("[[300, -1, 256, 255, 0]]", [[255, 0, 255, 255, 0]]),
+        ("numpy.array([[65535, 254]], dtype=numpy.uint16)", [[255, 254]]),
+        ("numpy.array([[-128, 127]], dtype=numpy.int8)", [[0, 127]]),
+        ("[[1e300, -0.1, float('nan'), float('-inf'), 1]]", [[255, 0, 0, 0, 255]]),
+        ("[[[300, 5, -7]]]", [[[255, 5, 0]]]),
+    ],
+)
+def test_what_is_brighter_or_darker_than_images_can_be_is_cut_off(
+    tmp_path: Path, image: str, expected: Any
+) -> None:
+    """Integers as floats are; what is not measured is black."""
+    from PIL import Image
+
+    simulate("import numpy\n" + recording(tmp_path, "{step}.png", image), 0)
+    with Image.open(tmp_path / "0.png") as found:
+        np.testing.assert_array_equal(np.asarray(found), expected)
+
+
+@pytest.mark.parametrize(
     ("image", "mode"),
     [
         ("[[0, 9], [255, 3]]", "L"),

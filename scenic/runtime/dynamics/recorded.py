@@ -39,7 +39,7 @@ def as_array(value: Any) -> Any:
 
 
 def as_pixels(value: Any) -> Any:
-    """An image as bytes: intensities or RGB, integers from 0 to 255 or floats from 0 to 1."""
+    """An image as bytes: intensities or RGB, integers from 0 to 255 or floats from 0 to 1; what lies beyond is cut off."""
     array = np.asarray(value)
     if not (array.ndim == 2 or (array.ndim == 3 and array.shape[2] in (3, 4))):
         raise ScenicValueError(
@@ -47,5 +47,5 @@ def as_pixels(value: Any) -> Any:
             span=here(),
         )
     if np.issubdtype(array.dtype, np.floating):
-        array = np.round(np.clip(array, 0, 1) * 255)
-    return array.astype(np.uint8)
+        array = np.round(np.nan_to_num(np.clip(array, 0, 1)) * 255)
+    return (array if array.dtype == np.uint8 else np.clip(array, 0, 255)).astype(np.uint8)
