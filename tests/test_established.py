@@ -774,3 +774,263 @@ def test_forms_say_whether_they_are_convex_and_hold_their_middle() -> None:
         (shapes.BoxShape(), True, True), (shapes.ConeShape(), True, True), (shapes.MeshShape(hollow), False, False),
     ):  # fmt: skip
         assert (shape.isConvex, shape.containsCenter) == (convex, middle)
+
+
+def test_distances_from_lines_are_those_of_long_segments() -> None:
+    geometry = importlib.import_module("scenic.core.geometry")
+    for point, start, end in (
+        ((3, 5), (1, -2), (4, 7)),
+        ((-3, 2), (-4, -1), (6, -8)),
+        ((2, -6), (5, 5), (-1, 3)),
+    ):
+        (ax, ay), (bx, by) = start, end
+        long = shapely.LineString([(ax + n * (bx - ax), ay + n * (by - ay)) for n in (-9, 10)])
+        expected = long.distance(shapely.Point(point))
+        assert geometry.distanceToLine(point, start, end) == pytest.approx(expected)
+        assert geometry.distanceToLine(point, end, start) == pytest.approx(expected)
+
+
+def test_angles_of_drawn_points_are_those_of_definite_ones() -> None:
+    text = (
+        "from scenic.core.geometry import *\nx, y, h = Range(-9, 9), Range(-9, 9), Range(-20, 20)\n"
+        "param values = (x, y, h), heading = headingOfSegment((1, 2), (x, y)), back = headingOfSegment((x, y), (1, 2))\n"
+        "param seen = viewAngleToPoint((x, y), (1, 2), h), apparent = apparentHeadingAtPoint((x, y), h, (1, 2))\n"
+        "param turned = rotateVector((x, y), h), middle = averageVectors((x, y), (1, 2), 0.25), normal = normalizeAngle(h)\n"
+    )
+    geometry = importlib.import_module("scenic.core.geometry")
+    for found in (each.params for each in scenic.scenarioFromString(text).sample(10, seed=3)):
+        x, y, heading = found["values"]
+        place, base = (x, y), (1, 2)
+        for name, expected in (
+            ("heading", geometry.headingOfSegment(base, place)),
+            ("back", geometry.headingOfSegment(place, base)),
+            ("seen", geometry.viewAngleToPoint(place, base, heading)),
+            ("apparent", geometry.apparentHeadingAtPoint(place, heading, base)),
+            ("turned", geometry.rotateVector(place, heading)),
+            ("middle", geometry.averageVectors(place, base, 0.25)),
+            ("normal", heading - math.tau * round(heading / math.tau)),
+        ):
+            assert (
+                tuple(found[name]) == pytest.approx(expected)
+                if isinstance(expected, tuple)
+                else (found[name] == pytest.approx(expected))
+            ), name
+        to_place = math.atan2(y - 2, x - 1) - math.pi / 2
+        for name, expected in (
+            ("heading", to_place),
+            ("seen", to_place - heading),
+            ("apparent", heading - to_place),
+        ):
+            assert math.isclose(math.cos(found[name] - expected), 1), name
+            assert abs(found[name]) <= math.pi + 1e-9
+
+
+def test_cones_hold_their_border_and_look_both_ways() -> None:
+    geometry = importlib.import_module("scenic.core.geometry")
+    east = -math.pi / 2
+    for point, heading, angle, inside in (
+        ((1, 0), 0, math.pi, True), ((-1, 0), 0, math.pi, True), ((1, 0), 0, 3.14, False), ((-1, 0), 0, 3.14, False),
+        ((0, -1), 0, 6.28, False), ((0, -1), 0, math.tau, True), ((5, 0.1), east, 0.1, True), ((5, 0.1), -east, 0.1, False),
+    ):  # fmt: skip
+        assert geometry.pointIsInCone(point, (0, 0), heading, angle) is inside, (point, heading, angle)
+        moved = (point[0] + 3, point[1] - 7)
+        assert geometry.pointIsInCone(Vector(*moved, 4), Vector(3, -7, 9), heading, angle) is inside
+
+
+def test_least_and_greatest_of_what_can_be_read_once() -> None:
+    geometry = importlib.import_module("scenic.core.geometry")
+    assert geometry.findMinMax(iter([3, -1, 2])) == (-1, 3)
+    assert geometry.findMinMax(number for number in (7,)) == (7, 7)
+
+
+def test_the_region_of_a_geometry_is_that_of_its_highest_dimension() -> None:
+    regions = importlib.import_module("scenic.core.regions")
+    made = regions.regionFromShapelyObject
+    square, line, point = shapely.box(0, 0, 1, 2), shapely.LineString([(5, 5), (8, 9)]), shapely.Point(4, 3)
+    field = importlib.import_module("scenic.core.vectors").VectorField("field", lambda place: 0.25)
+    for parts, kind, size in (
+        ([square, line, point], PolygonalRegion, 2),
+        ([line, point], PolylineRegion, 5),
+        ([point, shapely.Point(1, 1)], regions.PointSetRegion, 2),
+    ):
+        for order in (parts, parts[::-1]):
+            region = made(shapely.GeometryCollection(order))
+            assert isinstance(region, kind)
+            assert region.size == pytest.approx(size)
+            assert made(shapely.GeometryCollection(order), field).orientation is field
+    assert made(line).containsPoint((6.5, 7, 0))
+    assert not made(line).containsPoint((6.5, 7, 1))
+    assert made(point).containsPoint((4, 3, 0))
+    assert made(shapely.Polygon()) is regions.nowhere
+
+
+def test_polygons_of_things_are_of_any_number() -> None:
+    regions = importlib.import_module("scenic.core.regions")
+    both = shapely.MultiPolygon([shapely.box(0, 0, 1, 1), shapely.box(2, 0, 3, 1)])
+    assert regions.toPolygon(both) is both
+    region = PolygonalRegion(polygon=both)
+    assert regions.toPolygon(region).equals(both)
+    assert regions.toPolygon(region.footprint).equals(both)
+    assert regions.toPolygon(shapely.Point(1, 2)) is None
+
+
+def test_unions_of_polygons_may_be_empty_touch_and_keep_what_was_asked_for() -> None:
+    union = importlib.import_module("scenic.core.geometry").polygonUnion
+    left, right = shapely.box(0, 0, 1, 1), shapely.box(1, 0, 2, 1)
+    nothing = union([])
+    assert nothing.is_empty
+    assert nothing.geom_type == "MultiPolygon"
+    for given in ([left, right], iter([left, right])):
+        whole = union(given)
+        assert whole.geom_type == "Polygon"
+        assert whole.equals(shapely.box(0, 0, 2, 1))
+    pierced = shapely.box(0, 0, 9, 9).difference(shapely.box(1, 1, 2, 2)).difference(shapely.box(4, 4, 7, 6))
+    apart = shapely.box(20, 0, 21, 1)
+    for least, area in ((1, 81 - 1 - 6 + 1), (1.001, 81 - 6 + 1), (6.001, 82)):
+        assert union([pierced, apart], tolerance=1e-6, holeTolerance=least).area == pytest.approx(area)
+    # Without a tolerance, holes of any size stay, and so do the outlines, whatever the gaps that are closed.
+    assert union([pierced, apart], holeTolerance=99).area == pytest.approx(75)
+    beside = shapely.box(1.3, 0, 2, 1)
+    for width, count in ((0.1, 2), (0.2, 1)):
+        closed = union([left, beside], buf=width)
+        assert len(getattr(closed, "geoms", [closed])) == count
+        assert closed.bounds == pytest.approx((0, 0, 2, 1))
+
+
+def test_holes_go_and_islands_join_what_they_lay_in() -> None:
+    geometry = importlib.import_module("scenic.core.geometry")
+    holed = shapely.box(0, 0, 9, 9).difference(shapely.box(1, 1, 8, 8))
+    assert geometry.removeHoles(holed).equals(shapely.box(0, 0, 9, 9))
+    island, apart = shapely.box(3, 3, 4, 4), shapely.box(20, 0, 21, 1)
+    filled = geometry.removeHoles(shapely.MultiPolygon([holed, island, apart]))
+    assert filled.equals(shapely.MultiPolygon([shapely.box(0, 0, 9, 9), apart]))
+
+
+def test_meshes_with_holes_bound_no_volume() -> None:
+    from scenic.core.utils import repairMesh, unifyMesh
+
+    box = trimesh.creation.box((1, 2, 3))
+    opened = trimesh.Trimesh(box.vertices, box.faces[1:])
+    for repair in (repairMesh, unifyMesh):
+        with pytest.raises(ValueError, match="holes"):
+            repair(opened)
+    soup = trimesh.Trimesh(
+        box.triangles.reshape(-1, 3), [(n, n + 1, n + 2) for n in range(0, 36, 3)], process=False
+    )
+    assert not soup.is_watertight
+    mended = repairMesh(soup)
+    assert mended.is_watertight
+    assert mended.volume == pytest.approx(6)
+
+
+def test_tuples_of_a_batch_are_full_but_the_last() -> None:
+    from scenic.core.utils import batched
+
+    assert list(batched(iter(range(4)), 2)) == [(0, 1), (2, 3)]
+    assert list(batched([], 3)) == []
+    assert list(batched("ab", 5)) == [("a", "b")]
+
+
+def test_what_drawn_values_can_be_read_as() -> None:
+    text = (
+        "from scenic.core.type_support import *\nfrom scenic.core.distributions import toDistribution\nx, n, v, o = Range(0, 1), DiscreteRange(2, 3), Range(0, 1) @ 2, Orientation.fromEuler(Range(0, 1), 0, 0)\n"
+        "param can = [canCoerce(item, kind) for item in (x, n, v, o) for kind in (float, Heading, Vector, Orientation)]\n"
+        "param exact = [canCoerce(item, kind, exact=True) for item in (x, n, v, o) for kind in (float, Heading, Vector, Orientation)]\n"
+        "param values = (x, n, v, o), read = (toScalar(n), toHeading(o), toVector(v), toOrientation(x))\n"
+        "param isA = (isA(x, float), isA(x, int), isA(n, int), isA(v, Vector), isA(v, Orientation), isA(Uniform('a', 'b'), str), isA(3, object))\n"
+        "param same = toDistribution(x) is x\n"
+    )  # fmt: skip
+    found = params(text)
+    # Euler angles are three numbers, as a vector is.
+    assert found["can"] == [
+        *(True, True, False, True) * 2,
+        False,
+        False,
+        True,
+        True,
+        False,
+        True,
+        False,
+        True,
+    ]
+    assert found["exact"] == [True, *[False] * 9, True, *[False] * 4, True]
+    x, n, v, o = found["values"]
+    scalar, heading, vector, orientation = found["read"]
+    assert (scalar, type(scalar), heading, vector) == (n, float, pytest.approx(o.yaw), v)
+    assert orientation.yaw == pytest.approx(x)
+    assert found["isA"] == (True, False, True, True, False, False, True)
+    assert found["same"]
+
+
+def test_only_the_orientation_of_the_world_is_always_that() -> None:
+    vectors = importlib.import_module("scenic.core.vectors")
+    certainly = vectors.alwaysGlobalOrientation
+    assert certainly(vectors.globalOrientation)
+    assert certainly(vectors.Orientation.fromEuler(0, 0, 0))
+    for other in (
+        vectors.Orientation.fromEuler(0.1, 0, 0),
+        vectors.VectorField("f", lambda place: 0),
+        0,
+        None,
+    ):
+        assert certainly(other) is False
+
+
+def test_delayed_values_are_known_by_what_they_read() -> None:
+    lazy = importlib.import_module("scenic.core.lazy_eval")
+    delayed = lazy.DelayedArgument(("width",), lambda item: item.width * 2, _internal=True)
+    for value, expected in (
+        ([delayed, 1], [8, 1]),
+        ((1, delayed), (1, 8)),
+        ({"a": delayed, "b": 0}, {"a": 8, "b": 0}),
+    ):
+        assert lazy.needsLazyEvaluation(value)
+        assert lazy.requiredProperties(value) == {"width"}
+        assert lazy.valueInContext(value, types.SimpleNamespace(width=4)) == expected
+    assert not lazy.needsLazyEvaluation([1, "width"])
+    call = lazy.makeDelayedFunctionCall(max, (1, delayed))
+    assert lazy.valueInContext(call, types.SimpleNamespace(width=4)) == 8
+
+
+def test_statements_outside_of_programs() -> None:
+    import scenic.syntax.veneer as v
+
+    first, second, third = (v.new(v.Point, [v.At((n, 0)), v.With("tag", n)]) for n in range(3))
+    assert [(each.position, each.tag) for each in (first, second)] == [((0, 0, 0), 0), ((1, 0, 0), 1)]
+    assert isinstance(v.new(v.Object), v.Object)
+    v.mutate(first, second)
+    v.mutate(second, scale=2.5)
+    assert [each.mutationScale for each in (first, second, third)] == [1, 2.5, 0]
+    v.mutate()  # nothing is mutated, for no program has made anything
+    assert third.mutationScale == 0
+    assert v.in_initial_scenario() is True
+    assert v.simulationInProgress() is False
+    assert v.localPath("a/b.txt") == Path.cwd() / "a/b.txt"
+    for wrong in (lambda: v.mutate(3), lambda: v.mutate(first, scale="a")):
+        with pytest.raises(TypeError, match="mutate"):
+            wrong()
+    for needed, what in (
+        (v.workspace, "no workspace"), (v.ego, "no ego"), (lambda: v.ego(first), "no ego"), (v.globalParameters, "no parameter"),
+        (lambda: v.param({}), "no program to set parameters of"), (lambda: v.AngleTo((1, 2)), "no ego"),
+    ):  # fmt: skip
+        with pytest.raises(scenic.language.errors.InvalidScenarioError, match=what):
+            needed()
+
+
+def test_modules_set_the_ego_and_the_workspace(tmp_path: Path) -> None:
+    """Without an argument they read them, and an argument is what they give."""
+    (tmp_path / "helpers_that_set.py").write_text(
+        "import scenic.syntax.veneer as v\n"
+        "def chosen(thing, space):\n"
+        "    return v.ego(thing) is thing, v.ego() is thing, v.workspace(space) is not None, v.workspace().containsPoint((105, 0))\n"
+        "def mutated():\n    v.mutate()\n    return v.localPath('x.txt')\n"
+    )
+    (tmp_path / "use.scenic").write_text(
+        "import helpers_that_set as h\nego = new Object at (5, 5)\nother = new Object at (50, 0)\n"
+        "param found = h.chosen(other, Workspace(CircularRegion((50, 0), 60))), path = str(h.mutated()), scales = (other.mutationScale, (new Point).mutationScale)\n"
+    )
+    (sampled,) = scenic.scenarioFromFile(tmp_path / "use.scenic").sample(1, seed=0)
+    assert sampled.params["found"] == (True, True, True, True)
+    assert sampled.params["path"] == str(tmp_path / "x.txt")
+    assert sampled.params["scales"] == (1, 0)
+    assert sampled.egoObject.x > 30
