@@ -20,7 +20,7 @@ from scenic.language.errors import RejectionException, ScenicTypeError
 from scenic.runtime.context import here
 from scenic.runtime.geometry.cell_index import CellIndex
 from scenic.runtime.lazy import Lazy, defer, reads_of, resolve
-from scenic.runtime.opaque import Calls, Rows, evaluated, later, together
+from scenic.runtime.opaque import Calls, Rows, evaluated, is_later, later, together
 from scenic.runtime.values import (
     Orientation,
     Random,
@@ -114,7 +114,7 @@ class VectorField:
         if isinstance(place, Lazy) or isinstance(length, Lazy):
             return defer(self.followFrom, place, length, steps, stepSize)
         law = (steps, self.minSteps, self.defaultStepSize if stepSize is None else stepSize)
-        if isinstance(place, Random) or isinstance(length, Random):
+        if isinstance(place, Random) or isinstance(length, Random) or is_later(self.value):
             return as_value(later(_FOLLOW, _followed, (self.value, place, length, law)))
         return _followed(self.value, place, length, law)
 
@@ -413,7 +413,7 @@ def _followed(function: Callable[[Any], Any], point: Any, distance: float, law: 
 
 def _values(call: Call, *columns: Column) -> Column:
     failed = np.zeros(call.lanes, dtype=np.bool_)
-    turns, error = _turns(evaluated(call, columns), failed)
+    turns, error = _turns(evaluated(call, columns, _ABSENT), failed)
     if error is not None:
         call.fault(failed, error)
     return turns
@@ -422,13 +422,13 @@ def _values(call: Call, *columns: Column) -> Column:
 def _turns(values: Sequence[Any], failed: Mask) -> tuple[NDArray[np.float64], Exception | None]:
     """Values of a field as quaternions ``(n, 4)``; marks the lanes whose value is none, and gives the first error."""
     if all(type(value) in _HEADINGS for value in values):
-        yaw = np.array([0.0 if value is None else float(value) for value in values])
+        yaw = np.array([0.0 if value is _ABSENT else float(value) for value in values])
         return quaternions.from_euler(yaw, np.zeros(1), np.zeros(1)), None
     rows = np.zeros((len(values), 4))
     rows[:, 3] = 1.0
     first: Exception | None = None
     for lane, value in enumerate(values):
-        if value is not None:
+        if value is not _ABSENT:
             try:
                 rows[lane] = to_orientation(value, "the value of a field").q
             except ScenicTypeError as error:
@@ -437,7 +437,13 @@ def _turns(values: Sequence[Any], failed: Mask) -> tuple[NDArray[np.float64], Ex
     return rows, first
 
 
-_HEADINGS = (float, int, type(None))
+
+class _Absent:
+    """Stands for a value that no call has given; ``None`` would be one that the function gives."""
+
+
+_ABSENT: Final = _Absent()
+_HEADINGS: Final = (float, int, _Absent)
 
 
 def _follow(call: Call, *columns: Column) -> Column:
@@ -463,7 +469,7 @@ def _followed_together(lanes: int, calls: Calls, rows: Rows) -> Column:
     for step in range(int(counts.max(initial=0))):
         moving = np.flatnonzero((step < counts) & ~calls.failed & ~calls.rejected)
         points = [(Vector.of(row),) for row in zip(*place[moving].T.tolist(), strict=True)]
-        values: list[Any] = [None] * lanes
+        values: list[Any] = [_ABSENT] * lanes
         if len(moving):
             calls.each(rows[moving[0]][0], moving.tolist(), points, values)
         failed = np.zeros(lanes, dtype=np.bool_)

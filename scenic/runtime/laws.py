@@ -13,7 +13,7 @@ from scenic.runtime.context import current, here
 from scenic.runtime.drawing import support_of
 from scenic.runtime.lazy import is_lazy
 from scenic.runtime.opaque import call_later, evaluated, later
-from scenic.runtime.values import Random, is_random
+from scenic.runtime.values import Random, is_random, wrong_type
 
 
 class _AnyLaw(type):
@@ -91,7 +91,18 @@ def _drawn(holder: _Holder, sampled: tuple[Any, ...]) -> Any:
 
 
 def _numbers(call: Call, *columns: Column) -> Column:
-    return np.array([np.nan if value is None else float(value) for value in evaluated(call, columns)])
+    numbers = np.full(call.lanes, np.nan)
+    failed = np.zeros(call.lanes, dtype=np.bool_)
+    first: Exception | None = None
+    for lane, value in enumerate(evaluated(call, columns, np.nan)):
+        try:
+            numbers[lane] = float(value)
+        except (TypeError, ValueError, OverflowError):
+            failed[lane] = True
+            first = wrong_type("a number", value, "`sampleGiven`") if first is None else first
+    if first is not None:
+        call.fault(failed, first)
+    return numbers
 
 
 _LAW = Operation(

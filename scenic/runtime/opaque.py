@@ -116,13 +116,13 @@ def is_later(*values: Any) -> bool:
     return bool(dependencies(values))
 
 
-def evaluated(call: Call, columns: Sequence[Column]) -> list[Any]:
-    """The results of the calls, ``None`` in lanes where there is none.
+def evaluated(call: Call, columns: Sequence[Column], absent: Any = None) -> list[Any]:
+    """The results of the calls, ``absent`` in lanes where there is none.
 
     A call that raises `RejectionException` rejects its lane, any other exception is that lane's fault. Python's and
     NumPy's global generators are seeded for each call by its key, the first column, and are afterwards as they were before.
     """
-    results: list[Any] = Calls(call, columns).made(lambda calls: calls.results())
+    results: list[Any] = Calls(call, columns).made(lambda calls: calls.results(absent))
     return results
 
 
@@ -200,9 +200,9 @@ class Calls:
         self.call.reject(self.rejected)
         return result
 
-    def results(self) -> list[Any]:
-        """The result of each call, ``None`` in lanes where there is none."""
-        results: list[Any] = [None] * self.call.lanes
+    def results(self, absent: Any = None) -> list[Any]:
+        """The result of each call, ``absent`` in lanes where there is none."""
+        results: list[Any] = [absent] * self.call.lanes
         code, context = self.code, self.code.context
         plain = None if self.seeding else self.plain()
         if plain is not None:

@@ -1,6 +1,7 @@
 """Vector fields, and values that are known only while an object is built."""
 
 import math
+from functools import partial
 
 import numpy as np
 import pytest
@@ -13,7 +14,19 @@ from scenic.language.errors import (
     ScenicTypeError,
     SpecifierError,
 )
-from tests.runtime.programs import assert_same_rotation, draws, euler, failure, params, rotation, scene, thing
+from scenic.runtime.fields import VectorField
+from scenic.runtime.values import Orientation
+from tests.runtime.programs import (
+    assert_same_rotation,
+    draws,
+    euler,
+    failure,
+    params,
+    place,
+    rotation,
+    scene,
+    thing,
+)
 
 FIELD = "F = VectorField('f', lambda p: p.x + 0.1 * p.y)\nego = new Object at (0.5, 2, 1), facing (0.4, 0.3, -0.2)\n"
 CELLS = """
@@ -118,6 +131,10 @@ def test_following_from_random_places_agrees_lane_by_lane() -> None:
         np.testing.assert_allclose(
             tuple(end), follow(lambda x, y: x + 0.1 * y, (x, 1, 2), distance), atol=1e-9
         )
+
+
+def heading_by_y(sign: float, _x: float, y: float) -> float:
+    return sign * y / 4
 
 
 def heading_of_cells(x: float, y: float) -> float:
@@ -310,5 +327,135 @@ def test_a_field_that_asks_for_no_least_number_of_steps_takes_one(field: str, le
         f"from shapely.geometry import box\narea = box(-9, -9, 9, 9)\nF = {field}, minSteps=0)\nlength = {length}\n"
         "place = follow F from (1, 2) for length\nparam x = (length, place.position)\n"
     )
-    for way, place in draws(text, n=6):
-        assert tuple(place) == pytest.approx((1 - way * math.sin(0.5), 2 + way * math.cos(0.5), 0))
+    for way, end in draws(text, n=6):
+        assert tuple(end) == pytest.approx((1 - way * math.sin(0.5), 2 + way * math.cos(0.5), 0))
+
+
+@pytest.mark.parametrize("start", ["(1, 2)", "(1, Range(2, 2.5))", "Uniform((1, 2), (2, 2))"])
+def test_a_field_that_gives_nothing_somewhere_is_an_error_there(start: str) -> None:
+    """Whether the point is known or drawn, first or midway, and whatever it gives elsewhere."""
+    missing = ("None", "None if p.y > 1 else 0.5", "'north'")
+    for value in missing:
+        program = f"F = VectorField('f', lambda p: {value})\nstart = {start}\n"
+        for use in ("F at start", "follow F from start for 3"):
+            error = failure(program + f"param x = {use}")
+            assert isinstance(error, ScenicTypeError), (value, use)
+            assert "the value of a field: expected an orientation" in str(error)
+    midway = f"F = VectorField('f', lambda p: None if p.y > 4 else 0)\nstart = {start}\nparam x = (follow F from start for "
+    assert isinstance(failure(midway + "4)"), ScenicTypeError)
+    assert params(midway + "1.5).position.y")["x"] >= 3.5
+    cells = "from scenic.core.vectors import PolyhedronVectorField\nF = PolyhedronVectorField('f', [(everywhere, None)])\n"
+    assert isinstance(failure(f"{cells}param x = F at {start}"), ScenicTypeError)
+
+
+def test_a_way_that_is_rejected_midway_is_rejected() -> None:
+    text = (
+        "def value(p):\n    if 4 < p.y < 5: raise RejectionException()\n    return 0\n"
+        "F = VectorField('f', value)\ny, d = Range(0, 9), Uniform(2, 12, -2)\nparam x = (y, d, (follow F from (1, y) for d).position)\n"
+    )
+    values = draws(text, n=100)
+    for y, way, end in values:
+        assert tuple(end) == pytest.approx((1, y + way, 0))
+        assert not any(4 < y + step * way / 4 < 5 for step in range(4))
+    assert {way for _, way, _ in values} == {2, 12, -2}
+
+
+def test_fields_called_by_python() -> None:
+    field = VectorField("winding", lambda point: point.x / 2)
+    assert (field.minSteps, field.defaultStepSize, field.valueType) == (4, 5, Orientation)
+    assert repr(field) == "<VectorField winding>"
+    assert_same_rotation(field.at((1, 2)), euler(0.5))
+    assert_same_rotation(field.at([3, 2, 7]), euler(1.5))
+    assert tuple(field.followFrom((0, 0, 1), 10, steps=1)) == pytest.approx((0, 10, 1))
+
+
+def test_fields_read_what_is_drawn() -> None:
+    """The function of a field, or that of its cells, may read drawn names; two scenes have two fields."""
+    text = (
+        "from shapely.geometry import box\nk = Range(0, 1)\nF = VectorField('f', lambda p: k + p.x)\n"
+        "G = PolygonalVectorField('g', [(box(0, 0, 1, 1), None), (box(1, 0, 2, 1), 0.75)], headingFunction=lambda p: k / 2, defaultHeading=0.5)\n"
+        "param k = k, fields = (F, G), values = [(G at (x, 0.5)).yaw for x in (0.5, 1.5, 2.5)], f = (F at (1, 0)).yaw\n"
+        "param drawn = (G at (Range(0.1, 0.9), 0.5)).yaw, end = (follow G from (0.5, 0) for 0.5).position\n"
+    )
+    first, second = (each.params for each in scenic.scenarioFromString(text).sample(2, seed=4))
+    assert first["k"] != second["k"]
+    for found in (first, second):
+        k, (plain, cells) = found["k"], found["fields"]
+        assert found["values"] == pytest.approx([k / 2, 0.75, 0.5])
+        assert [cells[x, 0.5].yaw for x in (0.5, 1.5, 2.5)] == pytest.approx([k / 2, 0.75, 0.5])
+        assert (found["f"], plain[2, 0].yaw) == pytest.approx((k + 1, k + 2))
+        assert found["drawn"] == pytest.approx(k / 2)
+        assert tuple(found["end"]) == pytest.approx((0.5 - math.sin(k / 2) / 2, math.cos(k / 2) / 2, 0))
+
+
+def test_fields_by_volumes_agree_where_points_are_drawn() -> None:
+    text = (
+        "from scenic.core.vectors import PolyhedronVectorField\n"
+        "near, far = BoxRegion(dimensions=(2, 2, 2)), BoxRegion(dimensions=(8, 8, 8))\n"
+        "F = PolyhedronVectorField('f', [(near, None), (far, (0.1, 0.2, 0.3))], headingFunction=lambda p: p.x, defaultHeading=(0.4, 0.5, 0.6))\n"
+        "x = Uniform(0.5, -0.5, 1.5, 5)\nparam x = (x, F at (x, 0, 0), F at (x, 0, 4.5))\n"
+    )
+    inside, outside = euler(0.1, 0.2, 0.3), euler(0.4, 0.5, 0.6)
+    values = draws(text, n=30)
+    assert {x for x, _, _ in values} == {0.5, -0.5, 1.5, 5}
+    for x, found, above in values:
+        assert_same_rotation(found, euler(x) if x < 1 else inside if x < 4 else outside)
+        assert_same_rotation(above, outside)
+
+
+def test_choices_among_fields_are_followed_step_by_step() -> None:
+    """By as many steps as asked for, and from where the object will be."""
+    text = (
+        "one, two = VectorField('one', lambda p: p.y / 4), VectorField('two', lambda p: -p.y / 4)\nwhich = Uniform(one, two)\n"
+        "other = VectorField('other', lambda p: p.x)\nplace = ((other relative to 0).yaw, 3)\n"
+        "ego = new Object at (2, 1), with read (which at place).yaw, with end (follow which from place for 0.5).position, facing (place offset along which by (0, 1)).x\n"
+        "param found = [which.followFrom((0, 0), 4, **options) for options in ({}, {'steps': 2}, {'stepSize': 0.5})], sign = (which at (0, 4)).yaw\n"
+    )
+    signs = set()
+    for found in scenic.scenarioFromString(text).sample(12, seed=2):
+        sign, ego = found.params["sign"], found.egoObject
+        signs.add(sign)
+        for end, count in zip(found.params["found"], (4, 2, 8), strict=True):
+            place = np.zeros(2)
+            for _ in range(count):
+                angle = sign * place[1] / 4
+                place += 4 / count * np.array([-np.sin(angle), np.cos(angle)])
+            assert tuple(end)[:2] == pytest.approx(tuple(place)), count
+        assert ego.read == pytest.approx(sign * 0.75)
+        angle = sign * 0.75
+        assert tuple(ego.end) == pytest.approx(tuple(follow(partial(heading_by_y, sign), (2, 3, 0), 0.5)))
+        assert ego.yaw == pytest.approx(2 - math.sin(angle))
+    assert signs == {1, -1}
+
+
+def test_the_directions_of_lines_are_fields() -> None:
+    text = (
+        "path = PolylineRegion([(0, 0), (3, 0), (3, 4)])\nF, p = path.orientation, Uniform((1, 0), (3, 2))\n"
+        "ego = new Object at (3, 3), facing 0.25 relative to F\n"
+        "param there = [(F at q).yaw for q in ((1, 0), (3, 2), p)], p = p, end = (follow F from p for 0.5).position, fixed = (follow F from (3, 1) for 2).position\n"
+    )
+    for found in scenic.scenarioFromString(text).sample(8, seed=1):
+        values = found.params
+        first = values["p"][0] == 1
+        assert values["there"] == pytest.approx([-math.pi / 2, 0, -math.pi / 2 if first else 0])
+        assert tuple(values["end"]) == pytest.approx((1.5, 0, 0) if first else (3, 2.5, 0))
+        assert tuple(values["fixed"]) == pytest.approx((3, 3, 0))
+        assert found.egoObject.yaw == pytest.approx(0.25)
+
+
+def test_unions_of_many_regions_agree_with_those_of_few() -> None:
+    """At drawn points, at their own height and above, and whatever gave the regions."""
+    text = (
+        "def square(x, heading):\n    return PolygonalRegion([(x, 0), (x + 2, 0), (x + 2, 2), (x, 2)], orientation=VectorField('own', lambda p: heading))\n"
+        "row = [square(x, x / 100) for x in range(0, 60, 2)]\n"
+        "F, G = VectorField.forUnionOf(iter(row)), VectorField.forUnionOf(row[:3])\np = Range(0, 5.9)\n"
+        "param x = (p, (F at (p, 1)).yaw, (G at (p, 1)).yaw, (G at (p, 1, 7)).yaw, F[p, 0].yaw)\n"
+    )
+    for x, *headings in draws(text, n=10):
+        assert headings == pytest.approx([2 * int(x / 2) / 100] * 4)
+
+
+def test_a_class_is_no_field_and_says_how_an_instance_is_made() -> None:
+    error = failure("class Kind:\n    foo: 3\nkind = [Kind][0]\nx = follow kind from (1, 2) for 3")
+    assert isinstance(error, ScenicTypeError)
+    assert place(error)[2] == "to create an instance write `new Kind at ...`"

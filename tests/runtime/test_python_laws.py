@@ -9,7 +9,7 @@ from scipy import stats
 import scenic
 from scenic.graph.kinds import Kind
 from scenic.language.errors import InvalidScenarioError, ScenicTypeError, SpecifierError
-from tests.runtime.programs import FALSE_ALARM, draws, failure, fingerprint, scenario, scene
+from tests.runtime.programs import FALSE_ALARM, draws, failure, fingerprint, params, scenario, scene
 
 LAW = """
 import random
@@ -282,3 +282,72 @@ def test_a_sample_that_fails_or_is_rejected_says_so() -> None:
     *failed, number = scene(text).params["found"]
     assert failed == ["KeyError", "RejectionException", "RejectionException"]
     assert 0 < number < 1
+
+
+@pytest.mark.parametrize("drawn", ["None", "'a'", "Vector(1, 2)", "10**400", "[1]"])
+def test_a_law_of_numbers_draws_a_number(drawn: str) -> None:
+    """Anything else is an error, but not where a choice draws something else."""
+    law = (
+        "class Law(Distribution):\n    def __init__(self):\n        super().__init__(valueType=float)\n"
+        f"    def sampleGiven(self, value):\n        return {drawn}\n"
+    )
+    for use in ("Law()", "Law() + 1"):
+        error = failure(f"{law}param x = {use}")
+        assert isinstance(error, ScenicTypeError)
+        assert "`sampleGiven`: expected a number" in str(error)
+    text = f"{law}param x = Uniform(Law(), 2)\n"
+    found, failed = set(), 0
+    for seed in range(8):
+        try:
+            found.add(scene(text, seed=seed).params["x"])
+        except ScenicTypeError:
+            failed += 1
+    assert found == {2}
+    assert 0 < failed < 8
+
+
+@pytest.mark.parametrize(
+    "drawn", ["numpy.float32(0.5)", "numpy.array(0.5)", "fractions.Fraction(1, 2)", "0.5"]
+)
+def test_numbers_that_laws_draw_are_of_any_type(drawn: str) -> None:
+    law = (
+        "import fractions, numpy\nclass Law(Distribution):\n    def __init__(self):\n        super().__init__(valueType=float)\n"
+        f"    def sampleGiven(self, value):\n        return {drawn}\nx = Law()\nparam x = (x, x + 1)\n"
+    )
+    found = params(law)["x"]
+    assert found == (0.5, 1.5)
+    assert [type(item) for item in found] == [float, float]
+
+
+def test_what_is_a_distribution_and_what_it_depends_on() -> None:
+    """Dependencies are found by identity, other values are given as they are; a clone depends on the same."""
+    text = (
+        "class Law(Distribution):\n    def __init__(self, *given):\n        super().__init__(*given)\n        self.given = given\n"
+        "    def sampleGiven(self, value):\n        return [value[item] for item in self.given] + [value[7], value['a']]\n"
+        "    def supportInterval(self):\n        return (-1, 5)\n"
+        "from scenic.core.distributions import supportInterval\n"
+        "x, y = Range(0, 1), DiscreteRange(3, 4)\nlaw = Law(x, y, 0, None, (x, 2))\nother = resample(law)\n"
+        "class Sub(Law): pass\n"
+        "param values = (x, y), law = law, other = other, kinds = [isinstance(item, Law) for item in (law, other, Sub(), x, 3)]\n"
+        "param all = [isinstance(item, Distribution) for item in (law, x, x + 1, 3, None, Sub)]\n"
+        "param support = [supportInterval(item) for item in (law, x, 3, 'a', y, -2.5, Uniform('a', 'b'), True)]\n"
+    )
+    found = params(text)
+    x, y = found["values"]
+    assert found["law"] == found["other"] == [x, y, 0, None, (x, 2), 7, "a"]
+    assert found["kinds"] == [True, True, True, False, False]
+    assert found["all"] == [True, True, True, False, False, False]
+    assert found["support"] == [
+        (-1, 5), (pytest.approx(0, abs=1e-9), pytest.approx(1)), (3, 3), (None, None), (3, 4), (-2.5, -2.5), (None, None), (True, True),
+    ]  # fmt: skip
+
+
+def test_distributions_are_made_by_the_program_alone() -> None:
+    law = "class Law(Distribution):\n    def sampleGiven(self, value): return 1\n"
+    for text, kind, words in (
+        ("require Law() > 0", InvalidScenarioError, "a requirement cannot create a distribution"),
+        ("F = VectorField('F', lambda p: 0)\nego = new Object with foo Law(3, [F relative to 0])", ScenicTypeError, "Law cannot depend on the object being specified"),
+    ):  # fmt: skip
+        error = failure(law + text)
+        assert isinstance(error, kind), text
+        assert words in str(error)
