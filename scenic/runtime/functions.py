@@ -122,15 +122,16 @@ def range(*bounds: Any) -> Any:
     return builtins.range(*bounds)
 
 
-def convert(name: str, value: Any = 0, *rest: Any) -> Any:
+def convert(name: str, *given: Any) -> Any:
     """``int``, ``float`` and ``str`` as calls in programs, also of random values."""
-    if is_lazy((value, *rest)):
-        return defer(convert, name, value, *rest)
+    if is_lazy(given):
+        return defer(convert, name, *given)
     function: Callable[..., Any] = {"int": int, "float": float, "str": str}[name]
-    if is_later(value, *rest):
-        known = isinstance(value, Random) and (name == "str" or _may_be_number(value))
-        return operate(name, value) if known and not rest else call_later(function, value, *rest)
-    return function(value, *rest)
+    if not is_later(*given):
+        return function(*given)
+    value, *rest = given
+    known = isinstance(value, Random) and (name == "str" or _may_be_number(value))
+    return operate(name, value) if known and not rest else call_later(function, *given)
 
 
 def distributionFunction(function: Callable[..., Any]) -> Callable[..., Any]:

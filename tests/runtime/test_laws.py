@@ -416,3 +416,73 @@ def test_weights_are_finite_numbers_from_0_on(weight: str, first: bool) -> None:
     error = failure(f"param x = Discrete({{'a': {weights[0]}, 'b': {weights[1]}}})\n")
     assert isinstance(error, ScenicValueError)
     assert "a weight is a number from 0 on" in str(error)
+
+
+def test_large_integers_are_drawn_exactly() -> None:
+    for low in (2**53, 2**60, -(2**60) - 5):
+        values = draws(f"param x = DiscreteRange({low}, {low} + 2)", n=60)
+        assert set(values) == {low, low + 1, low + 2}
+        weighted = draws(f"param x = DiscreteRange({low}, {low} + 2, weights=(1, 0, 2))", n=60)
+        assert set(weighted) == {low, low + 2}
+    assert set(
+        draws("param x = DiscreteRange(2.0, numpy.int64(4))".replace("param", "import numpy\nparam"), n=60)
+    ) == {2, 3, 4}
+
+
+def test_weights_belong_to_their_options_and_those_of_0_are_never_drawn() -> None:
+    assert set(draws("param x = Discrete({1: 0, 2: 1, 3: 0, 4: 0.5, 5: 0})", n=100)) == {2, 4}
+    assert params(
+        "param x = [Discrete({1: 0, 'a': 1e-300}), Uniform(7), Options(['b']), DiscreteRange(4, 4, weights=[2])]"
+    )["x"] == ["a", 7, "b", 4]
+    assert_frequencies(draws("param x = DiscreteRange(-1, 1, weights=(1, 2, 5))"), {-1: 1, 0: 2, 1: 5})
+
+
+@pytest.mark.parametrize(
+    ("expression", "kind", "words"),
+    [
+        ("TruncatedNormal(0, 1, Range(-2, -1), 1)", ScenicValueError, "must be fixed"),
+        ("TruncatedNormal(0, 1, -1, Range(1, 2))", ScenicValueError, "must be fixed"),
+        ("TruncatedNormal(0, 1, 1, 1)", ScenicValueError, "is empty: 1 is not below 1"),
+        ("TruncatedNormal(0, 1, 2, 1)", ScenicValueError, "is empty: 2 is not below 1"),
+        ("TruncatedNormal(0, 1, float('nan'), 1)", ScenicValueError, "is empty"),
+        ("DiscreteRange(0, DiscreteRange(1, 2), weights=[1, 1])", ScenicTypeError, "fixed integers"),
+        ("DiscreteRange(0, 1.5, weights=[1, 1])", ScenicTypeError, "fixed integers"),
+        ("DiscreteRange('a', 1, weights=[1, 1])", ScenicTypeError, "fixed integers"),
+        ("DiscreteRange(1, 0, weights=[])", ScenicValueError, "1 is above 0"),
+        ("DiscreteRange(0, 1, weights=[1, 1, 1])", ScenicValueError, "needs 2 weights, not 3"),
+        (
+            "DiscreteRange(0, 1, weights=[0, 0])",
+            InvalidScenarioError,
+            "`DiscreteRange` has nothing to choose from",
+        ),
+        ("Discrete({1: 0})", InvalidScenarioError, "`Discrete` has nothing to choose from"),
+        ("Options([])", InvalidScenarioError, "`Options` has nothing to choose from"),
+        ("Uniform()", InvalidScenarioError, "`Uniform` has nothing to choose from"),
+        ("Discrete(3)", ScenicTypeError, "takes a dictionary of weights or a fixed collection"),
+        (
+            "Discrete(Uniform([1], [2]))",
+            ScenicTypeError,
+            "takes a dictionary of weights or a fixed collection",
+        ),
+        ("Discrete({1: Range(0, 1)})", ScenicTypeError, "a weight is a fixed number"),
+        ("Discrete({1: 'a'})", ScenicTypeError, "a weight is a fixed number"),
+        ("Discrete({1: -0.5, 2: 1})", ScenicValueError, "a weight is a number from 0 on, not -0.5"),
+        ("resample(Range(0, 1) + 1)", ScenicTypeError, "only primitive distributions"),
+    ],
+)
+def test_laws_say_what_is_wrong_with_them(expression: str, kind: type[Exception], words: str) -> None:
+    error = failure(f"param x = {expression}")
+    assert isinstance(error, kind)
+    assert words in str(error)
+
+
+def test_resampling_what_is_not_drawn_gives_it_back() -> None:
+    assert params("a = [1]\nparam x = (resample(3), resample(a) is a, resample('b'))")["x"] == (3, True, "b")
+
+
+@pytest.mark.parametrize("option", ["(x, 2)", "[Range(0, 1), 'a']", "{'a': 1}"])
+def test_collections_of_drawn_options_are_drawn_from(option: str) -> None:
+    """A fixed collection with random elements is one, and a single option of it is drawn as it is."""
+    for law in (f"Discrete([{option}])", f"Uniform({option})", f"Discrete(({option},))"):
+        found = params(f"x = Range(0, 1)\nparam x = x, y = {law}")["y"]
+        assert len(found) == (1 if isinstance(found, dict) else 2)

@@ -351,3 +351,30 @@ def test_distributions_are_made_by_the_program_alone() -> None:
         error = failure(law + text)
         assert isinstance(error, kind), text
         assert words in str(error)
+
+
+def test_parameters_are_those_of_the_program_and_of_its_caller() -> None:
+    text = (
+        "param x = 3, 'y z' = 4\ng = globalParameters\n"
+        "param found = ['x' in g, 'o' in g, 'q' in g, len(g), sorted(g), g.x, g['y z'], hasattr(g, 'q'), hasattr(g, '__foo__')]\n"
+    )
+    assert params(text)["found"] == [True, False, False, 2, ["x", "y z"], 3, 4, False, False]
+    given = params(text, params={"x": 5, "o": 6})["found"]
+    assert given == [True, True, False, 3, ["o", "x", "y z"], 5, 4, False, False]
+
+
+def test_the_parameters_of_laws_can_be_read() -> None:
+    text = (
+        "low, n = Range(0, 1), DiscreteRange(3, 4)\na, b = TruncatedNormal(low, 2, -1, 3), Range(low, 7)\nc, d = DiscreteRange(1, n), Normal(5, low)\n"
+        "param x = (low, n, a.mean, a.stdDev, b.low, b.high, c.low, c.high, d.mean, d.stdDev)\n"
+    )
+    for low, n, *found in draws(text, n=4):
+        assert found == [low, 2, low, 7, 1, n, 5, low]
+    for wrong in (
+        "Range(0, 1).mean",
+        "Normal(0, 1).low",
+        "(Range(0, 1) + 1).low",
+        "DiscreteRange(0, 1).foo",
+        "Vector(Range(0, 1), 2).foo",
+    ):
+        assert isinstance(failure(f"param x = {wrong}"), AttributeError), wrong
