@@ -21,7 +21,7 @@ from scenic.runtime.purity import is_pure
 from scenic.runtime.regions.base import Workspace, everywhere, nowhere
 from scenic.runtime.regions.choice import RegionChoice
 from scenic.runtime.values import Orientation, Vector
-from tests.runtime.programs import FALSE_ALARM, draws, failure, params, scenario, thing
+from tests.runtime.programs import FALSE_ALARM, draws, failure, params, place, scenario, scene, thing
 
 TILT = Orientation.fromEuler(0.7, 0.4, -0.3)
 
@@ -284,8 +284,8 @@ def named_field(heading: float) -> Any:
 
 def test_sectors_hold_their_arc_and_their_corner() -> None:
     sector = named.SectorRegion((1, 2, 3), 5, 0, 1)
-    for place, held in (((1, 7), True), ((1, 7.001), False), ((1, 2), True), ((1, 1.999), False)):
-        assert bool(sector.containsPoint(Vector(*place, 3))) is held
+    for point, held in (((1, 7), True), ((1, 7.001), False), ((1, 2), True), ((1, 1.999), False)):
+        assert bool(sector.containsPoint(Vector(*point, 3))) is held
     assert sector.distanceTo(Vector(1, 7, 3)) == 0
 
 
@@ -479,3 +479,44 @@ def test_clones_are_independent_draws_of_the_same_law() -> None:
     for column in values.T:
         assert stats.kstest(column, "uniform").pvalue > FALSE_ALARM
     assert abs(np.corrcoef(values.T) - np.eye(3)).max() < 0.25
+
+
+@pytest.mark.parametrize("sign", ["<", "<=", ">", ">=", "==", "!="])
+def test_what_depends_on_the_object_is_not_compared(sign: str) -> None:
+    """On either side: an answer would be one for all objects."""
+    for use in (f"lazy {sign} 1", f"1 {sign} lazy", f"lazy {sign} lazy", f"(lazy, 1)[0] {sign} 'a'"):
+        error = failure(
+            f"flow = VectorField('flow', lambda p: p.x)\nlazy = (flow relative to 0).yaw\nx = {use}"
+        )
+        assert isinstance(error, RandomControlFlowError), use
+        assert "comparing a value that depends on the object" in str(error)
+        assert place(error)[1].startswith("3:")
+
+
+def test_what_depends_on_the_object_is_drawn_once_for_each() -> None:
+    text = (
+        "flow = VectorField('flow', lambda p: p.x)\ndrawn = Range((flow relative to 0).yaw, (flow relative to 1).yaw)\n"
+        "class Kind:\n    foo: 0\n    bar: 0\n    baz: 0\n"
+        "for x in (0.25, 0.5): new Kind at (x, 9 * x), with allowCollisions True, with foo drawn, with bar [drawn, {'a': drawn}], with baz drawn * 2\n"
+        "ego = new Kind at (2, 40), with foo Uniform(drawn, 7), with bar (drawn, drawn), with baz 1\n"
+    )
+    found = scene(text, seed=3).objects
+    kinds = sorted((item for item in found if item.baz != 1), key=lambda item: item.x)
+    for item in kinds:
+        assert item.x <= item.foo <= item.x + 1
+        assert item.bar == [item.foo, {"a": item.foo}]
+        assert item.baz == 2 * item.foo
+    assert kinds[0].foo - kinds[0].x != pytest.approx(kinds[1].foo - kinds[1].x)
+    (ego,) = (item for item in found if item.baz == 1)
+    assert ego.bar[0] == ego.bar[1]
+    assert ego.foo in (7, ego.bar[0])
+
+
+def test_functions_that_depend_on_the_object_are_called_when_it_is_there() -> None:
+    text = (
+        "flow = VectorField('flow', lambda p: p.x)\nturn = flow relative to 0\n"
+        "new Object at (0.5, 2), with a turn.localAnglesFor(0.75)[0], with b turn.eulerAngles[0] * 2, with c [turn.inverse.yaw, {'d': turn.toHeading()}]\n"
+    )
+    item = thing(text)
+    assert (item.a, item.b) == pytest.approx((0.25, 1))
+    assert [item.c[0], item.c[1]["d"]] == pytest.approx([-0.5, 0.5])
