@@ -437,7 +437,6 @@ def _turns(values: Sequence[Any], failed: Mask) -> tuple[NDArray[np.float64], Ex
     return rows, first
 
 
-
 class _Absent:
     """Stands for a value that no call has given; ``None`` would be one that the function gives."""
 

@@ -190,3 +190,13 @@ def test_choices_among_functions_are_called_option_by_option() -> None:
         assert abs(doubled) == pytest.approx(2 * x if x > 0.5 or doubled < 0 else 0)
         seen.add((which, listed))
     assert len(seen) == 8
+
+
+@pytest.mark.parametrize("vector", ["Vector(1, 2, 3)", "Vector(Range(0, 1), 2, 3)"])
+def test_other_operands_may_know_what_to_do_with_a_vector(vector: str) -> None:
+    text = (
+        "class Scale(object):\n    def __rmul__(self, other): return 'times'\n    def __rtruediv__(self, other): return 'over'\n"
+        "    def __radd__(self, other): return 'plus'\n    def __rsub__(self, other): return 'minus'\n"
+        f"v, s = {vector}, Scale()\nparam x = [v * s, v / s, v + s, v - s]"
+    )
+    assert params(text)["x"] == ["times", "over", "plus", "minus"]
