@@ -630,6 +630,11 @@ def test_geometry_of_the_plane_by_hand() -> None:
         assert geometry.normalizeAngle(0.3 + turns * math.tau) == pytest.approx(0.3)
     for half in (math.pi, -math.pi):
         assert geometry.normalizeAngle(half) == half
+    for many in (-1e6, 31.0, 1e7):
+        assert math.cos(geometry.normalizeAngle(many)) == pytest.approx(math.cos(many), abs=1e-6)
+        assert abs(geometry.normalizeAngle(many)) <= math.pi
+    for endless in (math.inf, -math.inf, math.nan):
+        assert math.isnan(geometry.normalizeAngle(endless))
     assert geometry.averageVectors(Vector(0, 0, 5), (4, 8), 0.25) == (1, 2)
     assert geometry.averageVectors(Vector(0, 0, 5), Vector(4, 8, 5)) == (2, 4)
     assert geometry.pointIsInCone((0, 1), (0, 0), 0, 0)

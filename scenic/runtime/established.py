@@ -8,7 +8,7 @@ import itertools
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from types import MappingProxyType
-from typing import Any, TextIO
+from typing import Any, Final, TextIO
 
 import numpy as np
 
@@ -133,9 +133,13 @@ def toVector(thing: Any, typeError: str = "non-vector in vector context") -> Any
     return toType(thing, Vector, typeError)
 
 
+_FEW_TURNS: Final = 100.0
+"""Radians of which whole turns are taken one by one, as others have done it, to the last digit."""
+
+
 def normalizeAngle(angle: float) -> float:
     """An angle in [-pi, pi] that differs by whole turns (radians)."""
-    if not is_number(angle):
+    if not is_number(angle) or abs(angle) > _FEW_TURNS:
         return operate("normalize angle", angle)  # type: ignore[no-any-return]
     while angle > math.pi:
         angle -= 2 * math.pi
