@@ -18,6 +18,7 @@ from scipy import stats
 from scenic.language.errors import UnsupportedError
 from scenic.runtime.regions import bodies, choice, composite, lines, planar, views, volumes
 from scenic.runtime.regions.base import Region, Workspace, everywhere, nowhere
+from scenic.runtime.regions.drawn import DrawnRegion
 from tests.runtime.programs import FALSE_ALARM, scenario
 
 TILT = Orientation.fromEuler(0.7, 0.4, -0.3)
@@ -110,8 +111,9 @@ def classes(root: type[Region] = Region) -> Iterator[type[Region]]:
 
 
 def test_every_class_is_here() -> None:
-    # A choice has as many forms as options, and is asked through them; what may be seen from near is no region of a program.
-    elsewhere = {choice.RegionChoice, views.NearView}
+    # A choice has as many forms as options, and is asked through them, as is what is known when it is drawn; what may be seen from
+    # near is no region of a program.
+    elsewhere = {choice.RegionChoice, DrawnRegion, views.NearView}
     here = {type(region) for region in REGIONS.values()}
     bases = {
         bodies.SideSurface,
