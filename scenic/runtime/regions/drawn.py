@@ -13,9 +13,6 @@ from scenic.runtime.regions.base import Mask, Points, Region
 from scenic.runtime.regions.varying import VaryingRegion
 from scenic.runtime.values import Orientation, Random, operate, to_orientation, to_vector, wrong_type
 
-_MOST_DRAWS = 64
-"""More uniform numbers than a point of any region takes that is drawn from at once."""
-
 
 class DrawnRegion(VaryingRegion):
     """A region that is known when it is drawn; where that has no preferred orientations, those are the global ones.
@@ -80,15 +77,13 @@ class DrawnRegion(VaryingRegion):
         keys = np.broadcast_to(keys, lanes)
         points, known = np.zeros((lanes, 3)), np.ones(lanes, dtype=np.bool_)
         for region, chosen, mine in self.drawn(lanes, columns):
-            numbers = open_unit(words_of(keys[chosen], _NUMBERS[: region.draws]))
+            addresses = np.arange(1, region.draws + 1, dtype=np.uint64)
+            numbers = open_unit(words_of(keys[chosen], addresses))
             drawn, found = region.draw_points(numbers, mix(keys[chosen]), *mine)
             points[chosen] = drawn
             if found is not None:
                 known[chosen] = found
         return points, known
-
-
-_NUMBERS = np.arange(1, _MOST_DRAWS, dtype=np.uint64)
 
 
 def _wanted(value: Any, what: str) -> Region:
