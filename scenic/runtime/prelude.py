@@ -12,7 +12,6 @@ import builtins
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
-from operator import eq, ge, gt, le, lt, ne
 from pathlib import Path
 from types import CodeType, MappingProxyType, ModuleType
 from typing import Any, Protocol
@@ -72,9 +71,6 @@ COMPARISONS: Mapping[str, str] = MappingProxyType(
         "==": "equal",
         "!=": "not equal",
     }
-)
-_COMPARED: Mapping[str, Callable[[Any, Any], Any]] = MappingProxyType(
-    {"<": lt, "<=": le, ">": gt, ">=": ge, "==": eq, "!=": ne}
 )
 
 
@@ -405,7 +401,7 @@ class Prelude(Dynamics):
     def compare(self, operator: str, left: Any, right: Any) -> Any:
         """``left operator right`` as a truth value, which may be random."""
         if may_return_instances(left) or may_return_instances(right):
-            return Random.later(_COMPARED[operator], left, right)
+            return Random.later(TABLE[COMPARISONS[operator]].python, left, right)
         if is_random(left) or is_random(right):
             return operate(COMPARISONS[operator], left, right)
         if isinstance(left, Point) or isinstance(right, Point):
