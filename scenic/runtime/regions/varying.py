@@ -21,34 +21,22 @@ class VaryingRegion(Region):
         """Each of the regions with the lanes that draw it and the columns of its parameters there."""
 
     def contains_points(self, points: Points, *columns: Column) -> Mask:
-        lanes = _lanes(points, *columns)
-        points = np.broadcast_to(points, (lanes, 3))
-        result = np.zeros(lanes, dtype=np.bool_)
-        for option, chosen, mine in self.drawn(lanes, columns):
-            result[chosen] = option.contains_points(points[chosen], *mine)
-        return result
+        return self._of_points("contains_points", points, columns, dtype=np.bool_)
 
     def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
-        result = np.zeros(lanes, dtype=np.bool_)
-        for option, chosen, mine in self.drawn(lanes, columns):
-            part = body if len(body) == 1 else body.take(chosen)
-            result[chosen] = option.contains_bodies(part, len(chosen), *mine)
-        return result
+        return self._of_bodies("contains_bodies", body, lanes, columns)
 
     def meets_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
-        result = np.zeros(lanes, dtype=np.bool_)
-        for option, chosen, mine in self.drawn(lanes, columns):
-            part = body if len(body) == 1 else body.take(chosen)
-            result[chosen] = option.meets_bodies(part, len(chosen), *mine)
-        return result
+        return self._of_bodies("meets_bodies", body, lanes, columns)
 
     def gaps(self, points: Points, *columns: Column) -> NDArray[np.float64]:
-        lanes = _lanes(points, *columns)
-        points = np.broadcast_to(points, (lanes, 3))
-        result = np.zeros(lanes)
-        for option, chosen, mine in self.drawn(lanes, columns):
-            result[chosen] = option.gaps(points[chosen], *mine)
-        return result
+        return self._of_points("gaps", points, columns)
+
+    def distances(self, points: Points, *columns: Column) -> NDArray[np.float64]:
+        return self._of_points("distances", points, columns)
+
+    def orientations(self, points: Points, *columns: Column) -> Column:
+        return self._of_points("orientations", points, columns, width=(4,))
 
     def sizes(self, *columns: Column) -> NDArray[np.float64]:
         lanes = _lanes(*columns)
@@ -57,20 +45,28 @@ class VaryingRegion(Region):
             result[chosen] = option.sizes(*mine)
         return result
 
-    def distances(self, points: Points, *columns: Column) -> NDArray[np.float64]:
+    def _of_points(
+        self,
+        primitive: str,
+        points: Points,
+        columns: Sequence[Column],
+        *,
+        width: tuple[int, ...] = (),
+        dtype: type = np.float64,
+    ) -> Column:
+        """What a primitive gives for points: rows of a width, by lane."""
         lanes = _lanes(points, *columns)
         points = np.broadcast_to(points, (lanes, 3))
-        result = np.zeros(lanes)
+        result = np.zeros((lanes, *width), dtype=dtype)
         for option, chosen, mine in self.drawn(lanes, columns):
-            result[chosen] = option.distances(points[chosen], *mine)
+            result[chosen] = getattr(option, primitive)(points[chosen], *mine)
         return result
 
-    def orientations(self, points: Points, *columns: Column) -> Column:
-        lanes = _lanes(points, *columns)
-        points = np.broadcast_to(points, (lanes, 3))
-        result = np.zeros((lanes, 4))
+    def _of_bodies(self, primitive: str, body: Body, lanes: int, columns: Sequence[Column]) -> Mask:
+        result = np.zeros(lanes, dtype=np.bool_)
         for option, chosen, mine in self.drawn(lanes, columns):
-            result[chosen] = option.orientations(points[chosen], *mine)
+            part = body if len(body) == 1 else body.take(chosen)
+            result[chosen] = getattr(option, primitive)(part, len(chosen), *mine)
         return result
 
 
