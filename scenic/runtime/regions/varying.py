@@ -57,7 +57,7 @@ class VaryingRegion(Region):
         """What a primitive gives for points: rows of a width, by lane."""
         lanes = _lanes(points, *columns)
         points = np.broadcast_to(points, (lanes, 3))
-        result = np.zeros((lanes, *width), dtype=dtype)
+        result: Column = np.zeros((lanes, *width), dtype=dtype)
         for option, chosen, mine in self.drawn(lanes, columns):
             result[chosen] = getattr(option, primitive)(points[chosen], *mine)
         return result
