@@ -17,6 +17,7 @@ from scenic.cli import workers
 from scenic.cli.options import program_options, seconds, sobol_option
 from scenic.cli.output import CLEAN, FINDINGS, show_diagnostics
 from scenic.cli.sample import NOT_ALL, _ended_by_signals, _progress
+from scenic.cli.sinks import check_page
 from scenic.formats.files import OutputError
 from scenic.language.diagnostics import Diagnostic
 
@@ -361,13 +362,13 @@ def simulate(
     Exit codes: 0 success, 1 the program has errors, 2 wrong usage, 3 some simulations were rejected (the others are
     there), 130 interrupted.
     """
-    from scenic.formats.files import check_writable, make_folder, write
+    from scenic.formats.files import make_folder, write
 
     # What a library of a simulator does may end the process without a word.
     if not faulthandler.is_enabled() and sys.stderr is sys.__stderr__:
         faulthandler.enable()
     if view is not None:
-        check_writable(view)
+        check_page(view)
     if form == "parquet":
         from scenic.formats.trajectory_tables import parquet_support
 

@@ -33,6 +33,9 @@ _OTHER_FORMATS = {
 _SOLID = frozenset({".glb", ".obj"})
 """Endings of 3D files."""
 
+_PAGES = frozenset({".html", ".htm", ""})
+"""Endings of pages."""
+
 
 class OutputChoiceError(Located):
     """An output that scenes are not written as."""
@@ -65,9 +68,20 @@ def scene_file(path: Path, count: int, first: int = 0) -> Sink:
     return (_obj_files if path.suffix.lower() == ".obj" else _glb_files)(path, count)
 
 
-def page(path: Path, title: str) -> Sink:
-    """One HTML page that shows the scenes; raises ``OutputError`` at once if it cannot be written."""
+def check_page(path: Path) -> None:
+    """Raises ``OutputError`` if a page cannot be written there, ``OutputChoiceError`` if the name tells of another format."""
     check_writable(path)
+    suffix = path.suffix.lower()
+    if suffix not in _PAGES:
+        raise OutputChoiceError(
+            f"--view makes a page, no '{suffix}' file",
+            help="give it a name that ends in .html",
+        )
+
+
+def page(path: Path, title: str) -> Sink:
+    """One HTML page that shows the scenes; raises as `check_page` at once."""
+    check_page(path)
     return _page(path, title)
 
 

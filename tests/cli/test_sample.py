@@ -15,6 +15,7 @@ from hypothesis import strategies as st
 
 from scenic.cli.options import parameter_value
 from scenic.cli.sample import sample
+from scenic.cli.sinks import OutputChoiceError
 from scenic.formats.files import OutputError
 from scenic.language.errors import Located
 from scenic.language.spans import Span
@@ -241,6 +242,15 @@ def test_other_formats_are_refused(stub: Stub, tmp_path: Path, name: str, help: 
     assert result.exception.code == "SC604"
     assert help in (result.exception.help or "")
     assert stub.options == {}
+
+
+@pytest.mark.parametrize("name", ["a.png", "a.PNG", "a.jsonl", "a.glb"])
+def test_a_page_is_no_other_format(stub: Stub, tmp_path: Path, name: str) -> None:
+    result = run("--view", tmp_path / name)
+    assert isinstance(result.exception, OutputChoiceError)
+    assert "ends in .html" in (result.exception.help or "")
+    assert stub.options == {}
+    assert os.listdir(tmp_path) == []
 
 
 def test_scenes_not_found_are_reported_and_the_others_written(stub: Stub, tmp_path: Path) -> None:
