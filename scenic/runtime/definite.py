@@ -11,6 +11,7 @@ from scenic.graph.operations import TABLE
 from scenic.language.errors import ScenicTypeError
 from scenic.runtime.context import here
 from scenic.runtime.describing import describe
+from scenic.runtime.lazy import defer, is_lazy
 from scenic.runtime.methods import Operand, OrientationMethods, VectorMethods
 from scenic.runtime.randoms import is_random
 from scenic.runtime.spelling import plain_number
@@ -38,6 +39,8 @@ class Vector(VectorMethods):
         try:
             return cls.of((float(x), float(y), float(z)))
         except (TypeError, ValueError):
+            if is_lazy((x, y, z)):
+                return defer(cls, x, y, z)
             raise ScenicTypeError(
                 f"`Vector` needs three numbers, not {describe((x, y, z))}",
                 span=here(),
@@ -100,7 +103,7 @@ class Vector(VectorMethods):
     def __eq__(self, other: object) -> bool:
         if isinstance(other, Vector):
             return self._row == other._row
-        if isinstance(other, tuple | list) and not is_random(other):
+        if isinstance(other, tuple | list):
             return len(other) in (2, 3) and self._row == tuple(other) + (0,) * (3 - len(other))
         return NotImplemented
 
