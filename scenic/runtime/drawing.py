@@ -1,14 +1,15 @@
 """One sample of a random value by itself, drawn now: for scripts that look at a law without a scenario."""
 
 import random
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from scenic.graph.batch import Batch
 from scenic.graph.bounding import overall
-from scenic.graph.draws import Counter
-from scenic.graph.node import Graph
+from scenic.graph.draws import Counter, Words
+from scenic.graph.node import Graph, Node
 from scenic.graph.operation import FAULT
 from scenic.graph.schedule import Scheduler
 from scenic.language.errors import RejectionException
@@ -26,15 +27,25 @@ def sample_of(value: Any) -> Any:
     """
     nodes = dependencies([value])
     keys = np.array([random.getrandbits(64)], dtype=np.uint64)
-    batch = Batch(Scheduler(Graph(nodes)), Counter(keys), CODEC, rejections=(RejectionException,))
-    batch.need(nodes)
-    for node in nodes:
-        status = batch.status(node)
-        if status is not None:
-            if status[0] == FAULT and batch.errors:
-                raise next(iter(batch.errors.values()))
-            raise RejectionException(f"this sample of {value!r} is rejected")
+    batch = _drawn(nodes, keys)
+    statuses = [batch.status(node) for node in nodes]
+    if any(status is not None for status in statuses):
+        # Once more, singly: that tells what failed.
+        batch = _drawn(nodes, keys, grouped=False)
+        for node in nodes:
+            status = batch.status(node)
+            if status is not None:
+                if status[0] == FAULT and node in batch.errors:
+                    raise batch.errors[node]
+                raise RejectionException(f"this sample of {value!r} is rejected")
     return Sample(batch, 0).value(value)
+
+
+def _drawn(nodes: Sequence[Node], keys: Words, *, grouped: bool = True) -> Batch:
+    scheduler = Scheduler(Graph(nodes), grouped=grouped)
+    batch = Batch(scheduler, Counter(keys), CODEC, rejections=(RejectionException,))
+    batch.need(nodes)
+    return batch
 
 
 def support_of(value: Any) -> tuple[float | None, float | None]:
