@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from scenic.graph import quaternions
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import Call, Operation, always
-from scenic.language.errors import RejectionException, ScenicTypeError
+from scenic.language.errors import RejectionException, ScenicTypeError, ScenicValueError
 from scenic.runtime.context import here
 from scenic.runtime.geometry.cell_index import CellIndex
 from scenic.runtime.lazy import Lazy, defer, reads_of, resolve
@@ -393,6 +393,9 @@ def relative_to(value: Any, frame: Any) -> Lazy:
 Law = tuple[int | None, int, float]
 """Number of steps if fixed, least number, and longest step."""
 
+_MOST_STEPS: Final = 1_000_000
+"""Steps of a way, at most: beyond, it is a mistake, and would take for ever."""
+
 
 def _oriented(function: Callable[[Any], Any], point: Any) -> Any:
     return to_orientation(function(point), "the value of a field")
@@ -400,7 +403,15 @@ def _oriented(function: Callable[[Any], Any], point: Any) -> Any:
 
 def _steps(distance: float, law: Law) -> int:
     steps, least, size = law
-    return steps if steps is not None else max(least, 1, math.ceil(distance / size))
+    if steps is not None:
+        return steps
+    if not -math.inf < distance <= _MOST_STEPS * size:
+        raise ScenicValueError(
+            f"a field cannot be followed for {distance:g} m in steps of {size:g} m",
+            span=here(),
+            help="give the field a larger `defaultStepSize`, or follow it less far",
+        )
+    return max(least, 1, math.ceil(distance / size))
 
 
 def _followed(function: Callable[[Any], Any], point: Any, distance: float, law: Law) -> Any:
@@ -463,7 +474,11 @@ def _followed_together(lanes: int, calls: Calls, rows: Rows) -> Column:
     for lane in calls.present:
         _, point, distance, law = rows[lane]
         place[lane] = tuple(point)
-        counts[lane] = _steps(distance, law)
+        try:
+            counts[lane] = _steps(distance, law)
+        except ScenicValueError as endless:
+            calls.mark(lane, endless)
+            continue
         stride[lane, 1] = distance / counts[lane]
     for step in range(int(counts.max(initial=0))):
         moving = np.flatnonzero((step < counts) & ~calls.failed & ~calls.rejected)
