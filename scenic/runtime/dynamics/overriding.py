@@ -59,8 +59,7 @@ class Overrides:
                         f"property {name!r} is dynamic and cannot be overridden: the simulator decides it",
                         span=specifier.span,
                     )
-            function = specifier.modify if step.modifies and specifier.modify else specifier.evaluate
-            offered = function(target)
+            offered = specifier.evaluate(target)
             values.update((name, normalised(name, settle(offered[name], target))) for name in step.names)
         known.pop(MEMO, None)
         for name, value in values.items():

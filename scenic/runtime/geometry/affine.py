@@ -53,14 +53,6 @@ class AffineMaps:
             np.concatenate([self.offset, others.offset], axis=1),
         )
 
-    def of_entry(self, entry: int, points: Floats) -> Floats:
-        """Points ``(k, 3)`` under the map of one entry."""
-        x, y, z = points[:, 0], points[:, 1], points[:, 2]
-        result = np.empty((len(points), 3))
-        for i, row in enumerate(self.matrix[:, :, entry]):
-            result[:, i] = row[0] * x + row[1] * y + row[2] * z + self.offset[i, entry]
-        return result
-
 
 def taken(columns: Columns, chosen: Indices) -> Columns:
     """These elements of each column."""

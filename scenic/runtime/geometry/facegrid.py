@@ -96,13 +96,6 @@ class FaceGrid:
         number = (cell[:, 0] * self.resolution + cell[:, 1]) * self.resolution + cell[:, 2]
         return self._faces_in(chosen[owner], number)
 
-    def sharing_cells(self, triangles: Floats) -> Indices:
-        """The faces that touch a cell which one of some triangles ``(t, 3, 3)`` in the unit frame touches."""
-        touched = np.zeros(self.resolution**3, dtype=np.bool_)
-        for _, cell in touched_cells(triangles, self.resolution):
-            touched[cell] = True
-        return distinct(self.faces[np.repeat(touched, np.diff(self.starts))])
-
     def _faces_in(self, query: Indices, cell: Indices) -> tuple[Indices, Indices]:
         counts = self.starts[cell + 1] - self.starts[cell]
         filled = np.flatnonzero(counts)
