@@ -11,7 +11,7 @@ from types import FrameType
 from typing import Any
 
 from scenic.runtime.context import current
-from scenic.runtime.ownership import CONTAINERS, SAMPLE, functions_of, leads_back
+from scenic.runtime.ownership import CONTAINERS, SAMPLE, functions_of, leads_back, own_functions
 from scenic.runtime.randoms import Random
 
 __all__ = ["bind", "member", "members", "sample_of"]
@@ -30,7 +30,7 @@ class _Member:
 
     def _of(self, instance: Any, owner: type | None = None) -> Any:
         """The member in the sample of an instance, or of the innermost code that runs in one."""
-        sample = None if instance is None else instance.__dict__.get("_sample")
+        sample = getattr(instance, "__dict__", {}).get("_sample")
         if sample is None:
             sample = sample_of(sys._getframe(2))
         if sample is None:
@@ -73,8 +73,15 @@ def sample_of(frame: FrameType | None) -> Any:
 def bind(cls: type, root: type) -> None:
     """Put the members of a class that read a program's names, or may hold what samples replace, into descriptors.
 
-    These are random values and instances of ``root``, the class of all objects.
+    These are random values and instances of ``root``, the class of all objects. So are those of the program's plain classes
+    that it derives from, which like it are the same in all samples.
     """
+    for each in (cls, *cls.__mro__[1:]):
+        if each is cls or (not issubclass(each, root) and any(own_functions(each))):
+            _bind(each, root)
+
+
+def _bind(cls: type, root: type) -> None:
     for name, member in list(vars(cls).items()):
         if any(map(leads_back, functions_of(member))):
             if name != "__getattribute__":

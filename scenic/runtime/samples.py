@@ -125,6 +125,10 @@ class Globals:
             known = self._owned[cls] = is_own(cls, Point)
         return known
 
+    def copies(self, cls: type) -> bool:
+        """Whether plain instances of a class are others in each sample; the class may be one, as a base of objects is."""
+        return self.owns(cls) or bool(self.members(cls))
+
     def _is_plain(self, value: Any) -> bool:
         if isinstance(value, Random | Point):  # instances have a copy in each sample
             return False
@@ -286,7 +290,7 @@ def _parts(value: Any, names: Globals) -> Iterator[Any]:
         if names.owns(value):
             yield from (function for base in value.__mro__ for function in own_functions(base))
             yield from namespace(value).values()
-        elif issubclass(value, Point):
+        else:
             yield from names.members(value)
     elif isinstance(value, DECORATED):
         yield from functions_of(value)
@@ -298,7 +302,7 @@ def _parts(value: Any, names: Globals) -> Iterator[Any]:
         yield from _contents(value).values()
     elif hasattr(value, "sampled") and hasattr(value, "random_parts"):
         yield from value.random_parts()
-    elif names.owns(type(value)):
+    elif names.copies(type(value)):
         yield type(value)
         yield from getattr(value, "__dict__", {}).values()
         yield from (getattr(value, name, None) for name in slots(type(value)))
@@ -433,7 +437,7 @@ class Sample:
             return self._class(value) if self._names.owns(value) and not self._stays(value) else value
         if hasattr(value, "sampled") and hasattr(value, "random_parts"):
             return value.sampled(self)
-        if self._names.owns(cls):
+        if self._names.copies(cls):
             return self._object(value)
         return value
 
