@@ -88,9 +88,8 @@ def _mutate(instance: Point, scale: Any) -> bool:
 
 def _by_python(instance: Point, mutators: list[Any]) -> Mapping[str, Any]:
     """The properties after mutators of the program: one call on each sample."""
-    names = [
-        name for name, entry in instance.scenic_properties.items() if not (entry.dynamic and entry.final)
-    ]
+    derived = {name for name, entry in instance.scenic_properties.items() if entry.dynamic and entry.final}
+    names = [name for name in instance.properties if name not in derived]
     before = type(instance)._make(dict(instance.__dict__))
     result = call_later(_applied, before, tuple(mutators), tuple(names))
     changes: dict[str, Any] = {}

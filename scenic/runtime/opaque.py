@@ -85,11 +85,13 @@ def see_mutated(context: Context) -> None:
     """Let calls that were made before see instances as they come out in the end, mutated.
 
     What a call sees of an instance is looked up when it is made on a sample; so the nodes of what has been
-    mutated since have to be among its operands. A call that decides how an instance is mutated sees it as it was.
+    mutated since have to be among its operands; but not what the call itself decides.
     """
     for node, instances in context.calls:
         new = [item for item in dependencies(instances) if item not in node.operands]
-        if new and node not in Graph(new).index:
+        if new and node in Graph(new).index:
+            new = [item for item in new if node not in Graph([item]).index]
+        if new:
             operands = (*node.operands, *new)
             node.complete(operands, replace(node.payload, operands=operands))
 
@@ -294,7 +296,12 @@ class _Lanes:
 
     def read(self, lane: int, node: Node) -> Any:
         """The value of a node in one lane."""
-        found = self.values[node]
+        found = self.values.get(node)
+        if found is None:
+            raise InvalidScenarioError(
+                "a call that decides how an object is mutated reads what comes out of that",
+                help="give the call the values that it needs, instead of the object",
+            )
         return found[lane if len(found) > 1 else 0]
 
     def tuples(self, nodes: tuple[Node, ...]) -> list[tuple[Any, ...]]:
