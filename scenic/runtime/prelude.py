@@ -12,6 +12,8 @@ import builtins
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
+from itertools import accumulate
 from pathlib import Path
 from types import CodeType, MappingProxyType, ModuleType
 from typing import Any, Protocol
@@ -61,6 +63,7 @@ from scenic.runtime.values import (
     operate,
     to_orientation,
 )
+from scenic.runtime.visibility import sees_in_plane
 
 COMPARISONS: Mapping[str, str] = MappingProxyType(
     {
@@ -230,8 +233,9 @@ class Prelude(Dynamics):
             instance.__dict__["behavior"] = per_option(instance.behavior, behavior_of)
         sightings = [specifier.sighting for specifier in specifiers if specifier.sighting is not None]
         if self._run is not None:
+            look = sees_in_plane if self._context.mode_2d else sees
             for sighting in sightings:
-                if bool(sees(sighting.observer, instance, self._context.present)) != sighting.wanted:
+                if bool(look(sighting.observer, instance, self._context.present)) != sighting.wanted:
                     raise RejectionException(f"whether the {cls.__name__} is seen")
             self._run.create(instance)
             return instance
@@ -465,6 +469,7 @@ class Loader:
         self._loaded: dict[Path, ModuleType] = {}
         self._states: dict[Path, Module] = {}
         self._packages: dict[str, ModuleType] = {}
+        self._python: dict[str, ModuleType] = {}
 
     @property
     def loaded(self) -> Iterable[ModuleType]:
@@ -533,7 +538,13 @@ class Loader:
             self._packages[name] = ModuleType(name)
             # So it is known as one of the program's, whose values are sampled.
             vars(self._packages[name])[PRELUDE] = importer.scope[PRELUDE]
+            self._join(name)
         return self._present(self._packages[name])
+
+    def _join(self, name: str) -> None:
+        """Let a package that leads to modules of Scenic lead to what Python finds in it, too."""
+        if name in self._packages and name in self._python:
+            vars(self._packages[name])["__getattr__"] = partial(getattr, self._python[name])
 
     @staticmethod
     def _present(module: ModuleType) -> ModuleType:
@@ -562,7 +573,13 @@ class Loader:
                     name, globals, locals, others, 0 if importer.package or not level else level
                 )
             if not parts:
-                return found
+                if fromlist:
+                    return found
+                for package in accumulate(name.split("."), "{}.{}".format):
+                    self._python[package] = sys.modules[package]
+                    self._join(package)
+                top = found.__name__
+                return self._present(self._packages[top]) if top in self._packages else found
         holder = ModuleType(name)
         if others:
             vars(holder).update(vars(found))
