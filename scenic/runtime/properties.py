@@ -149,6 +149,7 @@ _VECTORS = frozenset(
         "velocity",
         "angularVelocity",
         "cameraOffset",
+        "visionSensorOffset",
         "positionStdDev",
         "orientationStdDev",
         "baseOffset",
@@ -238,9 +239,13 @@ def _shape(name: str, value: Any) -> Any:
 
 def _truth(name: str, value: Any) -> Any:
     """Python's own rule holds; of what is random, numbers have a truth of their own."""
-    if isinstance(value, Random) and not value.node.kind.is_number:
+    if not isinstance(value, Random):
+        return bool(value)
+    if value.node.kind is Kind.BOOLEAN:
+        return value
+    if not value.node.kind.is_number:
         raise wrong_type("a truth value", value, f"property {name!r}")
-    return value if isinstance(value, Random) else bool(value)
+    return operate("truth", value)
 
 
 def _per_drawn(normalise: Callable[[str, Any], Any], kind: Kind = Kind.OTHER) -> Callable[[str, Any], Any]:
