@@ -64,6 +64,7 @@ from scenic.runtime.values import (
     as_value,
     describe,
     is_open,
+    is_random,
     options_of,
     per_option,
 )
@@ -151,6 +152,11 @@ def field_of_union(members: Sequence[Region]) -> PiecewiseVectorField | None:
     """The preferred orientation of a union of regions of the plane: that of the first member that holds the point."""
     oriented = any(member.has_orientation for member in members)
     return PiecewiseVectorField("union", members) if oriented else None
+
+
+def _field_of_drawn(members: Sequence[tuple[Any, float | None, Any]]) -> PiecewiseVectorField | None:
+    """The same for the geometries, heights and fields of regions whose fields are drawn."""
+    return field_of_union([region_of(*member) for member in members])
 
 
 def own_field(region: Region) -> RegionField:
@@ -305,7 +311,11 @@ def union(first: Any, second: Any) -> Region:
         flat_a, flat_b = _flat(a), _flat(b)
         areal = not (isinstance(a, LineRegion) or isinstance(b, LineRegion))
         if areal and flat_a is not None and flat_b is not None and flat_a[1] == flat_b[1]:
-            return region_of(flat_a[0].union(flat_b[0]), flat_a[1], field_of_union([a, b]))
+            if is_random((a.orientation, b.orientation)):
+                field = Random.later(_field_of_drawn, [(*flat_a, a.orientation), (*flat_b, b.orientation)])
+            else:
+                field = field_of_union([a, b])
+            return region_of(flat_a[0].union(flat_b[0]), flat_a[1], field)
         solid_a, solid_b = _solid(a), _solid(b)
         if solid_a is not None and solid_b is not None:
             return _volume(booleans.union([solid_a, solid_b]))

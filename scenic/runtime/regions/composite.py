@@ -73,11 +73,12 @@ class Composite(Region):
 
     def sampled(self, sample: Any) -> Region:
         """The region of one sample, in closed form where it has one."""
-        if not self.is_random:
-            return self
         members = [member.sampled(sample) for member in self.members]
-        if self._field is not None:
-            return type(self)(*members, orientation=self._field, name=self.name)
+        field = sample.value(self._field)
+        if field is self._field and all(new is old for new, old in zip(members, self.members, strict=True)):
+            return self
+        if field is not None:
+            return type(self)(*members, orientation=field, name=self.name)
         return self.combined(members)
 
     def in_lane(self, lane: int, columns: Sequence[Column]) -> Region:
