@@ -1,6 +1,7 @@
 """Regions made of equal cubes: those of a grid that are filled (the voxel region of section 9.2 of the specification)."""
 
 import itertools
+import math
 from collections.abc import Iterator
 from typing import Any, Self
 
@@ -257,12 +258,14 @@ def voxelized(region: Region, solid: Mesh, pitch: float) -> VoxelRegion:
     if not pitch > 0:
         raise ScenicValueError(f"`voxelized` needs a positive edge, not {pitch!r}", span=here())
     low, high = (np.asarray(corner) for corner in solid.bounds)
-    first = np.floor(low / pitch + 0.5).astype(np.int64)
-    shape = np.floor(high / pitch + 0.5).astype(np.int64) - first + 1
-    if shape.astype(float).prod() > _MOST_CELLS:
+    first, last = (np.floor(corner / pitch + 0.5) for corner in (low, high))
+    numbers = last - first + 1
+    if math.prod(numbers.tolist()) > _MOST_CELLS:  # of floats: integers might overflow
+        count = ", ".join(f"{number:.16g}" for number in numbers)
         raise ScenicValueError(
-            f"cells of {pitch:g} m would be {shape.tolist()} in number", span=here(), help="use larger cells"
+            f"cells of {pitch:g} m would be [{count}] in number", span=here(), help="use larger cells"
         )
+    shape = numbers.astype(np.int64)
     corner = (first - 0.5) * pitch
     filled = np.zeros(shape, dtype=np.bool_)
     middles = corner + (np.argwhere(~filled) + 0.5) * pitch
