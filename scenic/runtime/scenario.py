@@ -240,7 +240,9 @@ class Scenario:
         else:
             return
         problem = self._sampling_error(failure)
-        raise problem from (None if problem is failure.__cause__ else failure.__cause__)
+        if problem is failure.__cause__:
+            raise problem  # which may have a cause of its own
+        raise problem from failure.__cause__
 
     def sample(
         self,
