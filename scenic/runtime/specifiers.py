@@ -143,7 +143,9 @@ def on(_ego: Ego, target: Any) -> Specifier:
     surface = target.onSurface if is_kind(target, Object) else target
     reads = ("baseOffset", "contactTolerance", "onDirection")
     priorities = {"position": 1}
-    region = DrawnRegion.made(_surface, surface) if is_open(surface) else as_region(surface)
+    region = as_region(surface)
+    if region is None and (is_open(surface) or _may_be_surface(surface)):
+        region = DrawnRegion.made(_surface, surface)
     if region is not None:
         if region.has_orientation:
             priorities["parentOrientation"] = 2
@@ -174,6 +176,11 @@ def on(_ego: Ego, target: Any) -> Specifier:
         return rest(instance, *region.project(instance.position, instance.onDirection))
 
     return _specifier("on", priorities, evaluate, *reads, modifiable=frozenset({"position"}), modify=modify)
+
+
+def _may_be_surface(value: Any) -> bool:
+    """Whether some option of a choice is a region or an object."""
+    return any(isinstance(option, Region | Object) or _may_be_surface(option) for option in options_of(value))
 
 
 def _surface(target: Any) -> Region:
