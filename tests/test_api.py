@@ -324,3 +324,55 @@ def test_deep_check(folder: Any) -> None:
     folder.write(main="x = 1 / 0\n")
     (found,) = deep_check(folder.path / "main.scenic")
     assert (found.code, found.span is not None and found.span.line) == ("SC400", 1)
+
+
+@pytest.mark.parametrize(
+    ("parameters", "runs"),
+    [
+        ("", True),
+        ("x=3", True),
+        ("*xs", True),
+        ("**xs", True),
+        ("x=3, *xs, y=4, **more", True),
+        ("x", False),
+        ("*, x", False),
+    ],
+)
+def test_the_only_scenario_runs_unless_it_needs_arguments(parameters: str, runs: bool) -> None:
+    """Those that others have defined do not count."""
+    text = (
+        "param told = 1\n"
+        f"scenario Only({parameters}):\n    setup:\n        ego = new Object\n        param told = 2\n"
+    )
+    made = scenic.scenarioFromString(text)
+    assert (made.params["told"], len(made.objects)) == ((2, 1) if runs else (1, 0))
+
+
+def test_main_runs_if_nobody_chooses() -> None:
+    text = "".join(
+        f"scenario {name}(x={number}):\n    setup:\n        ego = new Object with width x\n"
+        for number, name in enumerate(("First", "Main", "Last"), start=1)
+    )
+    for chosen, width in ((None, 2), ("First", 1), ("Main", 2), ("Last", 3)):
+        assert scenic.scenarioFromString(text, scenario=chosen).objects[0].width == width
+
+
+def test_objects_have_the_first_name_that_holds_them() -> None:
+    text = (
+        "a = new Object\nb = a\nrow = [new Object at (5, 0), a, new Object at (9, 0)]\npair = (row[2], row[0])\n"
+        "ego = new Object at (0, 9)\nnew Object at (0, 20)\n{}"
+    )
+    for more, name in (("", "ego"), ("car = ego\n", "car")):
+        (scene,) = scenic.scenarioFromString(text.format(more)).sample(1, seed=0)
+        assert [scene.names.get(item) for item in scene.objects] == [name, "a", "row[0]", "row[2]", None]
+
+
+@pytest.mark.parametrize("used", ["param speed = 3", "y = globalParameters.speed"])
+def test_parameters_that_a_program_sets_or_reads_may_be_given(tmp_path: Path, used: str) -> None:
+    file = tmp_path / "program.scenic"
+    file.write_text(f"ego = new Object\n{used}\n")
+    assert scenic.load(file, params={"speed": 5}).params["speed"] == 5
+    with pytest.raises(InvalidScenarioError, match="no parameter 'sped'"):
+        scenic.load(file, params={"speed": 5, "sped": 5})
+    found = scenic.scenarioFromFile(file, {"speed": 5, "sped": 6}).params
+    assert (found["speed"], found["sped"]) == (5, 6)

@@ -34,6 +34,7 @@ import scenic
 from scenic.established import MODULES, lookup
 from scenic.language.names import NAMES
 from scenic.runtime.values import Vector
+from scenic.simulators.dummy import DummySimulator
 from tests.runtime.programs import params
 
 
@@ -281,6 +282,33 @@ def test_what_scripts_ask_scenarios() -> None:
     assert program.containerOfObject(program.objects[0]) is program.workspace.region
     assert program.containerOfObject(program.objects[1]) is everywhere
     assert program.userRequirements == program.requirements
+    assert program.requirements[0].label == "requirement on line 4"
+    program.resetExternalSampler()
+
+
+def test_what_scripts_pass_without_effect_is_taken(monkeypatch: pytest.MonkeyPatch) -> None:
+    """By place and by name, as they were written for the established implementation."""
+    monkeypatch.setattr("webbrowser.open", lambda _: True)
+    program = scenic.scenarioFromString("ego = new Object at (Range(0, 1), 0)")
+    scene, tried = program.generate(100, 2, "feedback", seed=3)
+    assert tried == program.generate(maxIterations=100, verbosity=2, feedback="feedback", seed=3)[1] == 1
+    assert program.generate(100, 0, None)[1] == 1
+    assert len(program.generateBatch(2, 100, 2, "feedback")[0]) == 2
+    assert len(program.generateBatch(numScenes=2, verbosity=2, feedback=None)[0]) == 2
+    data = program.sceneToBytes(scene, allowPickle=True)
+    assert data == program.sceneToBytes(scene)
+    again = program.sceneFromBytes(data, True, True)
+    assert again.egoObject.position == scene.egoObject.position
+    simulation = DummySimulator().simulate(scene, maxSteps=1)
+    data = program.simulationToBytes(simulation, allowPickle=True)
+    assert program.simulationFromBytes(data, DummySimulator(), allowPickle=True, maxSteps=1) is not None
+    pages = [
+        scene.show(False),
+        scene.show(axes=True),
+        scene.show3D(axes=False),
+        scene.show2D(1.5, block=False),
+    ]
+    assert all(page.exists() for page in pages)
 
 
 def test_what_scripts_ask_regions() -> None:
@@ -591,6 +619,29 @@ def test_laws_can_be_asked_for() -> None:
 
     assert isinstance(Three(), Three)
     assert not isinstance(made["Range"], Three)
+
+
+@pytest.mark.parametrize(
+    ("law", "parameters"),
+    [
+        ("Range", {"low": 1, "high": 2}),
+        ("DiscreteRange", {"low": 1, "high": 3}),
+        ("Normal", {"mean": 1, "stdDev": 2}),
+        ("TruncatedNormal", {"mean": 1, "stdDev": 2, "low": 0, "high": 3}),
+    ],
+)
+def test_laws_tell_their_parameters(law: str, parameters: dict[str, float]) -> None:
+    from scenic.core import distributions as laws
+
+    names = ("low", "high") if "Range" in law else ("mean", "stdDev")
+    made = getattr(laws, law)(**parameters)
+    assert [getattr(made, name) for name in names] == [parameters[name] for name in names]
+    for name in {"low", "high", "mean", "stdDev"}.difference(names):
+        with pytest.raises(AttributeError, match=name):
+            getattr(made, name)
+    text = f"m = DiscreteRange(1, 2)\nx = {law}({', '.join(['m', *map(str, list(parameters.values())[1:])])})\nparam found = x.{names[0]}, m = m\n"
+    for found in scenic.scenarioFromString(text).sample(4, seed=1):
+        assert found.params["found"] == found.params["m"]
 
 
 def test_unions_of_polygons_close_gaps() -> None:

@@ -135,12 +135,38 @@ def test_what_has_no_place_comes_last():
         assert told(found) == ("SC700", None, [(7, "while this is required")])
 
 
+def test_a_contradiction_of_which_no_place_is_known_is_told_without():
+    x = uniform(0, 10)
+    (found,) = report((make("greater", x, 6), None), (make("less", x, 3), None))
+    assert told(found) == ("SC700", None, [])
+
+
 def test_what_intervals_do_not_need_is_not_blamed():
     u, v = uniform(0, 3), uniform(0, 1)
     needed = [(make("greater", make("sin", u), 0.9), line(3)), (make("less", u, 0.3), line(5))]
     for place in (2, 4, 6):
         (found,) = report((make("less", v, 0.5), line(place)), *needed)
         assert told(found) == ("SC700", 5, [(3, "while this is required")])
+
+
+@pytest.mark.parametrize("count", [1, 2, 3])
+def test_of_several_that_intervals_find_impossible_one_alone_is_told(count):
+    """Each by itself: none of the others is a reason."""
+    never = [
+        (make("greater", make("sin", uniform(0.0, 0.1)), 0.5), line(2 + 2 * place)) for place in range(count)
+    ]
+    fine = (make("less", make("sin", uniform(0.0, 3.0)), 0.5), line(3))
+    for items in (never, [fine, *never], [*never, fine]):
+        (found,) = report(*items)
+        assert told(found) == ("SC700", 2 * count, [])
+        assert found.message == "this requirement can never hold"
+
+
+def test_several_that_a_range_forbids_together_are_told_as_several():
+    x, y = uniform(0, 10, span=line(1)), uniform(0, 100, span=line(2))
+    (found,) = report((make("greater", make("add", x, y), 15), line(3)), (make("less", y, 3), line(4)))
+    assert found.message == "this requirement cannot hold together with the others marked"
+    assert {label.text for label in found.labels} >= {"while this is required", "this range is at most 10"}
 
 
 def test_what_is_said_of_one_two_and_three_conditions_that_cannot_hold_together():

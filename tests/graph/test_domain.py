@@ -1,5 +1,6 @@
 """The part of the cube to sample from."""
 
+import itertools
 import json
 
 import numpy as np
@@ -128,6 +129,48 @@ def test_a_product_of_unions():
     for axis in range(4):
         each = PRODUCT.place_each(rows[:, 2 + axis], np.full(8000, axis), chosen)
         assert each.tobytes() == points[:, axis].tobytes()
+
+
+UPPER_ENDS = union([[0.0, 0.25], [0.0, 0.5], [0.5, 1.0]], [[0.25, 1.0], [0.0, 1.0], [0.5, 1.0]])
+"""Boxes that differ in where the second axis ends alone, and share the third."""
+
+
+@pytest.mark.parametrize("domain", [TWO, PRODUCT, UPPER_ENDS, union([[0.5, 1.0], [0.0, 1.0], [0.25, 0.5]])])
+def test_some_axes_in_any_order_are_placed_as_all_are(domain: Domain) -> None:
+    """What is drawn together, or later, or one of several axes in each lane: each number depends on its axis and lane alone."""
+    rng = np.random.default_rng(7)
+    count = domain.dimension
+    numbers, chosen = rng.random((count, 40)), domain.choose(rng.random((len(domain.parts), 40)))
+    together = domain.place(numbers, np.arange(count), chosen)
+    assert domain.contains(together.T).all()
+    for size in range(1, count + 1):
+        for axes in itertools.permutations(range(count), size):
+            some = np.array(axes)
+            assert domain.place(numbers[some], some, chosen).tobytes() == together[some].tobytes()
+    each, lanes = rng.integers(0, count, 40), np.arange(40)
+    found = domain.place_each(numbers[each, lanes], each, chosen)
+    assert found.tobytes() == together[each, lanes].tobytes()
+
+
+def test_placing_leaves_the_numbers_as_they_were() -> None:
+    for domain in (TWO, PRODUCT):
+        numbers = np.random.default_rng(8).random((domain.dimension, 5))
+        before, chosen = numbers.copy(), np.zeros((len(domain.parts), 5), dtype=np.intp)
+        domain.place(numbers, np.arange(domain.dimension), chosen)
+        domain.place_each(numbers[0], np.zeros(5, dtype=np.intp), chosen)
+        assert (numbers == before).all()
+
+
+def test_a_product_whose_first_factor_is_whole_is_not_whole() -> None:
+    """It has the volume of the others, and to data it comes back."""
+    domain = Domain(np.zeros((1, 2)), np.ones((1, 2)), (TWO,))
+    assert not domain.is_whole
+    assert domain.volume == TWO.volume
+    assert Domain(np.zeros((1, 2)), np.ones((1, 2)), (Domain.whole(2),)).is_whole
+    again = Domain.from_data(domain.to_data())
+    assert again.volume == TWO.volume
+    outside = np.array([[0.7, 0.5], [0.7, 0.8]])
+    assert domain.contains(outside).tolist() == again.contains(outside).tolist() == [False, True]
 
 
 def test_two_factors_of_one_axis_are_refused():

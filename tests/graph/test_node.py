@@ -72,6 +72,21 @@ def test_bounds_of_the_whole_cube():
     assert bounding.overall(constant(Triple((1.0, 2.0, 3.0)))).lower.tolist() == [[1.0, 2.0, 3.0]]
 
 
+@pytest.mark.parametrize("length", [10, 700])
+def test_bounds_of_long_chains_are_looked_for_once(length):
+    """Below so many nodes, what is known of the furthest is their kind alone."""
+    x = uniform(0, 1)
+    total, every = make("modulo", x, 3), make("greater", x, 2)
+    for number in range(length):
+        total = make("add", total, uniform(0, 1) if number % 2 else 0.5)
+        every = make("and", make("greater", uniform(0, 1), 0.5), every)
+    for node in (total, every):
+        bounds = bounding.overall(node)
+        assert bounding.overall(node) is bounds
+    truth = bounding.overall(every)
+    assert (truth.lower[0], truth.upper[0]) == ((0, 0) if length == 10 else (0, 1))
+
+
 def test_bounds_of_a_node_that_is_completed_are_those_of_its_operands():
     """Also where somebody asked for them before."""
     node = Node(TABLE["negative"], (uniform(0, 1),), Kind.SCALAR)

@@ -159,3 +159,20 @@ def test_given_rows_are_kept_as_they_were() -> None:
     points = GivenPoints(rows)
     rows[:] = 0.75
     assert points.of_scenes(np.array([0, 1]), 2, lanes(1)).tolist() == [[0.25], [0.5]]
+
+
+def test_direction_numbers_are_made_once_for_all_smaller_questions(monkeypatch: pytest.MonkeyPatch) -> None:
+    """More rows and more axes are asked for by turns: what is known of either is not forgotten."""
+    made: list[int] = []
+
+    class Counted(qmc.Sobol):
+        def __init__(self, d: int, **options: object) -> None:
+            made.append(d)
+            super().__init__(d, **options)
+
+    monkeypatch.setattr(qmc, "Sobol", Counted)
+    sobol, few, many = Sobol(), np.arange(2), np.arange(60)
+    for _ in range(5):
+        for axes, first in ((few, 2), (few, 5000), (many, 3), (few, 5000), (few, 9000), (many, 9001)):
+            sobol.of_scenes(axes, len(axes), lanes(1, first=first))
+    assert len(made) == 4

@@ -11,7 +11,7 @@ from scenic.language.properties import CLASSES, attributes_of, properties_of
 from scenic.runtime import objects
 from scenic.runtime.values import Orientation, Vector
 from scenic.simulators.dummy import DummySimulator
-from tests.runtime.programs import draws, failure, params, place, scenario, thing
+from tests.runtime.programs import draws, failure, params, place, scenario, scene, thing
 
 
 @pytest.mark.parametrize("name", list(CLASSES))
@@ -158,6 +158,69 @@ def test_places_on_the_bounding_box() -> None:
     assert found.radius == pytest.approx(math.sqrt(14))
 
 
+@pytest.mark.parametrize("kind", ["OrientedPoint", "Object"])
+@pytest.mark.parametrize("drawn", ["0.3", "Range(0.3, 0.4)"])
+def test_points_of_a_thing_stand_in_its_frame(kind: str, drawn: str) -> None:
+    """Its orientation is that of their parent, in which they are not turned."""
+    text = f"new Object at (1, 2, 3), facing (0.4, {drawn}, -0.2)\n"
+    text += f"p = new {kind} at (-9, 5, 1), facing (1.1, {drawn}, 0.2)\nparam p = p, there = p.relativize((1, 2, 3))\n"
+    found = scene(text)
+    owner, there = found.params["p"], found.params["there"]
+    assert tuple(there.position) == tuple(owner.relativePosition((1, 2, 3)))
+    points = [
+        (owner, there),
+        *((thing, getattr(thing, side)) for thing in found.objects for side in objects.SIDES),
+    ]
+    for owner, point in points:
+        assert point.parentOrientation == point.orientation == owner.orientation
+        assert (point.yaw, point.pitch, point.roll) == (0, 0, 0)
+        assert point.heading == owner.heading
+
+
+@pytest.mark.parametrize(
+    ("value", "shown"),
+    [("'kim'", "kim"), ("None", "unnamed Car"), ("3", "unnamed Car"), ("[]", "unnamed Car")],
+)
+def test_objects_show_themselves_by_name_or_class(value: str, shown: str) -> None:
+    for text in ("class Car: pass\nego = new Car with name {}", "class Car:\n    name: {}\nego = new Car"):
+        ego = thing(text.format(value))
+        assert (str(ego), repr(ego), f"{ego}") == (shown, f"<{shown}>", shown)
+
+
+TYPES = {
+    # type of a property: other forms of a value, which are stored as these
+    "vector": (
+        Vector,
+        {"(1, 2)": Vector(1, 2, 0), "[1, 2, 3]": Vector(1, 2, 3), "(0.5 @ Range(2, 2))": Vector(0.5, 2, 0)},
+    ),
+    "scalar": (float, {"1": 1.0, "True": 1.0, "DiscreteRange(2, 2)": 2.0}),
+    "boolean": (bool, {"1": True, "0": False, "[]": False, "'no'": True, "Uniform([], ())": False}),
+    "orientation": (
+        Orientation,
+        {"0.5": Orientation.fromEuler(0.5, 0, 0), "(0.1, 0.2, 0.3)": Orientation.fromEuler(0.1, 0.2, 0.3)},
+    ),
+}
+AS_WRITTEN = {"viewRayDensity", "headingStdDev"}
+
+
+@pytest.mark.parametrize(
+    ("kind", "name", "type_"),
+    [
+        (kind, entry.name, entry.type)
+        for kind in CLASSES
+        for entry in properties_of(kind).values()
+        if entry.type in TYPES and not entry.final and entry.name not in AS_WRITTEN
+    ],
+)
+def test_values_are_stored_as_the_type_of_their_property(kind: str, name: str, type_: str) -> None:
+    wanted, forms = TYPES[type_]
+    for form, stored in forms.items():
+        value = getattr(
+            params(f"p = new {kind} with {name} {form}\nego = new Object at (0, -5)\nparam p = p")["p"], name
+        )
+        assert (type(value), value) == (wanted, stored), form
+
+
 def test_points_have_the_attributes_of_their_position() -> None:
     found = params(
         "p = new Point at (3, 4)\nparam x = p.x, n = p.norm(), d = p.distanceTo((3, 0)), a = p.angleTo((3, 9))"
@@ -173,10 +236,10 @@ def test_methods_of_sampled_instances_see_the_sample() -> None:
         "limit = Range(0, 1)\nclass Car:\n    tank: Range(0, 1)\n    def left_over(self): return self.tank - limit\n"
         "    def partner(self): return twin\ntwin = new Car at (5, 5)\nego = new Car\nparam limit = limit\n"
     )
-    for scene in program.sample(5, seed=0):
-        ego, twin = scene.objects[0], scene.objects[1]
-        assert ego.left_over() == ego.tank - scene.params["limit"]
-        assert twin.left_over() == twin.tank - scene.params["limit"]
+    for item in program.sample(5, seed=0):
+        ego, twin = item.objects[0], item.objects[1]
+        assert ego.left_over() == ego.tank - item.params["limit"]
+        assert twin.left_over() == twin.tank - item.params["limit"]
         assert ego.partner() is twin
 
 

@@ -51,3 +51,32 @@ def test_integers_beyond_all_of_the_machine_stay_what_they_are() -> None:
         for found, more, less, either, own in draws(text, n=3):
             assert (found, more, less, own) == (number, number + 1, -number, number)
             assert either in (number, 1)
+
+
+NUMPY_NUMBERS = [
+    *((name, 2.5) for name in ("float16", "float32", "float64")),
+    *((name, 3) for name in ("int8", "uint8", "int32", "uint64")),
+    ("bool_", True),
+]
+
+
+@pytest.mark.parametrize(("name", "value"), NUMPY_NUMBERS)
+def test_numbers_of_numpy_are_the_numbers_of_python_to_what_is_drawn(name: str, value: float) -> None:
+    """By type, too: a small float widens to Python's, an integer stays one and does not wrap around."""
+    program = (
+        "import numpy\nn = {}\ns, i = Uniform(3.0, 3.0), Uniform(300, 300)\n"
+        "x = Range(0, n)\nchosen = Uniform(n, n)\nv = Vector(s, n, 0)\n"
+        "param x = [x, x + n, DiscreteRange(0, n), s + n, n - s, i * n, i / n, i // n, i % n, 2 ** chosen, -chosen, abs(chosen),\n"
+        "    v.y, v * n, n * v, v / n, max(s, n), Uniform('a', 'a') * int(n), Uniform(n), Uniform((s, n), (n, n))[1] + 0,\n"
+        "    Orientation.fromEuler(s, n, n).pitch, (n @ s).x]\n"
+    )
+    found = params(program.format(f"numpy.{name}({value})"))["x"]
+    expected = params(program.format(value))["x"]
+    assert found == expected
+    assert [type(part) for part in found] == [type(part) for part in expected]
+
+
+def test_numbers_of_numpy_are_known_before_anything_is_drawn() -> None:
+    for number in ("numpy.float32(0.5)", "numpy.int16(1)", "numpy.bool_(True)"):
+        text = f"import numpy\nx = Range(0, {number})\nrequire x > 2\n"
+        assert "the requirements cannot hold together" in str(failure(text))

@@ -12,7 +12,7 @@ from scipy import stats
 from scenic.graph.domain import Domain
 from scenic.graph.kinds import Kind
 from scenic.graph.operation import FAULT, OK, REJECTED
-from scenic.language.errors import RejectionException
+from scenic.language.errors import RejectionException, SamplingError
 from scenic.runtime.sampling.checks import NodeCheck
 from scenic.runtime.sampling.engine import BATCH_BYTES, BODY_BYTES, DEFAULT_LANES, Engine
 from scenic.runtime.sampling.pending import Task
@@ -342,6 +342,21 @@ def test_time_is_a_limit_only_when_it_is_up() -> None:
     assert [(item.k, item.reason) for item in late] == [(0, "time"), (1, "time"), (2, "time")]
 
 
+def test_it_is_told_why_no_scene_was_found() -> None:
+    """By the limit that was met, and every requirement that no candidate meets."""
+    program = scenario(
+        "x = Range(0, 1)\ndef same(v): return v\nrequire same(x < 0) as low\nrequire same(x < 2) as fine\nrequire same(x > 1) as high\n"
+    )
+    culprits = "\nlow rejected every candidate\nhigh rejected every candidate\nof {} candidates:"
+    for options, head, looked in (
+        ({"max_attempts": 7}, "no scene was found within 7 candidates", 7),
+        ({"time_limit": -1}, "no scene was found in the time given (0 candidates)", 1),
+    ):
+        with pytest.raises(RejectionException) as caught:
+            program.sample(3, seed=1, **options)  # type: ignore[arg-type] # of several types
+        assert str(caught.value).startswith(head + culprits.format(looked))
+
+
 @pytest.mark.parametrize("attempts", [3, 1100])
 def test_a_report_is_made_of_as_many_candidates_as_were_tried(attempts: int) -> None:
     program = scenario("x = Range(0, 1)\ndef same(v): return v\nrequire same(x < 0)\n")
@@ -526,3 +541,48 @@ def test_objects_of_a_scene_are_its_own_whether_anything_in_them_is_random() -> 
     assert [item.marks for item in scenes[0].objects[1:]] == [[1, 2], [1, 2]]
     assert len({id(item) for scene in scenes for item in scene.objects}) == 18
     assert [scene.objects[1].read() for scene in scenes] == [scene.egoObject.x for scene in scenes]
+
+
+def test_scenes_that_were_found_ahead_know_which_soft_requirements_they_had_to_meet() -> None:
+    """`generate` finds scenes of several seeds in one round."""
+    program = scenario("ego = new Object at (Range(0, 1), 0)\nrequire[0.5] ego.x > 0.5\n")
+    random.seed(4)
+    found = [program.generate()[0] for _ in range(40)]
+    told = [(scene.enforces(scene.program.requirements[0]), scene.egoObject.x > 0.5) for scene in found]
+    assert set(told) == {(True, True), (False, True), (False, False)}
+    for scene, (enforced, _) in zip(found, told, strict=True):
+        (alone,) = program.sample(1, seed=scene.seed)
+        assert alone.enforces(program.requirements[0]) is enforced
+
+
+def test_values_of_a_scene_are_the_same_objects_each_time() -> None:
+    text = "x = [Range(0, 1)]\nego = new Object with tag x, with other Uniform([1], [2])\nparam x = x\n"
+    for found in scenario(text).sample(3, seed=1):
+        assert found.params["x"] is found.params["x"] is found.egoObject.tag
+        assert found.egoObject.other is found.egoObject.other
+        found.egoObject.tag.append(7)
+        assert found.params["x"][1:] == [7]
+
+
+@pytest.mark.parametrize(
+    ("rest", "cause"),
+    [
+        ("def bad(v):\n    raise KeyError(v)\nrequire bad(x)\n", KeyError),
+        (
+            "def bad(v):\n    try:\n        [][3]\n    except IndexError as error:\n        raise KeyError(v) from error\nrequire bad(x)\n",
+            IndexError,
+        ),
+        ("param y = 1 / (x * 0)\n", ZeroDivisionError),
+        ("require {1: 2}[x]\n", KeyError),
+    ],
+)
+def test_causes_of_exceptions_end(rest: str, cause: type[Exception]) -> None:
+    with pytest.raises((KeyError, ZeroDivisionError, SamplingError)) as caught:
+        scenario(f"ego = new Object\nx = Range(0, 1)\n{rest}").sample(1, seed=1)
+    chain: list[BaseException] = []
+    error: BaseException | None = caught.value
+    while error is not None:
+        assert not any(error is other for other in chain)
+        chain.append(error)
+        error = error.__cause__
+    assert isinstance(chain[-1], cause)

@@ -12,10 +12,11 @@ from scenic.language.errors import (
     InvalidScenarioError,
     RandomControlFlowError,
     ScenicTypeError,
+    ScenicValueError,
     SpecifierError,
 )
 from scenic.runtime.fields import VectorField
-from scenic.runtime.values import Orientation
+from scenic.runtime.values import Orientation, Vector
 from tests.runtime.programs import (
     assert_same_rotation,
     draws,
@@ -24,6 +25,7 @@ from tests.runtime.programs import (
     params,
     place,
     rotation,
+    scenario,
     scene,
     thing,
 )
@@ -459,3 +461,129 @@ def test_a_class_is_no_field_and_says_how_an_instance_is_made() -> None:
     error = failure("class Kind:\n    foo: 3\nkind = [Kind][0]\nx = follow kind from (1, 2) for 3")
     assert isinstance(error, ScenicTypeError)
     assert place(error)[2] == "to create an instance write `new Kind at ...`"
+
+
+@pytest.mark.parametrize("options", [{}, {"steps": 2}, {"stepSize": 0.5}, {"steps": 3, "stepSize": 0.1}])
+@pytest.mark.parametrize("start", ["(2, 3)", "((F relative to 0).yaw, 3)", "(Range(2, 2), 3)"])
+def test_ways_are_divided_as_asked_wherever_they_start(start: str, options: dict[str, float]) -> None:
+    """The object is where the field says 2, so that a start that waits for it is the same place."""
+    given = "".join(f", {name}={value}" for name, value in options.items())
+    text = f"F = VectorField('f', lambda p: p.y / 4)\nnew Object at (9, 8), with end F.followFrom({start}, 4{given})\n"
+    count = int(options.get("steps", 4 / options.get("stepSize", 1)))
+    place = np.array([2.0, 3.0])
+    for _ in range(count):
+        place += 4 / count * np.array([-np.sin(place[1] / 4), np.cos(place[1] / 4)])
+    assert tuple(thing(text).end) == pytest.approx((*place, 0))
+
+
+@pytest.mark.parametrize("operands", ["F relative to late", "late relative to F"])
+def test_what_is_relative_to_a_field_waits_for_all_that_both_read(operands: str) -> None:
+    text = (
+        "from scenic.core.lazy_eval import DelayedArgument\nF = VectorField('f', lambda p: p.x)\n"
+        "late = DelayedArgument({'zeta'}, lambda thing: thing.zeta)\n"
+    )
+    zeta = "zeta (F relative to 0).yaw / 4"
+    for first, second in ((zeta, f"tag {operands}"), (f"tag {operands}", zeta)):
+        item = thing(f"{text}new Object at (1, 20), with {first}, with {second}")
+        assert_same_rotation(item.tag, euler(1.25))
+
+
+@pytest.mark.parametrize("use", ["Uniform(F, 3) at (1, 2)", "follow Uniform(F, 3) from (1, 2) for 3"])
+def test_a_choice_of_which_only_some_are_fields_is_refused_as_a_whole(use: str) -> None:
+    error = failure(f"{FIELD}x = {use}")
+    assert isinstance(error, ScenicTypeError)
+    assert "expected a vector field, not a random value" in str(error)
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        "join(late, 'b')",
+        "join('a', b=late)",
+        "join([late], b={'k': (late,)})",
+        "join(join(late, b='b'), b=join('c', b=late))",
+        "join(b=x, a=late)",
+        "max([], default=late)",
+        "max([1, 2], key=lambda n: -n, default=late)",
+        "max(late, 2, key=lambda n: -n)",
+        "min([late, 2])",
+        "hypot(late, x)",
+        "divmod(7, late)",
+        "divmod(late, 2)",
+        "round(late, 1)",
+        "[late, {'k': late, 'l': [(late, 1)]}]",
+        "(late ** 2 // 3 % 5, -late, +late, abs(-late), 2 ** late, 7 % late, 8 // late)",
+        "Vector(late, 1, x)",
+        "Vector(1, late)",
+        "Vector(x, 1, late)",
+    ],
+)
+@pytest.mark.parametrize("x", ["3", "Range(1, 2)"])
+def test_calls_wait_for_what_they_get_by_place_or_name(call: str, x: str) -> None:
+    text = (
+        "from scenic.core.lazy_eval import DelayedArgument\nlate = DelayedArgument({'zeta'}, lambda thing: thing.zeta)\n"
+        f"@distributionFunction\ndef join(a, b): return (a, b, str(type(a)), str(type(b)))\nx = {x}\nnew Object with tag {call}, with zeta x\n"
+    )
+    item = thing(text)
+    names = {
+        "late": item.zeta,
+        "x": item.zeta,
+        "join": lambda a, b: (a, b, str(type(a)), str(type(b))),
+        "Vector": Vector,
+        "hypot": math.hypot,
+    }
+    assert item.tag == eval(call, names)
+
+
+@pytest.mark.parametrize(
+    "call", ["Vector('a', 1)", "Vector(late, 'a')", "Vector(x, None)", "Vector([1], 2)", "Vector(1, 2, 'b')"]
+)
+def test_vectors_are_of_numbers_alone_sooner_or_later(call: str) -> None:
+    text = (
+        "from scenic.core.lazy_eval import DelayedArgument\nlate = DelayedArgument({'zeta'}, lambda thing: thing.zeta)\n"
+        f"x = Range(0, 1)\nnew Object with tag {call}, with zeta 3\n"
+    )
+    assert isinstance(failure(text), ScenicTypeError)
+
+
+def test_values_that_wait_may_give_others_that_wait() -> None:
+    """Each is asked once for an object, however many there are, and whether or not it is kept."""
+    text = (
+        "from scenic.core.lazy_eval import DelayedArgument, valueInContext\n"
+        "def number(n): return DelayedArgument({'zeta'}, lambda thing: n * thing.zeta)\n"
+        "many = DelayedArgument({'zeta'}, lambda thing: [valueInContext(number(n), thing) for n in range(50)])\n"
+        "nested = DelayedArgument({'zeta'}, lambda thing: [number(2), {'k': (number(3),)}])\n"
+        "drawn = DelayedArgument({'zeta'}, lambda thing: Range(0, 1))\n"
+        "new Object with many many, with nested nested, with pair (drawn, drawn + 0), with again drawn, with zeta 3\n"
+        "new Object at (9, 9), with again drawn, with zeta 3\n"
+    )
+    first, second = scene(text).objects
+    assert first.many == [3 * n for n in range(50)]
+    assert first.nested == [6, {"k": (9,)}]
+    assert first.pair == (first.again, first.again)
+    assert first.again != second.again
+
+
+@pytest.mark.parametrize(
+    "distance", ["1e30", "math.inf", "-math.inf", "math.nan", "Range(1e29, 1e30)", "5e6 + 1"]
+)
+@pytest.mark.parametrize("form", ["new Point following F from (0, 0) for {}", "follow F from (0, 0) for {}"])
+def test_endless_ways_are_refused(form: str, distance: str) -> None:
+    text = "import math\nF = VectorField('F', lambda p: 0)\nparam x = " + form.format(distance)
+    error = failure(text)
+    assert isinstance(error, ScenicValueError)
+    assert "a field cannot be followed for" in str(error)
+
+
+def test_a_way_that_is_not_drawn_may_be_endless() -> None:
+    loaded = scenario(
+        "F = VectorField('F', lambda p: 0)\nparam x = follow F from (0, 0) for Uniform(3, 1e30)"
+    )
+    found = []
+    for seed in range(12):
+        try:
+            (drawn,) = loaded.sample(1, seed=seed)
+            found.append(tuple(drawn.params["x"].position))
+        except ScenicValueError:
+            found.append(())
+    assert set(found) == {(0, 3, 0), ()}

@@ -187,3 +187,18 @@ def test_what_all_lanes_share_is_as_if_each_had_it(name: str, shared: str) -> No
         (region.meets_bodies(body, LANES, *columns), region.meets_bodies(apart, LANES, *own)),
     ):
         np.testing.assert_array_equal(np.broadcast_to(given, LANES), expected)
+
+
+@pytest.mark.parametrize("side", [*SIDES, ""])
+def test_one_point_is_on_the_sides_of_those_lanes_alone_that_reach_it(side: str) -> None:
+    item = thing(
+        "ego = new Object at (1, 2, 3), facing (0.7, 0.4, -0.3), with width 2, with length 3, with height 1"
+    )
+    region = getattr(item, f"{side}Surface" if side else "surface")
+    columns = region.fixed_columns("a test")
+    (place,) = [number for number, column in enumerate(columns) if np.array_equal(column, [(1, 2, 3)])]
+    point = np.array([tuple(region.uniformPointInner())])
+    shifts = np.zeros((LANES, 3))
+    shifts[[0, 2, 5]] = (0.02, 0.03, 0.05)
+    moved = [column + shifts if number == place else column for number, column in enumerate(columns)]
+    assert region.contains_points(point, *moved).tolist() == [lane not in (0, 2, 5) for lane in range(LANES)]

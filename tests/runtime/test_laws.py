@@ -118,6 +118,12 @@ def test_random_values_do_not_compare_even_with_none() -> None:
         ("TruncatedNormal(0, 1, 2, 1)", ScenicValueError),
         ("TruncatedNormal(0, 1, 1, 1)", ScenicValueError),
         ("TruncatedNormal(0, 1, Range(0, 1), 2)", ScenicValueError),
+        ("TruncatedNormal(0, 1, 0, Range(1, 2))", ScenicValueError),
+        ("DiscreteRange(1, 2.5, [1, 2])", ScenicTypeError),
+        ("DiscreteRange(1, DiscreteRange(2, 3), [1, 2])", ScenicTypeError),
+        ("DiscreteRange(DiscreteRange(0, 1), 2, [1, 2])", ScenicTypeError),
+        ("Discrete({1: float('inf')})", ScenicValueError),
+        ("Discrete({1: float('nan')})", ScenicValueError),
         ("Uniform()", InvalidScenarioError),
         ("Discrete({})", InvalidScenarioError),
         ("Discrete({1: 0})", InvalidScenarioError),
@@ -150,6 +156,28 @@ def test_one_draw_per_scene() -> None:
         assert first == second == called == moved
         assert listed == [first, first]
         assert other != first
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        "(1, 2, 3), (4, 5, 6)",
+        "Vector(1, 2, 3), Vector(4, 5, 6)",
+        "Orientation.fromEuler(0, 0, 0), Orientation.fromEuler(1, 0.5, 0)",
+        "[1], [2]",
+        "None, 'a'",
+        "1, 2.5",
+        "True, False",
+        "(new Point with name 'a'), (new Point with name 'b')",
+    ],
+)
+@pytest.mark.parametrize("law", ["Uniform({0})", "Discrete({{left: 1, right: 1}})"])
+def test_resample_of_choices_of_any_kind_draws_one_by_itself(law: str, options: str) -> None:
+    if options.startswith("[") and law.startswith("Discrete"):
+        law = "Uniform(left, right, left, right)"  # lists are no keys
+    text = f"left, right = {options}\na = {law.format(options)}\nb = resample(a)\nc = resample(b)\nparam x = (a, b, c)\n"
+    found = {tuple(map(str, triple)) for triple in draws(text, n=60)}
+    assert len(found) == 8
 
 
 def test_resample_draws_again_with_the_same_parameters() -> None:
@@ -427,6 +455,67 @@ def test_large_integers_are_drawn_exactly() -> None:
     assert set(
         draws("param x = DiscreteRange(2.0, numpy.int64(4))".replace("param", "import numpy\nparam"), n=60)
     ) == {2, 3, 4}
+
+
+@pytest.mark.parametrize("low", [2**53, 2**60, -(2**60) - 5])
+def test_large_integers_that_are_drawn_between_drawn_ones_are_exact(low: int) -> None:
+    text = f"a = DiscreteRange({low}, {low} + 1)\nparam x = (a, DiscreteRange(a, a + 2), DiscreteRange({low} - 2, a))"
+    values = draws(text, n=80)
+    assert {other - a for a, other, _ in values} == {0, 1, 2}
+    assert {other - a for a, _, other in values} == {0, -1, -2, -3}
+    assert all(type(part) is int for value in values for part in value)
+
+
+LAWS_OF_INSTANCES = [
+    # a law whose operands read the width of the object, which is 5; the least and the greatest value
+    ("Range(wide, wide + 1)", 5, 6),
+    ("Normal(wide, 0)", 5, 5),
+    ("TruncatedNormal(wide, 3, 4, 4.5)", 4, 4.5),
+    ("DiscreteRange(wide, wide)", 5, 5),
+    ("Uniform(wide, wide + 1)", 5, 6),
+    ("Discrete({1: 0, 2: 2, 3: 1}) + wide", 7, 8),
+    ("Options([wide, 9])", 5, 9),
+]
+
+
+@pytest.mark.parametrize(("law", "low", "high"), LAWS_OF_INSTANCES)
+def test_laws_may_depend_on_the_object_that_is_specified(law: str, low: float, high: float) -> None:
+    text = (
+        "from scenic.core.lazy_eval import DelayedArgument\nwide = DelayedArgument({'width'}, lambda item: item.width)\n"
+        f"law = {law}\nego = new Object with foo law, with width 5\nparam x = ego.foo\n"
+    )
+    values = draws(text, n=30)
+    assert low <= min(values) <= max(values) <= high
+    assert (len(set(values)) > 1) is (low < high)
+
+
+KINDS_OF_LAWS = {
+    "Range": ["Range(0, 1)"],
+    "Normal": ["Normal(0, 1)"],
+    "TruncatedNormal": ["TruncatedNormal(0, 1, -1, 1)"],
+    "DiscreteRange": ["DiscreteRange(0, 1)", "DiscreteRange(0, 1, weights=[1, 2])"],
+    "Uniform": ["Uniform(1, 2)", "Uniform([1], [2])"],
+    "Discrete": ["Discrete({1: 2, 3: 4})", "Options([1, 2])"],
+}
+
+
+@pytest.mark.parametrize("name", KINDS_OF_LAWS)
+def test_laws_know_their_own_draws_from_what_is_made_of_them(name: str) -> None:
+    drawn = KINDS_OF_LAWS[name]
+    choices = {"Uniform", "Discrete"}
+    others = [
+        text
+        for key, texts in KINDS_OF_LAWS.items()
+        for text in texts
+        if key != name and not {key, name} <= choices
+    ]
+    made = [f"{text} + 1" for text in drawn if "[1]" not in text and "*" not in text]
+    text = (
+        "param x = ["
+        + ", ".join(f"isinstance({item}, {name})" for item in (*drawn, *others, *made, "3"))
+        + "]"
+    )
+    assert params(text)["x"] == [True] * len(drawn) + [False] * (len(others) + len(made) + 1)
 
 
 def test_weights_belong_to_their_options_and_those_of_0_are_never_drawn() -> None:

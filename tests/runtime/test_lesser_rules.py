@@ -52,6 +52,10 @@ def test_cells_of_grids_and_points() -> None:
             assert bool(grid.containsPoint(Vector(x + dx, y + dy, 0))) is bool(
                 grid.grid[cell[1], cell[0]] == 0
             )
+    cells = np.array([[0, 1]])
+    own = named.GridRegion("own", cells, 1, 1, 0, 0)
+    cells[:] = 1 - cells
+    assert [bool(own.containsPoint(Vector(x, 0, 0))) for x in (0, 1)] == [True, False]
     assert grid.pointToGrid(Vector(-0.6, 0, 0)) is None
     assert grid.pointToGrid(Vector(5.6, 0, 0)) is None
 

@@ -381,3 +381,105 @@ scenario Sub():
 def test_scenes_with_such_members_are_whole_values() -> None:
     item = scene(f"{CLASSES}ego = new D at (5, 5)")
     assert pickle.loads(pickle.dumps(item)).objects[-1].position == item.objects[-1].position
+
+
+def test_what_a_class_holds_is_that_of_the_sample_whatever_it_is() -> None:
+    """An object, a draw, a tuple of them; but nothing that is no member."""
+    text = (
+        "import abc\nr = Range(1, 2)\no = new Object at (30, r)\n"
+        "class A:\n    friend = o\n    drawn = r\n    pair = (o, r)\n    nested = ((o,), [r])\n    known = 7\n    __private__ = 3\n"
+        "class B(A): pass\n"
+        "def held(): return A.friend.y == A.drawn == A.pair[1] == A.pair[0].y == B.nested[1][0] == B.friend.y and A.drawn > 1.3\n"
+        "require held()\nego = new B\nparam r = r\n"
+    )
+    for found in scenario(text).sample(4, seed=1):
+        ego, other = found.egoObject, found.objects[1]
+        r = found.params["r"]
+        assert ego.friend is ego.pair[0] is ego.nested[0][0] is other
+        assert ego.drawn == ego.pair[1] == ego.nested[1][0] == other.y == r > 1.3
+        assert (ego.known, ego.__private__) == (7, 3)
+
+
+def test_a_class_may_say_itself_how_attributes_are_looked_up() -> None:
+    text = (
+        "r = Range(1, 2)\nclass A:\n    tag: 3\n    def __getattribute__(self, name):\n"
+        "        return 'own' if name == 'special' else super().__getattribute__(name)\n    def plain(self): return (r, self.special)\n"
+        "ego = new A at (r, 0)\nrequire ego.plain() == (r, 'own') and ego.special == 'own'\nparam r = r\n"
+    )
+    for found in scenario(text).sample(2, seed=1):
+        ego = found.egoObject
+        assert ego.plain() == (found.params["r"], "own")
+        assert (ego.special, ego.tag, ego.x) == ("own", 3, found.params["r"])
+
+
+@pytest.mark.parametrize("between", [[], ["M"], ["M", "N"]])
+def test_classes_from_which_those_of_objects_derive_are_one_in_all_samples(between: list[str]) -> None:
+    """However far below them, and although their methods read what is drawn."""
+    text = "r = Range(1, 2)\nclass K(object):\n    def f(self): return r\n"
+    for name, base in zip(between, ["K", *between], strict=False):
+        text += f"class {name}({base}): pass\n"
+    text += (
+        f"class A({['K', *between][-1]}, Object): pass\nego = new A\ndef told(): return isinstance(ego, K) and isinstance(ego, A) and r > 1.3\n"
+        "require told()\nparam K = K, A = A, r = r\n"
+    )
+    for found in scenario(text).sample(3, seed=1):
+        assert isinstance(found.egoObject, found.params["K"])
+        assert type(found.egoObject) is found.params["A"]
+        assert found.params["r"] > 1.3
+
+
+MIXED = """
+limit = Range(0, 1)
+class Plain(object):
+    held = [limit]
+    def high(self): return limit > 0.5
+    @property
+    def level(self): return limit
+    @staticmethod
+    def fixed(): return limit < 2
+    @classmethod
+    def named(cls): return (cls.__name__, limit)
+class Deeper(Plain):
+    def twice(self): return self.level * 2
+class Car(Object, Deeper):
+    def high(self): return super().high() and self.twice() > 1
+ego = new Car at (limit, 0)
+alone = Plain()
+alone.own = [limit]
+"""
+
+
+def test_methods_of_plain_classes_that_objects_derive_from_see_what_is_sampled() -> None:
+    text = MIXED + (
+        "require ego.high() and ego.level > 0.5 and ego.fixed() and Car.fixed()\n"
+        "require ego.named() == ('Car', ego.position.x) and ego.held[0] == ego.position.x\n"
+        "require alone.high() and alone.level == alone.own[0] == ego.position.x\nparam limit = limit\n"
+        "record (ego.level, ego.high(), ego.twice(), ego.named()[1]) as seen\n"
+    )
+    for item in scenario(text).sample(8, seed=1):
+        limit = item.params["limit"]
+        assert limit > 0.5
+        assert (item.egoObject.level, item.egoObject.twice(), item.egoObject.held) == (
+            limit,
+            2 * limit,
+            [limit],
+        )
+        assert item.egoObject.named() == ("Car", limit)
+        done = DummySimulator().simulate(item, maxSteps=1)
+        assert done is not None
+        assert [row for _, row in done.records["seen"]] == [(limit, True, 2 * limit, limit)] * 2
+
+
+def test_plain_instances_may_lead_back_to_themselves() -> None:
+    text = (
+        "limit = Range(0, 1)\nclass Part(object):\n    def __init__(self, whole): self.whole, self.own = whole, limit\n"
+        "    def high(self): return limit > 0.5 and self.own == limit\n"
+        "whole = Part(None)\nwhole.parts = [Part(whole), Part(whole)]\nwhole.whole = whole\n"
+        "ego = new Object at (limit, 0)\nparam limit = limit, whole = whole\n"
+        "require all(part.high() and part.whole is whole for part in whole.parts) and whole.whole is whole\n"
+    )
+    for item in scenario(text).sample(5, seed=1):
+        whole, limit = item.params["whole"], item.params["limit"]
+        assert whole.whole is whole
+        assert [(part.whole is whole, part.own) for part in whole.parts] == [(True, limit)] * 2
+        assert whole.own == limit > 0.5

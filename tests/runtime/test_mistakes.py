@@ -141,3 +141,23 @@ def test_warnings_tell_the_place_of_what_they_mean(tmp_path: Path) -> None:
         (Path(__file__).name, None, "SC407"),
     ]
     assert found[-1].lineno == here
+
+
+@pytest.mark.parametrize(
+    ("text", "words", "help"),
+    [
+        ("class Car: pass\nnew Object at Car\n", "not the class Car", "write `new Car`"),
+        ("new Object with shape BoxShape\n", "not the class BoxShape", "write `BoxShape()`"),
+        ("new Object at None\n", "not None", "write `(x, y, z)` or `x @ y`"),
+        (f"new Object at {'x' * 37!r}\n", f"not '{'x' * 37}' (str)", "name a point or an object"),
+        (f"new Object at {'x' * 38!r}\n", "not a value of type str", "name a point or an object"),
+        ("new Object in 3\n", "not 3 (int)", "make one, as `CircularRegion"),
+        ("new Object at Range(0, 1)\n", "not a random scalar", "write `(x, y, z)`"),
+    ],
+)
+def test_values_are_described_and_what_to_write_instead(text: str, words: str, help: str) -> None:
+    found = diagnose(failure(text))
+    assert found is not None
+    assert words in found.message
+    assert found.help is not None
+    assert help in found.help

@@ -194,6 +194,44 @@ def test_scenic_modules_in_packages(tmp_path: Path, statement: str) -> None:
     assert len(scene.objects) == 2
 
 
+@pytest.mark.parametrize(
+    "imports",
+    [
+        "import mixed.a\nimport mixed.tool",
+        "import mixed.tool\nimport mixed.a",
+        "import mixed.tool\nimport mixed.deep.b\nimport mixed.a",
+        "import mixed.a\nimport mixed.deep.b\nimport mixed.tool\nimport mixed.deep.rule\nimport mixed",
+    ],
+)
+def test_a_package_leads_to_modules_of_scenic_and_of_python(tmp_path: Path, imports: str) -> None:
+    files = {
+        "mixed/__init__.py": "SCALE = 10\n",
+        "mixed/tool.py": "def twice(x):\n    return x * 2\n",
+        "mixed/deep/rule.py": "OFFSET = 1\n",
+        "mixed/deep/b.scenic": "B = Range(1, 2)\n",
+        "mixed/a.scenic": "import mixed.deep.b\nA = Range(1, 2)\n",
+        "main.scenic": f"""{imports}
+def f(x):
+    return mixed.tool.twice(x) if x == mixed.a.A else -1
+ego = new Object
+param a = mixed.a.A, twice = mixed.tool.twice(mixed.a.A), scale = mixed.SCALE
+require f(mixed.a.A) > 3
+if hasattr(mixed, "deep"):
+    param rule = getattr(mixed.deep, "rule", None)
+try:
+    mixed.tol
+except AttributeError as error:
+    param message = str(error)
+""",
+    }
+    found = first(written(tmp_path, files)).params
+    assert found["a"] > 1.5
+    assert (found["twice"], found["scale"]) == (2 * found["a"], 10)
+    if "deep" in imports:
+        assert getattr(found["rule"], "OFFSET", None) == (1 if "rule" in imports else None)
+    assert "module 'mixed' has no attribute 'tol'" in found["message"]
+
+
 def test_the_importer_takes_the_ego_unless_it_has_one(tmp_path: Path) -> None:
     module = "ego = new Object at (3, 3)\nworkspace = Workspace(CircularRegion((0, 0), 9))\n"
     main = written(tmp_path, {"m.scenic": module, "main.scenic": "import m\n"})
@@ -439,3 +477,121 @@ ego = new Object with behavior B
         # What only the simulation imports is drawn within it, by its key; all else with the scene.
         assert len(set(drawn)) == (1 if top else 2)
         assert drawn[0] == drawn[1]
+
+
+@pytest.mark.parametrize(
+    ("public", "names"),
+    [
+        ("", ["y", "z"]),
+        ("__all__ = ['_x', 'y']\n", ["_x", "y"]),
+        ("__all__ = []\n", []),
+        ("__all__ = ('z',)\n", ["z"]),
+    ],
+)
+def test_models_give_what_they_say_is_public(tmp_path: Path, public: str, names: list[str]) -> None:
+    files = {
+        "world.scenic": f"_x = 3\ny = 4\nz = 5\n{public}",
+        "main.scenic": "model world\nparam found = [name for name in ('_x', 'y', 'z') if name in globals()]\n",
+    }
+    assert first(written(tmp_path, files)).params["found"] == names
+
+
+@pytest.mark.parametrize(
+    "own", ["", "ego = new Object\n", "workspace = Workspace(CircularRegion((0, 0), 9))\n"]
+)
+@pytest.mark.parametrize("statement", ["import m", "from m import unused", "model m"])
+def test_of_ego_and_workspace_each_is_taken_by_itself(tmp_path: Path, own: str, statement: str) -> None:
+    module = "ego = new Object at (90, 90), with regionContainedIn everywhere\nworkspace = Workspace(CircularRegion((50, 50), 5))\nunused = 3\n"
+    use = "param ego = ego, item = new Object in workspace, with requireVisible False\n"
+    before = own.replace("new Object", "new Object with regionContainedIn everywhere")
+    found = first(written(tmp_path, {"m.scenic": module, "main.scenic": f"{before}{statement}\n{use}"}))
+    assert (found.params["ego"].x == 0) == ("ego" in own)
+    assert (found.params["item"].x < 20) == ("workspace" in own)
+    assert found.egoObject is found.params["ego"]
+
+
+@pytest.mark.parametrize("given", [{}, {"a": 9}, {"a": 9, "b": 8, "c": 7}])
+def test_parameters_that_are_given_come_before_all_others(tmp_path: Path, given: dict[str, int]) -> None:
+    """Before those of the program and of its model, whichever statement is first, and wherever they are read."""
+    files = {
+        "world.scenic": "param a = 1, b = 2, c = 3\nseen = globalParameters.a\n",
+        "main.scenic": "model world\nparam b = 5\nparam seen = (seen, globalParameters.a, globalParameters.b, globalParameters['c'])\nparam c = 6\nego = new Object\n",
+    }
+    scenario = scenic.scenarioFromFile(written(tmp_path, files), params=given)
+    params = dict(scenario.sample(1, seed=0)[0].params)
+    usual = {"a": 1, "b": 5, "c": 6}
+    a, b = given.get("a", 1), given.get("b", 5)
+    assert params.pop("seen") == (a, a, b, given.get("c", 3))
+    assert params == {**usual, **given}
+
+
+def test_a_module_may_have_others_below_it(tmp_path: Path) -> None:
+    files = {
+        "p/q.scenic": "k = Range(0, 1)\n",
+        "p/q/a.scenic": "z = Range(2, 3)\n",
+        "main.scenic": "import p.q\nimport p.q.a\ndef low(): return p.q.k < 0.5 and p.q.a.z < 2.5\n"
+        "require low()\nparam found = (p.q.k, p.q.a.z)\nego = new Object\n",
+    }
+    k, z = first(written(tmp_path, files)).params["found"]
+    assert k < 0.5
+    assert 2 < z < 2.5
+
+
+def test_what_is_mutated_is_so_whatever_is_imported(tmp_path: Path) -> None:
+    text = (
+        "{}a = new Object at (0, 0)\nego = new Object at (90, 90)\n{}c = Uniform(a, a)\nx = c.position.x\n{}mutate a\n"
+        "param c = c, x = x, a = a\n"
+    )
+    for place in range(3):
+        imports = ["import m\n" if place == number else "" for number in range(3)]
+        found = first(written(tmp_path, {"m.scenic": "k = 1\n", "main.scenic": text.format(*imports)}))
+        a = found.params["a"]
+        assert found.params["c"] is a
+        assert found.params["x"] == a.x != 0
+
+
+@pytest.mark.parametrize(
+    ("made", "words"),
+    [
+        ("new Object\nnew Object at (0.5, 0)\n", "always collides"),
+        (
+            "new Object\nnew Object at (0, 5), with regionContainedIn CircularRegion((0, 0), 1)\n",
+            "not inside its container",
+        ),
+        ("new Object\nnew Object at (0, 5), with requireVisible True\n", "there is no ego"),
+        ("watcher = new OrientedPoint\nnew Object at (0, -999), visible from watcher\n", "cannot be seen"),
+    ],
+)
+def test_what_fails_in_every_scene_is_shown_in_the_module_that_makes_it(
+    tmp_path: Path, made: str, words: str
+) -> None:
+    (tmp_path / "making.scenic").write_text(made)
+    (tmp_path / "main.scenic").write_text("x = 3\n\n\nimport making\n")
+    with pytest.raises(InvalidScenarioError, match=words) as caught:
+        scenic.scenarioFromFile(str(tmp_path / "main.scenic"))
+    assert caught.value.span is not None
+    assert (Path(str(caught.value.filename)).name, caught.value.span.line) == ("making.scenic", 2)
+
+
+def test_workspaces_of_workspaces_contain_as_their_region_does() -> None:
+    text = "space = CircularRegion((0, 0), 3)\nworkspace = Workspace(Workspace(Workspace(space)))\nego = new Object at ({}, 0){}\n"
+    for more in ("", ", with regionContainedIn Workspace(Workspace(space))"):
+        assert scenic.scenarioFromString(text.format(2, more)).sample(1, seed=0)
+        with pytest.raises(InvalidScenarioError, match="not inside its container"):
+            scenic.scenarioFromString(text.format(3, more))
+        placed = scenic.scenarioFromString(text.format("Range(0, 5)", more)).sample(30, seed=0)
+        assert 1.5 < max(each.egoObject.x for each in placed) < 2.5
+
+
+def test_names_with_an_underscore_are_those_of_the_simulation_too(tmp_path: Path) -> None:
+    files = {
+        "m.scenic": "_log = []\n_limit = Range(0, 1)\n",
+        "main.scenic": "import m\nbehavior B():\n    m._log.append(1)\n    take (m._limit, len(m._log))\n"
+        "ego = new Object with behavior B\nparam limit = m._limit\n",
+    }
+    scene = first(written(tmp_path, files))
+    for _ in range(2):
+        done = DummySimulator().simulate(scene, maxSteps=1)
+        assert done is not None
+        assert done.result is not None
+        assert list(done.result.actions[0].values()) == [(scene.params["limit"], 1)]

@@ -229,6 +229,16 @@ def test_a_scale_that_is_drawn_as_zero_asks_no_mutator(scale: str) -> None:
     assert found == {(0.0, 1.0, True), *([(2.0, 4.0, False)] if scale != "0" else [])}
 
 
+def test_requirements_are_about_what_some_mutator_changed_whatever_stands_behind_it() -> None:
+    text = (
+        "ego = new Object at (0, 0)\nother = new Object at (9, 0), with mutator ()\nmutate ego, other by 2\n"
+        "require ego.position.x > 1\n"
+    )
+    for item in scenario(text).sample(10, seed=1):
+        assert item.egoObject.position.x > 1
+        assert item.objects[1].position.x == 9
+
+
 def test_mistakes_with_mutation() -> None:
     assert isinstance(failure("ego = new Object\nmutate ego by Range(1, 2)"), ScenicTypeError)
     assert isinstance(failure("ego = new Object\nx = 3\nmutate x"), ScenicTypeError)
@@ -290,6 +300,32 @@ def test_a_choice_draws_instances_as_mutated(text: str, drawn: bool) -> None:
         found = item.params["x"]
         place = tuple(getattr(found, "position", found))
         assert place == pytest.approx(tuple(item.egoObject.position) if drawn else (3, 4, 0))
+
+
+@pytest.mark.parametrize("mutator", ["", "    mutator: M()\n"])
+def test_a_choice_among_instances_made_of_the_same_values_draws_each_with_its_own_noise(mutator: str) -> None:
+    """Of every kind: places, turns, numbers, texts."""
+    text = (
+        "class M(Mutator):\n    def appliedTo(self, item):\n        item.share += item.mark\n        item.word += str(item.mark)\n"
+        "        item.turn = item.turn * Orientation.fromEuler(item.mark / 10, 0, 0)\n        item.position += Vector(item.mark, 0, 0)\n        return item, True\n"
+        f"class A:\n    allowCollisions: True\n    mark: 0\n    share: s\n    word: w\n    turn: t\n{mutator}"
+        "s, w, t, v = Range(0, 1), Uniform('a', 'b'), Orientation.fromEuler(Range(0, 1), Range(0, 1), 0), Vector(Range(0, 1), 5, 1)\n"
+        "items = [new A at v, with mark number, facing t for number in (1, 2, 3)]\n"
+        "c = Uniform(*items)\nmutate\n"
+        "side, turned = Vector(1, 2, 3) offset along c.turn by (1, 0, 0), c.orientation * c.turn\n"
+        "param x = (c.mark, c.position, c.orientation, c.share, c.word, c.turn, side, turned)\n"
+    )
+    seen = set()
+    for item in scenario(text).sample(10, seed=3):
+        mark, *found = item.params["x"]
+        drawn = item.objects[mark - 1]
+        *found, side, turned = found
+        assert found == [drawn.position, drawn.orientation, drawn.share, drawn.word, drawn.turn]
+        assert side == Vector(1, 2, 3) + Vector(1, 0, 0).rotatedBy(drawn.turn)
+        assert turned == drawn.orientation * drawn.turn
+        assert len({tuple(other.position) for other in item.objects}) == 3
+        seen.add(mark)
+    assert len(seen) > 1
 
 
 @pytest.mark.parametrize("scale", [0, 1])
@@ -380,3 +416,99 @@ def test_code_that_fails_while_an_object_is_mutated_is_told_where_it_is() -> Non
         "ego = new A at (3, 4)\nmutate\n"
     )
     assert place(error)[:2] == ("SC403", "2:37-2:56")
+
+
+@pytest.mark.parametrize("form", ["{}", "[{}]", "({},)", "(None, {})", "[{}, None]"])
+def test_one_mutator_or_several_may_be_given(form: str) -> None:
+    mutators = form.format("PositionMutator((0, 0, 2))")
+    text = f"from scenic.runtime.mutators import PositionMutator\nego = new Object facing 0.5, with mutator {mutators}\nmutate\n"
+    for item in scenario(text).sample(5, seed=1):
+        x, y, z = item.egoObject.position
+        assert (x, y, item.egoObject.heading) == (0, 0, pytest.approx(0.5))
+        assert z != 0
+
+
+def test_mutators_see_what_follows_from_the_noise_before_them() -> None:
+    text = """
+from scenic.runtime.mutators import Mutator, OrientationMutator
+class Telling(Mutator):
+    def appliedTo(self, instance):
+        instance.before = (instance.yaw, instance.heading, instance.orientation.yaw)
+        return instance, True
+ego = new Object with mutator (OrientationMutator((0.5, 0, 0)), Telling()), with before None
+mutate
+"""
+    for item in scenario(text).sample(5, seed=1):
+        yaw, heading, global_yaw = item.egoObject.before
+        assert yaw != 0
+        assert heading == global_yaw == pytest.approx(yaw)
+        assert item.egoObject.heading == pytest.approx(yaw)
+
+
+@pytest.mark.parametrize("scale", [-3, 0, 2])
+@pytest.mark.parametrize("mutator", ["", ", with mutator [None, PositionMutator((1, 0, 0))]"])
+def test_what_enters_a_simulation_is_mutated_by_its_scale(scale: float, mutator: str) -> None:
+    text = (
+        "from scenic.runtime.mutators import PositionMutator\n"
+        "scenario Main():\n    setup:\n        ego = new Object\n    compose:\n        do Sub()\n"
+        f"scenario Sub():\n    setup:\n        thing = new Object at (50, 0){mutator}\n        mutate thing by {scale}\n"
+        "        record initial thing.position as place\n    compose:\n        wait\n"
+    )
+    offsets, one = [], scene(text)
+    for key in range(25):
+        done = DummySimulator().simulate(one, maxSteps=1, key=bytes([key]))
+        assert done is not None
+        offsets.append(np.array(done.records["place"]) - (50, 0, 0))
+    deviations = np.std(offsets, axis=0)
+    wanted = np.array([1, 0 if mutator else 1, 0]) * abs(scale)
+    assert (deviations[wanted == 0] == 0).all()
+    assert (abs(deviations / np.where(wanted == 0, 1, wanted) - 1) < 0.5)[wanted > 0].all()
+
+
+def test_mutators_may_change_what_a_specifier_has_made() -> None:
+    text = """
+from scenic.runtime.mutators import Mutator
+class Doubling(Mutator):
+    def appliedTo(self, instance):
+        instance.load, instance.worth = 2 * instance.load, instance.worth + 1
+        return instance, True
+class Car:
+    worth: 1
+ego = new Car with mutator Doubling(), with load Range(1, 2)
+x = ego.load
+mutate
+require ego.load > 3
+param x = x
+"""
+    for item in scenario(text).sample(5, seed=1):
+        assert item.egoObject.load == 2 * item.params["x"] > 3
+        assert item.egoObject.worth == 2
+
+
+def test_what_decides_a_noise_does_not_wait_for_it() -> None:
+    """The noise of an object that, by now, can be reached from one that a call has been given."""
+    text = (
+        "asked = distributionFunction(lambda thing, x: 1 + thing.position.x + x)\nx = Range(0, 1)\n"
+        "ego = new Object at (Range(5, 6), 0)\nscale = asked(ego, x)\n"
+        "other = new Object at (90, 90), with mutationScale scale\nego.friend = other\n"
+        "mutate ego\nparam x = x, scale = scale\n"
+    )
+    for program, moved in ((text.replace("mutate ego\n", ""), False), (text, True)):
+        for found in scenario(program).sample(3, seed=2):
+            ego, other = found.objects
+            assert ego.friend is other
+            assert found.params["scale"] == other.mutationScale == 1 + ego.x + found.params["x"]
+            assert other.x != 90
+            assert (5 < ego.x < 6 and ego.y == 0) is not moved
+
+
+def test_a_noise_that_would_decide_itself_is_told() -> None:
+    text = (
+        "asked = distributionFunction(lambda thing, x: thing.position.x + x)\n"
+        "ego = new Object at (Range(5, 6), 0)\nego.mutationScale = asked(ego, Range(0, 1))\n"
+    )
+    error = failure(text)
+    assert isinstance(error, InvalidScenarioError)
+    assert "decides how an object is mutated" in str(error)
+    assert place(error)[1].startswith("3:")
+    scenario(text.replace("asked(ego", "asked(new Object at ego offset by (9, 9)")).sample(2)

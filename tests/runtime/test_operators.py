@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from scenic.language.errors import InvalidScenarioError, ScenicTypeError
+from scenic.language.errors import InvalidScenarioError, RandomControlFlowError, ScenicTypeError
 from scenic.runtime.values import Orientation, Vector
 from tests.runtime.programs import (
     altitude,
@@ -196,12 +196,13 @@ def test_operators_on_choices_of_different_types() -> None:
 LANGUAGE = list(CASES)[: list(CASES).index("b.norm()")]
 
 
+@pytest.mark.parametrize("way", ["told({0}, Range(0, 1))", "Uniform(told({0}, Range(0, 1)), {0})"])
 @pytest.mark.parametrize("hidden", ["absho", "p", "e", "abshope"])
-def test_what_operators_mean_is_decided_when_their_operands_are_drawn(hidden: str) -> None:
-    """Of a value that a function of the program gives nothing is known before."""
+def test_what_operators_mean_is_decided_when_their_operands_are_drawn(hidden: str, way: str) -> None:
+    """Of a value that a function of the program gives nothing is known before; nor of a choice that may be such a value."""
     cases = [case for case in LANGUAGE if "deg" not in case]
     text = "e = ego\ntold = distributionFunction(lambda value, _: value)\n"
-    text += "".join(f"{name} = told({name}, Range(0, 1))\n" for name in hidden)
+    text += "".join(f"{name} = {way.format(name)}\n" for name in hidden)
     text += "".join(f"param c{index} = {case.replace(' ego', ' e')}\n" for index, case in enumerate(cases))
     found = params(setting(FIXED) + text)
     for index, case in enumerate(cases):
@@ -574,3 +575,164 @@ def test_what_is_left_out_is_the_ego_also_of_operands_that_are_drawn() -> None:
         assert drawn == known or drawn == pytest.approx(known)
     assert found["known"][2] == 6
     assert_angles_equal(found["known"][0], 0.5 + math.pi / 2)
+
+
+VECTOR, NUMBER, HEADING = "a vector", "a number", "a heading"
+ORIENTATION = "an orientation (a heading, Euler angles or an oriented point)"
+WRONG_FORMS = {
+    "known": "'a'",
+    "chosen": "Uniform('a', 'a')",
+    "drawn": "told('a', Range(0, 1))",
+    "late": "DelayedArgument({'zeta'}, lambda thing: 'a')",
+    "class": "OrientedPoint",
+}
+WANTED = {
+    "new Object at «, with zeta 3": ("`at`", VECTOR),
+    "new Object left of ego by «, with zeta 3": ("`left of ... by`", VECTOR),
+    "new Object facing «, with zeta 3": ("`facing`", ORIENTATION),
+    "new Object facing toward «, with zeta 3": ("`facing toward`", VECTOR),
+    "new Object beyond ego by «, with zeta 3": ("`beyond`", VECTOR),
+    "new Object beyond ego by 3 from «, with zeta 3": ("`beyond ... from`", VECTOR),
+    "new Object following F for «, with zeta 3": ("`following ... for`", NUMBER),
+    "new Object following F from « for 3, with zeta 3": ("`following ... from`", VECTOR),
+    "new Object offset by «, with zeta 3": ("`offset by`", VECTOR),
+    "new Object offset along « by (1, 2), with zeta 3": ("`offset along`", ORIENTATION),
+    "new Object offset along 3 by «, with zeta 3": ("`offset along`", VECTOR),
+    "new Object apparently facing «, with zeta 3": ("`apparently facing`", HEADING),
+    "new Object with width «, with zeta 3": ("property 'width'", NUMBER),
+    "new Object with position «, with zeta 3": ("property 'position'", VECTOR),
+    "new Object with parentOrientation «, with zeta 3": ("property 'parentOrientation'", ORIENTATION),
+    "« @ 3": ("`@`", NUMBER),
+    "3 @ «": ("`@`", NUMBER),
+    "angle to «": ("`angle`", VECTOR),
+    "angle from «": ("`angle`", VECTOR),
+    "altitude from ego to «": ("`altitude`", VECTOR),
+    "distance from « to ego": ("`distance`", VECTOR),
+    "relative position of «": ("`relative position`", VECTOR),
+    "relative heading of «": ("`relative heading`", HEADING),
+    "relative heading of 3 from «": ("`relative heading`", HEADING),
+    "apparent heading of ego from «": ("`apparent heading`", VECTOR),
+    "distance past «": ("`distance past`", VECTOR),
+    "F at «": ("`at`", VECTOR),
+    "F[«]": ("field 'F'", VECTOR),
+    "(follow F from « for 3)": ("`follow ... from`", VECTOR),
+    "(follow F from ego for «)": ("`follow ... for`", NUMBER),
+    "F.followFrom(«, 3)": ("`follow ... from`", VECTOR),
+    "F.followFrom((1, 2), «)": ("`follow ... for`", NUMBER),
+    "(1, 2) offset along « by (3, 4)": ("`offset along`", ORIENTATION),
+    "(1, 2) offset along 3 by «": ("`offset along`", VECTOR),
+    "Vector(1, 2).dot(«)": ("", VECTOR),
+    "Vector(1, 2).rotatedBy(«)": ("", ORIENTATION),
+}
+
+
+@pytest.mark.parametrize("form", WRONG_FORMS)
+@pytest.mark.parametrize("use", WANTED)
+def test_what_wants_an_operand_says_what_for(use: str, form: str) -> None:
+    """Whether it is wrong at once or shows to be so only later; and a class is no instance of it."""
+    what, wanted = WANTED[use]
+    program = use.replace("«", WRONG_FORMS[form])
+    if not use.startswith("new"):
+        program = f"new Object with zeta 3, with tag ({program})"
+    text = (
+        "from scenic.core.lazy_eval import DelayedArgument\ntold = distributionFunction(lambda value, _: value)\n"
+        f"F = VectorField('F', lambda p: p.x)\nego = new Object at (1, 2)\n{program}\n"
+    )
+    error = failure(text)
+    shown = "the class OrientedPoint" if form == "class" else "'a' (str)"
+    assert isinstance(error, ScenicTypeError)
+    assert f"{what + ': ' if what else ''}expected {wanted}, not {shown}" in str(error)
+    assert place(error)[1].startswith("5:")
+
+
+@pytest.mark.parametrize("nested", [False, True])
+def test_choices_within_choices_are_relative_each_in_its_way(nested: bool) -> None:
+    inner = "Uniform(0.5, (0, 2))" if nested else "0.5, (0, 2)"
+    text = f"p = new OrientedPoint at (1, 2), facing 0.5\nparam x = Uniform(0.25, {inner}) relative to p, y = p relative to Uniform(0.25, {inner})\n"
+    for name in "xy":
+        found = {
+            value if isinstance(value, float) else tuple(round(part, 9) for part in value.position)
+            for value in (item.params[name] for item in scenario(text).sample(30, seed=1))
+        }
+        ahead = (1 - 2 * math.sin(0.5), 2 + 2 * math.cos(0.5), 0)
+        assert found == {0.75, 1.0, tuple(round(part, 9) for part in ahead)}
+
+
+@pytest.mark.parametrize("number", ["37.256", "Range(37.256, 37.256)", "Uniform(37.256, 37.256)"])
+@pytest.mark.parametrize("digits", ["2", "DiscreteRange(2, 2)", "Uniform(2, 2)", "-1", "Uniform(None, None)"])
+def test_numbers_are_rounded_to_digits_that_are_drawn(number: str, digits: str) -> None:
+    found = params(f"param x = round({number}, {digits})\n")["x"]
+    expected = 40.0 if digits == "-1" else 37 if "None" in digits else 37.26
+    assert (found, type(found)) == (expected, type(expected))
+
+
+@pytest.mark.parametrize("row", ["(1, n)", "[1, n, 0]", "(1.0, n, 0)", "Vector(1, n)"])
+@pytest.mark.parametrize("vector", ["Vector(1, 2)", "Vector(n - n + 1, 2)"])
+@pytest.mark.parametrize("shown", ["{v} == {r}", "{r} == {v}", "not {v} != {r}", "not {r} != {v}"])
+def test_vectors_are_compared_with_what_is_drawn_by_requirements_alone(
+    vector: str, row: str, shown: str
+) -> None:
+    condition = shown.format(v=vector, r="r")
+    text = f"n = DiscreteRange(1, 3)\nr = {row}\nparam n = n\n"
+    assert isinstance(failure(f"{text}x = ({condition})\n"), RandomControlFlowError)
+    assert {item.params["n"] for item in scenario(f"{text}require {condition}\n").sample(3)} == {2}
+
+
+def test_vectors_are_arrays_of_the_type_that_is_asked_for() -> None:
+    vector = Vector(1, 2, 3)
+    for kind in (np.float64, np.float32, np.int64, np.complex128):
+        for made in (np.array(vector, dtype=kind), np.asarray(vector, dtype=kind)):
+            assert made.dtype == kind
+            assert made.tolist() == [1, 2, 3]
+    assert np.asarray(vector).dtype == np.float64
+    copied = np.array(vector)
+    copied[0] = 5
+    assert vector == (1, 2, 3)
+
+
+@pytest.mark.parametrize(
+    "turn", [(0, 0, 0), (math.pi, 0, 0), (0, math.pi, 0), (0, 0, math.pi), (3, 1, -2), (1e-5, 0, 0)]
+)
+def test_an_orientation_and_its_opposite_quaternion_are_one(turn: tuple[float, float, float]) -> None:
+    quaternion = euler(*turn).as_quat()
+    one, same = Orientation.fromQuaternion(quaternion), Orientation.fromQuaternion(-quaternion)
+    assert one == same
+    assert hash(one) == hash(same)
+    assert len({one, same}) == 1
+    assert one.approxEq(same)
+    assert same.approxEq(one)
+    other = one * Orientation.fromEuler(0.001, 0, 0)
+    assert other != one
+    assert not one.approxEq(other)
+    assert one.approxEq(other, tol=1e-3)
+    assert not one.approxEq(same * Orientation.fromEuler(math.pi, 0, 0), tol=0.9)
+
+
+@pytest.mark.parametrize("pair", ["(1, 2)", "(1.5, -2.5)", "(1, 2, 3)", "(1.5, -2.5, 3.5)"])
+def test_arrays_of_two_or_three_numbers_are_vectors_as_tuples_are(pair: str) -> None:
+    """Beside vectors that are drawn or definite, on either side, and as places."""
+    text = (
+        "import numpy\nego = new Object at (50, 50)\nx = Uniform(1.0, 1.0)\np = {}\nplaces = []\n"
+        "for v in (Vector(x, 5, 0), Vector(1, 5, 0)):\n"
+        "    places += [p relative to v, v relative to p, p offset by v, v offset by p, v + p, v - p, Vector(*p) + v,\n"
+        "        p offset along 0.5 by v, v offset along 0.5 by p, relative position of p from v,\n"
+        "        relative position of v from p, CircularRegion(p, 3).center, Uniform(CircularRegion(p, x)).center]\n"
+        "near = new Object at p, facing toward p offset by v\n"
+        "far = new Object at v offset by p, facing away from p, with allowCollisions True\n"
+        "beyond = new Object beyond p by 7 from v, with allowCollisions True\n"
+        "param numbers = [distance from p to v, distance from v to p, angle from p to v, angle from v to p,\n"
+        "    altitude from v to p, p in CircularRegion((0, 0), 9), near.heading, far.heading, beyond.heading]\n"
+        "param places = places + [near.position, far.position, beyond.position]\n"
+    )
+    found, expected = params(text.format(f"numpy.array({pair})")), params(text.format(pair))
+    assert found["places"] == expected["places"]
+    assert found["numbers"] == expected["numbers"]
+
+
+@pytest.mark.parametrize(
+    "array", ["numpy.zeros(4)", "numpy.zeros((3, 1))", "numpy.zeros((1, 3))", "numpy.zeros(1)"]
+)
+def test_other_arrays_are_no_vectors(array: str) -> None:
+    for expression in (f"v relative to {array}", f"distance from v to {array}", f"new Object at {array}"):
+        text = f"import numpy\nv = Vector(Range(0, 1), 5, 0)\nparam x = {expression}\n"
+        assert isinstance(failure(text), ScenicTypeError)

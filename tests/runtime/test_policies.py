@@ -127,6 +127,11 @@ def test_a_round_costs_least_for_what_it_finds() -> None:
     rare = paced(100, 1).choose(1, 4096, more=True)
     assert rare.scenes == 1
     assert 64 <= rare.ahead <= 1024
+    # More attempts at one scene than it takes find no more of it.
+    for waiting in (1, 3):
+        common = paced(100, 50).choose(waiting, 4096, more=True)
+        assert common.scenes == waiting
+        assert common.ahead <= 16
 
 
 @pytest.mark.parametrize("most", [1, 7, 64, 4096])
@@ -198,6 +203,15 @@ def test_what_is_cheap_and_rejects_comes_first_as_soon_as_it_is_known() -> None:
         stages.measure(1, 1000, 1e-3, 500)
         stages.measure(2, 1000, 1e-4, 500)
     assert [order for (order,) in (orders(stages) for _ in range(3))][-1] == (2, 1, 0)
+
+
+def test_old_measurements_of_what_passed_fade_as_fast_as_those_of_what_came() -> None:
+    """Or a check that rejects half of what comes would soon seem to reject nothing."""
+    stages = staged(*(Stub((node(number),)) for number in range(2)))
+    for _ in range(60):
+        stages.measure(0, 1000, 1e-3, 990)
+        stages.measure(1, 1000, 2e-3, 500)
+    assert [order for (order,) in (orders(stages) for _ in range(8))][-1] == (1, 0)
 
 
 def test_a_check_that_is_dear_stands_alone() -> None:

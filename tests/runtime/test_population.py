@@ -170,3 +170,45 @@ def test_an_object_whose_size_may_be_no_number_is_that_of_its_scene() -> None:
         assert scene.objects[0].tag == scene.params["t"]
         assert scene.objects[0].width == scene.params["w"]
         assert scene.objects[1].tag == (scene.params["t"], scene.params["w"])
+
+
+def test_a_copy_of_a_scene_has_parameters_of_its_own() -> None:
+    """Also where those of the scene were looked at before; they lead to the objects of the copy."""
+    text = "ego = new Object at (Range(0, 1), 0)\nparam leader = ego, marks = [Range(0, 1)]\n"
+    for look in (True, False):
+        (scene,) = scenic.scenarioFromString(text).sample(1, seed=1)
+        assert not look or scene.params["marks"]
+        again = deepcopy(scene)
+        assert again.params["leader"] is again.egoObject is not scene.egoObject
+        assert again.params["marks"] == scene.params["marks"]
+        assert again.params["marks"] is not scene.params["marks"]
+
+
+def test_a_scene_without_an_ego_has_none() -> None:
+    (scene,) = scenic.scenarioFromString("new Object at (Range(0, 1), 0)\nnew Object at (9, 9)\n").sample(
+        1, seed=1
+    )
+    assert scene.egoObject is None
+    assert len(scene.objects) == 2
+
+
+def test_what_an_object_is_in_all_scenes_is_told() -> None:
+    """Which properties it has, which of them the program gives, and which are the same in every scene."""
+    text = (
+        "class Car:\n    load: 3\nego = new Car at (Range(0, 1), 0), with width 2, with extra 'x'\n"
+        "new Car at (9, 9), facing 30 deg\nmoved = new Car at (20, 0)\nmutate moved by 3\n"
+    )
+    (scene,) = scenic.scenarioFromString(text).sample(1, seed=1)
+    ego, fixed, mutated = map(scene.origin, scene.objects)
+    assert {"extra", "load", "width", "position"} <= {*ego.names}
+    assert [*ego.names] == sorted(ego.names)
+    assert "extra" not in fixed.names
+    assert {"position", "width", "extra"} <= {*ego.given}
+    assert "length" not in ego.given
+    assert not {"width", "extra"} & {*fixed.given}
+    assert {"width", "length", "load", "extra"} <= ego.fixed
+    assert "position" not in ego.fixed
+    assert {*fixed.names} == fixed.fixed
+    assert mutated.fixed == frozenset()
+    assert scene.origin(scene.objects[0]) is ego
+    assert ego.read(scene.objects[0], "load") == 3

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from scenic.language.errors import ScenicValueError
-from tests.runtime.programs import failure, params, place, thing
+from tests.runtime.programs import failure, params, place, scenario, thing
 
 WRONG = [
     # (property, a value that fits, one that does not, the code)
@@ -81,6 +81,14 @@ EDGES = [
     ("length", "1e300", "math.inf"),
     ("yaw", "-math.pi", "math.inf"),
     ("position", "(1e300, 0, 0)", "(0, 0, math.nan)"),
+    ("position", "(0, 1e300, 0)", "(0, -math.inf, 0)"),
+    ("visibleDistance", "1e300", "math.nan"),
+    ("viewRayCount", "(1, 1)", "(math.nan, 2)"),
+    ("viewAngles", "(1, 1)", "(math.nan, 1)"),
+    ("color", "(0.5, 1, 0)", "(0, math.nan, 1)"),
+    ("yaw", "math.pi", "math.nan"),
+    ("pitch", "1.5", "-math.inf"),
+    ("roll", "-1.5", "math.nan"),
 ]
 
 
@@ -99,3 +107,45 @@ def test_angles_are_stored_within_half_a_turn(name: str, angle: float) -> None:
     assert abs(found) <= math.pi
     assert math.isclose(math.cos(found), math.cos(angle), abs_tol=1e-9)
     assert math.isclose(math.sin(found), math.sin(angle), abs_tol=1e-9)
+
+
+FORMS = [
+    # (property, a form of a value, what is stored)
+    ("viewAngles", "[1, 0.5]", (1, 0.5)),
+    ("viewAngles", "1 @ 0.5", (1, 0.5)),
+    ("viewAngles", "Vector(1, 0.5, 0)", (1, 0.5)),
+    ("viewAngles", "Uniform([1, 0.5], [1, 0.5])", (1, 0.5)),
+    ("viewAngles", "Uniform(1 @ 0.5, Uniform([1, 0.5], (1, 0.5)))", (1, 0.5)),
+    ("viewAngles", "(Range(7, 8), Range(4, 5))", (math.tau, math.pi)),
+    ("viewAngles", "[Range(7, 8), 0.5]", (math.tau, 0.5)),
+    ("color", "[1, 0.5, 0]", (1, 0.5, 0)),
+    ("color", "(1, 0.5, 0, 0.25)", (1, 0.5, 0, 0.25)),
+    ("color", "(Range(1, 1), 0.5, DiscreteRange(0, 0))", (1, 0.5, 0)),
+    ("color", "Uniform([1, 0.5, 0], Uniform([1, 0.5, 0], (1, 0.5, 0)))", (1, 0.5, 0)),
+    ("viewRayCount", "[3, 2]", (3, 2)),
+    ("viewRayCount", "Uniform([3, 2], Uniform([3, 2], (3, 2)))", (3, 2)),
+    ("viewRayCount", "(DiscreteRange(3, 3), 2)", (3, 2)),
+    ("viewRayCount", "Uniform([3, 2], told([3, 2], Range(0, 1)))", (3, 2)),
+    ("viewAngles", "Uniform(told([1, 0.5], Range(0, 1)), [1, 0.5])", (1, 0.5)),
+    ("color", "Uniform(told([1, 0.5, 0], Range(0, 1)), [1, 0.5, 0])", (1, 0.5, 0)),
+]
+
+
+@pytest.mark.parametrize(("name", "form", "stored"), FORMS)
+def test_pairs_and_colours_are_kept_as_tuples_whatever_they_are_given_as(
+    name: str, form: str, stored: tuple[float, ...]
+) -> None:
+    item = thing(f"told = distributionFunction(lambda value, _: value)\nego = new Object with {name} {form}")
+    found = getattr(item, name)
+    assert type(found) is tuple
+    assert found == pytest.approx(stored, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    "truth", ["DiscreteRange(0, 1)", "Uniform(0, 0.5)", "Uniform(False, True)", "max(0, Range(-1, 1))"]
+)
+def test_drawn_numbers_may_say_whether_something_holds(truth: str) -> None:
+    """Objects that may collide by chance do so only in scenes where they may."""
+    text = f"may = {truth}\nego = new Object with allowCollisions may\nx = Range(0, 2)\nother = new Object at (x, 0)\nparam may = may\n"
+    met = [(bool(item.params["may"]), item.objects[1].x < 1) for item in scenario(text).sample(40, seed=1)]
+    assert set(met) == {(True, True), (True, False), (False, False)}

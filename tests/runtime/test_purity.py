@@ -1,16 +1,19 @@
 """Which functions need not be called on each sample, and that the choices that they give instead are the same."""
 
+import builtins
 import math
 import random
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
 import pytest
 
 from scenic.language.errors import RejectionException
 from scenic.runtime.choices import _is_data
 from scenic.runtime.functions import max as language_max
 from scenic.runtime.purity import is_pure
+from scenic.runtime.randomness import is_as, states
 from scenic.runtime.values import Vector
 from tests.runtime.programs import draws, failure, scenario
 
@@ -74,11 +77,40 @@ def _changes_within(x: Any) -> Any:
     return [(lambda z: z.pop())(y) for y in x]
 
 
+def _stores_some_parts(x: Any) -> Any:
+    x[:1] = [2]
+    return x
+
+
+def _binds_a_global(x: Any) -> Any:
+    global LIMIT
+    LIMIT = x
+    return x
+
+
+def _imports(x: Any) -> Any:
+    from random import random
+
+    return random() > x
+
+
+def _makes_a_class(x: Any) -> Any:
+    class Made:
+        size = 1
+
+    return Made
+
+
 @pytest.mark.parametrize(
     "function",
     [
         _stores_a_part,
+        _stores_some_parts,
         _stores_an_attribute,
+        _binds_a_global,
+        _imports,
+        _makes_a_class,
+        lambda x: (_imports(x), x),
         _deletes_a_part,
         _deletes_an_attribute,
         _changes_within,
@@ -91,6 +123,30 @@ def _changes_within(x: Any) -> Any:
 def test_what_changes_others_is_an_effect(function: Callable[..., Any]) -> None:
     """Wherever it is done: in the function, in one that stands in it, in one that it calls."""
     assert not is_pure(function)
+
+
+def test_a_name_is_what_the_module_of_the_function_binds_it_to() -> None:
+    """Also the name of a function of Python's own, which the module may hide or get from elsewhere."""
+    seen: list[Any] = []
+    for names, pure in (
+        ({}, True),
+        ({"len": seen.append}, False),
+        ({"len": math.floor}, True),
+        ({"__builtins__": {"len": seen.append}}, False),
+        ({"__builtins__": {"len": len}}, True),
+        ({"__builtins__": builtins}, True),
+        ({"__builtins__": {"len": seen.append}, "len": len}, True),
+    ):
+        exec("def f(x):\n    return len(x)", names)
+        assert is_pure(names["f"]) == pure
+
+
+def test_a_program_that_hides_a_function_of_pythons_own_calls_its_own_on_each_sample() -> None:
+    text = (
+        "import random\nrolls = []\ndef max(*items):\n    rolls.append(len(items))\n    return random.random()\n"
+        "f = distributionFunction(lambda items: max(*items))\nparam x = f(Uniform([1, 2], [1, 2]))\n"
+    )
+    assert len(set(draws(text, n=5))) == 5
 
 
 CHOICES = """
@@ -183,12 +239,50 @@ def test_code_that_draws_only_sometimes_has_the_draws_of_its_own_lane() -> None:
     assert any(x != y for x, y in together)
 
 
-def test_code_that_looks_at_the_generators_finds_them_seeded() -> None:
+@pytest.mark.parametrize("state", ["random.getstate()", "str(numpy.random.get_state()[1].tolist())"])
+def test_code_that_looks_at_the_generators_finds_them_seeded(state: str) -> None:
     text = (
-        "import random\nf = distributionFunction(lambda x: hash(random.getstate()))\nparam x = f(Range(0, 1))"
+        f"import numpy, random\nf = distributionFunction(lambda x: hash({state}))\nparam x = f(Range(0, 1))"
     )
     assert draws(text, n=3) == draws(text, n=3)
     assert len(set(draws(text, n=3))) == 3
+
+
+@pytest.mark.parametrize(
+    "draw",
+    ["numpy.random.standard_normal()", "random.gauss(0, 1)", "numpy.random.rand()", "random.getrandbits(9)"],
+)
+def test_code_draws_the_same_whatever_was_drawn_before(draw: str) -> None:
+    """Normal numbers are made in pairs: of one the second may be left over, which the code does not get."""
+    text = f"import numpy, random\nf = distributionFunction(lambda x: {draw})\nparam x = f(Range(0, 1))"
+    found = []
+    for left_over in (False, True):
+        random.seed(1)
+        np.random.seed(1)  # noqa: NPY002 - what programs use
+        if left_over:
+            random.gauss(0, 1)
+            np.random.standard_normal()  # noqa: NPY002 - what programs use
+        before = states()
+        found.append(draws(text, n=4))
+        assert is_as(before)
+    assert found[0] == found[1]
+    assert len(set(found[0])) > 2
+
+
+@pytest.mark.parametrize("use", ["param y = g({}, x)", "require g({}, x) > 0", "require f({}, x) > 0"])
+def test_code_is_called_only_where_all_that_it_gets_is_known(
+    use: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = (
+        "from shapely.geometry import box\nF = PolygonalVectorField('f', [(box(0, 0, 1, 1), 0.5)])\n"
+        "def f(*values):\n    print(values[-1])\n    return values[-1]\ng = distributionFunction(f)\n"
+        f"x = Range(-1, 1)\nparam x = x\n{use}\n"
+    )
+    for operands in ("(F at (x, 0.5)).yaw", "0, F at (x, 0.5)", "[F at (x, 0.5)]"):
+        assert min(draws(text.format(operands), n=20)) > 0
+        printed = list(map(float, capsys.readouterr().out.split()))
+        assert len(printed) >= 20
+        assert min(printed) > 0
 
 
 def test_generators_are_as_before() -> None:

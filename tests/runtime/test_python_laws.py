@@ -49,6 +49,50 @@ def test_resampling_draws_anew_from_the_same_dependencies() -> None:
     assert all(low <= d <= low + 1 and low <= e <= low + 1 and d != e for low, d, e in values)
 
 
+def test_what_is_drawn_anew_has_the_attributes_of_the_first() -> None:
+    text = """
+class Marked(Distribution):
+    def __init__(self, low):
+        super().__init__(low)
+        self.low = low
+    def sampleGiven(self, value):
+        return (value[self.low], self.mark)
+d = Marked(Range(0, 1))
+d.mark = "a"
+e = resample(d)
+d.mark = "b"
+param x = (d, e, resample(d), e.mark)
+"""
+    for (low, _), *others in draws(text.replace('d.mark = "b"\n', ""), n=5):
+        assert others == [(low, "a"), (low, "a"), "a"]
+    for d, e, again, _ in draws(text, n=5):
+        assert (d[1], e[1], again[1]) == ("b", "a", "b")
+
+
+@pytest.mark.parametrize(
+    ("type_", "drawn"), [("int", "3"), ("bool", "True"), ("str", "'a'"), ("list", "[1, 2]")]
+)
+def test_what_a_law_draws_keeps_its_type(type_: str, drawn: str) -> None:
+    text = f"class Told(Distribution):\n    def sampleGiven(self, value):\n        return {drawn}\nparam x = Told(valueType={type_})"
+    (found,) = draws(text, n=1)
+    assert (type(found).__name__, found) == (type_, eval(drawn))
+
+
+@pytest.mark.parametrize(
+    "call", ["f(low)", "f(0, low)", "f(0, b=low)", "f(b=low)", "f(0, [low, 1])", "f(0, b={'a': low})"]
+)
+def test_methods_are_lifted_by_any_random_argument(call: str) -> None:
+    text = f"""
+class K(object):
+    @distributionMethod
+    def f(self, a=0, b=0):
+        return repr([a, b]).count("1") if "Range" not in repr([a, b]) else "unlifted"
+low = Range(10, 19)
+param x = K().{call}
+"""
+    assert all(type(value) is int and value >= 1 for value in draws(text, n=3))
+
+
 def test_what_is_drawn_anew_is_known_to_be_a_number_too() -> None:
     law = "Shifted(low, valueType=float)"
     for value in (law, f"resample({law})", f"resample(resample({law}))"):
@@ -121,6 +165,36 @@ c = new Object with marked [wide, 2], at (0, 20), with width 7
     assert a.tag == (5, 0)
     assert (b.tag[0], b.tag[1].yaw) == (1, pytest.approx(0.75))
     assert c.tag == ([7, 2], 0)
+
+
+def test_functions_of_specifiers_compute_with_what_their_arguments_read() -> None:
+    text = """
+from scenic import specifier
+from scenic.core.lazy_eval import DelayedArgument
+@specifier(tag=1, mark=1)
+def marked(self, value, other=None):
+    return {"tag": "wide" if value > 3 else "narrow", "mark": [len(other), *other]}
+wide = DelayedArgument({"width"}, lambda context: context.width)
+pair = DelayedArgument({"width", "length"}, lambda context: [context.width, context.length])
+a = new Object with marked (wide, pair), with width 5, with length 2
+b = new Object with length 3, with width 2, with marked (wide, pair), at (20, 0)
+"""
+    a, b = scene(text).objects
+    assert (a.tag, a.mark) == ("wide", [2, 5, 2])
+    assert (b.tag, b.mark) == ("narrow", [2, 2, 3])
+
+
+def test_what_a_specifier_of_the_program_forgets_is_named() -> None:
+    text = """
+from scenic import specifier
+@specifier(zeta=1, alpha=2, beta=1)
+def told(self):
+    return {"beta": 1}
+ego = new Object with told ()
+"""
+    error = failure(text)
+    assert isinstance(error, ScenicTypeError)
+    assert "gives no value for 'alpha', 'zeta'" in str(error)
 
 
 def test_a_specifier_of_the_program_may_modify_what_another_gives() -> None:
@@ -284,6 +358,29 @@ def test_a_sample_that_fails_or_is_rejected_says_so() -> None:
     assert 0 < number < 1
 
 
+@pytest.mark.parametrize(
+    ("value", "error"),
+    [
+        ("1 / zero(1) + 1 / zero(2)", "ZeroDivisionError"),
+        ("fails('a') + fails('b')", "KeyError: 'a'"),
+        ("Uniform(fails('a'), fails('a')) + fails('b')", "KeyError: 'a'"),
+        ("(True or fails('a')) and fails('b')", "KeyError: 'b'"),
+        ("fails(Uniform('a', 'a')) + DiscreteRange(2 + n / 9, 2.5)", "RejectionException"),
+        ("Discrete({fails('a'): 1e-9, 1: 1}) + fails('b')", "KeyError: 'b'"),
+    ],
+)
+def test_of_several_failures_of_a_sample_the_first_that_python_meets_is_raised(
+    value: str, error: str
+) -> None:
+    text = (
+        "n = Range(0, 1)\n@distributionFunction\ndef failure(name, value):\n    return {}[name]\n"
+        "def fails(name):\n    return failure(name, n)\ndef zero(number):\n    return Range(0, number) * 0\n"
+        f"ego = new Object\ntry:\n    found = ({value}).sample()\n"
+        "except Exception as error:\n    found = f'{type(error).__name__}: {error}'\nparam found = found\n"
+    )
+    assert scene(text).params["found"].startswith(error)
+
+
 @pytest.mark.parametrize("drawn", ["None", "'a'", "Vector(1, 2)", "10**400", "[1]"])
 def test_a_law_of_numbers_draws_a_number(drawn: str) -> None:
     """Anything else is an error, but not where a choice draws something else."""
@@ -378,3 +475,34 @@ def test_the_parameters_of_laws_can_be_read() -> None:
         "Vector(Range(0, 1), 2).foo",
     ):
         assert isinstance(failure(f"param x = {wrong}"), AttributeError), wrong
+
+
+@pytest.mark.parametrize(
+    ("given", "count"),
+    [("(1, 2)", 2), ("()", 0), ("[1, 2]", 1), ("Pair(1, 2)", 1), ("Vector(1, 2)", 1), ("(Pair(1, 2),)", 1)],
+)
+def test_a_tuple_as_it_is_written_holds_several_arguments(given: str, count: int) -> None:
+    text = (
+        "from collections import namedtuple\nfrom scenic import specifier\nPair = namedtuple('Pair', 'a b')\n"
+        "@specifier(tag=1)\ndef counted(self, *arguments): return {'tag': len(arguments)}\n"
+        f"ego = new Object with counted {given}\n"
+    )
+    (found,) = scenario(text).sample(1)
+    assert found.egoObject.tag == count
+
+
+@pytest.mark.parametrize(
+    ("law", "parts"),
+    [
+        ("DiscreteRange(3, 9)", ["numerator", "denominator", "real", "imag", "bit_length()", "conjugate()", "bit_count()"]),
+        ("Range(3, 9)", ["real", "imag", "is_integer()", "as_integer_ratio()", "hex()", "conjugate()"]),
+        ("Uniform(3, 2.5)", ["real", "imag", "as_integer_ratio()", "conjugate()"]),
+        ("int(Range(3, 9))", ["numerator", "bit_length()"]),
+    ],
+)  # fmt: skip
+def test_drawn_numbers_have_the_attributes_of_those_of_python(law: str, parts: list[str]) -> None:
+    shown = ", ".join(f"y.{part}" for part in parts)
+    for x, *found in draws(f"y = {law}\nparam x = (y, {shown})\n", n=8):
+        expected = [eval(f"x.{part}", {"x": x}) for part in parts]
+        assert found == expected
+        assert [type(item) for item in found] == [type(item) for item in expected]

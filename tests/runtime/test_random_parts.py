@@ -4,6 +4,7 @@ import gc
 import math
 import weakref
 from collections.abc import Callable
+from functools import reduce
 from typing import Any, cast
 
 import numpy as np
@@ -11,9 +12,10 @@ import pytest
 
 from scenic.language.errors import RandomControlFlowError, ScenicTypeError, ScenicValueError
 from scenic.runtime.samples import Sample
-from tests.runtime.programs import failure, place, scenario
+from tests.runtime.programs import failure, params, place, scenario
 
 PAIR = """
+import functools
 class A(Object):
     letter = 'a'
     def g(self, x, name='g'):
@@ -25,6 +27,8 @@ class A(Object):
     def grade(x): return 'large' if x > 0.5 else 'small'
     @property
     def side(self): return 'east' if self.position.x > 5 else 'west'
+    @functools.cached_property
+    def lasting(self): return 'east' if self.position.x > 5 else 'west'
 class B(A):
     letter = 'b'
 a = new A at (Range(0, 1), 2, 3), with tag 'a'
@@ -52,6 +56,12 @@ PARTS: list[tuple[str, Expected]] = [
     ("c.itself().tag", lambda p: p["c"].tag),
     ("c.grade(x)", lambda p: "large" if p["x"] > 0.5 else "small"),
     ("c.side", lambda p: "east" if p["c"].tag == "b" else "west"),
+    ("c.lasting", lambda p: "east" if p["c"].tag == "b" else "west"),
+    ("l[i].lasting", lambda p: "east" if p["l"][p["i"]].tag == "b" else "west"),
+    ("Uniform(sorted, sorted)([2, -3, 1], reverse=True, key=abs)", lambda p: [-3, 2, 1]),
+    ("Uniform(sorted, sorted)([2, -3, i], key=None, reverse=False)", lambda p: sorted([2, -3, p["i"]])),
+    ("Uniform({'k': c}, {'k': c})['k'].g(x)", lambda p: graded(p["c"], p["x"])),
+    ("Uniform([{'k': c}], [{'k': c}])[0]['k'].side", lambda p: "east" if p["c"].tag == "b" else "west"),
     ("c.letter", lambda p: p["c"].tag),
     ("l[0].tag", lambda p: p["l"][0].tag),
     ("l[0].position.x", lambda p: p["l"][0].position.x),
@@ -706,3 +716,36 @@ def test_observers_may_be_choices_of_choices() -> None:
     )
     for item in scenario(text).sample(20, seed=2):
         assert item.params["x"] is item.objects[1]
+
+
+@pytest.mark.parametrize(
+    "outer",
+    [
+        "Range(0, {})",
+        "Normal({}, 1)",
+        "TruncatedNormal({}, 1, 0, 9)",
+        "abs({})",
+        "({} + 1)",
+        "Uniform({}, 3)",
+    ],
+)
+def test_the_text_of_random_values_shows_four_levels(outer: str) -> None:
+    def nested(levels: int, innermost: str) -> str:
+        return reduce(lambda inner, _: outer.format(inner), range(levels), innermost)
+
+    for levels in (2, 3):
+        whole = nested(levels, "Range(1, 2)")
+        assert params(f"x = {whole}\nparam x = repr(x)\n")["x"] == whole
+    for levels in (4, 5, 9):
+        text = nested(levels, "Range(1, 2)")
+        assert params(f"x = {text}\nparam x = repr(x)\n")["x"] == nested(4, "...")
+
+
+def test_filters_that_draw_or_count_are_called_on_each_sample() -> None:
+    text = (
+        "import random\ndef lucky(n): return random.random() < 0.5\n"
+        "param x = len(filter(lucky, Uniform(list(range(40)), list(range(41)))))\nego = new Object\n"
+    )
+    found = [item.params["x"] for item in scenario(text).sample(30, seed=1)]
+    assert len(set(found)) > 5
+    assert all(5 < number < 36 for number in found)

@@ -36,6 +36,13 @@ KINDS = {
     "string": "'word'",
     "list": "[1, 2.5, -3, 4]",
     "none": "None",
+    "array": "np.array([4, 5])",
+    "numpy": "np.float64(0.5)",
+    "class": "Object",
+    "infinite": "math.inf",
+    "huge": "10**30",
+    "unknown": "given(0.5, Range(0, 1))",
+    "unknown object": "given(thing, Range(0, 1))",
 }
 
 SECOND = {
@@ -46,6 +53,8 @@ SECOND = {
 
 PREAMBLE = """
 import math
+import numpy as np
+from scenic.core.distributions import distributionFunction
 flow = VectorField("flow", lambda p: 0.1 * p.x - 0.2 * p.y)
 disc = CircularRegion((2, -1, 0.5), 3)
 workspace = Workspace(BoxRegion(position=(0, 0, 0), dimensions=(80, 90, 100)))
@@ -55,6 +64,9 @@ oriented = new OrientedPoint at (-5, 8, 2), facing (1.1, -0.3, 0.2)
 thing = new Object at (-12, -9, 3), facing (-0.8, 0.35, 0.5), with width 2.2, with length 1.3, with height 0.7
 def helper(value, other=2):
     return (value, other)
+@distributionFunction
+def given(value, other):
+    return value
 answers = {}
 def attempt(key, function):
     try:

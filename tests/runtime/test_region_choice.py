@@ -6,17 +6,17 @@ import numpy as np
 import pytest
 
 from runtime.programs import draws, failure, scenario, thing
-from scenic.language.errors import InvalidScenarioError
+from scenic.language.errors import InvalidScenarioError, ScenicTypeError
 from scenic.runtime.geometry import primitives
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.poses import Poses
-from scenic.runtime.regions.base import Region
+from scenic.runtime.regions.base import Region, Workspace
 from scenic.runtime.regions.choice import RegionChoice
-from scenic.runtime.regions.composite import DifferenceRegion, exactly_contains
+from scenic.runtime.regions.composite import DifferenceRegion, IntersectionRegion, exactly_contains
 from scenic.runtime.regions.lines import PathRegion
 from scenic.runtime.regions.planar import CircularRegion, RectangularRegion
 from scenic.runtime.regions.volumes import BoxRegion, SpheroidRegion
-from scenic.runtime.values import Orientation, Vector
+from scenic.runtime.values import Orientation, Vector, uniform
 
 REGIONS = (
     "disc = CircularRegion((0, 0, 1), 2)\nplate = RectangularRegion((10, 0, 3), 0.5, 2, 4)\n"
@@ -331,3 +331,29 @@ def test_points_count_at_the_height_of_the_option_of_their_lane() -> None:
         around = rest.regionA.fixed_columns("a test")
         held = exactly_contains(rest, points[order], [*around, index[order], *columns])
         np.testing.assert_array_equal(held, ~expected[order])
+
+
+def test_lanes_in_which_no_point_is_found_are_told_of_every_option() -> None:
+    nothing = IntersectionRegion(BoxRegion((1, 1, 1)), BoxRegion((1, 1, 1), (4, 0, 0)))
+    full = BoxRegion((2, 2, 2), (9, 9, 9))
+    index = np.array([0, 1, 1, 0])
+    for empty in (
+        nothing,
+        Workspace(nothing),
+        Workspace(Workspace(nothing)),
+        DifferenceRegion(nothing, full),
+    ):
+        region = RegionChoice(0, [empty, full])
+        columns = [column for option in region.options for column in option.fixed_columns("a test")]
+        keys = np.arange(4, dtype=np.uint64)
+        points, known = region.draw_points(np.full((region.draws, 4), 0.5), keys, index, *columns)
+        assert known is not None
+        assert known.tolist() == [False, True, True, False]
+        np.testing.assert_allclose(points[1:3], 9)
+
+
+def test_what_a_choice_holds_and_what_holds_it_is_not_known_before_it_is_drawn() -> None:
+    region = RegionChoice(uniform(), OPTIONS[:2])
+    for one, other in ((region, OPTIONS[1]), (OPTIONS[1], region), (region, region)):
+        with pytest.raises(ScenicTypeError, match="random"):
+            one.containsRegion(other)

@@ -1,6 +1,7 @@
 """Regions where a rule has a special case: holes in the middle, full turns, several members, mirrored grids, level paths."""
 
 import math
+import random
 
 import numpy as np
 import pytest
@@ -466,3 +467,25 @@ def test_points_drawn_now_from_a_line_have_its_direction(kind: type) -> None:
                 assert not hasattr(point, "heading")
             else:
                 assert point.heading == pytest.approx(expected(point.x))
+
+
+def test_points_of_parts_that_are_hard_to_hit_are_tried_anew() -> None:
+    """Of a region that knows no law of its own points, drawn at once."""
+    big, small = (
+        named.SpheroidRegion(dimensions=(4, 4, 4)),
+        named.BoxRegion(position=(1.7, 1.7, 1.7), dimensions=(1.4, 1.4, 1.4)),
+    )
+    region = IntersectionRegion(big, small)
+    random.seed(3)
+    for _ in range(25):
+        point = region.uniformPointInner()
+        assert big.containsPoint(point)
+        assert small.containsPoint(point)
+
+
+def test_a_fixed_point_is_or_is_not_on_each_of_many_sides() -> None:
+    text = (
+        "box = new Object at (Uniform(0, 1, 2), 0, 0), with width 2\nego = new Object at (50, 50, 50)\n"
+        "require (3, 0, 0) in box.rightSurface\nparam x = box.position.x\n"
+    )
+    assert {item.params["x"] for item in scenario(text).sample(12, seed=1)} == {2}

@@ -936,6 +936,10 @@ def test_sides_alone_bound_no_volume() -> None:
         assert tuple(middle) == (1, 2, 3)
         assert radius == pytest.approx(math.sqrt(4 + 16 + 36) / 2)
     assert item.surface.isConvex is True
+    for region in (item.surface, item.occupiedSpace):
+        assert tuple(region.dimensions) == (2, 4, 6)
+        assert tuple(region.position) == (1, 2, 3)
+        assert region.rotation.eulerAngles == pytest.approx((0.7, 0.4, -0.3))
     hollow = thing(
         "from tests.runtime.geometry.samples import SHAPES\nego = new Object with shape MeshShape(SHAPES['hollow']())"
     )
@@ -1012,11 +1016,20 @@ def test_unions_hold_and_meet_in_each_lane_the_body_of_that_lane() -> None:
         "CircularRegion((3, 0), 1).intersect(PolygonalRegion([(-9, -9), (9, -9), (9, 9), (-9, 9)], orientation=F))",
         "CircularRegion((3, 0), Range(1, 2)).intersect(PolygonalRegion([(-9, -9), (9, -9), (9, 9), (-9, 9)], orientation=F))",
         "PathRegion([(0, 0, 0), (3, 0, 4)], orientation=F)",
+        "PolygonalRegion([(0, 0), (4, 0), (4, 3)], orientation=F).difference(BoxRegion((2, 2, 2)))",
+        "PolygonalRegion([(0, 0), (4, 0), (4, 3)], orientation=F).difference(CircularRegion((0, 0), Range(1, 2)))",
+        "IntersectionRegion(BoxRegion((4, 4, 4)), SpheroidRegion((5, 5, 5)), orientation=F)",
+        "IntersectionRegion(BoxRegion((4, 4, 4)), SpheroidRegion((5, 5, Range(4, 5))), orientation=F)",
+        "UnionRegion(BoxRegion((2, 2, 2)), SpheroidRegion((2, 2, 2), (3, 0, 0)), orientation=F)",
+        "DifferenceRegion(BoxRegion((2, 2, 2)), SpheroidRegion((2, 2, 2), (1, 0, 0)), orientation=F)",
+        "Workspace(PolygonalRegion([(0, 0), (4, 0), (4, 3)], orientation=F))",
+        "MeshSurfaceRegion(trimesh.creation.box((4, 2, 2)), orientation=F)",
+        "Uniform(BoxRegion((2, 2, 2), orientation=F), PathRegion([(0, 0, 0), (3, 0, 4)], orientation=F))",
     ],
 )
 def test_fields_of_regions_may_be_drawn(made: str) -> None:
     text = (
-        "from scenic.core.regions import PathRegion\n"
+        "import trimesh\nfrom scenic.core.regions import DifferenceRegion, IntersectionRegion, PathRegion, UnionRegion\n"
         "f, g = VectorField('f', lambda p: 0.1 * p.x), VectorField('g', lambda p: 0.7)\nF = Uniform(f, g)\n"
         f"r = {made}\np = new OrientedPoint in r\nparam x = (p, r, F, r.orientation)\n"
     )
@@ -1027,3 +1040,41 @@ def test_fields_of_regions_may_be_drawn(made: str) -> None:
         assert point.heading == pytest.approx(expected)
         assert region.orientation is orientation is field
         assert region.orientation_at(point.position).yaw == pytest.approx(expected)
+
+
+@pytest.mark.parametrize("field", ["Uniform(f, g)", "chosen(f, Uniform(1, 2))"])
+def test_unions_in_the_plane_take_the_field_that_is_drawn_of_the_first_that_holds_the_point(
+    field: str,
+) -> None:
+    text = f"""
+from scenic.core.distributions import distributionFunction
+f, g, h = (VectorField(str(turn), lambda p, turn=turn: turn) for turn in (0.5, 1.5, 2.5))
+@distributionFunction
+def chosen(field, number):
+    return f if number == 1 else g
+F = {field}
+a = PolygonalRegion([(0, 0), (4, 0), (4, 4), (0, 4)], orientation=F)
+b = PolygonalRegion([(2, 2), (9, 2), (9, 9), (2, 9)], orientation=h)
+param x = (F, new OrientedPoint in a.union(b), new OrientedPoint in b.union(a))
+"""
+    found = draws(text, n=60)
+    assert {drawn.name for drawn, _, _ in found} == {"0.5", "1.5"}
+    for drawn, first, second in found:
+        in_a = [max(point.x, point.y) <= 4 for point in (first, second)]
+        in_b = [min(point.x, point.y) >= 2 for point in (first, second)]
+        own = float(drawn.name)
+        assert first.heading == pytest.approx(own if in_a[0] else 2.5)
+        assert second.heading == pytest.approx(2.5 if in_b[1] else own)
+
+
+def test_paths_hold_what_is_within_their_tolerance_and_lines_what_is_on_them() -> None:
+    points = [(0, 0, 0), (4, 0, 0)]
+    for region, tolerance in (
+        (named.PathRegion(points), 1e-8),
+        (named.PathRegion(points, tolerance=0.1), 0.1),
+        (named.PathRegion(polylines=[points], tolerance=1e-4), 1e-4),
+        (named.PolylineRegion(points), 1e-6),
+    ):
+        for share, held in ((0.9, True), (1.1, False)):
+            for away in (Vector(1, share * tolerance, 0), Vector(4 + share * tolerance, 0, 0)):
+                assert region.containsPoint(away) is held

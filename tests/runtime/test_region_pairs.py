@@ -277,6 +277,17 @@ def test_what_is_left_of_two_regions_has_the_field_of_the_first_with_any(first: 
             assert left.orientation is one
 
 
+@pytest.mark.parametrize("first", ORIENTED)
+@pytest.mark.parametrize("second", ORIENTED)
+def test_unions_of_others_than_regions_of_the_plane_have_no_field(first: str, second: str) -> None:
+    f, g = (VectorField(name, lambda place: place.x) for name in "fg")
+    both = ORIENTED[first](f).union(ORIENTED[second](g))
+    assert both.has_orientation is (first == second == "polygon")
+    assert (both.orientation is None) is not both.has_orientation
+    part = both.intersect(named.BoxRegion((1, 1, 1), (1, 1, 0)))
+    assert isinstance(part, Composite) or part.has_orientation is both.has_orientation
+
+
 @pytest.mark.parametrize(
     "points", [[(-9, 0.5, 1), (0, 0.5, 1), (0, 9, 1)], [(-9, 0.5, 0), (0, 0.5, 0), (0, 9, 0)]]
 )
@@ -486,3 +497,33 @@ def test_what_is_left_of_a_disc_without_a_ball_is_outside_it_at_that_height(heig
         assert rest.intersects(spot) is met
         assert spot.intersects(rest) is met
     assert rest.intersects(named.CircularRegion((2.3, 0, height + 1), 0.1)) is False
+
+
+@pytest.mark.parametrize("number", range(4))
+def test_each_of_many_members_counts(number: int) -> None:
+    """Of a union that only one of four members meets, and of an intersection that only one of four leaves out."""
+    places = [(0, 0, 0), (5, 0, 0), (0, 5, 0), (0, 0, 5)]
+    parts: list[Region] = [named.BoxRegion((2, 2, 2), place) for place in places]
+    parts[1] = named.SpheroidRegion((2, 2, 2), places[1])
+    union = UnionRegion(*parts)
+    place = Vector(*places[number])
+    spot, item = (
+        named.BoxRegion((0.5, 0.5, 0.5), place),
+        thing(f"ego = new Object at {places[number]}, with width 0.5, with length 0.5, with height 0.5"),
+    )
+    for other in (spot, item.occupiedSpace, named.PointSetRegion("p", [place])):
+        assert union.intersects(other) is other.intersects(union) is True
+    assert union.containsPoint(place) is union.containsObject(item) is True
+    assert union.distanceTo(place + Vector(1.5, 0, 0)) == pytest.approx(0.5)
+    assert distances(parts[number], cloud(union)).min() < 1e-9
+    assert [union.AABB[side][axis] for side in (0, 1) for axis in range(3)] == [-1, -1, -1, 6, 6, 6]
+    # What one of the members misses is not in all of them.
+    wide: list[Region] = [named.SpheroidRegion((9, 9, 9)), *(named.BoxRegion((9, 9, 9)) for _ in range(3))]
+    wide[number] = named.BoxRegion((9, 9, 9), (6, 0, 0))
+    common = IntersectionRegion(*wide)
+    for x, held in ((0, False), (3, True)):
+        probe = named.BoxRegion((0.5, 0.5, 0.5), (x, 0, 0))
+        assert common.intersects(probe) is probe.intersects(common) is held
+        assert common.containsPoint(Vector(x, 0, 0)) is held
+        assert common.footprint.containsPoint(Vector(x, 0, 0)) is held
+    assert cloud(common)[:, 0].min() >= 1.5

@@ -6,9 +6,11 @@ The oracles are independent: dense points of a box around the region, and SciPy'
 import numpy as np
 import pytest
 from scipy import stats
+from scipy.spatial.transform import Rotation
 
 import scenic
 from scenic.language.errors import InvalidScenarioError, ScenicTypeError, ScenicValueError
+from scenic.runtime.values import Orientation
 from tests.runtime.programs import (
     FALSE_ALARM,
     assert_same_rotation,
@@ -264,3 +266,50 @@ def test_points_drawn_now_follow_pythons_generator() -> None:
     assert disc.uniformPointInner() == first
     assert disc.containsPoint(first)
     assert isinstance(scenic.scenarioFromString("ego = new Object").egoObject.position, Vector)
+
+
+MOVED, ROLLED = "(Range(1, 2), Range(2, 3), Range(4, 5))", "(Range(0, 6), Range(0, 1), Range(0, 6))"
+FRAME = f"{MOVED}, {ROLLED}"
+RANDOM = {
+    "disc": "CircularRegion((Range(1, 2), 3, Range(4, 5)), Range(0.5, 3))",
+    "rectangle": "RectangularRegion((Range(1, 2), 3, Range(4, 5)), Range(0, 6), Range(3, 5), Range(0.2, 0.4))",
+    "sector": "SectorRegion((1, Range(2, 3), 4), Range(1, 3), Range(0, 6), Range(0.2, 1))",
+    "box": f"BoxRegion((Range(3, 5), Range(0.2, 0.4), Range(1, 2)), {FRAME})",
+    "ball": f"SpheroidRegion((Range(3, 5), Range(0.2, 0.4), Range(1, 2)), {FRAME})",
+    "cone": f"MeshVolumeRegion(trimesh.creation.cone(1, 2, 12), (Range(3, 5), Range(0.2, 0.4), 1), {FRAME})",
+    "shell": f"MeshSurfaceRegion(trimesh.creation.box(), (Range(3, 5), Range(0.2, 0.4), 1), {FRAME})",
+    "view": "ViewRegion(Range(2, 4), (Range(0.5, 1), Range(0.2, 0.4)), None, (Range(1, 2), 2, 3), (Range(0, 6), 0.4, 0.3))",
+    "space": f"(new Object at {MOVED}, facing {ROLLED}, with width Range(1, 2)).occupiedSpace",
+    "side": f"(new Object at {MOVED}, facing (Range(0, 6), 0.2, 0), with width Range(1, 2)).topSurface",
+}
+
+
+@pytest.mark.parametrize("kind", RANDOM)
+def test_points_of_regions_that_are_drawn_lie_all_over_those_of_their_scenes(kind: str) -> None:
+    """By the side of the middle of all points, in the frame of the region, on which they lie."""
+    text = (
+        "import trimesh\nfrom scenic.core.regions import ViewRegion\n"
+        f"r = {RANDOM[kind]}\np = (new Point in r).position\nparam r = r, p = p\n"
+    )
+    places = []
+    for scene in scenario(text).sample(64, seed=3):
+        region, point = scene.params["r"], scene.params["p"]
+        assert region.distanceTo(point) < 1e-6
+        frame = getattr(region, "rotation", None) or Orientation.fromEuler(
+            getattr(region, "heading", 0), 0, 0
+        )
+        middle = getattr(region, "position", None) or region.center
+        places.append(Rotation.from_quat(frame.q).inv().apply(np.array(point) - np.array(middle)))
+    found = np.array(places)
+    for axis in range(3):
+        part = found[:, axis]
+        if np.ptp(part) > 1e-6 and not (kind == "side" and axis == 2):
+            share = np.mean(part > (part.max() + part.min()) / 2)
+            assert 0.1 < share < 0.9
+            assert len(np.unique(part)) > 30
+    size = np.ptp(found, axis=0)
+    flat = {"disc": 1, "rectangle": 1, "sector": 1, "side": 1}
+    assert sum(size > 1e-6) >= 3 - flat.get(kind, 0)
+    if kind in ("rectangle", "box", "ball", "cone", "shell"):
+        assert 2.5 < size[0] <= 5
+        assert 0.1 < size[1] <= 0.4

@@ -368,6 +368,24 @@ def test_what_is_in_a_volume_or_on_its_border_stays_there(volume: str) -> None:
     assert draws(text, n=1) == [places * len(ways)]
 
 
+@pytest.mark.parametrize("volume", ["BoxRegion((2, 2, 2))", "SpheroidRegion((2, 2, 2))"])
+def test_fixed_places_land_along_each_direction_that_is_drawn(volume: str) -> None:
+    text = (
+        f"room = {volume}\nclass P(Point):\n    onDirection: Uniform((0, 0, 1), (1, 1, 9), (1, 0, 0))\n"
+        "p = new P at (0, 0, 4), on room\nparam x = p\n"
+    )
+    found = {tuple(p.onDirection): tuple(p.position) for p in draws(text, n=40)}
+    assert found.keys() == {(0, 0, 1), (1, 1, 9)}, "the third misses"
+    if volume.startswith("Box"):
+        expected: Any = (-1 / 3, -1 / 3, 1)
+    else:
+        # The first of (0, 0, 4) - s (1, 1, 9) on the unit sphere.
+        s = (72 - math.sqrt(72**2 - 4 * 83 * 15)) / (2 * 83)
+        expected = (-s, -s, 4 - 9 * s)
+    assert found[0, 0, 1] == pytest.approx((0, 0, 1), abs=0.01)
+    assert found[1, 1, 9] == pytest.approx(expected, abs=0.01)
+
+
 def test_radii_of_balls_in_boxes_and_ellipsoids() -> None:
     (found,) = draws("param x = (BoxRegion((3, 2, 5)).inradius, SpheroidRegion((3, 7, 4)).inradius)\n", n=1)
     assert found == (1, 1.5)

@@ -593,3 +593,94 @@ def test_a_scene_may_begin_what_a_requirement_says_of_time(formula: Any) -> None
     except InvalidScenarioError:
         found = []
     assert [state for state in STATES if state in found] == possible
+
+
+@pytest.mark.parametrize(
+    "made",
+    [
+        "new Point at (x, 0)",
+        "new OrientedPoint at (x, 0), facing 0.5",
+        "(new OrientedPoint ahead of ego by x)",
+    ],
+)
+@pytest.mark.parametrize(
+    "way",
+    [
+        "require abs(({made}).position.x) + abs(({made}).position.y) > 0.5",
+        "def far():\n    point = {made}\n    return abs(point.position.x) + abs(point.position.y) > 0.5\nrequire far()",
+    ],
+)
+def test_points_may_be_made_by_requirements(way: str, made: str) -> None:
+    """They belong to it alone; objects may not."""
+    text = f"x = Range(0, 1)\nego = new Object with width 1e-6, with length 1e-6\n{way.format(made=made)}\nparam x = x\n"
+    found = scenario(text).sample(10, seed=1)
+    assert min(item.params["x"] for item in found) > 0.49
+    assert {len(item.objects) for item in found} == {1}
+    error = failure(text.replace("new OrientedPoint", "new Object").replace("new Point", "new Object"))
+    assert isinstance(error, InvalidScenarioError)
+    assert "a requirement cannot create an object" in str(error)
+
+
+@pytest.mark.parametrize("probability", ["1", "1.0", "0.5", "0"])
+@pytest.mark.parametrize(
+    "condition",
+    ["always x < 0.5", "eventually x < 0.5", "x < 0.5 and next True", "x < 0.5 implies always True"],
+)
+def test_only_what_is_certain_may_speak_of_time(condition: str, probability: str) -> None:
+    text = f"x = Range(0, 1)\nego = new Object\nrequire[{probability}] {condition}\nparam x = x\n"
+    if float(probability) == 1:
+        values = draws(text, n=10)
+        assert (max(values) < 0.5) == (condition.startswith(("always", "x < 0.5 and")))
+    else:
+        error = failure(text)
+        assert isinstance(error, InvalidScenarioError)
+        assert "a temporal requirement cannot have a probability" in str(error)
+
+
+@pytest.mark.parametrize(
+    ("left", "right"),
+    [
+        ("a", "told(a, x)"),
+        ("told(a, x)", "a"),
+        ("told(a, x)", "told(a, x)"),
+        ("u", "told(a, x)"),
+        ("told(u, x)", "a"),
+        ("a", "told(u, x)"),
+    ],
+)
+def test_instances_that_code_gives_back_are_compared_as_themselves(left: str, right: str) -> None:
+    """With `u` one of both objects, they are the same where it is the first."""
+    text = (
+        "told = distributionFunction(lambda value, _: value)\nx = Range(0, 1)\na = new Object at (9, 9)\nego = new Object\n"
+        f"u = Uniform(a, ego)\nparam u = u, x = x\nrequire {left} {{}} {right} or x > 0.5\n"
+    )
+    drawn = "u" in left + right
+    for operator in ("==", "!="):
+        low = [
+            found.params["u"] is not found.egoObject
+            for found in scenario(text.format(operator)).sample(40, seed=3)
+            if found.params["x"] < 0.5
+        ]
+        if operator == "==":
+            assert low
+            assert all(low) == drawn
+        else:
+            assert bool(low) == drawn
+            assert not any(low)
+
+
+@pytest.mark.parametrize(
+    ("condition", "left"),
+    [
+        ("(n or n > 5) == 2", {2}),
+        ("(n > 1 or n) == 1", {1, 2}),
+        ("(n and n > 1) == 0", {0, 1}),
+        ("(n > 0 and n) == 2", {2}),
+        ("[n and 'a'] == ['a']", {1, 2}),
+        ("(n > 0 and n < 2) == True", {1}),
+        ("(not n) == True", {0}),
+        ("((n or 7) + 1) in (2, 8)", {0, 1}),
+    ],
+)
+def test_and_and_or_within_expressions_give_their_operands(condition: str, left: set[int]) -> None:
+    assert set(draws(f"n = DiscreteRange(0, 2)\nrequire {condition}\nparam x = n\n", n=20)) == left

@@ -211,6 +211,13 @@ def test_2d_defaults() -> None:
     )
     assert (found.z, found.height, tuple(found.baseOffset)) == (0, 5, (0, 0, 0))
     assert (found.contactTolerance, found.requireVisible, found.occluding) == (0, True, False)
+    own = thing(
+        "class Sign:\n    baseOffset: (0, 0, 2)\n    contactTolerance: 0.5\n    requireVisible: False\n    occluding: True\n"
+        "    height: 7\nclass Pole(Sign):\n    width: 0.2\nego = new Object\nnew Pole at (0, 90)",
+        mode2D=True,
+    )
+    assert (tuple(own.baseOffset), own.contactTolerance, own.height) == ((0, 0, 2), 0.5, 7)
+    assert (own.requireVisible, own.occluding) == (False, True)
 
 
 def test_2d_places_are_flat_when_others_read_them() -> None:
@@ -399,3 +406,19 @@ def test_a_lazy_value_is_one_for_an_instance_however_often_it_is_given() -> None
     assert ego.foo == ego.baz == ego.bar[0] == ego.bar[1]
     assert other.foo == other.baz == other.bar[0] == other.bar[1]
     assert ego.foo != other.foo
+
+
+@pytest.mark.parametrize(
+    "container", ["({0}, {1})", "[{1}, {0}]", "{{'a': {0}, 'b': {1}}}", "({0}, [{1}, 3])"]
+)
+def test_containers_wait_for_all_that_their_parts_read(container: str) -> None:
+    """Whichever part is last, and whether what it reads is specified before or behind it."""
+    parts = [f"DelayedArgument({{'{name}'}}, lambda thing: thing.{name})" for name in ("early", "late")]
+    text = (
+        "from scenic.core.lazy_eval import DelayedArgument\n"
+        f"ego = new Object with early 5, with both {container.format(*parts)}, with late 7\n"
+    )
+    expected = eval(container.format(5, 7))
+    assert thing(text).both == expected
+    circle = text.replace("with late 7", "with late DelayedArgument({'both'}, lambda thing: 1)")
+    assert isinstance(failure(circle), SpecifierError)

@@ -15,7 +15,7 @@ import pytest
 import trimesh
 
 import scenic
-from scenic.language.errors import InvalidScenarioError, SerializationError
+from scenic.language.errors import InvalidScenarioError, ScenicWarning, SerializationError
 from scenic.pipeline import diagnose
 from scenic.runtime.dumping import program_of
 from scenic.runtime.files import whole
@@ -295,7 +295,7 @@ def test_a_saved_scene_has_all_draws_of_the_program_and_no_other() -> None:
 
 
 def test_scenes_conditioned_on_one_keep_what_was_named() -> None:
-    loaded = scenario(PROGRAM)
+    loaded = scenario(PROGRAM + "param fixed = 3\n")
     (first,) = loaded.sample(1, seed=3)
     loaded.conditionOn(first, objects=[0], params=["p"])
     later = loaded.sample(20, seed=4)
@@ -311,6 +311,10 @@ def test_scenes_conditioned_on_one_keep_what_was_named() -> None:
         assert refused.value.help
     loaded.conditionOn()
     assert len({item.params["p"] for item in loaded.sample(5, seed=4)}) == 5
+    # What depends on nothing random fixes nothing.
+    for nothing in ({}, {"objects": [], "params": []}, {"objects": [], "params": ["fixed"]}):
+        loaded.conditionOn(first, **nothing)
+        assert len({item.params["p"] for item in loaded.sample(5, seed=4)}) == 5
     # A loop foresees scenes; those of before count no more.
     free = [loaded.generate()[0].params["p"] for _ in range(4)]
     loaded.conditionOn(first, params=["p"])
@@ -333,7 +337,7 @@ def test_objects_are_named_by_their_places_among_those_of_scenes() -> None:
     """The ego comes first there, not in the program."""
     loaded = scenario("a = new Object at (Range(0, 1), 5)\nego = new Object at (Range(0, 1), 9)\n")
     (first,) = loaded.sample(1, seed=3)
-    for place in (0, 1, -1):
+    for place in (0, 1, -1, -2):
         loaded.conditionOn()
         loaded.conditionOn(first, objects=[place])
         later = loaded.sample(5, seed=4)
@@ -500,3 +504,142 @@ def test_copies_of_a_scenario_are_itself() -> None:
     program = scenario(PROGRAM)
     for again in (copy.copy(program), copy.deepcopy(program), copy.deepcopy([program])[0]):
         assert again is program
+
+
+def test_a_dump_goes_to_the_standard_output_unless_a_stream_is_given(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    (scene,) = scenario(PROGRAM).sample(1, seed=1)
+    scene.dumpAsScenicCode()
+    assert capsys.readouterr().out == scene.dump()
+    scene.dumpAsScenicCode(io.StringIO())
+    assert capsys.readouterr().out == ""
+
+
+def test_values_of_the_language_are_dumped_as_parameters() -> None:
+    """Vectors, orientations, shapes, points, and what holds them."""
+    before = scene_of("""
+turn = Orientation.fromEuler(0.3, 0.2, 0.1)
+param place = Vector(1, 2, 3), turn = turn, flags = (True, None, False)
+param cone = ConeShape(dimensions=(1, 2, 3)), nested = {'a': [Vector(0, 0, 1), (turn,)]}
+param spot = new Point at (1, 2, 3), own = new OrientedPoint at (4, 5, 6), facing (0.5, 0.25, 0.125)
+class Car:
+    goal: Vector(7, 8, 9)
+    aim: turn
+    hull: SpheroidShape(dimensions=(3, 2, 1))
+ego = new Car
+""")
+    with pytest.warns(ScenicWarning, match="no property 'goal'|no property 'aim'|no property 'hull'"):
+        again = scene_of(before.dump())
+    assert "#" not in before.dump()
+    old, new = before.params, again.params
+    assert set(old) == set(new)
+    assert new["place"] == tuple(old["place"]) == (1, 2, 3)
+    assert new["flags"] == (True, None, False)
+    assert new["nested"]["a"][0] == (0, 0, 1)
+    for one, other in (
+        (old["turn"], new["turn"]),
+        (old["turn"], new["nested"]["a"][1][0]),
+        (old["own"].orientation, new["own"].orientation),
+        (old["turn"], again.egoObject.aim),
+    ):
+        assert one.approxEq(other, 1e-12)
+    assert new["spot"].position == (1, 2, 3)
+    assert new["own"].position == (4, 5, 6)
+    assert type(new["cone"]).__name__ == "ConeShape"
+    assert new["cone"].dimensions == (1, 2, 3)
+    assert again.egoObject.goal == (7, 8, 9)
+    assert again.egoObject.hull.dimensions == (3, 2, 1)
+
+
+def test_a_dumped_scene_is_judged_no_more() -> None:
+    """What it was sampled for was decided then: its objects may touch, lie outside of everything and be unseen."""
+    before = scene_of("""
+workspace = Workspace(CircularRegion((0, 0), 20))
+ego = new Object with allowCollisions True, with requireVisible False
+class Car:
+    regionContainedIn: CircularRegion((9, 9), 5)
+    requireVisible: True
+    mutationScale: 0
+other = new Car at (0.5, 9), with requireVisible False
+new Object at (0.5, 0), with mutationScale 3
+mutate other
+require ego.x < 3
+""")
+    for number in range(3):
+        (again,) = scenario(before.dump()).sample(1, seed=number)
+        assert [tuple(item.position) for item in again.objects] == [
+            tuple(item.position) for item in before.objects
+        ]
+        assert [type(item).__name__ for item in again.objects] == ["Object", "Car", "Object"]
+        assert again.program.requirements == []
+        assert again.dump() == before.dump()
+
+
+def test_data_with_anything_else_in_one_place_is_damaged() -> None:
+    program = scenario("ego = new Object at (Range(0, 1), 0)\n")
+    (scene,) = program.sample(1, seed=2)
+    data = program.sceneToBytes(scene)
+    (address,) = json.loads(data)["numbers"]
+    for changed in (
+        {"numbers": [1]},
+        {"numbers": {"no number": "0x1p-1"}},
+        {"numbers": {address: 0.5}},
+        {"words": {"0": 3}},
+        {"attempts": "many"},
+        {"seed": None},
+        {"format": "another"},
+        {"version": "1"},
+        {"version": 0},
+    ):
+        with pytest.raises(SerializationError, match="cannot be read"):
+            program.sceneFromBytes(json.dumps(json.loads(data) | changed).encode())
+    for missing in json.loads(data):
+        kept = {name: value for name, value in json.loads(data).items() if name != missing}
+        with pytest.raises(SerializationError, match="cannot be read"):
+            program.sceneFromBytes(json.dumps(kept).encode())
+
+
+def test_a_scene_tells_its_number_seed_and_attempts_again() -> None:
+    """From data and from a file whose path is a text; a fresh scene of the same scenario has its own."""
+    program = scenario("x = Range(0, 1)\nparam x = x\ndef same(v): return v\nrequire same(x < 0.3)\n")
+    scenes = program.sample(6, seed=2**70 - 1)
+    assert max(scene.attempts for scene in scenes) > 1
+    for scene in scenes:
+        again = program.sceneFromBytes(program.sceneToBytes(scene))
+        assert (again.seed, again.k, again.attempts) == (scene.seed, scene.k, scene.attempts)
+        assert (again.seed, repr(again)) == (2**70 - 1, repr(scene))
+        assert again.params == scene.params
+        assert program.sceneToBytes(again) == program.sceneToBytes(scene)
+    assert repr(scenes[2]) == f"<Scene 2 of seed {2**70 - 1}: 0 objects>"
+
+
+def test_files_of_scenes_are_named_by_texts_or_paths(tmp_path: Path) -> None:
+    program = scenario(PROGRAM)
+    (scene,) = program.sample(1, seed=4)
+    for path in (tmp_path / "one", str(tmp_path / "two")):
+        scene.save(path)
+        for named in (Path(path), str(path)):
+            assert fingerprint(program.replay(named)) == fingerprint(scene)
+
+
+def test_names_and_classes_of_a_dump_are_those_of_the_program() -> None:
+    """Members of lists have no name of their own; objects of the language's class need no class."""
+    before = scene_of("""
+class Car:
+    spot: None
+class Spot(OrientedPoint):
+    kind: 3
+posts = [new Object at (3 * i, 9) for i in range(2)]
+car = new Car at (0, 20), with spot (new Spot at (1, 2, 3), facing (0.5, 0.25, 0.125))
+ego = new Object
+other = ego
+""")
+    dump = before.dump()
+    made = [line.split(" at ")[0] for line in dump.splitlines() if " = new " in line]
+    assert made == ["ego = new Object", "object_1 = new Object", "object_2 = new Object", "car = new Car"]
+    assert [line for line in dump.splitlines() if line.startswith("class")] == ["class Car:"]
+    again = scene_of(dump)
+    spot = again.objects[3].spot
+    assert spot.position == (1, 2, 3)
+    assert spot.orientation.approxEq(before.objects[3].spot.orientation, 1e-12)

@@ -12,6 +12,7 @@ from scenic.runtime.sensors import (
     DepthSensor,
     GroundTruthSensor,
     RGBSensor,
+    Sensor,
     SSSensor,
 )
 from tests.runtime.programs import scenario
@@ -71,3 +72,36 @@ def test_truths_are_observed_as_they_are_at_each_step() -> None:
     values.append(2)
     assert (listed.getObservation(), called.getObservation(), fixed.getObservation()) == ([1, 2], 2, None)
     assert CallbackSensor().getObservation() is None
+
+
+def test_cameras_keep_what_was_said_of_them_when_they_were_made() -> None:
+    given = {"fov": 60, "exposure": 3}
+    one, other = RGBSensor(attributes=given), RGBSensor(attributes=given)
+    given["exposure"] = 4
+    one.attributes["gain"] = 2
+    assert one.attributes == {"fov": 60, "exposure": 3, "gain": 2}
+    assert other.attributes == {"fov": 60, "exposure": 3}
+    assert CameraSensor().attributes == {}
+
+
+def test_data_are_observed_as_they_are_processed() -> None:
+    class Doubled(CallbackSensor):
+        def process(self, data: int) -> int:
+            return 2 * data
+
+    sensor = Doubled(-1)
+    assert sensor.getObservation() == -1
+    for data in (3, 0):
+        sensor.onData(data)
+        assert sensor.getObservation() == 2 * data
+    with pytest.raises(NotImplementedError, match="CallbackSensor does not say how data are processed"):
+        CallbackSensor().onData(1)
+
+
+def test_the_latest_delivery_is_observed() -> None:
+    sensor, other = Sensor(), RGBSensor()
+    assert (sensor.getObservation(), other.getObservation()) == (None, None)
+    for value in (1, None, [2]):
+        sensor.deliver(value)
+        assert sensor.getObservation() is value
+    assert other.getObservation() is None

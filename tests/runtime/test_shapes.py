@@ -1,5 +1,8 @@
+import json
 import math
 import os
+import pickle
+from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -211,3 +214,82 @@ def test_only_fixed_numbers(kind, arguments):
 def test_dimensions_are_positive(kind, arguments):
     with pytest.raises(ScenicValueError):
         kind(**arguments)
+
+
+@pytest.mark.parametrize("kind", [*PRIMITIVES, lambda *given: shapes.MeshShape(wedge(), *given)])
+@pytest.mark.parametrize("number", [int, float, np.int64, np.float32, np.uint8, Fraction])
+def test_numbers_of_any_type_are_sizes_and_angles(kind, number):
+    """As they come from tables and other libraries; what is kept of them are floats."""
+    shape = kind([number(2), number(3), number(5)], number(2), (number(1), number(0), number(2)))
+    expected = kind((2.0, 3.0, 5.0), 2.0, (1.0, 0.0, 2.0))
+    assert shape.dimensions == expected.dimensions == (4, 6, 10)
+    assert [type(size) for size in shape.dimensions] == [float] * 3
+    np.testing.assert_array_equal(shape.mesh.vertices, expected.mesh.vertices)
+    assert json.loads(json.dumps(shape.source.as_dict()))["initial_rotation"] == [1, 0, 2]
+
+
+def test_arrays_are_triples():
+    shape = shapes.BoxShape(np.array([1, 2, 3]), initial_rotation=np.array([0.5, 0, 0]))
+    assert shape.dimensions == (1, 2, 3)
+    assert shape.mesh is shapes.BoxShape(initial_rotation=(0.5, 0, 0)).mesh
+
+
+def test_sections_of_any_whole_type():
+    shape = shapes.CylinderShape(sections=np.int32(6))
+    assert shape.mesh is shapes.CylinderShape(sections=6).mesh
+    assert json.dumps(shape.source.as_dict()) == '{"kind": "cylinder", "sections": 6}'
+
+
+def test_sources_of_shapes_survive_pickling(tmp_path):
+    """And shapes themselves, with sizes and meshes."""
+    wedge().export(tmp_path / "wedge.obj")
+    for shape in (
+        shapes.BoxShape((1, 2, 3), initial_rotation=(0.1, 0.2, 0.3)),
+        shapes.CylinderShape(sections=7),
+        shapes.MeshShape.fromFile(tmp_path / "wedge.obj", unify=False, initial_rotation=(1, 0, 0)),
+    ):
+        again = pickle.loads(pickle.dumps(shape))
+        assert type(again) is type(shape)
+        assert (again.source, again.dimensions) == (shape.source, shape.dimensions)
+        assert again.source.as_dict() == shape.source.as_dict()
+        np.testing.assert_array_equal(again.mesh.vertices, shape.mesh.vertices)
+
+
+def test_shapes_of_ones_own_are_read_from_files(tmp_path):
+    class Chair(shapes.MeshShape):
+        pass
+
+    wedge().export(tmp_path / "wedge.obj")
+    shape = Chair.fromFile(str(tmp_path / "wedge.obj"), dimensions=(1, 2, 3))
+    assert type(shape) is Chair
+    assert repr(shape) == "Chair(dimensions=(1, 2, 3))"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"dimensions": [1, 2]}, r"`dimensions`, not `\[1, 2\]`"),
+        ({"dimensions": (1, "2", 3)}, "fixed number in `dimensions`, not `'2'`"),
+        ({"initial_rotation": 2.5}, "three fixed numbers as `initial_rotation`, not `2.5`"),
+        ({"initial_rotation": (1, None, 3)}, "in `initial_rotation`, not a value of type `NoneType`"),
+        ({"scale": (1, 2, 3)}, r"fixed number in `scale`, not `\(1, 2, 3\)`"),
+        ({"scale": math.inf}, "finite numbers in `scale`, not inf"),
+        ({"scale": 0}, r"dimensions of BoxShape must be positive, not \(0.0, 0.0, 0.0\)"),
+    ],
+)
+def test_what_is_wrong_with_a_shape_is_told(arguments, message):
+    with pytest.raises((ScenicTypeError, ScenicValueError), match=message):
+        shapes.BoxShape(**arguments)
+
+
+def test_whether_shapes_are_convex_and_hold_their_middles():
+    ring = trimesh.creation.annulus(1, 2, 1)
+    shell = trimesh.boolean.difference([trimesh.creation.box((2, 2, 2)), trimesh.creation.box((1, 1, 1))])
+    for shape, convex, holds in (
+        (shapes.BoxShape((1, 2, 3)), True, True),
+        (shapes.ConeShape(), True, True),
+        (shapes.MeshShape(ring), False, False),
+        (shapes.MeshShape(shell), False, False),
+        (shapes.MeshShape(trimesh.creation.box((2, 2, 2)), initial_rotation=(0.3, 0, 0)), True, True),
+    ):
+        assert (shape.isConvex, shape.containsCenter) == (convex, holds)

@@ -201,6 +201,19 @@ def test_certain_answers_find_what_is_between_rays() -> None:
         assert scene.params == {"rays": False, "proved": True, "drawn": both, "eyes": both, "told": both}
 
 
+def test_certain_answers_find_what_is_between_rays_in_the_plane_too() -> None:
+    text = (
+        "ego = new Object with viewRayCount (1800, 900), with width 0.1, with length 0.1\n"
+        "left = new Object at (-2.0007, 5), with width 4, with length 0.1, with occluding True\n"
+        "right = new Object at (2.0007, 5), with width 4, with length 0.1, with occluding True\n"
+        "box = new Object at (Range(0.79, 0.81), 10), with width 2, with requireVisible False\n"
+        "param seen = [ego.canSee(box, [left, right], certain=sure) for sure in (False, True)]\n"
+        "param free = [ego.canSee(box, certain=sure) for sure in (False, True)]\n"
+    )
+    for scene in scenic.scenarioFromString(text, mode2D=True).sample(3, seed=1):
+        assert scene.params == {"seen": [False, True], "free": [True, True]}
+
+
 def test_what_cannot_be_proved_to_be_seen_is_not_certainly_seen() -> None:
     """Two boxes that touch hide all, but no single one of them does, wherever the directions are divided."""
     text = (
@@ -230,6 +243,19 @@ def test_what_makes_no_sense_is_refused(text: str, message: str) -> None:
     with pytest.raises(Exception, match=message) as caught:
         scenic.scenarioFromString(text)
     assert isinstance(caught.value, Located)
+
+
+def test_what_is_not_visible_lies_in_its_own_container() -> None:
+    text = (
+        "{workspace}ego = new Object with visibleDistance 3, with viewAngles (360 deg, 180 deg)\n"
+        "new Object not visible, with regionContainedIn BoxRegion(position=(0, 0, 0), dimensions=(12, 6, 4))\n"
+    )
+    for workspace in ("", "workspace = Workspace(BoxRegion(dimensions=(900, 900, 900)))\n"):
+        for scene in scenic.scenarioFromString(text.format(workspace=workspace)).sample(
+            20, seed=2, max_attempts=200
+        ):
+            x, y, z = scene.objects[1].position
+            assert max(abs(x) - 5.5, abs(y) - 2.5, abs(z) - 1.5) <= 1e-9
 
 
 def test_parts_in_view_are_intersections_and_differences() -> None:
@@ -450,3 +476,17 @@ def test_angles_that_are_drawn_are_those_that_are_looked_in() -> None:
         assert scene.params["across"] == scene.params["upward"] == [seen, seen]
         answers.add(seen)
     assert answers == {True, False}
+
+
+@pytest.mark.parametrize(
+    "things", ["[wall]", "(wall,)", "{wall}", "{wall: 1}", "iter([wall])", "(each for each in [wall])"]
+)
+def test_what_may_hide_others_comes_in_any_kind_of_sequence(things: str) -> None:
+    text = (
+        "ego = new Object\nwall = new Object at (0, 3, 0), with width 3, with height 3, with length 0.1\n"
+        "box = new Object at (0, Range(6, 7), 0)\none, looker = Uniform(box, box), Uniform(ego, ego)\n"
+        "param seen = [who.canSee(what, {0}) for who in (ego, looker) for what in (box, one, (0, 6, 0))]\n"
+        "param sure = [who.canSee(what, {0}, certain=True) for who in (ego, looker) for what in (box, one)]\n"
+    )
+    found = answers(text.format(things))
+    assert found == {"seen": [False] * 6, "sure": [False] * 4}

@@ -276,3 +276,52 @@ def test_visible_needs_the_size_before_it_places() -> None:
     )
     found = thing(text)
     assert (found.height, found.length) == (6, 4)
+
+
+LAIN = {
+    # what an object of one metre lies on: its expression, the place of its middle, how far from there
+    "point": ("p", (9, 9, 0.50005), 0),
+    "pair": ("(1, 2)", (1, 2, 0.50005), 0),
+    "region": ("r", (50, 50, 2.50005), 1),
+    "object": ("a", (30, 30, 4.50005), 1),
+}
+
+
+@pytest.mark.parametrize(
+    "names", [*itertools.permutations(LAIN, 2), ("pair", "object", "region"), ("point", "pair", "region")]
+)
+def test_on_a_choice_of_different_things_is_on_what_is_drawn(names: tuple[str, ...]) -> None:
+    first, *others = (LAIN[name][0] for name in names)
+    text = (
+        "p = new Point at (9, 9)\nr = RectangularRegion((50, 50, 2), 0, 2, 2)\n"
+        "a = new Object at (30, 30, 3), with width 2, with length 2, with height 2\n"
+        f"ego = new Object on Uniform({first}, Uniform({', '.join([*others, others[0]])}))\n"
+    )
+    met = set()
+    for item in scenario(text).sample(14, seed=1):
+        places = {
+            name: np.array(item.egoObject.position) - place
+            for name, (_, place, _) in LAIN.items()
+            if math.dist(place, item.egoObject.position) < 3
+        }
+        ((name, off),) = places.items()
+        assert abs(off[2]) < 1e-9
+        assert max(abs(off[:2])) <= LAIN[name][2] + 1e-9
+        met.add(name)
+    assert met == set(names)
+
+
+@pytest.mark.parametrize("target", ["a", "Uniform(a, b)", "told(a, Range(0, 1))"])
+@pytest.mark.parametrize("before", ["", "at (Range(29.9, 30.1), 30, 40), "])
+def test_things_lie_on_the_surface_that_their_class_names(target: str, before: str) -> None:
+    """Not on the top; where a position is given before, they fall down to it."""
+    text = (
+        "class Shelf:\n    height: 2\n    @property\n    def onSurface(self):\n"
+        "        return RectangularRegion(self.position + (0, 0, -0.25), 0, 1, 1)\n"
+        "a = new Shelf at (30, 30, 10)\nb = new Shelf at (30, 30, 20), with allowCollisions True\n"
+        "told = distributionFunction(lambda value, _: value)\n"
+        f"new Object {before}on {target}, with allowCollisions True\n"
+    )
+    found = {round(item.objects[-1].z - 0.50005, 9) for item in scenario(text).sample(12, seed=1)}
+    expected = {"a": {9.75}, "Uniform(a, b)": {9.75, 19.75}, "told(a, Range(0, 1))": {9.75}}
+    assert found == expected[target]

@@ -150,3 +150,19 @@ def placed(value: Any) -> Any:
         return shown(value)
     names = ("position", "orientation", "regionContainedIn")
     return [shown(getattr(value, name, None)) for name in names]
+
+
+def test_specifiers_mean_what_they_mean_in_the_module_that_is_running() -> None:
+    """Its workspace, its specifiers, and the heading of 2D mode."""
+    text = (
+        "import scenic.syntax.veneer as v\nfrom scenic import specifier\nmake = getattr(v, 'new')\n"
+        "@specifier(tag=1)\ndef doubled(self, n): return {'tag': 2 * n}\n"
+        "workspace = Workspace(CircularRegion((5, 0), 2))\nego = new Object at (5, 0)\n"
+        "param seen = [make(v.Point, [v.VisibleSpec()]).position for _ in range(20)]\n"
+        "param tag = make(v.Point, [v.With('doubled', 3)]).tag\n"
+    )
+    found = scene(text).params
+    assert all((place.x - 5) ** 2 + place.y**2 <= 4 for place in found["seen"])
+    assert found["tag"] == 6
+    flat = "import scenic.syntax.veneer as v\nmake = getattr(v, 'new')\nego = make(v.Object, [v.With('heading', 0.5)])\n"
+    assert scene(flat, mode2D=True).egoObject.heading == pytest.approx(0.5)

@@ -1,5 +1,6 @@
 """What observers have in view as regions: distances, boxes, bodies within and across the border, places nearby."""
 
+import itertools
 import math
 from typing import Any
 
@@ -62,6 +63,20 @@ def test_what_lies_across_the_border_meets_a_view(asked: str, meets: dict[str, b
         text += f"{name} = new Object at ({x}, 2, 3), with allowCollisions True, with visibleDistance 0.7\n"
         text += f"param {name} = {asked.format(name)}\n"
     assert answers(text) == meets
+
+
+@pytest.mark.parametrize("asked", ["view.intersects({})", "{}.intersects(view)", "({} intersects view)"])
+def test_things_at_the_edge_of_sight_meet_a_view_whoever_is_asked(asked: str) -> None:
+    """Also between the corners of its mesh, which is smaller than the view is."""
+    text = TURNED + "view = ego.visibleRegion\nfound = []\n"
+    for reach, away in itertools.product((4.999, 5.001), (1.5, 4.5, 7.5)):
+        text += (
+            f"a, r = {away} deg, {reach}\n"
+            "box = new Object at (1 - r * cos(a) * cos(a), 2 - r * sin(a) * cos(a), 3 + r * sin(a)), "
+            "with width 1e-4, with length 1e-4, with height 1e-4, with allowCollisions True\n"
+            f"found.append({asked.format('box.occupiedSpace')})\n"
+        )
+    assert answers(text + "param found = found\n")["found"] == [True] * 3 + [False] * 3
 
 
 def test_whether_something_moving_meets_a_view_is_a_requirement() -> None:

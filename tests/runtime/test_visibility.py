@@ -314,3 +314,40 @@ def test_the_height_of_what_is_looked_at_counts_only_in_space(condition: str) ->
     assert thing(text.format("", place="(0, 45, 0)")) is not None
     assert thing(text.format("not ", place="(0, 45, 45)")) is not None
     assert thing(text.format("", place="(0, 45, 45)"), mode2D=True) is not None
+
+
+@pytest.mark.parametrize("roll", [0, 180])
+@pytest.mark.parametrize("turn", [0, 20])
+def test_outlines_of_what_lies_on_its_back_are_outlines(roll: int, turn: int) -> None:
+    """From within, from beside, and out of view."""
+    text = (
+        "ego = new Object with viewAngle 10 deg, with visibleDistance 1, with width 0.1, with length 0.1, with allowCollisions True\n"
+        f"big = new Object at (0.5, 0.5), with width 30, with length 20, facing ({turn} deg, 0, {roll} deg), with allowCollisions True, with requireVisible False\n"
+        "near = new OrientedPoint at (0, -20), with viewAngle 5 deg, with visibleDistance 15\n"
+        "away = new OrientedPoint at (0, -20), facing 180 deg, with viewAngle 5 deg, with visibleDistance 15\n"
+        "param seen = [looker.canSee(big) for looker in (ego, near, away)]\n"
+    )
+    assert answers(text) == {"seen": [True, True, False]}
+
+
+def test_what_may_hide_others_in_the_plane_may_come_one_by_one() -> None:
+    text = (
+        "ego = new Object with requireVisible False\nbox = new Object at (0, 8), with requireVisible False\n"
+        "wall = new Object at (0, 4), with width 8, with length 0.5, with height 8, with requireVisible False, with occluding True\n"
+        "one, looker = Uniform(box, box), Uniform(ego, ego)\n"
+        "param seen = [who.canSee(what, iter([wall])) for who in (ego, looker) for what in (box, one, (0, 8))]\n"
+    )
+    assert answers(text) == {"seen": [False] * 6}
+
+
+def test_parameters_know_what_hides_by_chance_in_the_plane() -> None:
+    text = (
+        "ego = new Object with requireVisible False\nbox = new Object at (0, 8), with requireVisible False\n"
+        "wall = new Object at (0, 4), with width 8, with length 0.5, with height 8, with requireVisible False, with occluding Uniform(True, False)\n"
+        "param hides = wall.occluding, seen = ego.canSee(box, [wall]), drawn = ego.canSee(Uniform(box, box), [wall]), place = ego.canSee((0, 8), [wall])\n"
+    )
+    scenes = scenic.scenarioFromString(text, mode2D=True).sample(12, seed=1)
+    assert {scene.params["hides"] for scene in scenes} == {True, False}
+    for scene in scenes:
+        seen = not scene.params["hides"]
+        assert [scene.params[name] for name in ("seen", "drawn", "place")] == [seen] * 3

@@ -108,6 +108,12 @@ def test_grids_that_are_none() -> None:
         BoxRegion().voxelized(0)
 
 
+@pytest.mark.parametrize("edge", [1e-5, 3e-7, 1e-7, 1e-20, 1e-300])
+def test_cells_may_be_too_many_for_any_integer(edge: float) -> None:
+    with pytest.raises(ScenicValueError, match=f"cells of {edge:g} m would be"):
+        BoxRegion(position=(3, 2, -1), dimensions=(1, 2, 4)).voxelized(edge)
+
+
 CONTAINERS = {
     "ball without a ball": "BoxRegion(dimensions=(4, 4, 4)).difference(SpheroidRegion(dimensions=(2, 2, Range(1.99, 2))))",
     "disc without a box": "CircularRegion((0, 0), 2).footprint.difference(BoxRegion(dimensions=(1, Range(1, 1.2), 9)))",

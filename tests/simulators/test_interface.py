@@ -2,7 +2,9 @@
 
 import contextlib
 import io
+import random
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -163,3 +165,27 @@ def test_what_simulations_tell() -> None:
 
 def test_kinds_of_ends() -> None:
     assert TerminationType.terminatedByUser.value == "manually terminated by user"
+
+
+@pytest.mark.parametrize("course", [True, False])
+@pytest.mark.parametrize("replay", [True, False])
+def test_what_is_kept_of_the_course_and_of_the_draws_are_two_things(
+    tmp_path: Path, course: bool, replay: bool
+) -> None:
+    text = (
+        f"param recordFolder = {str(tmp_path)!r}\n{DRAWING}record simulation().currentTime to 'run.jsonl'\n"
+    )
+    start = scene(text)
+    random.seed(8)
+    done = DummySimulator().simulate(start, maxSteps=3, keep_course=course, enableReplay=replay)
+    assert done is not None
+    (recorded,) = done.records.values()
+    assert (recorded == [(step, step) for step in range(4)]) is course
+    if replay:
+        random.seed(8)
+        whole = DummySimulator().simulate(start, maxSteps=3)
+        assert whole is not None
+        assert done.getReplay() == whole.getReplay()
+    else:
+        with pytest.raises(RuntimeError, match="enableReplay=False"):
+            done.getReplay()

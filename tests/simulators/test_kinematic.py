@@ -59,6 +59,83 @@ def test_bicycles_steer_by_their_base_and_brake_to_a_stop() -> None:
     assert last(done)[0].y == pytest.approx(9 / 4, abs=0.01)
 
 
+@pytest.mark.parametrize(("speed", "throttle"), [(0, -2), (1, -2), (0, -1e-9)])
+def test_vehicles_brake_to_a_stop_and_stand(speed: float, throttle: float) -> None:
+    done = driven(f"SetThrottle({throttle})", f"with dynamics 'bicycle', with speed {speed}", 20)
+    position, _ = last(done)
+    assert position.y == pytest.approx(speed**2 / abs(2 * throttle), abs=0.05)
+    assert done.objects[0].speed == speed  # of the scene
+    assert done.poses[-1] == done.poses[-2]
+
+
+def test_vehicles_that_roll_back_may_be_stopped() -> None:
+    """By a forward throttle, which then goes on; only braking ends in a stop."""
+    done = driven("SetThrottle(2)", "with dynamics 'bicycle', with velocity (0, -1, 0)", 20)
+    assert last(done)[0].y == pytest.approx(-2 + 2 * 2**2 / 2)
+
+
+def test_a_new_velocity_ends_an_acceleration() -> None:
+    text = (
+        "behavior B():\n    take SetAcceleration((1, 2, 3))\n    take SetVelocity((1, 0, 0))\n"
+        "    while True:\n        wait\nego = new Object with behavior B\n"
+    )
+    places = [poses[0][0] for poses in run(text, 5, timestep=1.0).poses]
+    assert tuple(places[1]) == (0.5, 1, 1.5)
+    assert [tuple(place) for place in places[2:]] == [(1.5 + n, 1, 1.5) for n in range(4)]
+
+
+@pytest.mark.parametrize("turn", [0.5, -0.5, 3.0, -3.0])
+@pytest.mark.parametrize("model", ["differential", "quadrotor"])
+def test_rates_of_turning_are_told_with_their_sign_and_headings_within_half_a_turn(
+    model: str, turn: float
+) -> None:
+    action = f"SetWheelSpeeds({-turn / 2}, {turn / 2})" if model == "differential" else f"Fly(turn={turn})"
+    text = (
+        f"behavior B():\n    take {action}\n    while True:\n        wait\n"
+        f"ego = new Object with behavior B, with dynamics '{model}', with width 1\n"
+        "record (ego.angularVelocity, ego.angularSpeed, ego.yaw, ego.heading) as turns\n"
+    )
+    _, *turns = run(text, 9, timestep=0.5).records["turns"]
+    for step, (velocity, speed, yaw, heading) in turns:
+        assert tuple(velocity) == pytest.approx((0, 0, turn))
+        assert speed == pytest.approx(abs(turn))
+        assert -math.pi < yaw <= math.pi
+        assert yaw == pytest.approx(heading)
+        assert math.remainder(yaw - turn * 0.5 * step, 2 * math.pi) == pytest.approx(0, abs=1e-9)
+
+
+@pytest.mark.parametrize("model", ["point", "differential", "bicycle", "quadrotor"])
+def test_what_faces_south_goes_on_facing_south(model: str) -> None:
+    text = f"ego = new Object with dynamics '{model}', facing 180 deg, with speed 2\nrecord (ego.yaw, ego.position) as course\n"
+    for _, (yaw, place) in run(text, 3).records["course"]:
+        assert yaw == math.pi
+        assert place.y <= 0
+
+
+@pytest.mark.parametrize("velocity", ["(3, 4, 0)", "(0, 0, 5)", "(0, -3, 4)"])
+def test_speeds_are_those_in_space(velocity: str) -> None:
+    done = run(f"ego = new Object with velocity {velocity}\nrecord ego.speed as speeds\n", 2)
+    assert [speed for _, speed in done.records["speeds"][1:]] == [5, 5]
+
+
+@pytest.mark.parametrize(
+    ("action", "shown"),
+    [
+        ("SetWheelSpeeds(1, 2.5)", "SetWheelSpeeds(1, 2.5)"),
+        ("SetVelocity((1, 2))", "SetVelocity(Vector(1, 2, 0))"),
+        ("SetAcceleration((0, 1, 2))", "SetAcceleration(Vector(0, 1, 2))"),
+        ("SetThrottle(-2)", "SetThrottle(-2)"),
+        ("SetSteering(0.1)", "SetSteering(0.1)"),
+        ("Fly(1, 2, 3, 4)", "Fly(1, 2, 3, 4)"),
+        ("Fly(turn=1)", "Fly(9.81, 0, 0, 1)"),
+    ],
+)
+def test_commands_show_what_they_were_made_of(action: str, shown: str) -> None:
+    from scenic.simulators import kinematic
+
+    assert repr(eval(action, vars(kinematic))) == shown
+
+
 def test_quadrotors_hover_and_have_a_final_speed() -> None:
     done = driven("Fly()", "with dynamics 'quadrotor', at (0, 0, 5)", 50)
     assert tuple(last(done)[0]) == pytest.approx((0, 0, 5))

@@ -20,8 +20,10 @@ from scenic.language.errors import (
     DivergenceError,
     InvalidScenarioError,
     Located,
+    RejectSimulationException,
     ScenicValueError,
     SerializationError,
+    SimulationCreationError,
     annotation,
 )
 from scenic.runtime.dynamics.recorders import Recorder
@@ -29,7 +31,7 @@ from scenic.runtime.dynamics.requirements import Outcome
 from scenic.runtime.temporal.monitors import Verdict
 from scenic.runtime.values import Vector
 from scenic.simulators.actions import Action
-from scenic.simulators.batch import SimulatorChoiceError, choose_simulator
+from scenic.simulators.batch import SimulatorChoiceError, choose_simulator, simulate_number
 from scenic.simulators.dummy import DummySimulator
 from scenic.simulators.kinematic import KinematicSimulator
 from scenic.simulators.replays import Replay, Tape
@@ -508,6 +510,27 @@ def test_a_property_without_a_value_takes_the_type_of_its_first_one() -> None:
                 simulator(Telling).simulate(scene(text), maxSteps=4)
 
 
+def test_each_property_without_a_value_takes_a_type_of_its_own() -> None:
+    """Of each object."""
+
+    class Telling(Plain):
+        def getProperties(self, obj: Any, properties: Any) -> Mapping[str, Any]:
+            found = dict(super().getProperties(obj, properties))
+            first = obj is self.objects[0]
+            given = {"mood": True, "trust": 0.5} if first else {"mood": 1.5, "trust": Vector(1, 2, 3)}
+            return {**found, **given} if self.currentTime else found
+
+    done = simulator(Telling).simulate(
+        scene(
+            "class Moody:\n    mood[dynamic]: None\n    trust[dynamic]: None\nego = new Moody\nother = new Moody at (5, 5)\n"
+            "record final [ego.mood, ego.trust, other.mood, other.trust] as moods\n"
+        ),
+        maxSteps=3,
+    )
+    assert done is not None
+    assert done.records["moods"] == [True, 0.5, 1.5, Vector(1, 2, 3)]
+
+
 def test_a_look_back_in_one_try_is_remembered_in_the_next() -> None:
     kept = _Kept(None, "jsonl", False)
     courses = [Latest("state"), Latest("state")]
@@ -726,3 +749,336 @@ def test_commands_with_random_numbers_may_be_arguments_of_behaviors(model: str) 
         assert done is not None
         assert done.result is not None
         assert done.result.finalState[0].y == pytest.approx(one.params["r"])
+
+
+MOVED = "behavior B():\n    take 1\n    take 2\n    wait\nego = new Object with behavior B\nother = new Object at (5, 0)\n"
+
+
+@pytest.mark.parametrize("keep_poses", [False, True])
+def test_states_are_told_with_what_is_then_done(keep_poses: bool) -> None:
+    """Nothing is done in the last one."""
+    told: list[Any] = []
+
+    def tell(simulation: Any, poses: Any, actions: Any) -> None:
+        acting = {simulation.objects.index(agent): done for agent, done in actions.items()}
+        told.append((simulation.currentTime, [place.y for place, _ in poses], acting))
+
+    done = DummySimulator(drift=2).simulate(scene(MOVED), maxSteps=2, on_state=tell, keep_poses=keep_poses)
+    assert told == [(0, [0, 0], {0: (1,)}), (1, [2, 2], {0: (2,)}), (2, [4, 4], {})]
+    assert done is not None
+    assert (done.poses is not None) is keep_poses
+
+
+@pytest.mark.parametrize("begun", [False, True])
+def test_a_simulation_that_is_given_up_cleans_up_though_it_never_began(begun: bool) -> None:
+    ends = []
+
+    class Counting(Plain):
+        def destroy(self) -> None:
+            ends.append(self)
+
+    made = Counting(scene(AGENTS), maxSteps=2, name="1", timestep=1, deferred=True)
+    if begun:
+        made.begin()
+    made.cancel()
+    assert ends == [made]
+    assert made.result is None
+
+
+def test_what_fails_gives_the_objects_of_the_scene_back() -> None:
+    one = scene(
+        "behavior B():\n    take 1\n    raise RuntimeError('no more')\nego = new Object with behavior B\nnew Object at (5, 5)\n"
+    )
+    made = Plain(one, maxSteps=9, name="1", timestep=1, deferred=True)
+    made.begin()
+    assert made.objects[0] is not one.objects[0]
+    assert made.advanceOnce()
+    with pytest.raises(RuntimeError, match="no more"):
+        made.advanceOnce()
+    assert made.scene is one
+    assert [item is own for item, own in zip(made.objects, one.objects, strict=True)] == [True, True]
+    assert made.agents[0] is one.objects[0]
+    assert list(made.actionSequence[0]) == [one.objects[0]]
+
+
+@pytest.mark.parametrize("entering", [False, True])
+def test_what_a_simulator_cannot_create_is_told_where_the_program_makes_it(entering: bool) -> None:
+    class Small(Plain):
+        def createObjectInSimulator(self, obj: Any) -> None:
+            if obj.position.x > 3:
+                raise SimulationCreationError("there is no room")
+
+    more = "new Object at (9, 9)"
+    text = (
+        "scenario Main():\n    setup:\n        ego = new Object\n        {}\n    compose:\n        do Sub()\n"
+        "scenario Sub():\n    setup:\n        {}\n    compose:\n        wait\n"
+    ).format(*(("pass", more) if entering else (more, "pass")))
+    with pytest.raises(SimulationCreationError, match="there is no room") as caught:
+        simulator(Small).simulate(scene(text), maxSteps=2)
+    assert caught.value.span is not None
+    assert (caught.value.span.line, caught.value.span.column) == (9 if entering else 4, 8)
+    assert caught.value.filename == "<string>"
+
+
+def test_mistakes_of_what_enters_are_told_at_the_specifier() -> None:
+    text = (
+        "scenario Main():\n    setup:\n        ego = new Object\n    compose:\n        do Sub()\n"
+        "scenario Sub():\n    setup:\n        new Object at (9, 9), with width -1, with length 2\n    compose:\n        wait\n"
+    )
+    with pytest.raises(ScenicValueError, match="'width' must be greater than 0") as caught:
+        DummySimulator().simulate(scene(text), maxSteps=2)
+    span = caught.value.span
+    assert span is not None
+    assert (span.line, span.column, span.end_column) == (8, 30, 43)
+
+
+def taken(done: Any) -> list[float]:
+    assert done is not None
+    return [step[done.objects[0]][0] for step in done.result.actions]
+
+
+def test_replays_may_go_on_longer_than_what_they_replay() -> None:
+    one = scene(DRAWING)
+    options: dict[str, Any] = {"enableDivergenceCheck": True}
+    first = DummySimulator(drift=1).simulate(one, maxSteps=3, **options)
+    assert first is not None
+    again = DummySimulator(drift=1).replay(one, first.getReplay(), maxSteps=7, **options)
+    assert taken(again)[:3] == taken(first)
+    assert len(set(taken(again))) == 7
+
+
+def test_what_follows_a_divergence_is_drawn_from_another_key() -> None:
+    one = scene(DRAWING)
+    options: dict[str, Any] = {"enableDivergenceCheck": True, "continueAfterDivergence": True, "maxSteps": 5}
+    first = DummySimulator(drift=1).simulate(one, **options)
+    assert first is not None
+    other = DummySimulator(drift=2).replay(one, first.getReplay(), **options)
+    assert other is not None
+    assert not other.replaying
+    before, after = taken(first), taken(other)
+    assert after[0] == before[0]
+    assert not set(after[1:]) & set(before)
+
+
+@pytest.mark.parametrize("number", [0, 1, 2])
+def test_a_divergence_names_the_object(number: int) -> None:
+    class Straying(Plain):
+        straying = False
+
+        def step(self) -> None:
+            if self.straying:
+                self.objects[number].__dict__["position"] = Vector(1, 2, 3 + number)
+
+    one = scene(AGENTS)
+    first = simulator(Straying).simulate(one, maxSteps=2, enableDivergenceCheck=True)
+    assert first is not None
+    Straying.straying = True
+    with pytest.raises(DivergenceError, match=rf"step 1: position of object {number} is .*Vector\(1, 2"):
+        simulator(Straying).replay(one, first.getReplay(), maxSteps=2, enableDivergenceCheck=True)
+
+
+@pytest.mark.parametrize("length", [0, 1, 4, 5, 8, 12, 15, 20, 30])
+def test_replays_that_are_cut_off_are_damaged(length: int) -> None:
+    data = Replay(b"key", [(1, 0.5)], [[1.0, 2.0], []]).encoded()
+    with pytest.raises(SerializationError):
+        Replay.decoded(data[:length])
+
+
+def test_of_a_latest_series_the_newest_member_has_two_places() -> None:
+    series: Latest = Latest("states")
+    for value in "abc":
+        series.append(value)
+        assert series[-1] == series[len(series) - 1] == value
+    assert not series.missed
+    for place in (0, 1, -2, 3, slice(None)):
+        series.missed = False
+        with pytest.raises(NotKeptError, match="of the states of this simulation"):
+            series[place]
+        assert series.missed
+
+
+@pytest.mark.parametrize(("tries", "names"), [(1, ["run"]), (3, ["run.1", "run.2", "run.3"])])
+def test_each_try_has_a_name(tries: int, names: list[str]) -> None:
+    found = []
+
+    class Named(Plain):
+        def __init__(self, scene: Any, **options: Any) -> None:
+            found.append(options["name"])
+            super().__init__(scene, **options)
+
+    simulator(Named).simulate(scene(REJECTED), 1, tries, name="run")
+    assert found == names
+    found.clear()
+    simulator(Named).simulate(scene(REJECTED), 1, tries)
+    assert found == [str(number + 1) for number in range(tries)]
+
+
+def test_only_guards_are_raised_where_guards_are_to_be_raised() -> None:
+    assert DummySimulator().simulate(scene(REJECTED), maxSteps=1, raiseGuardViolations=True) is None
+
+
+@pytest.mark.parametrize(
+    ("own", "asked", "seconds"), [(None, None, 1), (0.5, None, 0.5), (0.5, 0.25, 0.25), (None, 2, 2)]
+)
+def test_who_asks_decides_how_long_a_step_is(own: float | None, asked: float | None, seconds: float) -> None:
+    done = DummySimulator(timestep=own).simulate(scene(AGENTS), maxSteps=2, timestep=asked)
+    assert done is not None
+    assert (done.timestep, done.currentRealTime) == (seconds, 2 * seconds)
+
+
+def test_no_time_at_all_is_no_limit_for_a_step() -> None:
+    """In this thread and in others."""
+
+    def work() -> None:
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            with Watch(0, lambda frame: "a line", is_error=True):
+                time.sleep(0.02)
+            said.extend(caught)
+
+    said: list[Any] = []
+    work()
+    thread = threading.Thread(target=work)
+    thread.start()
+    thread.join()
+    assert said == []
+
+
+@pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="there is no timer to watch with")
+def test_the_watch_puts_back_what_the_signal_called() -> None:
+    def mine(*_: Any) -> None:
+        pass
+
+    before = signal.signal(signal.SIGALRM, mine)
+    try:
+        watch = Watch(30, lambda frame: "a line", is_error=True)
+        for _ in range(2):
+            with watch:
+                assert signal.getsignal(signal.SIGALRM) is not mine
+                assert 0 < signal.getitimer(signal.ITIMER_REAL)[0] <= 30
+            assert signal.getsignal(signal.SIGALRM) is mine
+            assert signal.getitimer(signal.ITIMER_REAL)[0] == 0
+    finally:
+        signal.signal(signal.SIGALRM, before)
+
+
+@pytest.mark.parametrize("tries", [3, 5, 9])
+def test_the_most_frequent_reason_of_rejections_is_the_first(tries: int) -> None:
+    reasons = iter(["rare", "often", "often", "rare", "often"])
+
+    class Rejecting(Plain):
+        def step(self) -> None:
+            for reason in reasons:
+                raise RejectSimulationException(reason)
+
+    made = scenic.scenarioFromString(AGENTS)
+    found = simulate_number(made, simulator(Rejecting), seed=3, k=2, tries=tries, maxSteps=1)
+    assert found.rejections == (("often", 2 if tries == 3 else 3), ("rare", 1 if tries == 3 else 2))
+    assert found.tries == min(tries, 6)
+    assert (found.k, found.seed, found.simulation is None) == (2, 3, tries < 6)
+
+
+def test_scenes_of_a_number_are_tried_as_often_as_allowed() -> None:
+    made = scenic.scenarioFromString(
+        "ego = new Object at (Range(0, 1), 0)\nrequire (10000 * ego.x) % 10 < 0.3\n"
+    )
+    has = [
+        simulate_number(made, DummySimulator(), seed=1, k=k, max_attempts=1, maxSteps=1).has_scene
+        for k in range(8)
+    ]
+    assert has.count(False) > 4
+
+
+def test_a_simulator_that_is_named_wins_over_that_of_the_program() -> None:
+    made = scenic.scenarioFromString(
+        "from scenic.simulators.dummy import DummySimulator\nsimulator DummySimulator(drift=3)\nego = new Object\n"
+    )
+    assert type(choose_simulator("kinematic", made)) is KinematicSimulator
+    assert choose_simulator(None, made).drift == 3
+    assert choose_simulator("dummy", made).drift == 0
+
+
+def test_the_workspace_of_a_running_scenario_is_seen_from_outside() -> None:
+    text = """
+found = []
+def seen(sub):
+    found.append((sub.workspace.region.width, len(sub.agents)))
+    return False
+scenario Main():
+    setup:
+        ego = new Object
+        record final list(found) as found
+    compose:
+        sub = Sub()
+        do sub until seen(sub)
+scenario Sub():
+    setup:
+        workspace = Workspace(RectangularRegion((0, 0), 0, 40, 30))
+    compose:
+        wait
+        wait
+"""
+    done = DummySimulator().simulate(scene(text), maxSteps=4)
+    assert done is not None
+    assert done.records["found"][-1] == (40, 0)
+
+
+def test_what_stands_in_between_in_a_simulation_hides() -> None:
+    """Objects that have entered since the scene was made, where they are now."""
+    text = """
+scenario Main():
+    setup:
+        ego = new Object with requireVisible False
+        other = new Object at (0, 20)
+        record (ego can see other) as seen
+    compose:
+        wait
+        do Sub() for 3 steps
+scenario Sub():
+    setup:
+        new Object at (0, 9), with width 9, with height 9, with length 0.5
+    compose:
+        while True:
+            wait
+"""
+
+    class Lifting(Plain):
+        def getProperties(self, obj: Any, properties: Any) -> Any:
+            values = super().getProperties(obj, properties)
+            if obj.width == 9 and self.currentTime >= 2:
+                values["position"] = Vector(0, 9, 99)
+            return values
+
+    done = simulator(Lifting).simulate(scene(text), maxSteps=4)
+    assert done is not None
+    assert [seen for _, seen in done.records["seen"]][:3] == [True, False, True]
+
+
+def test_scenarios_are_run_once_and_actions_refused_where_they_are_taken() -> None:
+    again = f"{MAIN}    compose:\n        sub = Sub()\n        do sub\n        do sub\n{SUB_WAITS}"
+    with pytest.raises(InvalidScenarioError, match=r"scenario Sub\(\) has been run already") as caught:
+        DummySimulator().simulate(scene(again), maxSteps=4)
+    assert caught.value.help == "create one for each use: `Sub(...)`"
+    assert caught.value.span is not None
+    assert caught.value.span.line == 7
+    shared = "behavior B():\n    while True:\n        wait\nb = B()\nego = new Object with behavior b\nnew Object at (5, 5), with behavior b\n"
+    with pytest.raises(InvalidScenarioError, match=r"behavior B\(\) is running already") as caught:
+        DummySimulator().simulate(scene(shared), maxSteps=4)
+    assert caught.value.span is not None
+    assert caught.value.span.line == 6
+    refused = (
+        "behavior B():\n    wait\n    take 1\n    take (\n        3)\nego = new Object with behavior B\n"
+    )
+
+    class Picky(Plain):
+        def actionsAreCompatible(self, agent: Any, actions: Any) -> bool:
+            return tuple(actions) != (3,)
+
+    with pytest.raises(InvalidScenarioError, match="cannot take these actions") as caught:
+        simulator(Picky).simulate(scene(refused), maxSteps=4)
+    assert caught.value.span is not None
+    assert caught.value.span.line == 4
+    assert caught.value.filename == "<string>"
+
+
+SUB_WAITS = "scenario Sub():\n    setup:\n        pass\n    compose:\n        wait\n"

@@ -109,6 +109,33 @@ def test_durations_are_numbers(duration: str, unit: str) -> None:
         simulate(f"ego = new Object\nterminate after {duration} {unit}\n", 1)
 
 
+@pytest.mark.parametrize("word", ["every", "after"])
+@pytest.mark.parametrize(
+    ("duration", "error", "match"),
+    [
+        ("True steps", ScenicTypeError, "expected a whole number of steps, not True"),
+        ("'2' steps", ScenicTypeError, "expected a whole number of steps, not '2'"),
+        ("1.5 steps", ScenicTypeError, "expected a whole number of steps, not 1.5"),
+        ("True seconds", ScenicTypeError, "expected a number of seconds, not True"),
+        ("-1 steps", ScenicValueError, "must be .* not -1"),
+        ("-0.5 seconds", ScenicValueError, "must be .* not -0.5"),
+    ],
+)
+def test_periods_and_delays_are_numbers(word: str, duration: str, error: type[Exception], match: str) -> None:
+    with pytest.raises(error, match=f"`record ... {word}`?:? {match}") as caught:
+        scene_of(f"ego = new Object\nrecord 1 {word} {duration}\n")
+    assert caught.value.span is not None  # type: ignore[attr-defined] # errors of the language have one
+    assert caught.value.span.line == 2  # type: ignore[attr-defined]
+
+
+def test_a_period_may_be_no_time_only_as_a_delay() -> None:
+    for unit in ("steps", "seconds"):
+        done = simulate(f"ego = new Object\nrecord 1 every 2.0 steps after 0 {unit} as one\n", 4)
+        assert [step for step, _ in done.records["one"]] == [0, 2, 4]
+        with pytest.raises(ScenicValueError, match="every` must be more than 0, not 0"):
+            scene_of(f"ego = new Object\nrecord 1 every 0 {unit}\n")
+
+
 # Scenarios in parallel
 
 
@@ -314,6 +341,148 @@ scenario Sub():
     done = DummySimulator().simulate(scene_of(program), maxSteps=3)
     assert done is not None
     assert taken(done) == [(0.5, False), (2.0, True), (0.5, False)]
+
+
+def test_dynamic_properties_of_a_program_follow_what_is_overridden_and_what_moves() -> None:
+    text = """
+class Car:
+    span[dynamic, final]: self.width + self.position.y
+scenario Main():
+    setup:
+        ego = new Car
+        record (ego.span, ego.width, ego.y) as found
+    compose:
+        wait
+        do Sub() for 2 steps
+        wait
+scenario Sub():
+    setup:
+        override ego with width 4
+    compose:
+        require ego.span == 4 + ego.y
+        while True:
+            wait
+"""
+    done = DummySimulator(drift=1).simulate(scene_of(text), maxSteps=4)
+    assert done is not None
+    found = recorded(done, "found")
+    assert [width for _, width, _ in found] == [1, 4, 4, 1, 1][: len(found)]
+    assert len(found) > 3
+    assert all(span == width + y for span, width, y in found)
+
+
+def test_behaviors_of_two_scenarios_that_override_one_agent_take_one_turn_in_each_step() -> None:
+    """Whether or not it had one before; the later one counts, and afterwards the earlier one again."""
+    text = """
+behavior B(what):
+    while True:
+        take what
+scenario Main():
+    setup:
+        ego = new Object at (0, 0){before}
+    compose:
+        do First(), Second()
+        wait
+scenario First():
+    setup:
+        override ego with behavior B(1)
+    compose:
+        wait
+        wait
+        wait
+scenario Second():
+    setup:
+        override ego with behavior B(2)
+    compose:
+        wait
+        wait
+"""
+    for before, alone in (("", []), (", with behavior B(0)", [0])):
+        done = DummySimulator().simulate(scene_of(text.format(before=before)), maxSteps=6)
+        assert done is not None
+        assert done.result is not None
+        assert [list(map(list, step.values())) for step in done.result.actions] == [
+            [[2]],
+            [[2]],
+            [[1]],
+            [alone],
+        ]
+        assert list(done.agents) == [done.objects[0]]
+
+
+def test_a_behavior_of_an_override_acts_for_the_scenario_that_asked_for_it() -> None:
+    text = """
+behavior Stop():
+    wait
+    terminate
+scenario Main():
+    setup:
+        ego = new Object
+    compose:
+        do Sub()
+        wait
+        wait
+scenario Sub():
+    setup:
+        override ego with behavior Stop
+    compose:
+        while True:
+            wait
+"""
+    done = DummySimulator().simulate(scene_of(text), maxSteps=9)
+    assert done is not None
+    assert done.result is not None
+    assert (done.currentTime, done.result.terminationReason) == (4, "finished compose block")
+
+
+def test_overrides_are_computed_where_the_object_is() -> None:
+    """What depends on a place, also within lists and dictionaries, is that of the object as it is then."""
+    text = """
+field = VectorField("field", lambda place: place.y)
+scenario Main():
+    setup:
+        ego = new Object with foo 0, with bar 0
+        record ego.foo as foo
+        record ego.bar as bar
+    compose:
+        wait
+        do Sub()
+scenario Sub():
+    setup:
+        override ego with foo (0.25 relative to field)
+        override ego with bar [{"a": (0.25 relative to field)}, ego.width]
+    compose:
+        wait
+"""
+    done = DummySimulator(drift=1).simulate(scene_of(text), maxSteps=1)
+    assert done is not None
+    _, turn = recorded(done, "foo")
+    _, (held, width) = recorded(done, "bar")
+    assert (turn.yaw, held["a"].yaw) == pytest.approx((1.25, 1.25))
+    assert width == 1
+
+
+def test_overrides_in_2d_mode_are_read_as_in_that_mode() -> None:
+    """There a heading may be specified, which gives angles that a simulator decides."""
+    text = """
+scenario Main():
+    setup:
+        ego = new Object
+    compose:
+        do Sub()
+scenario Sub():
+    setup:
+        override ego with heading 90 deg
+    compose:
+        wait
+"""
+    for flat, match in (
+        (True, "is dynamic and cannot be overridden"),
+        (False, "cannot be directly specified"),
+    ):
+        made = scenic.scenarioFromString(text, mode2D=flat).sample(1, seed=0)[0]
+        with pytest.raises(scenic.SpecifierError, match=match):
+            DummySimulator().simulate(made, maxSteps=3)
 
 
 def test_a_final_property_that_is_not_dynamic_stays() -> None:

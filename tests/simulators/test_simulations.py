@@ -24,7 +24,7 @@ from scenic.language.errors import (
     annotation,
 )
 from scenic.runtime.context import current
-from scenic.runtime.dynamics.recorders import for_pattern
+from scenic.runtime.dynamics.recorders import File, Files, for_pattern
 from scenic.runtime.files import whole
 from scenic.runtime.values import Vector
 from scenic.simulators.actions import Action
@@ -356,6 +356,27 @@ scenario Sub():
         assert (done is not None) == (seen == (word == "visible")), (place, word)
 
 
+@pytest.mark.parametrize("word", ["visible", "not visible"])
+def test_objects_that_enter_in_2d_mode_are_seen_in_the_plane(word: str) -> None:
+    """As those that are there from the beginning: the camera, far above, counts as if it were on the ground."""
+    text = f"""
+scenario Main():
+    setup:
+        ego = new Object with visibleDistance 30, with viewAngle 90 deg, with cameraOffset (0, 0, 40)
+    compose:
+        do Sub()
+scenario Sub():
+    setup:
+        new Object at PLACE, {word}, with requireVisible False
+    compose:
+        wait
+"""
+    for place, seen in (("(0, 9)", True), ("(9.9, 9)", True), ("(0, -9)", False), ("(0, 31)", False)):
+        (scene,) = scenic.scenarioFromString(text.replace("PLACE", place), mode2D=True).sample(1, seed=0)
+        done = DummySimulator().simulate(scene, maxSteps=2)
+        assert (done is not None) == (seen == (word == "visible")), (place, word)
+
+
 def test_parameters_of_a_simulation_are_its_own() -> None:
     """Whether or not those of the scene were looked at before; afterwards these are as they were."""
     text = (
@@ -489,6 +510,13 @@ def test_all_overrides_are_reverted() -> None:
     done = with_sub("override ego with foo 5\noverride ego with bar 6\noverride ego with foo 7")
     assert done is not None
     assert [value for _, value in done.records["both"]] == [(1, 2), (7, 6), (7, 6), (1, 2), (1, 2)]
+
+
+def test_what_was_nothing_before_an_override_is_nothing_again() -> None:
+    text = SUB.replace("with foo 1", "with foo None").format(setup="        override ego with foo 5")
+    done = DummySimulator().simulate(scene_of(text), maxSteps=6)
+    assert done is not None
+    assert [value for _, value in done.records["both"]] == [(None, 2), (5, 2), (5, 2), (None, 2), (None, 2)]
 
 
 @pytest.mark.parametrize(
@@ -666,6 +694,60 @@ def test_images_have_as_many_channels_as_they_are_given(tmp_path: Path, image: s
         np.testing.assert_array_equal(np.asarray(found), eval(image))
 
 
+@pytest.mark.parametrize("name", ["a.png", "b.PNG", "c.bmp", "d.tiff", "e.webp", "f.Jpg", "g.jpeg"])
+def test_images_are_of_the_format_that_their_names_say(tmp_path: Path, name: str) -> None:
+    from PIL import Image
+
+    simulate(recording(tmp_path, f"{{step}}-{name}", "[[(9, 99, 200)] * 8] * 6"), 0)
+    with Image.open(tmp_path / f"0-{name}") as found:
+        assert found.format == name[2:].upper().replace("JPG", "JPEG")
+        assert found.size == (8, 6)
+        np.testing.assert_allclose(np.asarray(found), np.broadcast_to([9, 99, 200], (6, 8, 3)), atol=9)
+
+
+@pytest.mark.parametrize(
+    ("pattern", "several"),
+    [
+        ("run.npz", False), ("run", False), ("run.NPZ", False), ("{simulation}.jsonl", False), ("{0}.pkl", False), ("{}.pickle", False),
+        ("{}.mp4", False), ("{0}.mov", False), ("{simulation}.MKV", False),
+        ("{step}.npy", True), ("{1}.json", True), ("{2}.png", True), ("{time:.2f}.jpg", True), ("{0}-{1:04}.JPEG", True),
+        ("{}{}.bmp", True), ("{}{}{}.tiff", True), ("{step:03d}.webp", True),
+    ],
+)  # fmt: skip
+def test_a_pattern_stands_for_one_file_unless_it_depends_on_the_step(pattern: str, several: bool) -> None:
+    recorder = for_pattern(pattern)
+    assert isinstance(recorder, Files if several else File)
+    recorder.beginRecording(None, "run", 0.25, {"recordFolder": "there"})
+    paths = {str(recorder.path(step)) for step in (2, 3)}
+    known = {"simulation": "run"}
+    expected = {pattern.format("run", step, step / 4, step=step, time=step / 4, **known) for step in (2, 3)}
+    assert paths == {f"there/{name}" for name in expected}
+    assert len(paths) == 1 + several
+    assert recorder.written.name == ("there/" + (pattern if several else expected.pop()))
+
+
+@pytest.mark.parametrize(
+    ("pattern", "field"),
+    [("{3}.npy", "3"), ("{}{}{}{}.npy", "3"), ("{name}.png", "name"), ("{steps}.json", "steps")],
+)
+def test_fields_that_are_not_known_are_named(pattern: str, field: str) -> None:
+    with pytest.raises(ScenicValueError, match=f"unknown field '{field}'"):
+        for_pattern(pattern)
+
+
+@pytest.mark.parametrize(
+    ("pattern", "kinds"),
+    [
+        ("{step}.npz", ".bmp, .jpeg, .jpg, .json, .npy, .png, .tiff, .webp"),
+        ("run.png", ".jsonl, .mkv, .mov, .mp4, .npz, .pickle, .pkl"),
+    ],
+)
+def test_of_formats_those_are_named_that_the_pattern_may_have(pattern: str, kinds: str) -> None:
+    with pytest.raises(ScenicValueError, match="nothing can be recorded to files of extension") as caught:
+        for_pattern(pattern)
+    assert caught.value.help == f"use one of {kinds}"
+
+
 @pytest.mark.parametrize("shape", [(2, 3, 2), (2, 3, 5), (2,), (2, 3, 3, 3)])
 def test_what_is_no_image_is_refused(tmp_path: Path, shape: tuple[int, ...]) -> None:
     with pytest.raises(ValueError, match="an image is an array of shape"):
@@ -729,6 +811,39 @@ def test_what_was_whole_before_a_rejection_goes_too(tmp_path: Path, target: str)
     assert rejected != text
     assert DummySimulator().simulate(scene_of(rejected), maxSteps=5) is None
     assert list(tmp_path.iterdir()) == []
+
+
+def test_of_a_cancelled_series_nothing_remains_though_somebody_took_a_file_of_it(tmp_path: Path) -> None:
+    recorder = for_pattern("{step}.json")
+    recorder.beginRecording(None, "run", 1, {"recordFolder": str(tmp_path)})
+    for step in range(4):
+        recorder.recordValue(step, step)
+    (tmp_path / "1.json").unlink()
+    (tmp_path / "other").touch()
+    recorder.endRecording(True)
+    assert [path.name for path in tmp_path.iterdir()] == ["other"]
+
+
+def test_of_two_records_of_one_name_in_one_step_the_last_counts() -> None:
+    text = "ego = new Object\nrecord 1 as a\nrecord 2 every 2 steps as a\nrecord initial 3 as b\nrecord initial 4 as b\n"
+    done = simulate(text, 3)
+    assert done.records["a"] == [(0, 2), (1, 1), (2, 2), (3, 1)]
+    assert done.records["b"] == 4
+
+
+def test_what_cannot_be_recorded_is_shown_in_the_file_that_records_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "recording_module.scenic").write_text(
+        "param a = 1\nego = new Object\nrecord None to 'run.npz'\n"
+    )
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "main.scenic").write_text("x = 3\n\n\nfrom recording_module import *\n")
+    scene = scenic.scenarioFromFile(str(tmp_path / "main.scenic")).sample(1, seed=0)[0]
+    with pytest.raises(ScenicValueError, match="only numbers can be recorded") as caught:
+        DummySimulator().simulate(scene, maxSteps=1)
+    assert caught.value.span is not None
+    assert (Path(str(caught.value.filename)).name, caught.value.span.line) == ("recording_module.scenic", 3)
 
 
 @pytest.mark.parametrize("name", ["run.jsonl", "run.npz", "run.pickle", "run-{step}.json"])
@@ -1144,3 +1259,48 @@ def test_the_ego_of_a_scenario_is_not_that_of_others() -> None:
     text = f"scenario Main():\n    setup:\n        new Object\n    compose:\n        do First()\n        do Second()\n{parts}"
     with pytest.raises(InvalidScenarioError, match="ego object is used before it is set"):
         simulate(text)
+
+
+def test_an_invoked_scenario_judges_its_ends_by_its_own_ego() -> None:
+    text = (
+        "scenario Main():\n    setup:\n        ego = new Object\n    compose:\n        do Sub()\n        wait\n"
+        "scenario Sub():\n    setup:\n        ego = new Object at (20, 0)\n        terminate when ego.position.x > 10\n"
+        "    compose:\n        while True:\n            wait\n"
+    )
+    done = DummySimulator().simulate(scene_of(text), maxSteps=9)
+    assert done is not None
+    assert done.result is not None
+    assert (done.currentTime, done.result.terminationReason) == (1, "finished compose block")
+
+
+@pytest.mark.parametrize("pattern", ["run.npz", "run.jsonl", "run.pickle", "{step}.json"])
+def test_late_steps_are_recorded(tmp_path: Path, pattern: str) -> None:
+    recorder, late = for_pattern(pattern), 3 * 2**31
+    recorder.beginRecording(None, "run", 0.5, {"recordFolder": str(tmp_path)})
+    recorder.recordValue(7, late)
+    recorder.endRecording(False)
+    (written,) = tmp_path.iterdir()
+    if pattern == "{step}.json":
+        assert written.name == f"{late}.json"
+    elif pattern == "run.npz":
+        found = np.load(written)
+        assert (found["steps"].tolist(), found["times"].tolist()) == ([late], [late / 2])
+    elif pattern == "run.jsonl":
+        assert json.loads(written.read_text()) == {"step": late, "time": late / 2, "value": 7}
+    else:
+        assert pickle.loads(written.read_bytes()) == [(late, 7)]
+
+
+def test_behaviors_whose_attributes_lead_back_to_them() -> None:
+    text = (
+        "behavior B(n):\n    take n\n"
+        "b = B(Range(1, 2))\nb.itself = lambda: b\nb.n2 = Range(5, 6)\n"
+        "ego = new Object with behavior b\n"
+        "record (ego.behavior.itself() is ego.behavior, ego.behavior.itself().n2) as seen\n"
+    )
+    scene = scene_of(text)
+    for _ in range(2):
+        done = DummySimulator().simulate(scene, maxSteps=1)
+        assert done is not None
+        assert done.records["seen"][0][1][0] is True
+        assert 5 <= done.records["seen"][0][1][1] <= 6

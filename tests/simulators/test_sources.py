@@ -177,6 +177,11 @@ def test_rows_go_on_into_simulations() -> None:
         ({"agents": [1]}, [[False] * 4, [True] * 4]),
         ({"agents": [0], "until": 3}, [[True, True, True, False], [False] * 4]),
         ({"keep": lambda draw: draw.occurrence == 1}, [[False, True, False, False]] * 2),
+        ({"until": 0}, [[False] * 4] * 2),
+        ({"agents": []}, [[False] * 4] * 2),
+        ({"agents": [None]}, [[False] * 4] * 2),
+        ({"agents": {0, 1}, "until": 1}, [[True, False, False, False]] * 2),
+        ({"until": 2, "keep": lambda draw: draw.agent == 1}, [[False] * 4, [True, True, False, False]]),
         ({}, [[True] * 4] * 2),
     ],
 )

@@ -179,3 +179,21 @@ def test_amounts_change_no_answer(
                 monkeypatch.setattr(module, name, amount)
         for number, (found, usual) in enumerate(zip(question(), expected, strict=True)):
             np.testing.assert_allclose(found, usual, atol=1e-12, err_msg=f"answer {number} by {amount}")
+
+
+@pytest.mark.parametrize("question", QUESTIONS, ids=lambda question: question.__name__)
+def test_questions_leave_what_they_are_asked_of_as_it_was(
+    question: Callable[[], list[np.ndarray]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Nothing writes into poses, whoever made them: they are shared by batches and by bodies."""
+    expected = question()
+    check = Poses.__post_init__
+
+    def lock(self: Poses) -> None:
+        check(self)
+        for part in (self.position, self.orientation, self.size):
+            part.flags.writeable = False
+
+    monkeypatch.setattr(Poses, "__post_init__", lock)
+    for found, usual in zip(question(), expected, strict=True):
+        np.testing.assert_array_equal(found, usual)

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from scenic.runtime.geometry import collision, primitives
+from scenic.runtime.geometry import collision, narrowphase, primitives
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.broadphase import boxes_overlap
 from scenic.runtime.geometry.collision import Collider, collide
@@ -17,6 +17,12 @@ from .samples import SHAPES, hollow, random_poses, table, yawed
 
 LANES = 60
 MESHES = [SHAPES[name]() for name in ("box", "table", "cylinder", "spheroid", "hollow")]
+
+
+@pytest.fixture(autouse=True, params=[0.0, np.inf], ids=["with proofs", "exactly"])
+def patience(request, monkeypatch):
+    """Cells prove what they can from the first pair on, or never: what is found is the same."""
+    monkeypatch.setattr(narrowphase, "seconds_to_make", lambda mesh: request.param)
 
 
 def crowd(bodies: int, seed: int, lanes: int = LANES) -> list[Body]:
@@ -296,3 +302,28 @@ def test_how_much_is_looked_at_together_does_not_matter(most, monkeypatch):
         monkeypatch.setattr(collision, name, most)
     np.testing.assert_array_equal(collide(bodies, pairs, LANES, exhaustive=True).pairs, expected)
     np.testing.assert_array_equal(collide(bodies, pairs, LANES).free, ~expected.any(axis=1))
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
+@pytest.mark.parametrize("part", ["position", "size", "orientation"])
+@pytest.mark.parametrize("moving", [2, 4])
+def test_lanes_without_a_place_collide_with_nothing_and_disturb_no_other(bad, part, moving):
+    """What could not be computed in a lane is not a number there."""
+    lanes = 16
+    bodies = [differing(PROPERTIES[:3], seed, lanes=lanes) for seed in range(140, 140 + moving)]
+    bodies += [Body((table(),), None, yawed((0, 0, 0)), is_fixed=True)]
+    usual = collide(bodies, None, lanes, exhaustive=True).pairs
+    poses = bodies[0].poses
+    rows = {name: np.array(getattr(poses, name)) for name in PROPERTIES[:3]}
+    broken = np.arange(lanes) % 3 == 0
+    rows[part][broken, 1] = bad
+    with np.errstate(all="ignore"):
+        others = [replace(bodies[0], poses=Poses(**rows)), *bodies[1:]]
+        found = collide(others, None, lanes, exhaustive=True)
+        free = collide(others, None, lanes).free
+    mine = np.array([0 in pair for pair in itertools.combinations(range(len(bodies)), 2)])
+    np.testing.assert_array_equal(found.pairs[~broken], usual[~broken])
+    np.testing.assert_array_equal(found.pairs[:, ~mine], usual[:, ~mine])
+    if np.isnan(bad) and part == "position":
+        assert not found.pairs[broken][:, mine].any()
+    np.testing.assert_array_equal(free[~broken], ~usual[~broken].any(axis=1))

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from scenic.runtime.geometry.cells import touched_cells
+from scenic.runtime.geometry import facegrid
 from scenic.runtime.geometry.facegrid import face_grid
 from scenic.runtime.geometry.nearest import nearest_on_triangles
 
@@ -46,30 +46,12 @@ def test_no_lines():
     assert (len(lines), len(faces)) == (0, 0)
 
 
-def test_sharing_cells():
-    mesh = bumpy(3)
-    grid = mesh.derived(face_grid)
-    assert set(range(50)) <= set(grid.sharing_cells(mesh.triangles[:50]).tolist())
-    assert len(grid.sharing_cells(mesh.triangles[:1])) < len(mesh.faces) / 10
-
-
-@pytest.mark.parametrize("mesh", [table(), bumpy(3)], ids=["small", "large"])
-def test_faces_that_share_cells_are_those_of_the_same_cells(mesh):
-    grid = mesh.derived(face_grid)
-
-    def cells_of(triangles):
-        cells = [set() for _ in triangles]
-        for which, cell in touched_cells(triangles, grid.resolution):
-            for one, other in zip(which.tolist(), cell.tolist(), strict=True):
-                cells[one].add(other)
-        return cells
-
-    rng = np.random.default_rng(10)
-    own = cells_of(mesh.triangles)
-    for size in (0.02, 0.3):
-        triangles = np.clip(
-            rng.uniform(-0.5, 0.5, (5, 1, 3)) + rng.uniform(-size, size, (5, 3, 3)), -0.5, 0.5
-        )
-        wanted = set().union(*cells_of(triangles))
-        expected = [face for face, cells in enumerate(own) if cells & wanted]
-        assert grid.sharing_cells(triangles).tolist() == expected
+@pytest.mark.parametrize("most", [1, 500])
+def test_how_many_lines_are_looked_at_together_does_not_matter(most, monkeypatch):
+    rng = np.random.default_rng(11)
+    starts, directions = rng.uniform(-1, 1, (40, 3)), rng.normal(size=(40, 3))
+    grid = bumpy(3).derived(face_grid)
+    expected = set(zip(*(part.tolist() for part in grid.along_lines(starts, directions)), strict=True))
+    monkeypatch.setattr(facegrid, "_CHUNK", most)
+    found = grid.along_lines(starts, directions)
+    assert set(zip(*(part.tolist() for part in found), strict=True)) == expected

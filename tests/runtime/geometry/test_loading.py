@@ -3,6 +3,8 @@ import gc
 import gzip
 import itertools
 import json
+import logging
+import warnings
 
 import numpy as np
 import pytest
@@ -50,6 +52,14 @@ def test_packed_files(tmp_path, suffix, pack):
     packed = tmp_path / f"mesh.obj.{suffix}"
     packed.write_bytes(pack(plain.read_bytes()))
     np.testing.assert_array_equal(load_mesh(packed).vertices, load_mesh(plain).vertices)
+
+
+@pytest.mark.parametrize("kind", ["off", "obj", "glb"])
+def test_packed_files_have_the_format_of_what_is_packed(tmp_path, kind):
+    plain = export(tmp_path, f"mesh.{kind}", primitives.box())
+    packed = tmp_path / f"mesh.{kind}.gz"
+    packed.write_bytes(gzip.compress(plain.read_bytes()))
+    assert load_mesh(packed).is_box
 
 
 def test_scenes_are_joined_in_place(tmp_path):
@@ -387,3 +397,64 @@ def test_meshes_that_nodes_place_and_repeat_are_where_these_say(tmp_path):
         lower, upper = np.array(mesh.vertices).min(axis=0), np.array(mesh.vertices).max(axis=0)
         np.testing.assert_allclose((lower, upper), [(-1, -1, -6), (10.5, 20.5, 6)], atol=1e-6)
         assert len(mesh.faces) == 36
+
+
+PYRAMID = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n"
+PYRAMID_OFF = b"OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n"
+ONE_TRIANGLE = {
+    "asset": {"version": "2.0"},
+    "buffers": [{"uri": "missing.bin", "byteLength": 36}],
+    "bufferViews": [{"buffer": 0, "byteLength": 36}],
+    "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+    "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+    "nodes": [{"mesh": 0}],
+}
+
+
+def changed(data: bytes, place: int) -> bytes:
+    return data[:place] + bytes([data[place] ^ 255, data[place + 1] ^ 255]) + data[place + 2 :]
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "message"),
+    [
+        ("cut.obj.gz", gzip.compress(PYRAMID, mtime=0)[:-12], "cannot be unpacked"),
+        ("cut.obj.bz2", bz2.compress(PYRAMID)[:-12], "cannot be unpacked"),
+        ("worn.obj.gz", changed(gzip.compress(PYRAMID, mtime=0), 14), "cannot be unpacked"),
+        ("sum.obj.gz", changed(gzip.compress(PYRAMID, mtime=0), -6), "cannot be unpacked: CRC"),
+        ("deep.gltf", b"[" * 100_000, "cannot be read as gltf"),
+        ("huge.obj", PYRAMID.replace(b"f 1 3 2", b"f 1 3 " + b"9" * 30), "cannot be read as obj"),
+        ("far.obj", PYRAMID.replace(b"v 1 0 0", b"v inf 0 0"), "has a coordinate that is not finite"),
+        ("alone.gltf", json.dumps(ONE_TRIANGLE).encode(), "names a file that cannot be read.*missing.bin"),
+        ("broken.off", b"OFF nonsense", "cannot be read as off"),
+    ],
+)
+def test_damaged_files_are_told_by_their_names(tmp_path, name, content, message):
+    (tmp_path / name).write_bytes(content)
+    with pytest.raises(MeshError, match=f"the mesh `.*{name}` {message}"):
+        load_mesh(tmp_path / name)
+
+
+@pytest.mark.parametrize("quiet", [False, True])
+@pytest.mark.parametrize("name", ["pyramid.off", "broken.off"])
+def test_reading_by_another_library_leaves_warnings_and_logs_as_they_were(tmp_path, monkeypatch, name, quiet):
+    (tmp_path / name).write_bytes(PYRAMID_OFF if name == "pyramid.off" else b"OFF nonsense")
+    logger = logging.getLogger("trimesh")
+    monkeypatch.setattr(logger, "disabled", quiet)
+    before = list(warnings.filters)
+    try:
+        assert load_mesh(tmp_path / name).volume == pytest.approx(1 / 6)
+    except MeshError:
+        assert name == "broken.off"
+    assert logger.disabled is quiet
+    assert list(warnings.filters) == before
+
+
+@pytest.mark.parametrize("kind", ["obj", "OBJ", "Obj.GZ", "off", "OFF.Bz2"])
+def test_the_format_is_told_by_names_in_any_case(tmp_path, kind):
+    data = PYRAMID_OFF if kind.lower().startswith("off") else PYRAMID
+    pack = {".gz": gzip.compress, ".bz2": bz2.compress}.get("." + kind.lower().rpartition(".")[2], bytes)
+    path = tmp_path / f"some.day.{kind}"
+    path.write_bytes(pack(data))
+    for given in (path, str(path)):
+        assert load_mesh(given).volume == pytest.approx(1 / 6)

@@ -326,3 +326,27 @@ def test_what_is_no_solid_is_not_convex_however_convex_it_looks() -> None:
     ):
         mesh = Mesh(cube.vertices, faces)
         assert (mesh.is_volume, mesh.is_convex, mesh.is_box) == (False, False, False)
+
+
+def test_meshes_do_not_change_with_the_arrays_that_they_are_made_of() -> None:
+    """Nor are those locked."""
+    vertices, faces = np.array(primitives.box().vertices), np.array(primitives.box().faces)
+    mesh = Mesh(vertices, faces)
+    vertices[:], faces[:] = 7, 0
+    assert mesh.volume == pytest.approx(1)
+    np.testing.assert_array_equal(mesh.triangles, primitives.box().triangles)
+
+
+@pytest.mark.parametrize("far", [(50.0, 0.0, 0.0), (0.0, 0.0, 0.0)])
+def test_vertices_that_no_face_uses_are_none_of_the_solid(far: tuple[float, float, float]) -> None:
+    """They take no part in hulls, in what is convex and in what is a surface of its own."""
+    for shape in (primitives.box, primitives.cylinder):
+        own = shape()
+        mesh = Mesh(np.vstack([[far], own.vertices, [far]]), own.faces + 1)
+        assert mesh.is_convex
+        assert mesh.volume == pytest.approx(own.volume)
+        np.testing.assert_allclose(
+            np.sort(mesh.hull.vertices, axis=0), np.sort(own.hull.vertices, axis=0), atol=1e-15
+        )
+        assert len(mesh.component_vertices) == 1
+        assert np.abs(mesh.outermost).max() <= 0.5

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from scenic.graph import quaternions
-from scenic.runtime.geometry import contact, narrowphase, primitives
+from scenic.runtime.geometry import contact, facetree, narrowphase, primitives
 from scenic.runtime.geometry.affine import relative_map
 from scenic.runtime.geometry.booleans import difference
 from scenic.runtime.geometry.mesh import Mesh
@@ -298,11 +298,13 @@ def test_what_lies_in_walls_thinner_than_cells_is_found(inner):
         np.testing.assert_array_equal(solids.intersect(zeros + 1, b, zeros, a), kind != 1)
 
 
-@pytest.mark.parametrize("amount", [None, 5])
-def test_the_one_pair_of_faces_that_touch_is_found_whichever_it_is(amount, monkeypatch):
+@pytest.mark.parametrize(("amount", "front"), [(None, None), (5, None), (None, 3), (None, 7)])
+def test_the_one_pair_of_faces_that_touch_is_found_whichever_it_is(amount, front, monkeypatch):
     """All boxes of the faces meet; the faces are slanted sheets, one upon the other, of which one is bent a little."""
     for name in ("_FIRST", "_LEAST", "_CHUNK") if amount else ():
         monkeypatch.setattr(contact, name, amount)
+    if front:
+        monkeypatch.setattr(facetree, "_FRONT", front)
     count = 6 if amount else 36
     sheet = np.array([(0.5, -0.2, -0.3), (-0.2, 0.5, -0.3), (-0.2, -0.2, 0.4)])
     step = np.full(3, 1e-3)
@@ -340,3 +342,15 @@ def test_from_how_many_pairs_on_leaves_are_compared_in_a_grid_does_not_matter(mo
     for most in np.unique([products - 1, products]).tolist():
         monkeypatch.setattr(contact, "_GRID", most)
         np.testing.assert_array_equal(solids.touch(zeros, a, zeros + 1, b), expected)
+
+
+@pytest.mark.parametrize("front", [1, 2, 3, 6])
+def test_how_many_pairs_of_nodes_are_compared_together_does_not_matter(front, monkeypatch):
+    meshes = [table(), bumpy(3)]
+    zeros = np.zeros(40, dtype=np.intp)
+    a, b = (random_poses(40, seed, spread=0.6) for seed in (31, 32))
+    expected = Solids(meshes, patience=np.inf).intersect(zeros, a, zeros + 1, b)
+    assert 5 < expected.sum() < 35
+    monkeypatch.setattr(facetree, "_FRONT", front)
+    monkeypatch.setattr(facetree, "_SMALL", 0)
+    np.testing.assert_array_equal(Solids(meshes, patience=np.inf).intersect(zeros, a, zeros + 1, b), expected)

@@ -517,6 +517,12 @@ def test_obj_lines_that_say_nothing():
         ),
         ("matrix.gltf", json.dumps(gltf_triangle(nodes_0_matrix=[1, 2])).encode(), "cannot be read as gltf"),
         ("hole.gltf", b'{"asset": {"version": "2.0"}, "scenes": [{"nodes": [3]}]}', "description is broken"),
+        ("list.gltf", b'{"asset": {"version": "2.0"}, "scenes": [[1, 2]]}', "description is broken"),
+        (
+            "lists.gltf",
+            b'{"asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "nodes": [[0]], "meshes": [[1]]}',
+            "description is broken",
+        ),
         ("nothing.gltf", b'{"asset": {"version": "2.0"}}', "holds no triangles"),
     ],
 )
@@ -757,3 +763,61 @@ def test_mirrored_bodies_keep_their_outsides(mode):
         found = read_gltf(json.dumps(tree).encode(), no_neighbour)
         np.testing.assert_array_equal(found.vertices, plain.vertices * inner * outer)
         np.testing.assert_array_equal(found.faces, plain.faces[:, ::-1] if mirrored else plain.faces)
+
+
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\r", " "])
+@pytest.mark.parametrize("start", ["", "\n  \t"])
+@pytest.mark.parametrize("upper", [False, True])
+def test_words_of_stl_files_are_told_from_names(start: str, end: str, upper: bool) -> None:
+    """In large and small letters, with blanks before, and lines that end in any way."""
+    corners = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (-1.5e-3, 2.5, 1e2)]
+    lines = ["solid my_vertex 7 8 9"]
+    for face in ((0, 2, 1), (0, 1, 3)):
+        lines += ["facet normal 0 0 1", "outer loop"]
+        lines += ["vertex {} {} {}".format(*corners[corner]) for corner in face]
+        lines += ["endloop", "endfacet"]
+    text = start + end.join([*lines, "endsolid my_vertex 7 8 9", ""])
+    found = read_stl((text.upper() if upper else text).encode())
+    np.testing.assert_array_equal(
+        found.vertices[found.faces], [[corners[n] for n in face] for face in ((0, 2, 1), (0, 1, 3))]
+    )
+
+
+@pytest.mark.parametrize("offsets", [(0, 0), (24, 0), (0, 24), (12, 36)])
+def test_offsets_of_views_and_of_their_elements_add_up(offsets: tuple[int, int]) -> None:
+    points = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0)], dtype="<f4")
+    data = b"\xff" * sum(offsets) + points.tobytes()
+    tree = {
+        "asset": {"version": "2.0"},
+        "buffers": [{"uri": "all.bin", "byteLength": len(data)}],
+        "bufferViews": [{"buffer": 0, "byteOffset": offsets[0], "byteLength": len(data) - offsets[0]}],
+        "accessors": [
+            {"bufferView": 0, "byteOffset": offsets[1], "componentType": 5126, "count": 3, "type": "VEC3"}
+        ],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+        "nodes": [{"mesh": 0}],
+    }
+    found = read_gltf(json.dumps(tree).encode(), lambda _: data)
+    np.testing.assert_array_equal(found.vertices[found.faces], [points])
+
+
+@pytest.mark.parametrize("length", [0, 4])
+def test_the_first_chunk_of_each_kind_counts(length: int) -> None:
+    """What comes behind, of whatever kind, says nothing."""
+    points = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0)], dtype="<f4").tobytes()
+    tree = {
+        "asset": {"version": "2.0"},
+        "buffers": [{"byteLength": 36}],
+        "bufferViews": [{"buffer": 0, "byteLength": 36}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+        "nodes": [{"mesh": 0}],
+    }
+    text = json.dumps(tree).encode()
+    text += b" " * (-len(text) % 4)
+    chunks = [(b"JSON", text), (b"BIN\0", points), (b"MORE", b"abcd")]
+    chunks += [(b"BIN\0", b"\xff" * length), (b"JSON", b"null"[:length])]
+    body = b"".join(struct.pack("<I", len(part)) + kind + part for kind, part in chunks)
+    data = b"glTF" + struct.pack("<II", 2, 12 + len(body)) + body
+    found = read_glb(data, no_neighbour)
+    np.testing.assert_array_equal(found.vertices, [(0, 0, 0), (1, 0, 0), (0, 1, 0)])

@@ -128,7 +128,6 @@ def maps() -> Lines:
     x, y, z = points(4, 5).T
     for name, maps in (("alike", one), ("both", one.followed_by(two)), ("fixed", fixed)):
         yield f"{name} {numbers(maps.matrix)} {numbers(maps.offset)}"
-        yield f"{name} entry {numbers(maps.of_entry(0, points(3, 6)))}"
         yield f"{name} taken {numbers(maps.take(np.array([0, 0])).matrix)}"
     yield f"images {numbers(one.columns((x, y, z)))} {numbers(one.columns(points(8, 7).reshape(3, 2, 4)))}"
     yield f"reaches {numbers(one.reaches((abs(x), abs(y), abs(z))))}"
@@ -489,7 +488,6 @@ def face_grids() -> Lines:
             yield f"{name} lines {len(line)} {numbers(np.bincount(line, minlength=40).astype(float))} {numbers(face.astype(float))}"
         point, face = grid.near_points(points(40, 5, 0.7), np.full((40, 3), 0.05) * [1, 2, 0.5])
         yield f"{name} points {len(point)} {numbers(np.bincount(point, minlength=40).astype(float))} {numbers(face.astype(float))}"
-        yield f"{name} sharing {numbers(grid.sharing_cells(points(9, 6, 0.4).reshape(3, 3, 3)).astype(float))}"
 
 
 @question

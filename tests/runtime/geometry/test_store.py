@@ -340,3 +340,25 @@ def test_as_many_bytes_as_allowed_are_kept(folder, monkeypatch):
     path.unlink()
     kept("x", CONTENT, Counted(1000))
     assert {each.name for each in folder.iterdir()} == {"c.npz", path.name}
+
+
+def test_a_store_that_may_only_be_read_serves_what_it_holds(folder, monkeypatch):
+    """Where not even the time of the last use may be changed."""
+    kept("x 1", CONTENT, Counted())
+
+    def refuse(*_arguments, **_options):
+        raise PermissionError("read-only")
+
+    for name in ("utime", "replace", "unlink"):
+        monkeypatch.setattr(store.os, name, refuse)
+    compute = Counted()
+    np.testing.assert_array_equal(kept("x 1", CONTENT, compute)["a"], [0, 1, 2])
+    assert compute.calls == 0
+
+
+def test_what_is_found_is_not_written_again(folder):
+    kept("x 1", CONTENT, Counted())
+    (path,) = folder.iterdir()
+    before = path.stat().st_ino, path.read_bytes()
+    kept("x 1", CONTENT, Counted())
+    assert (path.stat().st_ino, path.read_bytes()) == before

@@ -252,3 +252,20 @@ def test_batches_do_not_matter(mesh, batch):
         whole = answers(np.arange(count))
         np.testing.assert_array_equal(in_batches(answers, count, batch), whole)
         np.testing.assert_array_equal(answers(np.arange(0, count, 4)), whole[::4])
+
+
+@pytest.mark.parametrize("off", [1e-1, 1e-4, 1e-6])
+@pytest.mark.parametrize("name", ["yaw", "pitch"])
+def test_faces_nearly_across_the_north_look_as_nearly_north_as_they_can(off, name):
+    """Only where the normal itself is north, up counts."""
+    angles = (off, 0, 0) if name == "yaw" else (0, off, 0)
+    for size in ((1, 1, 1), (3, 0.5, 20)):
+        box = body_of(primitives.box(), Poses.fixed((5, 6, 7), quaternions.from_euler(*angles), size))
+        normals = surface.face_normals(box, np.arange(12))
+        ahead = quaternions.rotate(surface.face_orientations(box, np.arange(12)), [0, 1, 0])
+        across = np.abs(normals[:, 1]) > 0.9
+        assert across.sum() == 4
+        beside = normals[across][:, [0, 2]] * -np.sign(normals[across][:, 1:2])
+        expected = beside / np.linalg.norm(beside, axis=1, keepdims=True)
+        np.testing.assert_allclose(ahead[across][:, [0, 2]], expected, atol=off * off + 1e-7)
+        np.testing.assert_allclose(ahead[across][:, 1], off, rtol=1e-2)

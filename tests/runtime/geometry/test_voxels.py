@@ -7,6 +7,7 @@ from scenic.runtime.geometry.cells import touched_cells
 from scenic.runtime.geometry.inside import contains_points
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.nearest import nearest_on_triangles
+from scenic.runtime.geometry.proofs import ProofTable
 from scenic.runtime.geometry.voxels import PROBES, RESOLUTION, voxels
 
 from .samples import FILES, SHAPES, placed, real_meshes, unit_mesh
@@ -190,3 +191,21 @@ def test_a_shell_that_no_cell_has_its_middle_in_is_probed_right_under_its_faces(
     assert set(np.round(heights, 9).tolist()) <= {0.499, 0.497}
     sides = {(int(np.abs(row).argmax()), bool(row[np.abs(row).argmax()] > 0)) for row in probes[:16]}
     assert len(sides) == 6
+
+
+def test_parts_of_a_box_are_full_however_many_cells_they_have():
+    """Also where the number of cells is a multiple of a power of two."""
+    still, table_of = np.zeros(1, dtype=np.intp), ProofTable([primitives.box()])
+    for counts in (
+        (1, 1, 1),
+        (32, 32, 32),
+        (64, 32, 32),
+        (64, 64, 16),
+        (64, 64, 32),
+        (64, 64, 64),
+        (63, 61, 17),
+    ):
+        half = (np.array(counts) - 0.5) / RESOLUTION / 2
+        centre = half + 0.25 / RESOLUTION - 0.5
+        near = table_of.near_filled(still, centre.reshape(3, 1), half.reshape(3, 1))
+        assert near.all(), counts

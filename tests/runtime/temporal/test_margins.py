@@ -16,7 +16,8 @@ from scenic.runtime.geometry.depth import convex_depth, convex_gap
 from scenic.runtime.geometry.distance import between as gaps
 from scenic.runtime.geometry.poses import Poses
 from scenic.runtime.geometry.single import Placed, overlap, placed
-from scenic.runtime.values import Orientation
+from scenic.runtime.regions.planar import CircularRegion
+from scenic.runtime.values import Orientation, Vector
 from scenic.simulators.dummy import DummySimulator
 
 SCENE = """
@@ -253,6 +254,11 @@ def test_a_chain_has_a_margin_only_if_all_of_its_parts_have_one() -> None:
     """It is the least of theirs; where the margin of one is not known, that of the whole is not."""
     assert margin(("<", "<=", ">"), (1.0, 3.0, 3.5, 2.0)) == 0.5
     assert margin(("<", ">="), (3.0, 1.0, 0.0)) == -2.0
+    # A point on a border is known to be on it.
+    disc = CircularRegion((0, 0), 2)
+    for symbol in ("in", "not in"):
+        assert margin([symbol], (Vector(0, 2, 0), disc)) == pytest.approx(0, abs=1e-12)
+    assert margin(["<"], (3.0, 3.0)) == 0
     for place in range(3):
         symbols, operands = ["<"] * 3, [1.0, 2.0, 3.0, 4.0]
         symbols[place] = "is"

@@ -241,6 +241,30 @@ def test_robustness_is_that_of_the_definition() -> None:
         assert robustness(formula(tree), trace) == by_definition(tree, trace)[0], (tree, trace)
 
 
+def test_robustness_of_obligations_that_both_sides_share_is_that_of_the_definition() -> None:
+    rng = random.Random(9)
+    shared: list[Tree] = [
+        ("always", "a"),
+        ("eventually", "b"),
+        ("until", "a", "b"),
+        ("next", "b"),
+        "a",
+        "b",
+        "c",
+    ]
+
+    def joined(depth: int) -> Tree:
+        if depth == 0:
+            return rng.choice(shared)
+        word = rng.choice(["and", "or", "implies", "not"])
+        return (word, *(joined(depth - 1) for _ in range(1 if word == "not" else 2)))
+
+    for _ in range(1_500):
+        tree = joined(rng.randrange(2, 4))
+        trace = [[float(rng.randrange(-3, 4)) for _ in ATOMS] for _ in range(rng.randrange(1, 5))]
+        assert robustness(formula(tree), trace) == by_definition(tree, trace)[0], (tree, trace)
+
+
 def test_what_robustness_keeps_does_not_grow() -> None:
     a, b, c = Atom(0), Atom(1), Atom(2)
     inner = Compound("until", (Compound("eventually", (a,)), Compound("always", (b,))))
