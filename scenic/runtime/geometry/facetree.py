@@ -91,8 +91,8 @@ def _sorted(lowest: Floats, highest: Floats) -> Indices:
         spread = np.maximum.reduceat(placed, starts[:-1]) - np.minimum.reduceat(placed, starts[:-1])
         node = np.repeat(np.arange(len(spread)), np.diff(starts))
         along = placed[np.arange(count), np.argmax(spread, axis=1)[node]]
-        # Coordinates from 0 to 1, so that one number sorts by node first.
-        faces = faces[np.argsort(2.0 * node + along)]
+        # Coordinates from 0 to 1, so that one number sorts by node first; stable, so that all processors sort alike.
+        faces = faces[np.argsort(2.0 * node + along, kind="stable")]
     return faces
 
 
