@@ -71,6 +71,23 @@ def test_scenes_do_not_depend_on_lanes(lanes: int) -> None:
     ]
 
 
+@pytest.mark.parametrize("lanes", [1, 64])
+@pytest.mark.parametrize(
+    "empty",
+    [
+        "nowhere",
+        "disc.difference(CircularRegion((5, 5, 1), Range(4, 5)))",
+        "box.intersect(BoxRegion(position=(Range(15, 16), 5, 5), dimensions=(4, 5, 6), rotation=(0.1, 0.2, 0)))",
+    ],
+)
+@pytest.mark.parametrize("choice", [drawn("Uniform({})"), "Uniform({})"])
+def test_where_a_region_turns_out_empty_no_scene_is_made(choice: str, empty: str, lanes: int) -> None:
+    text = f"{SETTING}p = new Point in {choice.format(f'disc, {empty}')}\nparam p = p\n"
+    places = [item.params["p"].position for item in scenario(text).sample(6, seed=1, lanes=lanes)]
+    assert all(math.dist(place, (5, 5, 1)) <= 3 for place in places)
+    assert len(set(places)) == 6
+
+
 def test_what_is_on_something_drawn_rests_on_it() -> None:
     text = SETTING + (
         "table = new Object at (30, 30), with width 4, with length 4, with height 2\n"

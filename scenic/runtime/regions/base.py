@@ -530,6 +530,7 @@ class Nowhere(Region):
     """The empty region."""
 
     dimension = 0
+    may_find_none = True
 
     def __init__(self, name: str | None = None) -> None:
         super().__init__(name=name)
@@ -552,7 +553,8 @@ class Nowhere(Region):
         return np.full(len(points), np.inf)
 
     def draw_points(self, uniforms: Column, keys: Column, *columns: Column) -> tuple[Points, Mask | None]:
-        raise RejectionException("no point can be drawn from the empty region")
+        lanes = uniforms.shape[1]
+        return np.zeros((lanes, 3)), np.zeros(lanes, dtype=np.bool_)
 
     def project(self, point: Any, direction: Any) -> tuple[Any, Any]:
         raise InvalidScenarioError("nothing lands on the empty region", span=here())
