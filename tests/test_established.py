@@ -602,10 +602,17 @@ def test_laws_can_be_asked_for() -> None:
         assert value.isPrimitive
     assert isinstance(laws.DiscreteRange(1, 2, weights=(1, 2)), laws.DiscreteRange)
     assert isinstance(laws.Uniform(1, 2), laws.Options)
-    derived = laws.Uniform(1, 2) + 1
-    assert isinstance(derived, laws.Distribution)
-    assert not isinstance(derived, laws.Options)
-    assert not derived.isPrimitive
+    computed = [
+        *(value + 0 for name, value in made.items() if name != "Options"),
+        laws.Uniform(1, 2) + 1,
+        laws.Uniform([1, 2], [3, 4])[0],
+        laws.Uniform("a", "b").upper(),
+        laws.Uniform(Vector(1, 2), Vector(3, 4)).x,
+    ]
+    for value in computed:
+        assert isinstance(value, laws.Distribution)
+        assert not [name for name in made if isinstance(value, getattr(laws, name))]
+        assert not value.isPrimitive
     assert not isinstance(3, laws.Distribution)
     assert (made["Range"].low, made["Range"].high, made["Normal"].mean, made["Normal"].stdDev) == (1, 2, 1, 2)
     assert laws.Range(laws.Range(3, 4), 5).low.supportInterval() == pytest.approx((3, 4), abs=1e-9)
