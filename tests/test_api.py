@@ -76,6 +76,18 @@ def test_scenes() -> None:
     assert (empty.egoObject, empty.objects) == (None, ())
 
 
+def test_changing_the_parameters_that_are_given_out_changes_no_scene() -> None:
+    program = scenic.scenarioFromString("param x = Range(0, 1), y = 'text'")
+    (before,) = program.sample(1, seed=0)
+    expected = dict(before.params)
+    for given in (program.params, before.params):
+        given["x"] = given["z"] = 7
+        del given["y"]
+    assert list(program.params) == ["x", "y"]
+    (after,) = program.sample(1, seed=0)
+    assert after.params == expected
+
+
 def test_names_of_objects_are_those_of_the_first_variables_that_hold_them() -> None:
     scene = scenic.scenarioFromString(
         "first = new Object\nsecond = first\ncars = [new Object at (x, 0) for x in (3, 6)]\n"
