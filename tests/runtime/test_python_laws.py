@@ -359,6 +359,26 @@ def test_a_sample_that_fails_or_is_rejected_says_so() -> None:
 
 
 @pytest.mark.parametrize(
+    ("properties", "expected"),
+    [
+        ("with first n, with second none", "RejectionException"),
+        ("with first none, with second n", "RejectionException"),
+        ("with first n, with second fails", "KeyError"),
+        ("with first fails, with second n", "KeyError"),
+        ("with first n, with second n + 1", "drawn"),
+    ],
+)
+def test_a_sample_of_an_instance_needs_all_of_its_properties(properties: str, expected: str) -> None:
+    text = (
+        "n = Range(0, 1)\nfails = distributionFunction(lambda value: {}[value])(n)\n"
+        f"none = DiscreteRange(2 + n / 9, 2.5)\nego = new Object\nplace = new Point {properties}\n"
+        "try:\n    place.sample()\n    found = 'drawn'\n"
+        "except Exception as error:\n    found = type(error).__name__\nparam found = found\n"
+    )
+    assert scenario(text).params["found"] == expected
+
+
+@pytest.mark.parametrize(
     ("value", "error"),
     [
         ("1 / zero(1) + 1 / zero(2)", "ZeroDivisionError"),
