@@ -320,11 +320,27 @@ def by_wraps(function):
     def wrapped(*args): return function(*args)
     return wrapped
 def by_two(function): return by_closure(by_cache(function))
+def by_cached_closure(function): return functools.lru_cache(by_closure(function))
+def same(value): return value
+def by_helpers(function):
+    before, later = functools.lru_cache(same), functools.lru_cache(same)
+    def wrapped(*args): return later(before(function))(*args)
+    return wrapped
 """
 
 
 @pytest.mark.parametrize(
-    "wrapper", ["by_closure", "by_cache", "by_wraps", "by_two", "functools.lru_cache", "functools.cache"]
+    "wrapper",
+    [
+        "by_closure",
+        "by_cache",
+        "by_wraps",
+        "by_two",
+        "by_cached_closure",
+        "by_helpers",
+        "functools.lru_cache",
+        "functools.cache",
+    ],
 )
 def test_decorated_functions_see_the_sample_and_the_simulation(tmp_path: Path, wrapper: str) -> None:
     """Whatever a library's decorator keeps the function in."""
@@ -332,14 +348,17 @@ def test_decorated_functions_see_the_sample_and_the_simulation(tmp_path: Path, w
     main = tmp_path / "main.scenic"
     main.write_text(
         f"import functools\nfrom wrappers import *\nK = Range(0, 1)\n@{wrapper}\ndef decorated(n): return K + n\n"
-        "def use(k): return decorated(2)\nego = new Object\n"
-        "param k = K, x = distributionFunction(use)(K)\nrecord decorated(3) as y\n"
+        f"class Box(Object):\n    @{wrapper}\n    def method(self, n): return K + n\n"
+        "def use(k): return decorated(2)\nego = new Box\n"
+        "param k = K, x = distributionFunction(use)(K)\nrecord decorated(3) as y\nrecord ego.method(4) as z\n"
     )
     for found in scenic.load(main).sample(3, seed=1):
         assert found.params["x"] == found.params["k"] + 2
+        assert found.egoObject.method(5) == found.params["k"] + 5
         done = DummySimulator().simulate(found, maxSteps=1)
         assert done is not None
         assert [value for _, value in done.records["y"]] == [found.params["k"] + 3] * 2
+        assert [value for _, value in done.records["z"]] == [found.params["k"] + 4] * 2
 
 
 def test_abstract_classes_are_so_in_a_sample_until_their_methods_are_given() -> None:
