@@ -1261,10 +1261,13 @@ def test_the_ego_of_a_scenario_is_not_that_of_others() -> None:
         simulate(text)
 
 
-def test_an_invoked_scenario_judges_its_ends_by_its_own_ego() -> None:
+@pytest.mark.parametrize("place", ["ego.position.x", "(distance to (0, 0))", "where()"])
+def test_an_invoked_scenario_judges_its_ends_by_its_own_ego(place: str) -> None:
+    """Whether the condition names the ego, means it, or calls what reads it."""
     text = (
+        "def where(): return distance from (0, 0) to ego\n"
         "scenario Main():\n    setup:\n        ego = new Object\n    compose:\n        do Sub()\n        wait\n"
-        "scenario Sub():\n    setup:\n        ego = new Object at (20, 0)\n        terminate when ego.position.x > 10\n"
+        f"scenario Sub():\n    setup:\n        ego = new Object at (20, 0)\n        terminate when {place} > 10\n"
         "    compose:\n        while True:\n            wait\n"
     )
     done = DummySimulator().simulate(scene_of(text), maxSteps=9)
