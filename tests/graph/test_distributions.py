@@ -363,6 +363,18 @@ def test_bounds_of_whole_numbers_hold_their_limits(end):
             assert [bounds.lower[0], bounds.upper[0]] == values or end == 2**53
 
 
+@pytest.mark.parametrize("end", [2**53 + more for more in (-1, 0, 1, 3)] + [2**60 + 1, 2**61 - 1])
+def test_bounds_of_tables_hold_whole_numbers_of_any_size(end):
+    """Whatever smaller ones stand beside them."""
+    for values in ([1, end], [end, 1], [-1, -end], [-end, end], [1, -end, 0, end], [1, -2, 3]):
+        node = one_of(*values)
+        for place, value in enumerate(values):
+            bounds = node.operation.bounds(node.payload, Bounds.exactly(place))
+            assert int(bounds.lower[0]) <= value <= int(bounds.upper[0])
+            if max(map(abs, values)) <= 2**53:
+                assert bounds.lower[0] == value == bounds.upper[0]
+
+
 def test_bounds_of_kinds_hold_every_value():
     turns = np.random.default_rng(3).normal(size=(500, 4))
     turns /= np.linalg.norm(turns, axis=1, keepdims=True)

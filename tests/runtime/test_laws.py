@@ -466,6 +466,20 @@ def test_large_integers_that_are_drawn_between_drawn_ones_are_exact(low: int) ->
     assert all(type(part) is int for value in values for part in value)
 
 
+@pytest.mark.parametrize("low", [2**53, 2**60, -(2**60) - 5])
+@pytest.mark.parametrize("law", ["Uniform({0})", "Discrete({{{1}: 1, {2}: 1, {3}: 1}})"])
+def test_requirements_find_large_integers_among_small_ones(low: int, law: str) -> None:
+    options = (1, low, low + 1)
+    text = f"x = {law.format(', '.join(map(str, options)), *options)}\nparam x = x\n"
+    for condition, expected in (
+        (f"x > {low}", {option for option in options if option > low}),
+        (f"x < {low + 1}", {option for option in options if option < low + 1}),
+        (f"x == {low + 1}", {low + 1}),
+        (f"x != 1 and x <= {low}", {low}),
+    ):
+        assert set(draws(f"{text}require {condition}\n", n=30)) == expected
+
+
 LAWS_OF_INSTANCES = [
     # a law whose operands read the width of the object, which is 5; the least and the greatest value
     ("Range(wide, wide + 1)", 5, 6),
