@@ -405,6 +405,24 @@ def test_the_first_operand_that_failed_is_the_culprit():
     assert untouched.status is untouched.error is None
 
 
+@pytest.mark.parametrize("count", [2, 3, 4])
+def test_alike_nodes_have_the_fate_of_their_own_operands(count):
+    """Also where the operands of one of them are a constant and a member of another group."""
+    fates = [[OK] * 4, [OK, FAULT, OK, OK], [REJECTED, OK, OK, OK], [OK, OK, FAULT, REJECTED]]
+    for order in itertools.permutations(fates, count):
+        given = [faulty(Kind.SCALAR, [1.0] * 4, np.array(fate), ValueError()) for fate in order]
+        members = [make("add", source(Kind.SCALAR, [2.0]), each) for each in given]
+        other = make("multiply", source(Kind.SCALAR, [3.0]), source(Kind.SCALAR, [4.0]))
+        nodes = [make("subtract", member, other) for member in members]
+        nodes += [make("subtract", 5.0, member) for member in members]
+        batch = batch_at(Graph(nodes), np.empty((4, 0)))
+        batch.need(nodes)
+        for node, fate in zip(nodes, order * 2, strict=True):
+            assert is_fine(batch, node).tolist() == [each == OK for each in fate]
+            status = batch.status(node)
+            assert status is None if not any(fate) else status.tolist() == fate
+
+
 @pytest.mark.parametrize("grouped", [True, False])
 def test_the_error_is_that_of_the_operand_that_failed(grouped):
     """Not of one before it whose neighbour in a group, or whose other lanes, failed."""
