@@ -288,6 +288,9 @@ def test_infinite_values_are_refused(text: str, message: str) -> None:
         "new Object with width y",
         "new Object with length y",
         "new Object with height y",
+        "new Object with width abs(y)",
+        "new Object with length abs(y)",
+        "new Object with height abs(y)",
         "a = new Object\nnew Object ahead of a by y",
     ],
 )
@@ -316,7 +319,11 @@ def test_finite_values_need_no_check() -> None:
     [
         ("sin(x * float('inf'))", ValueError),
         ("cos(x * 1e308 * 1e308)", ValueError),
+        ("sin(abs(x * float('inf')))", ValueError),
+        ("cos(-abs(x * float('inf')))", ValueError),
         ("Range(0, x * float('inf'))", ValueError),
+        ("Range(0, abs(x * float('inf')))", ValueError),
+        ("Range(-abs(x * float('inf')), 0)", ValueError),
         ("Range(float('nan'), 1)", ValueError),
         ("TruncatedNormal(x + 5, 0, 0, 1)", ValueError),
         ("[1, {'k': 1 // (x // 5)}]", ZeroDivisionError),
