@@ -13,7 +13,15 @@ from scenic.runtime.geometry.poses import Poses
 from scenic.runtime.regions.drawn import DrawnRegion
 from scenic.runtime.regions.planar import CircularRegion, RectangularRegion
 from scenic.runtime.regions.volumes import BoxRegion
-from tests.runtime.programs import FALSE_ALARM, failure, fingerprint, place, scenario
+from tests.runtime.programs import (
+    FALSE_ALARM,
+    assert_same_rotation,
+    failure,
+    fingerprint,
+    place,
+    rotation,
+    scenario,
+)
 
 SETTING = """
 told = distributionFunction(lambda value, _: value)
@@ -107,6 +115,31 @@ def test_what_is_on_something_drawn_rests_on_it() -> None:
         assert d.z == pytest.approx(1.50005)
         landed.add(d.x)
     assert landed == {30, 31, 32}  # where there is no table the candidate is rejected
+
+
+@pytest.mark.parametrize("start", [(0.9, 0.3, 0.2), (-0.9, 0.3, 0.2), (0.3, 0.9, -0.2), (0.5, 0.3, 5)])
+@pytest.mark.parametrize("name", ["surface", "turned", "slope"])
+def test_what_lands_on_something_drawn_is_turned_as_where_it_lands(
+    name: str, start: tuple[float, float, float]
+) -> None:
+    """Not as what is nearest to where it comes from: that may be a wall."""
+    text = SETTING + (
+        "surface = BoxRegion(dimensions=(2, 2, 2)).getSurfaceRegion()\n"
+        "turned = MeshSurfaceRegion(box.mesh, (2, 2, 2), rotation=(0.7, 0.4, -0.3), "
+        "orientation=VectorField('up', lambda place: place.z))\n"
+        "slope = MeshSurfaceRegion(box.mesh, (2, 2, 2), rotation=(0.7, 0.4, -0.3))\n"
+        f"a = new OrientedPoint at {start}, on {drawn(name)}\nb = new OrientedPoint at {start}, on {name}\n"
+        "param a = a, b = b\n"
+    )
+    found = scenario(text).sample(1, seed=1)[0].params
+    assert tuple(found["a"].position) == pytest.approx(tuple(found["b"].position))
+    assert_same_rotation(found["a"].orientation, rotation(found["b"].orientation))
+    if name == "surface":
+        height = found["a"].position.z
+        assert abs(height) == pytest.approx(1)
+        np.testing.assert_allclose(
+            rotation(found["a"].orientation).apply([0, 0, 1]), [0, 0, height], atol=1e-9
+        )
 
 
 def test_a_container_holds_all_of_an_object() -> None:

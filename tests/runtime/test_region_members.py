@@ -96,6 +96,21 @@ def test_measures_of_volumes_of_meshes() -> None:
         assert volume.voxelized(0.5).size >= volume.size * 0.9
 
 
+@pytest.mark.parametrize("kind", ["box", "ball", "volume", "surface"])
+def test_surfaces_are_placed_as_their_volumes(kind: str) -> None:
+    maker = {
+        "box": named.BoxRegion,
+        "ball": named.SpheroidRegion,
+        "volume": lambda *placing: named.MeshVolumeRegion(CUBE, *placing),
+        "surface": lambda *placing: named.MeshSurfaceRegion(CUBE, *placing),
+    }[kind]
+    region = maker((4, 5, 6), PLACE, TILT)
+    for part in (region, region.getSurfaceRegion(), region.getVolumeRegion()):
+        assert tuple(part.dimensions) == (4, 5, 6)
+        assert tuple(part.position) == tuple(PLACE)
+        assert_same_rotation(part.rotation, euler(0.7, 0.4, -0.3))
+
+
 def test_polylines_are_made_of_what_shapely_calls_lines() -> None:
     outline = shapely.Polygon([(0, 0), (4, 0), (4, 3)])
     ring = named.PolylineRegion(polyline=outline.exterior)
@@ -285,6 +300,10 @@ def test_ends_and_directions_of_lines() -> None:
     for end in (tilted.start, tilted.end):
         assert (end.yaw, end.pitch, end.roll) == pytest.approx((0.3, 0.2, 0.1))
         assert end.parentOrientation == Orientation()
+    ring = named.PolylineRegion([(0, 0), (4, 0), (4, 3), (0, 0)])
+    assert tuple(ring.start.position) == tuple(ring.end.position)
+    assert ring.start.heading == pytest.approx(-math.pi / 2)
+    assert ring.end.heading == pytest.approx(math.atan2(4, -3))
     assert [tuple(point) for point in line] == [(0, 0, 0), (4, 0, 0), (4, 3, 0)]
     assert tuple(line[-1]) == (4, 3, 0)
     assert line.cumulativeLengths == pytest.approx([4, 7])

@@ -425,6 +425,22 @@ def test_lines_through_edges_and_corners_of_a_solid(solid: str, turn: Orientatio
         assert inside.length == pytest.approx(2 * np.linalg.norm(half), rel=1e-6)
 
 
+@pytest.mark.parametrize("scale", [1e-3, 1e-2, 1.0, 1e3])
+@pytest.mark.parametrize("solid", ["box", "ball"])
+def test_lines_are_cut_alike_at_every_scale(solid: str, scale: float) -> None:
+    """Also where segments and faces are some millimetres long."""
+    kind = named.BoxRegion if solid == "box" else named.SpheroidRegion
+    region = kind((scale, scale, scale), rotation=TILT)
+    way = Rotation.from_quat(TILT.q).apply([0, 1, 0]) * scale
+    path = named.PathRegion([(share * way).tolist() for share in (-1.2, -0.7, -0.3, 0.2, 0.6, 0.9)])
+    inside = path.intersect(region)
+    assert isinstance(inside, LineRegion)
+    assert inside.length == pytest.approx(scale)
+    assert path.difference(region).containsPoint(Vector(*(0.55 * way))) is True
+    lower, upper = inside.box()
+    np.testing.assert_allclose(np.abs([lower[0], upper[0]]), np.abs([way, way]) / 2, rtol=1e-6)
+
+
 @pytest.mark.parametrize("side", ["left", "right", "front", "back", "top", "bottom"])
 def test_sides_meet_the_columns_that_they_are_in(side: str) -> None:
     """Walls, which have no extent seen from above, as well as floors."""
