@@ -469,6 +469,35 @@ def test_a_narrow_view_hides_what_is_beside_above_and_behind_it() -> None:
             assert SEES.bounds((False, False), *exact([*wide, place])).upper[0] == 1
 
 
+def test_of_random_view_angles_the_widest_counts() -> None:
+    """What the widest view shows may be seen, however narrow the view can be; what it does not show is not."""
+    turn = Rotation.from_euler("ZXY", [0.7, 0.3, -0.4])
+    still, size = np.array([[0.0, 0, 0, 1]]), np.full((1, 3), 1e-9)
+    numbers = [np.array([number]) for number in (0.0, 0.0, 50.0, 5.0, 0.0, 0.0)]
+    views = [np.array([[1.0, 2, 3]]), turn.as_quat()[None], *numbers, np.zeros(1)]
+
+    def most(way: Sequence[float], width: tuple[float, float], height: tuple[float, float]) -> set[float]:
+        place = views[0] + 20 * turn.apply(way)[None]
+        found = set()
+        for payload, target in (((False, False), [place]), ((True, False), [place, still, size, None])):
+            given = exact([*views, *target])
+            given[2:4] = [Bounds(np.array([low]), np.array([high])) for low, high in (width, height)]
+            assert SEES.bounds is not None
+            found.add(float(SEES.bounds(payload, *given).upper[0]))
+        return found
+
+    for side in (-1, 1):
+        for off, seen in ((-1e-4, 1), (1e-4, 0)):
+            across, upward = np.tan(0.3 + off), np.tan(0.2 + off)
+            assert most([side * across, 1, 0], (0.1, 0.6), (0.1, 0.4)) == {seen}
+            assert most([0, 1, side * upward], (0.1, 0.6), (0.1, 0.4)) == {seen}
+        # Views that may be as wide as can be show all, those that are narrow for certain nothing behind.
+        assert most([side, -1, 0], (0.1, 2 * np.pi), (0.1, 0.4)) == {1}
+        assert most([side, -1, 0], (0.1, 0.6), (0.1, np.pi)) == {0}
+        assert most([0, 0, side], (0.1, 2 * np.pi), (0.1, np.pi)) == {1}
+        assert most([0, 0, side], (0.1, 2 * np.pi), (0.1, 0.4)) == {0}
+
+
 ENDS = np.array([5e-324, 2.0**-64, 0.25, 0.5, 1 - 2.0**-53])
 
 

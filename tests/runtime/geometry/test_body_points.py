@@ -84,6 +84,23 @@ def test_points_are_found_in_solids_that_fill_little_of_their_boxes() -> None:
     assert abs(local.mean()) < 0.2
 
 
+def test_points_drawn_from_solids_do_not_depend_on_the_company() -> None:
+    """Of whatever shape each of them is; where a key is given for all, that counts for each."""
+    count, rng = 40, np.random.default_rng(7)
+    poses, meshes = random_poses(count, 8), (table(), primitives.box(), hollow(), primitives.cone())
+    body = Body(meshes, rng.integers(0, len(meshes), count), poses)
+    uniforms, keys = rng.random((3, count)), rng.integers(0, 2**63, count).astype(np.uint64)
+    for words in (keys, keys[:1]):
+        together, found = body_points.draw_points(body, uniforms, words)
+        assert found.all()
+        for size in (1, 7):
+            for start in range(0, count, size):
+                lanes = np.arange(start, min(start + size, count))
+                mine = words[lanes] if len(words) > 1 else words
+                points, _ = body_points.draw_points(body.take(lanes), uniforms[:, lanes], mine)
+                np.testing.assert_array_equal(points, together[lanes])
+
+
 @pytest.mark.parametrize("side", [None, (0, 1), (1, -1), (2, 1), (2, -1)])
 @pytest.mark.parametrize("threshold", [0.3, 2.0])
 def test_boxes_of_sides_hold_the_faces_that_look_there(

@@ -14,7 +14,7 @@ from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.poses import Poses
 from scenic.runtime.geometry.visibility.bodies import sees_bodies
-from scenic.runtime.geometry.visibility.obstacles import Occluder
+from scenic.runtime.geometry.visibility.obstacles import Obstacles, Occluder
 from scenic.runtime.geometry.visibility.points import sees_points
 from scenic.runtime.geometry.visibility.proving import Proof, prove
 from scenic.runtime.geometry.visibility.views import Views
@@ -201,6 +201,46 @@ def test_occluders_of_some_lanes_hide_in_those() -> None:
     assert seen.tolist() == (~hides).tolist()
     points = sees_points(observers, targets.poses.position, [Occluder(plank, hides)], count)
     assert points.tolist() == (~hides).tolist()
+
+
+@pytest.mark.parametrize("number", range(3))
+def test_an_occluder_hides_whatever_others_are_switched_off(number: int) -> None:
+    """Before it or after it among them, for all lanes or for those that are looked at."""
+    wall = Body((BOX,), None, Poses.fixed([0, 5, 0], [0, 0, 0, 1], [4, 0.1, 4]))
+    target = Body((BOX,), None, Poses.fixed([0, 9, 0]))
+    observers = Views.fixed((0, 0, 0), count=(9, 9), angles=(0.4, 0.4)).spread(2)
+    point = np.array([[0.0, 9.0, 0.0]])
+    for off in (np.zeros(1, dtype=np.bool_), np.zeros(2, dtype=np.bool_)):
+        for on, hidden in ((np.ones(1, dtype=np.bool_), [True, True]), (np.arange(2) == 1, [False, True])):
+            occluders = [Occluder(wall, on if place == number else off) for place in range(3)]
+            assert (~sees_bodies(observers, target, occluders, 2)).tolist() == hidden
+            assert (~sees_points(observers, point, occluders, 2)).tolist() == hidden
+            looked_at = Obstacles(occluders, observers, np.arange(2), target.poses.position, np.ones(1))
+            assert [lanes.tolist() for lanes in looked_at.lanes] == [hidden]
+
+
+@pytest.mark.parametrize("across", [16, 80, 90])
+@pytest.mark.parametrize(("off", "seen"), [(0.0, True), (0.5, False)])
+def test_a_chink_that_lets_one_ray_through_is_found(across: int, off: float, seen: bool) -> None:
+    """Whichever ray it is, and however many there are; through one between the rays nothing is seen."""
+    count, window = 16, 0.1
+    target = Body((BOX,), None, Poses.fixed([0, 10, 0], [0, 0, 0, 1], [4, 1, 4]))
+    observers = Views.fixed((0, 0, 0), angles=(window, window), count=(across, across)).spread(count)
+    step = window / across
+    azimuth, altitude = (np.random.default_rng(across).integers(0, across, (2, count)) + 0.5 + off) * step
+    way = direction(azimuth - window / 2, altitude - window / 2)
+    x, _, z = (5 * way / way[:, 1:2]).T
+    room = 0.3 * 5 * step
+    still = np.array([[0.0, 0, 0, 1]])
+
+    def wall(dx: float, dz: float) -> Occluder:
+        """One that ends at the chink, and is thin, lest its far side narrows that."""
+        middle = np.stack([x + dx * (1 + room), np.full(count, 5.0), z + dz * (1 + room)], axis=-1)
+        size = np.array([[2.0 if dx else 4.0, 1e-6, 2.0 if dz else 4.0]])
+        return Occluder(Body((BOX,), None, Poses(middle, still, size)))
+
+    walls = [wall(-1, 0), wall(1, 0), wall(0, -1), wall(0, 1)]
+    assert sees_bodies(observers, target, walls, count).tolist() == [seen] * count
 
 
 def test_a_camera_in_a_body_sees_it_and_one_in_its_hole_looks_for_it() -> None:
