@@ -304,6 +304,15 @@ def test_ends_and_directions_of_lines() -> None:
     assert tuple(ring.start.position) == tuple(ring.end.position)
     assert ring.start.heading == pytest.approx(-math.pi / 2)
     assert ring.end.heading == pytest.approx(math.atan2(4, -3))
+    # A line without an orientation has that of the world, one with that of another line looks as this does beside it.
+    for points, orientation, heading in (
+        ([(0, 0), (4, 0)], None, 0),
+        ([(5, 1), (6, 1)], line.orientation, 0),
+        ([(1, -2), (1, -1)], line.orientation, -math.pi / 2),
+    ):
+        other = named.PolylineRegion(points, orientation=orientation)
+        for end in (other.start, other.end):
+            assert end.heading == pytest.approx(heading)
     assert [tuple(point) for point in line] == [(0, 0, 0), (4, 0, 0), (4, 3, 0)]
     assert tuple(line[-1]) == (4, 3, 0)
     assert line.cumulativeLengths == pytest.approx([4, 7])

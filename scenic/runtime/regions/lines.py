@@ -39,11 +39,16 @@ class LineRegion(Region):
             self.orientation = orientation
         self.has_orientation = self.orientation is not None
 
+    @property
+    def _follows_segments(self) -> bool:
+        """Whether the orientations are the directions of its own segments, not those of a field or of another region."""
+        return isinstance(self.orientation, RegionField) and self.orientation.region is self
+
     def draw_points(self, uniforms: Column, keys: Column, *columns: Column) -> tuple[Points, Mask | None]:
         return self.pieces.at(uniforms[0] * self.pieces.length), None
 
     def orientation_drawn(self, point: Any, numbers: Sequence[Any]) -> Any:
-        if isinstance(self.orientation, RegionField) and self.orientation.region is self:
+        if self._follows_segments:
             return apply(_ALONG, *numbers, payload=self.pieces)
         return super().orientation_drawn(point, numbers)
 
@@ -196,20 +201,20 @@ class PolylineRegion(LineRegion):
 
     def _end(self, point: Any, segment: int) -> OrientedPoint:
         place = Vector.of(point)
-        if isinstance(self.orientation, VectorField) and not isinstance(self.orientation, RegionField):
-            orientation = self.orientation[place]
-        else:
+        if self._follows_segments:  # where a ring closes, two segments are as near
             orientation = Orientation.of(self.pieces.frames[segment].tolist())
+        else:
+            orientation = Orientation() if self.orientation is None else self.orientation_at(place)
         return oriented_point(place, orientation, by_angles=True)
 
     @property
     def start(self) -> OrientedPoint:
-        """The first point, with the direction there."""
+        """The first point, with the orientation there; that of the world where the line has none."""
         return self._end(self.pieces.starts[0].tolist(), 0)
 
     @property
     def end(self) -> OrientedPoint:
-        """The last point, with the direction there."""
+        """The last point, with the orientation there; that of the world where the line has none."""
         return self._end(self.pieces.ends[-1].tolist(), len(self.pieces.starts) - 1)
 
     def signedDistanceTo(self, point: Any) -> float:
