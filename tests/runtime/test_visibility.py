@@ -172,6 +172,12 @@ def test_borders_of_views_in_the_plane_belong_to_them() -> None:
     }
 
 
+def test_each_sample_sees_the_place_of_its_own_camera_in_the_plane() -> None:
+    text = "ego = new Object with viewAngle 10 deg\ny = Uniform(0, -2, 2)\nparam y = y, seen = ego.canSee((0, y))\n"
+    found = [dict(item.params) for item in scenic.scenarioFromString(text, mode2D=True).sample(30, seed=1)]
+    assert {(each["y"], each["seen"]) for each in found} == {(0, True), (-2, False), (2, True)}
+
+
 def test_directions_on_the_border_of_a_view_in_the_plane_are_in_it() -> None:
     points = {"left": (-5, 5), "right": (5, 5), "off": (5, 4.999), "end": (6, 8), "behind": (0, -0.1)}
     seen = ", ".join(f"{name} = ego.canSee({point})" for name, point in points.items())
