@@ -170,7 +170,7 @@ def test_regions_without_uniform_points() -> None:
     for region in (everywhere, CircularRegion((0, 0), 1).footprint):
         with pytest.raises(UndefinedSamplingException):
             region.uniformPointInner()
-    with pytest.raises(RejectionException):
+    with pytest.raises(RejectionException, match="the empty region"):
         nowhere.uniformPointInner()
     assert nowhere.distanceTo(Vector(1, 2, 3)) == np.inf
     assert (everywhere.size, nowhere.size) == (np.inf, 0)

@@ -556,6 +556,9 @@ class Nowhere(Region):
         lanes = uniforms.shape[1]
         return np.zeros((lanes, 3)), np.zeros(lanes, dtype=np.bool_)
 
+    def uniformPointInner(self) -> Any:
+        raise RejectionException("no point can be drawn from the empty region")
+
     def project(self, point: Any, direction: Any) -> tuple[Any, Any]:
         raise InvalidScenarioError("nothing lands on the empty region", span=here())
 
