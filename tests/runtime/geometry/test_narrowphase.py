@@ -338,7 +338,7 @@ def test_from_how_many_pairs_on_leaves_are_compared_in_a_grid_does_not_matter(mo
     expected = Solids([table(), primitives.cone()], patience=np.inf).intersect(zeros, a, zeros + 1, b)
     first, second = solids._fronts.find(*narrowphase._Pairs.of(zeros, a, zeros + 1, b).ways).leaves()
     products = np.unique(first.counts * second.counts)
-    assert len(products) > 5
+    assert len(products) >= 5
     for most in np.unique([products - 1, products]).tolist():
         monkeypatch.setattr(contact, "_GRID", most)
         np.testing.assert_array_equal(solids.touch(zeros, a, zeros + 1, b), expected)
