@@ -40,7 +40,7 @@ from scenic.runtime.values import (
     vector,
     wrong_type,
 )
-from scenic.runtime.visibility import sees_in_plane
+from scenic.runtime.visibility import sees_in_mode
 
 _add, _rotate, _compose, _distance_between = map(binary, ("add", "rotate", "compose", "distance"))
 _minus, _azimuth, _slope, _normal = (
@@ -252,8 +252,7 @@ def _can_see(_ego: Ego, viewer: Any, target: Any) -> Any:
             span=here(),
             help="use it in a requirement: `require ego can see x`",
         )
-    look = sees_in_plane if context.mode_2d else sees
-    return look(viewer, target, context.present)
+    return sees_in_mode(viewer, target, context.present, mode_2d=context.mode_2d)
 
 
 def _part_in_view(ego: Ego, region: Any, viewer: Any, *, seen: bool) -> Region:

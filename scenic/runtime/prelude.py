@@ -49,7 +49,6 @@ from scenic.runtime.regions.base import Region, Workspace, everywhere
 from scenic.runtime.regions.choice import as_region
 from scenic.runtime.resolution import build
 from scenic.runtime.samples import Sample, may_return_instances
-from scenic.runtime.sight import sees
 from scenic.runtime.specifiers import BUILDERS, Specifier, UserSpecifier, is_kind, is_unknown, specify
 from scenic.runtime.spreading import spread
 from scenic.runtime.standing import may_mutate
@@ -63,7 +62,7 @@ from scenic.runtime.values import (
     operate,
     to_orientation,
 )
-from scenic.runtime.visibility import sees_in_plane
+from scenic.runtime.visibility import sees_in_mode
 
 COMPARISONS: Mapping[str, str] = MappingProxyType(
     {
@@ -233,9 +232,10 @@ class Prelude(Dynamics):
             instance.__dict__["behavior"] = per_option(instance.behavior, behavior_of)
         sightings = [specifier.sighting for specifier in specifiers if specifier.sighting is not None]
         if self._run is not None:
-            look = sees_in_plane if self._context.mode_2d else sees
+            context = self._context
             for sighting in sightings:
-                if bool(look(sighting.observer, instance, self._context.present)) != sighting.wanted:
+                seen = sees_in_mode(sighting.observer, instance, context.present, mode_2d=context.mode_2d)
+                if bool(seen) != sighting.wanted:
                     raise RejectionException(f"whether the {cls.__name__} is seen")
             self._run.create(instance)
             return instance

@@ -39,6 +39,11 @@ def sees_in_plane(observer: Any, target: Any, occluders: Iterable[Any] = ()) -> 
     return per_option(observer, lambda viewer: per_option(target, lambda thing: seen(viewer, thing)))
 
 
+def sees_in_mode(observer: Any, target: Any, occluders: Iterable[Any], *, mode_2d: bool) -> Any:
+    """Whether an observer sees something: in the plane where the program is in 2D mode, otherwise in space."""
+    return (sees_in_plane if mode_2d else sees)(observer, target, occluders)
+
+
 def _may_hide(thing: Any) -> bool:
     return is_random(thing.occluding) or bool(thing.occluding)
 

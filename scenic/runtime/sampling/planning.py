@@ -35,9 +35,9 @@ from scenic.runtime.sampling.checks import (
     ObjectNodes,
 )
 from scenic.runtime.sampling.engine import Plan
-from scenic.runtime.sight import looks, sees
+from scenic.runtime.sight import looks
 from scenic.runtime.values import CODEC, Random, as_node, fixed_batch, is_random, operate
-from scenic.runtime.visibility import sees_in_plane
+from scenic.runtime.visibility import sees_in_mode
 
 _FAR: Final = 1e100
 """Metres, or any other unit, that nothing is away."""
@@ -247,7 +247,7 @@ def _visibility(program: Program, ego: Object | None, *, mode_2d: bool) -> list[
     """What has to be seen by whom, and what must not be (section 10.1)."""
 
     def seen(observer: Any, target: Any) -> Node:
-        return truth((sees_in_plane if mode_2d else sees)(observer, target, program.objects))
+        return truth(sees_in_mode(observer, target, program.objects, mode_2d=mode_2d))
 
     checks: list[NodeCheck] = []
     for item, sighting in program.sightings:
