@@ -82,10 +82,12 @@ def test_verdicts_and_details_are_told(browser: webdriver.Chrome) -> None:
     assert "(-1, 0, 1) m" in browser.find_element("id", "details").text
     to(browser, 50)
     assert "(0, 0, 1) m" in browser.find_element("id", "details").text
+    browser.execute_script("document.getElementById('objects').children[0].click()")
 
 
 def test_the_view_goes_with_an_object(browser: webdriver.Chrome) -> None:
     to(browser, 40)
+    browser.execute_script("document.getElementById('objects').children[0].click()")
     browser.find_element("id", "follow").click()
     places = [middle(to(browser, step)) for step in (40, 60, 80)]
     browser.find_element("id", "follow").click()
