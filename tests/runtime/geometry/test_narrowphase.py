@@ -331,14 +331,14 @@ def test_the_one_pair_of_faces_that_touch_is_found_whichever_it_is(amount, front
 
 def test_from_how_many_pairs_on_leaves_are_compared_in_a_grid_does_not_matter(monkeypatch):
     """Also where there are exactly as many, or one more."""
-    count = 14
+    count = 20
     a, b = random_poses(count, 31, spread=0.6), random_poses(count, 32, spread=0.6)
     solids = Solids([table(), primitives.cone()], patience=0)
     zeros = np.zeros(count, dtype=np.intp)
     expected = Solids([table(), primitives.cone()], patience=np.inf).intersect(zeros, a, zeros + 1, b)
     first, second = solids._fronts.find(*narrowphase._Pairs.of(zeros, a, zeros + 1, b).ways).leaves()
     products = np.unique(first.counts * second.counts)
-    assert len(products) >= 5
+    assert len(products) > 5
     for most in np.unique([products - 1, products]).tolist():
         monkeypatch.setattr(contact, "_GRID", most)
         np.testing.assert_array_equal(solids.touch(zeros, a, zeros + 1, b), expected)
