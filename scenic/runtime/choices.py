@@ -1,6 +1,7 @@
 """Choices, option by option: a function of a choice is the choice among its results."""
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -109,3 +110,15 @@ def per_option(value: Any, function: Callable[[Any], Any]) -> Any:
         index, *options = value.node.operands
         return select(index, [as_node(per_option(drawn_option(option), function)) for option in options])
     return function(value)
+
+
+def as_drawn(function: Callable[[Any, Any], Any], first: Any, second: Any) -> Any:
+    """``function(first, second)`` where the second decides what is done, and may be random.
+
+    Of a choice it is asked of each option; where only the draw shows what the second is, of what is drawn.
+    """
+    if not isinstance(second, Random) or not second.node.kind.is_boxed:
+        return function(first, second)
+    if is_open(second):
+        return Random.later(function, first, second)
+    return per_option(second, partial(function, first))

@@ -4,7 +4,7 @@ The methods are written once for definite and random values alike. How an operat
 the graph, is the business of `scenic.runtime.values`, which fills the hooks in.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any, ClassVar
 
 from scenic.runtime.lazy import Lazy, defer
@@ -25,6 +25,8 @@ class Operand:
     """A value as a vector."""
     _to_orientation: ClassVar["staticmethod[[Any], Any]"]
     """A value as an orientation."""
+    _as_drawn: ClassVar["staticmethod[[Callable[[Any, Any], Any], Any, Any], Any]"]
+    """A function of two values, of which the second may be a choice among several kinds, or of a kind that only the draw shows."""
     _is_vector: ClassVar["staticmethod[[Any], bool]"]
     """Whether a value is a vector, or a pair or triple that stands for one."""
     _is_orientation: ClassVar["staticmethod[[Any], bool]"]
@@ -145,10 +147,11 @@ class VectorMethods(Operand):
         """Distance to another point, or to the nearest point of a region."""
         if isinstance(other, Lazy):
             return defer(self.distanceTo, other)
-        measure = getattr(other, "distance_from", None)
-        space = getattr(other, "occupiedSpace", None)
-        if space is not None:
-            measure = space.distance_from
+        return self._as_drawn(VectorMethods._distance_to, self, other)
+
+    def _distance_to(self, other: Any) -> Any:
+        space = getattr(other, "occupiedSpace", other)
+        measure = getattr(space, "distance_from", None)
         return self._operate("distance", self, self._to_vector(other)) if measure is None else measure(self)
 
     def angleTo(self, other: Any) -> Any:

@@ -119,6 +119,35 @@ LIST = Operation(
 _SLICE = Operation("slice", always(Kind.OTHER), by_lane, "A slice with random ends.", python=slice)
 
 
+def _paired(*parts: Any) -> dict[Any, Any]:
+    count = len(parts) // 2
+    return dict(zip(parts[:count], parts[count:], strict=True))
+
+
+DICTIONARY = Operation(
+    "dictionary",
+    always(Kind.OTHER),
+    by_lane,
+    "A dictionary with random parts; operands its keys, then its values; payload which operand is of which key, "
+    "or none where a key is random.",
+    python=_paired,
+)
+
+
+_SET = Operation(
+    "set", always(Kind.OTHER), by_lane, "A set with random elements.", python=lambda *parts: set(parts)
+)
+
+
+_FROZEN_SET = Operation(
+    "frozen set",
+    always(Kind.OTHER),
+    by_lane,
+    "A set with random elements that is not changed.",
+    python=lambda *parts: frozenset(parts),
+)
+
+
 def _container(value: Any) -> Operation:
     """What makes a container of the type of ``value`` from its parts."""
     if isinstance(value, list):
@@ -139,6 +168,15 @@ def as_node(value: Any) -> Node:
     if isinstance(value, slice) and is_random(value):
         ends = [as_node(end) for end in (value.start, value.stop, value.step)]
         return construction.make_node(_SLICE, ends, span=here())
+    if type(value) is dict and is_random(value):
+        places = (
+            None if is_random(tuple(value)) else {key: len(value) + place for place, key in enumerate(value)}
+        )
+        parts = [as_node(item) for item in (*value, *value.values())]
+        return construction.make_node(DICTIONARY, parts, places, here())
+    if type(value) in (set, frozenset) and is_random(value):
+        made = _SET if type(value) is set else _FROZEN_SET
+        return construction.make_node(made, [as_node(item) for item in value], span=here())
     kind = kind_of(value)
     return constant(value, kind, CODEC.encode(kind, value))
 

@@ -18,8 +18,8 @@ from scenic.runtime.applying import apply, operate
 from scenic.runtime.choices import MISSING, MOST_OPTIONS, drawn_option, select
 from scenic.runtime.context import here
 from scenic.runtime.members import member
-from scenic.runtime.nodes import LIST, TUPLE, as_node, as_value, kind_of
-from scenic.runtime.randoms import Random
+from scenic.runtime.nodes import DICTIONARY, LIST, TUPLE, as_node, as_value, kind_of
+from scenic.runtime.randoms import Random, is_random
 
 NOTHING = "there is nothing to choose from"
 
@@ -60,6 +60,8 @@ def element_at(node: Node, index: Any) -> Any:
         try:
             if option.operation in (LIST, TUPLE) and type(index) is int:
                 results.append(option.operands[index])
+            elif option.operation is DICTIONARY and option.payload is not None:
+                results.append(option.operands[option.payload[index]])
             elif option.is_constant and type(option.value) in (list, tuple, dict):
                 results.append(as_node(option.value[index]))
             else:
@@ -134,10 +136,12 @@ def _is_of_runtime(function: Any) -> bool:
 
 
 def _traced(function: Any, args: Sequence[Any], kwargs: dict[str, Any]) -> Node:
-    """The result of a call; an error of it counts only where this option is drawn."""
+    """The result of a call; an error of it counts only where this option is drawn, and with the arguments of that sample."""
     try:
         return as_node(function(*args, **kwargs))
     except Exception as error:  # noqa: BLE001 - whatever the call raises
+        if is_random(args) or is_random(kwargs):
+            return as_node(Random.later(function, *args, **kwargs))
         return construction.make_node(MISSING, (), error, here())
 
 

@@ -162,10 +162,10 @@ def is_random(value: Any) -> bool:
     """Whether a value is random or a container with random parts."""
     if isinstance(value, Random):
         return True
-    if isinstance(value, tuple | list):
+    if isinstance(value, tuple | list | set | frozenset):
         return any(is_random(item) for item in value)
     if isinstance(value, slice):
         return is_random(value.start) or is_random(value.stop) or is_random(value.step)
     if type(value) is dict:
-        return any(is_random(item) for item in value.values())
+        return any(is_random(item) for item in (*value, *value.values()))
     return False

@@ -11,7 +11,7 @@ values, tells the classes.
 """
 
 from scenic.runtime.applying import apply, binary, fixed_batch, folded, operate, random_key, unary, uniform
-from scenic.runtime.choices import is_open, options_of, over_options, per_option
+from scenic.runtime.choices import as_drawn, is_open, options_of, over_options, per_option
 from scenic.runtime.coercions import (
     to_heading,
     to_orientation,
@@ -71,6 +71,7 @@ Operand._vector = staticmethod(vector)
 Operand._to_scalar = staticmethod(to_scalar)
 Operand._to_vector = staticmethod(to_vector)
 Operand._to_orientation = staticmethod(to_orientation)
+Operand._as_drawn = staticmethod(as_drawn)
 Operand._is_vector = staticmethod(is_vector)
 Operand._is_orientation = staticmethod(is_orientation)
 Operand._with_vector = staticmethod(with_vector)
