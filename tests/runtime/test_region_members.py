@@ -136,6 +136,19 @@ def test_meshes_that_are_inside_out_are_turned() -> None:
     )
 
 
+@pytest.mark.parametrize("kind", ["volume", "surface"])
+def test_vertices_that_no_face_uses_are_none_of_a_region_of_a_mesh(kind: str) -> None:
+    """They neither move it nor count for its extents, wherever they stand among the others."""
+    made = {"volume": named.MeshVolumeRegion, "surface": named.MeshSurfaceRegion}[kind]
+    own = np.array(CUBE.vertices) * (1, 2, 3)
+    for before, after in (([(50, 0, 0)], [(0, 70, 0)]), ([], [(0, 0, -9)]), ([(0, 0, 9)], [])):
+        vertices = np.vstack([np.reshape(before, (-1, 3)), own, np.reshape(after, (-1, 3))])
+        region = made(trimesh.Trimesh(vertices, CUBE.faces + len(before), process=False), position=PLACE)
+        assert tuple(region.dimensions) == (1, 2, 3)
+        np.testing.assert_allclose(region.AABB, [(0.5, 1, 1.5), (1.5, 3, 4.5)])
+        np.testing.assert_allclose(region.mesh.triangles, own[CUBE.faces] + tuple(PLACE))
+
+
 @pytest.mark.parametrize("angle", [2 * math.pi, 7.0])
 def test_a_sector_of_the_full_turn_is_a_disc(angle: float) -> None:
     sector, disc = named.SectorRegion((1, 2), 3, 0.4, angle), named.CircularRegion((1, 2), 3)

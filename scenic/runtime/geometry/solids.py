@@ -9,7 +9,6 @@ from scenic.runtime.geometry import booleans, topology
 from scenic.runtime.geometry.inside import contains_points
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.poses import Floats, Indices
-from scenic.runtime.geometry.ragged import distinct
 
 _MERGE_TOLERANCE: Final = 1e-8
 """Part of the largest extent within which vertices are taken for one if the surface is open otherwise."""
@@ -80,11 +79,7 @@ def _bodies(vertices: Floats, faces: Indices) -> _Bodies:
         return _Bodies([Mesh(vertices, faces)])
     order = np.argsort(components, kind="stable")
     groups = np.split(faces[order], np.flatnonzero(np.diff(components[order])) + 1)
-    parts = []
-    for group in groups:
-        used = distinct(group)
-        parts.append(Mesh(vertices[used], np.searchsorted(used, group)))
-    return _Bodies(parts)
+    return _Bodies([Mesh(*topology.without_unused(vertices, group)) for group in groups])
 
 
 def _oriented(bodies: _Bodies, name: str) -> list[Mesh]:

@@ -61,6 +61,12 @@ def face_components(faces: Indices, count: int) -> Indices:
     return np.searchsorted(distinct(roots), roots)
 
 
+def without_unused(vertices: Floats, faces: Indices) -> tuple[Floats, Indices]:
+    """The mesh with the vertices alone that faces use, in their order."""
+    used = distinct(faces)
+    return vertices[used], np.searchsorted(used, faces)
+
+
 def merge_vertices(vertices: Floats, faces: Indices, *, tolerance: float = 0.0) -> tuple[Floats, Indices]:
     """The mesh with equal vertices made one, unused vertices and collapsed faces dropped.
 

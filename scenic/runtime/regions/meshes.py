@@ -14,6 +14,7 @@ from scenic.runtime.geometry.loading import load_mesh
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.solids import proper_volume
 from scenic.runtime.geometry.surface import side_contains
+from scenic.runtime.geometry.topology import without_unused
 from scenic.runtime.regions.base import Mask, Points, Region
 from scenic.runtime.regions.bodies import Facing, OccupiedSpace, SideSurface
 from scenic.runtime.regions.stacked import body_of
@@ -65,13 +66,15 @@ def _mesh(mesh: Any, what: str) -> Mesh:
     if isinstance(mesh, Mesh):
         return mesh
     try:
-        return Mesh(mesh.vertices, mesh.faces)
+        whole = Mesh(mesh.vertices, mesh.faces)
     except AttributeError:
         raise ScenicTypeError(
             f"{what} needs a mesh, not {mesh!r}",
             span=here(),
             help="pass a `trimesh.Trimesh`, or use `fromFile`",
         ) from None
+    # What no face uses must not count for the extents.
+    return Mesh(*without_unused(whole.vertices, whole.faces))
 
 
 class MeshRegion(Region):
@@ -238,8 +241,7 @@ def surface_in_world(region: SideSurface) -> Mesh | None:
     mine = mesh.faces[side_contains(unit, body.poses, side, threshold, np.zeros_like(faces), faces)]
     if not len(mine):
         return None
-    used, corners = np.unique(mine, return_inverse=True)
-    return Mesh(mesh.vertices[used], corners.reshape(mine.shape))
+    return Mesh(*without_unused(mesh.vertices, mine))
 
 
 def world_mesh(region: Region) -> Any:
