@@ -1,4 +1,5 @@
 import copy
+import itertools
 import pickle
 
 import numpy as np
@@ -323,6 +324,7 @@ def test_what_is_no_solid_is_not_convex_however_convex_it_looks() -> None:
         cube.faces[1:],
         cube.faces[:, ::-1],
         np.concatenate([cube.faces[:1, ::-1], cube.faces[1:]]),
+        np.concatenate([cube.faces[1:], cube.faces[1:2]]),  # as much as a cube, by its signed volume
     ):
         mesh = Mesh(cube.vertices, faces)
         assert (mesh.is_volume, mesh.is_convex, mesh.is_box) == (False, False, False)
@@ -350,3 +352,14 @@ def test_vertices_that_no_face_uses_are_none_of_the_solid(far: tuple[float, floa
         )
         assert len(mesh.component_vertices) == 1
         assert np.abs(mesh.outermost).max() <= 0.5
+        assert mesh.is_box is (own.is_box and not any(far))  # the box that it is in holds them, too
+
+
+@pytest.mark.parametrize("order", list(itertools.permutations(range(3))), ids=str)
+def test_the_outermost_vertices_of_a_flat_mesh_are_all_of_them(order: tuple[int, ...]) -> None:
+    """Whichever corner of a face they are."""
+    corners = np.array([(0, 0, 1), (2, 0, 1), (0, 3, 2), (2, 3, 2)], dtype=float)
+    faces = np.array([(0, 1, 2), (1, 3, 2)])[:, order]
+    for count in (1, 2):
+        found = Mesh(corners[: count + 2], faces[:count]).outermost
+        assert sorted(found.tolist()) == sorted(corners[: count + 2].tolist())
