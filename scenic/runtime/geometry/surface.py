@@ -188,9 +188,10 @@ def _grouped(kind_of: Indices, kinds: int) -> Iterator[Indices]:
 def side_contains(
     mesh: Mesh, poses: Poses, side: Side, threshold: float, entries: Indices, faces: Indices
 ) -> Booleans:
-    """Whether faces ``(m,)`` belong to the side of the mesh in the poses of ``entries`` ``(m,)``."""
+    """Whether faces ``(m,)`` belong to the side of the mesh in the poses of ``entries`` ``(m,)``; none without area does."""
+    proper: Booleans = mesh.areas[faces] > 0
     if side is None:
-        return np.ones(len(faces), dtype=np.bool_)
+        return proper
     taken = poses.take(entries)
     axis = side[1] * taken.matrix[:, side[0], :] + 0.0
     cofactors = _Stretches(taken.size, axis).cofactors
@@ -201,8 +202,7 @@ def side_contains(
     area = np.sqrt((cx * cx) * squares[:, 0] + (cy * cy) * squares[:, 1] + (cz * cz) * squares[:, 2])
     ax, ay, az = (axis[:, i] * cofactors[:, i] for i in range(3))
     along = ax * vectors[:, 0] + ay * vectors[:, 1] + az * vectors[:, 2]
-    result: Booleans = along >= (threshold - _SLACK) * area
-    return result
+    return proper & (along >= (threshold - _SLACK) * area)
 
 
 def mean_normals(body: Body, side: Side, threshold: float, lanes: int) -> Floats:

@@ -2,8 +2,9 @@ import numpy as np
 import pytest
 import trimesh
 
-from scenic.runtime.geometry import primitives, projection, surface
+from scenic.runtime.geometry import body_points, primitives, projection, surface
 from scenic.runtime.geometry.bodies import Body
+from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.nearest import nearest_on_triangles
 from scenic.runtime.geometry.poses import Poses
 
@@ -223,3 +224,47 @@ def test_batches_do_not_matter(mesh, batch):
         return np.column_stack([faces, landed])
 
     np.testing.assert_array_equal(in_batches(answers, count, batch), answers(np.arange(count)))
+
+
+def split(mesh: Mesh, face: int, edge: int, *, first: bool) -> Mesh:
+    """The mesh with a vertex in the middle of an edge of one face alone: between it and the other there is a face without area."""
+    a, b, c = np.roll(mesh.faces[face], -edge).tolist()
+    middle = len(mesh.vertices)
+    vertices = np.vstack([mesh.vertices, (mesh.vertices[a] + mesh.vertices[b]) / 2])
+    others = np.delete(mesh.faces, face, axis=0).tolist()
+    halves, between = [(a, middle, c), (middle, b, c)], [(a, b, middle)]
+    return Mesh(vertices, [*between, *others, *halves] if first else [*others, *halves, *between])
+
+
+@pytest.mark.parametrize("first", [False, True])
+@pytest.mark.parametrize("face", [0, 4, 8, 11])
+def test_faces_without_area_belong_to_no_side(face: int, first: bool) -> None:
+    """Where they are, others of the surface are, too; to no answer do they matter."""
+    plain, rng = primitives.box(), np.random.default_rng(face)
+    way = np.array([[0.3, -0.2, 0.7]])
+    for edge in range(3):
+        mesh = split(plain, face, edge, first=first)
+        assert mesh.is_volume
+        assert (mesh.areas == 0).sum() == 1
+        poses = Poses.fixed((1, 2, 3), random_poses(1, edge).orientation, (2, 3, 1))
+        bodies = [Body((some,), None, poses) for some in (plain, mesh)]
+        corners = poses.to_world(plain.triangles[face])
+        ends = np.roll(corners, -edge, axis=0)[:2]
+        share = rng.random((20, 1))
+        points = ends[0] * share + ends[1] * (1 - share)
+        for side in SIDES:
+            answers = []
+            for body in bodies:
+                faces, landed = projection.project(body, side, 0.2, points, way, 20)
+                known = faces >= 0
+                answers.append(
+                    [
+                        known,
+                        landed[known],
+                        projection.near_surface(body, side, 0.2, points, 20),
+                        np.linalg.norm(surface.face_normals(body, faces), axis=1)[known] > 0.5,
+                        *(body_points.side_bounds(body, side, 0.2) if side else ()),
+                    ]
+                )
+            for usual, found in zip(*answers, strict=True):
+                np.testing.assert_allclose(found, usual, atol=1e-12)
