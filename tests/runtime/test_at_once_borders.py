@@ -288,6 +288,27 @@ def test_boxes_that_nearly_touch() -> None:
             assert deep == pytest.approx(depth(item, along, standing), abs=1e-9)
 
 
+def test_boxes_turned_alike_meet_where_their_faces_do() -> None:
+    """By a quarter turn, too: what rounding leaves of the products of parallel edges says nothing."""
+    rng = np.random.default_rng(10)
+    for number in range(300):
+        turn = Rotation.random(random_state=number)
+        size, axis = rng.uniform(0.3, 2, 3), number % 3
+        quarter = turn * Rotation.from_euler("xyz"[axis], math.pi / 2)
+        swapped = size.copy()
+        swapped[[(axis + 1) % 3, (axis + 2) % 3]] = size[[(axis + 2) % 3, (axis + 1) % 3]]
+        way = size * rng.uniform(-0.9, 0.9, 3)
+        along = (number // 3) % 3
+        for shift, met in ((1e-3, False), (-1e-3, True)):
+            way[along] = size[along] + shift
+            place = turn.apply(way)
+            one = Moving("box", np.zeros(3), np.zeros(3), turn.as_quat(), tuple(size.tolist()))
+            for other, sides in ((turn, size), (quarter, swapped)):
+                two = Moving("box", place, np.zeros(3), other.as_quat(), tuple(sides.tolist()))
+                assert meet(one.at(0), two.at(0)) is met
+                assert overlap(one.at(0), two.at(0)) == pytest.approx(max(0.0, -shift), abs=1e-9)
+
+
 @pytest.mark.parametrize("shape", ["box", "cone"])
 def test_the_gap_between_convex_bodies(shape: str) -> None:
     turn = Rotation.from_euler("zxy", ANGLES).as_quat()
@@ -304,6 +325,7 @@ def test_the_gap_between_convex_bodies(shape: str) -> None:
         for beyond in (1e-3, 0.4, 9):
             found = gap(item.at(change + beyond), standing.at(0))
             assert (found is None) is not convex
+            assert (gap(standing.at(0), item.at(change + beyond)) is None) is not convex
             if found is not None:
                 measured.add(item.shape)
                 assert found == pytest.approx(between(lanes(item, change + beyond), both, 1)[0], abs=1e-9)
@@ -322,12 +344,17 @@ def depth(one: Moving, along: float, other: Moving) -> float:
     return float(-ConvexHull(apart.reshape(-1, 3)).equations[:, 3].max())
 
 
-def test_far_from_the_origin_less_is_certain() -> None:
+@pytest.mark.parametrize("axis", range(3))
+@pytest.mark.parametrize("side", [1, -1])
+def test_far_from_the_origin_less_is_certain(axis: int, side: int) -> None:
     """Where positions are kilometres upon kilometres, rounding is more than a millionth of a metre."""
-    body = placed((3e9, 0, 0), (0, 0, 0, 1), (2, 2, 2), primitives.box())
-    wide = RectangularRegion((3e9, 0), 0, 2 + 1e-5, 8).at_once
+    x, y, z = (np.eye(3)[axis] * side * 3e9).tolist()
+    body = placed((x, y, z), (0, 0, 0, 1), (2, 2, 2), primitives.box())
+    wide = RectangularRegion((x, y), 0, 2 + 1e-5, 2 + 1e-5).at_once
     assert wide is not None
     assert wide.holds_body(body) is None
+    beside = placed((x + 2 + 1e-5, y, z), (0, 0, 0, 1), (2, 2, 2), primitives.box())
+    assert meet(body, beside) is None
 
 
 def test_what_is_near_a_way() -> None:

@@ -188,6 +188,27 @@ def test_walls_that_nearly_hide_a_body() -> None:
         assert sees_body(looking, target, [solid]) is None
 
 
+def test_a_corner_that_reaches_into_the_way_hides() -> None:
+    """Of a cube, whose corners are farther from its middle than any of its sides; so do they show it."""
+    diagonal = Rotation.align_vectors([[0, 0, 1]], [[1, 1, 1]])[0]
+    x, y, z, w = (TURN * diagonal).as_quat().tolist()
+    end = TURN.apply([0, 4.0, 0]) + CAMERA
+    looking = view((2 * math.pi, math.pi))
+    for below, hidden in ((0.8, True), (0.9, False)):  # its upper corner is 0.866 above the middle
+        place = triple(TURN.apply([0, 2.0, -below]) + CAMERA)
+        cube = placed(place, (x, y, z, w), (1, 1, 1), primitives.box())
+        assert sees_point(looking, triple(end), [cube]) is (not hidden)
+    # The corner alone is above the lower border of the view.
+    low = View(triple(CAMERA), view((1.0, 1.0)).axes, (1.0, 1.0), REACH)
+    for below, open_question in ((0.8, True), (0.95, False)):
+        place = triple(TURN.apply([0, 2.0, -below - 2 * math.tan(0.5)]) + CAMERA)
+        cube = placed(place, (x, y, z, w), (1, 1, 1), primitives.box())
+        assert low.contains(place) is False
+        found = sees_body(low, cube, [])
+        assert found is not True
+        assert (found is None) or not open_question
+
+
 def test_through_a_ring_nothing_of_it_may_be_seen() -> None:
     made = trimesh.creation.annulus(r_min=0.45, r_max=0.5, height=1.0)
     ring = Mesh(np.asarray(made.vertices), np.asarray(made.faces))

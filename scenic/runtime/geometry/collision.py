@@ -128,7 +128,7 @@ class Collider:
         solids = self._solids_of(self._still)
         _Search(self._still, solids, len(self._fixed), wanted, np.ones(1, dtype=np.bool_), found).run()
         pairs = [np.stack([self._fixed[part.first], self._fixed[part.second]], axis=1) for part in found]
-        return np.sort(np.concatenate([np.empty((0, 2), dtype=np.intp), *pairs]), axis=1)
+        return np.concatenate([np.empty((0, 2), dtype=np.intp), *pairs])
 
     def _matrix(self, found: list["_Entries"], lanes: int) -> Booleans:
         """Which pairs collide in which lane."""

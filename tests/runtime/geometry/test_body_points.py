@@ -5,8 +5,9 @@ import pytest
 import shapely
 import shapely.affinity
 
-from scenic.runtime.geometry import body_points, primitives
+from scenic.runtime.geometry import body_points, distance, primitives
 from scenic.runtime.geometry.bodies import Body
+from scenic.runtime.geometry.containment import contains_points as contains_body_points
 from scenic.runtime.geometry.inside import contains_points
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.nearest import nearest_on_triangles
@@ -99,6 +100,73 @@ def test_points_drawn_from_solids_do_not_depend_on_the_company() -> None:
                 mine = words[lanes] if len(words) > 1 else words
                 points, _ = body_points.draw_points(body.take(lanes), uniforms[:, lanes], mine)
                 np.testing.assert_array_equal(points, together[lanes])
+
+
+@pytest.mark.parametrize(
+    "shared",
+    [(), ("position",), ("orientation",), ("size",), ("position", "orientation", "size")],
+    ids="+".join,
+)
+def test_what_is_measured_of_a_body_is_that_of_the_mesh_of_each_lane(shared: tuple[str, ...]) -> None:
+    """Of whatever shapes the others are, and whatever of their poses is the same."""
+    meshes, count = (table(), primitives.box(), hollow(), primitives.cone()), 11
+    choice, many = np.random.default_rng(9).integers(0, len(meshes), count), random_poses(count, 10)
+    names = ("position", "orientation", "size")
+    poses = Poses(*(getattr(many, name)[:1] if name in shared else getattr(many, name) for name in names))
+    body, points = Body(meshes, choice, poses), np.random.default_rng(11).normal(size=(count, 3))
+    for what, ask in {
+        "volumes": lambda body, _: [body_points.volumes(body)],
+        "areas": lambda body, _: [body_points.areas(body, (2, 1), 0.3), body_points.areas(body, None, 0.3)],
+        "bounds": lambda body, _: list(body_points.bounds(body)),
+        "balls": lambda body, _: [body_points.inradii(body), body_points.planar_inradii(body)],
+        "gaps": lambda body, points: [
+            body_points.distances_to_surface(body, points, side, threshold)
+            for side, threshold in ((None, 0.0), ((0, -1), 0.2), ((2, 1), 0.9))
+        ],
+        "faces": lambda body, points: [body_points.nearest_faces(body, points, (2, -1), 0.2)],
+        "points in it": lambda body, points: [contains_body_points(body, points)],
+        "nearest": lambda body, points: list(distance.to_surface(body, points, len(points))),
+        "signed": lambda body, points: [
+            distance.signed(body, points, len(points)),
+            distance.to_solid(body, points, len(points)),
+        ],
+    }.items():
+        together = ask(body, points)
+        for lane in range(count):
+            mine = Body((meshes[choice[lane]],), None, poses.take(np.array([lane])))
+            for found, alone in zip(together, ask(mine, points[[lane]]), strict=True):
+                np.testing.assert_allclose(
+                    found[lane], alone[0], atol=1e-12, err_msg=f"{what} of lane {lane}"
+                )
+
+
+def test_lanes_whose_side_has_no_faces_are_infinitely_far_from_it() -> None:
+    """And change nothing for the others."""
+    count, threshold = 12, 0.9
+    poses, points = random_poses(count, 12), np.random.default_rng(13).normal(size=(count, 3))
+    body = Body((primitives.box(),), None, poses)
+    found = body_points.distances_to_surface(body, points, (2, 1), threshold)
+    has_faces = body_points.areas(body, (2, 1), threshold) > 0
+    assert 0 < has_faces.sum() < count
+    np.testing.assert_array_equal(np.isfinite(found), has_faces)
+
+
+@pytest.mark.parametrize("tries", [0, 1, 3])
+def test_where_no_point_is_found_is_told(tries: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Lane by lane; of a box the first one always is one."""
+    monkeypatch.setattr(body_points, "TRIES", tries)
+    count, rng = 60, np.random.default_rng(14)
+    poses, meshes = random_poses(count, 15), (table(), primitives.box())
+    body = Body(meshes, np.arange(count) % 2, poses)
+    uniforms, keys = rng.random((3, count)), rng.integers(0, 2**63, count).astype(np.uint64)
+    points, found = body_points.draw_points(body, uniforms, keys)
+    local = poses.to_unit(points)
+    for number, mesh in enumerate(meshes):
+        lanes = np.flatnonzero(body.choice == number)
+        held = contains_points(mesh, local[lanes]) | mesh.is_box
+        np.testing.assert_array_equal(found[lanes], held)
+    assert found[1::2].all()
+    assert not found.all()
 
 
 @pytest.mark.parametrize("side", [None, (0, 1), (1, -1), (2, 1), (2, -1)])

@@ -237,6 +237,28 @@ def test_bodies_that_differ_in_some_properties_alone(varied, known):
     np.testing.assert_array_equal(cast.test(stack, 12, exhaustive=True).pairs, expected[:, chosen])
 
 
+@pytest.mark.parametrize("varied", [("size",), ("position", "size")], ids="+".join)
+def test_bodies_that_never_turn_and_are_about_as_long_as_wide(varied):
+    """Of changing size: their boxes need no matrix for each lane."""
+    lanes, bodies = 12, []
+    for seed in range(160, 166):
+        many = random_poses(lanes, seed, spread=0.7, sizes=(0.4, 0.9))
+        bodies.append(
+            Body(
+                (table(),),
+                None,
+                Poses(
+                    many.position if "position" in varied else many.position[:1],
+                    many.orientation[:1],
+                    many.size,
+                ),
+            )
+        )
+    pairs = list(itertools.combinations(range(len(bodies)), 2))
+    expected = check(bodies, pairs, lanes)
+    assert 0.05 < expected.mean() < 0.6
+
+
 def test_unwanted_pairs_count_nowhere_among_many_lanes():
     """Pairs come in several groups there; in each of them only the wanted ones count."""
     lanes, count = 9000, 8

@@ -455,6 +455,44 @@ def test_the_one_mesh_that_a_body_has_in_all_lanes_is_any_of_its_meshes():
         assert [mesh for mesh, _ in body.by_mesh(4)] == [body.meshes[number]]
 
 
+@pytest.mark.parametrize("alike", ["none", "body", "container"])
+def test_each_lane_has_the_answer_of_its_own_shapes(alike):
+    """Of bodies and containers of several shapes, or one pose of either for all lanes."""
+    count, rng = 24, np.random.default_rng(67)
+    inner = (primitives.box(), table(), primitives.spheroid())
+    outer = (hollow(), primitives.cylinder(), SHAPES["bumpy"]())
+    small = random_poses(count, 68, spread=0.3, sizes=(0.05, 0.6))
+    large = random_poses(count, 69, spread=0.1, sizes=(1.5, 3.0))
+    if alike == "body":
+        small = small.take(np.array([3]))
+        small = Poses(small.position, small.orientation, small.size)
+    elif alike == "container":
+        large = large.take(np.array([3]))
+    body = Body(inner, rng.integers(0, 3, count), small)
+    container = Body(outer, rng.integers(0, 3, count), large)
+    corners = rng.uniform(0.3, 1.2, (count, 1, 1)) * regular(5, 1.0)
+    hook = Polygons(shapely.affinity.scale(shapely.affinity.translate(HOOK, 0, 2), 0.3, 0.3, origin=(0, 0)))
+    room = large.size * 0.4, large.position, large.orientation
+
+    def answers(body, container, corners, room, lanes):
+        return [
+            containment.in_body(body, container, lanes),
+            containment.in_convex_polygon(body, corners, lanes),
+            containment.in_polygons(body, hook, lanes),
+            containment.in_box(body, *room, lanes),
+            containment.in_ellipsoid(body, *room, lanes),
+        ]
+
+    together = answers(body, container, corners, room, count)
+    assert alike == "body" or all(0 < found.sum() < count for found in together)
+    for lane in range(count):
+        one = np.array([lane])
+        mine, around = body.take(one), container.take(one)
+        own = [part if len(part) == 1 else part[one] for part in room]
+        for found, (alone,) in zip(together, answers(mine, around, corners[one], own, 1), strict=True):
+            assert found[lane] == alone
+
+
 def test_long_bodies_in_rooms_that_are_as_long_the_other_way():
     """The room is as wide as a body is long, but not where the body is long; all sides are along the axes."""
     extents = np.array([(x, y, 1.0) for x in (0.2, 1.9, 2.4, 2.9) for y in (0.2, 1.9, 2.4, 2.9)])

@@ -113,6 +113,25 @@ def test_cavities_belong_to_the_solids_around_them(tmp_path):
         assert apart.volume == pytest.approx(64 - 27 + 8 - 1)
 
 
+def test_a_solid_keeps_all_of_its_cavities():
+    """Where another body is turned outwards beside it, or united with it."""
+    cube = primitives.box()
+    holes = [placed(cube, (x, 0, 0), (0.5, 0.5, 0.5)) for x in (-1, 0, 1)]
+    block = [
+        placed(cube, (0, 0, 0), (4, 1, 1)),
+        *(Mesh(hole.vertices, hole.faces[:, ::-1]) for hole in holes),
+    ]
+    beside = placed(cube, (0, 5, 0), (1, 2, 3))
+    overlapping = placed(cube, (0, 0.75, 0), (4, 1, 1))  # a quarter of it, as deep as the cavities' sides
+    for last, volume in (
+        (beside, 4 - 3 / 8 + 6),
+        (Mesh(beside.vertices, beside.faces[:, ::-1]), 4 - 3 / 8 + 6),
+        (overlapping, 4 - 3 / 8 + 3),
+    ):
+        for order in ((*block, last), (last, *block), (*block[::-1], last)):
+            assert proper_volume(joined(order)).volume == pytest.approx(volume)
+
+
 def test_a_body_in_the_hole_of_another_is_no_cavity():
     """It lies within the other's bounding box, but not in it: turned inside out, it is turned back."""
     ring = difference(

@@ -1,3 +1,5 @@
+import itertools
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -56,6 +58,71 @@ def test_affine_maps():
     for entry in range(7):
         alone = maps.take(np.array([entry]))
         np.testing.assert_array_equal(alone.columns(points.T[:, :, None])[..., 0], images[..., entry])
+
+
+PARTS = ("position", "orientation", "size")
+SOME_PARTS = [names for count in range(4) for names in itertools.combinations(PARTS, count)]
+
+
+def varying(names, count: int, seed: int) -> Poses:
+    """Poses of which these parts alone differ from entry to entry."""
+    many = random_poses(count, seed)
+    return Poses(*(getattr(many, name) if name in names else getattr(many, name)[:1] for name in PARTS))
+
+
+def spread(poses: Poses, count: int) -> Poses:
+    return Poses(
+        *(np.repeat(part, count // len(part), axis=0) for part in (getattr(poses, name) for name in PARTS))
+    )
+
+
+def test_affine_maps_of_poses_that_differ_in_some_parts():
+    """On either side; what is the same everywhere is as if each entry had it."""
+    count = 3
+    for here, there in itertools.product(SOME_PARTS, repeat=2):
+        a, b = varying(here, count, 3), varying(there, count, 4)
+        maps = relative_map(a, b)
+        entries = max(len(a), len(b))
+        expected = relative_map(spread(a, entries), spread(b, entries))
+        assert maps.matrix.shape == (3, 3, entries)
+        assert maps.offset.shape == (3, entries)
+        np.testing.assert_array_equal(maps.matrix, expected.matrix)
+        np.testing.assert_array_equal(maps.offset, expected.offset)
+
+
+@pytest.mark.parametrize("known", [False, True])
+@pytest.mark.parametrize("names", SOME_PARTS, ids="+".join)
+@pytest.mark.parametrize("others", [(), ("choice",), ("allow",), ("choice", "allow")], ids="+".join)
+def test_bodies_that_differ_in_some_parts_are_taken_lane_by_lane(names, others, known):
+    """Whether or not their world boxes are known already; parts that are the same everywhere stay so."""
+    meshes, choice, allow = (
+        (SHAPES["box"](), table()),
+        np.array([1, 0, 1, 1]),
+        np.array([True, False, False, True]),
+    )
+    poses = varying(names, 4, 7)
+    if known:
+        poses.bounds()
+    body = Body(
+        meshes,
+        choice if "choice" in others else choice[:1],
+        poses,
+        allow if "allow" in others else allow[:1],
+    )
+    assert len(body) == (4 if names or others else 1)
+    lanes = np.array([3, 1])
+    some = body.take(lanes)
+    assert len(some) == (2 if names or others else 1)
+    whole = spread(poses, 4)
+    for name in PARTS:
+        part = getattr(some.poses, name)
+        assert len(part) == (2 if name in names else 1)
+        np.testing.assert_array_equal(np.broadcast_to(part, (2, part.shape[1])), getattr(whole, name)[lanes])
+    for found, expected in zip(some.poses.bounds(), whole.bounds(), strict=True):
+        np.testing.assert_array_equal(np.broadcast_to(found, (2, 3)), expected[lanes])
+    np.testing.assert_array_equal(np.broadcast_to(some.poses.matrix, (2, 3, 3)), whole.matrix[lanes])
+    assert some.choice.tolist() == (choice[lanes] if "choice" in others else choice[:1]).tolist()
+    assert some.allow.tolist() == (allow[lanes] if "allow" in others else allow[:1]).tolist()
 
 
 def test_bodies_walk_over_their_meshes():

@@ -1,3 +1,5 @@
+import itertools
+
 import numpy as np
 import pytest
 import trimesh
@@ -164,6 +166,26 @@ def test_lanes_without_a_direction_miss():
         np.testing.assert_array_equal(place[~still], landed[~still])
         assert (found[~still] >= 0).any()
         assert (projection.project(body, None, 0, start, np.zeros((1, 3)), 40)[0] == -1).all()
+
+
+def test_landing_points_of_which_some_parts_are_the_same_for_all():
+    """Faces, points, directions and bodies, one or many of each: as if each lane had its own."""
+    count, rng = 4, np.random.default_rng(56)
+    poses = random_poses(count, 57)
+    parts = (
+        rng.integers(0, len(table().faces), count),
+        rng.normal(size=(count, 3)),
+        rng.normal(size=(count, 3)),
+    )
+    for many in itertools.product((False, True), repeat=4):
+        some = [part if wide else part[:1] for part, wide in zip(parts, many[1:], strict=True)]
+        body = Body((table(),), None, poses if many[0] else poses.take([0]))
+        found = projection.landing_points(body, *some)
+        assert len(found) == (count if any(many) else 1)
+        for lane in range(len(found)):
+            own = Body(body.meshes, None, poses.take([lane if many[0] else 0]))
+            alone = [part[[lane if len(part) > 1 else 0]] for part in some]
+            np.testing.assert_array_equal(projection.landing_points(own, *alone)[0], found[lane])
 
 
 def test_near_surface_against_distances():

@@ -1,3 +1,5 @@
+import itertools
+
 import numpy as np
 import pytest
 import trimesh
@@ -230,6 +232,75 @@ def test_choices_of_meshes():
         np.testing.assert_array_equal(
             points[lanes], surface.face_points(alone, expected, *uniforms[1:, lanes])
         )
+
+
+@pytest.mark.parametrize("alike", ["all", "turns", "sizes"])
+def test_choices_of_meshes_of_which_many_lanes_are_alike(alike):
+    """Their lanes are drawn together, mesh by mesh: each as alone."""
+    meshes, count = (primitives.box(), primitives.cone(), bumpy(2)), 30
+    choice = np.random.default_rng(45).integers(0, 3, count)
+    many, kind = random_poses(count, 46), np.arange(count) % 2
+    poses = Poses(
+        many.position,
+        many.orientation[:1] if alike != "sizes" else many.orientation[kind],
+        many.size[:1] if alike != "turns" else many.size[kind],
+    )
+    mixed = Body(meshes, choice, poses)
+    uniforms = np.random.default_rng(47).random(count)
+    for side in SIDES:
+        faces = surface.draw_faces(mixed, side, 0.4, uniforms, count)
+        normals = surface.mean_normals(mixed, side, 0.4, count)
+        for lane in range(0, count, 2):
+            alone = body_of(meshes[choice[lane]], poses.take([lane]))
+            assert surface.draw_faces(alone, side, 0.4, uniforms[[lane]], 1)[0] == faces[lane]
+            np.testing.assert_array_equal(surface.mean_normals(alone, side, 0.4, 1)[0], normals[lane])
+
+
+@pytest.mark.parametrize("number", [0.25, 0.5, 0.75])
+def test_numbers_between_two_faces_draw_the_same_one_however_many_are_drawn(number):
+    """Of a cube every quarter of a side's area ends with a face, up to no rounding at all."""
+    places = np.zeros((1, 3)), np.array([[0.0, 0, 0, 1]])
+    doubling = 2.0 ** np.arange(8)[:, np.newaxis] * np.ones(3)
+    apart = surface.draw_faces(
+        body_of(primitives.box(), Poses(*places, doubling)), (2, 1), 0.5, np.array([number]), 8
+    )
+    one = body_of(primitives.box(), Poses(*places, doubling[:1]))
+    together = surface.draw_faces(one, (2, 1), 0.5, np.full(8, number), 8)
+    np.testing.assert_array_equal(apart, together)
+    np.testing.assert_array_equal(together, 10 if number < 0.5 else 11)
+
+
+def test_the_top_of_a_turned_box_is_a_side_at_threshold_one():
+    """And one that leans by a little more than rounding is none, as for draws."""
+    yaw = np.random.default_rng(48).uniform(-3, 3, 200)
+    poses = Poses(np.zeros((1, 3)), quaternions.from_euler(yaw, 0, 0), np.array([[0.3, 0.7, 1.9]]))
+    entries, faces = np.repeat(np.arange(200), 12), np.tile(np.arange(12), 200)
+    found = surface.side_contains(primitives.box(), poses, (2, 1), 1.0, entries, faces)
+    np.testing.assert_array_equal(found, faces >= 10)
+    leaning = Poses(poses.position, quaternions.from_euler(yaw, 1e-5, 0), poses.size)
+    assert not surface.side_contains(primitives.box(), leaning, (2, 1), 1.0, entries, faces).any()
+    assert (
+        surface.draw_faces(body_of(primitives.box(), leaning), (2, 1), 1.0, np.full(200, 0.7), 200) == -1
+    ).all()
+
+
+def test_one_face_of_many_bodies_and_many_faces_of_one():
+    """Whatever is the same for all lanes is as if each had it."""
+    poses, count = random_poses(6, 49), 6
+    faces, first, second = np.arange(6) * 3, *np.random.default_rng(50).random((2, 6))
+    for mine in (poses, poses.take([2])):
+        for face, one, other in itertools.product(
+            (faces, faces[:1]), (first, first[:1]), (second, second[:1])
+        ):
+            body = body_of(table(), mine)
+            points = surface.face_points(body, face, one, other)
+            lanes = max(len(mine), len(face), len(one), len(other))
+            assert len(points) == lanes
+            for lane in range(lanes):
+                parts = [part[[lane if len(part) > 1 else 0]] for part in (face, one, other)]
+                alone = body_of(table(), mine.take([lane if len(mine) > 1 else 0]))
+                np.testing.assert_array_equal(surface.face_points(alone, *parts)[0], points[lane])
+    assert len(surface.face_normals(body_of(table(), poses), faces[:1])) == count
 
 
 @pytest.mark.parametrize("mesh", [table(), bumpy(5)], ids=["small", "large"])
