@@ -20,6 +20,7 @@ from .samples import (
     gap,
     hollow,
     in_batches,
+    placed,
     random_poses,
     real_meshes,
     table,
@@ -132,6 +133,29 @@ def test_a_body_around_one_part_of_another():
         filler = yawed((0, 0, 0), size=(size, size, size))
         assert meshes_intersect(hollow(), a, primitives.cylinder(), filler)[0]
         assert meshes_intersect(primitives.cylinder(), filler, hollow(), a)[0]
+
+
+@pytest.mark.parametrize("patience", [0, np.inf])
+def test_a_body_in_parts_collides_with_what_holds_any_of_them(patience):
+    """The first, the middle or the last, or none; whichever solids are looked at beside."""
+    cube = primitives.box()
+    places = np.array([-0.45, 0.0, 0.45])
+    parts = [placed(cube, (x, 0, 0), (0.1, 0.1, 0.1)) for x in places]
+    chain = Mesh(
+        np.concatenate([part.vertices for part in parts]),
+        np.concatenate([part.faces + 8 * number for number, part in enumerate(parts)]),
+    ).normalized()[0]
+    solids = Solids([chain, primitives.spheroid(), table(), hollow()], patience=patience)
+    # Each holds one part, or lies between two of them; the chain is as long as a metre.
+    around = np.concatenate([places, (places[1:] + places[:-1]) / 2])
+    count = len(around)
+    size = np.where(np.arange(count)[:, None] < 3, 0.3, 0.2) * np.ones(3)
+    balls = Poses(np.column_stack([around, np.zeros((count, 2))]), np.array([[0.0, 0, 0, 1]]), size)
+    line = Poses.fixed((0, 0, 0), size=(1, 0.1, 0.1))
+    chains, others = np.zeros(count, dtype=np.intp), np.ones(count, dtype=np.intp)
+    expected = np.arange(count) < 3
+    np.testing.assert_array_equal(solids.intersect(chains, line, others, balls), expected)
+    np.testing.assert_array_equal(solids.intersect(others, balls, chains, line), expected)
 
 
 @pytest.mark.parametrize("most", [narrowphase._MOST_LEAVES, 300, 0])

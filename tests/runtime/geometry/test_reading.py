@@ -190,6 +190,31 @@ def test_elements_of_other_names_are_passed_over_only_where_nothing_follows(is_l
             read_ply(text.encode())
 
 
+@pytest.mark.parametrize("order", ["<", ">", "text"])
+@pytest.mark.parametrize("place", [0, 1])
+def test_elements_of_other_names_may_have_coordinates_of_their_own(order: str, place: int) -> None:
+    """Before or behind the vertices, whose coordinates are the vertices' alone."""
+    name = {"<": "binary_little_endian", ">": "binary_big_endian", "text": "ascii"}[order]
+    rows = {"vertex": [(0, 0, 0), (1, 0, 0), (0, 1, 0)], "camera": [(7, 8, 9), (5, 5, 5)]}
+    elements = ["vertex", "camera"] if place else ["camera", "vertex"]
+    header = f"ply\nformat {name} 1.0\n"
+    for element in elements:
+        header += f"element {element} {len(rows[element])}\n" + "".join(
+            f"property float {axis}\n" for axis in "xyz"
+        )
+    header += "element face 1\nproperty list uchar int vertex_index\nend_header\n"
+    values = [row for element in elements for row in rows[element]]
+    if order == "text":
+        body = ("\n".join(" ".join(map(str, row)) for row in values) + "\n3 0 2 1\n").encode()
+    else:
+        body = b"".join(struct.pack(f"{order}3f", *row) for row in values) + struct.pack(
+            f"{order}B3i", 3, 0, 2, 1
+        )
+    found = read_ply(header.encode() + body)
+    np.testing.assert_array_equal(found.vertices, rows["vertex"])
+    np.testing.assert_array_equal(found.faces, [(0, 2, 1)])
+
+
 @pytest.mark.parametrize("kind", ["ply", "text.ply", "obj", "text.stl"])
 def test_coordinates_are_as_exact_as_the_file(kind):
     """Far from the origin single precision would move them by decimetres."""

@@ -209,3 +209,38 @@ def test_parts_of_a_box_are_full_however_many_cells_they_have():
         centre = half + 0.25 / RESOLUTION - 0.5
         near = table_of.near_filled(still, centre.reshape(3, 1), half.reshape(3, 1))
         assert near.all(), counts
+
+
+def on_grid(rng: np.random.Generator, shape: tuple[int, ...]) -> np.ndarray:
+    """Numbers in and a little beyond the unit cube, of which half are borders of cells."""
+    steps = rng.integers(-4, RESOLUTION + 5, shape)
+    return np.where(rng.random(shape) < 0.5, steps, steps + rng.uniform(0.1, 0.9, shape)) / RESOLUTION - 0.5
+
+
+@pytest.mark.parametrize("many", [(), (3,)])
+def test_points_and_boxes_are_looked_up_in_the_cells_that_they_touch(many: tuple[int, ...]) -> None:
+    """Of the mesh of each entry; also on the sides of the unit cube, where the last cells end, and beyond them."""
+    meshes = [SHAPES[name]() for name in ("cone", "table", "box", "hollow")]
+    cells = [mesh.derived(voxels) for mesh in meshes]
+    filled = [np.diff(np.diff(np.diff(known.filled, axis=0), axis=1), axis=2) > 0 for known in cells]
+    table_of, rng, count = ProofTable(meshes), np.random.default_rng(9), 400
+    still = rng.integers(0, len(meshes), count)
+    points = on_grid(rng, (3, *many, count))
+    points[0, ..., ::4], points[1, ..., 1::4], points[2, ..., 2::4] = 0.5, -0.5, 0.5
+    found = table_of.in_solid(still, points)
+    assert 0.05 < found.mean() < 0.9
+    low, high = np.sort([on_grid(rng, (3, *many, count)), on_grid(rng, (3, *many, count))], axis=0)
+    high = np.minimum(high, low + rng.choice([0, 1, 2, 20], (3, *many, count)) / RESOLUTION)
+    near = table_of.near_filled(still, (low + high) / 2, (high - low) / 2)
+    assert 0.05 < near.mean() < 0.9
+    edges = np.arange(RESOLUTION + 1) / RESOLUTION - 0.5
+    for place in np.ndindex(*many, count):
+        number, point = still[place[-1]], points[(slice(None), *place)]
+        inside = bool((np.abs(point) <= 0.5).all())
+        cell = np.clip(np.floor((point + 0.5) * RESOLUTION).astype(int), 0, RESOLUTION - 1)
+        assert found[place] == (inside and cells[number].solid[tuple(cell)])
+        touched = [
+            np.flatnonzero((begin <= edges[1:] + 1e-12) & (end >= edges[:-1] - 1e-12))
+            for begin, end in zip(low[(slice(None), *place)], high[(slice(None), *place)], strict=True)
+        ]
+        assert near[place] == filled[number][np.ix_(*touched)].any()
