@@ -156,6 +156,13 @@ def test_a_body_in_parts_collides_with_what_holds_any_of_them(patience):
     expected = np.arange(count) < 3
     np.testing.assert_array_equal(solids.intersect(chains, line, others, balls), expected)
     np.testing.assert_array_equal(solids.intersect(others, balls, chains, line), expected)
+    # Of parts that lie in a hollow cube, the first is in its wall, or the last, or none.
+    middles = np.array([(0.3, 0, 0), (-0.3, 0, 0), (0, 0, 0)])
+    cubes = Poses(middles, np.array([[0.0, 0, 0, 1]]), np.array([2.0, 2.0, 2.4])[:, None] * np.ones(3))
+    found = solids.intersect(chains[:3], line, chains[:3] + 3, cubes)
+    np.testing.assert_array_equal(found, [True, True, False])
+    found = solids.intersect(chains[:3] + 3, cubes, chains[:3], line)
+    np.testing.assert_array_equal(found, [True, True, False])
 
 
 @pytest.mark.parametrize("most", [narrowphase._MOST_LEAVES, 300, 0])

@@ -60,23 +60,28 @@ def test_pairs_of_triangles(kind: str, turned: bool) -> None:
         assert 0.02 < (gaps > 1e-6).mean() < 0.98
 
 
-@pytest.mark.parametrize("level", [False, True])
-def test_triangles_of_unlike_sizes_that_touch(level: bool) -> None:
+@pytest.mark.parametrize("turned", [False, True])
+@pytest.mark.parametrize("level", ["none", "every other", "all"])
+def test_triangles_of_unlike_sizes_that_touch(level: str, turned: bool) -> None:
     """At a corner of the small one, within the large one, on its border or at its corner: rounding is that of the large one."""
     rng = np.random.default_rng(9)
     large = rng.normal(size=(COUNT, 3, 3)) + 3 * rng.normal(size=(COUNT, 1, 3))
-    if level:
-        large[..., 2] = 0.25
+    flat = {"none": slice(0), "every other": slice(None, None, 2), "all": slice(None)}[level]
+    large[flat, :, 2] = 0.25
     weights = rng.dirichlet((1, 1, 1), COUNT)
     weights[::3, 2] = 0.0
     weights[1::3, 1:] = 0.0
     place = np.einsum("nk,nki->ni", weights / weights.sum(axis=1, keepdims=True), large)
     sides = rng.normal(size=(COUNT, 2, 3)) * 10.0 ** rng.uniform(-7, 0, (COUNT, 1, 1))
-    if level:
-        sides[..., 2] = 0.0
+    sides[flat, :, 2] = 0.0
     small = np.concatenate([place[:, None], place[:, None] + sides], axis=1)
-    for turn in range(3):
-        rolled = np.roll(small, turn, axis=1)
+    if turned:
+        turn = Rotation.from_euler("zxy", [0.4, 0.8, -0.3])
+        small, large = (turn.apply(part.reshape(-1, 3)).reshape(-1, 3, 3) for part in (small, large))
+    unit = 10.0 ** rng.uniform(-6, 6, (COUNT, 1, 1))
+    small, large = small * unit, large * unit
+    for first in range(3):
+        rolled = np.roll(small, first, axis=1)
         for one, other in ((rolled, large), (large, rolled)):
             pair = (np.ascontiguousarray(part.transpose(1, 2, 0)) for part in (one, other))
             assert not separated_by_edges(*pair).any()
