@@ -14,10 +14,11 @@ from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.poses import Poses
 from scenic.runtime.geometry.visibility.bodies import sees_bodies
-from scenic.runtime.geometry.visibility.obstacles import Obstacles, Occluder
+from scenic.runtime.geometry.visibility.grid import rows_towards
+from scenic.runtime.geometry.visibility.obstacles import Obstacles, Occluder, _meet_hull
 from scenic.runtime.geometry.visibility.points import sees_points
 from scenic.runtime.geometry.visibility.proving import Proof, prove
-from scenic.runtime.geometry.visibility.views import Views
+from scenic.runtime.geometry.visibility.views import Extents, Views
 from tests.runtime.geometry.visibility import reference
 from tests.runtime.geometry.visibility.test_bodies import BOX, CONE, FRAME, quaternions
 
@@ -147,11 +148,15 @@ def test_what_lies_behind_reaches_into_a_wide_view_from_either_side(side: int) -
 
 @pytest.mark.parametrize("up", [-1, 1])
 def test_what_lies_over_the_camera_is_in_every_direction(up: int) -> None:
-    """A plate of which the middle lies behind reaches over the camera into a narrow view ahead."""
-    plate = Body((BOX,), None, Poses.fixed([0, -0.2, up], [0, 0, 0, 1], [2, 2, 0.1]))
+    """A plate of which the middle lies behind reaches over the camera into a narrow view ahead; in its lane among others."""
+    still, size = np.array([[0.0, 0, 0, 1]]), np.array([[2, 2, 0.1]])
+    plate, behind, ahead = [0, -0.2, up], [0, -5.0, up], [0, 5.0, 0]
     for angles, seen in (((0.6, np.pi), True), ((0.6, 1.0), False)):
         observer = Views.fixed((0, 0, 0), angles=angles, count=(9, 61))
-        assert sees_bodies(observer, plate, (), 1).tolist() == [seen]
+        for lanes in ([plate], [behind, plate], [behind, ahead, behind, plate, ahead]):
+            target = Body((BOX,), None, Poses(np.array(lanes, dtype=float), still, size))
+            expected = [seen if place is plate else place is ahead for place in lanes]
+            assert sees_bodies(observer, target, (), len(lanes)).tolist() == expected
 
 
 def test_below_the_view_is_not_in_it() -> None:
@@ -396,3 +401,97 @@ def test_a_camera_on_a_surface(mesh: Mesh, middle: tuple[float, float, float]) -
         )
         assert sees_bodies(observer, body, (), 1).all()
         assert prove(observer, body, (), 1).tolist() == [Proof.SEEN]
+
+
+@pytest.mark.parametrize("corner", range(8))
+def test_what_hides_the_one_corner_in_view_hides_the_body(corner: int) -> None:
+    """However far from its middle the corner is: the view holds nothing else of it."""
+    rng = np.random.default_rng(corner)
+    turns = quaternions(rng, 40)
+    poses = Poses(np.array([[0.0, 5.0, 0.0]]), turns, np.array([[1.0, 0.6, 1.4]]))
+    place = poses.to_world(0.96 * BOX.vertices[None, corner : corner + 1])[:, 0]
+    # On the side that looks here: the body is not between.
+    before = poses.to_unit(np.linspace(0.5, 0.95, 40)[None, :, None] * place[:, None])
+    ahead = np.flatnonzero((np.abs(before).max(axis=2) > 0.5).all(axis=1))
+    target, place, count = Body((BOX,), None, poses.take(ahead)), place[ahead], len(ahead)
+    assert count > 5
+    yaw, pitch = np.arctan2(-place[:, 0], place[:, 1]), np.arctan2(place[:, 2], np.hypot(*place[:, :2].T))
+    frames = reference.Rotation.from_euler("ZX", np.stack([yaw, pitch], axis=-1)).as_quat()
+    observers = Views(
+        np.zeros((count, 3)),
+        frames,
+        np.full((count, 2), 2e-3),
+        np.full(count, 50.0),
+        np.ones(count),
+        np.full((count, 2), 3.0),
+        np.zeros(count, dtype=bool),
+    )
+    for share, hides in ((0.8, True), (1.3, False)):
+        little = Body((BOX,), None, Poses(share * place, frames, np.full((1, 3), 0.05)))
+        assert sees_bodies(observers, target, (), count).all()
+        assert (sees_bodies(observers, target, [Occluder(little)], count) == (not hides)).all()
+        assert ((prove(observers, target, [Occluder(little)], count) == Proof.SEEN) == (not hides)).all()
+        # And the corner hides what is little behind it.
+        assert (sees_bodies(observers, little, [Occluder(target)], count) == hides).all()
+        points = sees_points(observers, little.poses.position, [Occluder(target)], count)
+        assert (points == hides).all()
+
+
+@pytest.mark.parametrize("up", [0.0, 0.6, -0.6])
+def test_of_a_body_that_leads_away_only_the_part_within_reach_counts(up: float) -> None:
+    """Its near end is within reach but not in view, its far end in view but beyond reach."""
+    pitch = reference.Rotation.from_euler("X", up)
+    ends = np.array([(2.0, 3.4, 0.0), (0.0, 8.0, 0.0)])
+    way = ends[1] - ends[0]
+    frame = pitch * reference.Rotation.from_euler("Z", math.atan2(-way[0], way[1]))
+    plank = Body(
+        (BOX,),
+        None,
+        Poses.fixed(pitch.apply(ends.mean(axis=0)), frame.as_quat(), (0.2, float(np.linalg.norm(way)), 0.2)),
+    )
+    for reach, angle, seen in (
+        (5.0, 0.15, False),
+        (6.2, 0.15, False),
+        (8.2, 0.15, True),
+        (5.0, 1.1, True),
+        (3.5, 1.1, False),
+    ):
+        observer = Views.fixed(
+            (0, 0, 0), pitch.as_quat(), angles=(angle, 0.4), distance=reach, count=(61, 41)
+        )
+        assert reference.sees_body(observer, plank, [], 0) is seen
+        assert sees_bodies(observer, plank, (), 1).tolist() == [seen]
+        assert (prove(observer, plank, (), 1).tolist() == [Proof.SEEN]) is seen
+
+
+def test_obstacles_are_balls_that_meet_the_hull_of_the_camera_and_the_target() -> None:
+    """None that does is left out; hardly any that does not is kept."""
+    rng, count = np.random.default_rng(12), 3000
+    way, offset = rng.normal(size=(2, count, 3)) * 10.0 ** rng.uniform(-1, 1, (2, count, 1))
+    radius = rng.choice([0.0, 0.1, 0.7, 3.0], count) * rng.random(count)
+    reach = rng.choice([0.0, 0.3, 2.0], count) * rng.random(count)
+    part = np.linspace(0, 1, 2001)[:, None]
+    beside = np.linalg.norm(offset - part[..., None] * way, axis=2)
+    lacking = (beside - part * radius).min(axis=0) - reach
+    found = _meet_hull(offset, reach, way, radius)
+    assert found[lacking <= 0].all()
+    assert not found[lacking > 0.02].any()
+    assert 0.1 < found.mean() < 0.9
+
+
+def test_each_row_has_rays_as_its_circle_is_long_and_one_at_least() -> None:
+    """Also straight up and down, where views a few degrees wide have hardly any."""
+    degrees = np.arange(2, 163, dtype=float)
+    wide, count = degrees % 5 + 1, len(degrees)
+    observers = Views.fixed((0, 0, 0), density=0.5).spread(count)
+    observers = dataclasses.replace(observers, angles=np.radians(np.stack([wide, degrees], axis=-1)))
+    everywhere = Extents(
+        np.tile([[-np.pi, np.pi]], (count, 1)),
+        np.ones(count, dtype=bool),
+        np.tile([[-np.pi / 2, np.pi / 2]], (count, 1)),
+    )
+    rows = rows_towards(observers, everywhere, np.ones(count))
+    np.testing.assert_array_equal(np.bincount(rows.lane, minlength=count), np.ceil(degrees * 0.5))
+    across = np.ceil(wide * 0.5)[rows.lane] * np.cos(rows.altitude)
+    np.testing.assert_array_equal(rows.count, np.maximum(np.round(across), 1))
+    assert (np.round(across) == 0).any()
