@@ -209,6 +209,18 @@ def test_a_corner_that_reaches_into_the_way_hides() -> None:
         assert (found is None) or not open_question
 
 
+@pytest.mark.parametrize("axis", [0, 2])
+@pytest.mark.parametrize("side", [1, -1])
+def test_ways_along_a_face_are_blocked_within_it_alone(axis: int, side: int) -> None:
+    """In it, up to rounding, nothing is certain."""
+    looking = View((0.0, 0.0, 0.0), axes_of((0, 0, 0, 1)), (2 * math.pi, math.pi), REACH)
+    for off, seen in ((-1e-3, False), (-5e-7, None), (0.0, None), (5e-7, None), (1e-3, True)):
+        place = [0.0, 2.0, 0.0]
+        place[axis] = side * (0.5 + off)
+        cube = placed((place[0], place[1], place[2]), (0, 0, 0, 1), (1, 1, 1), primitives.box())
+        assert sees_point(looking, (0.0, 4.0, 0.0), [cube]) is seen
+
+
 def test_through_a_ring_nothing_of_it_may_be_seen() -> None:
     made = trimesh.creation.annulus(r_min=0.45, r_max=0.5, height=1.0)
     ring = Mesh(np.asarray(made.vertices), np.asarray(made.faces))

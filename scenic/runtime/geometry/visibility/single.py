@@ -61,7 +61,7 @@ class View(NamedTuple):
             if beyond > reach:
                 return False
             certain = certain and beyond < -_ANGLE
-        return True if certain and not radius else None
+        return True if certain else None
 
 
 def _angular(radius: float, distance: float) -> float:
