@@ -134,7 +134,7 @@ class Views:
         within = (azimuth <= half[:, 0]) | upright
         result: Booleans = (
             (distance <= self.distance * (1 + DISTANCE_SLACK)) & within & (altitude <= half[:, 1])
-        ) | (distance == 0)
+        )
         return result
 
 

@@ -18,7 +18,8 @@ from scenic.runtime.geometry.visibility.grid import rows_towards
 from scenic.runtime.geometry.visibility.obstacles import Obstacles, Occluder, _meet_hull
 from scenic.runtime.geometry.visibility.points import sees_points
 from scenic.runtime.geometry.visibility.proving import Proof, prove
-from scenic.runtime.geometry.visibility.views import Extents, Views
+from scenic.runtime.geometry.visibility.regions import region_angles
+from scenic.runtime.geometry.visibility.views import FULL_ANGLE_SLACK, Extents, Views
 from tests.runtime.geometry.visibility import reference
 from tests.runtime.geometry.visibility.test_bodies import BOX, CONE, FRAME, quaternions
 
@@ -495,3 +496,51 @@ def test_each_row_has_rays_as_its_circle_is_long_and_one_at_least() -> None:
     across = np.ceil(wide * 0.5)[rows.lane] * np.cos(rows.altitude)
     np.testing.assert_array_equal(rows.count, np.maximum(np.round(across), 1))
     assert (np.round(across) == 0).any()
+
+
+@pytest.mark.parametrize("up", [-1, 1])
+def test_a_leaning_plank_over_the_camera_reaches_straight_up_wherever_its_ends_are(up: int) -> None:
+    """One of its ends is as far below the camera as the other is above; ahead only what is nearly straight up is of it."""
+    lean = reference.Rotation.from_euler("Y", 0.5)
+    pose = Poses.fixed((0, -0.275, up), lean.as_quat(), (10.0, 0.65, 0.2))
+    plank = Body((BOX,), None, pose)
+    corners = pose.to_world(BOX.vertices[None])[0]
+    assert corners[:, 2].min() < -1
+    assert corners[:, 2].max() > 1
+    for rows, seen in ((25, False), (41, True), (61, True)):
+        observer = Views.fixed((0, 0, 0), angles=(0.3, math.pi), count=(1, rows))
+        assert reference.sees_body(observer, plank, [], 0) is seen
+        assert sees_bodies(observer, plank, (), 1).tolist() == [seen]
+
+
+@pytest.mark.parametrize("axis", range(2))
+def test_angles_as_near_to_all_around_as_may_be_count_as_that(axis: int) -> None:
+    """Each of the two for itself; a hair less does not."""
+    full = np.array([2 * np.pi, np.pi])
+    for angle, whole in (
+        (full[axis] - FULL_ANGLE_SLACK, True),
+        (np.nextafter(full[axis] - FULL_ANGLE_SLACK, 0), False),
+        (full[axis], True),
+    ):
+        angles = np.array([[1.25, 1.5]])
+        angles[0, axis] = angle
+        expected = angles.copy()
+        expected[0, axis] = full[axis] if whole else angle
+        np.testing.assert_array_equal(Views.fixed((0, 0, 0), angles=tuple(angles[0])).window, expected)
+        np.testing.assert_array_equal(region_angles(angles), expected)
+
+
+def test_a_camera_is_in_its_own_view() -> None:
+    """However it is turned, whichever signs its zeros have then."""
+    turns = [(0.5, x, y, z) for x, y, z in itertools.product((0.5, -0.5), repeat=3)] + [
+        (0, 0, 0, 1),
+        (0, 0, 1, 0),
+    ]
+    count = len(turns)
+    for distance in (0.0, 9.0):
+        observers = Views.fixed((1, 2, 3), angles=(0.01, 0.01), distance=distance).spread(count)
+        observers = dataclasses.replace(observers, orientation=np.array(turns, dtype=float))
+        places = observers.camera
+        assert observers.contain(places).all()
+        assert sees_points(observers, places, (), count).all()
+        assert not observers.contain(places + np.array([10.0, 0, 0])).any()
