@@ -2,6 +2,7 @@
 
 import math
 import random
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,7 +12,12 @@ import trimesh
 from scipy import stats
 
 from scenic.graph.bounds import Bounds
-from scenic.language.errors import RejectionException, ScenicTypeError
+from scenic.language.errors import (
+    InvalidScenarioError,
+    RejectionException,
+    ScenicTypeError,
+    ScenicValueError,
+)
 from scenic.runtime.fields import (
     PiecewiseVectorField,
     PolygonalVectorField,
@@ -21,7 +27,14 @@ from scenic.runtime.fields import (
 from scenic.runtime.geometry import primitives
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.poses import Poses
-from scenic.runtime.regions.composite import IntersectionRegion, UnionRegion
+from scenic.runtime.regions.base import Workspace, nowhere
+from scenic.runtime.regions.choice import RegionChoice
+from scenic.runtime.regions.composite import (
+    DifferenceRegion,
+    IntersectionRegion,
+    UnionRegion,
+    exactly_contains,
+)
 from scenic.runtime.values import Orientation, Vector
 from tests.runtime.programs import FALSE_ALARM, draws, failure, params, scenario
 
@@ -489,3 +502,246 @@ def test_a_fixed_point_is_or_is_not_on_each_of_many_sides() -> None:
         "require (3, 0, 0) in box.rightSurface\nparam x = box.position.x\n"
     )
     assert {item.params["x"] for item in scenario(text).sample(12, seed=1)} == {2}
+
+
+@pytest.mark.parametrize("nested", [False, True])
+def test_workspaces_are_combined_as_what_they_are_made_of(nested: bool) -> None:
+    """To what has a closed form, however often they are wrapped; and in combinations that are named as such."""
+    disc, box = named.CircularRegion((1, 0, 2), 2), named.BoxRegion((2, 2, 6), (2, 0, 2))
+    room = Workspace(Workspace(disc)) if nested else Workspace(disc)
+    for operation in ("intersect", "union", "difference"):
+        for one, other, same in ((room, box, (disc, box)), (box, room, (box, disc))):
+            found, expected = getattr(one, operation)(other), getattr(same[0], operation)(same[1])
+            assert type(found) is type(expected)
+            assert found.size == expected.size
+    assert room.intersects(box) is box.intersects(room) is True
+    assert room.containsRegion(named.CircularRegion((1, 0, 2), 1)) is True
+    # One of the plane is at its height alone, wrapped or not.
+    for z, held in ((2, True), (2.5, False)):
+        for whole in (IntersectionRegion(room, box), IntersectionRegion(box, room)):
+            columns = whole.fixed_columns("a test")
+            assert exactly_contains(whole, np.array([[1.5, 0, z]]), columns).tolist() == [held]
+
+
+@pytest.mark.parametrize("kind", [named.CircularRegion, named.RectangularRegion, named.PolygonalRegion])
+def test_the_height_of_a_plane_is_kept_up_to_rounding_on_both_sides(kind: type) -> None:
+    arguments = {
+        named.CircularRegion: ((1, 0, 2), 2),
+        named.RectangularRegion: ((1, 0, 2), 0.1, 4, 4),
+        named.PolygonalRegion: ([(-1, -2), (3, -2), (3, 2), (-1, 2)], None, 2),
+    }
+    region = kind(*arguments[kind])
+    for off, held in ((9e-7, True), (-9e-7, True), (1.1e-6, False), (-1.1e-6, False), (-3, False)):
+        place = np.array([[1.0, 0, 2 + off]])
+        assert exactly_contains(region, place, region.fixed_columns("a test")).tolist() == [held]
+
+
+def test_joined_polygons_lie_at_the_height_of_the_first() -> None:
+    low, high = (named.CircularRegion((x, 0, z), 2) for x, z in ((0, 1.5), (9, 4)))
+    for parts, height in (((low, high), 1.5), ((high, low), 4)):
+        joined = named.PolygonalRegion.unionAll(iter(parts))
+        assert joined.z == height
+        assert {point[2] for point in joined.points} == {height}
+
+
+@pytest.mark.parametrize("height", [-2, 0, 2])
+def test_what_polygons_share_lies_at_their_height(height: float) -> None:
+    """An area, several, an edge, several edges, a corner; also below the ground."""
+    square = named.PolygonalRegion(polygon=shapely.box(0, 0, 4, 4), z=height)
+    others = {
+        "areas": [shapely.box(1, 1, 2, 9), shapely.box(3, 1, 4, 9)],
+        "edges": [shapely.box(4, 0, 5, 1), shapely.box(4, 2, 5, 3)],
+        "corners": [shapely.box(4, 4, 5, 5), shapely.box(-1, 4, 0, 5)],
+    }
+    for parts in others.values():
+        for shape in (parts[0], shapely.MultiPolygon(parts)):
+            common = square.intersect(named.PolygonalRegion(polygon=shape, z=height))
+            lower, upper = common.AABB
+            assert lower[2] == upper[2] == height
+            assert common.containsPoint(common.uniformPointInner())
+    assert square.intersect(named.PolygonalRegion(polygon=shapely.box(0, 0, 4, 4), z=-height or 1)) is nowhere
+
+
+def test_every_chain_of_a_path_is_cut_by_a_column() -> None:
+    """However high or low it runs, and whichever comes first."""
+    column = named.RectangularRegion((0, 0, 5), 0, 2, 2).footprint
+    chains = [[(-9, 0.5, z), (9, 0.5, z + 1)] for z in (0.0, -70, 40)]
+    for order in ((0, 1, 2), (1, 2, 0), (2, 1, 0)):
+        path = named.PathRegion(polylines=[chains[number] for number in order])
+        for part in (path.intersect(column), column.intersect(path)):
+            assert part.length == pytest.approx(3 * 2 * math.hypot(1, 1 / 18))
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda size: named.CircularRegion((0, 0), size),
+        lambda size: named.SectorRegion((0, 0), size, 0, 1),
+        lambda size: named.SectorRegion((0, 0), 1, 0, size),
+        lambda size: named.RectangularRegion((0, 0), 0, size, 1),
+        lambda size: named.RectangularRegion((0, 0), 0, 1, size),
+        *(
+            lambda size, kind=kind, axis=axis: kind(tuple(np.where(np.arange(3) == axis, size, 1.0)))
+            for kind in (named.BoxRegion, named.SpheroidRegion)
+            for axis in range(3)
+        ),
+        *(
+            lambda size, axis=axis: named.MeshVolumeRegion(
+                trimesh.creation.box(), tuple(np.where(np.arange(3) == axis, size, 1.0))
+            )
+            for axis in range(3)
+        ),
+        *(
+            lambda size, axis=axis: named.MeshSurfaceRegion(
+                trimesh.creation.box(), tuple(np.where(np.arange(3) == axis, size, 1.0))
+            )
+            for axis in range(3)
+        ),
+        lambda size: named.ViewRegion(4, (size, 1)),
+        lambda size: named.ViewRegion(4, (1, size)),
+        lambda size: named.BoxRegion().voxelized(size),
+    ],
+)
+def test_no_size_is_negative_or_no_number(make: Any) -> None:
+    for size in (-1.0, math.nan):
+        with pytest.raises(ScenicValueError):
+            make(size)
+    make(1.0)
+
+
+def test_a_choice_among_a_plane_and_a_volume_stands_on_every_height_of_the_plane() -> None:
+    disc, box = named.CircularRegion((0, 0, 1), 2), named.BoxRegion((2, 2, 2), (9, 0, 0))
+    for options in ((disc, box), (box, disc), (box, box, disc)):
+        column = RegionChoice(0, options).footprint
+        index = np.array([options.index(disc), options.index(box)])
+        columns = [value for option in options for value in option.fixed_columns("a test")]
+        places = np.array([(0.5, 0, 70), (9, 0, 70)])
+        for height, held in ((70, [True, False]), (0.5, [True, True])):
+            places[:, 2] = height
+            assert exactly_contains(column, places, [index, *columns]).tolist() == held
+    volumes = RegionChoice(0, [box, named.SpheroidRegion()])
+    assert volumes.footprint is volumes
+
+
+def test_what_one_of_several_may_be_anywhere_has_no_extent() -> None:
+    disc, box = named.CircularRegion((0, 0, 1), 2), named.BoxRegion((2, 2, 2), (9, 0, 0))
+    known = [[Bounds(column, column) for column in region.fixed_columns("a test")] for region in (disc, box)]
+    unknown = [[None] * len(each) for each in known]
+    for first, second, told in (
+        (known[0], known[1], True),
+        (known[0], unknown[1], False),
+        (unknown[0], known[1], False),
+        (unknown[0], unknown[1], False),
+    ):
+        both = [*first, *second]
+        for name in ("extent", "container_extent"):
+            choice = getattr(RegionChoice(0, [disc, box]), name)(Bounds(np.zeros(1), np.ones(1)), *both)
+            union = getattr(UnionRegion(disc, box), name)(*both)
+            common = getattr(IntersectionRegion(disc, box), name)(*both)
+            assert (choice is not None) is (union is not None) is told
+            # Of an intersection any member tells, of a difference the first.
+            assert (common is None) is (first is unknown[0] and second is unknown[1])
+            left = getattr(DifferenceRegion(disc, box), name)(*both)
+            assert (left is None) is (first is unknown[0])
+
+
+def test_all_of_space_may_be_a_member() -> None:
+    """Of a combination that is named as such: what bounds the others, and what is left."""
+    box = named.BoxRegion((2, 2, 2), (9, 0, 0))
+    for region in (IntersectionRegion(named.everywhere, box), IntersectionRegion(box, named.everywhere)):
+        point, _ = region.uniform_placement()
+        assert point is not None
+        assert box.containsPoint(region.uniformPointInner())
+        assert region.dimension == 3
+    with pytest.raises(InvalidScenarioError):
+        IntersectionRegion(named.everywhere, named.everywhere).uniform_placement()
+
+
+def test_second_draws_of_a_union_are_as_fair_as_first_ones() -> None:
+    """Whether a point that lies in several members counts is decided by a number that has decided nothing else."""
+    whole, half = named.RectangularRegion((1, 0), 0, 2, 1), named.RectangularRegion((0.5, 0), 0, 1, 1)
+    rng, count = np.random.default_rng(12), 60_000
+    for members in ((whole, half), (half, whole), (half, half, whole)):
+        union = UnionRegion(*members)
+        points, _ = union.draw_points(
+            rng.random((union.draws, count)),
+            rng.integers(0, 1 << 62, count).astype(np.uint64),
+            *union.fixed_columns("a test"),
+        )
+        left = int(np.count_nonzero(points[:, 0] < 1))
+        assert stats.binomtest(left, count, 0.5).pvalue > FALSE_ALARM
+
+
+def test_the_segment_nearest_in_space() -> None:
+    path = named.PathRegion(polylines=[[(0, 0, 0), (4, 0, 0)], [(0, 1, 5), (0, 5, 9)]])
+    for place, ends in (((0, 2, 6), ((0, 1, 5), (0, 5, 9))), ((0, 2, 0), ((0, 0, 0), (4, 0, 0)))):
+        assert tuple(map(tuple, path.nearestSegmentTo(Vector(*place)))) == ends
+
+
+def test_lines_that_shapely_has_in_space_lie_in_the_plane() -> None:
+    line = named.PolylineRegion(polyline=shapely.LineString([(0, 0, 1), (4, 0, 2), (4, 3, 7)]))
+    assert line.length == pytest.approx(7)
+    assert {point[2] for point in line.points} == {0}
+
+
+def test_volumes_of_surfaces_are_where_these_are() -> None:
+    mesh = trimesh.creation.box((1, 2, 4))
+    mesh.apply_translation((3, -1, 2))
+    for centered in (True, False):
+        surface = named.MeshSurfaceRegion(mesh, (2, 3, 5), (1, 2, 3), TILT, centerMesh=centered)
+        volume = surface.getVolumeRegion()
+        np.testing.assert_allclose(volume.AABB, surface.AABB)
+        np.testing.assert_allclose(volume.getSurfaceRegion().AABB, surface.AABB)
+        assert volume.size == pytest.approx(30)
+        assert surface.size == pytest.approx(2 * (6 + 10 + 15))
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda **more: named.BoxRegion((2, 2, 2), **more),
+        lambda **more: named.SpheroidRegion((2, 2, 2), **more),
+        lambda **more: named.MeshVolumeRegion(trimesh.creation.box((2, 2, 2)), **more),
+        lambda **more: named.MeshSurfaceRegion(trimesh.creation.box((2, 2, 2)), **more),
+    ],
+)
+def test_things_land_along_their_own_direction_before_that_of_the_region(make: Any) -> None:
+    place, along, up = Vector(0.1, 0.2, 0.3), (1, 0, 0), (0, 0, 1)
+    outside = place + Vector(-5, 0, 0)
+    sideways = make(onDirection=along)
+    assert sideways.projectVector(outside, None).x < -0.9
+    assert make(onDirection=up).projectVector(outside, along) == sideways.projectVector(outside, None)
+    assert sideways.projectVector(outside, up) is None
+    assert sideways.projectVector(place + Vector(0, 0, 9), up).z > 0.9
+    # Where it lands it looks as the field of the region says there.
+    field = VectorField("f", lambda point: 0.5 + point.x)
+    landed, orientation = make(onDirection=along, orientation=field).project(outside, None)
+    assert orientation.yaw == pytest.approx(0.5 + landed.x)
+
+
+def test_cells_of_a_grid_meet_where_rounding_says() -> None:
+    """A point between two cells is of that which `pointToGrid` names, beside the grid of none."""
+    cells = np.array([[0, 1, 0, 1, 0], [1, 0, 1, 0, 1]])
+    region = named.GridRegion("g", cells, 2, 1, 0.5, -1)
+    for column in np.arange(-1, 5.5, 0.5):
+        for row in np.arange(-1, 2.5, 0.5):
+            place = Vector(0.5 + 2 * column, -1 + row, 3)
+            cell = region.pointToGrid(place)
+            free = cell is not None and cells[cell[1], cell[0]] == 0
+            assert region.containsPoint(place) is bool(free)
+            inside = -0.5 <= column <= 4.5 and -0.5 <= row <= 1.5
+            assert cell is None or inside
+
+
+def test_a_leaning_body_needs_free_cells_under_all_of_its_corners() -> None:
+    """Seen from above: those of its bottom as those of its top."""
+    cells = np.zeros((9, 9))
+    cells[:, 4] = 1
+    region = named.GridRegion("g", cells, 1, 1, 0, 0)
+    for side in (-1, 1):
+        lean = Orientation.fromEuler(0, 0, side * 0.4)
+        for x, z in ((4 + side * 1.6, 0), (4 - side * 1.6, 0)):
+            body = Body((primitives.box(),), None, Poses.fixed((x, 4, z), lean.q, (0.5, 0.5, 6)))
+            assert region.contains_bodies(body, 1).tolist() == [False]
+            upright = Body((primitives.box(),), None, Poses.fixed((x, 4, z), size=(0.5, 0.5, 6)))
+            assert region.contains_bodies(upright, 1).tolist() == [True]

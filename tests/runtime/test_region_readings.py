@@ -15,7 +15,9 @@ import trimesh
 from scenic.core.vectors import Orientation, Vector
 from scipy import stats
 
-from scenic.language.errors import UnsupportedError
+from scenic.graph.bounds import Bounds
+from scenic.language.errors import UndefinedSamplingException, UnsupportedError
+from scenic.runtime.fields import VectorField
 from scenic.runtime.regions import bodies, choice, composite, lines, planar, views, volumes
 from scenic.runtime.regions.base import Region, Workspace, everywhere, nowhere
 from scenic.runtime.regions.drawn import DrawnRegion
@@ -350,3 +352,87 @@ def test_grids_hold_what_lies_in_their_outer_cells() -> None:
     assert places[:, :2].min() < -0.4
     assert places[:, :2].max() > 2.4
     assert np.ptp(places[:, 2]) > 15
+
+
+PRIMITIVES = ("contains_points", "distances", "gaps")
+
+
+def assert_same_readings(one: Region, other: Region) -> None:
+    """Two regions of the same parameters hold the same, are as far, as large and as wide, and are drawn from alike."""
+    columns, points = columns_of(one), around(one, 20)
+    exact = [None if column.dtype == object else Bounds(column, column) for column in columns]
+    for name in PRIMITIVES:
+        try:
+            expected = getattr(one, name)(points, *columns)
+        except UnsupportedError:
+            continue
+        np.testing.assert_array_equal(getattr(other, name)(points, *columns), expected, err_msg=name)
+    for name in ("box", "container_box", "sizes"):
+        np.testing.assert_array_equal(
+            getattr(other, name)(*columns), getattr(one, name)(*columns), err_msg=name
+        )
+    for name in ("extent", "container_extent"):
+        found, known = getattr(other, name)(*exact), getattr(one, name)(*exact)
+        assert found is None or known is not None
+        if found is not None and known is not None:
+            ends = (known.lower, known.upper)
+            np.testing.assert_allclose((found.lower, found.upper), ends, atol=2e-6, err_msg=name)
+    for name in ("dimension", "dimensionality", "draws", "may_find_none", "tolerance", "is_random"):
+        assert getattr(other, name) == getattr(one, name), name
+    assert type(other.footprint) is type(one.footprint)
+    assert type(other.at_once) is type(one.at_once)
+    numbers, keys = np.random.default_rng(3).random((one.draws, 8)), np.arange(8, dtype=np.uint64)
+    try:
+        expected, known = one.draw_points(numbers, keys, *columns)
+    except UndefinedSamplingException:
+        return
+    found, also = other.draw_points(numbers, keys, *columns)
+    np.testing.assert_array_equal(found, expected)
+    np.testing.assert_array_equal(
+        np.ones(8) if also is None else also, np.ones(8) if known is None else known
+    )
+
+
+@pytest.mark.parametrize("name", REGIONS)
+def test_a_workspace_reads_as_the_region_that_it_is_made_of(name: str) -> None:
+    region = REGIONS[name]
+    space = Workspace(Workspace(region))
+    assert_same_readings(region, space)
+    assert space.has_orientation is region.has_orientation
+    assert space.orientation is region.orientation
+
+
+ORIENTABLE = {
+    "polygon": lambda field: named.PolygonalRegion(LOOP, z=2, orientation=field),
+    "box": lambda field: named.BoxRegion((4, 1, 2), (1, -2, 3), TILT, orientation=field),
+    "ball": lambda field: named.SpheroidRegion((4, 1, 2), (1, -2, 3), TILT, orientation=field),
+    "points": lambda field: named.PointSetRegion("p", [(0, 0, 0), (1, 2, 0)], orientation=field),
+    "grid": lambda field: named.GridRegion("g", np.array([[0, 1], [0, 0]]), 2, 1, 0.5, -1, orientation=field),
+    "line": lambda field: named.PolylineRegion(LOOP, orientation=field),
+    "path": lambda field: named.PathRegion([(0, 0, 0), (1, 2, 3)], orientation=field),
+    "mesh": lambda field: named.MeshVolumeRegion(HORSESHOE, orientation=field),
+    "surface": lambda field: named.MeshSurfaceRegion(HORSESHOE, orientation=field),
+    "cells": lambda field: named.VoxelRegion(trimesh.voxel.VoxelGrid(np.ones((1, 2, 3), bool)), field),
+    "cut": lambda field: composite.IntersectionRegion(REGIONS["ball"], REGIONS["box"], orientation=field),
+}
+
+
+@pytest.mark.parametrize("kind", ORIENTABLE)
+def test_a_field_changes_nothing_but_directions(kind: str) -> None:
+    field = VectorField("f", lambda place: place.x)
+    plain, oriented = ORIENTABLE[kind](None), ORIENTABLE[kind](field)
+    assert (plain.has_orientation, oriented.has_orientation) == (False, True)
+    assert_same_readings(plain, oriented)
+
+
+class _Same:
+    """A sample in which everything is as it is."""
+
+    def value(self, value: object) -> object:
+        return value
+
+
+@pytest.mark.parametrize("name", REGIONS)
+def test_what_is_fixed_is_itself_in_every_scene(name: str) -> None:
+    for region in (REGIONS[name], REGIONS[name].footprint, Workspace(REGIONS[name])):
+        assert region.sampled(_Same()) is region
