@@ -115,20 +115,20 @@ def test_what_is_held_is_never_called_outside(name: str, shape: str) -> None:
     assert known > 3
 
 
-def test_what_sticks_out_by_less_than_the_tolerance_may_be_held() -> None:
+@pytest.mark.parametrize("axis", range(3))
+@pytest.mark.parametrize("side", [-1, 1])
+def test_what_sticks_out_by_less_than_the_tolerance_may_be_held(axis: int, side: int) -> None:
     region, mesh = BoxRegion((2, 2, 2)), SHAPES["box"]()
-    turn, size = np.array([0.0, 0, 0, 1]), np.ones(3)
+    turn, size, way = np.array([0.0, 0, 0, 1]), np.ones(3), side * np.eye(3)[[axis]]
     for off, outside in ((5e-7, False), (1e-4, True)):
-        place = np.array([[0.5 + off, 0, 0]])
-        found = containment_bounds(Containment(region, mesh), *operands(region, place, place, turn, size))
+        given = operands(region, (0.5 + off) * way, (0.5 + off) * way, turn, size)
+        found = containment_bounds(Containment(region, mesh), *given)
         assert found is not None
         assert bool(found.upper[0] == 0) is outside
-        narrowed = containment_inverse(
-            Containment(region, mesh), exactly([1.0]), *operands(region, place, place, turn, size)
-        )[0]
+        narrowed = containment_inverse(Containment(region, mesh), exactly([1.0]), *given)[0]
         assert narrowed is not None
-        assert narrowed.upper[0, 0] == pytest.approx(0.5 + 1e-6, abs=1e-8)
-        assert narrowed.lower[0, 0] == pytest.approx(-0.5 - 1e-6, abs=1e-8)
+        assert narrowed.upper[0] == pytest.approx(0.5 + 1e-6, abs=1e-8)
+        assert narrowed.lower[0] == pytest.approx(-0.5 - 1e-6, abs=1e-8)
 
 
 def test_several_boxes_at_once_are_told_apart() -> None:

@@ -187,6 +187,42 @@ def test_what_all_lanes_share_is_as_if_each_had_it(name: str, shared: str) -> No
         (region.meets_bodies(body, LANES, *columns), region.meets_bodies(apart, LANES, *own)),
     ):
         np.testing.assert_array_equal(np.broadcast_to(given, LANES), expected)
+    for reading in (region.gaps, region.distances):
+        if "view" in name:  # whose distances take long, and are tried below
+            continue
+        try:
+            expected = reading(_spread(points), *own)
+        except UnsupportedError:
+            continue
+        np.testing.assert_allclose(
+            np.broadcast_to(reading(points, *columns), len(expected)), expected, atol=1e-12
+        )
+
+
+@pytest.mark.parametrize("changed", ["horizontal", "vertical"])
+def test_views_of_which_lanes_share_an_angle_are_their_own(changed: str) -> None:
+    """Their meshes are made by pairs of angles."""
+    view = named.ViewRegion(4, (1.0, 0.8), position=(1, 2, 3))
+    camera, turn, *_ = view.fixed_columns("a test")
+    across = np.array([1.0, 2.5, 1.0, 0.4]) if changed != "vertical" else np.ones(4)
+    upward = np.array([0.8, 0.8, 2.0, 0.3]) if changed != "horizontal" else np.full(4, 0.8)
+    columns = [camera, turn, across, upward, np.array([4.0])]
+    # One beside the middle, one above it, one ahead.
+    places = np.array([1.0, 2, 3]) + np.array([(2.0, 2, 0), (0, 2, 1.6), (0, 3, 0)])
+    for place in places:
+        body = Body((primitives.box(),), None, Poses.fixed(place, size=(0.2, 0.2, 0.2)))
+        held = view.contains_bodies(body, 4, *columns)
+        far = view.distances(place[np.newaxis], *columns)
+        for lane in range(4):
+            mine = [camera, turn, across[[lane]], upward[[lane]], np.array([4.0])]
+            assert held[lane] == view.contains_bodies(body, 1, *mine)[0]
+            assert far[lane] == pytest.approx(view.distances(place[np.newaxis], *mine)[0])
+    # Each lane with a place of its own, too.
+    points = places[[2, 0, 1, 1]]
+    found = view.distances(points, *columns)
+    for lane in range(4):
+        mine = [camera, turn, across[[lane]], upward[[lane]], np.array([4.0])]
+        assert found[lane] == pytest.approx(view.distances(points[[lane]], *mine)[0])
 
 
 @pytest.mark.parametrize("side", [*SIDES, ""])

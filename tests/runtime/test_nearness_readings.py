@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import trimesh
 from scipy import stats
 from scipy.spatial.transform import Rotation
 
@@ -24,6 +25,9 @@ from scenic.runtime.regions.choice import RegionChoice
 from scenic.runtime.regions.composite import DifferenceRegion, IntersectionRegion, UnionRegion
 from scenic.runtime.regions.fixed_sides import _POINT as POINT
 from scenic.runtime.regions.fixed_sides import FixedSide
+from scenic.runtime.regions.lines import PathRegion
+from scenic.runtime.regions.meshes import MeshSurfaceRegion, MeshVolumeRegion
+from scenic.runtime.regions.nearness import body_reach
 from scenic.runtime.regions.planar import DISC_POINT, CircularRegion, RectangularRegion, SectorRegion
 from scenic.runtime.regions.scattered import PointSetRegion
 from scenic.runtime.regions.volumes import BALL_POINT, BoxRegion, SpheroidRegion
@@ -143,6 +147,50 @@ def test_a_tolerance_counts() -> None:
     index = Random(scenario("param i = DiscreteRange(0, 1)").params["i"].node)
     chosen = RegionChoice(index, [other, dots])
     assert chosen.tolerance == 0.5
+
+
+@pytest.mark.parametrize("turn", [Orientation(), Orientation.fromEuler(0.7, 0.4, -0.3)])
+def test_a_tolerance_counts_on_every_side(turn: Orientation) -> None:
+    """Of meshes, which know how far a point is from them, as of lines."""
+    cube = trimesh.creation.box((2, 2, 2))
+    assert CONTAINS.bounds is not None
+    assert CONTAINS.inverse is not None
+    for local in (*np.eye(3), *-np.eye(3)):
+        way = np.array(Vector(*local).rotatedBy(turn))
+        for region in (
+            MeshVolumeRegion(cube, rotation=turn, tolerance=0.25),
+            MeshSurfaceRegion(cube, rotation=turn, tolerance=0.25),
+            PathRegion([tuple(-way), tuple(way)], tolerance=0.25),
+        ):
+            columns = columns_of(region)
+            given = [None if column.dtype == object else column for column in columns]
+            for off, held in ((0.2, True), (0.3, False)):
+                point = ((1 + off) * way)[np.newaxis]
+                assert np.broadcast_to(region.contains_points(point, *columns), 1).tolist() == [held]
+                if held:
+                    known = exact([point, *given])
+                    assert CONTAINS.bounds(region, *known).upper[0] == 1
+                    yes = Bounds(np.ones(1), np.ones(1))
+                    assert within(point, CONTAINS.inverse(region, yes, *known)[0])
+
+
+def test_a_body_whose_turn_is_not_known_reaches_as_far_as_its_corners() -> None:
+    """In whichever way it is turned, and however long it is along one axis."""
+    for size in ((2, 2, 2), (6, 1, 1), (1, 6, 1), (1, 1, 6)):
+        given = np.array([size], dtype=float)
+        reach = body_reach(None, Bounds(given / 2, given))
+        assert reach is not None
+        far = float(np.linalg.norm(size)) / 2
+        assert reach.upper[0] == pytest.approx([far] * 3)
+        assert reach.lower[0] == pytest.approx([-far] * 3)
+        assert (reach.upper >= far).all()
+        assert (reach.lower <= -far).all()
+        half = np.array([size], dtype=float) / 2
+        known = body_reach(
+            Bounds(np.array([[0.0, 0, 0, 1]]), np.array([[0.0, 0, 0, 1]])), Bounds(given / 2, given)
+        )
+        assert known is not None
+        np.testing.assert_allclose((known.lower, known.upper), (-half, half), rtol=1e-7)
 
 
 VARYING: dict[str, Region] = {

@@ -940,6 +940,9 @@ def test_points_drawn_now_have_the_heading_of_their_region_there() -> None:
     for point in (region.uniformPointInner(), region.orient(Vector(3, 1, 0)), region.orient((2.5, 1, 0))):
         assert point.heading == pytest.approx(point.x / 9)
     assert type(MAKERS["disc"]().uniformPointInner()) is Vector
+    # Where a region is random, or the point, no heading is known yet.
+    drawn = named.SpheroidRegion((4, 4, Range(3, 4)), orientation=field)
+    assert type(drawn.orient(Vector(1, 0, 0))) is Vector
     text = "from scenic.core.regions import Region\nr = CircularRegion((20, 0, 1), 2)\np = Region.uniformPointIn(r)\nparam x = p\n"
     found = draws(text, n=5)
     assert len(set(found)) == 5

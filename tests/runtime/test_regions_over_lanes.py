@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import scenic.core.regions as named
 from numpy.typing import NDArray
 from scipy import stats
 
@@ -407,3 +408,100 @@ def test_members_of_the_plane_count_at_their_height_alone() -> None:
         assert_share(points[:, 2] == 3, 1 / 2)
         at_low = points[points[:, 2] == 0]
         assert_share(np.hypot(at_low[:, 0] - 1, at_low[:, 1]) < 1, 1 / 4)
+
+
+@pytest.mark.parametrize("width", ["2", "Range(2, 2.001)"])
+def test_every_face_of_every_side_is_drawn_from_and_landed_on(width: str) -> None:
+    """Both triangles of each, whatever their numbers are, where the object is fixed and where it is not."""
+    sides = {
+        "left": (0, -1),
+        "right": (0, 1),
+        "back": (1, -1),
+        "front": (1, 1),
+        "bottom": (2, -1),
+        "top": (2, 1),
+    }
+    corners = [(-0.3, -0.4), (-0.3, 0.4), (0.3, -0.4), (0.3, 0.4)]
+    lines = []
+    for axis, sign in sides.values():
+        for first, second in corners:
+            start = np.insert([first, second], axis, sign * 7.0)
+            way = np.insert([0.0, 0.0], axis, 1.0)
+            lines.append((tuple(start.tolist()), tuple(way.tolist())))
+    text = (
+        f"box = new Object at (0, 0, 0), with width {width}, with length 2, with height 2, with regionContainedIn everywhere\n"
+        f"names, lines, surface = {list(sides)}, {lines}, box.surface\n"
+        "sides = [getattr(box, name + 'Surface') for name in names]\n"
+        "param drawn = [(new Point in side).position for side in sides], anywhere = (new Point in surface).position\n"
+        "param landed = [(surface if n % 2 else sides[n // 4]).project(Vector(*start), way)[0] for n, (start, way) in enumerate(lines)]\n"
+    )
+    where, ways = [], {name: [] for name in sides}
+    for item in scenario(text).sample(40, seed=3):
+        for (name, (axis, sign)), place in zip(sides.items(), item.params["drawn"], strict=True):
+            assert place[axis] == pytest.approx(sign, abs=1e-3)
+            ways[name].append(np.delete(tuple(place), axis))
+        where.append(tuple(np.round(tuple(item.params["anywhere"]), 3)))
+        for (start, way), place in zip(lines, item.params["landed"], strict=True):
+            expected = np.where(np.array(way) == 1, np.sign(start), start)
+            np.testing.assert_allclose(tuple(place), expected, atol=1e-3)
+    for places in map(np.array, ways.values()):
+        # On both sides of either diagonal, of which one is the seam of the triangles.
+        for across in (places[:, 0] - places[:, 1], places[:, 0] + places[:, 1]):
+            assert (across < 0).any()
+            assert (across > 0).any()
+    assert (
+        len({(axis, place[axis]) for place in where for axis in range(3) if abs(abs(place[axis]) - 1) < 2e-3})
+        >= 5
+    )
+
+
+@pytest.mark.parametrize("target", ["box", "box.occupiedSpace", "box.topSurface", "BoxRegion((9, 9, 2))"])
+def test_a_direction_alone_may_be_random_where_things_land(target: str) -> None:
+    """The thing that falls, and what it falls on, are the same in all scenes."""
+    text = (
+        "box = new Object at (0, 0, 0), with width 9, with length 9, with height 2, with allowCollisions True\n"
+        "slope = Range(-0.5, 0.5)\n"
+        f"o = new Object at (0, 0, 5), on {target}, with onDirection (slope, 0, 1), with allowCollisions True\n"
+        "param x = (slope, o.position.x, o.position.z)\n"
+    )
+    found = draws(text, n=12)
+    assert len({slope for slope, _, _ in found}) == 12
+    for slope, x, z in found:
+        assert x == pytest.approx(-4 * slope)
+        assert z == pytest.approx(1.5 + 0.5e-4)
+
+
+def test_a_choice_among_lines_asks_one_that_looks_as_another_of_that() -> None:
+    text = (
+        "other = PolylineRegion([(0, 0), (9, 0)])\n"
+        "one = PolylineRegion([(0, 5), (0, 9)], orientation=other.orientation)\n"
+        "two = PolylineRegion([(20, 5), (20, 9)])\n"
+        "p = new OrientedPoint in Uniform(one, two)\nparam x = (p.position.x, p.heading)\n"
+    )
+    found = draws(text, n=12)
+    assert {x for x, _ in found} == {0, 20}
+    for x, heading in found:
+        assert heading == pytest.approx(-math.pi / 2 if x == 0 else 0)
+
+
+def test_what_is_in_view_meets_others_as_the_mesh_of_the_view_does() -> None:
+    """Combinations of which a view is the first member, or the second, or the other one."""
+    view = named.ViewRegion(5, (math.pi / 2, math.pi / 2))
+    box = BoxRegion((8, 4, 8), (0, 4, 0))
+    close, near, aside, behind, far = (
+        BoxRegion((0.5, 0.5, 0.5), place)
+        for place in ((0, 1, 0), (0, 3, 0), (-3.5, 2.5, 0), (0, -1, 0), (0, 5.7, 0))
+    )
+    for part, wanted in (
+        (IntersectionRegion(view, box), (False, True, False, False, False)),
+        (IntersectionRegion(box, view), (False, True, False, False, False)),
+        (DifferenceRegion(box, view), (False, False, True, False, True)),
+        (DifferenceRegion(view, box), (True, False, False, False, False)),
+    ):
+        for other, met in zip((close, near, aside, behind, far), wanted, strict=True):
+            assert part.intersects(other) is met
+            assert other.intersects(part) is met
+    # A hollow box in view, and one that is not.
+    for place, met in ((4, True), (-4, False)):
+        shell = DifferenceRegion(BoxRegion((2, 2, 2), (0, place, 0)), BoxRegion((1, 1, 1), (0, place, 0)))
+        assert shell.intersects(view) is view.intersects(shell) is met
