@@ -217,3 +217,14 @@ def test_primitives_are_those_of_the_region_of_each_lane() -> None:
                 alone = (points[lane : lane + 1],) if len(inputs) == 1 else (body.take(np.array([lane])), 1)
                 (expected,) = getattr(option, primitive)(*alone, *option.fixed_columns("it"))
                 assert found[lane] == expected
+    # One region for all lanes is given once.
+    for option in options:
+        column = np.empty(1, dtype=object)
+        column[0] = option
+        fixed = option.fixed_columns("it")
+        np.testing.assert_array_equal(
+            region.contains_points(points, column), option.contains_points(points, *fixed)
+        )
+        np.testing.assert_array_equal(
+            region.contains_bodies(body, 8, column), option.contains_bodies(body, 8, *fixed)
+        )

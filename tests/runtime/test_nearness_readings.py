@@ -25,9 +25,10 @@ from scenic.runtime.regions.choice import RegionChoice
 from scenic.runtime.regions.composite import DifferenceRegion, IntersectionRegion, UnionRegion
 from scenic.runtime.regions.fixed_sides import _POINT as POINT
 from scenic.runtime.regions.fixed_sides import FixedSide
+from scenic.runtime.regions.knowledge import fixed
 from scenic.runtime.regions.lines import PathRegion
 from scenic.runtime.regions.meshes import MeshSurfaceRegion, MeshVolumeRegion
-from scenic.runtime.regions.nearness import body_reach
+from scenic.runtime.regions.nearness import SLACK, body_reach, grown, separation
 from scenic.runtime.regions.planar import DISC_POINT, CircularRegion, RectangularRegion, SectorRegion
 from scenic.runtime.regions.scattered import PointSetRegion
 from scenic.runtime.regions.volumes import BALL_POINT, BoxRegion, SpheroidRegion
@@ -83,6 +84,8 @@ def is_sound(
     outcomes = [Bounds(results, results)]
     if np.isin(results, (0, 1)).all():
         outcomes.append(Bounds(np.zeros_like(results), np.ones_like(results)))
+    else:
+        outcomes.append(Bounds(results - 3, results + 5))
     for given in boxes(rows, random):
         assert within(results, operation.bounds(payload, *given))
         for outcome in outcomes:
@@ -191,6 +194,40 @@ def test_a_body_whose_turn_is_not_known_reaches_as_far_as_its_corners() -> None:
         )
         assert known is not None
         np.testing.assert_allclose((known.lower, known.upper), (-half, half), rtol=1e-7)
+
+
+def test_what_grows_and_what_lies_apart() -> None:
+    """By just so much, and what rounding may change; nothing shrinks."""
+    box = Bounds(np.array([[1.0, 2, 3]]), np.array([[2.0, 4, 6]]))
+    for distance, room in ((0.0, 0.0), (2.5, 2.5), (-3.0, 0.0)):
+        found = grown(box, np.array([distance]))
+        np.testing.assert_allclose(found.lower, box.lower - room - SLACK, rtol=1e-12)
+        np.testing.assert_allclose(found.upper, box.upper + room + SLACK, rtol=1e-12)
+    for move, apart in (((0, 0, 0), 0), ((0.5, 0, 0), 0), ((4, 0, 0), 3), ((0, -5, 0), 3), ((0, 5, -7), 5)):
+        other = Bounds(box.lower + move, box.upper + move)
+        for one, two in ((box, other), (other, box)):
+            found = separation(one, two)
+            assert found[0] <= apart
+            assert max(found[0], 0) == pytest.approx(apart, abs=2 * SLACK)
+    several = Bounds(np.array([[0.0, 0, 0], [9, 0, 0]]), np.array([[1.0, 1, 1], [10, 1, 1]]))
+    assert separation(box, several) == pytest.approx([np.hypot(1, 2), np.hypot(7, np.hypot(1, 2))], abs=1e-5)
+
+
+def test_parameters_are_fixed_where_each_part_has_one_value_in_all_boxes() -> None:
+    place, number = np.array([[1.0, 2, 3]]), np.array([4.0])
+    alike = Bounds(np.repeat(place, 3, axis=0), np.repeat(place, 3, axis=0))
+    found = fixed([Bounds(place, place), Bounds(number, number), alike])
+    assert found is not None
+    for column, expected in zip(found, (place, number, place), strict=True):
+        np.testing.assert_array_equal(column, expected)
+    assert fixed([]) == []
+    for axis in range(3):
+        wider, moved = Bounds(place, place + np.eye(3)[axis]), place + np.eye(3)[[axis]]
+        rows = np.concatenate([place, moved])
+        for loose in (wider, Bounds(rows, rows), None):
+            assert fixed([loose]) is None
+            assert fixed([Bounds(number, number), loose]) is None
+            assert fixed([loose, Bounds(number, number)]) is None
 
 
 VARYING: dict[str, Region] = {

@@ -543,3 +543,43 @@ def test_each_of_many_members_counts(number: int) -> None:
         assert common.containsPoint(Vector(x, 0, 0)) is held
         assert common.footprint.containsPoint(Vector(x, 0, 0)) is held
     assert cloud(common)[:, 0].min() >= 1.5
+
+
+@pytest.mark.parametrize("kind", [named.PathRegion, named.PolylineRegion])
+def test_a_solid_holds_a_line_in_it_whatever_rounding_makes_of_its_pieces(kind: Any) -> None:
+    box = named.BoxRegion((6, 6, 6), (0.1, 0.2, 0.3), TILT)
+    for seed in range(12):
+        points = np.random.default_rng(seed).uniform(-1.5, 1.5, (9, 3))
+        points[:, 2] *= kind is named.PathRegion
+        line = kind(points.tolist())
+        assert box.containsRegion(line) is True
+        longer = kind([*points.tolist(), [9, 9, 0]])
+        assert box.containsRegion(longer) is False
+
+
+@pytest.mark.parametrize("turn", [Orientation(), TILT])
+def test_a_solid_holds_itself_however_it_is_made(turn: Orientation) -> None:
+    box = named.BoxRegion((1.1, 2.3, 3.7), (0.1, 0.2, 0.3), turn)
+    unit = trimesh.creation.box()
+    same = named.MeshVolumeRegion(unit, (1.1, 2.3, 3.7), (0.1, 0.2, 0.3), turn)
+    larger = named.MeshVolumeRegion(unit, (1.1, 2.3, 3.71), (0.1, 0.2, 0.3), turn)
+    for one, other in itertools.product((box, same), repeat=2):
+        assert one.containsRegion(other) is True
+        assert larger.containsRegion(other) is True
+    for one in (box, same):
+        assert one.containsRegion(larger) is False
+
+
+@pytest.mark.parametrize("yaw", [0.3, 0.7, 1.1, 2.0])
+def test_rounding_leaves_nothing_of_a_solid_without_the_same_one(yaw: float) -> None:
+    """A box that is given by its other side, and one that is put together of two halves."""
+    place, turn = Vector(0.1, 0.2, 0.3), Orientation.fromEuler(yaw, 0, 0)
+    box = named.BoxRegion((1.1, 2.3, 3.7), place, turn)
+    aside = named.BoxRegion((2.3, 1.1, 3.7), place, Orientation.fromEuler(yaw + np.pi / 2, 0, 0))
+    low, high = (
+        named.BoxRegion((1.1, 2.3, 1.85), place + Vector(0, 0, part).rotatedBy(turn), turn)
+        for part in (-0.925, 0.925)
+    )
+    for one, other in itertools.permutations((box, aside, low.union(high)), 2):
+        assert one.containsRegion(other) is True
+    assert low.containsRegion(box) is high.containsRegion(box) is False
