@@ -68,14 +68,6 @@ def only_within(first: Bounds | None, second: Bounds | None, distance: Floats) -
     return truth(np.zeros_like(apart), apart)
 
 
-def near(
-    result: Bounds, other: Bounds | None, distance: Floats, reach: Bounds | None = None
-) -> Bounds | None:
-    """Where a thing can be, if ``result`` is true only within a distance of another one.
-
-    ``reach`` says where the thing is, seen from the place that is asked for (by default, just there).
-    """
-    if other is None:
-        return None
-    box = grown(other, distance)
-    return where(result.lower > 0, box if reach is None else intervals.subtract(box, reach))
+def near(result: Bounds, other: Bounds | None, distance: Floats) -> Bounds | None:
+    """Where a thing can be, if ``result`` is true only within a distance of another one."""
+    return None if other is None else where(result.lower > 0, grown(other, distance))
