@@ -745,3 +745,65 @@ def test_a_leaning_body_needs_free_cells_under_all_of_its_corners() -> None:
             assert region.contains_bodies(body, 1).tolist() == [False]
             upright = Body((primitives.box(),), None, Poses.fixed((x, 4, z), size=(0.5, 0.5, 6)))
             assert region.contains_bodies(upright, 1).tolist() == [True]
+
+
+def test_what_has_no_bounds_has_no_box() -> None:
+    """However many of its sides are bounded."""
+    disc = named.CircularRegion((0, 0, 1), 2)
+    for region in (
+        disc.footprint,
+        named.everywhere,
+        Workspace(disc.footprint),
+        disc.footprint.union(named.BoxRegion()),
+    ):
+        with pytest.raises(ScenicTypeError, match="bounding box"):
+            region.AABB  # noqa: B018 - asking is the test
+    np.testing.assert_allclose(disc.AABB, ((-2, -2, 1), (2, 2, 1)))
+
+
+@pytest.mark.parametrize("order", [(0, 1), (1, 0)])
+def test_points_of_a_column_and_a_solid_are_drawn_from_the_solid(order: tuple[int, int]) -> None:
+    """Whichever comes first; and the same in a union with what is thinner."""
+    column, ball = named.CircularRegion((1, 0), 1).footprint, named.SpheroidRegion((4, 4, 4))
+    parts = [(column, ball)[number] for number in order]
+    both = IntersectionRegion(*parts)
+    rng = np.random.default_rng(3)
+    points, found = both.draw_points(
+        rng.random((both.draws, 300)),
+        rng.integers(0, 1 << 62, 300).astype(np.uint64),
+        *both.fixed_columns("a test"),
+    )
+    assert found is not None
+    assert found.all()
+    assert (np.linalg.norm(points, axis=1) <= 2).all()
+    assert (np.hypot(points[:, 0] - 1, points[:, 1]) <= 1).all()
+    assert np.ptp(points[:, 2]) > 2
+
+
+def test_nothing_is_drawn_from_a_union_with_what_is_infinite() -> None:
+    column, ball = named.CircularRegion((1, 0), 1).footprint, named.SpheroidRegion((4, 4, 4))
+    for union in (UnionRegion(column, ball), UnionRegion(ball, column)):
+        with pytest.raises(ScenicTypeError, match="not known"):
+            union.draw_points(
+                np.full((union.draws, 2), 0.5), np.arange(2, dtype=np.uint64), *union.fixed_columns("a test")
+            )
+
+
+def test_dimensions_of_combinations() -> None:
+    """Of an intersection the least, of a union the largest, of a difference that of the first."""
+    regions = [
+        named.PointSetRegion("p", [(0, 0, 0)]),
+        named.PathRegion([(0, 0, 0), (1, 1, 1)]),
+        named.CircularRegion((0, 0), 1),
+        named.BoxRegion(),
+        named.everywhere,
+    ]
+    for one in regions:
+        for other in regions:
+            assert IntersectionRegion(one, other).dimension == min(one.dimension, other.dimension)
+            assert UnionRegion(one, other).dimension == max(one.dimension, other.dimension)
+            assert DifferenceRegion(one, other).dimension == one.dimension
+            for third in regions:
+                dimensions = [region.dimension for region in (one, other, third)]
+                assert IntersectionRegion(one, other, third).dimension == min(dimensions)
+                assert UnionRegion(one, other, third).dimension == max(dimensions)

@@ -114,6 +114,8 @@ def test_footprints_of_combinations_hold_at_every_height() -> None:
         assert footprint.dimension == low.footprint.dimension
         found = footprint.contains_points(places, *rows(footprint))
         np.testing.assert_array_equal(found, np.repeat(inside, 2))
+        found = composite.exactly_contains(footprint, places, rows(footprint))
+        np.testing.assert_array_equal(found, np.repeat(inside, 2))
 
 
 def test_members_of_a_random_union_hold_a_body_together() -> None:
