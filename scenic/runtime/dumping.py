@@ -71,7 +71,7 @@ def _instance(name: str, item: Any) -> Iterator[str]:
     parts = [f"at {literal(item.position)}"]
     comments = []
     for key, value in item.properties.items():
-        if key in _LEFT_OUT or (key == "viewAngle" and "viewAngles" in item.properties):
+        if key in _LEFT_OUT:
             continue
         try:
             parts.append(f"with {key} {literal(value)}")

@@ -17,7 +17,7 @@ import trimesh
 import scenic
 from scenic.language.errors import InvalidScenarioError, ScenicWarning, SerializationError
 from scenic.pipeline import diagnose
-from scenic.runtime.dumping import program_of
+from scenic.runtime.dumping import literal, program_of
 from scenic.runtime.files import whole
 from tests.runtime.programs import fingerprint, scenario
 from tests.runtime.programs import scene as scene_of
@@ -231,6 +231,34 @@ def test_shapes_of_files_are_dumped_as_they_are_read(tmp_path: Path, options: st
     assert new.mesh.vertices == pytest.approx(old.mesh.vertices)
     assert new.dimensions == pytest.approx(old.dimensions)
     assert new.source == old.source
+
+
+@pytest.mark.parametrize("mode_2d", [False, True])
+@pytest.mark.parametrize(
+    "said",
+    [
+        "with viewAngle 30 deg",
+        "with viewAngles (30 deg, 20 deg)",
+        "with viewAngle 30 deg, with viewAngles (1, 0.5)",
+        "with headingStdDev 0.5, with positionStdDev (1, 2, 3)",
+        "with orientationStdDev (0.1, 0.2, 0.3), with visibleDistance 7, with viewRayCount (20, 10)",
+        "facing 0.7, with speed 3",
+        "with velocity (1, 2, 3), with width 3, with length 2",
+        "with height 7, with baseOffset (1, 2, 3), with occluding True",
+    ],
+)
+def test_an_object_of_a_dump_has_all_properties_as_they_were(said: str, mode_2d: bool) -> None:
+    """Also those that others follow, and that no longer agree with them; but for what the dump takes away."""
+    before = scene_of(f"ego = new Object at (1, 2), {said}\n", mode2D=mode_2d)
+    after = scene_of(before.dump(), mode2D=mode_2d)
+    taken = {"mutator", "allowCollisions", "regionContainedIn", "requireVisible"}
+    old, new = (
+        {name: value for name, value in scene.egoObject.properties.items() if name not in taken}
+        for scene in (before, after)
+    )
+    assert old.keys() == new.keys()
+    for name, value in old.items():
+        assert literal(new[name]) == literal(value), name
 
 
 def test_parameters_of_any_name_are_dumped() -> None:
