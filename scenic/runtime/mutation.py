@@ -66,12 +66,12 @@ def mutate_now(instance: Point) -> None:
     scale = instance.mutationScale
     if scale == 0:
         return
-    given = instance.mutator
-    for mutator in given if isinstance(given, tuple | list) else (given,):
+    for mutator in active(instance):
         if type(mutator) in BUILT_IN:
             update(instance, mutator.noisy(instance, scale))
-        elif mutator is not None:
-            _, go_on = applied(mutator, instance)
+        else:
+            changed, go_on = applied(mutator, _copy(instance))
+            _settle(instance, changed)
             if not go_on:
                 break
 
@@ -88,10 +88,8 @@ def _mutate(instance: Point, scale: Any) -> bool:
 
 def _by_python(instance: Point, mutators: list[Any]) -> Mapping[str, Any]:
     """The properties after mutators of the program: one call on each sample."""
-    derived = {name for name, entry in instance.scenic_properties.items() if entry.dynamic and entry.final}
-    names = [name for name in instance.properties if name not in derived]
-    before = type(instance)._make(dict(instance.__dict__))
-    result = call_later(_applied, before, tuple(mutators), tuple(names))
+    names = _free(instance)
+    result = call_later(_applied, _copy(instance), tuple(mutators), tuple(names))
     changes: dict[str, Any] = {}
     for index, name in enumerate(names):
         old = instance.__dict__[name]
@@ -106,6 +104,22 @@ def _by_python(instance: Point, mutators: list[Any]) -> Mapping[str, Any]:
     return changes
 
 
+def _copy(instance: Point) -> Point:
+    """What a mutator of the program may change in place."""
+    return type(instance)._make(instance.__dict__)
+
+
+def _settle(instance: Point, changed: Any) -> None:
+    """Give an instance what a mutator has made of its properties, and what follows from them."""
+    update(instance, {name: getattr(changed, name) for name in _free(instance) if name not in KEPT})
+
+
+def _free(instance: Point) -> list[str]:
+    """The properties that do not always follow from others."""
+    derived = {name for name, entry in instance.scenic_properties.items() if entry.dynamic and entry.final}
+    return [name for name in instance.properties if name not in derived]
+
+
 def _kind(value: Any) -> Kind | None:
     return value.node.kind if hasattr(value, "node") else None
 
@@ -115,6 +129,7 @@ def _applied(instance: Any, mutators: tuple[Any, ...], names: tuple[str, ...]) -
         instance, go_on = applied(mutator, instance)
         if not go_on:
             break
+        _settle(instance, instance)
     return tuple(getattr(instance, name) for name in names)
 
 

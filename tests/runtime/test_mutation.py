@@ -465,6 +465,63 @@ def test_what_enters_a_simulation_is_mutated_by_its_scale(scale: float, mutator:
     assert (abs(deviations / np.where(wanted == 0, 1, wanted) - 1) < 0.5)[wanted > 0].all()
 
 
+@pytest.mark.parametrize(
+    "body",
+    [
+        "thing.position = (5, 6, 1)",
+        "thing.yaw, thing.roll = 0.5, 0.25",
+        "thing.yaw = 7",
+        "thing.position += (1, 0, 2)\n        thing.speed = 3",
+        "thing.parentOrientation, thing.angularVelocity = (0.5, 0.25, 0.125), [1, 2, 3]",
+        "thing.width, thing.tag = 7, thing.tag + 1",
+        "thing.double = 9",
+        "thing.shape = ConeShape()",
+        "thing = copy.copy(thing)\n        thing.position, thing.yaw, thing.tag = (5, 6), 0.5, 4",
+        "thing = copy.copy(thing)\n        thing.shape, thing.height = ConeShape(), 3",
+    ],
+)
+def test_what_mutators_of_the_program_make_is_the_same_in_scenes_and_simulations(body: str) -> None:
+    """Whether they change the instance that they are given or give another; values are normalised, and others follow."""
+    classes = (
+        f"import copy\nclass First(Mutator):\n    def appliedTo(self, thing):\n        {body}\n        return thing, True\n"
+        "class Second(Mutator):\n    def appliedTo(self, thing):\n        thing.tag += 10 * thing.yaw + thing.width\n        return thing, False\n"
+        "class A:\n    tag: 1\n    double[dynamic, final]: 2 * self.position.x\n"
+        "    mutator: (None, First(), Second(), PositionMutator((1, 1, 1)))\n"
+    )
+    imported = "from scenic.runtime.mutators import PositionMutator\n"
+    made = "thing = new A at (1, 2), facing 0.1\nmutate thing\n"
+    asked = [
+        "position",
+        "yaw",
+        "pitch",
+        "roll",
+        "heading",
+        "orientation",
+        "parentOrientation",
+        "angularVelocity",
+        "double",
+        "tag",
+        "width",
+        "height",
+        "shape",
+    ]
+    drawn = thing(f"{imported}{classes}{made}")
+    told = ", ".join(f"thing.{name}" for name in asked)
+    one = scene(
+        f"{imported}{classes}scenario Main():\n    setup:\n        ego = new Object at (50, 0)\n    compose:\n        do Sub()\n"
+        f"scenario Sub():\n    setup:\n        {made.replace(chr(10), chr(10) + 8 * ' ')}record initial ({told}) as all\n"
+        "    compose:\n        wait\n"
+    )
+    done = DummySimulator().simulate(one, maxSteps=1)
+    assert done is not None
+    for name, found in zip(asked, done.records["all"], strict=True):
+        expected = getattr(drawn, name)
+        assert type(found) is type(expected), name
+        assert (repr(found) if name == "shape" else found) == (
+            repr(expected) if name == "shape" else expected
+        ), name
+
+
 def test_mutators_may_change_what_a_specifier_has_made() -> None:
     text = """
 from scenic.runtime.mutators import Mutator
