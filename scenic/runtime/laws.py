@@ -9,15 +9,24 @@ import numpy as np
 from scenic.graph.kinds import Column, Kind, boxed
 from scenic.graph.operation import Call, Operation, always
 from scenic.language.errors import InvalidScenarioError, ScenicTypeError
-from scenic.runtime.context import current, here
+from scenic.runtime.context import current, here, uniform_draw
 from scenic.runtime.drawing import support_of
 from scenic.runtime.lazy import is_lazy
 from scenic.runtime.opaque import call_later, evaluated, later
+from scenic.runtime.randomness import preserved, seed_globals
 from scenic.runtime.values import Random, is_random, wrong_type
 
 
 class _AnyLaw(type):
-    """So that every random value counts as a `Distribution` where a program asks with ``isinstance``."""
+    """What the class itself does: making a law gives what it draws, where values are drawn at once.
+
+    Every random value counts as a `Distribution` where a program asks with ``isinstance``.
+    """
+
+    def __call__(cls, *args: Any, **keywords: Any) -> Any:
+        law = super().__call__(*args, **keywords)
+        context = current.get()
+        return law if context is None or context.is_symbolic else context.settled(_drawn_now(law))
 
     def __instancecheck__(cls, value: Any) -> bool:
         return isinstance(value, Random) if cls.__base__ is Random else super().__instancecheck__(value)
@@ -27,7 +36,7 @@ class Distribution(Random, metaclass=_AnyLaw):
     """Base of distributions written in Python.
 
     A subclass passes the values that it depends on to the base's initialiser, and implements `sampleGiven`. It may draw from
-    Python's ``random`` and from ``numpy.random``: both are seeded for each sample.
+    Python's ``random`` and from ``numpy.random``: both are seeded for each sample. In a simulation, making one gives what it draws.
 
     Args:
         dependencies: values, random or not, that the draw depends on.
@@ -88,6 +97,19 @@ class Values:
 def _drawn(holder: _Holder, sampled: tuple[Any, ...]) -> Any:
     law = holder.distribution
     return law.sampleGiven(Values(law._dependencies, sampled))
+
+
+def _drawn_now(law: Distribution) -> Any:
+    """What a law draws, with the generators seeded by a draw of the simulation."""
+    with preserved():
+        seed_globals(int((uniform_draw() or 0) * 2.0**52))
+        value = _drawn(_Holder(law), law._dependencies)
+    if law._valueType is not float:
+        return value
+    try:
+        return float(value)
+    except (TypeError, ValueError, OverflowError):
+        raise wrong_type("a number", value, "`sampleGiven`") from None
 
 
 def _numbers(call: Call, *columns: Column) -> Column:

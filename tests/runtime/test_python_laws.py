@@ -1,6 +1,7 @@
 """Distributions, functions, methods and specifiers that programs define in Python."""
 
 import random
+from typing import Any
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from scipy import stats
 import scenic
 from scenic.graph.kinds import Kind
 from scenic.language.errors import InvalidScenarioError, ScenicTypeError, SpecifierError
+from scenic.simulators.dummy import DummySimulator
 from tests.runtime.programs import FALSE_ALARM, draws, failure, fingerprint, params, scenario, scene
 
 LAW = """
@@ -76,6 +78,72 @@ def test_what_a_law_draws_keeps_its_type(type_: str, drawn: str) -> None:
     text = f"class Told(Distribution):\n    def sampleGiven(self, value):\n        return {drawn}\nparam x = Told(valueType={type_})"
     (found,) = draws(text, n=1)
     assert (type(found).__name__, found) == (type_, eval(drawn))
+
+
+IN_TIME = """
+import random
+class Told(Distribution):
+    def __init__(self, given=None, **options):
+        super().__init__(given, **options)
+        self.given = given
+    def sampleGiven(self, value):
+        return value[self.given]
+high = Range(30, 40)
+scenario Main():
+    setup:
+        ego = new Object
+    compose:
+        do Sub()
+scenario Sub():
+    setup:
+"""
+
+
+def recorded(expression: str, *, key: int = 0) -> Any:
+    """What an expression gives in the setup of a scenario that a simulation runs."""
+    one = scene(
+        f"{LAW}{IN_TIME}        found = {expression}\n        record initial found as found\n    compose:\n        wait\n"
+    )
+    done = DummySimulator().simulate(one, maxSteps=1, key=bytes([key]))
+    assert done is not None
+    return done.records["found"]
+
+
+def test_a_law_of_the_program_is_drawn_at_once_in_a_simulation() -> None:
+    found = [
+        recorded("(low, Shifted(low), Shifted(Range(50, 60), valueType=float))", key=key) for key in range(8)
+    ]
+    assert all(low < value < low + 1 and 50 < other < 61 for low, value, other in found)
+    assert len({value - low for low, value, _ in found}) == 8
+    assert len({other for _, _, other in found}) == 8
+    assert found[3] == recorded("(low, Shifted(low), Shifted(Range(50, 60), valueType=float))", key=3)
+    one, other = recorded("[Shifted(low) for _ in range(2)]")
+    assert one != other
+
+
+def test_what_a_law_draws_at_once_is_of_the_type_that_it_says() -> None:
+    options = ("3", "3, valueType=float", "True, valueType=int", "None", "[1, 'a']", "'2', valueType=float")
+    found = recorded(f"[{', '.join(f'Told({given})' for given in options)}]")
+    for value, expected in zip(found, (3, 3.0, True, None, [1, "a"], 2.0), strict=True):
+        assert (type(value), value) == (type(expected), expected)
+
+
+def test_what_a_law_draws_at_once_may_be_random_in_the_program() -> None:
+    low, high, (same,) = recorded("(low, high, Told([high]))")
+    assert low < high == same
+
+
+def test_a_law_of_numbers_that_draws_another_thing_says_so_in_a_simulation_too() -> None:
+    with pytest.raises(ScenicTypeError, match=r"sampleGiven.*expected a number"):
+        recorded("Told('a', valueType=float)")
+    with pytest.raises(NotImplementedError, match="sampleGiven"):
+        recorded("Distribution()")
+
+
+def test_a_law_that_is_drawn_at_once_leaves_the_generators_to_the_rest_of_the_simulation() -> None:
+    first, value, second = recorded("(random.random(), Shifted(low), random.random())")
+    assert (first, second) == recorded("(random.random(), random.random())")
+    assert value % 1 not in (first, second)
 
 
 @pytest.mark.parametrize(
