@@ -77,18 +77,22 @@ class Globals:
         if PRELUDE not in names:
             return []
         found: dict[str, Any] = {}
-        codes = [function.__code__]
+        for name in self.in_code(function.__code__):
+            key = (id(names), name)
+            if key not in self._values and name in names:
+                value = names[name]
+                self._values[key] = value.snapshot() if name == PRELUDE else value
+            if key in self._values:
+                found[name] = self._values[key]
+        return list(found.items())
+
+    def in_code(self, code: CodeType) -> Iterator[str]:
+        """The global names that code, or code nested in it, may read or write."""
+        codes = [code]
         while codes:
             code = codes.pop()
-            for name in self._global_names(code):
-                key = (id(names), name)
-                if key not in self._values and name in names:
-                    value = names[name]
-                    self._values[key] = value.snapshot() if name == PRELUDE else value
-                if key in self._values:
-                    found[name] = self._values[key]
+            yield from self._global_names(code)
             codes.extend(item for item in code.co_consts if isinstance(item, CodeType))
-        return list(found.items())
 
     def _global_names(self, code: CodeType) -> tuple[str, ...]:
         """The names that code looks up among globals: not those of attributes, which the program may use for others."""
@@ -192,9 +196,7 @@ def dependencies(values: Iterable[Any], names: Globals | None = None) -> list[No
 
 def mention(values: Iterable[Any], names: Globals, word: str) -> bool:
     """Whether functions of the program among the values, or reached by them, hold a text among their constants and names."""
-    return any(
-        _mentions(value.__code__, word) for value in reachable(values, names) if is_own_function(value)
-    )
+    return any(mentions(value.__code__, word) for value in reachable(values, names) if is_own_function(value))
 
 
 def _loads(code: CodeType) -> Iterator[str]:
@@ -218,9 +220,10 @@ def _imported_names(code: CodeType) -> Iterator[str]:
             yield from _imported_names(item)
 
 
-def _mentions(code: CodeType, word: str) -> bool:
+def mentions(code: CodeType, word: str) -> bool:
+    """Whether code, or code nested in it, holds a text among its constants and names."""
     return word in code.co_names or any(
-        item == word or (isinstance(item, CodeType) and _mentions(item, word)) for item in code.co_consts
+        item == word or (isinstance(item, CodeType) and mentions(item, word)) for item in code.co_consts
     )
 
 

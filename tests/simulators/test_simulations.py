@@ -1307,3 +1307,27 @@ def test_behaviors_whose_attributes_lead_back_to_them() -> None:
         assert done is not None
         assert done.records["seen"][0][1][0] is True
         assert 5 <= done.records["seen"][0][1][1] <= 6
+
+
+@pytest.mark.parametrize(
+    ("code", "found"),
+    [
+        ("self.position.x", 7),
+        ("helper.x", 4),
+        ("0 if True else x", 0),
+        ("1 or x", 1),
+        ("unused()", 6),
+        ("[x for x in (1, 2)][1]", 2),
+        ("(lambda x: x)(3)", 3),
+    ],
+)
+def test_a_random_value_that_only_shares_its_name_with_what_code_reads_is_not_asked_for(
+    code: str, found: float
+) -> None:
+    """As with an attribute, or in code that Python leaves out: no scene has a value of it."""
+    text = (
+        "x = Range(0, 1)\nclass Helper(object):\n    x = 4\nhelper = Helper()\n"
+        "def unused():\n    if False:\n        return x\n    return 6\n"
+        f"behavior B():\n    while True:\n        take {code}\nego = new Object at (7, 0), with behavior B\n"
+    )
+    assert taken(simulate(text, steps=1)) == [(found,)]

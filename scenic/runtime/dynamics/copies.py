@@ -6,7 +6,7 @@ or by another simulation.
 """
 
 from collections.abc import Iterable
-from types import CodeType, FunctionType, ModuleType
+from types import FunctionType, ModuleType
 from typing import Any, Final
 from weakref import ref
 
@@ -31,13 +31,12 @@ class Copies(Sample):
 
     """
 
-    __slots__ = ("_codes", "_depth", "_filled", "_modules", "_own", "_waiting")
+    __slots__ = ("_depth", "_filled", "_modules", "_own", "_waiting")
 
     def __init__(self, lanes: Lanes, lane: int) -> None:
         super().__init__(lanes, lane)
         self._filled: dict[int, set[str]] = {}
         self._own: dict[int, dict[str, Any]] = {}
-        self._codes: dict[CodeType, frozenset[str]] = {}
         self._modules: dict[int, ModuleType] = {}
         self._depth = 0
         self._waiting: list[tuple[Point, Any]] = []
@@ -113,7 +112,7 @@ class Copies(Sample):
         return module
 
     def _fill(self, function: FunctionType, scope: dict[str, Any]) -> None:
-        self._fill_in(self._globals_of(function.__code__), function.__globals__)
+        self._fill_in(self._names.in_code(function.__code__), function.__globals__)
 
     def _fill_in(self, wanted: Iterable[str], names: dict[str, Any]) -> None:
         """Give the simulation its values of some names."""
@@ -124,15 +123,3 @@ class Copies(Sample):
                 filled.add(name)
                 if name in names:
                     scope[name] = self.value(names[name])
-
-    def names_in(self, function: Any) -> frozenset[str]:
-        """All names of globals and attributes in a function's code."""
-        return self._globals_of(function.__code__)
-
-    def _globals_of(self, code: CodeType) -> frozenset[str]:
-        """The names that code, or code nested in it, may read or write."""
-        found = self._codes.get(code)
-        if found is None:
-            nested = [self._globals_of(item) for item in code.co_consts if isinstance(item, CodeType)]
-            found = self._codes[code] = frozenset(code.co_names).union(*nested)
-        return found

@@ -250,10 +250,6 @@ class Run:
         for instance in awaited or ():
             self._enter(instance)
 
-    def mutates(self, setup: Callable[..., Any]) -> bool:
-        """Whether a set-up has a ``mutate`` statement."""
-        return "mutate" in self.copies.names_in(setup)
-
     def check_mutable(self, targets: Sequence[Any]) -> None:
         """Warn of objects that are in the simulator already, and stay where they are."""
         for target in targets:

@@ -18,6 +18,7 @@ from scenic.runtime.dynamics.overriding import Overrides
 from scenic.runtime.dynamics.recording import Recording
 from scenic.runtime.dynamics.requirements import Followed
 from scenic.runtime.dynamics.statements import limit_in_steps
+from scenic.runtime.samples import mentions
 from scenic.runtime.values import describe
 
 if TYPE_CHECKING:
@@ -81,7 +82,7 @@ class ScenarioActivation(Guarded):
             self.instance._activation = self
             arguments = self.instance._arguments
             setup = self.run.copies.value(self.instance._definition.setup)
-            if self.run.mutates(setup):
+            if mentions(setup.__code__, "mutate"):
                 self.awaited = []
             with self.run.within(self, creating=True):
                 setup(self.instance, *arguments.args, **arguments.kwargs)
