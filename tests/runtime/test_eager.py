@@ -14,7 +14,8 @@ from scenic.runtime.context import Context, current
 from scenic.runtime.prelude import Loader
 from scenic.runtime.program import Program
 from scenic.runtime.values import Vector
-from tests.runtime.programs import FALSE_ALARM, draws, params
+from scenic.simulators.dummy import DummySimulator
+from tests.runtime.programs import FALSE_ALARM, draws, params, scene
 
 
 class NoModules:
@@ -149,3 +150,94 @@ def test_vectors_equal_rows_of_their_numbers() -> None:
     assert flat == [1, 2]
     for other in ((1, 2), (1, 2, 4), (1, 3, 5), (1,), (), (1, 2, 5, 0), [1, 2], "125", 1):
         assert vector != other
+
+
+SPECIFIED = """
+at (k, 2)
+at (k, 2, 3), facing (0.5, 0.4, 0.3 * k)
+at place, facing flow
+at place, facing 0.5 * k relative to flow
+at (1, 2), facing toward other
+at (1, 2, k), facing directly toward other
+at (1, 2), facing away from (5, 5 * k)
+at (1, 2), facing directly away from (5, 5, 5)
+at (1, 2), apparently facing 0.3 * k
+at (1, 2), apparently facing 0.3 from other
+left of other
+right of other by 2 * k
+ahead of other by (1, 2, 3)
+behind place by k
+left of (k, 2) by 1
+offset by (1, 2 * k)
+offset along 0.5 by (1, 2)
+offset along flow by (k, 2)
+beyond other by 3
+beyond other by (1, 2, 3) from place
+in spot
+on spot
+following flow for 3 * k
+following flow from place for 3
+at (1, 2), with viewAngle k
+at (1, 2), with viewAngles (k, 2)
+at (1, 2), with viewRayCount (10, 20)
+at (1, 2), with color (k, 0.5, 0)
+at (1, 2), with velocity (1, 2)
+at (1, 2), facing 0.4, with speed 3
+at (1, 2), with parentOrientation 0.5, with yaw 0.25
+at (1, 2), with yaw 4, with pitch 1, with roll -4
+at (1, 2), with baseOffset (0, 0, k)
+at (1, 2), with tag [k, "a", other.width]
+at (1, 2), with tag (0.5 relative to flow)
+at (1, 2), with width True, with length 2 * k
+at (1, 2), with m 5
+at (1, 2), with visibleDistance 3, with occluding 0
+at (1, 2), with angularVelocity (k, 2, 3), with onDirection (0, 0, 1)
+at (1, 2), with sideComponentThresholds ((-1, 1), (-1, 1), (-1, 1)), with contactTolerance k
+"""
+CLASSES = """
+foo = 7
+flow = VectorField("flow", lambda p: 0.1 * p.x)
+spot = PointSetRegion("spot", [(3, 4, 0)])
+class Thing(Object):
+    allowCollisions: True
+    a: self.width * 2
+    b[dynamic]: self.a + self.position.x
+    c[dynamic, final]: self.heading + self.b
+    m[additive]: 1
+    n: (self.length, foo)
+class More(Thing):
+    width: 3
+    m[additive]: self.a
+"""
+
+
+@pytest.mark.parametrize("mode_2d", [False, True])
+def test_objects_have_the_same_properties_wherever_they_are_made(mode_2d: bool) -> None:
+    """By a program of definite values, by one of drawn ones, and in a simulation."""
+    made = ", ".join(f"new More {line}" for line in SPECIFIED.strip().splitlines())
+    given = (
+        "other = new Thing at (10, 10, 2 * k), facing (0.3, 0.2 * k, 0.1), with width 2, with height 3",
+        "place = new OrientedPoint at (5 * k, 2), facing (0.3, 0.2, 0.1)",
+        f"told = [{{name: (type(value).__name__, repr(value)) for name, value in item.properties.items()}} for item in [{made}]]",
+    )
+    rest = "\n".join(given[:2])
+    definite, drawn = (
+        params(f"k = {k}\n{CLASSES}ego = new Object\n{rest}\nparam made = [{made}]\n", mode2D=mode_2d)["made"]
+        for k in ("1", "Uniform(1, 1)")
+    )
+    body = "".join(f"        {line}\n" for line in given)
+    one = scene(
+        f"k = Uniform(1, 1)\n{CLASSES}scenario Main():\n    setup:\n        ego = new Object\n    compose:\n        do Sub()\n"
+        f"scenario Sub():\n    setup:\n{body}        record initial told as told\n    compose:\n        wait\n",
+        mode2D=mode_2d,
+    )
+    done = DummySimulator().simulate(one, maxSteps=1)
+    assert done is not None
+    for line, first, second, third in zip(
+        SPECIFIED.strip().splitlines(), definite, drawn, done.records["told"], strict=True
+    ):
+        for name, value in first.properties.items():
+            shown = (type(value).__name__, repr(value))
+            again = second.properties[name]
+            assert (type(again).__name__, repr(again)) == shown, (line, name)
+            assert third[name] == shown, (line, name)
