@@ -8,7 +8,7 @@ methods of the program's classes, plain Python classes of the program and their 
 import abc
 import copy as shallow
 import dis
-from collections import deque
+from collections import OrderedDict, defaultdict, deque
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property, lru_cache, partial
@@ -305,10 +305,16 @@ def _parts(value: Any, names: Globals) -> Iterator[Any]:
         yield from _contents(value).values()
     elif hasattr(value, "sampled") and hasattr(value, "random_parts"):
         yield from value.random_parts()
-    elif names.copies(type(value)):
+    if type(value) not in _WITHOUT_MEMBERS and not isinstance(value, Point) and names.copies(type(value)):
         yield type(value)
         yield from getattr(value, "__dict__", {}).values()
         yield from (getattr(value, name, None) for name in slots(type(value)))
+
+
+_WITHOUT_MEMBERS = frozenset(
+    {tuple, frozenset, slice, FunctionType, MethodType, type, partial, ModuleType, *CONTAINERS}
+)
+"""Types of which no instance has members that a program has written."""
 
 
 def _contents(module: ModuleType) -> dict[str, Any]:
@@ -317,6 +323,12 @@ def _contents(module: ModuleType) -> dict[str, Any]:
 
 
 _MISSING: Final = object()
+
+
+def _kind_of_container(cls: type) -> Any:
+    """Which of Python's containers that are changed in place a class is or derives from; ``None`` if it is none."""
+    kinds = (list, deque, set, OrderedDict, defaultdict, dict)
+    return next((kind for kind in kinds if issubclass(cls, kind)), None)
 
 
 class Sample:
@@ -414,12 +426,13 @@ class Sample:
         cls = type(value)
         if isinstance(value, tuple):
             items = [self.value(item) for item in value]
-            if all(new is old for new, old in zip(items, value, strict=True)):
+            kind = cls if cls is tuple else self.value(cls)
+            if kind is cls and all(new is old for new, old in zip(items, value, strict=True)):
                 return value
-            return cls(*items) if hasattr(value, "_fields") else tuple(items)
+            return tuple.__new__(kind, items)
         if cls in CONTAINERS:
-            return self._container(value)
-        if isinstance(value, list):
+            return self._container(value, _kind_of_container(cls))
+        if isinstance(value, list) and not self._names.copies(cls):
             return [self.value(item) for item in value]
         if cls is frozenset:
             return frozenset([self.value(item) for item in value])
@@ -452,16 +465,20 @@ class Sample:
         """Whether members of a class of objects are not the same in this sample."""
         return self._names.varies(cls)
 
-    def _container(self, container: Any) -> Any:
-        copy = container.copy()
-        copy.clear()
+    def _container(self, container: Any, kind: Any) -> Any:
+        """A container over sampled values, whatever a class of the program says of how it is made and changed."""
+        copy = kind.__new__(type(container))
+        if kind is deque:
+            deque.__init__(copy, (), container.maxlen)
+        elif kind is defaultdict:
+            copy.default_factory = container.default_factory
         self.remember(container, copy)
-        if isinstance(container, dict):
-            copy.update([(self.value(key), self.value(item)) for key, item in container.items()])
-        elif isinstance(container, set):
-            copy.update([self.value(item) for item in container])
+        if issubclass(kind, dict):
+            kind.update(copy, [(self.value(key), self.value(item)) for key, item in kind.items(container)])
+        elif kind is set:
+            set.update(copy, [self.value(item) for item in set.__iter__(container)])
         else:
-            copy.extend([self.value(item) for item in container])
+            kind.extend(copy, [self.value(item) for item in kind.__iter__(container)])
         return copy
 
     def _instance(self, instance: Point) -> Point:
@@ -527,14 +544,16 @@ class Sample:
         cls = self.value(type(instance))
         if cls is type(instance) and self._stays(instance):
             return instance
-        copy = shallow.copy(instance)
+        kind = _kind_of_container(type(instance))
+        copy = shallow.copy(instance) if kind is None else self._container(instance, kind)
         self.remember(instance, copy)
         object.__setattr__(copy, "__class__", cls)
         held = getattr(copy, "__dict__", {})
-        held.update({name: self.value(item) for name, item in held.items()})
+        given = copy if kind is None else instance
+        held.update({name: self.value(item) for name, item in getattr(given, "__dict__", {}).items()})
         for name in slots(cls):
-            if hasattr(copy, name):
-                object.__setattr__(copy, name, self.value(getattr(copy, name)))
+            if hasattr(given, name):
+                object.__setattr__(copy, name, self.value(getattr(given, name)))
         return copy
 
     def _function(self, function: FunctionType) -> FunctionType:

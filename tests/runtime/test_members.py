@@ -184,6 +184,64 @@ param r = r
         assert not hasattr(k, "empty")
 
 
+HOLDERS = """
+from collections import Counter, OrderedDict, defaultdict, deque, namedtuple
+g, h = Range(1, 2), Range(3, 4)
+class Row(list):
+    def read(self): return (list(self), self.mark, g)
+    def append(self, item): super().append([item])
+    def clear(self): raise ValueError("fixed")
+class Queue(deque):
+    def read(self): return (list(self), self.mark, g)
+class Table(dict):
+    def read(self): return (sorted(self.items()), self.mark, g)
+    def update(self, *items): raise ValueError("fixed")
+class Ordered(OrderedDict):
+    def read(self): return (list(self.items()), self.mark, g)
+class Filled(defaultdict):
+    def read(self): return (list(self.items()), self.default_factory, self.mark, g)
+class Tally(Counter):
+    def read(self): return (list(self.items()), self.mark, g)
+class Bag(set):
+    def read(self): return (sorted(self), self.mark, g)
+class Pair(namedtuple("Pair", "a b")):
+    def read(self): return (self.a, self.b, g)
+class Trio(tuple):
+    def read(self): return (list(self), g)
+class Plain(list):
+    def total(self): return sum(self)
+held = [Row([h, 5]), Queue([h, 5], maxlen=2), Table(a=h, b=5), Ordered(b=h, a=5), Filled(list, a=h), Tally(a=h), Bag([h, 5]), Pair(h, [h]), Trio((h, 5))]
+for each in held[:7]:
+    each.mark = [h]
+still, loop = Pair(3, 4), Row([h, 7])
+loop[1] = loop
+loop.mark = loop
+def read(): return [each.read() for each in [*held, still]]
+def whole(): return read() + [type(each) for each in held] + [loop[1] is loop and loop.mark is loop and len(loop)]
+"""
+
+
+def test_containers_of_classes_of_the_program_are_sampled_as_they_are() -> None:
+    """With their class, their attributes and what they hold: in scenes, in conditions and in simulations."""
+    text = (
+        f"{HOLDERS}def right(g, h, found):\n    return found == [([h, 5], [h], g), ([h, 5], [h], g), ([('a', h), ('b', 5)], [h], g),\n"
+        "        ([('b', h), ('a', 5)], [h], g), ([('a', h)], list, [h], g), ([('a', h)], [h], g), ([h, 5], [h], g), (h, [h], g), ([h, 5], g), (3, 4, g),\n"
+        "        Row, Queue, Table, Ordered, Filled, Tally, Bag, Pair, Trio, 2]\n"
+        "require right(g, h, whole())\nego = new Object with held held, with plain Plain([1, 2])\n"
+        "param g = g, h = h\nrecord initial right(g, h, whole()) as found\n"
+    )
+    for item in scenario(text).sample(2, seed=1):
+        g, h = item.params["g"], item.params["h"]
+        found = [each.read() for each in item.egoObject.held]
+        assert found[0] == ([h, 5], [h], g)
+        assert found[7:] == [(h, [h], g), ([h, 5], g)]
+        assert item.egoObject.held[1].maxlen == 2
+        assert item.egoObject.plain.total() == 3
+        done = DummySimulator().simulate(item, maxSteps=1)
+        assert done is not None
+        assert done.records["found"] is True
+
+
 def test_a_member_that_reads_nothing_random_is_that_of_the_program() -> None:
     program = scenario(
         "class A:\n    def f(self): return 1\n    k = (1, 2)\nego = new A at (Range(0, 1), 0, 0)"
