@@ -3,6 +3,7 @@
 import builtins
 import math
 import random
+import re
 from collections.abc import Callable
 from typing import Any
 
@@ -237,6 +238,55 @@ def test_code_that_draws_only_sometimes_has_the_draws_of_its_own_lane() -> None:
     alone = [next(iter(fresh.stream(1, seed=1, first=k))).params["x"] for k in range(60)]  # type: ignore[union-attr] # scenes
     assert together == alone
     assert any(x != y for x, y in together)
+
+
+@pytest.mark.parametrize("kind", ["ValueError", "RejectionException"])
+def test_code_that_draws_and_fails_does_so_where_its_own_draws_say(kind: str) -> None:
+    """Also in the batch in which it is first seen to draw, whose calls are made twice: the first time counts for nothing."""
+    text = (
+        "import random\ndef risky(x):\n    number = random.random() if x > 0.9 else 0\n"
+        f"    if number > 0.5:\n        raise {kind}(repr(number))\n    return number\n"
+        "x = Range(0, 1)\nf = distributionFunction(risky)\nparam x = (x, f(x))\n"
+    )
+
+    def found(program: Any, seed: int, **options: int) -> list[object]:
+        values: list[object] = []
+        scenes = program.stream(40, seed=seed, **options)
+        try:
+            while len(values) < 40:
+                scene = next(scenes)
+                values.append((scene.params["x"], scene.attempts))
+        except Exception as error:  # noqa: BLE001 - it is compared
+            values.append(str(error))
+        return values
+
+    for seed in (3, 4, 7, 13):
+        random.seed(seed)
+        program = scenario(text)
+        first = found(program, seed)
+        assert first == found(program, seed)
+        assert first == found(scenario(text), seed, lanes=3)
+        assert len(first) > 20
+        if kind == "ValueError":
+            assert 0.5 < float(re.findall(r"0\.\d+", str(first[-1]))[0]) < 1
+
+
+def test_each_call_has_its_own_copies_of_what_it_is_given() -> None:
+    text = (
+        "def grow(items, x, more):\n    items.append(x)\n    items[0].add(x)\n    more.append(x)\n    return (len(items), len(items[0]), len(more))\n"
+        "f = distributionFunction(grow)\nx = Range(0, 1)\nparam x = (f([{1}], x, []), f([set()], x, more=[0]))\n"
+    )
+    assert draws(text, n=5) == [((2, 2, 1), (2, 1, 2))] * 5
+
+
+def test_what_hides_is_that_of_the_lane_whatever_the_function_is_given() -> None:
+    text = (
+        "def clear(x): return (new Point at (x, 0)) can see (x, 10, 0)\nx, y = Range(-5, 5), Range(-5, 5)\n"
+        "wall = new Object at (y, 5), with width 4\nparam x = (x, y)\nrequire clear(x)\n"
+    )
+    found = draws(text, n=40)
+    assert all(abs(x - y) > 2 for x, y in found)
+    assert any(abs(x - y) < 3 for x, y in found)
 
 
 @pytest.mark.parametrize("state", ["random.getstate()", "str(numpy.random.get_state()[1].tolist())"])
