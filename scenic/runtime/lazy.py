@@ -128,15 +128,19 @@ _NUMBERS = frozenset({int, float})
 """Types that most parts of containers have; looked at first."""
 
 
-def reads_of(value: Any) -> frozenset[str]:
-    """The properties that a value, or something in it, reads; none where it is not lazy."""
+def reads_of(value: Any, within: tuple[int, ...] = ()) -> frozenset[str]:
+    """The properties that a value, or something in it, reads; none where it is not lazy.
+
+    ``within``: the identities of the containers that hold it, which may hold themselves.
+    """
     if isinstance(value, Lazy):
         return value.reads
     kind = type(value)
     found = _NOTHING
-    if kind is tuple or kind is list or kind is dict:
+    if (kind is tuple or kind is list or kind is dict) and id(value) not in within:
+        inside = (*within, id(value))
         for item in value.values() if kind is dict else value:
-            if type(item) not in _NUMBERS and (reads := reads_of(item)):
+            if type(item) not in _NUMBERS and (reads := reads_of(item, inside)):
                 found |= reads
     return found
 

@@ -1,6 +1,6 @@
 """Random values: what is drawn when a scene is sampled. Each wraps a node of the value graph."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any, ClassVar
 
 from scenic.graph.node import Node
@@ -158,14 +158,18 @@ class RandomOrientation(OrientationMethods, Random):
     __hash__ = object.__hash__
 
 
-def is_random(value: Any) -> bool:
-    """Whether a value is random or a container with random parts."""
+def is_random(value: Any, within: tuple[int, ...] = ()) -> bool:
+    """Whether a value is random or a container with random parts; ``within``: the identities of those that hold it."""
     if isinstance(value, Random):
         return True
+    parts: Iterable[Any]
     if isinstance(value, tuple | list | set | frozenset):
-        return any(is_random(item) for item in value)
-    if isinstance(value, slice):
-        return is_random(value.start) or is_random(value.stop) or is_random(value.step)
-    if type(value) is dict:
-        return any(is_random(item) for item in (*value, *value.values()))
-    return False
+        parts = value
+    elif isinstance(value, slice):
+        parts = (value.start, value.stop, value.step)
+    elif type(value) is dict:
+        parts = (*value, *value.values())
+    else:
+        return False
+    own = id(value)
+    return own not in within and any(is_random(item, (*within, own)) for item in parts)

@@ -430,6 +430,28 @@ def test_values_that_lead_back_to_themselves_do_so_in_a_sample() -> None:
     assert sample.value(held) is first[0]
 
 
+@pytest.mark.parametrize("first", ["1", "Range(0, 1)", "(1, 2)"])
+@pytest.mark.parametrize(
+    ("loop", "way"),
+    [
+        ("held.append(held)", "held[1]"),
+        ("held.append({'a': [held]})", "held[1]['a'][0]"),
+        ("held.append((2, held))", "held[1][1]"),
+        ("other = [held]; held.append(other)", "held[1][0]"),
+    ],
+)
+def test_containers_of_a_program_may_hold_themselves(first: str, loop: str, way: str) -> None:
+    """As a list of neighbours does; whether anything in them is random or not."""
+    text = (
+        f"held = [{first}]\n{loop}\nego = new Object with held held\n@distributionFunction\ndef f(held, x): return {way} is held and len(held)\n"
+        f"param x = f(held, Range(0, 1))\ndef loops(): return {way} is held\nrequire loops()\n"
+    )
+    for item in scenario(text).sample(2, seed=1):
+        assert item.params["x"] == 2
+        held = item.egoObject.held
+        assert eval(way) is held
+
+
 def test_what_a_sample_knows_by_its_identity_lives_as_long_as_the_sample() -> None:
     """Another value may else get the identity, and be taken for it."""
 
