@@ -200,12 +200,19 @@ class Point:
         return _restored, (known, cls.__name__), values  # apart, since objects may know each other
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Any:
-        made = memo[id(self)] = type(self)._make({})
+        made = memo[id(self)] = self._alike({})
         made.__dict__.update({name: deepcopy(value, memo) for name, value in self._copied().items()})
         return made
 
     def __copy__(self) -> Any:
-        return type(self)._make(self._copied())
+        return self._alike(self._copied())
+
+    def _alike(self, values: Mapping[str, Any]) -> Self:
+        """An instance with these values whose methods see the same sample."""
+        made = self._make(values)
+        if "_sample" in self.__dict__:
+            made.__dict__["_sample"] = self.__dict__["_sample"]
+        return made
 
     def _copied(self) -> dict[str, Any]:
         """What a copy holds: the properties, and what is known of the instance beside them."""
