@@ -11,7 +11,6 @@ from scenic.graph.kinds import Kind
 from scenic.graph.node import Node
 from scenic.graph.operation import Call, Operation, always
 from scenic.graph.operations import TABLE
-from scenic.language.errors import RejectionException
 from scenic.runtime.context import here
 from scenic.runtime.definite import Orientation, Vector
 from scenic.runtime.nodes import as_node, as_value, kind_of
@@ -38,8 +37,6 @@ def over_options(operands: Sequence[Node], function: Callable[..., Any]) -> Any:
         values = [(node if node.is_constant else node.operands[place]).value for node in operands]
         try:
             results.append(as_node(function(*values)))
-        except RejectionException:
-            return None
         except Exception as error:  # noqa: BLE001 - whatever it raises is an error where this option is drawn
             results.append(construction.make_node(MISSING, (), error, here()))
     return select(index, results)

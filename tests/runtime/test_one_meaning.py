@@ -81,7 +81,26 @@ QUESTIONS = [
     *(text.replace("{o}", "q") for text in OF_POINTS),
     *OF_OTHERS,
 ]
+OF_CHOICES: dict[str, Callable[[dict[str, Any]], Any]] = {
+    "front of thing": lambda held: held["thing"].front,
+    "distance from thing to other": lambda held: (held["thing"].position - held["other"].position).norm(),
+    "distance from room to p": lambda held: held["room"].distanceTo(held["p"].position),
+    "thing intersects other": lambda held: held["thing"].intersects(held["other"]),
+    "relative heading of p from thing": lambda held: angle(held["p"].heading - held["thing"].heading),
+    "(1, 2, 3) relative to p": lambda held: held["p"].relativize((1, 2, 3)),
+    "thing offset by (1, 2, 3)": lambda held: held["thing"].relativize((1, 2, 3)),
+    "q.position offset along thing by (1, 2)": lambda held: (
+        held["q"].position + Vector(1, 2).rotatedBy(held["thing"].orientation)
+    ),
+    "distance past q of thing": lambda held: held["thing"].distancePast(held["q"].position),
+}
+"""What operators of the language say of choices, by what methods say of instances."""
+
 NAMES = "thing, other, p, q, disc, room, r"
+
+
+def angle(value: float) -> float:
+    return math.remainder(value, math.tau)
 
 
 def assert_same(one: Any, other: Any, question: str) -> None:
@@ -141,3 +160,24 @@ def test_everything_that_is_asked_of_values_has_one_answer(mode_2d: bool) -> Non
                 answers[way] = eval(question, held)
         for way, answer in answers.items():
             assert_same(expected, answer, f"{way}: {question}")
+
+
+@pytest.mark.parametrize("mode_2d", [False, True])
+def test_a_choice_answers_as_the_mutated_instance_that_it_draws(mode_2d: bool) -> None:
+    """Whatever it is asked for, before the noise is known."""
+    chosen = "thing, other, p, q = (Uniform(each, each) for each in (thing, other, p, q))"
+    questions = [*QUESTIONS, *OF_CHOICES]
+    one = scene(
+        f"{PROGRAM}items = thing, other, p, q\n{chosen}\nparam now = [{', '.join(f'({question})' for question in questions)}]\n"
+        f"param given = ({NAMES})\nmutate\n",
+        seed=5,
+        mode2D=mode_2d,
+    )
+    objects = dict(zip(NAMES.split(", "), one.params["given"], strict=True))
+    assert objects["thing"] is one.objects[0]
+    assert one.objects[0].position.x > one.params["given"][-1] + 0.01
+    for question, found in zip(questions, one.params["now"], strict=True):
+        if question not in OF_CHOICES:
+            assert_same(eval(question, objects), found, question)
+    for question, answer in zip(OF_CHOICES, one.params["now"][len(QUESTIONS) :], strict=True):
+        assert_same(OF_CHOICES[question](objects), answer, question)

@@ -733,6 +733,28 @@ param r = r, plain = plain
         assert one.objects[1].position == begin
 
 
+def test_actions_that_are_random_in_part_are_sampled() -> None:
+    """Whichever part of them it is, in a slot or not."""
+    text = """
+from scenic.simulators.actions import Action
+class Mixed(Action):
+    __slots__ = ("first",)
+    def __init__(self, first, second, third): self.first, self.second, self.third = first, second, third
+    def applyTo(self, agent, simulation): pass
+    def held(self): return (self.first, self.second, self.third)
+class Reading(Mixed):
+    def held(self): return (*super().held(), r)
+r = Range(0, 1)
+ego = new Object
+param r = r, made = [cls(*parts) for cls in (Mixed, Reading) for parts in ((r, 1, 'a'), (1, r, 'a'), (1, 'a', [r]), (1, 2, 3))]
+"""
+    for one in scenic.scenarioFromString(text).sample(2, seed=0):
+        r = one.params["r"]
+        found = [item.held() for item in one.params["made"]]
+        parts = [(r, 1, "a"), (1, r, "a"), (1, "a", [r]), (1, 2, 3)]
+        assert found == [*parts, *((*each, r) for each in parts)]
+
+
 @pytest.mark.parametrize("model", ["point", "bicycle", "differential"])
 def test_commands_with_random_numbers_may_be_arguments_of_behaviors(model: str) -> None:
     action = {
