@@ -445,13 +445,20 @@ mutate
         assert item.egoObject.heading == pytest.approx(yaw)
 
 
-@pytest.mark.parametrize("scale", [-3, 0, 2])
-@pytest.mark.parametrize("mutator", ["", ", with mutator [None, PositionMutator((1, 0, 0))]"])
-def test_what_enters_a_simulation_is_mutated_by_its_scale(scale: float, mutator: str) -> None:
+@pytest.mark.parametrize(
+    ("kind", "scale", "mutator"),
+    [
+        *(("Object", scale, "") for scale in (-3, 0, 2)),
+        *(("Object", scale, ", with mutator [None, PositionMutator((1, 0, 0))]") for scale in (-3, 0, 2)),
+        ("OrientedPoint", 2, ""),
+        ("Point", 3, ""),
+    ],
+)
+def test_what_a_simulation_makes_is_mutated_by_its_scale(kind: str, scale: float, mutator: str) -> None:
     text = (
         "from scenic.runtime.mutators import PositionMutator\n"
         "scenario Main():\n    setup:\n        ego = new Object\n    compose:\n        do Sub()\n"
-        f"scenario Sub():\n    setup:\n        thing = new Object at (50, 0){mutator}\n        mutate thing by {scale}\n"
+        f"scenario Sub():\n    setup:\n        thing = new {kind} at (50, 0){mutator}\n        mutate thing by {scale}\n"
         "        record initial thing.position as place\n    compose:\n        wait\n"
     )
     offsets, one = [], scene(text)
@@ -463,6 +470,20 @@ def test_what_enters_a_simulation_is_mutated_by_its_scale(scale: float, mutator:
     wanted = np.array([1, 0 if mutator else 1, 0]) * abs(scale)
     assert (deviations[wanted == 0] == 0).all()
     assert (abs(deviations / np.where(wanted == 0, 1, wanted) - 1) < 0.5)[wanted > 0].all()
+
+
+def test_points_that_a_behavior_makes_have_the_noise_that_they_ask_for() -> None:
+    text = (
+        "behavior B():\n    while True:\n        p = new OrientedPoint at (7, 0), with mutationScale 1\n        q = new Point at (7, 0)\n"
+        "        take p.position.x, p.heading, q.position.x\nego = new Object with behavior B\n"
+    )
+    done = DummySimulator().simulate(scene(text), maxSteps=20)
+    assert done is not None
+    assert done.result is not None
+    taken = [step[done.objects[0]] for step in done.result.actions]
+    assert len({x for x, _, _ in taken}) == len({heading for _, heading, _ in taken}) == 20
+    assert 0.4 < np.std([x for x, _, _ in taken]) < 2
+    assert {x for _, _, x in taken} == {7}
 
 
 @pytest.mark.parametrize(

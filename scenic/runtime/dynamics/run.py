@@ -221,28 +221,28 @@ class Run:
     def create(self, instance: Any) -> None:
         """A new instance of the running program."""
         instance.__dict__["_sample"] = self.copies  # Members read it where code of a simulator asks for them.
-        if not isinstance(instance, Object):
-            return
         scenario = self._creating
-        if scenario is None:
-            raise InvalidScenarioError(
-                "objects can be created during a simulation only in the setup of a scenario",
-                span=here(),
-                help="put the object into a scenario, and run it with `do` in a compose block",
-            )
-        scenario.objects.append(instance)
-        if instance.behavior is not None:
-            scenario.agents.append(instance)
-        if scenario.awaited is None:
+        if isinstance(instance, Object):
+            if scenario is None:
+                raise InvalidScenarioError(
+                    "objects can be created during a simulation only in the setup of a scenario",
+                    span=here(),
+                    help="put the object into a scenario, and run it with `do` in a compose block",
+                )
+            scenario.objects.append(instance)
+            if instance.behavior is not None:
+                scenario.agents.append(instance)
+        if scenario is None or scenario.awaited is None:
             self._enter(instance)
         else:
             scenario.awaited.append(instance)
 
     def _enter(self, instance: Any) -> None:
-        """A new object enters the simulator."""
+        """A new instance gets its noise, and an object enters the simulator."""
         mutate_now(instance)
-        self.simulation.add(instance)
-        self._numbers[id(instance)] = len(self._numbers)
+        if isinstance(instance, Object):
+            self.simulation.add(instance)
+            self._numbers[id(instance)] = len(self._numbers)
 
     def enter_awaited(self, scenario: ScenarioActivation) -> None:
         """The set-up of a scenario has ended: what it may have mutated enters the simulator."""
