@@ -80,6 +80,7 @@ class Batch:
         self._generation = 0
         self._kept: list[NDArray[np.intp]] = []
         self._schedule: Schedule = scheduler.start
+        self._is_settled = False
         self._groups: dict[Slot, _Group] = {}
         self._boxes: NDArray[np.intp] | None = None
         self._values: dict[Node, list[Any]] = {}
@@ -114,6 +115,7 @@ class Batch:
         self.need(nodes)
         wanted = {self._schedule.places[node].slot for node in nodes if not node.is_constant}
         self._groups = {slot: self._group(slot) for slot in sorted(wanted)}
+        self._is_settled = True
         self._kept = []
         self._generation = 0
         for group in self._groups.values():
@@ -124,12 +126,13 @@ class Batch:
     def need(self, nodes: Iterable[Node]) -> None:
         """Evaluate ``nodes`` together; what is there already is not evaluated again."""
         wanted = tuple(nodes)
-        if self._schedule.unused:
-            # A chain's columns may be gone. What it does not foresee is evaluated from the start: nobody asks for it in every batch.
+        if self._schedule.unused or self._is_settled:
+            # Columns may be gone. What a chain does not foresee is evaluated from the start: nobody asks for it in every batch.
             if all(node.is_constant or self._is_there(node) for node in wanted):
                 return
             self._groups.clear()
             self._schedule = self._scheduler.start
+            self._is_settled = False
         self._do(self._scheduler.after(self._schedule, wanted))
 
     def follow(self, schedule: Schedule, nodes: Sequence[Node]) -> None:

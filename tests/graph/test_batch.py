@@ -503,3 +503,26 @@ def test_an_operation_that_does_not_say_that_it_fails_is_found_out(fate):
     silent = construction.make_node(hidden, [x])
     with pytest.raises(AssertionError, match="liar failed or rejected a lane"):
         sampled([silent], 2).status(silent)
+
+
+@pytest.mark.parametrize("chained", [False, True])
+def test_a_settled_batch_may_be_asked_for_anything(chained):
+    """What it was settled for is there; the columns that this was made of are not, and are made again."""
+    nodes = program()
+    whole = sampled(nodes, 30, seed=6)
+    every = [node for node in Graph(nodes).nodes if not node.is_constant]
+    for kept in (nodes[-1:], nodes[:2], nodes[::2]):
+        for aside in every:
+            batch = sampled(nodes, 30, seed=6)
+            if chained:
+                for schedule, stage in zip(
+                    batch._scheduler.chain([nodes[3:4], kept]), (nodes[3:4], kept), strict=True
+                ):
+                    batch.follow(schedule, stage)
+                    batch.keep(np.arange(len(batch)) % 4 != 1)
+            batch.keep(np.arange(len(batch)) % 3 != 0)
+            batch.settle(kept)
+            for node in (aside, *kept, *every):
+                fine = is_fine(batch, node)
+                assert fine.tolist() == is_fine(whole, node)[batch.rows].tolist()
+                assert batch.full(node)[fine].tolist() == whole.full(node)[batch.rows][fine].tolist()

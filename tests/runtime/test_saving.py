@@ -671,3 +671,17 @@ other = ego
     spot = again.objects[3].spot
     assert spot.position == (1, 2, 3)
     assert spot.orientation.approxEq(before.objects[3].spot.orientation, 1e-12)
+
+
+def test_a_scene_that_is_taken_up_again_shows_all_that_it_showed() -> None:
+    """Also what its objects are not made of: regions of variables, and every other value, from what they have in common."""
+    program = scenario(
+        "a = Range(0, 1)\nb = a * 2\np = new Point at (b + 3, b)\nr = CircularRegion((b + 3, 7 - b), 2)\n"
+        "ego = new Object at (b + 3, 7), with width a + 1\n"
+    )
+    for scene in program.sample(3, seed=3):
+        again = program.sceneFromBytes(program.sceneToBytes(scene))
+        region, other = scene.regions["r"], again.regions["r"]
+        assert (region.center, region.radius) == (other.center, other.radius)
+        for node in program.outline.graph.nodes:
+            assert again.lookup(node) == scene.lookup(node)
