@@ -295,3 +295,28 @@ def test_one_bad_box_among_good_ones_is_refused():
             boxes.insert(place, [box])
             with pytest.raises(ValueError, match="volume"):
                 union(*boxes)
+
+
+def test_the_outermost_numbers_choose_the_outermost_boxes():
+    """Shares are rounded: their sum may lie below the largest number that is drawn."""
+    first, last = np.nextafter(0.0, 1.0), np.nextafter(1.0, 0.0)
+    below = 0
+    for seed in range(30):
+        widths = np.random.default_rng(seed).random((200, 1)) / 1000
+        lower = np.linspace(0, 0.9, 200)[:, np.newaxis]
+        domain = Domain(lower, lower + widths)
+        below += bool(domain._shares()[-1] < last)
+        assert domain.choose(np.array([[first, last]])).tolist() == [[0, 199]]
+    assert below
+
+
+@pytest.mark.parametrize("larger", [0, 1])
+def test_boxes_of_very_different_volume(larger):
+    """Of many axes: one is no more than a point beside the other, and neither volume is a float."""
+    lower, upper = np.zeros((2, 4000)), np.full((2, 4000), 0.5)
+    lower[1, 0], upper[1, 0] = 0.5, 1.0
+    upper[1 - larger, 1:] = 0.25
+    domain = Domain(lower, upper)
+    draws = np.array([[np.nextafter(0.0, 1.0), 0.25, 0.5, 0.999, np.nextafter(1.0, 0.0)]])
+    assert set(domain.choose(draws)[0, 1:-1].tolist()) == {larger}
+    assert domain.volume >= 0
