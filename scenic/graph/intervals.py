@@ -166,7 +166,7 @@ def power(a: Bounds, b: Bounds) -> Bounds:
     """``a ** b``: for a fixed whole exponent, or a base that is not negative; otherwise unbounded."""
     corners = [np.power(base, exponent) for base in (a.lower, a.upper) for exponent in (b.lower, b.upper)]
     lower, upper = _extremes([np.where(np.isnan(corner), np.inf, corner) for corner in corners])
-    whole = (b.lower == b.upper) & (b.lower == np.floor(b.lower)) & (np.abs(b.lower) < 2**53)
+    whole = (b.lower == b.upper) & (b.lower == np.floor(b.lower))
     straddles = (a.lower <= 0) & (a.upper >= 0)
     even = whole & (np.mod(b.lower, 2) == 0)
     lower = np.where(even & straddles & (b.lower > 0), np.minimum(lower, 0.0), lower)

@@ -115,6 +115,32 @@ def test_equal_nodes_are_one_unless_what_they_carry_may_change():
     assert make_node(operation, [x], payload=changing) is not make_node(operation, [x], payload=changing)
 
 
+def test_nodes_of_the_same_operands_otherwise_are_different_nodes():
+    """In another order, more often, fewer of them, or as constants: each is itself when it is made again, and no other."""
+    x, y, whole = uniform(0, 1), uniform(0, 1), make("int", uniform(0, 5))
+    made = [
+        lambda: make("subtract", x, y),
+        lambda: make("subtract", y, x),
+        lambda: make("subtract", x, x),
+        lambda: make("subtract", y, y),
+        lambda: make("subtract", x, 2.0),
+        lambda: make("subtract", 2.0, x),
+        lambda: make("subtract", x, 2),
+        lambda: make("subtract", 2, x),
+        lambda: make("subtract", whole, x),
+        lambda: make("subtract", x, whole),
+        lambda: make("minimum", x, y),
+        lambda: make("minimum", y, x),
+        lambda: make("minimum", x, y, y),
+        lambda: make("minimum", x, x, y),
+        lambda: make("minimum", x, y, x),
+        lambda: make("maximum", x, y),
+    ]
+    nodes = [build() for build in made]
+    assert len(set(nodes)) == len(nodes)
+    assert [build() for build in reversed(made)] == nodes[::-1]
+
+
 def test_objects_that_are_printed_alike_are_different_constants():
     class Alike:
         def __repr__(self):

@@ -88,6 +88,26 @@ def test_alike_products_of_small_and_of_large_integers_are_kept_apart() -> None:
         assert type(scene.params["large"]) is int
 
 
+def test_alike_powers_of_either_kind_are_kept_apart() -> None:
+    """The sign of an exponent decides between an integer and a float, where all operands are integers."""
+    text = (
+        "n, m, base = DiscreteRange(0, 3), DiscreteRange(-3, -1), DiscreteRange(2, 4)\n"
+        "param parts = [base, n, m], whole = base ** n, broken = base ** m, other = 2 ** n, last = 2 ** m\n"
+    )
+    for order in (
+        text,
+        text.replace("whole = base ** n, broken = base ** m", "broken = base ** m, whole = base ** n"),
+    ):
+        for scene in scenic.scenarioFromString(order).sample(10, seed=1):
+            base, n, m = scene.params["parts"]
+            expected = {"whole": base**n, "broken": base**m, "other": 2**n, "last": 2**m}
+            found = {name: scene.params[name] for name in expected}
+            assert found == expected
+            assert {name: type(value) for name, value in found.items()} == {
+                name: type(value) for name, value in expected.items()
+            }
+
+
 def test_chains_change_no_value() -> None:
     """Stages in any order, with lanes dropped between them; and other nodes asked for in the middle, which ends a chain."""
     x = [axis(None, number) for number in range(5)]
