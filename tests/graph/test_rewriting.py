@@ -50,11 +50,25 @@ ORIENTATIONS = [
 ANGLES = [X, Y, constant(0.0), constant(0), constant(-0.0), constant(0.7), source(Kind.INTEGER, [2])]
 CHOICES = [constant(value) for value in (1.0, 2.5, -1.0)]
 
+OBJECTS = [
+    one_of(1, 2.5),
+    *(graph.constant(value, Kind.OTHER, value) for value in (0, 1, 1.0, True, "1", [0])),
+]
+"""Numbers of mixed kinds among them, of which Python may make anything."""
+PAIRS = list(itertools.product([*NUMBERS, *VECTORS, *ORIENTATIONS, *OBJECTS], repeat=2))
+
 OPERANDS = {
-    "add": [*itertools.product(NUMBERS, NUMBERS), *itertools.product(VECTORS, VECTORS)],
-    "multiply": [*itertools.product(NUMBERS, NUMBERS), *itertools.product(VECTORS, NUMBERS)],
-    "divide": [*itertools.product(NUMBERS, NUMBERS), *itertools.product(VECTORS, NUMBERS)],
-    "normalize angle": [(angle,) for angle in (*NUMBERS, make("add", X, 0.2), make("multiply", X, 1.1))],
+    "add": PAIRS,
+    "multiply": PAIRS,
+    "divide": PAIRS,
+    "normalize angle": [
+        (angle,)
+        for angle in (
+            *(*NUMBERS, *OBJECTS, make("add", X, 0.2), make("multiply", X, 1.1)),
+            *(make("subtract", make("absolute", X), end) for end in (0.0, 3.5, 3.2)),
+            *(make("subtract", end, make("absolute", X)) for end in (0.0, 3.5, 3.2)),
+        )
+    ],
     "component": [(vector,) for vector in VECTORS],
     "from euler": list(itertools.product(ANGLES, repeat=3)),
     "compose": list(itertools.product(ORIENTATIONS, repeat=2)),
