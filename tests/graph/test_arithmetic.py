@@ -314,10 +314,12 @@ def test_vectors_and_orientations_have_no_order(name):
 
 
 def test_large_whole_numbers_are_compared_and_divided_by_their_values():
-    """Neighbours that are one float are still two numbers, against each other and against floats."""
+    """Neighbours that are one float are still two numbers, against each other and against floats; also where one side is small."""
     large = [2**53 + place for place in (-1, 0, 1, 2)] + [-(2**53) - 1, 2**61 + 1]
-    pairs = list(itertools.product(large, repeat=2))
-    for name in (*COMPARISONS, "divide"):
+    for name, first, second in itertools.product(
+        (*COMPARISONS, "divide"), (large, [-(2**53) - 1], [3, -7]), (large, [-(2**61) - 1], [3, -7])
+    ):
+        pairs = list(itertools.product(first, second))
         check(name, *map(list, zip(*pairs, strict=True)))
         check(name, [a for a, _ in pairs], [float(b) for _, b in pairs])
         check(name, [float(a) for a, _ in pairs], [b for _, b in pairs])
