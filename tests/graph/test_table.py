@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from graph.programs import CASES, I, Q, S, V, case_node, draw, evaluate, is_fine, kind_of
+from graph.programs import CASES, I, Q, S, V, case_node, draw, evaluate, is_fine, kind_of, source
 from scenic.graph.operations import TABLE
 
 GOLDEN = Path(__file__).parent / "data" / "table.json"
@@ -229,3 +229,29 @@ def test_plain_numbers_at_corners_give_the_same_bits(case):
             np.testing.assert_array_equal(
                 np.signbit(found)[known], np.signbit(values[lane])[known], str(rows)
             )
+
+
+SAMPLES = {
+    S: 2.0,
+    I: 3,
+    V: (1.0, -2.0, 0.5),
+    Q: (0.6, 0.0, 0.0, 0.8),
+}
+REFUSING = {"add": 2, "subtract": 2, "multiply": 2, "divide": 2, "negative": 1}
+"""Operations, and of how many operands, that Python defines for some kinds and not for others."""
+
+
+@pytest.mark.parametrize("name", REFUSING)
+def test_what_python_does_not_define_is_not_computed_at_once(name):
+    """Nobody may take the rows of vectors and orientations for something else than what they are."""
+    refused = 0
+    for kinds in itertools.product(SAMPLES, repeat=REFUSING[name]):
+        rows = [SAMPLES[kind] for kind in kinds]
+        if (
+            TABLE[name]
+            .kind([source(kind, [row]) for kind, row in zip(kinds, rows, strict=True)], None)
+            .is_boxed
+        ):
+            assert TABLE[name].scalar(None, *rows) is NotImplemented, kinds
+            refused += 1
+    assert refused

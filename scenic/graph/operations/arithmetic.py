@@ -139,13 +139,15 @@ def _absolute_inverse(_payload: Any, result: Bounds, a: Bounds) -> list[Bounds]:
 
 def _add_scalar(_payload: Any, a: Any, b: Any) -> Any:
     if type(a) is tuple:
-        return (a[0] + b[0], a[1] + b[1], a[2] + b[2]) if type(b) is tuple and len(a) == 3 else NotImplemented
+        both = type(b) is tuple and len(a) == len(b) == 3
+        return (a[0] + b[0], a[1] + b[1], a[2] + b[2]) if both else NotImplemented
     return NotImplemented if type(b) is tuple else a + b
 
 
 def _subtract_scalar(_payload: Any, a: Any, b: Any) -> Any:
     if type(a) is tuple:
-        return (a[0] - b[0], a[1] - b[1], a[2] - b[2]) if type(b) is tuple and len(a) == 3 else NotImplemented
+        both = type(b) is tuple and len(a) == len(b) == 3
+        return (a[0] - b[0], a[1] - b[1], a[2] - b[2]) if both else NotImplemented
     return NotImplemented if type(b) is tuple else a - b
 
 
