@@ -266,6 +266,8 @@ def test_items_of_vectors():
     truth = source(Kind.BOOLEAN, [True, False])
     rows = source(Kind.VECTOR, [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]])
     assert evaluate(make("getitem", rows, truth), 2).full(make("getitem", rows, truth)).tolist() == [2.0, 4.0]
+    one = make("getitem", Triple((1.0, 2.0, 3.0)), source(Kind.INTEGER, [2, 0, -2, 1, -3]))
+    assert evaluate(one, 5).full(one).tolist() == [3.0, 1.0, 2.0, 2.0, 1.0]
     length = make("len", vectors)
     assert evaluate(length, 4).value(length) == 3
 

@@ -38,8 +38,7 @@ def _getitem(call: Call, container: Column, item: Column) -> Column:
     if outside.any():
         call.fault(outside, IndexError("a vector has three components"))
     place = np.where(outside, 0, item % 3)
-    lanes = np.arange(max(len(container), len(place)))
-    return container[lanes if len(container) > 1 else np.zeros_like(lanes), place]
+    return container[np.arange(len(container)), place]
 
 
 def _truth(call: Call, value: Column) -> Column:
