@@ -503,6 +503,26 @@ def test_reports_do_not_depend_on_how_many_lanes_there_are() -> None:
     assert engine.report(Task(3, 0), 500) == report
 
 
+def test_reports_are_of_the_candidates_that_were_tried() -> None:
+    """Of that scene of that seed, from its first attempt on, and once for each check."""
+    seen: list[float] = []
+    SEEN.append(seen.append)
+    engine = scenario(
+        f"from {__name__} import SEEN\ndef note(v):\n    SEEN[-1](v)\n    return False\nx = Range(0, 1)\nrequire note(x)\n"
+    )._engine
+    for seed, k in ((0, 0), (3, 0), (0, 4), (3, 4), (-1, 7), (2**70, 1)):
+        seen.clear()
+        (given_up,) = engine.scenes([(seed, k)], max_attempts=40, lanes=7)
+        assert isinstance(given_up, Exhausted)
+        assert (given_up.seed, given_up.k, given_up.attempts) == (seed, k, 40)
+        tried, reported = seen[:40], seen[40:]
+        assert len(set(tried)) == 40
+        assert reported == tried
+        seen.clear()
+        engine.report(Task(seed, k), 12)
+        assert seen == tried[:12]
+
+
 def test_lanes_are_bounded_by_their_memory() -> None:
     def most(objects: int) -> int:
         plan = replace(scenario("x = Range(0, 1)\n")._engine.plan, bodies=objects)
