@@ -11,12 +11,17 @@ import pytest
 from scipy import stats
 
 import scenic
+from scenic.graph.batch import Batch
 from scenic.language.errors import (
     InvalidScenarioError,
     RandomControlFlowError,
     RejectionException,
     ScenicTypeError,
 )
+from scenic.runtime.sampling.engine import _attempts
+from scenic.runtime.sampling.pending import Task
+from scenic.runtime.scenario import Scenario
+from scenic.runtime.values import as_node
 from tests.runtime.programs import FALSE_ALARM, draws, failure, fingerprint, place, scenario
 
 SETTING = (
@@ -521,6 +526,105 @@ def test_of_several_collisions_that_first_complete_one_is_told() -> None:
 def test_random_sizes_are_positive(name: str) -> None:
     text = f"ego = new Object with {name} Range(-1, 1)\nparam x = ego.{name}"
     assert stats.kstest(draws(text, n=500), "uniform").pvalue > FALSE_ALARM
+
+
+OVERFLOWING = [
+    *(
+        "at (big, 0, 0)",
+        "at (0, -big, 0)",
+        "at (0, 0, big)",
+        "with yaw big",
+        "with pitch -big",
+        "with roll big",
+    ),
+    *("with width big", "with length big", "with height big"),
+]
+
+
+def attempts_of(program: Scenario) -> Batch:
+    """A batch of the first attempts at a scene."""
+    return program._engine._batch(
+        program._engine._source(_attempts(Task(1, 0), np.arange(40, dtype=np.int64)))
+    )
+
+
+def test_what_overflows_makes_no_object() -> None:
+    """One coordinate, angle or size is enough; of each, exactly the candidates in which it is finite pass."""
+    objects = "".join(f"new Object {text}\n" for text in OVERFLOWING)
+    program = scenario(f"big = 1e308 * Range(0.1, 3)\nparam big = big\n{objects}")
+    batch = attempts_of(program)
+    finite = np.isfinite(batch.full(as_node(program.params["big"])))
+    assert set(finite.tolist()) == {True, False}
+    found = {}
+    for check in program._engine.plan.checks:
+        if check.label.startswith("finite"):
+            found[check.span.line - 3] = check.test(batch).holds.tolist()
+        elif check.label.startswith("positive"):
+            assert check.test(batch).holds.all()
+    assert found == dict.fromkeys(range(len(OVERFLOWING)), finite.tolist())
+
+
+def test_sizes_that_may_be_nothing_are_looked_at() -> None:
+    """Each passes where it is positive; of one that certainly is there is no check."""
+    texts = [
+        (name, size) for name in ("width", "length", "height") for size in ("x - 0.5", "x * -1", "x", "x + 1")
+    ]
+    program = scenario(
+        "x = Range(0, 1)\n" + "".join(f"new Object with {name} {size}\n" for name, size in texts)
+    )
+    batch = attempts_of(program)
+    x = batch.full(program._engine.plan.graph.nodes[0])
+    found = {
+        (check.label, check.span.line - 2): check.test(batch).holds.tolist()
+        for check in program._engine.plan.checks
+        if check.label.startswith("positive")
+    }
+    assert found == {
+        (f"positive {name}", line): (eval(size, {"x": x}) > 0).tolist()
+        for line, (name, size) in enumerate(texts)
+        if size != "x + 1"
+    }
+    assert len({tuple(held) for held in found.values()}) == 3
+
+
+FINITE = [
+    *(
+        "at (x, 0)",
+        "at (1 / (x + 1), 0)",
+        "at (hypot(x, x), sin(x))",
+        "at (Normal(0, 1), x ** 3)",
+        "facing x",
+    ),
+    *("facing (x, x, x)", "facing toward (x, 2)", "with pitch Uniform(1, x)", "at (x, 0) offset by (1, x)"),
+    *("in CircularRegion((x, 0), 3)", "with roll 3 * x"),
+]
+MAYBE_INFINITE = [
+    *("at (1 / x, 0)", "at (f(x), 0)", "at (x - f(x), 0)", "facing (f(x), 0, 0)", "facing (0, f(x), 0)"),
+    *(
+        "facing (x, x, big)",
+        "facing (x, big, 0)",
+        "facing (big, x, 1)",
+        "facing toward (big, 0)",
+        "with yaw f(x)",
+    ),
+    *(
+        "with roll Uniform(1, 1 / x)",
+        "with pitch f(x)",
+        "at Uniform((0, 0), (big, 0))",
+        "at (x, 0) offset by (big, 0)",
+    ),
+    *("at (0, 0, 1 / x)", "in CircularRegion((big, 0), 3)"),
+]
+
+
+def test_what_may_be_infinite_is_looked_at_and_nothing_else() -> None:
+    """By what is known of each operation: code may give anything, as may what is turned by what is infinite."""
+    head = "x = Range(0, 1)\nbig = 1e308 * Range(0, 3)\n@distributionFunction\ndef f(v): return v\n"
+    texts = [*FINITE, *MAYBE_INFINITE]
+    program = scenario(head + "".join(f"new Object {text}\n" for text in texts))
+    lines = {check.span.line for check in program._engine.plan.checks if check.label.startswith("finite")}
+    first = head.count("\n") + 1
+    assert [text for line, text in enumerate(texts, first) if line in lines] == MAYBE_INFINITE
 
 
 def test_branches_outside_requirements_are_refused() -> None:
