@@ -99,7 +99,6 @@ def _normalize_bounds(_payload: Any, angle: Bounds) -> Bounds:
     # Both ends moved by the same number of turns: the interval moved as a whole.
     turns = (angle.lower - low) / math.tau
     whole = (np.rint(turns) == np.rint((angle.upper - high) / math.tau)) & (angle.upper - angle.lower < 7)
-    whole = whole & (low <= high)
     margin = 1e-15 * intervals.size(angle)
     inside = (angle.lower >= -math.pi) & (angle.upper <= math.pi)
     margin = np.where(inside, 0.0, margin)
