@@ -1,5 +1,6 @@
 """The Python API: loading, parameters, modules, models, the choice of a scenario, scenes."""
 
+import pickle
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -388,3 +389,162 @@ def test_parameters_that_a_program_sets_or_reads_may_be_given(tmp_path: Path, us
         scenic.load(file, params={"speed": 5, "sped": 5})
     found = scenic.scenarioFromFile(file, {"speed": 5, "sped": 6}).params
     assert (found["speed"], found["sped"]) == (5, 6)
+
+
+OPTIONS = "model first\nparam p = 0\nx = Range(0, 1)\n" + "".join(
+    f"scenario {name}():\n    setup:\n        ego = new Object at ({place}, 0, 7)\n        require x > 0.5\n"
+    for place, name in enumerate(("Main", "Other"), start=1)
+)
+CHANGES: dict[str, Any] = {"params": {"p": 5}, "model": "second", "scenario": "Other", "mode2D": True}
+
+
+def outcome(program: scenic.Scenario) -> dict[str, Any]:
+    """What shows which options a program was given."""
+    (item,) = program.objects
+    return {
+        "params": program.params["p"],
+        "model": program.params["world"],
+        "scenario": item.x,
+        "mode2D": item.z == 0,
+        "prune": not program.domain.is_whole,
+    }
+
+
+@pytest.mark.parametrize("way", ["load", "scenarioFromFile", "scenarioFromString"])
+def test_each_option_reaches_the_program_whichever_way_it_is_loaded(
+    way: str, folder: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    import scenic.syntax.translator
+
+    folder.write(main=OPTIONS, first="param world = 'first'", second="param world = 'second'")
+    path = folder.path / "main.scenic"
+
+    def made(prune: bool = True, **options: Any) -> dict[str, Any]:
+        if way == "load":
+            return outcome(scenic.load(path, prune=prune, **options))
+        with monkeypatch.context() as changed:
+            changed.setattr(scenic.syntax.translator, "usePruning", prune, raising=False)
+            if way == "scenarioFromFile":
+                return outcome(scenic.scenarioFromFile(str(path), **options))
+            return outcome(scenic.scenarioFromString(OPTIONS, filename=str(path), **options))
+
+    usual = {"params": 0, "model": "first", "scenario": 1, "mode2D": False, "prune": True}
+    changed = {"params": 5, "model": "second", "scenario": 2, "mode2D": True, "prune": False}
+    assert made() == usual
+    for name, value in {**CHANGES, "prune": False}.items():
+        assert made(**{name: value}) == {**usual, name: changed[name]}
+        # And all others, for those that only one of them would reach.
+        others = {other: value for other, value in {**CHANGES, "prune": False}.items() if other != name}
+        assert made(**others) == {**changed, name: usual[name]}
+
+
+def test_copies_of_a_scenario_have_its_options(folder: Any) -> None:
+    """It is compiled once more where a copy is taken up, with the parameters of then."""
+    folder.write(first="param world = 'first'")
+    given = {"p": 5, "free": 1}
+    made = scenic.scenarioFromString(
+        OPTIONS, given, None, "Other", filename=str(folder.path / "main.scenic"), mode2D=True
+    )
+    given["p"] = 7
+    again = pickle.loads(pickle.dumps(made))
+    assert outcome(again) == outcome(made)
+    assert again.params["free"] == 1
+    folder.write(main="param p = 1\nx = Range(0, 1)\nrequire x > 0.5\n")
+    for prune in (True, False):
+        loaded = folder.load(prune=prune, params={"p": 2})
+        copied = pickle.loads(pickle.dumps(loaded))
+        assert copied.domain.is_whole is loaded.domain.is_whole is not prune
+        assert copied.params["p"] == 2
+
+
+def test_the_parameters_that_were_given_stay_the_callers_own() -> None:
+    given = {"p": [1], "q": 2}
+    program = scenic.scenarioFromString("param p = 0, q = 0, r = globalParameters.q\n", given)
+    assert given == {"p": [1], "q": 2}
+    given["q"] = 3
+    assert dict(program.params) == {"p": [1], "q": 2, "r": 2}
+
+
+def test_deep_checks_name_files_as_they_were_given(folder: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The program's own, relative or not; that of a module in which something is wrong; and all mistakes of a text."""
+    folder.write(
+        main="x = Range(0, 1)\nrequire x > 2\n",
+        two="def f(:\n    pass\nego = new\n",
+        user="import broken\n",
+        broken="x = 1\ny = x / 0\n",
+        strict="workspace = Workspace(CircularRegion((0, 0), 5))\nego = new Object at (Range(20, 30), 0)\n",
+    )
+    path = folder.path / "main.scenic"
+    assert [found.filename for found in deep_check(path)] == [str(path)]
+    monkeypatch.chdir(folder.path.parent)
+    assert [found.filename for found in deep_check(path.relative_to(Path.cwd()))] == [
+        str(path.relative_to(Path.cwd()))
+    ]
+    assert len(deep_check(folder.path / "two.scenic")) >= 2
+    (found,) = deep_check(folder.path / "user.scenic")
+    assert found.filename == str(folder.path / "broken.scenic")
+    (found,) = deep_check(folder.path / "strict.scenic")
+    assert (found.code, found.span is not None and found.span.line) == ("SC700", 2)
+    assert "which the language requires" in found.message
+
+
+def test_where_an_exception_was_raised_is_shown_beside_the_line_that_led_there(folder: Any) -> None:
+    """In another line, or in another file at the same one; not within the statement itself, of however many lines."""
+    (folder.path / "plain.py").write_text("def fail(v):\n    raise KeyError(v)\n")
+    folder.write(
+        python="from plain import fail\nfail(1)\n",
+        far="from plain import fail\n\n\nfail(1)\n",
+        code="def f(v):\n    return v / 0\nx = Range(0, 1)\nrequire f(x)\n",
+        within="x = Range(0, 1)\n\nrequire max(\n    1,\n    (lambda v: v / 0)(x),\n) > 0\n",
+    )
+    found = {}
+    for name in ("python", "far", "code", "within"):
+        with pytest.raises((KeyError, ZeroDivisionError)) as caught:
+            folder.load(name).sample(1, seed=1)
+        told = diagnose(caught.value)
+        assert told is not None
+        assert told.span is not None
+        labels = [(label.span.line, label.filename and Path(label.filename).name) for label in told.labels]
+        found[name] = told.span.line, labels
+    assert found == {
+        "python": (2, [(2, "plain.py")]),
+        "far": (4, [(2, "plain.py")]),
+        "code": (4, [(2, "code.scenic")]),
+        "within": (3, []),
+    }
+
+
+def test_modules_beside_a_program_come_before_those_elsewhere(
+    folder: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    elsewhere = folder.path / "elsewhere"
+    elsewhere.mkdir()
+    (elsewhere / "part.scenic").write_text("param told = 'elsewhere'\n")
+    (elsewhere / "only.scenic").write_text("param other = 'elsewhere'\n")
+    monkeypatch.syspath_prepend(elsewhere)
+    folder.write(part="param told = 'beside'\n", main="import part\nimport only\n")
+    assert dict(folder.load().params) == {"told": "beside", "other": "elsewhere"}
+
+
+def test_regions_of_a_scene_are_those_of_public_variables() -> None:
+    text = (
+        "a = CircularRegion((0, 0), 1)\n_hidden = CircularRegion((0, 0), 2)\nb = everywhere\nc = nowhere\n"
+        "workspace = Workspace(CircularRegion((0, 0), 50))\nd = workspace\ne = Uniform(a, _hidden)\nego = new Object\n"
+    )
+    (scene,) = scenic.scenarioFromString(text).sample(1, seed=0)
+    assert "a" in scene.regions
+    assert not {"_hidden", "b", "c", "d", "workspace"} & set(scene.regions)
+
+
+def test_a_program_may_be_loaded_while_another_one_is() -> None:
+    """By code that it calls: afterwards it goes on as itself."""
+    text = (
+        "import scenic\nx = Range(0, 1)\nnew Object at (x, 0)\n"
+        "inner = scenic.scenarioFromString('new Object\\nnew Object at (5, 5)\\nparam p = 1')\n"
+        "y = Range(5, 6)\nnew Object at (0, y)\nparam q = len(inner.objects)\n"
+    )
+    program = scenic.scenarioFromString(text)
+    assert len(program.objects) == 2
+    assert dict(program.params) == {"q": 2}
+    (scene,) = program.sample(1, seed=1)
+    assert 5 <= scene.objects[1].y <= 6
