@@ -152,8 +152,8 @@ def conditions(scenario: Scenario) -> list[Fact]:
     """The hard requirements of a scenario, as analysis reads them: those of the program, then containment and visibility."""
     outline = scenario.outline
     return [
-        *(Fact(item.condition, item.label, item.span) for item in outline.requirements),
-        *(Fact(item.node, item.label, item.span, built_in=True) for item in outline.built_in),
+        *(Fact(item.condition, item.label, item.span, False, item.filename) for item in outline.requirements),
+        *(Fact(item.node, item.label, item.span, True, item.filename) for item in outline.built_in),
     ]
 
 

@@ -488,6 +488,37 @@ def test_deep_checks_name_files_as_they_were_given(folder: Any, monkeypatch: pyt
     assert "which the language requires" in found.message
 
 
+def test_deep_checks_tell_what_is_wrong_with_requirements_of_modules_in_their_files(folder: Any) -> None:
+    """Those that never hold, that always do, and that contradict others; what is marked in another file has its name."""
+    folder.write(
+        part="x = Range(0, 1)\n\n\n\nrequire x > 0.5\nrequire x > -1\n",
+        never="x = Range(0, 1)\nrequire x > 2\n",
+        main="from part import x\nego = new Object\nrequire x < 0.3\n",
+        other="import never\nego = new Object\nrequire ego.x > 3\n",
+    )
+    files = {name: str(folder.path / f"{name}.scenic") for name in ("part", "never", "main", "other")}
+
+    def told(name: str) -> list[Any]:
+        return [
+            (
+                item.code,
+                item.filename,
+                item.span and item.span.line,
+                [(label.span.line, label.filename) for label in item.labels],
+            )
+            for item in deep_check(files[name])
+        ]
+
+    assert told("main") == [
+        ("SC700", files["part"], 5, [(3, files["main"])]),
+        ("SC701", files["part"], 6, []),
+    ]
+    assert told("other") == [
+        ("SC700", files["never"], 2, [(1, None)]),
+        ("SC700", files["other"], 3, []),
+    ]
+
+
 def test_where_an_exception_was_raised_is_shown_beside_the_line_that_led_there(folder: Any) -> None:
     """In another line, or in another file at the same one; not within the statement itself, of however many lines."""
     (folder.path / "plain.py").write_text("def fail(v):\n    raise KeyError(v)\n")

@@ -17,7 +17,7 @@ _MEND: Final = "no scene can meet all of the marked places; change one of them"
 def prove(graph: Graph, conditions: Sequence[Fact]) -> tuple[Diagnostic, ...]:
     """Contradictions among the conditions (SC700) and conditions that always hold (SC701). Never samples.
 
-    Each diagnostic lacks the file's name, which the caller knows.
+    A diagnostic lacks the file's name where that of its condition is not known.
     """
     if not conditions:
         return ()
@@ -61,19 +61,26 @@ def _contradiction(item: Contradiction, verdict: Verdict) -> Diagnostic:
         message = f"{subject} cannot hold for any value of what it depends on"
     else:
         message = f"{subject} can never hold"
-    labels = [Label(other.span, "while this is required") for other in others if other.span is not None]
+    labels = [
+        Label(
+            other.span, "while this is required", other.filename if other.filename != last.filename else None
+        )
+        for other in others
+        if other.span is not None
+    ]
     phrases: dict[Span, tuple[str, list[str]]] = {}
     for support in item.supports:
         if isinstance(support.node.span, Span):
             noun, phrase = _words(support, verdict)
             phrases.setdefault(support.node.span, (noun, []))[1].append(phrase)
     labels += [Label(span, f"{noun} {' and '.join(parts)}") for span, (noun, parts) in phrases.items()]
-    labels.sort(key=lambda label: label.span)
+    labels.sort(key=lambda label: (label.filename or "", label.span))
     return Diagnostic(
         "SC700",
         message,
         last.span,
         Severity.ERROR,
+        last.filename,
         help=_MEND if labels else "no scene can meet it; change or remove it",
         labels=tuple(labels),
     )
@@ -115,5 +122,6 @@ def _tautology(condition: Fact) -> Diagnostic:
         "this requirement always holds",
         condition.span,
         Severity.WARNING,
+        condition.filename,
         help="it rejects no scene; remove it, or check that it says what it should",
     )

@@ -254,3 +254,22 @@ def test_what_a_contradiction_rests_on_is_told_in_words(draw, name, border, word
     (found,) = report((make(name, draw, border), line(2)))
     assert (1, words) in told(found)[2]
     assert len(found.labels) == 1
+
+
+def test_places_in_other_files_are_told_with_them():
+    x = uniform(0, 10)
+    high, low = make("greater", x, 6), make("less", x, 3)
+    for first, last, marked in (
+        ("a", "b", "a"),
+        ("a", "a", None),
+        (None, None, None),
+        ("a", None, "a"),
+        (None, "b", None),
+    ):
+        facts = [Fact(high, "", line(2), filename=first), Fact(low, "", line(3), filename=last)]
+        (found,) = prove(Graph([high, low]), facts)
+        assert found.filename == last
+        assert [label.filename for label in found.labels] == [marked]
+    always = Fact(make("greater", x, -1), "", line(2), filename="a")
+    (found,) = prove(Graph([always.node]), [always])
+    assert found.filename == "a"

@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 
 from graph.programs import CASES, I, Q, S, V, case_node, draw, evaluate, is_fine, kind_of, source
+from scenic.analysis.terms import SolverTerms
+from scenic.graph.bounds import Bounds
 from scenic.graph.operations import TABLE
 
 GOLDEN = Path(__file__).parent / "data" / "table.json"
@@ -255,3 +257,27 @@ def test_what_python_does_not_define_is_not_computed_at_once(name):
             assert TABLE[name].scalar(None, *rows) is NotImplemented, kinds
             refused += 1
     assert refused
+
+
+PARTLY_DEFINED = {
+    **REFUSING,
+    **dict.fromkeys(("floor divide", "modulo", "power", "minimum", "maximum"), 2),
+    **dict.fromkeys(("positive", "absolute", "round", "int", "float"), 1),
+}
+
+
+@pytest.mark.parametrize("name", PARTLY_DEFINED)
+def test_nothing_is_known_of_what_python_does_not_define(name):
+    """Neither bounds nor the solver take a vector or an orientation for something else; where it is defined, both say something."""
+    terms = SolverTerms()
+    for kinds in itertools.product((S, V, Q), repeat=PARTLY_DEFINED[name]):
+        rows = [np.array([SAMPLES[kind]], dtype=float) for kind in kinds]
+        known = TABLE[name].bounds(None, *(Bounds(row, row) for row in rows))
+        parts = [
+            tuple(map(terms.real, row[0].tolist())) if row.ndim > 1 else terms.real(row[0]) for row in rows
+        ]
+        kind = TABLE[name].kind([source(kind, [SAMPLES[kind]]) for kind in kinds], None)
+        defined = set(kinds) == {S} or (kind is V and Q not in kinds)
+        assert (known is not None) is defined, kinds
+        if defined or name != "float":  # the kind of a float is a number whatever Python makes of its operand
+            assert (TABLE[name].solver(terms, None, *parts) is not None) is defined, kinds
