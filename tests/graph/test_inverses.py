@@ -189,3 +189,13 @@ def test_rotations_are_equal_up_to_the_sign_of_their_quaternions():
                 met = old if part is None else old.meet(part)
                 assert (met.lower == old.lower).all()
                 assert (met.upper == old.upper).all()
+
+
+@pytest.mark.parametrize("name", ["minimum", "maximum"])
+@pytest.mark.parametrize("wild", [(4, math.inf), (-math.inf, 4), FREE])
+def test_an_extreme_says_nothing_where_a_number_may_be_none(name, wild):
+    """NaN is passed over, or is the result, by where it stands: no operand is known by it."""
+    for others in ([(0, 10)], [(0, 10), (2, 9)], [(0, 10), wild]):
+        for place in range(len(others) + 1):
+            operands = [*others[:place], wild, *others[place:]]
+            assert narrowed(name, (3, 5), *operands) == operands
