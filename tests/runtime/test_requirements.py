@@ -788,3 +788,17 @@ def test_instances_that_code_gives_back_are_compared_as_themselves(left: str, ri
 )
 def test_and_and_or_within_expressions_give_their_operands(condition: str, left: set[int]) -> None:
     assert set(draws(f"n = DiscreteRange(0, 2)\nrequire {condition}\nparam x = n\n", n=20)) == left
+
+
+@pytest.mark.parametrize("ego", ["", "ego = a\n", "ego = new Object at (50, 50)\n"])
+def test_what_a_program_makes_later_stands_in_the_way_of_a_look(ego: str) -> None:
+    """Whether there is an ego or not; and whether it is certain to stand there, or in half of the scenes."""
+    text = (
+        "x = Range(-1, 1)\na = new Object at (0, 0)\nb = new Object at (0, 10)\n{ego}require {condition}\nparam x = x\n"
+        "wall = new Object at ({place}, 5), with width 30, with height 30, with length 0.1\n"
+    )
+    assert scenario(text.format(ego=ego, condition="not (a can see b)", place="0")).sample(2, seed=1)
+    with pytest.raises(RejectionException):
+        scenario(text.format(ego=ego, condition="a can see b", place="0")).sample(1, seed=1)
+    places = draws(text.format(ego=ego, condition="a can see b", place="max(0, 500 * x)"), n=6)
+    assert (np.array(places) > 0).all()
