@@ -1,5 +1,6 @@
 """Interval arithmetic: outward rounding, infinities, and the promise that finite bounds exclude NaN."""
 
+import itertools
 import math
 from fractions import Fraction
 
@@ -8,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from graph.readings import Case, bounds_of, values_of
+from graph.readings import CASES, Case, bounds_of, values_of
 from scenic.graph import intervals
 from scenic.graph.bounds import Bounds, outward
 from scenic.graph.kinds import Kind
@@ -175,3 +176,43 @@ def test_of_no_possible_option_nothing_is_known():
     for order in (mixed, mixed[::-1]):  # a number or a vector
         assert hull_of_possible(order, [np.array([True])] * 2) is None
         assert hull_of_possible(order, [np.array([True]), np.array([False])]) is not None
+
+
+UNTOLD = {"from euler", "from yaw", "compose", "inverse", "quaternion", "euler"}
+"""Of turns that are none, their bounds do not tell: who asks for that looks at the angles."""
+POINTS = {Kind.SCALAR: 0.5, Kind.VECTOR: (1.0, -2.0, 0.5), Kind.ORIENTATION: (0.6, 0.0, 0.0, 0.8)}
+
+
+@pytest.mark.parametrize(
+    "case",
+    [
+        case
+        for case in CASES
+        if TABLE[case.name].bounds is not None
+        and case.name not in UNTOLD
+        and set(case.operands) <= POINTS.keys()
+    ],
+    ids=str,
+)
+def test_where_nan_goes_in_no_bounds_are_finite(case):
+    """Each component of each operand by itself: a result that it makes NaN may be anything."""
+    rows = [np.atleast_1d(np.array(POINTS[part])) for part in case.operands]
+    for operand, place, (low, high) in itertools.product(range(len(rows)), range(4), WILD):
+        if case.operands[operand] is Kind.ORIENTATION or place >= len(rows[operand]):
+            continue
+        columns = [row[np.newaxis].copy() for row in rows]
+        columns[operand][0, place] = math.nan
+        ends = [[row.copy(), row.copy()] for row in rows]
+        ends[operand][0][place], ends[operand][1][place] = low, high
+        scalars = [part is Kind.SCALAR for part in case.operands]
+        columns = [column[:, 0] if flat else column for column, flat in zip(columns, scalars, strict=True)]
+        boxes = [
+            (low_[0], high_[0]) if flat else (low_, high_)
+            for (low_, high_), flat in zip(ends, scalars, strict=True)
+        ]
+        with np.errstate(all="ignore"):
+            values, fine = values_of(case, columns)
+        lower, upper = bounds_of(case, columns, boxes)
+        if fine[0]:
+            nowhere = np.isnan(values[0])
+            assert not (nowhere & np.isfinite(lower) & np.isfinite(upper)).any(), (operand, place)
