@@ -9,6 +9,7 @@ import pytest
 
 import scenic
 from scenic.language.errors import InvalidScenarioError, Located, ScenarioChoiceError, ScenicSyntaxError
+from scenic.language.spans import Span
 from scenic.pipeline import deep_check, diagnose
 
 
@@ -199,6 +200,14 @@ def test_errors_in_modules_have_their_file(folder: Any) -> None:
         folder.load()
     assert caught.value.filename == str(folder.path / "parts.scenic")
     assert caught.value.line == 2
+    # Only the specifier is meant; and the text that was given is not that of the file.
+    assert caught.value.span == Span(2, 17, 2, 29)
+    assert caught.value.program is None
+    text = "y = 1\nego = new Object with width 0\n"
+    folder.write(alone=text)
+    with pytest.raises(Located) as caught:
+        folder.load("alone")
+    assert (caught.value.span, caught.value.program) == (Span(2, 17, 2, 29), text)
     folder.write(parts="x = = 1\n")
     with pytest.raises(ScenicSyntaxError) as syntax:
         folder.load()
