@@ -582,9 +582,12 @@ def test_a_program_may_be_loaded_while_another_one_is() -> None:
         "import scenic\nx = Range(0, 1)\nnew Object at (x, 0)\n"
         "inner = scenic.scenarioFromString('new Object\\nnew Object at (5, 5)\\nparam p = 1')\n"
         "y = Range(5, 6)\nnew Object at (0, y)\nparam q = len(inner.objects)\n"
+        "@distributionFunction\ndef twice(v): return 2 * v\nparam twice = twice(y), place = localPath('x').name\n"
+        "class Post:\n    height: y\nparam post = (new Post at (50, 50)).height\n"
     )
     program = scenic.scenarioFromString(text)
-    assert len(program.objects) == 2
-    assert dict(program.params) == {"q": 2}
+    assert len(program.objects) == 3
     (scene,) = program.sample(1, seed=1)
-    assert 5 <= scene.objects[1].y <= 6
+    y = scene.objects[1].y
+    assert 5 <= y <= 6
+    assert scene.params == {"q": 2, "twice": 2 * y, "place": "x", "post": y}
