@@ -18,10 +18,10 @@ from scenic.runtime.geometry.visibility.hits import exact_first, place
 from scenic.runtime.geometry.visibility.obstacles import Obstacles, Occluder
 from scenic.runtime.geometry.visibility.points import sees_points
 from scenic.runtime.geometry.visibility.views import Extents, Views
-from tests.runtime.geometry.samples import bumpy, table
+from tests.runtime.geometry.samples import bumpy, random_poses, table
 from tests.runtime.geometry.visibility import reference
 from tests.runtime.geometry.visibility.reference import Rotation
-from tests.runtime.geometry.visibility.test_bodies import BOX, FRAME, fixed, scenes
+from tests.runtime.geometry.visibility.test_bodies import BOX, CONE, FRAME, fixed, scenes
 
 EVERYWHERE = Extents(np.array([[-np.pi, np.pi]]), np.array([True]), np.array([[-np.pi / 2, np.pi / 2]]))
 
@@ -390,3 +390,57 @@ def test_thousands_of_rays_are_each_decided_as_among_few(mesh: Mesh) -> None:
         alone = exact_first(mesh, origins[some], directions[some], near[some])
         np.testing.assert_array_equal(together[some], alone)
     assert 0.2 < np.isfinite(together).mean() < 0.8
+
+
+@pytest.mark.parametrize("exact", [False, True])
+def test_what_rays_of_many_lanes_meet_is_what_each_meets_alone(exact: bool) -> None:
+    """Of bodies of several shapes, from outside and from within; some lanes of many, in any order."""
+    rng, lanes, rays = np.random.default_rng(21), 40, 20
+    meshes = (BOX, CONE, FRAME, bumpy(1))
+
+    def some(spread: float) -> Body:
+        poses = random_poses(lanes, int(rng.integers(1000)), spread=spread, sizes=(0.5, 2.5))
+        return Body(meshes, rng.integers(0, len(meshes), lanes), poses)
+
+    bodies = [some(1.5) for _ in range(3)]
+    turns = random_poses(lanes, 22).orientation
+    camera = rng.uniform(-2, 2, (lanes, 3))
+    camera[::3] = bodies[0].poses.position[::3]
+    observers = dataclasses.replace(Views.fixed((0, 0, 0)).spread(lanes), camera=camera, orientation=turns)
+    chosen = rng.permutation(lanes)[:14]
+    looking = observers.take(chosen)
+    lane = np.repeat(np.arange(len(chosen)), rays)
+    directions = rng.normal(size=(len(lane), 3)) * rng.uniform(0.1, 3, (len(lane), 1))
+    # Some along the sides of the first body.
+    owner = chosen[lane[::4]]
+    number = np.arange(len(owner))
+    sides = bodies[0].poses.matrix[owner][number, :, number % 3]
+    directions[::4] = Rotation.from_quat(turns[owner]).inv().apply(sides)
+    world = Rotation.from_quat(turns[chosen[lane]]).apply(directions)
+    met = np.array(
+        [
+            np.concatenate(
+                [
+                    reference.first_hits(camera[number], ways, reference.triangles(body, number))
+                    for number, ways in zip(chosen, world.reshape(-1, rays, 3), strict=True)
+                ]
+            )
+            for body in bodies
+        ]
+    )
+    assert 0.1 < np.isfinite(met).mean() < 0.9
+    for body, expected in zip(bodies, met, strict=True):
+        found = place(body, looking, chosen).first(lane, directions, exact=exact)
+        np.testing.assert_allclose(found, expected, rtol=1e-9, atol=1e-12)
+    active = [np.ones(1, dtype=bool), rng.random(lanes) < 0.5, rng.random(lanes) < 0.5]
+    occluders = [Occluder(body, where) for body, where in zip(bodies, active, strict=True)]
+    count = len(chosen)
+    obstacles = Obstacles(occluders, looking, chosen, np.zeros((count, 3)), np.full(count, 50.0))
+    limits = rng.uniform(0.05, 3, len(lane))
+    hides = np.array([np.broadcast_to(where, (lanes,))[chosen[lane]] for where in active])
+    expected = ((met <= limits) & hides).any(axis=0)
+    np.testing.assert_array_equal(obstacles.block(lane, directions, limits, exact=exact), expected)
+    # Asked in another order, and of a part of the rays.
+    part = rng.permutation(len(lane))[: len(lane) // 2]
+    found = obstacles.block(lane[part], directions[part], limits[part], exact=exact)
+    np.testing.assert_array_equal(found, expected[part])
