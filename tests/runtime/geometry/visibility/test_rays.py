@@ -12,11 +12,12 @@ from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.poses import Floats, Poses
 from scenic.runtime.geometry.visibility import hits
-from scenic.runtime.geometry.visibility.bodies import sees_bodies
+from scenic.runtime.geometry.visibility.bodies import inside_body, sees_bodies
 from scenic.runtime.geometry.visibility.grid import rows_towards
 from scenic.runtime.geometry.visibility.hits import exact_first, place
 from scenic.runtime.geometry.visibility.obstacles import Obstacles, Occluder
 from scenic.runtime.geometry.visibility.points import sees_points
+from scenic.runtime.geometry.visibility.proofs import shadowed
 from scenic.runtime.geometry.visibility.views import Extents, Views
 from tests.runtime.geometry.samples import bumpy, random_poses, table
 from tests.runtime.geometry.visibility import reference
@@ -444,3 +445,47 @@ def test_what_rays_of_many_lanes_meet_is_what_each_meets_alone(exact: bool) -> N
     part = rng.permutation(len(lane))[: len(lane) // 2]
     found = obstacles.block(lane[part], directions[part], limits[part], exact=exact)
     np.testing.assert_array_equal(found, expected[part])
+
+
+def test_what_hides_bundles_of_rays_is_met_by_all_of_them_from_outside() -> None:
+    """By a convex body exactly then, by others then at the most; in each lane by the body of that lane."""
+    rng, lanes, rays = np.random.default_rng(31), 90, 4
+    meshes = (BOX, CONE, FRAME, table())
+    poses = random_poses(lanes, 32, spread=1.0, sizes=(0.6, 2.5))
+    body = Body(meshes, rng.integers(0, len(meshes), lanes), poses)
+    camera = rng.uniform(-2.5, 2.5, (lanes, 3))
+    camera[::5] = poses.position[::5] + 0.1
+    turns = random_poses(lanes, 33).orientation
+    observers = dataclasses.replace(Views.fixed((0, 0, 0)).spread(lanes), camera=camera, orientation=turns)
+    order = rng.permutation(lanes)[:70]
+    placed = place(body, observers.take(order), order)
+    asked = rng.permutation(len(order))[:50]
+    owner = np.repeat(order[asked], rays)
+    ways = poses.position[owner] - camera[owner] + rng.normal(size=(len(owner), 3)) * 0.2
+    directions = Rotation.from_quat(turns[owner]).inv().apply(ways)
+    limits = rng.choice([0.5, 1.0, 2.0], (len(asked), 1)) * np.ones(rays)
+    met = placed.first(np.repeat(asked, rays), directions, exact=True).reshape(-1, rays)
+    outside = ~inside_body(placed)[asked]
+    convex = np.array([mesh.is_convex for mesh in meshes])[body.choice[order[asked]]]
+    all_met = (met <= limits).all(axis=1) & outside
+    found = shadowed(placed, asked, directions.reshape(-1, rays, 3), limits)
+    np.testing.assert_array_equal(found[convex], all_met[convex])
+    assert not (found & ~all_met).any()
+    assert found[~convex].any()
+    assert 5 < (all_met & convex).sum() < convex.sum()
+    assert (~outside).sum() > 3
+
+
+def test_a_frame_before_all_corners_of_a_body_does_not_hide_it() -> None:
+    """Nor when its middle is hidden by something little."""
+    observer = Views.fixed((0, 0, 0), angles=(1.2, 1.2), count=(41, 41))
+    target = fixed((0, 3.2, 0), (1.8, 0.1, 1.8))
+    frame = Body((FRAME,), None, Poses.fixed((0, 3, 0), (0, 0, 0, 1), (2, 0.1, 2)))
+    whole, little = fixed((0, 3, 0), (2, 0.1, 2)), fixed((0, 2, 0), (0.1, 0.1, 0.1))
+    for occluders, seen in (
+        ((frame,), True),
+        ((frame, little), True),
+        ((little, frame), True),
+        ((whole,), False),
+    ):
+        assert sees(observer, target, *occluders) is seen
