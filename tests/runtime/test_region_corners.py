@@ -807,3 +807,15 @@ def test_dimensions_of_combinations() -> None:
                 dimensions = [region.dimension for region in (one, other, third)]
                 assert IntersectionRegion(one, other, third).dimension == min(dimensions)
                 assert UnionRegion(one, other, third).dimension == max(dimensions)
+
+
+def test_what_is_just_as_far_as_the_tolerance_counts() -> None:
+    cube = trimesh.creation.box((2, 2, 2))
+    for region in (
+        named.MeshVolumeRegion(cube, tolerance=0.25),
+        named.MeshSurfaceRegion(cube, tolerance=0.25),
+        named.PointSetRegion("p", [(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0)], tolerance=0.25),
+    ):
+        for way in (Vector(1, 0, 0), Vector(-1, 0, 0), Vector(0, 1, 0), Vector(0, -1, 0)):
+            assert region.containsPoint(way * 1.25) is True
+            assert region.containsPoint(way * 1.2500001) is False
