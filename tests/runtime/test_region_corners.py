@@ -819,3 +819,31 @@ def test_what_is_just_as_far_as_the_tolerance_counts() -> None:
         for way in (Vector(1, 0, 0), Vector(-1, 0, 0), Vector(0, 1, 0), Vector(0, -1, 0)):
             assert region.containsPoint(way * 1.25) is True
             assert region.containsPoint(way * 1.2500001) is False
+
+
+@pytest.mark.parametrize("kind", [IntersectionRegion, UnionRegion, DifferenceRegion])
+def test_points_that_are_hard_to_find_do_not_depend_on_how_many_are_looked_for(kind: type) -> None:
+    """Many attempts of few lanes are looked at together, one of each where there are many."""
+    region = kind(named.RectangularRegion((0, 0), 0, 4, 4), named.RectangularRegion((1, 1), 0, 3, 3))
+    rng, count = np.random.default_rng(5), 6000
+    numbers, keys = (
+        rng.random((region.draws, count)),
+        rng.integers(0, 1 << 62, count).astype(np.uint64),
+    )
+    columns = region.fixed_columns("a test")
+    points, _ = region.draw_points(numbers, keys, *columns)
+    few = slice(100, 160)
+    alone, _ = region.draw_points(numbers[:, few], keys[few], *columns)
+    np.testing.assert_array_equal(alone, points[few])
+
+
+def test_combinations_without_a_direction_give_none() -> None:
+    """Even if a member has one."""
+    oriented = named.BoxRegion(orientation=VectorField("f", lambda place: place.x))
+    plain, place = named.SpheroidRegion(), Vector(0.1, 0.2, 0.3)
+    for region in (
+        *(UnionRegion(oriented, plain), UnionRegion(plain, oriented), DifferenceRegion(plain, oriented)),
+        IntersectionRegion(plain, plain),
+    ):
+        assert region.has_orientation is False
+        assert region.orientation_at(place) is None
