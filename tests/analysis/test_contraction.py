@@ -537,3 +537,18 @@ def test_what_moves_by_a_third_each_time_goes_on():
     network = contraction._Network(Graph([item.node for item in items]), items)
     boxes = network.contract(contraction._Boxes(np.zeros((1, 2)), np.ones((1, 2))))
     assert boxes.upper.max() < 1e-3
+
+
+@pytest.mark.parametrize("idle", [0, contraction.SPLIT_AXES])
+def test_a_contradiction_of_many_rounds_is_found_whatever_stands_still_beside_it(idle):
+    """Each round takes a little of two axes; those of other draws below the same condition do not move at all."""
+    x, y = uniform(0, 1), uniform(0, 1)
+    still = [make("multiply", uniform(0, 1), 1e-4) for _ in range(idle)]
+    shift = 0.02
+    for each in still:
+        shift = make("add", each, shift)
+    items = [
+        Fact(make("less", make("add", x, shift), y), "first"),
+        Fact(make("less", make("add", y, shift), x), "second"),
+    ]
+    assert contract(Graph([item.node for item in items]), items).impossible

@@ -2,7 +2,7 @@
 
 import pytest
 
-from tests.runtime.programs import draws, failure, params, place
+from tests.runtime.programs import draws, failure, params, place, scenario
 
 CONVERSIONS = [
     ("int(Uniform('10', '10'), 16)", 16),
@@ -80,3 +80,17 @@ def test_numbers_of_numpy_are_known_before_anything_is_drawn() -> None:
     for number in ("numpy.float32(0.5)", "numpy.int16(1)", "numpy.bool_(True)"):
         text = f"import numpy\nx = Range(0, {number})\nrequire x > 2\n"
         assert "the requirements cannot hold together" in str(failure(text))
+
+
+@pytest.mark.parametrize("kind", ["float16", "float32", "float64", "int8", "int64", "uint16"])
+def test_numbers_of_numpy_of_every_width_are_numbers(kind: str) -> None:
+    """As sizes, coordinates, headings and in arithmetic, whether something random stands beside them or not."""
+    text = (
+        f"import numpy as np\nn = np.array([2], dtype=np.{kind})[0]\nx = Range(1, 1)\n"
+        "ego = new Object at (n, n * x), facing n, with width n, with length n * x\nparam x = (n @ n, n + x, max(n, x), round(n))"
+    )
+    (only,) = scenario(text).sample(1, seed=0)
+    ego = only.egoObject
+    assert (ego.x, ego.y, ego.width, ego.length) == (2, 2, 2, 2)
+    assert ego.heading == pytest.approx(2)
+    assert only.params["x"] == ((2, 2, 0), 3, 2, 2)

@@ -164,9 +164,12 @@ def test_polygonal_fields_reject_where_they_have_no_direction() -> None:
 
 
 def test_polygonal_fields_are_followed_over_arrays() -> None:
-    text = CELLS + "s = (Range(4, 16), 2)\np = follow F from s for 1.5\nparam x = (s[0], p.position)"
-    for x, end in draws(text, n=50):
-        np.testing.assert_allclose(tuple(end), follow(heading_of_cells, (x, 2, 0), 1.5), atol=1e-9)
+    """Where they are followed from stays where it is."""
+    text = CELLS + "s = Vector(Range(4, 16), 2)\np = follow F from s for 1.5\nparam x = (p.position, s)"
+    for end, start in draws(text, n=50):
+        assert start == (start.x, 2, 0)
+        assert 4 < start.x < 16
+        np.testing.assert_allclose(tuple(end), follow(heading_of_cells, tuple(start), 1.5), atol=1e-9)
 
 
 @pytest.mark.parametrize("distance", ["8", "Range(8, 8)", "Uniform(8, 4)"])

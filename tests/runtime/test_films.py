@@ -142,3 +142,14 @@ def test_a_film_of_one_image_is_seen_for_a_step(tmp_path: Path) -> None:
     film.save()
     _, pace, shown = frames(tmp_path / "film.mp4")
     assert (pace, len(shown)) == (4, 1)
+
+
+@pytest.mark.skipif(importlib.util.find_spec("imageio_ffmpeg") is None, reason="needs the extra [video]")
+def test_a_film_that_begins_late_plays_as_fast_as_others(tmp_path: Path) -> None:
+    """How long an image is seen is the time between images, not the time of the first or the second."""
+    film = Film(tmp_path / "film.mp4", 0.05)
+    for step in (7, 9, 11):
+        film.add(step, np.zeros((64, 96), dtype=np.uint8))
+    film.save()
+    _, pace, shown = frames(tmp_path / "film.mp4")
+    assert (pace, len(shown)) == (10, 3)

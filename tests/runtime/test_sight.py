@@ -240,6 +240,10 @@ def test_what_cannot_be_proved_to_be_seen_is_not_certainly_seen() -> None:
             "ego = new Object at (Range(0, 1), 0)\nrequire [ego.x, 3][0 if ego.x < 2 else 1] < 9\nx = ego can see (1, 2)",
             "cannot be used while the program runs",
         ),
+        (
+            "ego = new Object\nn = DiscreteRange(1, 4)\nrequire n in [1, 2]\nx = ego can see (1, 2)",
+            "cannot be used while the program runs",
+        ),
         ("ego = new Object\nnew Object not visible", "needs to know where"),
         ("ego = new Object\nnew Object at (0, 90, 0), visible", "cannot be seen from the Object"),
         ("ego = new Object\nnew Object at (0, 9, 0), not visible", "always seen"),
