@@ -272,6 +272,17 @@ def test_what_the_program_gives_can_be_told_alone(folder: Path) -> None:
             assert len(other["properties"]) > 20
 
 
+def test_what_classes_of_the_program_say_is_told_with_what_it_gives(folder: Path) -> None:
+    """Not what they inherit; whether an object, too, says something of the property or not."""
+    text = "class A:\n    speed: 3\n    colour: 2\n    visibleDistance: Range(1, 2)\nclass B(A):\n    cameraOffset: (1, 2, 3)\nego = new B with speed 4\nnew A at (9, 9)\n"
+    (folder / "classes.scenic").write_text(text)
+    shown = run_here(["sample", "classes.scenic", "--seed", 1, "--properties", "changed"], folder=folder)
+    first, second = json.loads(shown.stdout)["objects"]
+    own = {"speed", "colour", "visibleDistance"}
+    assert {*first["properties"]} & {*own, "cameraOffset", "viewAngles"} == {*own, "cameraOffset"}
+    assert {*second["properties"]} & {*own, "cameraOffset", "viewAngles"} == own
+
+
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="the system has no full device")
 def test_a_full_output_is_told(folder: Path) -> None:
     with Path("/dev/full").open("wb") as full:

@@ -991,7 +991,18 @@ def test_sides_alone_bound_no_volume() -> None:
 
 
 @pytest.mark.parametrize(
-    "thresholds", ["3", "((0, 1), (0, 1))", "((0, 1), (0, 1), (0, 'a'))", "(0, 1, 2)", "None"]
+    "thresholds",
+    [
+        "3",
+        "((0, 1), (0, 1))",
+        "((0, 1), (0, 1), (0, 'a'))",
+        "(0, 1, 2)",
+        "None",
+        "((0, 1, 2), (0, 1), (0, 1))",
+        "((0, 1), (0, 1), (0,))",
+        "('ab', 'ab', 'ab')",
+        "((0, 1), (0, 1), (0, 1), (0, 1))",
+    ],
 )
 def test_thresholds_of_sides_are_three_pairs(thresholds: str) -> None:
     error = failure(
@@ -1122,3 +1133,53 @@ def test_paths_hold_what_is_within_their_tolerance_and_lines_what_is_on_them() -
         for share, held in ((0.9, True), (1.1, False)):
             for away in (Vector(1, share * tolerance, 0), Vector(4 + share * tolerance, 0, 0)):
                 assert region.containsPoint(away) is held
+
+
+@pytest.mark.parametrize(
+    "region",
+    [
+        "PolygonalRegion([(0, 0), (10, 0), (10, 10), (0, 10)], orientation=f)",
+        "BoxRegion(dimensions=(20, 20, 20), orientation=f)",
+    ],
+)
+def test_a_workspace_has_the_field_of_its_region(region: str) -> None:
+    """However deep it is nested; one of a region without a field has none."""
+    text = f"f = VectorField('f', lambda place: 0.5)\nr = {region}\nworkspace = Workspace(Workspace(r))\n"
+    facing = "ego = new Object at (3, 3, 0), facing workspace.orientation\n"
+    found = params(
+        text
+        + facing
+        + "p = new OrientedPoint in workspace\nparam x = (ego.heading, p.heading, workspace.orientation is f)"
+    )["x"]
+    assert found == pytest.approx((0.5, 0.5, True))
+    assert params(text.replace(", orientation=f", "") + "param x = workspace.orientation")["x"] is None
+
+
+@pytest.mark.parametrize("name", [name for name in named.__all__ if name.endswith("Region")])
+def test_instances_of_regions_are_none_of_the_classes_that_a_program_derives(name: str) -> None:
+    """Though some count as of a class that they do not derive from, such as a disc as a polygon."""
+    cls = getattr(named, name)
+    mine = type("Mine", (cls,), {})
+    made = [
+        named.CircularRegion((0, 0), 1), named.RectangularRegion((0, 0), 0, 1, 2), named.SectorRegion((0, 0), 1, 0, 1), named.everywhere,
+        named.PolygonalRegion([(0, 0), (1, 0), (0, 1)]), named.BoxRegion(), named.SpheroidRegion(), named.PolylineRegion([(0, 0), (1, 1)]),
+        thing("ego = new Object").occupiedSpace, named.nowhere,
+    ]  # fmt: skip
+    assert not any(isinstance(region, mine) for region in made)
+    assert any(isinstance(region, named.Region) for region in made)
+
+
+@pytest.mark.parametrize(
+    "heading", ["0.5", "Orientation.fromEuler(0.5, 0.3, 0)", "ego", "Uniform(ego, 0.5)", "turn"]
+)
+def test_regions_are_turned_by_whatever_has_a_heading(heading: str) -> None:
+    text = (
+        "ego = new Object facing 0.5\nturn = Uniform(Orientation.fromEuler(0.5, 0.1, 0.2), ego)\n"
+        f"sector, oblong = SectorRegion((0, 0), 5, {heading}, 0.1), RectangularRegion((0, 0), {heading}, 0.1, 9)\n"
+        "param x = [(new Point in sector).position, (new Point in oblong).position, sector.heading, oblong.heading]\n"
+    )
+    for beam, point, first, second in draws(text, n=5):
+        assert math.atan2(-beam.x, beam.y) == pytest.approx(0.5, abs=0.051)
+        along = point.x * -math.sin(0.5) + point.y * math.cos(0.5)
+        assert math.dist((point.x, point.y), (-along * math.sin(0.5), along * math.cos(0.5))) < 0.051
+        assert (first, second) == pytest.approx((0.5, 0.5))

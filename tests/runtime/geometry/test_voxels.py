@@ -244,3 +244,18 @@ def test_points_and_boxes_are_looked_up_in_the_cells_that_they_touch(many: tuple
             for begin, end in zip(low[(slice(None), *place)], high[(slice(None), *place)], strict=True)
         ]
         assert near[place] == filled[number][np.ix_(*touched)].any()
+
+
+@pytest.mark.parametrize("axis", range(3))
+@pytest.mark.parametrize("resolution", [2, 4, 12, 32])
+def test_faces_on_the_border_of_two_cells_touch_both(axis, resolution):
+    """Rounding may put either of them on the other side; at the ends of the cube there is one."""
+    for border in {0, 1, resolution // 2, resolution - 1, resolution}:
+        place = border / resolution - 0.5
+        corners = np.array([[0.0, -0.4, -0.3], [0.0, 0.4, -0.4], [0.0, 0.1, 0.4]])
+        corners[:, 0] = place
+        cells = np.concatenate(
+            [cells for _, cells in touched_cells(np.roll(corners, axis, axis=1)[np.newaxis], resolution)]
+        )
+        layers = np.stack(np.unravel_index(cells, (resolution,) * 3))[axis]
+        assert set(layers.tolist()) == {layer for layer in (border - 1, border) if 0 <= layer < resolution}
