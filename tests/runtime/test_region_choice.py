@@ -15,7 +15,9 @@ from scenic.runtime.regions.choice import RegionChoice
 from scenic.runtime.regions.composite import DifferenceRegion, IntersectionRegion, exactly_contains
 from scenic.runtime.regions.lines import PathRegion
 from scenic.runtime.regions.planar import CircularRegion, RectangularRegion
+from scenic.runtime.regions.stacked import body_of
 from scenic.runtime.regions.volumes import BoxRegion, SpheroidRegion
+from scenic.runtime.shapes import BoxShape, ConeShape, CylinderShape
 from scenic.runtime.values import Orientation, Vector, uniform
 
 REGIONS = (
@@ -357,3 +359,28 @@ def test_what_a_choice_holds_and_what_holds_it_is_not_known_before_it_is_drawn()
     for one, other in ((region, OPTIONS[1]), (OPTIONS[1], region), (region, region)):
         with pytest.raises(ScenicTypeError, match="random"):
             one.containsRegion(other)
+
+
+def test_each_lane_has_the_body_of_its_shape() -> None:
+    """Also where others have none, because theirs is rejected or fails."""
+    text = (
+        "from scenic.core.distributions import RejectionException\nn = DiscreteRange(0, 3)\n"
+        "@distributionFunction\ndef shape(n):\n    if n == 0: raise RejectionException('no shape')\n"
+        "    return [BoxShape(), ConeShape(), CylinderShape()][n - 1]\n"
+        "ego = new Object with shape shape(n), with regionContainedIn everywhere\nspot = Vector(0.45, 0.45, 0.45)\n"
+        "rim = Vector(0.3, 0.3, 0.45)\nparam x = (n, ego.containsPoint(spot), ego.containsPoint(rim))\n"
+    )
+    seen = set(draws(text, n=60))
+    assert seen == {(1, True, True), (2, False, False), (3, False, True)}
+
+
+@pytest.mark.parametrize("missing", [(0,), (1,), (0, 2), (0, 1, 2)])
+def test_a_box_stands_in_for_a_shape_that_could_not_be_drawn(missing: tuple[int, ...]) -> None:
+    """Its lane has a fault; those beside it have their own shapes."""
+    shapes = np.array([ConeShape(), BoxShape(), CylinderShape()], dtype=object)
+    expected = [shape.mesh for shape in shapes]
+    for lane in missing:
+        shapes[lane], expected[lane] = None, primitives.box()
+    body = body_of(np.zeros((3, 3)), np.array([[0.0, 0, 0, 1]]), np.ones((1, 3)), shapes)
+    choice = np.zeros(3, dtype=int) if body.choice is None else body.choice
+    assert [body.meshes[number] for number in choice] == expected

@@ -265,6 +265,22 @@ def test_robustness_of_obligations_that_both_sides_share_is_that_of_the_definiti
         assert robustness(formula(tree), trace) == by_definition(tree, trace)[0], (tree, trace)
 
 
+def test_robustness_of_clauses_that_come_about_in_several_ways_is_the_greatest() -> None:
+    """Choices of which each parts gives numbers now and obligations for later: several pairs of them leave the same obligations."""
+    rng = random.Random(12)
+    later: list[Tree] = [("next", "a"), ("next", "b"), ("next", "c"), ("always", "c")]
+
+    def choice() -> Tree:
+        return ("or", *(("and", rng.choice(ATOMS), rng.choice(later)) for _ in range(2)))
+
+    for _ in range(600):
+        tree: Tree = (rng.choice(["and", "or"]), choice(), choice())
+        if rng.random() < 0.3:
+            tree = ("not", tree)
+        trace = [[float(rng.randrange(-3, 4)) for _ in ATOMS] for _ in range(rng.randrange(2, 4))]
+        assert robustness(formula(tree), trace) == by_definition(tree, trace)[0], (tree, trace)
+
+
 def test_what_robustness_keeps_does_not_grow() -> None:
     a, b, c = Atom(0), Atom(1), Atom(2)
     inner = Compound("until", (Compound("eventually", (a,)), Compound("always", (b,))))
