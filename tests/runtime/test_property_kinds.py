@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from scenic.language.errors import ScenicValueError
+from scenic.language.errors import ScenicTypeError, ScenicValueError
 from tests.runtime.programs import failure, params, place, scenario, thing
 
 WRONG = [
@@ -149,3 +149,12 @@ def test_drawn_numbers_may_say_whether_something_holds(truth: str) -> None:
     text = f"may = {truth}\nego = new Object with allowCollisions may\nx = Range(0, 2)\nother = new Object at (x, 0)\nparam may = may\n"
     met = [(bool(item.params["may"]), item.objects[1].x < 1) for item in scenario(text).sample(40, seed=1)]
     assert set(met) == {(True, True), (True, False), (False, False)}
+
+
+@pytest.mark.parametrize("kind", ["monitor M():\n    wait", "scenario M():\n    setup:\n        pass"])
+@pytest.mark.parametrize("value", ["M", "M()"])
+def test_only_behaviors_are_behaviors(kind: str, value: str) -> None:
+    """Not what else can be run, nor its class."""
+    error = failure(f"{kind}\nego = new Object with behavior {value}")
+    assert isinstance(error, ScenicTypeError), error
+    assert "must be a behavior" in str(error)

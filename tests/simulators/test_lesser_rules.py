@@ -21,7 +21,6 @@ from scenic.language.errors import (
     InvalidScenarioError,
     Located,
     RejectSimulationException,
-    ScenicTypeError,
     ScenicValueError,
     SerializationError,
     SimulationCreationError,
@@ -40,7 +39,6 @@ from scenic.simulators.results import Latest, NotKeptError
 from scenic.simulators.simulation import Simulation
 from scenic.simulators.simulator import Simulator
 from scenic.simulators.watching import Watch
-from tests.runtime.programs import failure
 
 from .test_interface import AGENTS, DRAWING, REJECTED, Plain, scene, simulator
 
@@ -1106,12 +1104,3 @@ def test_scenarios_are_run_once_and_actions_refused_where_they_are_taken() -> No
 
 
 SUB_WAITS = "scenario Sub():\n    setup:\n        pass\n    compose:\n        wait\n"
-
-
-@pytest.mark.parametrize("kind", ["monitor M():\n    wait", "scenario M():\n    setup:\n        pass"])
-@pytest.mark.parametrize("value", ["M", "M()"])
-def test_only_behaviors_are_behaviors(kind: str, value: str) -> None:
-    """Not what else can be run, nor its class."""
-    error = failure(f"{kind}\nego = new Object with behavior {value}")
-    assert isinstance(error, ScenicTypeError), error
-    assert "must be a behavior" in str(error)
