@@ -37,6 +37,14 @@ class Lazy:
             known[id(self)] = (self, resolve(self._compute(instance), instance))
         return known[id(self)][1]
 
+    def random_parts(self) -> list[Any]:
+        """What may be random in it, for sampling."""
+        return [self._compute]
+
+    def sampled(self, sample: Any) -> "Lazy":
+        """The same over sampled values."""
+        return Lazy(self.reads, lambda instance: sample.value(self._compute(instance)))
+
     def __getattr__(self, name: str) -> Any:
         if name.startswith("__") and name.endswith("__"):
             raise AttributeError(name)

@@ -16,6 +16,7 @@ from scenic.language.spans import Span
 from scenic.runtime.choices import per_option
 from scenic.runtime.coercions import when_drawn
 from scenic.runtime.context import current, here, warn
+from scenic.runtime.lazy import MEMO, resolve
 from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.drawn import DrawnRegion
 from scenic.runtime.shapes import Shape
@@ -102,6 +103,13 @@ class Finals:
         builtin = tuple(entry for entry in ordered if entry.definitions[0].is_builtin)
         inputs = {name for entry in builtin for name in entry.dependencies} - found.keys()
         return cls(builtin, tuple(sorted(inputs)), tuple(entry for entry in ordered if entry not in builtin))
+
+    def renew_own(self, instance: Any) -> None:
+        """Give an instance the values of the program's own ones anew."""
+        stored = instance.__dict__
+        for entry in self.own:
+            stored[entry.name] = normalised(entry.name, resolve(entry.default(instance), instance))
+        stored.pop(MEMO, None)
 
 
 def combine(chain: Sequence[Mapping[str, PropertyDefinition]]) -> dict[str, Property]:

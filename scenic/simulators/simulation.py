@@ -459,8 +459,7 @@ class Simulation(ABC):
             self._inputs[id(obj)] = inputs
             for entry in finals.builtin:
                 stored[entry.name] = entry.default(obj)
-        for entry in finals.own:
-            stored[entry.name] = entry.default(obj)
+        finals.renew_own(obj)
         self._tape.note(self, obj, names)
 
     def _checked(self, obj: Any, name: str, old: Any, value: Any) -> Any:

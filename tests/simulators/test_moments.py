@@ -371,6 +371,57 @@ scenario Sub():
     assert all(span == width + y for span, width, y in found)
 
 
+@pytest.mark.parametrize("default", ["0.25 relative to field", "bend", "(0, 0.25 relative to field)"])
+def test_dynamic_properties_of_a_program_that_depend_on_the_object_are_computed_for_it_in_each_step(
+    default: str,
+) -> None:
+    """A value may be named before: what it came to in one step is not what it is in the next."""
+    text = f"""
+field = VectorField("field", lambda place: 0.125 * place.y)
+bend = 0.25 relative to field
+class Car:
+    turned[dynamic, final]: {default}
+ego = new Car at (0, 1)
+record (ego.turned[1] if isinstance(ego.turned, tuple) else ego.turned).yaw as found
+"""
+    done = DummySimulator(drift=1).simulate(scene_of(text), maxSteps=3)
+    assert recorded(done, "found") == pytest.approx([0.25 + 0.125 * y for y in (1, 2, 3, 4)])
+
+
+def test_dynamic_properties_of_a_program_stay_of_their_kind() -> None:
+    text = """
+class Car:
+    velocity[dynamic, final]: (self.width, self.position.y)
+ego = new Car at (0, 1)
+record ego.velocity + (1, 1, 1) as found
+"""
+    done = DummySimulator(drift=1).simulate(scene_of(text), maxSteps=2)
+    assert recorded(done, "found") == [(2, 2, 1), (2, 3, 1), (2, 4, 1)]
+
+
+def test_values_that_depend_on_the_object_may_be_named_and_used_in_overrides() -> None:
+    """They are computed where the object is then, of what was drawn for the scene."""
+    text = """
+field = VectorField("field", lambda place: 0.125 * place.y)
+drawn = Range(0.25, 0.5)
+bend = drawn relative to field
+behavior Turn():
+    while True:
+        take drawn, self.first.yaw, self.again
+        override self with again bend
+ego = new Object at (0, 1), with behavior Turn, with first bend, with again None
+"""
+    done = DummySimulator(drift=1).simulate(scene_of(text), maxSteps=4)
+    assert done is not None
+    (drawn, *_, unset), *later = taken(done)
+    assert unset is None
+    assert 0.25 < drawn < 0.5
+    for y, (same, first, again) in enumerate(later, start=2):
+        assert same == drawn
+        assert first == pytest.approx(drawn + 0.125)
+        assert again.yaw == pytest.approx(drawn + 0.125 * y)
+
+
 def test_behaviors_of_two_scenarios_that_override_one_agent_take_one_turn_in_each_step() -> None:
     """Whether or not it had one before; the later one counts, and afterwards the earlier one again."""
     text = """

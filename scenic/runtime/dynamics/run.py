@@ -280,8 +280,9 @@ class Run:
     def refresh(self, obj: Any) -> None:
         """Compute again what a dynamic final property is made of."""
         finals = Finals.of(type(obj).scenic_properties)
-        for entry in (*finals.builtin, *finals.own):
+        for entry in finals.builtin:
             obj.__dict__[entry.name] = entry.default(obj)
+        finals.renew_own(obj)
 
     # The procedure
 
