@@ -1104,3 +1104,22 @@ def test_scenarios_are_run_once_and_actions_refused_where_they_are_taken() -> No
 
 
 SUB_WAITS = "scenario Sub():\n    setup:\n        pass\n    compose:\n        wait\n"
+
+
+@pytest.mark.parametrize(
+    ("condition", "told"),
+    [("always ego.y < 1.5", "is violated"), ("eventually ego.y > 9", "does not hold at the end")],
+)
+@pytest.mark.parametrize("depth", [0, 1, 2])
+def test_a_requirement_is_told_to_be_violated_or_not_to_hold_whichever_scenario_asks_for_it(
+    condition: str, told: str, depth: int
+) -> None:
+    """One that is violated within another scenario ends both while that is told."""
+    inner = f"scenario Part{depth}():\n    setup:\n        require {condition}\n"
+    outer = [f"scenario Part{n}():\n    compose:\n        do Part{n + 1}()\n" for n in range(depth)]
+    main = "scenario Main():\n    setup:\n        ego = new Object\n    compose:\n        do Part0()\n"
+    text = "".join([inner, *outer, main])
+    reasons: list[Exception] = []
+    assert DummySimulator(drift=1).simulate(scene(text), maxSteps=3, onRejection=reasons.append) is None
+    (reason,) = reasons
+    assert str(reason) == f"requirement on line 3 {told}"

@@ -71,8 +71,11 @@ class Followed:
 
     def finish(self) -> None:
         """The trace ends. Raises `RejectSimulationException` if the requirement does not hold on it."""
-        if self._monitor.verdict is not None and not self._monitor.verdict:
-            raise RejectSimulationException(f"{self._words} does not hold at the end")
+        verdict = self._monitor.verdict
+        if verdict is not None and not verdict:
+            # One that is violated ends its scenario while that is told.
+            how = "is violated" if verdict is Verdict.FALSE else "does not hold at the end"
+            raise RejectSimulationException(f"{self._words} {how}")
         self._outcome = self.outcome
         # A simulation may start very many scenarios.
         del self._monitor, self._required, self._robustness, self._run
