@@ -8,6 +8,7 @@ import pytest
 
 import scenic
 from scenic.language.errors import ScenicTypeError, ScenicValueError
+from scenic.runtime.dynamics.draws import Draw, Seeded
 from scenic.simulators.dummy import DummySimulation, DummySimulator
 from scenic.simulators.results import TerminationType
 from tests.simulators.test_simulations import scene_of, simulate, taken
@@ -93,6 +94,27 @@ def test_weights_are_numbers_from_zero_on_in_statements_as_in_distributions(
 def test_weights_may_be_true_and_tiny() -> None:
     for weights in ('Take("a"): True, Take("b"): False', 'Take("b"): 0, Take("a"): 5e-324'):
         assert taken(simulate(CHOICES.format(weights=weights), 2)) == [("a",), ("a",)]
+
+
+class Drawing(Seeded):
+    """Gives one number whatever is drawn."""
+
+    def __init__(self, number: float) -> None:
+        super().__init__(b"")
+        self._number = number
+
+    def draw(self, place: int, what: Draw) -> float:
+        return self._number
+
+
+@pytest.mark.parametrize(("number", "taken_first"), [(2.0**-53, "a"), (1 - 2.0**-53, "b")])
+def test_the_least_and_the_greatest_number_choose_the_first_and_the_last_that_may_start(
+    number: float, taken_first: str
+) -> None:
+    """Also where what is left of the greatest one after all weights is not below zero, for rounding."""
+    text = CHOICES.format(weights='Take("x"): 0, Never(): 1, Take("a"): 0.3, Take("b"): 0.7, Take("y"): 0')
+    assert (1 - 2.0**-53) * (0.3 + 0.7) - 0.3 - 0.7 == 0
+    assert taken(simulate(text, 2, source=lambda _: Drawing(number))) == [(taken_first,)] * 2
 
 
 # Durations
@@ -459,6 +481,32 @@ scenario Second():
             [alone],
         ]
         assert list(done.agents) == [done.objects[0]]
+
+
+def test_properties_go_back_to_what_the_override_found() -> None:
+    """Also if the earlier of two scenarios that run side by side stops first, as it was established."""
+    text = """
+class Box:
+    content: 1
+scenario Over(value, steps):
+    setup:
+        override ego with content value
+        override ego with content value + 0.5
+    compose:
+        wait for steps steps
+scenario Main():
+    setup:
+        ego = new Box
+        record ego.content as found
+    compose:
+        do {parts}
+        wait
+"""
+    for parts, found in (
+        ("Over(5, 2), Over(6, 3)", [6.5, 6.5, 1, 5.5, 5.5]),
+        ("Over(5, 3), Over(6, 2)", [6.5, 6.5, 5.5, 1, 1]),
+    ):
+        assert recorded(simulate(text.format(parts=parts), 4), "found") == found
 
 
 def test_a_behavior_of_an_override_acts_for_the_scenario_that_asked_for_it() -> None:

@@ -7,7 +7,6 @@ from scenic.language.errors import ScenicTypeError, SpecifierError
 from scenic.runtime.context import here
 from scenic.runtime.dynamics.activations import Activation
 from scenic.runtime.dynamics.definitions import Behavior, behavior_of
-from scenic.runtime.lazy import MEMO
 from scenic.runtime.lazy import resolve as settle
 from scenic.runtime.objects import Object
 from scenic.runtime.properties import normalised
@@ -61,7 +60,6 @@ class Overrides:
                     )
             offered = specifier.evaluate(target)
             values.update((name, normalised(name, settle(offered[name], target))) for name in step.names)
-        known.pop(MEMO, None)
         for name, value in values.items():
             self._set(target, name, value)
         self._run.refresh(target)

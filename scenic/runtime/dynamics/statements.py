@@ -111,7 +111,6 @@ def do(owner: Running, targets: Sequence[Any], limit: Any = None, unit: str | No
             yield output
             if stop is not None and stop():
                 break
-        owner.direct = True
     finally:
         for sub in started:
             sub.stop()
@@ -125,7 +124,6 @@ def wait(owner: Running, limit: Any, unit: str) -> Steps:
     while not stop():
         owner.direct = False
         yield ()
-    owner.direct = True
     owner.check_invariants()
 
 
