@@ -1123,3 +1123,127 @@ def test_a_requirement_is_told_to_be_violated_or_not_to_hold_whichever_scenario_
     assert DummySimulator(drift=1).simulate(scene(text), maxSteps=3, onRejection=reasons.append) is None
     (reason,) = reasons
     assert str(reason) == f"requirement on line 3 {told}"
+
+
+@pytest.mark.parametrize("order", [1, -1])
+def test_agents_see_what_others_have_done_in_this_step_alone(order: int) -> None:
+    """Those that decide earlier see nothing of the step before, and neither does anybody of one that has ended."""
+    text = """
+behavior Tell(name, steps):
+    for i in range(steps):
+        take name, tuple(other.lastActions[:1] for other in simulation().objects)
+ego = new Object with behavior Tell("a", 3)
+new Object at (5, 0), with behavior Tell("b", 3)
+new Object at (9, 0), with behavior Tell("c", 1)
+record tuple(other.lastActions[:1] for other in simulation().objects) as after
+"""
+
+    class Ordered(Plain):
+        def scheduleForAgents(self) -> Sequence[Any]:
+            return self.agents[::order]
+
+    done = simulator(Ordered).simulate(scene(text), maxSteps=3)
+    assert done is not None
+    assert done.result is not None
+    seen = [[actions[1] for actions in step.values() if actions] for step in done.result.actions]
+    a, b, c, none = ("a",), ("b",), ("c",), ()
+    if order == 1:
+        assert seen == [
+            [(none, none, none), (a, none, none), (a, b, none)],
+            *[[(none, none, none), (a, none, none)]] * 2,
+        ]
+    else:
+        assert seen == [
+            [(none, b, c), (none, none, c), (none, none, none)],
+            *[[(none, b, none), (none, none, none)]] * 2,
+        ]
+    after = [value for _, value in done.result.records["after"]]
+    assert after == [(none, none, none), (a, b, c), (a, b, none), (a, b, none)]
+
+
+CLEANED = """
+behavior B(name):
+    try:
+        while True:
+            wait
+    finally:
+        print(name)
+behavior End():
+    wait
+    wait
+    {end}
+scenario Main():
+    setup:
+        ego = new Object with behavior B("ego")
+        new Object at (3, 0), with behavior End
+    compose:
+        do Early() for 1 steps
+        do Late()
+scenario Early():
+    setup:
+        new Object at (6, 0), with behavior B("early")
+scenario Late():
+    setup:
+        new Object at (9, 0), with behavior B("late")
+        override ego with behavior B("override")
+"""
+
+
+@pytest.mark.parametrize(
+    ("end", "fails"),
+    [
+        ("wait", None),
+        ("terminate", None),
+        ("terminate simulation", None),
+        ("require False", RejectSimulationException),
+        ("raise KeyError('end')", KeyError),
+    ],
+)
+def test_all_behaviors_clean_up_once_whoever_made_their_agents(
+    end: str, fails: type[Exception] | None, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """That of an override first, with its scenario; the one that it suspended and those that outlived theirs as well."""
+    rejections: list[Exception] = []
+    made = scene(CLEANED.format(end=end))
+    if fails is KeyError:
+        with pytest.raises(KeyError):
+            DummySimulator().simulate(made, maxSteps=4)
+    else:
+        done = DummySimulator().simulate(made, maxSteps=4, onRejection=rejections.append)
+        assert (done is None) is bool(fails)
+    assert list(map(type, rejections)) == [fails] * len(rejections)
+    assert capsys.readouterr().out.split() == ["override", "ego", "early", "late"]
+
+
+@pytest.mark.parametrize("invoked", [False, True])
+@pytest.mark.parametrize("end", ["wait", "require False", "raise KeyError('end')"])
+def test_a_recorder_of_a_scenario_that_still_runs_hears_how_the_simulation_ends(
+    end: str, invoked: bool
+) -> None:
+    """Where it is given up, nothing is evaluated any more."""
+    told: list[Any] = []
+
+    class Telling(Recorder):
+        def recordValue(self, value: Any, step: int) -> None:
+            told.append(step)
+
+        def endRecording(self, canceled: bool) -> None:
+            told.append(canceled)
+
+    body = "        record 1 to globalParameters.telling\n        record final globalParameters.count() as late\n"
+    text = (
+        f"behavior End():\n    wait\n    {end}\n    wait\n"
+        "scenario Main():\n    setup:\n        ego = new Object with behavior End\n"
+        + (f"    compose:\n        do Sub()\nscenario Sub():\n    setup:\n{body}" if invoked else body)
+    )
+    counted: list[int] = []
+    params = {"telling": Telling(), "count": lambda: counted.append(1)}
+    made = scenic.scenarioFromString(text, params=params).sample(1, seed=0)[0]
+    if "KeyError" in end:
+        with pytest.raises(KeyError):
+            DummySimulator().simulate(made, maxSteps=2)
+    else:
+        DummySimulator().simulate(made, maxSteps=2)
+    goes_well = end == "wait"
+    assert told == ([0, 1, 2, False] if goes_well else [0, 1, True])
+    assert counted == [1] * goes_well
