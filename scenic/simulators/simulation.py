@@ -211,7 +211,7 @@ class Simulation(ABC):
             self.setup()
             run.begin()
             self._check_objects()
-            self.updateObjects(first=True)
+            self.updateObjects()
             yield True
             steps = run.steps(self._max_steps)
             while True:
@@ -354,7 +354,7 @@ class Simulation(ABC):
             raise
         obj.startDynamicSimulation()
         if self._run.top.running:
-            self._update(obj, first=False)
+            self._update(obj)
 
     _createObject = add
 
@@ -432,13 +432,13 @@ class Simulation(ABC):
             if id(obj) not in present:
                 raise InternalError("setup() did not create all objects: it should call super().setup()")
 
-    def updateObjects(self, *, first: bool = False) -> None:
+    def updateObjects(self) -> None:
         """Read the dynamic properties of all objects back from the simulator."""
         self._tape.begin_state(self.currentTime)
         for obj in self.objects:
-            self._update(obj, first=first)
+            self._update(obj)
 
-    def _update(self, obj: Any, *, first: bool) -> None:
+    def _update(self, obj: Any) -> None:
         cls = type(obj)
         names = self._dynamic(cls)
         values = self.getProperties(obj, set(names))
@@ -454,7 +454,7 @@ class Simulation(ABC):
                 stored[name] = self._checked(obj, name, old, value)
         finals = self._finals[cls]
         inputs = tuple([stored[name] for name in finals.inputs])
-        if first or inputs != self._inputs.get(id(obj)):
+        if inputs != self._inputs.get(id(obj)):
             # The simulator's angles are global where the object's own frame is turned.
             self._inputs[id(obj)] = inputs
             for entry in finals.builtin:

@@ -189,3 +189,16 @@ def test_what_is_kept_of_the_course_and_of_the_draws_are_two_things(
     else:
         with pytest.raises(RuntimeError, match="enableReplay=False"):
             done.getReplay()
+
+
+def test_a_simulator_may_do_more_when_objects_are_read_back() -> None:
+    """Once before the first step, and after each."""
+    times = []
+
+    class Reading(Plain):
+        def updateObjects(self) -> None:
+            super().updateObjects()
+            times.append(self.currentTime)
+
+    assert simulator(Reading).simulate(scene(AGENTS), maxSteps=2) is not None
+    assert times == [0, 1, 2]
