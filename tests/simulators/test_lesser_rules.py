@@ -19,6 +19,7 @@ from scenic.cli.simulate import _Kept
 from scenic.language.errors import (
     DivergenceError,
     InvalidScenarioError,
+    InvariantViolation,
     Located,
     RejectSimulationException,
     ScenicValueError,
@@ -1247,3 +1248,59 @@ def test_a_recorder_of_a_scenario_that_still_runs_hears_how_the_simulation_ends(
     goes_well = end == "wait"
     assert told == ([0, 1, 2, False] if goes_well else [0, 1, True])
     assert counted == [1] * goes_well
+
+
+BROKEN = """
+scenario Main():
+    setup:
+        ego = new Object
+    compose:
+        {handled}
+scenario Outer():
+    compose:
+        do Inner()
+scenario Inner():
+    invariant: {invariant}
+    setup:
+        require eventually ego.position.x > 3
+    compose:
+        wait
+        {broken}
+        wait
+"""
+
+
+@pytest.mark.parametrize("invoked", ["Inner()", "Outer()", "Other(), Outer()"])
+@pytest.mark.parametrize(
+    ("invariant", "broken", "error"),
+    [
+        ("True", "raise KeyError('broken')", KeyError),
+        ("simulation().currentTime < 1", "pass", InvariantViolation),
+        ("True", "require False", RejectSimulationException),
+    ],
+)
+def test_what_goes_wrong_in_a_scenario_is_told_and_not_what_did_not_come_true_for_it(
+    invariant: str, broken: str, error: type[Exception], invoked: str
+) -> None:
+    """As where no scenario invokes another. If the program catches it, the requirement rejects the simulation."""
+    reasons: list[Exception] = []
+    other = "scenario Other():\n    compose:\n        wait\n        wait\n"
+
+    def run(handled: str) -> Simulation | None:
+        text = other + BROKEN.format(handled=handled, invariant=invariant, broken=broken)
+        done: Simulation | None = DummySimulator().simulate(
+            scene(text), maxSteps=4, raiseGuardViolations=True, onRejection=reasons.append
+        )
+        return done
+
+    if error is RejectSimulationException:
+        assert run(f"do {invoked}") is None
+        assert str(reasons.pop()).endswith("is violated")
+    else:
+        with pytest.raises(error):
+            run(f"do {invoked}")
+    assert not reasons
+    handled = f"try:\n            do {invoked}\n        except {error.__name__}:\n            wait"
+    if error is not RejectSimulationException:
+        assert run(handled) is None
+        assert str(reasons.pop()).endswith("does not hold at the end")

@@ -6,7 +6,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any, Protocol
 
-from scenic.language.errors import InvalidScenarioError
+from scenic.language.errors import InvalidScenarioError, RejectSimulationException
 from scenic.language.spans import Span
 from scenic.runtime.context import Context, Locator, Namer, current, here, warn
 from scenic.runtime.dynamics.activations import Activation, Termination
@@ -136,6 +136,8 @@ class Run:
         self.agent: Any = None
         """Whose behavior is running."""
         self.ending: Ending | None = None
+        self.unmet: RejectSimulationException | None = None
+        """That a requirement of a scenario did not hold when an exception stopped it; it rejects once that has been caught."""
         self._finished = False
         self._count = 0
         self._creating: ScenarioActivation | None = None
@@ -323,6 +325,8 @@ class Run:
             # 1. Scenarios
             if top.running and top.resume() is None:
                 self._remember("scenarioComplete", top.reason or "")
+            if self.unmet is not None:
+                raise self.unmet
             # 2. Sensors
             simulation.sense()
             # 3. Records

@@ -111,6 +111,14 @@ def do(owner: Running, targets: Sequence[Any], limit: Any = None, unit: str | No
             yield output
             if stop is not None and stop():
                 break
+    except Exception:
+        # What went wrong is told, not what did not come true for it.
+        for sub in started:
+            try:
+                sub.stop()
+            except RejectSimulationException as unmet:
+                owner.run.unmet = owner.run.unmet or unmet
+        raise
     finally:
         for sub in started:
             sub.stop()
