@@ -1331,3 +1331,35 @@ def test_a_random_value_that_only_shares_its_name_with_what_code_reads_is_not_as
         f"behavior B():\n    while True:\n        take {code}\nego = new Object at (7, 0), with behavior B\n"
     )
     assert taken(simulate(text, steps=1)) == [(found,)]
+
+
+def test_recorders_that_a_program_makes_are_the_simulations_own_and_sampled() -> None:
+    """What code reads is the one that records, and no other simulation of the scene finds anything in it."""
+    text = """
+from scenic.runtime.dynamics.recorders import Recorder
+class Keeping(Recorder):
+    def __init__(self, scale):
+        self.scale, self.values = scale, []
+    def recordValue(self, value, step):
+        self.values.append(value * self.scale)
+keeping = Keeping(Range(2, 3))
+behavior Look():
+    while True:
+        take (keeping.scale, *keeping.values)
+ego = new Object with behavior Look
+record 1 to keeping
+"""
+    first, second = scenic.scenarioFromString(text).sample(2, seed=0)
+    scales = []
+    for scene in (first, second, first):
+        done = DummySimulator().simulate(scene, maxSteps=3)
+        assert done is not None
+        scale = taken(done)[0][0]
+        assert 2 < scale < 3
+        assert taken(done) == [(scale,) * count for count in (2, 3, 4)]
+        scales.append(scale)
+    assert scales[0] == scales[2] != scales[1]
+    alone = text.replace("(keeping.scale, *keeping.values)", "1").replace(
+        "to keeping", "to Keeping(Range(2, 3))"
+    )
+    assert simulate(alone, 2).records == {"record13": [(0, 1), (1, 1), (2, 1)]}

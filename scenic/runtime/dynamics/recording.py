@@ -49,7 +49,7 @@ class Recording:
     def add(self, step: int, records: dict[str, Any]) -> None:
         """Record the present value, if this step is recorded."""
         name, moment = self.use.name, self.use.moment
-        if moment is None and (step < self._delay or step % self._period != 0):
+        if step < self._delay or step % self._period != 0:
             return
         with self._run.condition():
             value = self.use.value()
