@@ -955,3 +955,82 @@ def test_invariants_are_asked_after_a_wait_and_not_within(
     simulate(text, 4)
     # Once at the start, once where the wait is over, then with each resumption.
     assert capsys.readouterr().out.split() == ["0", "2", "3"]
+
+
+PLACES = """
+class Box:
+    content: 1
+    reach[dynamic, final]: self.content + self.position.y
+behavior Tell(name):
+    while True:
+        take name, self.content, self.reach, self.width
+scenario Main():
+    setup:
+        ego = new Box with behavior Tell("before")
+    compose:
+        wait
+        do Over() for 3 steps
+        wait
+"""
+OVERRIDE = 'override ego with content 5, with width 3, with behavior Tell("over")'
+
+
+@pytest.mark.parametrize(
+    ("place", "late"),
+    [
+        ("{}", 0),
+        ("require True\n    compose:\n        {}\n        while True:\n            wait", 0),
+        ("require monitor Do()\nmonitor Do():\n    {}\n    while True:\n        wait", 0),
+        # An agent decides after the ego, whose turn in this step was an earlier one.
+        ("new Object at (9, 0), with behavior Do\nbehavior Do():\n    {}\n    while True:\n        wait", 1),
+    ],
+)
+def test_overrides_are_the_same_from_wherever_the_scenario_asks_for_them(place: str, late: int) -> None:
+    text = f"{PLACES}scenario Over():\n    setup:\n        {place.format(OVERRIDE)}\n"
+    done = DummySimulator(drift=1).simulate(scene_of(text), maxSteps=7)
+    assert done is not None
+    assert taken(done) == [
+        ("over", 5, 5 + y, 3) if 1 + late <= y < 4 else ("before", 1, 1 + y, 1) for y in range(5)
+    ]
+
+
+@pytest.mark.parametrize(
+    "invocation",
+    [
+        "do Three()",
+        "do Three() for 9 steps",
+        "do Three() until simulation().currentTime == 9",
+        "do choose Three()",
+        "do shuffle Three()",
+        "do Within()",
+        "try:\n            do Three()\n        interrupt when simulation().currentTime == 9:\n            wait",
+        "try:\n            while True:\n                wait\n        interrupt when True:\n            do Three()\n            abort",
+    ],
+)
+@pytest.mark.parametrize("violated", [1, 2, 3])
+def test_invariants_are_asked_in_each_step_however_a_behavior_is_invoked(
+    invocation: str, violated: int
+) -> None:
+    """When it starts, and whenever it goes on, its end included."""
+    text = f"""
+behavior Three():
+    invariant: simulation().currentTime != {violated}
+    take 1
+    take 1
+    take 1
+behavior Within():
+    do Three()
+behavior B():
+    try:
+        {invocation}
+    except InvariantViolation:
+        take "violated"
+    take "after"
+ego = new Object with behavior B
+"""
+    assert taken(simulate(text, 5)) == [
+        *[(1,)] * violated,
+        ("violated",),
+        ("after",),
+        *[()] * (3 - violated),
+    ]
