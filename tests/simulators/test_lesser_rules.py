@@ -1304,3 +1304,44 @@ def test_what_goes_wrong_in_a_scenario_is_told_and_not_what_did_not_come_true_fo
     if error is not RejectSimulationException:
         assert run(handled) is None
         assert str(reasons.pop()).endswith("does not hold at the end")
+
+
+def test_after_a_divergence_nothing_is_compared_any_more() -> None:
+    asked = []
+
+    class Straying(Plain):
+        def valuesHaveDiverged(self, obj: Any, prop: str, expected: Any, actual: Any) -> bool:
+            asked.append((self.currentTime, prop))
+            return prop == "velocity" and self.currentTime == 1
+
+    made, runner = scene(AGENTS), simulator(Straying)
+    first = runner.simulate(made, maxSteps=3, enableDivergenceCheck=True)
+    assert first is not None
+    assert asked == []
+    again = runner.replay(
+        made, first.getReplay(), maxSteps=3, enableDivergenceCheck=True, continueAfterDivergence=True
+    )
+    assert again is not None
+    assert not again.replaying
+    assert asked[-1] == (1, "velocity")
+    assert asked.count(asked[-1]) == 1
+
+
+@pytest.mark.parametrize("invoked", [False, True])
+def test_a_scenario_that_ends_the_simulation_may_end_itself_in_the_same_step(invoked: bool) -> None:
+    """Then it records nothing more in that step, unless it is the whole; the reason is the first one."""
+    body = (
+        "    setup:\n        record simulation().currentTime as found\n"
+        "        terminate when simulation().currentTime >= 1\n"
+        "    compose:\n        wait\n        terminate simulation\n"
+    )
+    if invoked:
+        text = f"{MAIN}    compose:\n        do Part()\nscenario Part():\n{body}"
+    else:
+        text = "scenario Main():\n" + body.replace("setup:\n", "setup:\n        ego = new Object\n")
+    done = DummySimulator().simulate(scene(text), maxSteps=4)
+    assert done is not None
+    assert done.result is not None
+    assert done.result.terminationReason.startswith('"terminate simulation" executed')
+    assert done.currentTime == 1
+    assert done.records["found"] == [(0, 0), (1, 1)][: 1 if invoked else 2]
