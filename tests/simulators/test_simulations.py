@@ -1363,3 +1363,92 @@ record 1 to keeping
         "to keeping", "to Keeping(Range(2, 3))"
     )
     assert simulate(alone, 2).records == {"record13": [(0, 1), (1, 1), (2, 1)]}
+
+
+def test_every_way_to_an_object_leads_to_that_of_the_simulation(tmp_path: Path) -> None:
+    """A copy too many, or one that is missing, is an object that stays where it is."""
+    (tmp_path / "keeping.scenic").write_text(
+        "kept = []\ntable = {}\n"
+        "def keep(thing):\n    kept.append(thing)\n    table['it'] = thing\n"
+        "def it():\n    return table['it']\n"
+    )
+    text = """
+import keeping
+from keeping import keep, it, table as imported
+from collections import OrderedDict, defaultdict, deque, namedtuple
+from functools import lru_cache, partial
+class Own(object):
+    shared = None
+    def __init__(self, thing):
+        self.thing = thing
+    def get(self):
+        return self.thing
+    @property
+    def asked(self):
+        return ego
+    @staticmethod
+    def of_none():
+        return ego
+    @classmethod
+    def of_class(cls):
+        return cls.shared
+class Slotted(object):
+    __slots__ = ("thing",)
+    def __init__(self, thing):
+        self.thing = thing
+class Row(list):
+    pass
+class Car:
+    friend: None
+    def me(self):
+        return self
+    @property
+    def itself(self):
+        return self
+behavior Look():
+    while True:
+        take [name for name, way in ways.items() if way() is not self]
+ego = new Car with behavior Look
+other = new Car at (5, 0), with friend ego
+keep(ego)
+Own.shared = ego
+Pair = namedtuple("Pair", "thing number")
+def given(thing=ego, *, named=ego):
+    return thing if thing is named else None
+def told():
+    return ego
+told.about = ego
+def closed(thing):
+    return lambda: thing
+def yielding():
+    yield ego
+def same(thing):
+    return thing
+listed, held, cell, own = [ego], {"a": [({"b": ego},)]}, closed(ego), Own(ego)
+asking, method, remembered = own.get, ego.me, lru_cache(None)(lambda: ego)
+bound, keyed = partial(same, ego), partial(same, thing=ego)
+default, ordered, queue = defaultdict(list, {1: [ego]}), OrderedDict(a=ego), deque([ego])
+members, fixed, keys = {ego}, frozenset([ego]), {ego: 1}
+pair, slotted, row, codes = Pair(ego, Range(0, 1)), Slotted(ego), Row([ego]), [lambda: ego]
+ways = {
+    "name": lambda: ego, "simulation": lambda: simulation().objects[0], "property": lambda: other.friend,
+    "module": lambda: keeping.kept[0], "function of it": lambda: it(), "table": lambda: keeping.table["it"],
+    "imported": lambda: imported["it"], "list": lambda: listed[0], "nested": lambda: held["a"][0][0]["b"],
+    "default": lambda: given(), "attribute": lambda: told.about, "function": lambda: told(),
+    "closure": lambda: cell(), "generator": lambda: next(yielding()), "code": lambda: codes[0](),
+    "instance": lambda: own.thing, "bound": lambda: asking(), "asked": lambda: own.asked,
+    "static": lambda: Own.of_none(), "class": lambda: Own.of_class(), "shared": lambda: Own.shared,
+    "method": lambda: method(), "own method": lambda: ego.me(), "own property": lambda: other.friend.itself,
+    "remembered": lambda: remembered(), "partial": lambda: bound(), "keyed": lambda: keyed(),
+    "defaultdict": lambda: default[1][0], "ordered": lambda: ordered["a"], "deque": lambda: queue[0],
+    "set": lambda: [*members][0], "frozenset": lambda: [*fixed][0], "keys": lambda: [*keys][0],
+    "named tuple": lambda: pair.thing, "slot": lambda: slotted.thing, "derived list": lambda: row[0],
+}
+"""
+    path = tmp_path / "main.scenic"
+    path.write_text(text)
+    scenario = scenic.scenarioFromFile(path)
+    for scene in scenario.sample(2, seed=0):
+        done = DummySimulator(drift=1).simulate(scene, maxSteps=2)
+        assert done is not None
+        assert taken(done) == [(), ()]
