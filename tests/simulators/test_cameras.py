@@ -7,7 +7,8 @@ import numpy as np
 import scenic
 from scenic.formats.labels import observe
 from scenic.formats.sensors import sensor_viewpoint
-from scenic.simulators.kinematic import KinematicSimulator
+from scenic.simulators.kinematic import KinematicSimulation, KinematicSimulator
+from scenic.simulators.simulation import Simulation
 
 HEAD = """
 from scenic import DepthSensor, RGBSensor, SSSensor
@@ -87,3 +88,23 @@ def test_cameras_see_what_a_scene_would_show_that_begins_there() -> None:
     assert numbers["nothing"] == 0
     assert sorted(numbers.values()) == list(range(len(numbers)))
     assert set(numbers) == {"nothing", "Driven", "Chair", "Ball"}
+
+
+def test_a_simulator_may_see_itself_for_some_cameras() -> None:
+    """Those that it leaves out get nothing, also where others have the same output among several."""
+
+    class Painting(KinematicSimulation):
+        def sense(self) -> None:
+            self._cameras.deliver(self, leave={("rgb",), ("semantic",)})
+            Simulation.sense(self)
+
+    class Painter(KinematicSimulator):
+        def createSimulation(self, scene: Any, **options: Any) -> KinematicSimulation:
+            return Painting(scene, **options)
+
+    text = f"{HEAD}ego = new Chair with sensors {{**front, **back}}\nrecord {{**ego.observations}} as seen\n"
+    (scene,) = scenic.scenarioFromString(text).sample(1, seed=0)
+    done = Painter().simulate(scene, maxSteps=0)
+    assert done is not None
+    ((_, seen),) = done.records["seen"]
+    assert {name for name, image in seen.items() if image is not None} == {"depth", "parts"}
