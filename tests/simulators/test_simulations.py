@@ -1452,3 +1452,51 @@ ways = {
         done = DummySimulator(drift=1).simulate(scene, maxSteps=2)
         assert done is not None
         assert taken(done) == [(), ()]
+
+
+def test_what_a_behavior_was_given_before_the_simulation_is_sampled_and_its_own_then() -> None:
+    text = """
+behavior Count():
+    take self.behavior.number, self.behavior.agent is self, self.behavior.other
+    self.behavior.number += 1
+    self.behavior.other.append(1)
+    take self.behavior.number, self.behavior.agent is self, self.behavior.other
+ego = new Object with behavior Count
+ego.behavior.number = Range(1, 2)
+ego.behavior.agent = ego
+ego.behavior.other = []
+"""
+    scene = scene_of(text)
+    numbers = set()
+    for _ in range(2):
+        done = DummySimulator().simulate(scene, maxSteps=2)
+        assert done is not None
+        (number, *first), (more, *second) = taken(done)
+        assert more == number + 1
+        assert first == second == [True, [1]]  # one list
+        numbers.add(number)
+    assert len(numbers) == 1
+
+
+def test_a_global_name_that_only_a_simulation_sets_is_unknown_before_in_each() -> None:
+    text = """
+behavior Set(value):
+    global late
+    for _ in range(2):
+        try:
+            take late, told()
+        except NameError:
+            take "unknown"
+        late = value
+def told():
+    return late
+ego = new Object with behavior Set(5)
+other = new Object at (5, 0), with behavior Set(6)
+"""
+    scene = scene_of(text)
+    for _ in range(2):
+        done = DummySimulator().simulate(scene, maxSteps=2)
+        assert done is not None
+        # In the second step the ego sets and reads, then the other one.
+        assert taken(done) == [("unknown",), (5, 5)]
+        assert taken(done, 1) == [("unknown",), (6, 6)]
