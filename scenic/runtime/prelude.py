@@ -168,16 +168,14 @@ class Prelude(Dynamics):
     @property
     def workspace(self) -> Any:
         """The workspace; all of space where the program sets none."""
-        run = self._run
-        if run is not None and run.current.workspace is not None:
-            return run.current.workspace
-        if self._module.workspace is None:
+        known = self._known_workspace()
+        if known is None:
             raise InvalidScenarioError(
                 "the workspace is used before it is set",
                 span=here(),
                 help="write `workspace = Workspace(region)` first",
             )
-        return self._module.workspace
+        return known
 
     @workspace.setter
     def workspace(self, value: Any) -> None:
@@ -191,6 +189,12 @@ class Prelude(Dynamics):
             self._run.current.workspace = value
         else:
             self._module.workspace = value
+
+    def _known_workspace(self) -> Workspace | None:
+        """The workspace of the scenario that is running, else of the module, if it is set."""
+        run = self._run
+        own: Workspace | None = None if run is None else run.current.workspace
+        return self._module.workspace if own is None else own
 
     # Instances
 
@@ -207,7 +211,7 @@ class Prelude(Dynamics):
                 return own(*value) if type(value) is tuple else own(value)
             return specify(name, self._ego, property, *operands)
         if name in ("visible", "not visible"):
-            workspace = self._module.workspace
+            workspace = self._known_workspace()
             return specify(name, self._ego, *operands, everywhere if workspace is None else workspace)
         return specify(name, self._ego, *operands)
 

@@ -1046,6 +1046,41 @@ scenario Sub():
     assert done.records["found"][-1] == (40, 0)
 
 
+@pytest.mark.parametrize("how", ["visible", "not visible"])
+@pytest.mark.parametrize("of_its_own", [True, False])
+def test_where_objects_enter_to_be_seen_or_not_is_in_the_workspace_of_their_scenario(
+    how: str, of_its_own: bool
+) -> None:
+    """Which it sets itself, or has from the scenario that invokes it; that of the file is another."""
+    rooms = [f"workspace = Workspace(RectangularRegion(({x}, 0), 0, 20, 20))" for x in (100, 200)]
+    text = f"""
+workspace = Workspace(RectangularRegion((0, 0), 0, 500, 500))
+scenario Main():
+    setup:
+        ego = new Object
+    compose:
+        do Between()
+scenario Between():
+    setup:
+        {rooms[0]}
+    compose:
+        do Sub()
+scenario Sub():
+    setup:
+        {rooms[1] if of_its_own else "pass"}
+        watcher = new Point at (150, 0), with visibleDistance {100 if how == "visible" else 1}
+        x = new Object {how} from watcher, with width 0.1, with length 0.1
+        record initial x.position.x as x
+    compose:
+        wait
+"""
+    low = 190 if of_its_own else 90
+    for found in scenic.scenarioFromString(text).sample(3, seed=1):
+        done = DummySimulator().simulate(found, maxSteps=1, maxIterations=50)
+        assert done is not None
+        assert low <= done.records["x"] <= low + 20
+
+
 def test_what_stands_in_between_in_a_simulation_hides() -> None:
     """Objects that have entered since the scene was made, where they are now."""
     text = """
