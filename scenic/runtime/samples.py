@@ -280,6 +280,8 @@ def _parts(value: Any, names: Globals) -> Iterator[Any]:
     elif isinstance(value, dict):
         yield from value
         yield from value.values()
+        if isinstance(value, defaultdict):
+            yield value.default_factory
     elif isinstance(value, slice):
         yield from (value.start, value.stop, value.step)
     elif isinstance(value, FunctionType):
@@ -300,12 +302,14 @@ def _parts(value: Any, names: Globals) -> Iterator[Any]:
     elif isinstance(value, MethodType):
         yield from (value.__self__, value.__func__)
     elif isinstance(value, partial):
-        yield from (value.func, *value.args, *value.keywords.values())
+        yield from (value.func, *value.args, *value.keywords.values(), *vars(value).values())
     elif isinstance(value, ModuleType) and PRELUDE in vars(value):
         yield from _contents(value).values()
     elif hasattr(value, "sampled") and hasattr(value, "random_parts"):
         yield from value.random_parts()
-    if type(value) not in _WITHOUT_MEMBERS and not isinstance(value, Point) and names.copies(type(value)):
+    if type(value) in _WITHOUT_MEMBERS or isinstance(value, Point):
+        return
+    if isinstance(value, _KINDS_OF_CONTAINERS) or names.copies(type(value)):
         yield type(value)
         yield from getattr(value, "__dict__", {}).values()
         yield from (getattr(value, name, None) for name in slots(type(value)))
@@ -315,6 +319,10 @@ _WITHOUT_MEMBERS = frozenset(
     {tuple, frozenset, slice, FunctionType, MethodType, type, partial, ModuleType, *CONTAINERS}
 )
 """Types of which no instance has members that a program has written."""
+
+
+_KINDS_OF_CONTAINERS = (list, deque, set, dict, tuple, frozenset)
+"""Python's containers, of which a program may have its own kinds."""
 
 
 def _contents(module: ModuleType) -> dict[str, Any]:
@@ -424,21 +432,28 @@ class Sample:
 
     def _sampled(self, value: Any) -> Any:
         cls = type(value)
-        if isinstance(value, tuple):
-            items = [self.value(item) for item in value]
-            kind = cls if cls is tuple else self.value(cls)
-            if kind is cls and all(new is old for new, old in zip(items, value, strict=True)):
+        if isinstance(value, tuple | frozenset):
+            base: Any = tuple if isinstance(value, tuple) else frozenset
+            items = [self.value(item) for item in base.__iter__(value)]
+            stays = all(new is old for new, old in zip(items, base.__iter__(value), strict=True))
+            if cls is base:
+                return value if stays else base(items)
+            kind, held = self.value(cls), getattr(value, "__dict__", {})
+            attributes = {name: self.value(item) for name, item in held.items()}
+            if kind is cls and stays and all(attributes[name] is item for name, item in held.items()):
                 return value
-            return tuple.__new__(kind, items)
+            copy = base.__new__(kind, items)
+            if attributes:
+                vars(copy).update(attributes)
+            return copy
         if cls in CONTAINERS:
-            return self._container(value, _kind_of_container(cls))
-        if isinstance(value, list) and not self._names.copies(cls):
-            return [self.value(item) for item in value]
-        if cls is frozenset:
-            return frozenset([self.value(item) for item in value])
-        if cls is partial:
+            return self._container(value, _kind_of_container(cls), cls)
+        if isinstance(value, partial):
+            given = map(self.value, (value.func, *value.args))
             keywords = {name: self.value(item) for name, item in value.keywords.items()}
-            return partial(self.value(value.func), *map(self.value, value.args), **keywords)
+            copy = partial.__new__(self.value(cls), *given, **keywords)
+            vars(copy).update({name: self.value(item) for name, item in vars(value).items()})
+            return copy
         if isinstance(value, ModuleType) and PRELUDE in vars(value):
             return self._module(value)
         if isinstance(value, slice):
@@ -453,7 +468,7 @@ class Sample:
             return self._class(value) if self._names.owns(value) and not self._stays(value) else value
         if hasattr(value, "sampled") and hasattr(value, "random_parts"):
             return value.sampled(self)
-        if self._names.copies(cls):
+        if self._names.copies(cls) or isinstance(value, _KINDS_OF_CONTAINERS):
             return self._object(value)
         return value
 
@@ -465,14 +480,14 @@ class Sample:
         """Whether members of a class of objects are not the same in this sample."""
         return self._names.varies(cls)
 
-    def _container(self, container: Any, kind: Any) -> Any:
+    def _container(self, container: Any, kind: Any, cls: type) -> Any:
         """A container over sampled values, whatever a class of the program says of how it is made and changed."""
-        copy = kind.__new__(type(container))
+        copy = kind.__new__(cls)
         if kind is deque:
             deque.__init__(copy, (), container.maxlen)
-        elif kind is defaultdict:
-            copy.default_factory = container.default_factory
         self.remember(container, copy)
+        if kind is defaultdict:
+            copy.default_factory = self.value(container.default_factory)
         if issubclass(kind, dict):
             kind.update(copy, [(self.value(key), self.value(item)) for key, item in kind.items(container)])
         elif kind is set:
@@ -545,16 +560,27 @@ class Sample:
         if cls is type(instance) and self._stays(instance):
             return instance
         kind = _kind_of_container(type(instance))
-        copy = shallow.copy(instance) if kind is None else self._container(instance, kind)
-        self.remember(instance, copy)
-        object.__setattr__(copy, "__class__", cls)
+        if kind is not None:
+            copy = self._container(instance, kind, cls)
+        else:
+            copy = self._empty(instance, cls)
+            self.remember(instance, copy)
         held = getattr(copy, "__dict__", {})
-        given = copy if kind is None else instance
-        held.update({name: self.value(item) for name, item in getattr(given, "__dict__", {}).items()})
+        held.update({name: self.value(item) for name, item in getattr(instance, "__dict__", {}).items()})
         for name in slots(cls):
-            if hasattr(given, name):
-                object.__setattr__(copy, name, self.value(getattr(given, name)))
+            if hasattr(instance, name):
+                object.__setattr__(copy, name, self.value(getattr(instance, name)))
         return copy
+
+    @staticmethod
+    def _empty(instance: Any, cls: type) -> Any:
+        """An instance of a class, without attributes, which stands for one of the class that this is a copy of."""
+        try:
+            return object.__new__(cls)
+        except TypeError:  # it derives from a class of Python's own that keeps more than attributes
+            copy = shallow.copy(instance)
+            object.__setattr__(copy, "__class__", cls)
+            return copy
 
     def _function(self, function: FunctionType) -> FunctionType:
         """The function over sampled globals, closure and defaults."""

@@ -9,7 +9,7 @@ from scenic.runtime.operators import OPERATORS
 from scenic.runtime.ownership import EGOLESS, EGOLESS_OPERATORS
 from scenic.runtime.prelude import Prelude
 from scenic.simulators.dummy import DummySimulation, DummySimulator
-from tests.runtime.programs import scenario, scene
+from tests.runtime.programs import params, scenario, scene
 
 CLASSES = """
 import functools
@@ -240,6 +240,73 @@ def test_containers_of_classes_of_the_program_are_sampled_as_they_are() -> None:
         done = DummySimulator().simulate(item, maxSteps=1)
         assert done is not None
         assert done.records["found"] is True
+
+
+@pytest.mark.parametrize(
+    ("define", "read"),
+    [
+        ("from collections import defaultdict\nd = defaultdict(lambda: r)", "d['new']"),
+        (
+            "from collections import defaultdict\nclass D(defaultdict):\n    def told(self): return self['new'] + 0 * r\nd = D(lambda: r)",
+            "d.told()",
+        ),
+        ("from collections import defaultdict\nclass D(defaultdict): pass\nd = D(lambda: r)", "d['new']"),
+        ("class D(dict): pass\nd = D(a=r)", "d['a']"),
+        ("class D(dict): pass\nd = D(a=1)\nd.mark = r", "d.mark"),
+        ("class D(set): pass\nd = D([r])", "min(d)"),
+        ("class D(frozenset): pass\nd = D([r])", "min(d)"),
+        ("class D(frozenset):\n    def told(self): return min(self) + 0 * r\nd = D([r])", "d.told()"),
+        (
+            "from collections import deque\nclass D(deque): pass\nd = D([5, r], 1)",
+            "d[0] if len(d) == 1 else 9",
+        ),
+        ("from collections import OrderedDict\nclass D(OrderedDict): pass\nd = D(a=r)", "d['a']"),
+        ("from functools import partial\nd = partial(max, r, 0)", "d(-1)"),
+        ("from functools import partial\nd = partial(dict, a=r)", "d()['a']"),
+        ("from functools import partial\nd = partial(max, 0)\nd.mark = [r]", "d.mark[0]"),
+        (
+            "from functools import partial\nclass D(partial):\n    def told(self): return self(0) + 0 * r\nd = D(max, r)",
+            "d.told()",
+        ),
+        (
+            (
+                "class A(object):\n    def told(self): return r\nclass D(A):\n    __slots__ = ('held', 'none')\n"
+                "    def told(self): return self.held[0] + super().told() - r\nd = D()\nd.held, d.mark = [r], r"
+            ),
+            "d.told() if d.mark == d.held[0] and not hasattr(d, 'none') else 9",
+        ),
+        ("class D(tuple): pass\nd = D([1])\nd.mark = [r]", "d.mark[0]"),
+        ("class D(tuple): pass\nd = D([r])\nd.mark = 0", "d[d.mark]"),
+        (
+            "class D(frozenset):\n    def told(self): return min(self) + 0 * r\nd = D([r])\nd.mark = r",
+            "d.mark",
+        ),
+        ("class D(list): pass\nd = D([r])\nd.mark = [r]", "max(*d, *d.mark)"),
+    ],
+)
+def test_what_derives_from_classes_of_python_is_sampled_with_all_that_it_holds(
+    define: str, read: str
+) -> None:
+    """In conditions as in what scenes hand out, whether or not its class has methods of the program."""
+    text = (
+        f"r = Range(0, 1)\n{define}\nego = new Object\n"
+        f"def check():\n    if not 0.3 < ({read}) < 0.6: return False\n    return True\n"
+        "require check()\nparam r = r, d = d, check = check\n"
+    )
+    for item in scenario(text).sample(3, seed=1):
+        assert 0.3 < item.params["r"] < 0.6
+        assert item.params["check"]()
+        assert eval(read, {"d": item.params["d"]}) == item.params["r"]
+
+
+def test_a_mapping_that_refers_to_itself_by_what_fills_it_is_sampled_once() -> None:
+    text = (
+        "from collections import defaultdict\nr = Range(0, 1)\nd = defaultdict()\nd.default_factory = lambda: (d, r)\n"
+        "ego = new Object\nparam d = d, r = r"
+    )
+    found = params(text)
+    assert found["d"]["new"] == (found["d"], found["r"])
+    assert found["d"]["new"][0] is found["d"]
 
 
 def test_a_member_that_reads_nothing_random_is_that_of_the_program() -> None:
