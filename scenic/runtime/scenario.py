@@ -466,10 +466,11 @@ class Scenario:
         return parameters[name]
 
     def _conditioned(self, source: Callable[[Lanes], Source]) -> Callable[[Lanes], Source]:
-        """A source in which what `conditionOn` says is fixed."""
-        if not any(self._condition):
+        """A source in which what `conditionOn` says is fixed, whatever it says later."""
+        numbers, words = self._condition
+        if not numbers and not words:
             return source
-        return lambda lanes: fixed_draws(*self._condition, source(lanes))
+        return lambda lanes: fixed_draws(numbers, words, source(lanes))
 
     def _engine_of(self, points: PointSet | None) -> Engine:
         """What samples by rows of a point set; the usual engine where there is none."""

@@ -514,6 +514,30 @@ param x = Range(0, 1), y = Range(0, 1)
     assert len(values()) == 4
 
 
+@pytest.mark.parametrize("source", [None, scenic.Sobol()])
+def test_scenes_stay_what_they_are_whatever_is_fixed_later(source: Any) -> None:
+    """Those that were found, as data too, and those of a stream that has begun."""
+    program = scenario("ego = new Object at (Range(0, 1), 0)\nparam x = Range(0, 1), y = Range(0, 1)\n")
+    other, known = program.sample(2, seed=3)
+
+    def assert_unchanged_by(**later: Any) -> None:
+        streams = [program.stream(4, seed=5, lanes=1, source=source) for _ in range(2)]
+        expected = [fingerprint(item) for item in streams[0]]
+        first = next(streams[1])
+        data = program.sceneToBytes(first)
+        program.conditionOn(**later)
+        assert program.sceneToBytes(first) == data
+        for again in (program.sceneFromBytes(data), pickle.loads(pickle.dumps(first)), copy.deepcopy(first)):
+            assert fingerprint(again)[1:] == expected[0][1:]
+        assert [fingerprint(item) for item in (first, *streams[1])] == expected
+
+    assert_unchanged_by(scene=known, params=["x"])
+    assert_unchanged_by(scene=other, params=["x", "y"])
+    assert_unchanged_by(scene=other, objects=[0])
+    assert_unchanged_by()
+    assert_unchanged_by(scene=known, objects=[0])
+
+
 def test_what_holds_an_object_is_its_own_region_or_else_the_workspace() -> None:
     program = scenario("""
 workspace = Workspace(RectangularRegion((0, 0), 0, 9, 9))
