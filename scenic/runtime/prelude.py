@@ -157,8 +157,12 @@ class Prelude(Dynamics):
             made = value.__name__ if isinstance(value, type) else "Object"
             hint = f"write `ego = new {made}`, with specifiers where they are needed"
             raise ScenicTypeError(f"the ego must be an object, not {describe(value)}", span=here(), help=hint)
-        if self._run is not None:
-            self._run.current.ego = value
+        run = self._run
+        if run is not None:
+            run.current.ego = value
+            for scenario in run.scenarios:
+                if scenario.ego is None:
+                    scenario.ego = value
         else:
             self._module.ego = value
 

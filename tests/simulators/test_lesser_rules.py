@@ -1081,6 +1081,58 @@ scenario Sub():
         assert low <= done.records["x"] <= low + 20
 
 
+def test_an_ego_that_an_invoked_scenario_sets_is_that_of_running_ones_that_have_none() -> None:
+    """So what these invoke later has it, too; those that have one keep it."""
+    text = """
+def where(): return ego.position.x
+scenario Main():
+    setup:
+        record final where() as outermost
+    compose:
+        do Between(), Beside()
+        do Later()
+        do Other()
+        do Later()
+scenario Between():
+    setup:
+        record final where() as between
+    compose:
+        do Sets(10)
+        wait
+scenario Beside():
+    compose:
+        wait
+        wait
+        do Read()
+scenario Sets(x):
+    setup:
+        ego = new Object at (x, 0)
+    compose:
+        wait
+scenario Read():
+    setup:
+        record initial where() as beside
+    compose:
+        wait
+scenario Later():
+    setup:
+        new Object at (ego offset by (0, 20 * (simulation().currentTime + 1)))
+        record initial (distance to (10, 0)) as later
+    compose:
+        wait
+scenario Other():
+    setup:
+        ego = new Object at (77, 0)
+        record initial where() as other
+    compose:
+        wait
+"""
+    done = DummySimulator().simulate(scene(text), maxSteps=20)
+    assert done is not None
+    found = {name: done.records[name] for name in ("between", "beside", "outermost", "later", "other")}
+    assert found == {"between": 10, "beside": 10, "outermost": 10, "later": 0, "other": 77}
+
+
 def test_what_stands_in_between_in_a_simulation_hides() -> None:
     """Objects that have entered since the scene was made, where they are now."""
     text = """

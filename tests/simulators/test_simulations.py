@@ -1248,7 +1248,7 @@ def test_a_condition_that_raises_is_over() -> None:
     assert 1 <= action <= 2
 
 
-def test_the_ego_of_a_scenario_is_not_that_of_others() -> None:
+def test_an_ego_that_another_scenario_sets_later_is_none_before() -> None:
     parts = "".join(
         f"scenario {name}():\n    setup:\n        {statement}\n        terminate after 1 steps\n"
         for name, statement in (
@@ -1256,7 +1256,7 @@ def test_the_ego_of_a_scenario_is_not_that_of_others() -> None:
             ("Second", "new Object at ego offset by (0, 3)"),
         )
     )
-    text = f"scenario Main():\n    setup:\n        new Object\n    compose:\n        do First()\n        do Second()\n{parts}"
+    text = f"scenario Main():\n    setup:\n        new Object\n    compose:\n        do Second()\n        do First()\n{parts}"
     with pytest.raises(InvalidScenarioError, match="ego object is used before it is set"):
         simulate(text)
 
