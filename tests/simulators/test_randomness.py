@@ -117,3 +117,13 @@ def test_noise_grows_with_the_scale() -> None:
 def test_what_has_entered_is_not_mutated_any_more() -> None:
     with pytest.warns(UserWarning, match="`mutate` has no effect"):
         assert entered("mutate ego") == [(5, 0, 0)]
+
+
+@pytest.mark.parametrize("statement", ["mutate", "mutate here"])
+def test_what_has_entered_is_not_mutated_by_functions_either(statement: str) -> None:
+    """A set-up whose own code mutates nothing has its objects enter at once."""
+    text = MUTATED.format(mutate="shake(here)") + f"def shake(here):\n    {statement}\n"
+    with pytest.warns(UserWarning, match="`mutate` has no effect") as found:
+        (done,) = runs(text, 1)
+    assert done.trajectory[-1][1] == (5, 0, 0)
+    assert len(found) == 1
