@@ -6,6 +6,7 @@ with the sampled values of the names, lane by lane. The answer is the same; only
 """
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -19,8 +20,9 @@ from scenic.runtime.context import current, here
 from scenic.runtime.dynamics.declarations import Tree
 from scenic.runtime.lazy import definite
 from scenic.runtime.opaque import evaluated, later
+from scenic.runtime.ownership import is_own_function
 from scenic.runtime.samples import Globals
-from scenic.runtime.values import as_node
+from scenic.runtime.values import Random, as_node, holds_instances
 
 Build = Callable[[], Node]
 
@@ -121,7 +123,9 @@ def leaf(
             except Exception:  # noqa: BLE001 - whatever went wrong goes wrong again, with its place, on a sample
                 pass
             else:
-                return truth(definite(value, "the requirement"))
+                value = definite(value, "the requirement")
+                with suppress(NotSymbolicError):
+                    return truth(value)
             finally:
                 if context is not None:
                     context.judging = False
@@ -132,8 +136,18 @@ def leaf(
     return build
 
 
+def _is_judged_by_code(value: Any) -> bool:
+    """Whether code of the program may say if a value is true, which it has to say of the sampled one."""
+    if isinstance(value, Random):
+        return value.node.kind.is_boxed and holds_instances(value.node)
+    judges = (getattr(type(value), name, None) for name in ("__bool__", "__len__"))
+    return any(map(is_own_function, judges))
+
+
 def truth(value: Any) -> Node:
-    """The truth value of a value, as a node."""
+    """The truth value of a value, as a node; raises `NotSymbolicError` where it takes a sample to tell."""
+    if _is_judged_by_code(value):
+        raise NotSymbolicError
     node = as_node(value)
     if node.kind is Kind.BOOLEAN:
         return node

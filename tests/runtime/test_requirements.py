@@ -802,3 +802,32 @@ def test_what_a_program_makes_later_stands_in_the_way_of_a_look(ego: str) -> Non
         scenario(text.format(ego=ego, condition="a can see b", place="0")).sample(1, seed=1)
     places = draws(text.format(ego=ego, condition="a can see b", place="max(0, 500 * x)"), n=6)
     assert (np.array(places) > 0).all()
+
+
+OF_LENGTH = "__len__(self): return 1 if self.size > 1.5 else 0"
+OF_TRUTH = "__bool__(self): return self.size > 1.5"
+
+
+@pytest.mark.parametrize(
+    ("judge", "condition", "wanted"),
+    [
+        *((OF_TRUTH, name, True) for name in ("ego", "either", "held", "[held][0]")),
+        *((OF_TRUTH, f"not {name}", False) for name in ("ego", "either", "held")),
+        *((OF_LENGTH, name, True) for name in ("ego", "either", "held")),
+        (OF_TRUTH, "ego and True", True),
+        (OF_TRUTH, "False or held", True),
+        (OF_TRUTH, "not not either", True),
+        (OF_TRUTH, "(1 if ego else 0) == 1", True),
+        (OF_TRUTH, "(not held) == True", False),
+        (OF_TRUTH, "always either", True),
+    ],
+)
+def test_the_truth_of_instances_is_that_of_sampled_ones(judge: str, condition: str, wanted: bool) -> None:
+    """Where the program defines it: for instances of its classes, and of plain ones."""
+    text = (
+        f"size = Range(1, 2)\nclass Car:\n    size: size\n    def {judge}\n"
+        f"class Held(object):\n    def __init__(self): self.size = size\n    def {judge}\n"
+        f"held = Held()\nego = new Car\neither = Uniform(ego, new Car at (9, 9))\nrequire {condition}\n"
+    )
+    sizes = [item.egoObject.size for item in scenario(text).sample(3, seed=1)]
+    assert [size > 1.5 for size in sizes] == [wanted] * 3
