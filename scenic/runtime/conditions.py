@@ -13,7 +13,7 @@ import numpy as np
 
 from scenic.graph.construction import make_node
 from scenic.graph.kinds import Column, Kind
-from scenic.graph.node import Node
+from scenic.graph.node import Graph, Node
 from scenic.graph.operation import Call, Operation, always
 from scenic.graph.operations import TABLE
 from scenic.runtime.context import current, here
@@ -22,9 +22,11 @@ from scenic.runtime.lazy import definite
 from scenic.runtime.opaque import evaluated, later
 from scenic.runtime.ownership import is_own_function
 from scenic.runtime.samples import Globals
-from scenic.runtime.values import Random, as_node, holds_instances
+from scenic.runtime.values import Random, as_node
 
 Build = Callable[[], Node]
+
+_OF_TRUTH = ("__bool__", "__len__")
 
 
 class NotSymbolicError(Exception):
@@ -136,17 +138,18 @@ def leaf(
     return build
 
 
-def _is_judged_by_code(value: Any) -> bool:
-    """Whether code of the program may say if a value is true, which it has to say of the sampled one."""
+def is_judged_by_code(value: Any, methods: Sequence[str]) -> bool:
+    """Whether methods of the program's classes judge a value: they have to be asked of the sampled one."""
+    held = [value]
     if isinstance(value, Random):
-        return value.node.kind.is_boxed and holds_instances(value.node)
-    judges = (getattr(type(value), name, None) for name in ("__bool__", "__len__"))
-    return any(map(is_own_function, judges))
+        nodes = Graph([value.node]).nodes if value.node.kind.is_boxed else ()
+        held = [node.value for node in nodes if node.is_constant and node.kind.is_boxed]
+    return any(is_own_function(getattr(type(item), name, None)) for item in held for name in methods)
 
 
 def truth(value: Any) -> Node:
     """The truth value of a value, as a node; raises `NotSymbolicError` where it takes a sample to tell."""
-    if _is_judged_by_code(value):
+    if is_judged_by_code(value, _OF_TRUTH):
         raise NotSymbolicError
     node = as_node(value)
     if node.kind is Kind.BOOLEAN:

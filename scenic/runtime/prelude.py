@@ -75,6 +75,8 @@ COMPARISONS: Mapping[str, str] = MappingProxyType(
     }
 )
 
+_OF_ORDER = ("__eq__", "__ne__", "__lt__", "__le__", "__gt__", "__ge__")
+
 
 class Modules(Protocol):
     """Where modules of Scenic code come from (`scenic.compiler.loader`, passed in)."""
@@ -414,6 +416,8 @@ class Prelude(Dynamics):
         """``left operator right`` as a truth value, which may be random."""
         if may_return_instances(left) or may_return_instances(right):
             return Random.later(TABLE[COMPARISONS[operator]].python, left, right)
+        if any(conditions.is_judged_by_code(item, _OF_ORDER) for item in (left, right)):
+            raise conditions.NotSymbolicError
         if is_random(left) or is_random(right):
             return operate(COMPARISONS[operator], left, right)
         if isinstance(left, Point) or isinstance(right, Point):

@@ -831,3 +831,18 @@ def test_the_truth_of_instances_is_that_of_sampled_ones(judge: str, condition: s
     )
     sizes = [item.egoObject.size for item in scenario(text).sample(3, seed=1)]
     assert [size > 1.5 for size in sizes] == [wanted] * 3
+
+
+@pytest.mark.parametrize("name", ["eq", "ne", "lt", "le", "gt", "ge"])
+def test_instances_are_compared_by_the_methods_of_sampled_ones(name: str) -> None:
+    """Those that a choice draws, too, on either side, and plain ones; a number that is drawn may be the other side."""
+    sign = {"eq": "==", "ne": "!=", "lt": "<", "le": "<=", "gt": ">", "ge": ">="}[name]
+    compare = f"def __{name}__(self, other): return self.size > 1.5\n    __hash__ = object.__hash__"
+    for left, right in (("ego", "3"), ("either", "ego"), ("either", "size"), ("held", "ego"), ("drawn", "3")):
+        text = (
+            f"size = Range(1, 2)\nclass Car:\n    size: size\n    {compare}\nclass Held(object):\n"
+            f"    def __init__(self): self.size = size\n    {compare}\nheld = Held()\ndrawn = Uniform(held, Held())\n"
+            f"ego = new Car\neither = Uniform(ego, new Car at (9, 9))\nrequire {left} {sign} {right}\n"
+        )
+        sizes = [item.egoObject.size for item in scenario(text).sample(2, seed=1)]
+        assert min(sizes) > 1.5
