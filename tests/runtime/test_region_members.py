@@ -1183,3 +1183,22 @@ def test_regions_are_turned_by_whatever_has_a_heading(heading: str) -> None:
         along = point.x * -math.sin(0.5) + point.y * math.cos(0.5)
         assert math.dist((point.x, point.y), (-along * math.sin(0.5), along * math.cos(0.5))) < 0.051
         assert (first, second) == pytest.approx((0.5, 0.5))
+
+
+def test_regions_of_what_depends_on_the_object_are_made_for_it() -> None:
+    """Alone, in containers and as operands; of each object for itself, and of each sample."""
+    text = (
+        "flow = VectorField('flow', lambda place: 0.1 * place.x)\nturn = (0.25 relative to flow).yaw\n"
+        "for x in [1, Range(2, 3)]:\n    new Object at (x, 5), with zone CircularRegion((turn, 0), 3 + turn),"
+        " with pair [BoxRegion(position=(0, turn, 0)), RectangularRegion((9, 9), turn, 1, 1)],"
+        " with hit CircularRegion((0, 0), 1) intersects CircularRegion((1.25 + turn, 0), 0.5)\n"
+    )
+    for scene in scenario(text).sample(4, seed=1):
+        for walker in scene.objects:
+            turn = 0.25 + 0.1 * walker.x
+            np.testing.assert_allclose(
+                walker.zone.AABB, [[-3, -3 - turn, 0], [3 + 2 * turn, 3 + turn, 0]], atol=1e-9
+            )
+            box, plate = walker.pair
+            assert (box.position.y, plate.heading) == pytest.approx((turn, turn))
+            assert walker.hit is (1.25 + turn <= 1.5)

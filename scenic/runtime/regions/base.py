@@ -6,7 +6,7 @@ requirement nodes that the sampler tests in batches, and the points that specifi
 """
 
 import random
-from abc import ABC, abstractmethod
+from abc import ABCMeta, abstractmethod
 from collections.abc import Sequence
 from copy import copy
 from typing import Any, ClassVar, cast
@@ -26,6 +26,7 @@ from scenic.language.errors import (
 )
 from scenic.runtime.context import here
 from scenic.runtime.geometry.collision import Body
+from scenic.runtime.lazy import defer, is_lazy
 from scenic.runtime.regions.knowledge import (
     Containment,
     containment_bounds,
@@ -61,7 +62,16 @@ Points = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 
-class Region(ABC):
+class _RegionType(ABCMeta):
+    """What classes of regions do themselves: a region of what depends on an object is made when that is known."""
+
+    def __call__(cls, *args: Any, **keywords: Any) -> Any:
+        if is_lazy(args) or is_lazy(keywords):
+            return defer(super().__call__, *args, **keywords)
+        return super().__call__(*args, **keywords)
+
+
+class Region(metaclass=_RegionType):
     """A set of points in space: a structure that is fixed, and parameters that may be random.
 
     Subclasses give the structure and its *primitives*: functions over the columns of the parameters, each for many lanes.
