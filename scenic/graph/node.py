@@ -58,7 +58,7 @@ class Node:
         except TypeError:
             return id(self)
         kinds = tuple(operand.kind for operand in self.operands)
-        return (id(self.operation), type(self.payload), self.payload, self.kind, kinds)
+        return (id(self.operation), self.payload, self.kind, kinds)
 
     @property
     def bounds(self) -> Any:

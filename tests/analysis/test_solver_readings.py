@@ -12,6 +12,7 @@ from graph.readings import has, kind_of, values_of
 from scenic.analysis.terms import SolverTerms
 from scenic.graph.kinds import Kind
 from scenic.graph.operations import TABLE
+from scenic.graph.operations.encoding import componentwise
 
 VALUES = {
     S: (-2.5, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0, 3.25),
@@ -148,3 +149,13 @@ def test_the_solver_knows_limits_of_what_it_leaves_open(case):
         for beyond in (limit + 0.01, -limit - 0.01):
             places = np.eye(3) if values.ndim > 1 else [1.0]
             assert not any(asked.may_be(beyond * np.asarray(place)) for place in places)
+
+
+@pytest.mark.parametrize("side", [0, 1])
+def test_a_truth_value_beside_a_vector_counts_as_three_numbers(side):
+    reading = componentwise(
+        lambda terms, a, b: (a.sort().name(), b.sort().name()), (True, False), (False, True)
+    )
+    terms = SolverTerms()
+    operands = [tuple(map(terms.real, (1.0, 2.0, 3.0))), terms.truth(True)]
+    assert reading(terms, None, *operands[:: 1 - 2 * side]) == (("Real", "Real"),) * 3

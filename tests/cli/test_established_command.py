@@ -1,5 +1,8 @@
 """The established command line is understood, and said in our words."""
 
+import runpy
+import sys
+
 import pytest
 
 from scenic.cli.established import translated
@@ -30,3 +33,16 @@ COMMANDS = ["check", "sample", "ast", "python", "simulate"]
 def test_options_are_translated(theirs: str, ours: str | None) -> None:
     found = translated(theirs.split(), COMMANDS)
     assert found == (None if ours is None else ours.split())
+
+
+def test_the_module_is_the_command(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """``python -m scenic``, as existing scripts call it."""
+    monkeypatch.setattr(sys, "argv", ["scenic", "explain", "SC900"])
+    with pytest.raises(SystemExit) as ended:
+        runpy.run_module("scenic", run_name="__main__")
+    assert ended.value.code == 0
+    assert "SC900" in capsys.readouterr().out
+    # Workers that import it again run no command.
+    runpy.run_module("scenic.__main__", run_name="__mp_main__")

@@ -165,7 +165,7 @@ class Case:
         return f"{self.name}({kinds})" + ("" if self.payload is None else f"[{self.payload}]")
 
 
-_BINARY = [(S, S), (I, S), (S, I), (I, I), (B, I), (B, S), (B, B)]
+_BINARY = [(S, S), (I, S), (S, I), (I, I), (B, I), (B, S), (B, B), (S, B), (I, B)]
 _UNARY = [(S,), (I,), (B,)]
 _TABLES = (
     Table(Kind.SCALAR, np.array([2.5, -1.0, 2.5])),
@@ -177,32 +177,36 @@ _CUMULATIVE = (0.25, 0.25, 0.5, 1.0, 1.0)
 
 CASES = [
     *(Case(name, kinds) for name in ("add", "subtract") for kinds in [*_BINARY, (V, V)]),
-    *(Case("multiply", kinds) for kinds in [*_BINARY, (V, S), (S, V), (V, I)]),
-    *(Case("divide", kinds) for kinds in [*_BINARY, (V, S), (V, I)]),
+    *(Case("multiply", kinds) for kinds in [*_BINARY, (V, S), (S, V), (V, I), (I, V), (V, B), (B, V)]),
+    *(Case("divide", kinds) for kinds in [*_BINARY, (V, S), (V, I), (V, B)]),
     *(Case(name, kinds) for name in ("negative", "positive") for kinds in [*_UNARY, (V,)]),
     *(Case("absolute", kinds) for kinds in _UNARY),
     *(Case(name, kinds) for name in ("floor divide", "modulo") for kinds in _BINARY),
-    *(Case("power", kinds) for kinds in [(S, S), (P, S), (S, I), (I, I), (B, B)]),
+    *(Case("power", kinds) for kinds in [(S, S), (P, S), (S, I), (I, I), (B, B), (I, S), (S, B), (B, I)]),
     Case("divmod", (S, S)),
-    *(Case("round", kinds) for kinds in [*_UNARY, (S, I)]),
+    *(Case("round", kinds) for kinds in [*_UNARY, (S, I), (S, B)]),
     *(Case("int", kinds) for kinds in _UNARY),
     *(Case("float", kinds) for kinds in _UNARY),
     Case("str", (I,)),
     Case("len", (V,)),
-    Case("getitem", (V, I)),
+    *(Case("getitem", (V, kind)) for kind in (I, B)),
     *(Case("truth", kinds) for kinds in [*_UNARY, (V,), (Q,)]),
-    *(Case(name, kinds) for name in ("sin", "cos", "normalize angle") for kinds in [(S,), (I,)]),
-    *(Case("hypot", kinds) for kinds in [(S, S), (S, I), (S, S, S), (S,)]),
+    *(Case(name, kinds) for name in ("sin", "cos", "normalize angle") for kinds in [(S,), (I,), (B,)]),
+    *(Case("hypot", kinds) for kinds in [(S, S), (S, I), (S, S, S), (S,), (B, I)]),
     *(
         Case(name, kinds)
         for name in ("less", "less or equal", "greater", "greater or equal")
         for kinds in _BINARY
     ),
-    *(Case(name, kinds) for name in ("equal", "not equal") for kinds in [*_BINARY, (V, V), (Q, Q), (V, S)]),
+    *(
+        Case(name, kinds)
+        for name in ("equal", "not equal")
+        for kinds in [*_BINARY, (V, V), (Q, Q), (V, S), (B, V)]
+    ),
     *(
         Case(name, kinds)
         for name in ("minimum", "maximum")
-        for kinds in [(S, S), (I, I, I), (B, B), (S, S, S)]
+        for kinds in [(S, S), (I, I, I), (B, B), (S, S, S), (I, I)]
     ),
     *(Case(name, kinds) for name in ("and", "or") for kinds in [(B,), (B, B), (B, B, B)]),
     Case("not", (B,)),

@@ -526,3 +526,25 @@ def test_a_settled_batch_may_be_asked_for_anything(chained):
                 fine = is_fine(batch, node)
                 assert fine.tolist() == is_fine(whole, node)[batch.rows].tolist()
                 assert batch.full(node)[fine].tolist() == whole.full(node)[batch.rows][fine].tolist()
+
+
+@pytest.mark.parametrize("order", list(itertools.permutations(range(3))))
+def test_a_settled_batch_gives_together_what_it_has_and_what_it_lost(order):
+    x = uniform(0, 1)
+    nodes = [make("multiply", x, 2.0), make("subtract", x, 3.0), make("add", make("sin", x), 1.0)]
+    asked = [nodes[place] for place in order]
+    expected = sampled(nodes, 5, seed=2).stack(asked)
+    for kept in range(3):
+        for ask in (lambda batch: batch.stack(asked), lambda batch: np.array(batch.lists(asked))):
+            batch = sampled(nodes, 5, seed=2)
+            batch.settle([nodes[kept]])
+            assert ask(batch).tolist() == expected.tolist()
+        batch = sampled(nodes, 5, seed=2)
+        batch.settle([nodes[kept]])
+        batch.need(asked)
+        assert all(batch._is_there(node) for node in nodes)
+
+
+@pytest.mark.parametrize(("shape", "lanes"), [((4,), 4), ((2, 3), 3), ((3, 2), 2), ((1, 5), 5)])
+def test_members_that_are_stacked_are_no_lanes(shape, lanes):
+    assert Call(shape, None, []).lanes == lanes

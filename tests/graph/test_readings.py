@@ -75,7 +75,9 @@ def test_intervals_hold_every_value(case):
 def test_intervals_of_points_are_narrow(case):
     """Where operands are fixed the bounds hold little more than the value."""
     rng = np.random.default_rng(13)
-    if case.name in LOOSE or (case.name in ("equal", "not equal") and Kind.ORIENTATION in case.operands):
+    if LOOSE & {case.name, str(case)} or (
+        case.name in ("equal", "not equal") and Kind.ORIENTATION in case.operands
+    ):
         return
     columns = [draw(part, 1, rng) for part in case.operands]
     node = case_node(case, columns)
@@ -88,8 +90,8 @@ def test_intervals_of_points_are_narrow(case):
     assert ((known.upper - known.lower) <= 1e-6 * size).all()
 
 
-LOOSE = {"euler", "getitem", "modulo", "power"}
-"""Entries whose bounds say less than they could."""
+LOOSE = {"euler", "getitem", "modulo", "power", "round(s,i)", "round(s,b)"}
+"""Entries (or cases of them) whose bounds say less than they could."""
 
 INVERTED = [case for case in CASES if TABLE[case.name].inverse is not None]
 

@@ -4,6 +4,7 @@ Goodness of fit is tested at the false-alarm rate `FALSE_ALARM` a test, on fixed
 """
 
 import math
+import operator
 import random
 import sys
 from collections import Counter
@@ -12,6 +13,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scenic.core.distributions import Range, Uniform
+from scenic.core.vectors import Orientation, Vector
 from scipy import stats
 
 from scenic.language.errors import (
@@ -280,6 +283,28 @@ def test_choices_among_vectors_tuples_and_points() -> None:
 
 
 @pytest.mark.parametrize(
+    "name", ["eq", "ne", "lt", "le", "gt", "ge", "contains", "truth", "len", "int", "float", "iter"]
+)
+def test_python_code_cannot_look_at_what_is_random(name: str) -> None:
+    """Whichever of Python's questions it asks, of what kind of value, and on whichever side of a comparison."""
+    function = {"len": len, "int": int, "float": float, "iter": iter}.get(name) or getattr(operator, name)
+    number = Range(0, 1)
+    values = [number, number + 1, Uniform(1, "a"), Uniform([1, 2], [3])]
+    if name not in ("len", "iter"):  # a vector has three components, whatever they are
+        values += [Vector(number, 2, 3), Orientation.fromEuler(number, 0, 0)]
+    for value in values:
+        for operand in (0.5, 1, "a", (1, 2, 3), None):
+            asked = {2: [(value, operand)], 1: [(value,)]}[
+                1 + (name in ["eq", "ne", "lt", "le", "gt", "ge", "contains"])
+            ]
+            if name in ("eq", "ne", "lt", "le", "gt", "ge"):
+                asked.append((operand, value))
+            for operands in asked:
+                with pytest.raises(RandomControlFlowError, match="a random value is not possible"):
+                    function(*operands)
+
+
+@pytest.mark.parametrize(
     "statement",
     [
         "if x: pass",
@@ -538,6 +563,24 @@ def test_weights_belong_to_their_options_and_those_of_0_are_never_drawn() -> Non
         "param x = [Discrete({1: 0, 'a': 1e-300}), Uniform(7), Options(['b']), DiscreteRange(4, 4, weights=[2])]"
     )["x"] == ["a", 7, "b", 4]
     assert_frequencies(draws("param x = DiscreteRange(-1, 1, weights=(1, 2, 5))"), {-1: 1, 0: 2, 1: 5})
+
+
+@pytest.mark.parametrize("law", ["Discrete", "Options"])
+@pytest.mark.parametrize(
+    "made",
+    ["dict({})", "types.MappingProxyType({})", "collections.UserDict({})", "collections.OrderedDict({})",
+     "collections.Counter({})", "collections.ChainMap({{}}, {})", "collections.defaultdict(int, {})", "Own({})"],
+)  # fmt: skip
+def test_every_mapping_gives_options_their_weights(law: str, made: str) -> None:
+    text = (
+        "import collections, types\nfrom collections.abc import Mapping\n"
+        "class Own(Mapping):\n    def __init__(self, items):\n        self.items_ = list(items.items())\n"
+        "    def __getitem__(self, key):\n        return dict(self.items_)[key]\n"
+        "    def __iter__(self):\n        return iter([key for key, _ in self.items_])\n"
+        "    def __len__(self):\n        return len(self.items_)\n"
+        f"param x = {law}({made.format('{1: 0, 2: 1, (): 3, 4: 0}')})"
+    )
+    assert_frequencies(draws(text, n=400), {2: 1, (): 3})
 
 
 @pytest.mark.parametrize(

@@ -123,6 +123,32 @@ def test_polylines_are_made_of_what_shapely_calls_lines() -> None:
         assert region.containsPoint((2, 1.5)) is through
 
 
+@pytest.mark.parametrize("way", ["from the left", "from the right", "of shapely", "in a program"])
+def test_sums_of_lines_hold_all_parts_in_their_order(way: str) -> None:
+    """Whichever of the two has several parts."""
+    corners = [[(0, 0), (1, 0)], [(3, 0), (5, 0), (5, 2)], [(7, 0), (8, 0)], [(9, 1), (9, 2)]]
+    first, second, third, fourth = map(named.PolylineRegion, corners)
+    if way == "from the left":
+        total = first + second + third + fourth
+    elif way == "from the right":
+        total = first + (second + (third + fourth))
+    elif way == "of shapely":
+        pairs = [shapely.MultiLineString([shapely.LineString(c) for c in corners[i : i + 2]]) for i in (0, 2)]
+        total = named.PolylineRegion(polyline=pairs[0]) + named.PolylineRegion(polyline=pairs[1])
+    else:
+        made = " + ".join(f"PolylineRegion({one})" for one in corners)
+        total = params(f"param r = {made}\nego = new Object on {made}\n")["r"]
+    assert isinstance(total, named.PolylineRegion)
+    assert total.length == pytest.approx(1 + 4 + 1 + 1)
+    assert total.lineString.geom_type == "MultiLineString"
+    assert [len(part.coords) for part in total.lineString.geoms] == [2, 3, 2, 2]
+    assert [tuple(point)[:2] for point in total.points] == [point for line in corners for point in line]
+    assert all(total.containsPoint(point) for point in ((0.5, 0), (5, 1), (9, 1.5)))
+    assert not any(total.containsPoint(point) for point in ((2, 0), (6, 1), (8.5, 0.5)))
+    with pytest.raises(TypeError):
+        total + 3
+
+
 def test_meshes_that_are_inside_out_are_turned() -> None:
     inward = trimesh.creation.box((2, 2, 2))
     inward.invert()
