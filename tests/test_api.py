@@ -504,8 +504,12 @@ def test_deep_checks_tell_what_is_wrong_with_requirements_of_modules_in_their_fi
         never="x = Range(0, 1)\nrequire x > 2\n",
         main="from part import x\nego = new Object\nrequire x < 0.3\n",
         other="import never\nego = new Object\nrequire ego.x > 3\n",
+        upper="y = Range(0, 10)\n\nrequire y < 2\n",
+        lower="x = Range(0, 10)\nrequire x > 6\n",
+        all="from upper import y\nfrom lower import x\nz = Range(0, 10)\nego = new Object\n"
+        "require z < 1\nrequire x < y + z\n",
     )
-    files = {name: str(folder.path / f"{name}.scenic") for name in ("part", "never", "main", "other")}
+    files = {path.stem: str(path) for path in folder.path.glob("*.scenic")}
 
     def told(name: str) -> list[Any]:
         return [
@@ -526,6 +530,8 @@ def test_deep_checks_tell_what_is_wrong_with_requirements_of_modules_in_their_fi
         ("SC700", files["never"], 2, [(1, None)]),
         ("SC700", files["other"], 3, []),
     ]
+    # First what is marked in the file itself.
+    assert told("all") == [("SC700", files["all"], 6, [(5, None), (2, files["lower"]), (3, files["upper"])])]
 
 
 def test_where_an_exception_was_raised_is_shown_beside_the_line_that_led_there(folder: Any) -> None:

@@ -370,8 +370,6 @@ def frame_at(direction: Any, position: Any, what: str) -> Any:
     if not is_field(direction):
         return to_orientation(direction, what)
     place = to_vector(position, what)
-    if isinstance(place, Lazy):
-        return defer(frame_at, direction, place, what)
     return per_option(direction, lambda option: frame_at(option, place, what))
 
 

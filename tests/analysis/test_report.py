@@ -1,5 +1,7 @@
 """What is told of contradictions: code, places, words."""
 
+import itertools
+
 import numpy as np
 import pytest
 from graph.programs import make, one_of, uniform
@@ -72,6 +74,24 @@ def test_options_are_told_where_all_are_fixed_numbers():
         chosen = make("select", index, *options)
         (found,) = report((make("and", make("greater", chosen, -9), make("greater", index, 3)), line(2)))
         assert told(found) == ("SC700", 2, [(1, f"this choice {words}")])
+
+
+@pytest.mark.parametrize("columns", list(itertools.product([False, True], repeat=3)))
+def test_each_choice_is_told_by_its_own_options(columns):
+    """Whether these are nodes or in a table, and whatever other choices there are."""
+    options = [(1, 2.5), (3, 4.5), (6, 7.5)]  # of one kind they would all be tables
+    draws, chosen = [], []
+    for place, (pair, column) in enumerate(zip(options, columns, strict=True)):
+        index = make("choice", graph.axis(), payload=(0.5, 1.0), span=line(place + 1))
+        table = Table(Kind.SCALAR, np.array(pair, dtype=float))
+        chosen.append(make("look-up", index, payload=table) if column else make("select", index, *pair))
+        draws.append(index)
+    values, places = (make("add", make("add", *parts[:2]), parts[2]) for parts in (chosen, draws))
+    (found,) = report((make("and", make("greater", values, -9), make("greater", places, 3)), line(9)))
+    words = [
+        (place + 1, f"this choice is one of {low:g}, {high:g}") for place, (low, high) in enumerate(options)
+    ]
+    assert told(found) == ("SC700", 9, words)
 
 
 def test_options_that_are_vectors_are_not_told():

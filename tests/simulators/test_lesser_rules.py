@@ -1164,6 +1164,33 @@ scenario Sub():
     assert [seen for _, seen in done.records["seen"]][:3] == [True, False, True]
 
 
+@pytest.mark.parametrize("order", [(0, 1), (1, 0)])
+@pytest.mark.parametrize(
+    "ways",
+    [
+        "do b",
+        "do b for 9 steps",
+        "do choose b",
+        "try:\n        do b\n    interrupt when False:\n        wait",
+    ],
+)
+def test_behaviors_that_have_ended_may_be_done_again_by_anyone(order: tuple[int, int], ways: str) -> None:
+    """By another agent: the one that did them first has nothing to do any more."""
+    agents = ["new Object with behavior b", "new Object at (5, 5), with behavior Later"]
+    names = ["first", "later"]
+    text = (
+        "behavior B():\n    take self.name, 1\n    take self.name, 2\n"
+        f"behavior Later():\n    for i in range(3):\n        wait\n    {ways}\n    {ways}\n    take 9\n"
+        "b = B()\n"
+    )
+    made = "".join(f"{names[i]} = {agents[i]}, with name '{names[i]}'\n" for i in order)
+    done = DummySimulator().simulate(scene(f"{text}{made}ego = first\n"), maxSteps=9)
+    assert done is not None
+    told = {agent.name: [step[agent] for step in done.result.actions] for agent in done.result.actions[0]}
+    assert told["first"] == [("first", 1), ("first", 2), *[()] * 7]
+    assert told["later"] == [*[()] * 3, *[("later", 1), ("later", 2)] * 2, (9,), ()]
+
+
 def test_scenarios_are_run_once_and_actions_refused_where_they_are_taken() -> None:
     again = f"{MAIN}    compose:\n        sub = Sub()\n        do sub\n        do sub\n{SUB_WAITS}"
     with pytest.raises(InvalidScenarioError, match=r"scenario Sub\(\) has been run already") as caught:

@@ -426,7 +426,8 @@ class Run:
     def _turn(self, agent: Any) -> tuple[Any, ...] | None:
         behavior: Behavior | None = agent.behavior
         activation: Activation | None = None if behavior is None else behavior._activation
-        if activation is None:
+        if activation is None or activation.agent is not agent:
+            # It has ended; another agent may do it since.
             return ()
         before, self.current = self.current, activation.scenario
         self.agent = agent

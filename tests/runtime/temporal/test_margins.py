@@ -89,6 +89,12 @@ def robustness(condition: str, steps: int, program: str = SCENE) -> float:
         ("always ego in everywhere", math.inf),
         ("always ego.position not in nowhere", math.inf),
         ("always ego != wall", math.inf),
+        # A number beside something else.
+        ("always ego.position != 4", math.inf),
+        ("always 4 != ego.position", math.inf),
+        ("always ego.name != 4", math.inf),
+        ("always not (4 == ego.name)", math.inf),
+        ("always ego.position.x != None", math.inf),
         ("always 1 > ego.position.x >= -3", 1),
         # A point as its place, and lines, that have no inside.
         ("always (new Point at (0, 1)) in zone", 4),
