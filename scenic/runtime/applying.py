@@ -1,7 +1,8 @@
 """Operations on values: at once where all operands are definite, as new nodes of the graph otherwise."""
 
 from collections.abc import Callable, Iterable, Sequence
-from typing import Any
+from types import MappingProxyType
+from typing import Any, Final
 
 import numpy as np
 
@@ -14,7 +15,7 @@ from scenic.graph.operation import Call, Operation
 from scenic.graph.operations import TABLE
 from scenic.graph.schedule import Scheduler
 from scenic.language.errors import InvalidScenarioError
-from scenic.runtime.choices import over_options
+from scenic.runtime.choices import is_judged_by_code, over_options
 from scenic.runtime.context import here, next_address, uniform_draw
 from scenic.runtime.definite import Orientation, Vector, scalar_of
 from scenic.runtime.lazy import Lazy, defer
@@ -39,10 +40,25 @@ def apply(operation: Operation, *operands: Any, payload: Any = None) -> Any:
     if operation.pure and all(node.is_constant for node in nodes):
         return folded(operation, nodes, payload)
     if operation.pure and operation.is_python(nodes, Kind.OTHER):
+        if any(node.kind.is_boxed for node in nodes) and _is_of_code(operation, operands):
+            return Random.later(operation.python, *operands)
         distributed = over_options(nodes, lambda *options: operation.python(*options))  # type: ignore[misc] # it has one
         if distributed is not None:
             return distributed
     return as_value(construction.make_node(operation, nodes, payload, here()))
+
+
+def _is_of_code(operation: Operation, operands: Sequence[Any]) -> bool:
+    """Whether classes of the program define what Python's function gives for an operand: of samples it has to be asked."""
+    name = operation.python.__name__.strip("_")  # type: ignore[union-attr] # it has one
+    methods = (f"__{name}__", f"__r{name}__", *_INSTEAD.get(name, ()))
+    return any(is_judged_by_code(operand, methods) for operand in operands)
+
+
+_INSTEAD: Final = MappingProxyType(
+    {"int": ("__index__", "__trunc__"), "float": ("__index__",), "str": ("__repr__",)}
+)
+"""Methods that Python calls where a class has none of the function's own name."""
 
 
 def _at_once(scalar: Callable[..., Any], payload: Any, operands: Sequence[Any]) -> Any:

@@ -8,12 +8,13 @@ import numpy as np
 
 from scenic.graph import construction
 from scenic.graph.kinds import Kind
-from scenic.graph.node import Node
+from scenic.graph.node import Graph, Node
 from scenic.graph.operation import Call, Operation, always
 from scenic.graph.operations import TABLE
 from scenic.runtime.context import here
 from scenic.runtime.definite import Orientation, Vector
 from scenic.runtime.nodes import as_node, as_value, kind_of
+from scenic.runtime.ownership import is_own_function
 from scenic.runtime.randoms import Random
 
 MOST_OPTIONS = 256
@@ -56,6 +57,15 @@ def _is_data(value: Any) -> bool:
     if cls is dict:
         return all(_is_data(key) and _is_data(item) for key, item in value.items())
     return value is None or cls in (int, float, bool, str, bytes, slice, Vector, Orientation)
+
+
+def is_judged_by_code(value: Any, methods: Sequence[str]) -> bool:
+    """Whether methods of the program's classes judge a value: they have to be asked of the sampled one."""
+    held = [value]
+    if isinstance(value, Random):
+        nodes = Graph([value.node]).nodes if value.node.kind.is_boxed else ()
+        held = [node.value for node in nodes if node.is_constant and node.kind.is_boxed]
+    return any(is_own_function(getattr(type(item), name, None)) for item in held for name in methods)
 
 
 def select(index: Node, options: Sequence[Node]) -> Any:

@@ -13,16 +13,15 @@ import numpy as np
 
 from scenic.graph.construction import make_node
 from scenic.graph.kinds import Column, Kind
-from scenic.graph.node import Graph, Node
+from scenic.graph.node import Node
 from scenic.graph.operation import Call, Operation, always
 from scenic.graph.operations import TABLE
 from scenic.runtime.context import current, here
 from scenic.runtime.dynamics.declarations import Tree
 from scenic.runtime.lazy import definite
 from scenic.runtime.opaque import evaluated, later
-from scenic.runtime.ownership import is_own_function
 from scenic.runtime.samples import Globals
-from scenic.runtime.values import Random, as_node
+from scenic.runtime.values import as_node, is_judged_by_code
 
 Build = Callable[[], Node]
 
@@ -136,15 +135,6 @@ def leaf(
         return later(OPAQUE, concrete, captured, names=names)
 
     return build
-
-
-def is_judged_by_code(value: Any, methods: Sequence[str]) -> bool:
-    """Whether methods of the program's classes judge a value: they have to be asked of the sampled one."""
-    held = [value]
-    if isinstance(value, Random):
-        nodes = Graph([value.node]).nodes if value.node.kind.is_boxed else ()
-        held = [node.value for node in nodes if node.is_constant and node.kind.is_boxed]
-    return any(is_own_function(getattr(type(item), name, None)) for item in held for name in methods)
 
 
 def truth(value: Any) -> Node:

@@ -846,3 +846,61 @@ def test_instances_are_compared_by_the_methods_of_sampled_ones(name: str) -> Non
         )
         sizes = [item.egoObject.size for item in scenario(text).sample(2, seed=1)]
         assert min(sizes) > 1.5
+
+
+LOADED = """
+class Car:
+    load: Range(0, 4)
+    def __add__(self, other): return self.load + other
+    def __radd__(self, other): return other + self.load
+    def __neg__(self): return -self.load
+    def __abs__(self): return abs(self.load)
+    def __len__(self): return int(self.load) + 1
+    def __int__(self): return int(self.load)
+    def __float__(self): return float(self.load)
+    def __round__(self, n=0): return round(self.load, n)
+    def __str__(self): return 'car' + str(int(self.load))
+    def __getitem__(self, i): return self.load * i
+    def __contains__(self, i): return i < self.load
+    def __call__(self, i): return self.load - i
+    def __iter__(self): return iter([self.load, 1])
+a = new Car at (5, 5)
+b = new Car at (9, 9)
+ego = new Car
+d = Uniform(a, b)
+param d = d
+"""
+ASKED = ["d + 1", "1 + d", "-d", "abs(d)", "len(d)", "int(d)", "float(d)", "round(d, 1)", "str(d)", "d[2]", "d(1)", "max(d, default=0)"]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "asked", [*ASKED, "1.5 in d", "sorted(d)", "list(d)", "sum(d)", "f'{d}'", "[x for x in d]"]
+)
+def test_python_asks_sampled_instances_by_the_methods_of_their_class(asked: str) -> None:
+    """Those that choices draw, too: in requirements whatever it asks, elsewhere all that gives a value."""
+    seen: list[tuple[Any, Any]] = []
+    text = f"{LOADED}require Noted(d, {asked})\n" + (f"param x = {asked}\n" if asked in ASKED else "")
+
+    def noted(thing: Any, answer: Any) -> bool:
+        seen.append((eval(asked, {"d": thing}), answer))
+        return True
+
+    program = scenario(text.replace("Noted", "globalParameters.noted"), params={"noted": noted})
+    scene = program.sample(6, seed=2)[5]
+    assert len(seen) >= 6
+    assert all(answer == expected for expected, answer in seen)
+    if asked in ASKED:
+        assert scene.params["x"] == eval(asked, {"d": scene.params["d"]})
+
+
+@pytest.mark.parametrize(
+    "condition",
+    ["len(d) >= 3", "float(d) > 2", "int(d) >= 2", "str(d) == 'car2'", "abs(d) > 2", "-d < -2", "d + 1 > 3", "1 + d > 3",
+     "round(d, 0) > 2", "d[2] > 4", "d(1) > 1", "max(d) > 2", "1.5 in d", "not (len(d) < 3)", "int(d) >= 2 and len(d) < 4"],
+)  # fmt: skip
+def test_conditions_on_what_python_asks_of_sampled_instances(condition: str) -> None:
+    """They hold in all scenes, and others than these meet them, too."""
+    plain = [scene.params["d"] for scene in scenario(LOADED).sample(40, seed=3)]
+    met = [scene.params["d"] for scene in scenario(f"{LOADED}require {condition}\n").sample(20, seed=3)]
+    assert {bool(eval(condition, {"d": thing})) for thing in plain} == {True, False}
+    assert all(eval(condition, {"d": thing}) for thing in met)
