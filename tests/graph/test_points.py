@@ -106,6 +106,10 @@ def test_given_points() -> None:
     assert points.of_simulations(np.array([0]), 1, lanes(2)).tolist() == [[0.2, 0.4]]
     assert np.isnan(points.of_simulations(np.array([1]), 1, lanes(2))).all()
     assert np.isnan(points.of_scenes(np.array([-1]), 2, lanes(2))).all()
+    # What belongs to the draws of simulations is none of the scene's, however many numbers a scene asks for.
+    found = points.of_scenes(np.array([0, 1, 2]), 1, lanes(2))
+    assert found[0].tolist() == [0.1, 0.3]
+    assert np.isnan(found[1:]).all()
     assert len(points) == 2
     with pytest.raises(IndexError, match="no row for scene 2: 2 rows"):
         points.of_scenes(np.array([0]), 1, lanes(3))

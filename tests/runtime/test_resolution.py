@@ -1,5 +1,7 @@
 """Which specifier decides which property; what is wrong with a set of specifiers."""
 
+import itertools
+import re
 from collections.abc import Mapping
 from typing import Any
 
@@ -10,7 +12,7 @@ from scenic.language.errors import InvalidScenarioError, ScenicValueError, Speci
 from scenic.runtime.objects import TWO_D_DEFAULTS, Object, OrientedPoint
 from scenic.runtime.resolution import Resolution, class_defaults, resolution_of, resolve
 from scenic.runtime.specifiers import Specifier
-from scenic.runtime.values import Vector
+from scenic.runtime.values import Orientation, Vector
 from tests.runtime.programs import failure, params, place, scenario, scene, thing
 
 
@@ -422,3 +424,76 @@ def test_containers_wait_for_all_that_their_parts_read(container: str) -> None:
     assert thing(text).both == expected
     circle = text.replace("with late 7", "with late DelayedArgument({'both'}, lambda thing: 1)")
     assert isinstance(failure(circle), SpecifierError)
+
+
+LATE = f"""
+{LAZY}class Thing:
+    key: 3
+    spot: (1, 2, 4)
+    allowCollisions: True
+F = VectorField('F', lambda p: 0.2 * p.x + 0.1)
+ego = new Object at (-9, -8, 1), facing (0.4, 0.1, 0.2), with allowCollisions True
+op = new OrientedPoint at (4, 5, 6), facing (0.7, 0.4, -0.3)
+"""
+KNOWN_LATE = {
+    "number": [("3", "thing.key"), ("-0.5", "thing.key / -6")],
+    "vector": [("(1, 2, 4)", "thing.spot"), ("(1, 3)", "(1, thing.key)"), ("Vector(3, 2, 1)", "Vector(thing.key, 2, 1)")],
+    "either": [("3", "thing.key"), ("(1, 2, 4)", "thing.spot"), ("(1, 3)", "(1, thing.key)")],
+    "turn": [("0.5", "thing.key / 6"), ("(0.5, 0.1, 0.2)", "(thing.key / 6, 0.1, 0.2)"), ("F", None)],
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "specifiers",
+    [
+        "at {vector}",
+        "offset by {vector}",
+        "offset along {turn} by {vector}",
+        *(f"{side} {of} by {{either}}" for side in ("left of", "right of", "ahead of", "behind", "above", "below") for of in ("{vector}", "op")),
+        "left of {vector}",
+        "beyond {vector} by {either}",
+        "beyond op by {either} from {vector}",
+        "following F from {vector} for {number}",
+        "following F for {number}",
+        *(f"at (5, 6, 7), {facing}" for facing in (
+            "facing {turn}", "facing toward {vector}", "facing away from {vector}", "facing directly toward {vector}",
+            "facing directly away from {vector}", "apparently facing {number}", "apparently facing {number} from {vector}",
+            "facing {number} relative to F", "facing F relative to {number}",
+            *(f"with foo ({operator})" for operator in (
+                "distance from {vector} to {vector}", "angle from {vector} to op", "altitude from op to {vector}", "F at {vector}",
+                "apparent heading of op from {vector}", "relative heading of {number}", "{number} deg", "follow F from {vector} for {number}", "{vector} offset by {vector}", "{vector} relative to op",
+                "{vector} offset along {turn} by {vector}",
+            )),
+        )),
+    ],
+)  # fmt: skip
+def test_operands_that_are_known_late_give_what_known_ones_do(specifiers: str) -> None:
+    """Each operand in its turn, and all at once."""
+    slots = re.findall(r"\{(\w+)\}", specifiers)
+    made, groups = [], []
+    for options in itertools.product(*(KNOWN_LATE[slot] for slot in slots)):
+        late = [number for number, (_, later) in enumerate(options) if later is not None]
+        for lazy in ([], late, *([number] for number in late)):
+            parts = [
+                f"DelayedArgument({{'key', 'spot'}}, lambda thing: {later})" if number in lazy else known
+                for number, (known, later) in enumerate(options)
+            ]
+            made.append("new Thing " + re.sub(r"\{\w+\}", "{}", specifiers).format(*parts) + "\n")
+            groups.append(options)
+    things = scene(LATE + "".join(made)).objects[1:]
+    known = None
+    for text, options, one in zip(made, groups, things, strict=True):
+        found = [*one.position, *one.orientation.q, *_numbers(getattr(one, "foo", 0))]
+        if "DelayedArgument" not in text:
+            known = options, found
+        assert known is not None
+        assert known[0] == options
+        assert found == pytest.approx(known[1]), text
+
+
+def _numbers(value: Any) -> list[float]:
+    if isinstance(value, OrientedPoint):
+        return [*value.position, *value.orientation.q]
+    if isinstance(value, Orientation):
+        return list(value.q)
+    return list(value) if isinstance(value, Vector) else [value]

@@ -7,6 +7,7 @@ import pytest
 from scipy.stats import chisquare
 
 import scenic
+from scenic.runtime.dynamics.draws import Draw, Recorded, Seeded
 from scenic.simulators.dummy import DummySimulator
 from scenic.simulators.simulation import Simulation
 
@@ -127,3 +128,21 @@ def test_what_has_entered_is_not_mutated_by_functions_either(statement: str) -> 
         (done,) = runs(text, 1)
     assert done.trajectory[-1][1] == (5, 0, 0)
     assert len(found) == 1
+
+
+def test_a_recording_may_be_replayed_as_often_as_one_likes() -> None:
+    """What is drawn again is taken from the recording, which stays whole."""
+    text = "behavior B():\n    while True:\n        take Range(0, 1), Uniform(1, 2, 3)\nego = new Object with behavior B\n"
+    scene = scenic.scenarioFromString(text).sample(1, seed=5)[0]
+    done = DummySimulator().simulate(scene, maxSteps=6)
+    assert done is not None
+    record = done.getReplay()
+    for _ in range(3):
+        again = DummySimulator().replay(scene, record, maxSteps=6)
+        assert again is not None
+        assert again.result.actions == done.result.actions
+    numbers = {7: 0.25, 8: 0.5}
+    recorded = Recorded(numbers, Seeded(b"key"))
+    what = Draw(1, None, "", 0, 0, 0)
+    assert [recorded.draw(place, what) for place in (7, 8)] == [0.25, 0.5]
+    assert numbers == {7: 0.25, 8: 0.5}

@@ -349,3 +349,22 @@ def test_lanes_without_a_place_collide_with_nothing_and_disturb_no_other(bad, pa
     if np.isnan(bad) and part == "position":
         assert not found.pairs[broken][:, mine].any()
     np.testing.assert_array_equal(free[~broken], ~usual[~broken].any(axis=1))
+
+
+@pytest.mark.parametrize("axis", range(3))
+@pytest.mark.parametrize("size", [(1, 1, 1), (1, 2, 3), (0.2, 0.2, 1)])
+def test_corners_that_point_along_an_axis_meet_there(axis, size):
+    """Bodies, long or not, of an orientation for each lane, that reach as far as half their diagonal."""
+    lanes, half = 5, np.array(size) / 2
+    reach = np.linalg.norm(half)
+    diagonal, _ = Rotation.align_vectors([np.eye(3)[axis]], [half])
+    turns = (diagonal * Rotation.from_rotvec(np.linspace(0, 2, lanes)[:, None] * half / reach)).as_quat()
+    for gap in (-0.02, 0.02):
+        away = (2 * reach + gap) * np.eye(3)[axis]
+        cast = [
+            Body((primitives.box(),), None, Poses(np.array([place]), turns, np.array([size], dtype=float)))
+            for place in (np.zeros(3), away, np.full(3, 50.0))
+        ]
+        found = collide(cast, None, lanes, exhaustive=True).pairs
+        assert found[:, 0].tolist() == [gap < 0] * lanes
+        assert not found[:, 1:].any()

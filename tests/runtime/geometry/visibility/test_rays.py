@@ -1,6 +1,7 @@
 """Single rays: which of them there are, that none is left out, and that none slips through a surface or starts on its wrong side."""
 
 import dataclasses
+import itertools
 import math
 from fractions import Fraction
 
@@ -10,7 +11,7 @@ import pytest
 from scenic.runtime.geometry import primitives
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.mesh import Mesh
-from scenic.runtime.geometry.poses import Floats, Poses
+from scenic.runtime.geometry.poses import Booleans, Floats, Indices, Poses
 from scenic.runtime.geometry.visibility import hits
 from scenic.runtime.geometry.visibility.bodies import inside_body, sees_bodies
 from scenic.runtime.geometry.visibility.grid import rows_towards
@@ -489,3 +490,30 @@ def test_a_frame_before_all_corners_of_a_body_does_not_hide_it() -> None:
         ((whole,), False),
     ):
         assert sees(observer, target, *occluders) is seen
+
+
+@pytest.mark.parametrize("order", list(itertools.permutations(range(3))))
+def test_each_obstacle_counts_for_the_rays_of_its_lanes_whatever_others_do(order: tuple[int, ...]) -> None:
+    """Those before it may hide nothing, or be near in other lanes alone."""
+    rng = np.random.default_rng(6)
+    # Each of three walls stands between camera and target in some of six lanes, and far off in the others.
+    there = np.array([[1, 1, 0, 0, 0, 1], [0, 1, 1, 0, 0, 0], [0, 0, 1, 1, 0, 1]], dtype=bool)
+    walls = []
+    for number, lanes in enumerate(there):
+        place = np.where(lanes[:, np.newaxis], [0.4 * number - 0.3, 10.0 + number, 0], [200.0, 10, 0])
+        walls.append(
+            Body((BOX,), None, Poses(place, np.array([[0.0, 0, 0, 1]]), np.array([[0.9, 0.2, 0.9]])))
+        )
+    observers = Views.fixed((0, 0, 0), distance=60).spread(6)
+    middle, radius = np.array([[0.0, 30, 0]] * 6), np.full(6, 2.0)
+    lane = rng.integers(0, 6, 400)
+    ways = np.column_stack([rng.uniform(-2, 2, 400), np.full(400, 30.0), rng.uniform(-2, 2, 400)])
+
+    def hidden(bodies: list[Body], rays: Indices) -> Booleans:
+        obstacles = Obstacles([Occluder(body) for body in bodies], observers, np.arange(6), middle, radius)
+        return obstacles.block(lane[rays], ways[rays], np.ones(len(rays)))
+
+    for rays in (np.arange(400), *(np.flatnonzero(lane == one) for one in range(6))):
+        each = np.array([hidden([wall], rays) for wall in walls])
+        assert hidden([walls[place] for place in order], rays).tolist() == each.any(axis=0).tolist()
+    assert 0.1 < hidden(walls, np.arange(400)).mean() < 0.9
