@@ -53,19 +53,19 @@ def ours(steps: int, **options: bool) -> float:
     return time.process_time() - begun
 
 
-def of_reference(path: str, steps: int) -> float:
+def of_reference(path: Path, steps: int) -> float:
     """The same, without what it takes to start and to make a scene."""
     return _processor(path, "--simulate", str(steps), "--drift", "0.01") - _processor(path)
 
 
-def _processor(path: str, *options: str) -> float:
+def _processor(path: Path, *options: str) -> float:
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder, "program.scenic")
         file.write_text(program())
         environment = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
         subprocess.run(
-            [path, str(file), *options], capture_output=True, check=True, cwd=folder, env=environment
+            [path.resolve(), file, *options], capture_output=True, check=True, cwd=folder, env=environment
         )
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
     return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
@@ -96,7 +96,7 @@ def memory(steps: int) -> None:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--steps", type=int, nargs="+", default=[200, 2000])
-    parser.add_argument("--reference", help="also measure this")
+    parser.add_argument("--reference", type=Path, help="also measure this command")
     parser.add_argument(
         "--memory", type=int, metavar="STEPS", help="also show the memory along so many steps"
     )
