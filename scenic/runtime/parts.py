@@ -118,7 +118,7 @@ def called(value: Random, args: Sequence[Any], kwargs: dict[str, Any]) -> Any:
         for option in options:
             if option.operation is MISSING:
                 results.append(option)
-            elif option.is_constant and _is_of_runtime(option.value):
+            elif option.is_constant and _is_of_runtime(option.value) and not _draws(option.value):
                 results.append(_traced(option.value, args, kwargs))
             elif option.is_constant and isinstance(option.value, BuiltinFunctionType):
                 results.append(_call_in_lanes(option, args, kwargs))
@@ -126,6 +126,14 @@ def called(value: Random, args: Sequence[Any], kwargs: dict[str, Any]) -> Any:
                 results.append(as_node(Random.later(as_value(option), *args, **kwargs)))
         return select(index, results)
     return Random.later(value, *args, **kwargs)
+
+
+_DRAWING: Final = frozenset({"sample", "uniformPointInner"})
+"""Methods of the runtime that draw whenever they are called: of a choice they are called in each sample."""
+
+
+def _draws(function: Any) -> bool:
+    return getattr(function, "__name__", None) in _DRAWING
 
 
 def _is_of_runtime(function: Any) -> bool:

@@ -384,3 +384,23 @@ def test_a_box_stands_in_for_a_shape_that_could_not_be_drawn(missing: tuple[int,
     body = body_of(np.zeros((3, 3)), np.array([[0.0, 0, 0, 1]]), np.ones((1, 3)), shapes)
     choice = np.zeros(3, dtype=int) if body.choice is None else body.choice
     assert [body.meshes[number] for number in choice] == expected
+
+
+def test_points_that_a_choice_of_regions_draws_are_drawn_in_each_sample() -> None:
+    """In the region that is drawn; where that has none, the sample is rejected."""
+    text = (
+        "near, far = CircularRegion((0, 0), 1), BoxRegion((1, 2, 3), (9, 9, 9))\n"
+        "r = Uniform(near, far, nowhere)\n"
+        "param x = r.uniformPointInner(), r = r, y = [r.uniformPointInner(), r.uniformPointInner()]\n"
+    )
+    found = scenario(text)
+    scenes = found.sample(60, seed=4)
+    points = [scene.params["x"] for scene in scenes]
+    assert len(set(map(tuple, points))) == 60
+    for scene in scenes:
+        region = scene.params["r"]
+        assert all(region.containsPoint(point) for point in (scene.params["x"], *scene.params["y"]))
+        assert len({tuple(point) for point in (scene.params["x"], *scene.params["y"])}) == 3
+    assert 15 < sum(point.x < 2 for point in points) < 45
+    assert 60 < sum(scene.attempts for scene in scenes) < 140
+    assert [tuple(scene.params["x"]) for scene in found.sample(60, seed=4)] == list(map(tuple, points))
