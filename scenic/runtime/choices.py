@@ -8,12 +8,12 @@ import numpy as np
 
 from scenic.graph import construction
 from scenic.graph.kinds import Kind
-from scenic.graph.node import Graph, Node
+from scenic.graph.node import Node
 from scenic.graph.operation import Call, Operation, always
 from scenic.graph.operations import TABLE
 from scenic.runtime.context import here
 from scenic.runtime.definite import Orientation, Vector
-from scenic.runtime.nodes import as_node, as_value, kind_of
+from scenic.runtime.nodes import CONTAINERS_MADE, as_node, as_value, kind_of
 from scenic.runtime.ownership import is_own_function
 from scenic.runtime.randoms import Random
 
@@ -61,11 +61,24 @@ def _is_data(value: Any) -> bool:
 
 def is_judged_by_code(value: Any, methods: Sequence[str]) -> bool:
     """Whether methods of the program's classes judge a value: they have to be asked of the sampled one."""
-    held = [value]
-    if isinstance(value, Random):
-        nodes = Graph([value.node]).nodes if value.node.kind.is_boxed else ()
-        held = [node.value for node in nodes if node.is_constant and node.kind.is_boxed]
-    return any(is_own_function(getattr(type(item), name, None)) for item in held for name in methods)
+    if not isinstance(value, Random):
+        return _has_own(value, methods)
+    stack, seen = [value.node], {value.node}
+    while stack:
+        node = stack.pop()
+        if node.is_constant:
+            if node.kind.is_boxed and _has_own(node.value, methods):
+                return True
+        elif node.kind.is_boxed and (not node.operation.strict or node.operation in CONTAINERS_MADE):
+            # What is handed on; anything else is computed, and of sampled instances where it is made of some.
+            new = [operand for operand in node.operands if operand not in seen]
+            seen.update(new)
+            stack.extend(new)
+    return False
+
+
+def _has_own(value: Any, methods: Sequence[str]) -> bool:
+    return any(is_own_function(getattr(type(value), name, None)) for name in methods)
 
 
 def select(index: Node, options: Sequence[Node]) -> Any:

@@ -1,7 +1,7 @@
 """Values as nodes of the graph, and nodes as values; of which kind a value is, and how columns hold it."""
 
 from collections.abc import Callable
-from typing import Any, TypeGuard
+from typing import Any, Final, TypeGuard
 
 import numpy as np
 
@@ -146,6 +146,9 @@ _FROZEN_SET = Operation(
     "A set with random elements that is not changed.",
     python=lambda *parts: frozenset(parts),
 )
+
+CONTAINERS_MADE: Final = frozenset({TUPLE, LIST, DICTIONARY, _SET, _FROZEN_SET})
+"""Operations that put their operands into a container, as they are."""
 
 
 def _container(value: Any) -> Operation:
