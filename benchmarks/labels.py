@@ -13,6 +13,7 @@ import sys
 import tempfile
 import time
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import trimesh
@@ -100,14 +101,14 @@ def check(folder: Path, program: str) -> int:
     return 1 if wrong else 0
 
 
-def world_mesh(thing: object) -> trimesh.Trimesh:
+def world_mesh(thing: Any) -> trimesh.Trimesh:
     """The mesh of an object of a scene, in the world."""
-    unit = thing.shape.mesh  # type: ignore[attr-defined]
-    turn = thing.orientation  # type: ignore[attr-defined]
-    size = [thing.width, thing.length, thing.height]  # type: ignore[attr-defined]
+    unit = thing.shape.mesh
+    turn = thing.orientation
+    size = [thing.width, thing.length, thing.height]
     mesh = trimesh.Trimesh(unit.vertices * size, unit.faces, process=False)
     matrix = trimesh.transformations.quaternion_matrix([turn.w, turn.x, turn.y, turn.z])
-    matrix[:3, 3] = list(thing.position)  # type: ignore[attr-defined]
+    matrix[:3, 3] = list(thing.position)
     return mesh.apply_transform(matrix)
 
 
