@@ -15,7 +15,7 @@ from scenic.graph.operation import Call, Operation
 from scenic.graph.operations import TABLE
 from scenic.graph.schedule import Scheduler
 from scenic.language.errors import InvalidScenarioError
-from scenic.runtime.choices import is_judged_by_code, over_options
+from scenic.runtime.choices import is_answered_by_code, over_options
 from scenic.runtime.context import here, next_address, uniform_draw
 from scenic.runtime.definite import Orientation, Vector, scalar_of
 from scenic.runtime.lazy import Lazy, defer
@@ -50,9 +50,10 @@ def apply(operation: Operation, *operands: Any, payload: Any = None) -> Any:
 
 def _is_of_code(operation: Operation, operands: Sequence[Any]) -> bool:
     """Whether classes of the program define what Python's function gives for an operand: of samples it has to be asked."""
+    # Python's operators and functions have the names of the methods that they call: `operator.add`, `len`.
     name = operation.python.__name__.strip("_")  # type: ignore[union-attr] # it has one
     methods = (f"__{name}__", f"__r{name}__", *_INSTEAD.get(name, ()))
-    return any(is_judged_by_code(operand, methods) for operand in operands)
+    return any(is_answered_by_code(operand, methods) for operand in operands)
 
 
 _INSTEAD: Final = MappingProxyType(

@@ -59,8 +59,8 @@ def _is_data(value: Any) -> bool:
     return value is None or cls in (int, float, bool, str, bytes, slice, Vector, Orientation)
 
 
-def is_judged_by_code(value: Any, methods: Sequence[str]) -> bool:
-    """Whether methods of the program's classes judge a value: they have to be asked of the sampled one."""
+def is_answered_by_code(value: Any, methods: Sequence[str]) -> bool:
+    """Whether methods of the program's classes answer for a value: they have to be asked of the sampled one."""
     if not isinstance(value, Random):
         return _has_own(value, methods)
     stack, seen = [value.node], {value.node}
@@ -70,7 +70,7 @@ def is_judged_by_code(value: Any, methods: Sequence[str]) -> bool:
             if node.kind.is_boxed and _has_own(node.value, methods):
                 return True
         elif node.kind.is_boxed and (not node.operation.strict or node.operation in CONTAINERS_MADE):
-            # What is handed on; anything else is computed, and of sampled instances where it is made of some.
+            # What these hand on; anything else is computed, and where instances answer for it, of sampled ones.
             new = [operand for operand in node.operands if operand not in seen]
             seen.update(new)
             stack.extend(new)

@@ -21,7 +21,7 @@ from scenic.runtime.dynamics.declarations import Tree
 from scenic.runtime.lazy import definite
 from scenic.runtime.opaque import evaluated, later
 from scenic.runtime.samples import Globals
-from scenic.runtime.values import as_node, is_judged_by_code
+from scenic.runtime.values import as_node, is_answered_by_code
 
 Build = Callable[[], Node]
 
@@ -139,7 +139,7 @@ def leaf(
 
 def truth(value: Any) -> Node:
     """The truth value of a value, as a node; raises `NotSymbolicError` where it takes a sample to tell."""
-    if is_judged_by_code(value, _OF_TRUTH):
+    if is_answered_by_code(value, _OF_TRUTH):
         raise NotSymbolicError
     node = as_node(value)
     if node.kind is Kind.BOOLEAN:

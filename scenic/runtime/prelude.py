@@ -58,7 +58,7 @@ from scenic.runtime.values import (
     as_node,
     as_value,
     describe,
-    is_judged_by_code,
+    is_answered_by_code,
     is_random,
     operate,
     to_orientation,
@@ -417,7 +417,7 @@ class Prelude(Dynamics):
         """``left operator right`` as a truth value, which may be random."""
         if may_return_instances(left) or may_return_instances(right):
             return Random.later(TABLE[COMPARISONS[operator]].python, left, right)
-        if any(is_judged_by_code(item, _OF_ORDER) for item in (left, right)):
+        if any(is_answered_by_code(item, _OF_ORDER) for item in (left, right)):
             raise conditions.NotSymbolicError
         if is_random(left) or is_random(right):
             return operate(COMPARISONS[operator], left, right)

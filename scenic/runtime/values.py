@@ -11,7 +11,14 @@ values, tells the classes.
 """
 
 from scenic.runtime.applying import apply, binary, fixed_batch, folded, operate, random_key, unary, uniform
-from scenic.runtime.choices import as_drawn, is_judged_by_code, is_open, options_of, over_options, per_option
+from scenic.runtime.choices import (
+    as_drawn,
+    is_answered_by_code,
+    is_open,
+    options_of,
+    over_options,
+    per_option,
+)
 from scenic.runtime.coercions import (
     to_heading,
     to_orientation,
@@ -45,7 +52,7 @@ __all__ = [
     "fixed_batch",
     "folded",
     "holds_instances",
-    "is_judged_by_code",
+    "is_answered_by_code",
     "is_number",
     "is_open",
     "is_orientation",
