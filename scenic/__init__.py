@@ -40,11 +40,11 @@ if TYPE_CHECKING:
         SpecifierError,
     )
     from scenic.pipeline import load, scenarioFromFile, scenarioFromString
-    from scenic.runtime.established import setDebuggingOptions
-    from scenic.runtime.scenario import Scenario
-    from scenic.runtime.scene import Scene
-    from scenic.runtime.sensors import DepthSensor, RGBSensor, SSSensor
-    from scenic.runtime.specifiers import specifier
+    from scenic.runtime.elements.sensors import DepthSensor, RGBSensor, SSSensor
+    from scenic.runtime.elements.specifiers import specifier
+    from scenic.runtime.scenes.established_api import setDebuggingOptions
+    from scenic.runtime.scenes.scenario import Scenario
+    from scenic.runtime.scenes.scene import Scene
     from scenic.simulators.replays import Conditioned
 
 _HOMES = MappingProxyType(
@@ -62,18 +62,18 @@ _HOMES = MappingProxyType(
         "ScenicSyntaxError": "scenic.language.errors",
         "ScenicWarning": "scenic.language.errors",
         "SpecifierError": "scenic.language.errors",
-        "DepthSensor": "scenic.runtime.sensors",
-        "RGBSensor": "scenic.runtime.sensors",
-        "SSSensor": "scenic.runtime.sensors",
+        "DepthSensor": "scenic.runtime.elements.sensors",
+        "RGBSensor": "scenic.runtime.elements.sensors",
+        "SSSensor": "scenic.runtime.elements.sensors",
         "load": "scenic.pipeline",
         "read_scenes": "scenic.formats.reading",
         "read_trajectory": "scenic.formats.trajectory_reading",
         "scenarioFromFile": "scenic.pipeline",
         "scenarioFromString": "scenic.pipeline",
-        "Scenario": "scenic.runtime.scenario",
-        "Scene": "scenic.runtime.scene",
-        "setDebuggingOptions": "scenic.runtime.established",
-        "specifier": "scenic.runtime.specifiers",
+        "Scenario": "scenic.runtime.scenes.scenario",
+        "Scene": "scenic.runtime.scenes.scene",
+        "setDebuggingOptions": "scenic.runtime.scenes.established_api",
+        "specifier": "scenic.runtime.elements.specifiers",
     }
 )
 

@@ -1,7 +1,7 @@
 """Where the names of the established Python API live here: one table, and the modules that it makes.
 
 ``import scenic.core.regions`` and the like give modules whose attributes are looked up in this table when they are first used.
-A name that the language itself provides (`scenic.runtime.names`) needs no row of its own.
+A name that the language itself provides (`scenic.runtime.program.builtins`) needs no row of its own.
 """
 
 import sys
@@ -16,16 +16,16 @@ _LANGUAGE: Final = "the language"
 _ERRORS: Final = "scenic.language.errors"
 _DEFINITIONS: Final = "scenic.runtime.dynamics.definitions"
 _RECORDERS: Final = "scenic.runtime.dynamics.recorders"
-_ESTABLISHED: Final = "scenic.runtime.established"
-_FIELDS: Final = "scenic.runtime.fields"
-_VALUES: Final = "scenic.runtime.values"
-_LAWS: Final = "scenic.runtime.laws"
-_FUNCTIONS: Final = "scenic.runtime.functions"
-_OBJECTS: Final = "scenic.runtime.objects"
-_MUTATORS: Final = "scenic.runtime.mutators"
-_VENEER: Final = "scenic.runtime.veneer"
-_SENSORS: Final = "scenic.runtime.sensors"
-_LAZY: Final = "scenic.runtime.lazy"
+_ESTABLISHED: Final = "scenic.runtime.scenes.established_api"
+_FIELDS: Final = "scenic.runtime.regions.fields"
+_VALUES: Final = "scenic.runtime.values.values"
+_LAWS: Final = "scenic.runtime.python.custom_distributions"
+_FUNCTIONS: Final = "scenic.runtime.elements.functions"
+_OBJECTS: Final = "scenic.runtime.instances.objects"
+_MUTATORS: Final = "scenic.runtime.instances.mutators"
+_VENEER: Final = "scenic.runtime.elements.veneer"
+_SENSORS: Final = "scenic.runtime.elements.sensors"
+_LAZY: Final = "scenic.runtime.values.lazy"
 _INSIDE: Final = "the inside"
 """Home of names of what is within the established implementation, and has no counterpart here."""
 
@@ -208,11 +208,11 @@ MODULES: Final[Mapping[str, Mapping[str, str]]] = MappingProxyType(
             (_ESTABLISHED, "SampleChecker BasicChecker WeightedAcceptanceChecker")
         ),
         "scenic.core.scenarios": _homes(
-            ("scenic.runtime.scenario", "Scenario"), ("scenic.runtime.scene", "Scene")
+            ("scenic.runtime.scenes.scenario", "Scenario"), ("scenic.runtime.scenes.scene", "Scene")
         ),
         "scenic.core.shapes": _homes(
             (_LANGUAGE, "MeshShape BoxShape CylinderShape ConeShape SpheroidShape"),
-            ("scenic.runtime.shapes", "Shape"),
+            ("scenic.runtime.elements.shapes", "Shape"),
         ),
         "scenic.core.sensors": _homes(
             (_SENSORS, "Sensor RGBSensor SSSensor CallbackSensor GroundTruthSensor"),
@@ -247,7 +247,8 @@ MODULES: Final[Mapping[str, Mapping[str, str]]] = MappingProxyType(
             (_INSIDE, "ReplayMode"),
         ),
         "scenic.core.specifiers": _homes(
-            ("scenic.runtime.specifiers", "Specifier"), (_INSIDE, "ModifyingSpecifier PropertyDefault")
+            ("scenic.runtime.elements.specifiers", "Specifier"),
+            (_INSIDE, "ModifyingSpecifier PropertyDefault"),
         ),
         "scenic.core.type_support": _homes(
             (
@@ -277,8 +278,8 @@ MODULES: Final[Mapping[str, Mapping[str, str]]] = MappingProxyType(
             (_LANGUAGE, "Vector Orientation VectorField PolygonalVectorField"),
             (_FIELDS, "PiecewiseVectorField PolyhedronVectorField"),
             (_ESTABLISHED, "alwaysGlobalOrientation globalOrientation"),
-            ("scenic.runtime.randoms", "VectorDistribution=RandomVector"),
-            ("scenic.runtime.definite", "OrientedVector"),
+            ("scenic.runtime.values.random_values", "VectorDistribution=RandomVector"),
+            ("scenic.runtime.values.definite", "OrientedVector"),
             (
                 _INSIDE,
                 (
@@ -341,7 +342,7 @@ _EVERYTHING: Final = frozenset({"scenic.syntax.veneer"})
 
 
 def _provided() -> Mapping[str, Any]:
-    names: Mapping[str, Any] = import_module("scenic.runtime.names").language_names()
+    names: Mapping[str, Any] = import_module("scenic.runtime.program.builtins").language_names()
     return names
 
 

@@ -31,10 +31,10 @@ from scenic.language.errors import (
     UnsupportedError,
 )
 from scenic.pipeline import load
+from scenic.runtime.elements.sensors import CameraSensor
 from scenic.runtime.sampling.report import Exhausted
-from scenic.runtime.scenario import Scenario
-from scenic.runtime.sensors import CameraSensor
-from scenic.runtime.values import Orientation, Vector, is_number
+from scenic.runtime.scenes.scenario import Scenario
+from scenic.runtime.values.values import Orientation, Vector, is_number
 from scenic.simulators.batch import choose_simulator
 from scenic.simulators.cameras import Present
 from scenic.simulators.results import TerminationType

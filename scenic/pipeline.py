@@ -28,18 +28,18 @@ from scenic.language.garbage import promote_young
 from scenic.language.source import Source, read_source
 from scenic.language.spans import Span
 from scenic.language.spelling import nearest, nearest_attribute
-from scenic.runtime.context import Context, current
 from scenic.runtime.dynamics.definitions import ModularScenario
-from scenic.runtime.importing import beside
-from scenic.runtime.mutation import apply_noise
-from scenic.runtime.objects import Object, Point
-from scenic.runtime.prelude import Loader
-from scenic.runtime.program import Module, Program
-from scenic.runtime.randomness import preserved, seed_globals
+from scenic.runtime.instances.mutation import apply_noise
+from scenic.runtime.instances.objects import Object, Point
+from scenic.runtime.program.context import Context, current
+from scenic.runtime.program.outcome import Module, Program
+from scenic.runtime.program.prelude import Loader
+from scenic.runtime.python.importing import beside
+from scenic.runtime.python.random_state import preserved, seed_globals
 from scenic.runtime.regions.base import Everywhere, Nowhere, Region, Workspace
-from scenic.runtime.saving import program_digest
-from scenic.runtime.scenario import Scenario
-from scenic.runtime.values import is_random
+from scenic.runtime.scenes.saving import program_digest
+from scenic.runtime.scenes.scenario import Scenario
+from scenic.runtime.values.values import is_random
 
 PROGRAM_SEED = 0
 """Seed of Python's and NumPy's global generators while a program runs, so that it builds the same graph each time."""

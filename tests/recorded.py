@@ -21,9 +21,9 @@ import pytest
 
 import scenic
 from scenic.pipeline import diagnose
-from scenic.runtime.objects import Point
+from scenic.runtime.instances.objects import Point
 from scenic.runtime.regions.base import Region
-from scenic.runtime.values import Orientation, Vector
+from scenic.runtime.values.values import Orientation, Vector
 from tests.compiler.golden_cases import Case, cases_text, read_cases
 
 FOLDER = Path(__file__).parent / "data" / "recorded"

@@ -33,7 +33,7 @@ from scenic.core.regions import (
 import scenic
 from scenic.established import MODULES, lookup
 from scenic.language.names import NAMES
-from scenic.runtime.values import Vector
+from scenic.runtime.values.values import Vector
 from scenic.simulators.dummy import DummySimulator
 from tests.runtime.programs import params
 

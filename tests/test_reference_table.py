@@ -14,7 +14,7 @@ import pytest
 from scipy import stats
 
 import scenic
-from scenic.runtime.values import Orientation
+from scenic.runtime.values.values import Orientation
 from tests.runtime.programs import FALSE_ALARM
 
 DATA: dict[str, Any] = json.loads((Path(__file__).parent / "data" / "reference" / "table.json").read_text())

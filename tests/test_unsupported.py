@@ -18,8 +18,8 @@ from scenic.language.errors import Located, UnsupportedError
 from scenic.language.names import NAMES
 from scenic.language.support import refused_features
 from scenic.pipeline import diagnose
-from scenic.runtime.names import Unsupported, builtin_names
-from scenic.runtime.program import Program
+from scenic.runtime.program.builtins import Unsupported, builtin_names
+from scenic.runtime.program.outcome import Program
 from tests.runtime.programs import marked
 
 

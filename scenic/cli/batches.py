@@ -17,8 +17,8 @@ from scenic.formats.json_lines import SceneLines
 from scenic.graph.points import Sobol
 from scenic.language.errors import Located
 from scenic.runtime.sampling.report import Exhausted
-from scenic.runtime.scenario import Scenario
-from scenic.runtime.scene import Scene
+from scenic.runtime.scenes.scenario import Scenario
+from scenic.runtime.scenes.scene import Scene
 
 if TYPE_CHECKING:
     from _typeshed import ReadableBuffer

@@ -16,7 +16,7 @@ from typing import Final
 
 import click
 
-from scenic.cli.established import GLOBAL, translated
+from scenic.cli.old_command_line import GLOBAL, translated
 from scenic.cli.output import FINDINGS, INTERNAL, INTERRUPTED, exit_code, show_diagnostics, shown_warnings
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.errors import Located, ParseCompileError

@@ -67,7 +67,7 @@ class _Work:
         """The scenario and the simulator; raises what is wrong with either."""
         if self._made is None:
             from scenic.pipeline import load
-            from scenic.runtime.importing import beside, forget_stranger
+            from scenic.runtime.python.importing import beside, forget_stranger
             from scenic.simulators.batch import choose_simulator
 
             scenario = load(**self._loading)

@@ -23,9 +23,9 @@ from scenic.formats.stage import Stage
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.poses import Poses
-from scenic.runtime.geometry.visibility.bodies import sees_bodies
 from scenic.runtime.geometry.visibility.hits import place
 from scenic.runtime.geometry.visibility.obstacles import Occluder
+from scenic.runtime.geometry.visibility.seen_bodies import sees_bodies
 from scenic.runtime.geometry.visibility.views import CORNERS, Views
 
 DEFAULT_RANGE = 50.0

@@ -11,7 +11,7 @@ from scenic.formats.instances import Array
 from scenic.formats.poses import rotation_matrix
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.regions.base import Region, Workspace
-from scenic.runtime.regions.bodies import OccupiedSpace, SideSurface
+from scenic.runtime.regions.body_regions import OccupiedSpace, SideSurface
 from scenic.runtime.regions.composite import (
     Composite,
     DifferenceRegion,

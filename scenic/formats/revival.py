@@ -7,8 +7,8 @@ from typing import Any, Final
 from scenic.formats.reading import ReadObject, ReadScene
 from scenic.formats.scenes import Shape
 from scenic.language.errors import Located, MeshError
-from scenic.runtime.shapes import BoxShape, ConeShape, CylinderShape, MeshShape, SpheroidShape
-from scenic.runtime.values import Orientation, Vector
+from scenic.runtime.elements.shapes import BoxShape, ConeShape, CylinderShape, MeshShape, SpheroidShape
+from scenic.runtime.values.values import Orientation, Vector
 
 _SIMPLE: Final[Mapping[str, Callable[..., Shape]]] = {
     "box": BoxShape,

@@ -11,7 +11,7 @@ from scenic.formats.instances import Array
 from scenic.formats.poses import quaternion_of
 from scenic.formats.scenes import Scene, SceneObject
 from scenic.language.errors import Located
-from scenic.runtime.sensors import DEFAULT_FIELD_OF_VIEW, CameraSensor
+from scenic.runtime.elements.sensors import DEFAULT_FIELD_OF_VIEW, CameraSensor
 
 ALL_OUTPUTS = ("rgb", "depth", "semantic", "instance")
 

@@ -3,7 +3,7 @@
 from abc import ABC, abstractmethod
 from typing import Any
 
-from scenic.runtime.carriers import Carrier
+from scenic.runtime.python.value_holders import Carrier
 
 __all__ = ["Action"]
 

@@ -12,7 +12,7 @@ from scenic.language.errors import Located
 from scenic.language.spelling import nearest
 from scenic.runtime.dynamics.driving import driven
 from scenic.runtime.sampling.report import Exhausted
-from scenic.runtime.scenario import Scenario
+from scenic.runtime.scenes.scenario import Scenario
 from scenic.simulators.simulation import OnState, Simulation
 from scenic.simulators.simulator import Simulator
 

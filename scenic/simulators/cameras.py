@@ -8,7 +8,7 @@ import numpy as np
 from scenic.formats.instances import Gallery
 from scenic.formats.labels import observe
 from scenic.formats.sensors import sensor_viewpoint
-from scenic.runtime.sensors import CameraSensor, Sensor
+from scenic.runtime.elements.sensors import CameraSensor, Sensor
 
 __all__ = ["Cameras", "Present", "carried"]
 

@@ -4,7 +4,7 @@ from abc import abstractmethod
 from collections.abc import Mapping
 from typing import Any, ClassVar, Final
 
-from scenic.runtime.values import to_scalar, to_vector
+from scenic.runtime.values.values import to_scalar, to_vector
 from scenic.simulators.actions import Action
 
 __all__ = [

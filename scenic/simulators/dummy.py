@@ -3,8 +3,8 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from scenic.runtime.scene import Scene
-from scenic.runtime.values import Vector
+from scenic.runtime.scenes.scene import Scene
+from scenic.runtime.values.values import Vector
 from scenic.simulators.simulation import Simulation
 from scenic.simulators.simulator import Simulator
 

@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scenic.language.errors import SimulationCreationError
-from scenic.runtime.scene import Scene
-from scenic.runtime.values import Orientation, Vector
+from scenic.runtime.scenes.scene import Scene
+from scenic.runtime.values.values import Orientation, Vector
 from scenic.simulators.cameras import Cameras
 from scenic.simulators.commands import (
     DRAG,

@@ -22,11 +22,11 @@ from scenic.language.spelling import nearest_attribute
 from scenic.runtime.dynamics.copies import Copies
 from scenic.runtime.dynamics.driving import Sourcing
 from scenic.runtime.dynamics.run import Run
-from scenic.runtime.ownership import PRELUDE
-from scenic.runtime.properties import Finals
-from scenic.runtime.randomness import preserved, restore, seed_globals, states
-from scenic.runtime.scene import Scene
-from scenic.runtime.values import describe, kind_of
+from scenic.runtime.instances.properties import Finals
+from scenic.runtime.python.ownership import PRELUDE
+from scenic.runtime.python.random_state import preserved, restore, seed_globals, states
+from scenic.runtime.scenes.scene import Scene
+from scenic.runtime.values.values import describe, kind_of
 from scenic.simulators.replays import Replay, Tape, fresh_key
 from scenic.simulators.results import ActionsTaken, Latest, SimulationResult, TerminationType, kept
 from scenic.simulators.watching import Watch

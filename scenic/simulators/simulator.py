@@ -7,7 +7,7 @@ from typing import Any
 from scenic.graph.points import PointSet
 from scenic.language.errors import GuardViolation, RejectionException, RejectSimulationException
 from scenic.runtime.dynamics.driving import Sourcing, driven
-from scenic.runtime.scene import Scene
+from scenic.runtime.scenes.scene import Scene
 from scenic.simulators.simulation import Simulation
 
 __all__ = ["Simulator"]

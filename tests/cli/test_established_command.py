@@ -5,7 +5,7 @@ import sys
 
 import pytest
 
-from scenic.cli.established import translated
+from scenic.cli.old_command_line import translated
 
 COMMANDS = ["check", "sample", "ast", "python", "simulate"]
 

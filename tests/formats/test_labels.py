@@ -12,7 +12,7 @@ import scenic
 from scenic.formats.coco import LabelledImages, millimetres, run_lengths
 from scenic.formats.labels import body_of, observe
 from scenic.formats.sensors import CameraError, viewpoint
-from scenic.runtime.sensors import DepthSensor, RGBSensor, SSSensor
+from scenic.runtime.elements.sensors import DepthSensor, RGBSensor, SSSensor
 from tests.formats.stand_ins import BALL, Chair, Object, Scene, Turn
 from tests.runtime.geometry.visibility import reference
 

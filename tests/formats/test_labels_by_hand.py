@@ -12,7 +12,7 @@ import pytest
 from scenic.formats.coco import LabelledImages, millimetres
 from scenic.formats.labels import Observation, document, observe
 from scenic.formats.sensors import viewpoint
-from scenic.runtime.sensors import DEFAULT_FIELD_OF_VIEW, RGBSensor
+from scenic.runtime.elements.sensors import DEFAULT_FIELD_OF_VIEW, RGBSensor
 from tests.formats.stand_ins import Object, Scene, Turn
 
 PLACE = np.array([1.0, 2.0, 3.0])

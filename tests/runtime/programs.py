@@ -8,10 +8,10 @@ from scipy.spatial.transform import Rotation
 
 import scenic
 from scenic.pipeline import diagnose
-from scenic.runtime.objects import Point
+from scenic.runtime.elements.shapes import Shape
+from scenic.runtime.instances.objects import Point
 from scenic.runtime.regions.base import Region
-from scenic.runtime.shapes import Shape
-from scenic.runtime.values import Orientation, Vector
+from scenic.runtime.values.values import Orientation, Vector
 
 FALSE_ALARM = 1e-6
 """A goodness-of-fit test fails by bad luck with this probability; seeds are fixed, so that it cannot come and go."""

@@ -11,7 +11,7 @@ from runtime.programs import scenario
 from scenic.runtime.sampling.engine import Engine
 from scenic.runtime.sampling.pending import Task
 from scenic.runtime.sampling.report import Exhausted
-from scenic.runtime.scenario import Scenario
+from scenic.runtime.scenes.scenario import Scenario
 
 TABLE = json.loads((Path(__file__).parents[1] / "data" / "reference" / "table.json").read_text())
 RECORDED = [

@@ -7,15 +7,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from scenic.runtime import sight
+from scenic.runtime.elements.shapes import BoxShape, ConeShape, CylinderShape, Shape, SpheroidShape
 from scenic.runtime.geometry.collision import collide
-from scenic.runtime.objects import Object
+from scenic.runtime.instances.objects import Object
 from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.planar import CircularRegion, PolygonalRegion, RectangularRegion
 from scenic.runtime.regions.stacked import body_of, body_operands
 from scenic.runtime.regions.volumes import BoxRegion, SpheroidRegion
-from scenic.runtime.shapes import BoxShape, ConeShape, CylinderShape, Shape, SpheroidShape
-from scenic.runtime.values import Orientation, Vector, as_node
+from scenic.runtime.values.values import Orientation, Vector, as_node
+from scenic.runtime.visibility import seeing as sight
 from tests.runtime.programs import thing
 
 TURN = Orientation.fromEuler(0.4, 0.2, -0.3)

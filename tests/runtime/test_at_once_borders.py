@@ -21,12 +21,12 @@ from scenic.runtime.geometry.collision import collide
 from scenic.runtime.geometry.distance import between
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.poses import Floats, Poses
-from scenic.runtime.geometry.single import Placed, gap, is_near_way, meet, overlap, placed
+from scenic.runtime.geometry.scalar_bodies import Placed, gap, is_near_way, meet, overlap, placed
 from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.planar import CircularRegion, PolygonalRegion, RectangularRegion
-from scenic.runtime.regions.single import Single
+from scenic.runtime.regions.scalar_regions import Single
 from scenic.runtime.regions.volumes import BoxRegion, SpheroidRegion
-from scenic.runtime.values import Orientation, Vector
+from scenic.runtime.values.values import Orientation, Vector
 from tests.runtime.boundaries import CENTIMETRE, compare, flip
 from tests.runtime.geometry.samples import SHAPES
 

@@ -8,8 +8,8 @@ import pytest
 import scenic
 from scenic.language.errors import InvalidScenarioError, ScenicTypeError, ScenicValueError, SpecifierError
 from scenic.language.properties import CLASSES, attributes_of, properties_of
-from scenic.runtime import objects
-from scenic.runtime.values import Orientation, Vector
+from scenic.runtime.instances import objects
+from scenic.runtime.values.values import Orientation, Vector
 from scenic.simulators.dummy import DummySimulator
 from tests.runtime.programs import draws, failure, params, place, scenario, scene, thing
 

@@ -19,7 +19,7 @@ from scenic.runtime.regions.knowledge import (
 )
 from scenic.runtime.regions.planar import CircularRegion, PolygonalRegion, RectangularRegion
 from scenic.runtime.regions.volumes import BoxRegion, SpheroidRegion
-from scenic.runtime.values import Orientation, Vector
+from scenic.runtime.values.values import Orientation, Vector
 from tests.runtime.boundaries import flip
 from tests.runtime.geometry.samples import SHAPES
 
@@ -196,7 +196,7 @@ def test_bounds_of_points_of_regions(name: str) -> None:
 
 def test_nothing_follows_from_distances_of_bodies_of_which_little_is_known() -> None:
     """A body whose place, turn or size has no bounds says nothing of the other's place, and nothing breaks."""
-    from scenic.runtime.regions.bodies import _GAP
+    from scenic.runtime.regions.body_regions import _GAP
 
     place, turn, size = exactly([[5.0, 0, 0]]), exactly([[0.0, 0, 0, 1]]), exactly([[1.0, 1, 1]])
     known: list[Bounds | None] = [place, turn, size, None]

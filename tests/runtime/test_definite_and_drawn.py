@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from scenic.runtime.definite import Orientation, OrientedVector, Vector
+from scenic.runtime.values.definite import Orientation, OrientedVector, Vector
 from tests.runtime.programs import draws, euler, failure, params, thing
 
 NUMBER = 1.25

@@ -10,10 +10,10 @@ from scipy import stats
 
 from scenic.compiler.compile import compile_text
 from scenic.language.errors import InvalidScenarioError, RejectionException
-from scenic.runtime.context import Context, current
-from scenic.runtime.prelude import Loader
-from scenic.runtime.program import Program
-from scenic.runtime.values import Vector
+from scenic.runtime.program.context import Context, current
+from scenic.runtime.program.outcome import Program
+from scenic.runtime.program.prelude import Loader
+from scenic.runtime.values.values import Vector
 from scenic.simulators.dummy import DummySimulator
 from tests.runtime.programs import FALSE_ALARM, draws, params, scene
 

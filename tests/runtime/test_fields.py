@@ -15,8 +15,8 @@ from scenic.language.errors import (
     ScenicValueError,
     SpecifierError,
 )
-from scenic.runtime.fields import VectorField
-from scenic.runtime.values import Orientation, Vector
+from scenic.runtime.regions.fields import VectorField
+from scenic.runtime.values.values import Orientation, Vector
 from tests.runtime.programs import (
     assert_same_rotation,
     draws,

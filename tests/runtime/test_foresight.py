@@ -9,7 +9,7 @@ import pytest
 
 from scenic.language.errors import RejectionException
 from scenic.runtime.sampling.engine import Engine
-from scenic.runtime.scenario import Scenario
+from scenic.runtime.scenes.scenario import Scenario
 from tests.runtime.programs import fingerprint, scenario
 
 PROGRAM = "for i in range(4):\n    new Object at (Range(-2, 2), Range(-2, 2), 0), facing Range(0, 7)\n"

@@ -15,12 +15,12 @@ from scipy import stats
 from scenic.graph.bounds import Bounds
 from scenic.graph.operations import TABLE
 from scenic.language.errors import RandomControlFlowError, ScenicTypeError
-from scenic.runtime.coercions import to_heading
-from scenic.runtime.fields import VectorField
-from scenic.runtime.purity import is_pure
+from scenic.runtime.python.purity import is_pure
 from scenic.runtime.regions.base import Workspace, everywhere, nowhere
 from scenic.runtime.regions.choice import RegionChoice
-from scenic.runtime.values import Orientation, Vector
+from scenic.runtime.regions.fields import VectorField
+from scenic.runtime.values.coercions import to_heading
+from scenic.runtime.values.values import Orientation, Vector
 from tests.runtime.programs import FALSE_ALARM, draws, failure, params, place, scenario, scene, thing
 
 TILT = Orientation.fromEuler(0.7, 0.4, -0.3)

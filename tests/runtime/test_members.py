@@ -5,9 +5,9 @@ from itertools import pairwise
 
 import pytest
 
-from scenic.runtime.operators import OPERATORS
-from scenic.runtime.ownership import EGOLESS, EGOLESS_OPERATORS
-from scenic.runtime.prelude import Prelude
+from scenic.runtime.elements.operators import OPERATORS
+from scenic.runtime.program.prelude import Prelude
+from scenic.runtime.python.ownership import EGOLESS, EGOLESS_OPERATORS
 from scenic.simulators.dummy import DummySimulation, DummySimulator
 from tests.runtime.programs import params, scenario, scene
 

@@ -8,8 +8,8 @@ import pytest
 from scipy import stats
 
 from scenic.language.errors import InvalidScenarioError, ScenicTypeError
-from scenic.runtime.mutators import OrientationMutator, PositionMutator
-from scenic.runtime.values import Vector
+from scenic.runtime.instances.mutators import OrientationMutator, PositionMutator
+from scenic.runtime.values.values import Vector
 from scenic.simulators.dummy import DummySimulator
 from tests.runtime.programs import (
     FALSE_ALARM,
@@ -421,7 +421,7 @@ def test_code_that_fails_while_an_object_is_mutated_is_told_where_it_is() -> Non
 @pytest.mark.parametrize("form", ["{}", "[{}]", "({},)", "(None, {})", "[{}, None]"])
 def test_one_mutator_or_several_may_be_given(form: str) -> None:
     mutators = form.format("PositionMutator((0, 0, 2))")
-    text = f"from scenic.runtime.mutators import PositionMutator\nego = new Object facing 0.5, with mutator {mutators}\nmutate\n"
+    text = f"from scenic.runtime.instances.mutators import PositionMutator\nego = new Object facing 0.5, with mutator {mutators}\nmutate\n"
     for item in scenario(text).sample(5, seed=1):
         x, y, z = item.egoObject.position
         assert (x, y, item.egoObject.heading) == (0, 0, pytest.approx(0.5))
@@ -430,7 +430,7 @@ def test_one_mutator_or_several_may_be_given(form: str) -> None:
 
 def test_mutators_see_what_follows_from_the_noise_before_them() -> None:
     text = """
-from scenic.runtime.mutators import Mutator, OrientationMutator
+from scenic.runtime.instances.mutators import Mutator, OrientationMutator
 class Telling(Mutator):
     def appliedTo(self, instance):
         instance.before = (instance.yaw, instance.heading, instance.orientation.yaw)
@@ -456,7 +456,7 @@ mutate
 )
 def test_what_a_simulation_makes_is_mutated_by_its_scale(kind: str, scale: float, mutator: str) -> None:
     text = (
-        "from scenic.runtime.mutators import PositionMutator\n"
+        "from scenic.runtime.instances.mutators import PositionMutator\n"
         "scenario Main():\n    setup:\n        ego = new Object\n    compose:\n        do Sub()\n"
         f"scenario Sub():\n    setup:\n        thing = new {kind} at (50, 0){mutator}\n        mutate thing by {scale}\n"
         "        record initial thing.position as place\n    compose:\n        wait\n"
@@ -509,7 +509,7 @@ def test_what_mutators_of_the_program_make_is_the_same_in_scenes_and_simulations
         "class A:\n    tag: 1\n    double[dynamic, final]: 2 * self.position.x\n"
         "    mutator: (None, First(), Second(), PositionMutator((1, 1, 1)))\n"
     )
-    imported = "from scenic.runtime.mutators import PositionMutator\n"
+    imported = "from scenic.runtime.instances.mutators import PositionMutator\n"
     made = "thing = new A at (1, 2), facing 0.1\nmutate thing\n"
     asked = [
         "position",
@@ -545,7 +545,7 @@ def test_what_mutators_of_the_program_make_is_the_same_in_scenes_and_simulations
 
 def test_mutators_may_change_what_a_specifier_has_made() -> None:
     text = """
-from scenic.runtime.mutators import Mutator
+from scenic.runtime.instances.mutators import Mutator
 class Doubling(Mutator):
     def appliedTo(self, instance):
         instance.load, instance.worth = 2 * instance.load, instance.worth + 1

@@ -19,7 +19,8 @@ from scenic.graph.domain import Domain
 from scenic.graph.kinds import Kind
 from scenic.graph.operation import Call, Operation
 from scenic.language.errors import UnsupportedError
-from scenic.runtime.regions import base, bodies
+from scenic.runtime.regions import base
+from scenic.runtime.regions import body_regions as bodies
 from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.choice import RegionChoice
 from scenic.runtime.regions.composite import DifferenceRegion, IntersectionRegion, UnionRegion
@@ -32,10 +33,10 @@ from scenic.runtime.regions.nearness import SLACK, body_reach, grown, separation
 from scenic.runtime.regions.planar import DISC_POINT, CircularRegion, RectangularRegion, SectorRegion
 from scenic.runtime.regions.scattered import PointSetRegion
 from scenic.runtime.regions.volumes import BALL_POINT, BoxRegion, SpheroidRegion
-from scenic.runtime.sight import SEES
-from scenic.runtime.values import Orientation, Random, Vector
-from scenic.runtime.visibility import _SEES as SEES_IN_PLANE
-from scenic.runtime.visibility import _SEES_POINT as SEES_POINT_IN_PLANE
+from scenic.runtime.values.values import Orientation, Random, Vector
+from scenic.runtime.visibility.flat import _SEES as SEES_IN_PLANE
+from scenic.runtime.visibility.flat import _SEES_POINT as SEES_POINT_IN_PLANE
+from scenic.runtime.visibility.seeing import SEES
 from tests.runtime.geometry.samples import SHAPES
 from tests.runtime.programs import scenario
 from tests.runtime.test_region_readings import REGIONS, UNBOUNDED, around, columns_of

@@ -12,8 +12,8 @@ from typing import Any
 
 import pytest
 
-from scenic.runtime.objects import SIDES, OrientedPoint, Point
-from scenic.runtime.values import Orientation, Vector, is_number
+from scenic.runtime.instances.objects import SIDES, OrientedPoint, Point
+from scenic.runtime.values.values import Orientation, Vector, is_number
 from scenic.simulators.dummy import DummySimulator
 from tests.runtime.programs import scene
 

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from scenic.language.errors import InvalidScenarioError, RandomControlFlowError, ScenicTypeError
-from scenic.runtime.values import Orientation, Vector
+from scenic.runtime.values.values import Orientation, Vector
 from tests.runtime.programs import (
     altitude,
     assert_angles_equal,

@@ -17,7 +17,7 @@ from scenic.runtime.regions.base import Region, Workspace
 from scenic.runtime.regions.choice import RegionChoice
 from scenic.runtime.regions.composite import IntersectionRegion
 from scenic.runtime.regions.planar import DISC_POINT
-from scenic.runtime.values import Vector
+from scenic.runtime.values.values import Vector
 from tests.runtime.programs import draws, params, thing
 
 PLACE = Vector(1, -2, 3)

@@ -12,11 +12,11 @@ import numpy as np
 import pytest
 
 from scenic.language.errors import RejectionException
-from scenic.runtime.choices import _is_data
-from scenic.runtime.functions import max as language_max
-from scenic.runtime.purity import is_pure
-from scenic.runtime.randomness import is_as, states
-from scenic.runtime.values import Vector
+from scenic.runtime.elements.functions import max as language_max
+from scenic.runtime.python.purity import is_pure
+from scenic.runtime.python.random_state import is_as, states
+from scenic.runtime.values.choices import _is_data
+from scenic.runtime.values.values import Vector
 from tests.runtime.programs import draws, failure, scenario
 
 LIMIT = 3

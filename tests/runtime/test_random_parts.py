@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from scenic.language.errors import RandomControlFlowError, ScenicTypeError, ScenicValueError
-from scenic.runtime.samples import Sample
+from scenic.runtime.python.samples import Sample
 from tests.runtime.programs import draws, failure, params, place, scenario
 
 PAIR = """

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 import scenic
-from scenic.runtime.objects import Point
+from scenic.runtime.instances.objects import Point
 from tests.recorded import FOLDER, hold, said, shown, unusual
 
 KINDS = {

@@ -7,6 +7,7 @@ import pytest
 
 from runtime.programs import draws, failure, scenario, thing
 from scenic.language.errors import InvalidScenarioError, ScenicTypeError
+from scenic.runtime.elements.shapes import BoxShape, ConeShape, CylinderShape
 from scenic.runtime.geometry import primitives
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.poses import Poses
@@ -17,8 +18,7 @@ from scenic.runtime.regions.lines import PathRegion
 from scenic.runtime.regions.planar import CircularRegion, RectangularRegion
 from scenic.runtime.regions.stacked import body_of
 from scenic.runtime.regions.volumes import BoxRegion, SpheroidRegion
-from scenic.runtime.shapes import BoxShape, ConeShape, CylinderShape
-from scenic.runtime.values import Orientation, Vector, uniform
+from scenic.runtime.values.values import Orientation, Vector, uniform
 
 REGIONS = (
     "disc = CircularRegion((0, 0, 1), 2)\nplate = RectangularRegion((10, 0, 3), 0.5, 2, 4)\n"

@@ -18,12 +18,6 @@ from scenic.language.errors import (
     ScenicTypeError,
     ScenicValueError,
 )
-from scenic.runtime.fields import (
-    PiecewiseVectorField,
-    PolygonalVectorField,
-    PolyhedronVectorField,
-    VectorField,
-)
 from scenic.runtime.geometry import primitives
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.poses import Poses
@@ -35,7 +29,13 @@ from scenic.runtime.regions.composite import (
     UnionRegion,
     exactly_contains,
 )
-from scenic.runtime.values import Orientation, Vector
+from scenic.runtime.regions.fields import (
+    PiecewiseVectorField,
+    PolygonalVectorField,
+    PolyhedronVectorField,
+    VectorField,
+)
+from scenic.runtime.values.values import Orientation, Vector
 from tests.runtime.programs import FALSE_ALARM, draws, failure, params, scenario
 
 TILT = Orientation.fromEuler(0.7, 0.4, -0.3)

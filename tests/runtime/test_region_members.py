@@ -15,16 +15,16 @@ from scipy.spatial.transform import Rotation
 
 import scenic
 from scenic.language.errors import InvalidScenarioError, ScenicTypeError, ScenicValueError, UnsupportedError
-from scenic.runtime.fields import VectorField
+from scenic.runtime.elements.shapes import BoxShape, ConeShape, CylinderShape, MeshShape, SpheroidShape
 from scenic.runtime.geometry import primitives
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.poses import Poses
+from scenic.runtime.geometry.scalar_bodies import placed
 from scenic.runtime.geometry.segments import Segments
-from scenic.runtime.geometry.single import placed
 from scenic.runtime.regions.base import Workspace
 from scenic.runtime.regions.composite import IntersectionRegion, UnionRegion
-from scenic.runtime.shapes import BoxShape, ConeShape, CylinderShape, MeshShape, SpheroidShape
-from scenic.runtime.values import Orientation, Vector
+from scenic.runtime.regions.fields import VectorField
+from scenic.runtime.values.values import Orientation, Vector
 from tests.runtime.geometry.samples import SHAPES
 from tests.runtime.programs import assert_same_rotation, draws, euler, failure, params, scenario, thing
 

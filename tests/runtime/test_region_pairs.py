@@ -17,14 +17,14 @@ import trimesh
 from scipy.spatial.transform import Rotation
 
 from scenic.language.errors import InvalidScenarioError, ScenicTypeError
-from scenic.runtime.fields import VectorField
 from scenic.runtime.geometry import primitives
 from scenic.runtime.geometry.poses import Floats
 from scenic.runtime.regions.base import Region, Workspace, nowhere
 from scenic.runtime.regions.composite import Composite, DifferenceRegion, IntersectionRegion, UnionRegion
+from scenic.runtime.regions.fields import VectorField
 from scenic.runtime.regions.lines import LineRegion
 from scenic.runtime.regions.planar import Footprint, PlanarRegion
-from scenic.runtime.values import Orientation, Vector
+from scenic.runtime.values.values import Orientation, Vector
 from tests.runtime.programs import thing
 
 TILT = Orientation.fromEuler(0.7, 0.4, -0.3)

@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 
 import scenic
 from scenic.language.errors import InvalidScenarioError, ScenicTypeError, ScenicValueError
-from scenic.runtime.values import Orientation
+from scenic.runtime.values.values import Orientation
 from tests.runtime.programs import (
     FALSE_ALARM,
     assert_same_rotation,

@@ -20,8 +20,8 @@ from scenic.language.errors import (
 )
 from scenic.runtime.sampling.engine import _attempts
 from scenic.runtime.sampling.pending import Task
-from scenic.runtime.scenario import Scenario
-from scenic.runtime.values import as_node
+from scenic.runtime.scenes.scenario import Scenario
+from scenic.runtime.values.values import as_node
 from tests.runtime.programs import FALSE_ALARM, draws, failure, fingerprint, place, scenario
 
 SETTING = (

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from scenic.language.errors import InvalidScenarioError, ScenicValueError, SpecifierError
-from scenic.runtime.objects import TWO_D_DEFAULTS, Object, OrientedPoint
-from scenic.runtime.resolution import Resolution, class_defaults, resolution_of, resolve
-from scenic.runtime.specifiers import Specifier
-from scenic.runtime.values import Orientation, Vector
+from scenic.runtime.elements.specifiers import Specifier
+from scenic.runtime.instances.objects import TWO_D_DEFAULTS, Object, OrientedPoint
+from scenic.runtime.instances.resolution import Resolution, class_defaults, resolution_of, resolve
+from scenic.runtime.values.values import Orientation, Vector
 from tests.runtime.programs import failure, params, place, scenario, scene, thing
 
 

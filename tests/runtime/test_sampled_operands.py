@@ -23,9 +23,9 @@ from scenic.graph.node import Graph, Node
 from scenic.graph.operation import FAULT, OK
 from scenic.graph.schedule import Scheduler
 from scenic.language.errors import RejectionException
-from scenic.runtime.lazy import Lazy
-from scenic.runtime.objects import Point
-from scenic.runtime.values import CODEC, as_node
+from scenic.runtime.instances.objects import Point
+from scenic.runtime.values.lazy import Lazy
+from scenic.runtime.values.values import CODEC, as_node
 from tests.compiler.golden_cases import read_cases
 from tests.recorded import FOLDER, shown
 

@@ -17,8 +17,8 @@ import trimesh
 import scenic
 from scenic.language.errors import InvalidScenarioError, ScenicWarning, SerializationError
 from scenic.pipeline import diagnose
-from scenic.runtime.dumping import literal, program_of
-from scenic.runtime.files import whole
+from scenic.runtime.scenes.dumping import literal, program_of
+from scenic.runtime.scenes.files import whole
 from tests.runtime.programs import fingerprint, scenario
 from tests.runtime.programs import scene as scene_of
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from scenic.language.errors import InvalidScenarioError
-from scenic.runtime.sensors import (
+from scenic.runtime.elements.sensors import (
     CallbackSensor,
     CameraSensor,
     DepthSensor,

@@ -10,7 +10,7 @@ import trimesh
 from scipy.spatial.transform import Rotation
 
 from scenic.language.errors import MeshError, ScenicTypeError, ScenicValueError
-from scenic.runtime import shapes
+from scenic.runtime.elements import shapes
 from scenic.runtime.geometry import primitives
 
 PRIMITIVES = [shapes.BoxShape, shapes.CylinderShape, shapes.ConeShape, shapes.SpheroidShape]

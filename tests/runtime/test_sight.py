@@ -8,9 +8,9 @@ import pytest
 import scenic
 from scenic.formats.labels import body_of
 from scenic.language.errors import Located, ScenicTypeError
-from scenic.runtime.geometry.visibility.bodies import sees_bodies
 from scenic.runtime.geometry.visibility.obstacles import Occluder
 from scenic.runtime.geometry.visibility.points import sees_points
+from scenic.runtime.geometry.visibility.seen_bodies import sees_bodies
 from scenic.runtime.geometry.visibility.views import Views
 
 

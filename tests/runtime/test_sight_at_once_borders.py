@@ -11,8 +11,8 @@ from scipy.spatial.transform import Rotation
 from scenic.runtime.geometry import primitives
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.poses import Floats
-from scenic.runtime.geometry.single import Placed, Triple, axes_of, placed
-from scenic.runtime.geometry.visibility.single import View, sees_body, sees_point
+from scenic.runtime.geometry.scalar_bodies import Placed, Triple, axes_of, placed
+from scenic.runtime.geometry.visibility.scalar_views import View, sees_body, sees_point
 from tests.runtime.boundaries import CENTIMETRE, HAIR, compare, flip
 
 TURN = Rotation.from_euler("ZXY", (0.7, 0.3, -0.2))

@@ -4,8 +4,8 @@ from typing import Any
 
 import pytest
 
-from scenic.runtime.objects import Point
-from scenic.runtime.veneer import FUNCTIONS
+from scenic.runtime.elements.veneer import FUNCTIONS
+from scenic.runtime.instances.objects import Point
 from tests.recorded import shown
 from tests.runtime.programs import scene
 

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import scenic
-from scenic.runtime.visibility import _sees
+from scenic.runtime.visibility.flat import _sees
 from tests.runtime.programs import thing
 
 

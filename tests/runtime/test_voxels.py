@@ -25,10 +25,10 @@ from scipy import stats
 
 import scenic
 from scenic.language.errors import RejectionException, ScenicTypeError, ScenicValueError
-from scenic.runtime.fields import VectorField
 from scenic.runtime.geometry import primitives
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.poses import Poses
+from scenic.runtime.regions.fields import VectorField
 from tests.runtime.programs import FALSE_ALARM, draws, params
 
 FILLED = np.array([[[1, 0], [0, 1]], [[1, 1], [0, 0]]], dtype=bool)

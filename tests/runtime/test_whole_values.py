@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from runtime.programs import scenario
-from scenic.runtime.values import Orientation, Random, Vector
+from scenic.runtime.values.values import Orientation, Random, Vector
 
 PROGRAM = (
     "class Car:\n    width: 2\n    speedy: Range(0, 1)\n"

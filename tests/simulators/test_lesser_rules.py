@@ -30,7 +30,7 @@ from scenic.language.errors import (
 from scenic.runtime.dynamics.recorders import Recorder
 from scenic.runtime.dynamics.requirements import Outcome
 from scenic.runtime.temporal.monitors import Verdict
-from scenic.runtime.values import Vector
+from scenic.runtime.values.values import Vector
 from scenic.simulators.actions import Action
 from scenic.simulators.batch import SimulatorChoiceError, choose_simulator, simulate_number
 from scenic.simulators.dummy import DummySimulator
@@ -213,7 +213,7 @@ def test_simulators_are_asked_for_what_they_decide_and_for_new_objects_at_once()
 
 
 def scenic_vector(x: float) -> Any:
-    from scenic.runtime.values import Vector
+    from scenic.runtime.values.values import Vector
 
     return Vector(x, 0, 0)
 

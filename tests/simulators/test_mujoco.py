@@ -21,7 +21,7 @@ from scenic.language.errors import (
     SimulationError,
     UnsupportedError,
 )
-from scenic.runtime.values import Vector
+from scenic.runtime.values.values import Vector
 from tests.cli.commands import run_here
 
 if importlib.util.find_spec("mujoco") is None:

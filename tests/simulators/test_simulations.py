@@ -23,10 +23,10 @@ from scenic.language.errors import (
     StuckBehaviorWarning,
     annotation,
 )
-from scenic.runtime.context import current
 from scenic.runtime.dynamics.recorders import File, Files, for_pattern
-from scenic.runtime.files import whole
-from scenic.runtime.values import Vector
+from scenic.runtime.program.context import current
+from scenic.runtime.scenes.files import whole
+from scenic.runtime.values.values import Vector
 from scenic.simulators.actions import Action
 from scenic.simulators.dummy import DummySimulation, DummySimulator
 from scenic.simulators.results import TerminationType
@@ -891,7 +891,7 @@ def test_files_that_are_not_whole_do_not_remain(tmp_path: Path, ended: type[Base
 
 
 def test_a_disk_that_is_full_leaves_no_half_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from scenic.runtime import files
+    from scenic.runtime.scenes import files
 
     def full(*_: Any) -> None:
         raise OSError(28, "No space left on device")

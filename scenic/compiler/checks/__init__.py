@@ -14,7 +14,7 @@ from scenic.compiler import tree as scenic
 from scenic.compiler.checks import (
     angles,
     arguments,
-    bodies,
+    class_bodies,
     conditions,
     declarations,
     defaults,
@@ -39,7 +39,7 @@ __all__ = ["NOTED", "Context", "check", "lint"]
 
 _NODE_RULES: Final[tuple[tuple[type[ast.AST], NodeRule], ...]] = tuple(
     rule
-    for module in (angles, arguments, bodies, conditions, making, randomness, specifiers)
+    for module in (angles, arguments, class_bodies, conditions, making, randomness, specifiers)
     for rule in module.RULES.items()
 )
 

@@ -12,9 +12,16 @@ from weakref import ref
 
 import numpy as np
 
-from scenic.runtime.objects import Point
-from scenic.runtime.ownership import DECORATED, PRELUDE, SAMPLE, functions_of, is_own_function, leads_back
-from scenic.runtime.samples import Lanes, Sample
+from scenic.runtime.instances.objects import Point
+from scenic.runtime.python.ownership import (
+    DECORATED,
+    PRELUDE,
+    SAMPLE,
+    functions_of,
+    is_own_function,
+    leads_back,
+)
+from scenic.runtime.python.samples import Lanes, Sample
 
 __all__ = ["Copies"]
 

@@ -13,9 +13,9 @@ from typing import Any, ClassVar
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.errors import InvalidScenarioError, ScenicSyntaxError, ScenicTypeError
 from scenic.language.spans import Span
-from scenic.runtime.context import current, here
-from scenic.runtime.describing import describe
-from scenic.runtime.randoms import Random
+from scenic.runtime.program.context import current, here
+from scenic.runtime.values.describing import describe
+from scenic.runtime.values.random_values import Random
 
 __all__ = ["Behavior", "Definition", "Invocable", "ModularScenario", "Monitor", "behavior_of", "define"]
 

@@ -10,7 +10,6 @@ from scenic.language.errors import (
     RejectSimulationException,
     ScenicTypeError,
 )
-from scenic.runtime.context import Context, current, here
 from scenic.runtime.dynamics import margins, statements
 from scenic.runtime.dynamics.activations import Termination, Yielded
 from scenic.runtime.dynamics.declarations import End, Kept, MonitorUse, RecordUse, Required
@@ -26,12 +25,13 @@ from scenic.runtime.dynamics.definitions import (
 from scenic.runtime.dynamics.recording import check_duration, check_target
 from scenic.runtime.dynamics.run import Run, RunContext
 from scenic.runtime.dynamics.scenarios import not_a_monitor
+from scenic.runtime.program.context import Context, current, here
 from scenic.runtime.temporal.formulas import is_temporal
 from scenic.runtime.temporal.monitors import Monitor as Follower
-from scenic.runtime.values import describe, is_number
+from scenic.runtime.values.values import describe, is_number
 
 if TYPE_CHECKING:
-    from scenic.runtime.program import Module, Program
+    from scenic.runtime.program.outcome import Module, Program
 
 __all__ = ["Dynamics"]
 

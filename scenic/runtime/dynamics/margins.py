@@ -14,13 +14,13 @@ import numpy as np
 from scenic.language.errors import ScenicError
 from scenic.runtime.geometry.depth import convex_depth
 from scenic.runtime.geometry.poses import Floats
-from scenic.runtime.geometry.single import overlap
-from scenic.runtime.objects import Object, Point
+from scenic.runtime.geometry.scalar_bodies import overlap
+from scenic.runtime.instances.objects import Object, Point
 from scenic.runtime.regions.base import Region
-from scenic.runtime.regions.bodies import gap_between
+from scenic.runtime.regions.body_regions import gap_between
 from scenic.runtime.regions.planar import PlanarRegion
 from scenic.runtime.regions.stacked import placed_of
-from scenic.runtime.values import Vector, is_number, is_vector, to_vector
+from scenic.runtime.values.values import Vector, is_number, is_vector, to_vector
 
 __all__ = ["margin"]
 

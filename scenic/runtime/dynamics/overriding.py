@@ -4,15 +4,15 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from scenic.language.errors import ScenicTypeError, SpecifierError
-from scenic.runtime.context import here
 from scenic.runtime.dynamics.activations import Activation
 from scenic.runtime.dynamics.definitions import Behavior, behavior_of
-from scenic.runtime.lazy import resolve as settle
-from scenic.runtime.objects import Object
-from scenic.runtime.properties import normalised
-from scenic.runtime.resolution import resolution_of
-from scenic.runtime.specifiers import Specifier
-from scenic.runtime.values import describe
+from scenic.runtime.elements.specifiers import Specifier
+from scenic.runtime.instances.objects import Object
+from scenic.runtime.instances.properties import normalised
+from scenic.runtime.instances.resolution import resolution_of
+from scenic.runtime.program.context import here
+from scenic.runtime.values.lazy import resolve as settle
+from scenic.runtime.values.values import describe
 
 if TYPE_CHECKING:
     from scenic.runtime.dynamics.run import Run

@@ -12,10 +12,10 @@ from typing import Any, BinaryIO, Final
 import numpy as np
 
 from scenic.language.errors import ScenicValueError, UnsupportedError
-from scenic.runtime.context import here
 from scenic.runtime.dynamics.recorded import as_array, as_pixels, plain
 from scenic.runtime.dynamics.series import Arrays, Film, Lines, Pickled, Series
-from scenic.runtime.files import whole
+from scenic.runtime.program.context import here
+from scenic.runtime.scenes.files import whole
 
 __all__ = ["File", "Filed", "Files", "Recorder", "for_pattern"]
 

@@ -8,7 +8,7 @@ from scenic.language.errors import Located, ScenicTypeError, ScenicValueError
 from scenic.language.spans import Span
 from scenic.runtime.dynamics.declarations import RecordUse
 from scenic.runtime.dynamics.recorders import File, Files, Recorder, for_pattern
-from scenic.runtime.values import describe, is_number
+from scenic.runtime.values.values import describe, is_number
 
 if TYPE_CHECKING:
     from scenic.runtime.dynamics.run import Run

@@ -9,7 +9,6 @@ from scenic.language.errors import (
     InvariantViolation,
     ScenicTypeError,
 )
-from scenic.runtime.context import here
 from scenic.runtime.dynamics.activations import Activation, Termination, Yielded
 from scenic.runtime.dynamics.declarations import Declared, End, MonitorUse, Required
 from scenic.runtime.dynamics.definitions import Guard, ModularScenario, Monitor
@@ -18,8 +17,9 @@ from scenic.runtime.dynamics.overriding import Overrides
 from scenic.runtime.dynamics.recording import Recording
 from scenic.runtime.dynamics.requirements import Followed
 from scenic.runtime.dynamics.statements import limit_in_steps
-from scenic.runtime.samples import mentions
-from scenic.runtime.values import describe
+from scenic.runtime.program.context import here
+from scenic.runtime.python.samples import mentions
+from scenic.runtime.values.values import describe
 
 if TYPE_CHECKING:
     from scenic.runtime.dynamics.run import Run

@@ -14,9 +14,9 @@ from typing import Any, Protocol
 import numpy as np
 
 from scenic.language.errors import ScenicValueError, UnsupportedError
-from scenic.runtime.context import here
 from scenic.runtime.dynamics.recorded import as_array, as_pixels, plain
-from scenic.runtime.files import named, naming, unnamed, whole
+from scenic.runtime.program.context import here
+from scenic.runtime.scenes.files import named, naming, unnamed, whole
 
 __all__ = ["Arrays", "Film", "Lines", "Pickled", "Series"]
 

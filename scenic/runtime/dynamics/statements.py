@@ -6,10 +6,10 @@ from types import GeneratorType
 from typing import Any, Final, cast
 
 from scenic.language.errors import RejectSimulationException, ScenicTypeError, ScenicValueError
-from scenic.runtime.context import here
 from scenic.runtime.dynamics.activations import Activation, Yielded
 from scenic.runtime.dynamics.definitions import Behavior, Invocable, ModularScenario, Monitor
-from scenic.runtime.values import describe, is_number
+from scenic.runtime.program.context import here
+from scenic.runtime.values.values import describe, is_number
 
 __all__ = [
     "ABORT",

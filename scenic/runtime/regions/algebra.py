@@ -14,17 +14,17 @@ import numpy as np
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import Operation, always
 from scenic.language.errors import InvalidScenarioError, ScenicTypeError
-from scenic.runtime.context import here
-from scenic.runtime.fields import PiecewiseVectorField, RegionField
+from scenic.runtime.elements.shapes import Shape, ShapeSource
 from scenic.runtime.geometry import booleans, primitives
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.collision import collide
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.poses import Poses
 from scenic.runtime.geometry.prisms import prism, shadow, slice_at
-from scenic.runtime.opaque import evaluated, later
+from scenic.runtime.program.context import here
+from scenic.runtime.python.opaque import evaluated, later
 from scenic.runtime.regions.base import Everywhere, Mask, Nowhere, Region, Workspace, nowhere
-from scenic.runtime.regions.bodies import OccupiedSpace, SideSurface
+from scenic.runtime.regions.body_regions import OccupiedSpace, SideSurface
 from scenic.runtime.regions.choice import RegionChoice, as_region
 from scenic.runtime.regions.composite import (
     Composite,
@@ -33,6 +33,7 @@ from scenic.runtime.regions.composite import (
     UnionRegion,
     exactly_contains,
 )
+from scenic.runtime.regions.fields import PiecewiseVectorField, RegionField
 from scenic.runtime.regions.lines import LineRegion, PathRegion, PolylineRegion
 from scenic.runtime.regions.meshes import (
     MeshSurfaceRegion,
@@ -54,8 +55,7 @@ from scenic.runtime.regions.views import ViewRegion
 from scenic.runtime.regions.volumes import BoxRegion, PlacedVolume
 from scenic.runtime.regions.voxels import VoxelRegion
 from scenic.runtime.regions.voxels import voxelized as cells_of
-from scenic.runtime.shapes import Shape, ShapeSource
-from scenic.runtime.values import (
+from scenic.runtime.values.values import (
     CODEC,
     Orientation,
     Random,

@@ -24,9 +24,8 @@ from scenic.language.errors import (
     UndefinedSamplingException,
     UnsupportedError,
 )
-from scenic.runtime.context import here
 from scenic.runtime.geometry.collision import Body
-from scenic.runtime.lazy import defer, is_lazy
+from scenic.runtime.program.context import here
 from scenic.runtime.regions.knowledge import (
     Containment,
     containment_bounds,
@@ -38,10 +37,11 @@ from scenic.runtime.regions.knowledge import (
     point_inverse,
 )
 from scenic.runtime.regions.nearness import SLACK, at_any_height
-from scenic.runtime.regions.single import Single
+from scenic.runtime.regions.scalar_regions import Single
 from scenic.runtime.regions.stacked import Stack, body_operands, is_body, placed_of
-from scenic.runtime.spelling import plain_number
-from scenic.runtime.values import (
+from scenic.runtime.values.lazy import defer, is_lazy
+from scenic.runtime.values.source_text import plain_number
+from scenic.runtime.values.values import (
     OrientedVector,
     Random,
     Vector,

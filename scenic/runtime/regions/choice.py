@@ -13,12 +13,12 @@ from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import Call, Operation, always
 from scenic.graph.operations import TABLE
 from scenic.language.errors import InvalidScenarioError
-from scenic.runtime.choices import select
-from scenic.runtime.context import here
+from scenic.runtime.program.context import here
 from scenic.runtime.regions.base import Mask, Points, Region
 from scenic.runtime.regions.nearness import hull_of
 from scenic.runtime.regions.varying import VaryingRegion
-from scenic.runtime.values import Orientation, Random, as_node, as_value
+from scenic.runtime.values.choices import select
+from scenic.runtime.values.values import Orientation, Random, as_node, as_value
 
 _Part = TypeVar("_Part")
 

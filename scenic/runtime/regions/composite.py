@@ -16,8 +16,8 @@ from scenic.graph.bounds import Bounds
 from scenic.graph.draws import mix, open_unit
 from scenic.graph.kinds import Column
 from scenic.language.errors import InvalidScenarioError, ScenicTypeError
-from scenic.runtime.context import here
 from scenic.runtime.geometry.collision import Body
+from scenic.runtime.program.context import here
 from scenic.runtime.regions.base import Mask, Points, Region, Workspace
 from scenic.runtime.regions.choice import RegionChoice
 from scenic.runtime.regions.nearness import hull_of

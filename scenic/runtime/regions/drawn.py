@@ -11,7 +11,7 @@ from scenic.graph.kinds import Column
 from scenic.language.errors import InvalidScenarioError, RejectionException
 from scenic.runtime.regions.base import Mask, Points, Region
 from scenic.runtime.regions.varying import VaryingRegion
-from scenic.runtime.values import Orientation, Random, operate, to_orientation, to_vector, wrong_type
+from scenic.runtime.values.values import Orientation, Random, operate, to_orientation, to_vector, wrong_type
 
 
 class DrawnRegion(VaryingRegion):

@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import Call, Operation, always
 from scenic.language.errors import ScenicTypeError, ScenicValueError
-from scenic.runtime.context import here, warn
-from scenic.runtime.fields import RegionField, VectorField
 from scenic.runtime.geometry.collision import Body
 from scenic.runtime.geometry.segments import Segments
-from scenic.runtime.objects import OrientedPoint, oriented_point
+from scenic.runtime.instances.objects import OrientedPoint, oriented_point
+from scenic.runtime.program.context import here, warn
 from scenic.runtime.regions.base import Mask, Points, Region
-from scenic.runtime.values import Orientation, Vector, apply, is_random, to_vector
+from scenic.runtime.regions.fields import RegionField, VectorField
+from scenic.runtime.values.values import Orientation, Vector, apply, is_random, to_vector
 
 TOUCH: Final = 1e-6
 """Metres within which a point counts as lying on a line of the plane."""

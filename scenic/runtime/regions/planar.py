@@ -16,13 +16,13 @@ from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import Call, Operation, always
 from scenic.graph.operations.functions import length_bounds
 from scenic.language.errors import InvalidScenarioError, ScenicTypeError, ScenicValueError
-from scenic.runtime.context import here
 from scenic.runtime.geometry import containment
 from scenic.runtime.geometry.collision import Body
 from scenic.runtime.geometry.polygons import Polygons
+from scenic.runtime.program.context import here
 from scenic.runtime.regions.base import Mask, Points, Region, unsupported
-from scenic.runtime.regions.single import Disc, Polygon, Rectangle, Single
-from scenic.runtime.values import (
+from scenic.runtime.regions.scalar_regions import Disc, Polygon, Rectangle, Single
+from scenic.runtime.values.values import (
     apply,
     is_number,
     is_random,

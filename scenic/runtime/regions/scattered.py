@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 
 from scenic.graph.kinds import Column
 from scenic.language.errors import ScenicTypeError, ScenicValueError
-from scenic.runtime.context import here
 from scenic.runtime.geometry.collision import Body
+from scenic.runtime.program.context import here
 from scenic.runtime.regions.base import Mask, Points, Region
-from scenic.runtime.values import is_random, to_vector
+from scenic.runtime.values.values import is_random, to_vector
 
 
 class PointSetRegion(Region):

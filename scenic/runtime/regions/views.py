@@ -13,7 +13,6 @@ from scenic.graph.draws import mix, open_unit, words_of
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import Call, Operation, always
 from scenic.language.errors import ScenicValueError
-from scenic.runtime.context import here
 from scenic.runtime.geometry import containment, distance
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.mesh import Mesh
@@ -28,14 +27,14 @@ from scenic.runtime.geometry.visibility.regions import (
     view_volume,
 )
 from scenic.runtime.geometry.visibility.views import CORNERS, Views
+from scenic.runtime.program.context import here
 from scenic.runtime.regions.base import Everywhere, Mask, Points, Region, Workspace
-from scenic.runtime.regions.bodies import OccupiedSpace
+from scenic.runtime.regions.body_regions import OccupiedSpace
 from scenic.runtime.regions.composite import DifferenceRegion, IntersectionRegion
 from scenic.runtime.regions.nearness import grown
 from scenic.runtime.regions.planar import CircularRegion
 from scenic.runtime.regions.stacked import body_of
-from scenic.runtime.sight import view_operands
-from scenic.runtime.values import (
+from scenic.runtime.values.values import (
     Orientation,
     apply,
     is_number,
@@ -45,6 +44,7 @@ from scenic.runtime.values import (
     to_vector,
     vector,
 )
+from scenic.runtime.visibility.seeing import view_operands
 
 VIEW_PARAMETERS: Final = 5
 """The first so many of an observer's operands say what is in view: the others are about rays."""

@@ -11,15 +11,15 @@ from scenic.graph.bounds import Bounds, outward
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import Call, Operation, always
 from scenic.language.errors import ScenicValueError
-from scenic.runtime.context import here
 from scenic.runtime.geometry import containment, primitives
 from scenic.runtime.geometry.collision import Body, collide
 from scenic.runtime.geometry.poses import Poses
-from scenic.runtime.geometry.single import Placed, placed
+from scenic.runtime.geometry.scalar_bodies import Placed, placed
+from scenic.runtime.program.context import here
 from scenic.runtime.regions.base import Mask, Points, Region
 from scenic.runtime.regions.nearness import body_box
-from scenic.runtime.regions.single import Ball, Box, Single
-from scenic.runtime.values import (
+from scenic.runtime.regions.scalar_regions import Ball, Box, Single
+from scenic.runtime.values.values import (
     Orientation,
     apply,
     is_number,

@@ -13,7 +13,7 @@ from typing import Final
 
 from scenic.runtime.sampling.pending import Task
 from scenic.runtime.sampling.report import Exhausted
-from scenic.runtime.scene import Scene
+from scenic.runtime.scenes.scene import Scene
 
 SEED_BITS: Final = 63
 

@@ -16,16 +16,16 @@ from scenic.graph.node import Graph, Node
 from scenic.graph.operations.possibilities import is_finite
 from scenic.language.errors import InvalidScenarioError
 from scenic.language.spans import Span
-from scenic.runtime.conditions import connect, truth
 from scenic.runtime.geometry.collision import collide
 from scenic.runtime.geometry.narrowphase import recall
 from scenic.runtime.geometry.ragged import distinct
-from scenic.runtime.objects import Object
-from scenic.runtime.program import Program, Requirement
+from scenic.runtime.instances.objects import Object
+from scenic.runtime.program.conditions import connect, truth
+from scenic.runtime.program.outcome import Program, Requirement
+from scenic.runtime.python.samples import dependencies
 from scenic.runtime.regions.base import Everywhere, Region, Workspace
 from scenic.runtime.regions.choice import as_region
 from scenic.runtime.regions.stacked import body_operands
-from scenic.runtime.samples import dependencies
 from scenic.runtime.sampling.checks import (
     BUILT_IN,
     Check,
@@ -35,9 +35,9 @@ from scenic.runtime.sampling.checks import (
     ObjectNodes,
 )
 from scenic.runtime.sampling.engine import Plan
-from scenic.runtime.sight import looks
-from scenic.runtime.values import CODEC, Random, as_node, fixed_batch, is_random, operate
-from scenic.runtime.visibility import sees_in_mode
+from scenic.runtime.values.values import CODEC, Random, as_node, fixed_batch, is_random, operate
+from scenic.runtime.visibility.flat import sees_in_mode
+from scenic.runtime.visibility.seeing import looks
 
 _FAR: Final = 1e100
 """Metres, or any other unit, that nothing is away."""

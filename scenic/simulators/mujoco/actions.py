@@ -3,9 +3,9 @@
 from collections.abc import Mapping
 from typing import Any
 
-from scenic.runtime.describing import wrong_type
-from scenic.runtime.objects import Object
-from scenic.runtime.values import to_vector
+from scenic.runtime.instances.objects import Object
+from scenic.runtime.values.describing import wrong_type
+from scenic.runtime.values.values import to_vector
 from scenic.simulators.actions import Action
 from scenic.simulators.commands import Command, model_of
 

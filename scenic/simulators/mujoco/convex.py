@@ -5,8 +5,8 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
-from scenic.runtime.context import warn
 from scenic.runtime.geometry.store import Arrays, kept
+from scenic.runtime.program.context import warn
 
 __all__ = ["convex_parts"]
 

@@ -9,12 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scenic.language.errors import SimulationCreationError, SimulationError
-from scenic.runtime.scene import Scene
-from scenic.runtime.values import Orientation, Vector
+from scenic.runtime.scenes.scene import Scene
+from scenic.runtime.values.values import Orientation, Vector
 from scenic.simulators.commands import DRAG, GRAVITY
-from scenic.simulators.mujoco.bodies import Builder, Part, grip_name
 from scenic.simulators.mujoco.images import Images
 from scenic.simulators.mujoco.library import library, quietly
+from scenic.simulators.mujoco.model import Builder, Part, grip_name
 from scenic.simulators.simulation import Simulation
 
 __all__ = ["MujocoSimulation"]

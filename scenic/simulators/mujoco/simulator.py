@@ -4,7 +4,7 @@ import math
 from typing import Any
 
 from scenic.language.errors import ScenicValueError
-from scenic.runtime.scene import Scene
+from scenic.runtime.scenes.scene import Scene
 from scenic.simulators.commands import GRAVITY
 from scenic.simulators.mujoco.images import WAYS
 from scenic.simulators.mujoco.library import library

@@ -33,10 +33,10 @@ from scenic.runtime.geometry.narrowphase import Solids
 from scenic.runtime.geometry.polygons import Polygons
 from scenic.runtime.geometry.poses import Poses
 from scenic.runtime.geometry.segments import Segments
-from scenic.runtime.geometry.visibility import bodies as sight
 from scenic.runtime.geometry.visibility import hits, proving
-from scenic.runtime.geometry.visibility.bodies import sees_bodies
+from scenic.runtime.geometry.visibility import seen_bodies as sight
 from scenic.runtime.geometry.visibility.proving import prove
+from scenic.runtime.geometry.visibility.seen_bodies import sees_bodies
 
 from .samples import bumpy, hollow, random_poses, table
 from .test_collision import crowd

@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 from scipy.optimize import minimize, nnls
 from scipy.spatial import ConvexHull
 
-from scenic.runtime.geometry import distance, single
+from scenic.runtime.geometry import distance
+from scenic.runtime.geometry import scalar_bodies as single
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.depth import convex_depth, convex_gap
 from scenic.runtime.geometry.nearest import nearest_on_triangles

@@ -27,12 +27,12 @@ from scenic.runtime.geometry.narrowphase import Solids
 from scenic.runtime.geometry.nearest import nearest_of
 from scenic.runtime.geometry.polygons import Polygons
 from scenic.runtime.geometry.poses import Poses
-from scenic.runtime.geometry.visibility.bodies import contains_own_centre, sees_bodies
 from scenic.runtime.geometry.visibility.hits import place, ray_scene
 from scenic.runtime.geometry.visibility.obstacles import Occluder
 from scenic.runtime.geometry.visibility.proofs import inner_boxes
 from scenic.runtime.geometry.visibility.proving import prove
 from scenic.runtime.geometry.visibility.regions import view_mesh
+from scenic.runtime.geometry.visibility.seen_bodies import contains_own_centre, sees_bodies
 from scenic.runtime.geometry.visibility.views import Views
 from scenic.runtime.geometry.voxels import voxels
 

@@ -28,13 +28,13 @@ from scenic.runtime.geometry import (
     proofs,
     ragged,
     segments,
-    single,
     solids,
     surface,
     topology,
     triangles,
     voxels,
 )
+from scenic.runtime.geometry import scalar_bodies as single
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.cell_index import CellIndex
 from scenic.runtime.geometry.collision import Collider, collide

@@ -15,9 +15,9 @@ from scenic.runtime.geometry.broadphase import boxes_overlap
 from scenic.runtime.geometry.depth import convex_depth, convex_gap
 from scenic.runtime.geometry.distance import between as gaps
 from scenic.runtime.geometry.poses import Poses
-from scenic.runtime.geometry.single import Placed, overlap, placed
+from scenic.runtime.geometry.scalar_bodies import Placed, overlap, placed
 from scenic.runtime.regions.planar import CircularRegion
-from scenic.runtime.values import Orientation, Vector
+from scenic.runtime.values.values import Orientation, Vector
 from scenic.simulators.dummy import DummySimulator
 
 SCENE = """

@@ -18,10 +18,10 @@ import numpy.typing as npt
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.poses import Booleans, Floats, Indices
 from scenic.runtime.geometry.ragged import expand
-from scenic.runtime.geometry.visibility.bodies import Bounds, bounded
 from scenic.runtime.geometry.visibility.hits import Placed
 from scenic.runtime.geometry.visibility.obstacles import Occluder
 from scenic.runtime.geometry.visibility.proofs import boxes_hidden, shadowed
+from scenic.runtime.geometry.visibility.seen_bodies import Bounds, bounded
 from scenic.runtime.geometry.visibility.views import CORNERS, DISTANCE_SLACK, Extents, Views
 from scenic.runtime.geometry.voxels import voxels
 

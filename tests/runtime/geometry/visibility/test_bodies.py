@@ -6,9 +6,9 @@ import pytest
 from scenic.runtime.geometry import primitives
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.poses import Poses
-from scenic.runtime.geometry.visibility.bodies import sees_bodies
 from scenic.runtime.geometry.visibility.obstacles import Occluder
 from scenic.runtime.geometry.visibility.points import sees_points
+from scenic.runtime.geometry.visibility.seen_bodies import sees_bodies
 from scenic.runtime.geometry.visibility.views import Views
 from tests.runtime.geometry.visibility import reference
 

@@ -13,12 +13,12 @@ from scenic.runtime.geometry import primitives
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.poses import Poses
-from scenic.runtime.geometry.visibility.bodies import sees_bodies
 from scenic.runtime.geometry.visibility.grid import rows_towards
 from scenic.runtime.geometry.visibility.obstacles import Obstacles, Occluder, _meet_hull
 from scenic.runtime.geometry.visibility.points import sees_points
 from scenic.runtime.geometry.visibility.proving import Proof, prove
 from scenic.runtime.geometry.visibility.regions import region_angles
+from scenic.runtime.geometry.visibility.seen_bodies import sees_bodies
 from scenic.runtime.geometry.visibility.views import FULL_ANGLE_SLACK, Extents, Views
 from tests.runtime.geometry.visibility import reference
 from tests.runtime.geometry.visibility.test_bodies import BOX, CONE, FRAME, quaternions

@@ -10,10 +10,10 @@ from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.booleans import difference
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.poses import Poses
-from scenic.runtime.geometry.visibility.bodies import sees_bodies
 from scenic.runtime.geometry.visibility.obstacles import Occluder
 from scenic.runtime.geometry.visibility.proofs import inner_boxes
 from scenic.runtime.geometry.visibility.proving import Proof, _Cells, prove
+from scenic.runtime.geometry.visibility.seen_bodies import sees_bodies
 from scenic.runtime.geometry.visibility.views import Views
 from tests.runtime.geometry.visibility.reference import winding
 from tests.runtime.geometry.visibility.test_bodies import BOX, FRAME, fixed, quaternions, scenes

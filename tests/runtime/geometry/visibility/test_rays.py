@@ -13,12 +13,12 @@ from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.poses import Booleans, Floats, Indices, Poses
 from scenic.runtime.geometry.visibility import hits
-from scenic.runtime.geometry.visibility.bodies import inside_body, sees_bodies
 from scenic.runtime.geometry.visibility.grid import rows_towards
 from scenic.runtime.geometry.visibility.hits import exact_first, place
 from scenic.runtime.geometry.visibility.obstacles import Obstacles, Occluder
 from scenic.runtime.geometry.visibility.points import sees_points
 from scenic.runtime.geometry.visibility.proofs import shadowed
+from scenic.runtime.geometry.visibility.seen_bodies import inside_body, sees_bodies
 from scenic.runtime.geometry.visibility.views import Extents, Views
 from tests.runtime.geometry.samples import bumpy, random_poses, table
 from tests.runtime.geometry.visibility import reference

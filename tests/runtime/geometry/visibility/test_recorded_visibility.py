@@ -6,11 +6,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from scenic.runtime.geometry import single as one_body
+from scenic.runtime.geometry import scalar_bodies as one_body
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.poses import Poses
-from scenic.runtime.geometry.visibility import bodies, grid, hits, proofs, proving, regions, single, views
+from scenic.runtime.geometry.visibility import grid, hits, proofs, proving, regions, views
+from scenic.runtime.geometry.visibility import scalar_views as single
+from scenic.runtime.geometry.visibility import seen_bodies as bodies
 from scenic.runtime.geometry.visibility.obstacles import Obstacles, Occluder
 from scenic.runtime.geometry.visibility.points import hidden_points, sees_points
 from scenic.runtime.geometry.visibility.views import Views

@@ -1,0 +1,130 @@
+"""Sensors that objects carry: an object's `sensors` property holds them by name."""
+
+import math
+from collections.abc import Mapping
+from typing import Any, ClassVar
+
+from scenic.language.errors import InvalidScenarioError, Located
+from scenic.runtime.python.value_holders import Carrier
+
+DEFAULT_FIELD_OF_VIEW = 90.0
+"""Horizontal opening angle of cameras that say nothing else, degrees."""
+
+
+class Sensor:
+    """Something that observes the world from an object; a simulator asks it once a step."""
+
+    def getObservation(self) -> Any:
+        """The latest observation; ``None`` as long as nothing has delivered one."""
+        return getattr(self, "_observation", None)
+
+    def deliver(self, observation: Any) -> None:
+        """Give the sensor its latest observation."""
+        self._observation = observation
+
+
+class CameraSensor(Sensor):
+    """A pinhole camera.
+
+    Attributes:
+        offset: where it is on its object, metres in the object's frame; ``None`` for the object's
+            `visionSensorOffset`.
+        rotation: yaw, pitch and roll relative to the object, radians.
+        width: columns of the image, pixels.
+        height: rows of the image, pixels.
+        attributes: what else a simulator may want to know; ``fov`` is the horizontal opening angle in degrees.
+
+    """
+
+    outputs: ClassVar[tuple[str, ...]] = ()
+    """What images it gives."""
+
+    def __init__(
+        self,
+        *,
+        offset: Any = None,
+        rotation: Any = (0.0, 0.0, 0.0),
+        width: int = 640,
+        height: int = 480,
+        attributes: Mapping[str, Any] | None = None,
+    ) -> None:
+        self.offset = None if offset is None else _three(offset, "offset")
+        self.rotation = _three(rotation, "rotation")
+        for name, value in (("width", width), ("height", height)):
+            if not isinstance(value, int) or isinstance(value, bool) or not 1 <= value <= 16384:
+                raise InvalidScenarioError(
+                    f"the {name} of a {type(self).__name__} must be a number of pixels, not {value!r}",
+                    help="an integer from 1 to 16384",
+                )
+        self.width, self.height = width, height
+        self.attributes = dict(attributes or {})
+        angle = self.attributes.get("fov", DEFAULT_FIELD_OF_VIEW)
+        if isinstance(angle, bool) or not isinstance(angle, int | float) or not 0 < angle < 180:
+            raise InvalidScenarioError(
+                f"the field of view of a {type(self).__name__} must be above 0 and below 180 degrees, not {angle!r}",
+                help="for wider views use several cameras",
+            )
+        self.fieldOfView = math.radians(angle)
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}(width={self.width}, height={self.height})"
+
+
+class RGBSensor(CameraSensor):
+    """A camera that gives colour images."""
+
+    outputs = ("rgb",)
+
+
+class DepthSensor(CameraSensor):
+    """A camera that gives the distance of each pixel along its axis, metres."""
+
+    outputs = ("depth",)
+
+
+class SSSensor(CameraSensor):
+    """A camera that gives the class and the object of each pixel: semantic and instance segmentation."""
+
+    outputs = ("semantic", "instance")
+
+
+class GroundTruthSensor(Carrier, Sensor):
+    """Observes a value as it is at each step: a function is called, anything else is taken as it stands."""
+
+    def __init__(self, value: Any) -> None:
+        self.value = value
+
+    def getObservation(self) -> Any:
+        """The value now."""
+        return self.value() if callable(self.value) else self.value
+
+
+class CallbackSensor(Sensor):
+    """A sensor whose data a simulator delivers when it has them: it calls `onData`, and `process` makes observations of them.
+
+    Args:
+        defaultValue: the observation until there are data.
+
+    """
+
+    def __init__(self, defaultValue: Any = None) -> None:
+        self._observation = defaultValue
+
+    def process(self, data: Any) -> Any:
+        """The observation that data come to."""
+        raise NotImplementedError(f"{type(self).__name__} does not say how data are processed (`process`)")
+
+    def onData(self, data: Any) -> None:
+        """Take new data."""
+        self.deliver(self.process(data))
+
+
+def _three(value: Any, name: str) -> tuple[float, float, float]:
+    try:
+        x, y, z = (float(item) for item in value)
+    except (TypeError, ValueError, Located) as error:
+        raise InvalidScenarioError(
+            f"the {name} of a sensor must be three numbers, not {value!r}",
+            help="sensors are fixed on their objects: their places and sizes are not random",
+        ) from error
+    return x, y, z

@@ -1,0 +1,265 @@
+"""The language's operators, specifiers and statements as functions, under the names of the established Python API.
+
+Programs write ``distance from x``; Python modules that they import may call ``DistanceFrom(x)``. What such a call means beside its
+arguments (the ego, the workspace, where a new object belongs) is that of the module of Scenic code that is running:
+the innermost one among the callers.
+"""
+
+import inspect
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any, Final
+
+from scenic.language.errors import InvalidScenarioError
+from scenic.runtime.dynamics.run import RunContext
+from scenic.runtime.elements.operators import operation
+from scenic.runtime.elements.specifiers import Specifier, specify
+from scenic.runtime.instances import mutation
+from scenic.runtime.instances.objects import SIDES
+from scenic.runtime.instances.resolution import build
+from scenic.runtime.program.context import current
+from scenic.runtime.regions.base import everywhere
+
+_OPERATORS: Final[Mapping[str, tuple[str, str, str]]] = MappingProxyType(
+    {
+        "AltitudeFrom": ("altitude", "X= Y=", "X Y"),
+        "AltitudeTo": ("altitude", "X", "- X"),
+        "AngleFrom": ("angle", "X= Y=", "X Y"),
+        "AngleTo": ("angle", "X", "- X"),
+        "ApparentHeading": ("apparent heading", "X Y=", "X Y"),
+        "CanSee": ("can see", "X Y", "X Y"),
+        "DistanceFrom": ("distance", "X Y=", "X Y"),
+        "DistancePast": ("distance past", "X Y=", "X Y"),
+        "FieldAt": ("at", "X Y", "X Y"),
+        "Follow": ("follow", "F X D", "F X D"),
+        "Intersects": ("intersects", "X Y", "X Y"),
+        "NotVisible": ("not visible", "region", "region -"),
+        "NotVisibleFromOp": ("not visible", "region base", "region base"),
+        "OffsetAlong": ("offset along", "X H Y", "X H Y"),
+        "RelativeHeading": ("relative heading", "X Y=", "X Y"),
+        "RelativePosition": ("relative position", "X Y=", "X Y"),
+        "RelativeTo": ("relative to", "X Y", "X Y"),
+        "Visible": ("visible", "region", "region -"),
+        "VisibleFromOp": ("visible", "region base", "region base"),
+        **{
+            side[0].upper() + side[1:]: (
+                "".join(f" {letter.lower()}" if letter.isupper() else letter for letter in side) + " of",
+                "X",
+                "X",
+            )
+            for side in SIDES
+        },
+    }
+)
+"""Operators by function: the name here, the function's parameters (optional ones with ``=``), the operands (``-`` is left out)."""
+
+_SPECIFIERS: Final[Mapping[str, tuple[str, str, str]]] = MappingProxyType(
+    {
+        "Above": ("above", "pos dist=", "pos dist"),
+        "Ahead": ("ahead of", "pos dist=", "pos dist"),
+        "ApparentlyFacing": ("apparently facing", "heading fromPt=", "heading fromPt"),
+        "At": ("at", "pos", "pos"),
+        "Behind": ("behind", "pos dist=", "pos dist"),
+        "Below": ("below", "pos dist=", "pos dist"),
+        "Beyond": ("beyond", "pos offset fromPt=", "pos offset fromPt"),
+        "ContainedIn": ("contained in", "region", "region"),
+        "Facing": ("facing", "heading", "heading"),
+        "FacingAwayFrom": ("facing away from", "pos", "pos"),
+        "FacingDirectlyAwayFrom": ("facing directly away from", "pos", "pos"),
+        "FacingDirectlyToward": ("facing directly toward", "pos", "pos"),
+        "FacingToward": ("facing toward", "pos", "pos"),
+        "Following": ("following", "field dist fromPt=", "field fromPt dist"),
+        "In": ("in", "region", "region"),
+        "LeftSpec": ("left of", "pos dist=", "pos dist"),
+        "NotVisibleFrom": ("not visible", "base", "base"),
+        "NotVisibleSpec": ("not visible", "", "-"),
+        "OffsetAlongSpec": ("offset along", "direction offset", "direction offset"),
+        "OffsetBy": ("offset by", "offset", "offset"),
+        "On": ("on", "thing", "thing"),
+        "RightSpec": ("right of", "pos dist=", "pos dist"),
+        "VisibleFrom": ("visible", "base", "base"),
+        "VisibleSpec": ("visible", "", "-"),
+    }
+)
+"""Specifiers by function, as above."""
+
+
+def _scope() -> Mapping[str, Any] | None:
+    """The globals of the module of Scenic code that is running; ``None`` outside of any."""
+    frame = sys._getframe(1)
+    while frame is not None and "__scenic__" not in frame.f_globals:
+        frame = frame.f_back  # type: ignore[assignment] # the outermost frame has none
+    return None if frame is None else frame.f_globals
+
+
+def _language() -> Any:
+    """The prelude of the module that is running; ``None`` outside of any."""
+    scope = _scope()
+    return None if scope is None else scope["__scenic__"]
+
+
+def _needed(what: str) -> Any:
+    language = _language()
+    if language is None:
+        raise InvalidScenarioError(
+            f"no program is running, so there is no {what}",
+            help="call this from code that a program runs, or give all operands",
+        )
+    return language
+
+
+def _ego() -> Any:
+    return _needed("ego").ego
+
+
+def _operate(name: str, *operands: Any) -> Any:
+    return operation(name, _ego, *operands)
+
+
+def _specify(name: str, *operands: Any) -> Specifier:
+    language = _language()
+    if language is not None:
+        specifier: Specifier = language.specifier(name, *operands)
+        return specifier
+    return specify(name, _ego, *operands, *([everywhere] if name in ("visible", "not visible") else []))
+
+
+def _function(
+    made_by: Callable[..., Any], established: str, name: str, parameters: str, operands: str
+) -> Callable[..., Any]:
+    """The function of an operator or a specifier; see the tables."""
+    kind = inspect.Parameter.POSITIONAL_OR_KEYWORD
+    signature = inspect.Signature(
+        [
+            inspect.Parameter(
+                word.rstrip("="), kind, default=None if word.endswith("=") else inspect.Parameter.empty
+            )
+            for word in parameters.split()
+        ]
+    )
+
+    def function(*args: Any, **keywords: Any) -> Any:
+        bound = signature.bind(*args, **keywords)
+        bound.apply_defaults()
+        values = {**bound.arguments, "-": None}
+        return made_by(name, *(values[word] for word in operands.split()))
+
+    function.__name__ = function.__qualname__ = established
+    function.__doc__ = f"``{name}`` of the language, as a function."
+    function.__signature__ = signature  # type: ignore[attr-defined] # read by `inspect`
+    return function
+
+
+def With(prop: str, val: Any) -> Specifier:
+    """The specifier ``with prop val``."""
+    language = _language()
+    if language is None:
+        return specify("with", _ego, prop, val)
+    specifier: Specifier = language.specifier("with", val, property=prop)
+    return specifier
+
+
+def new(cls: Any, specifiers: Sequence[Specifier] = ()) -> Any:
+    """A new instance of a Scenic class; an object becomes one of the program's that is running."""
+    language = _language()
+    return build(cls, tuple(specifiers)) if language is None else language.new(cls, *specifiers)
+
+
+def ego(obj: Any = None) -> Any:
+    """The ego; with an argument, it becomes the ego."""
+    language = _needed("ego")
+    if obj is not None:
+        language.ego = obj
+    return language.ego
+
+
+def workspace(workspace: Any = None) -> Any:
+    """The workspace; with an argument, it becomes the workspace."""
+    language = _needed("workspace")
+    if workspace is not None:
+        language.workspace = workspace
+    return language.workspace
+
+
+def param(params: Mapping[str, Any]) -> None:
+    """Set global parameters."""
+    _needed("program to set parameters of").param(params)
+
+
+def mutate(*objects: Any, scale: Any = 1) -> None:
+    """Mutate these objects; without any, all that the program has made so far."""
+    language = _language()
+    if language is None:
+        mutation.request(objects, scale)
+    else:
+        language.mutate(objects or None, scale)
+
+
+def globalParameters() -> Any:
+    """The global parameters, by attribute or index."""
+    _needed("parameter")
+    scope = _scope()
+    assert scope is not None
+    return scope["__builtins__"]["globalParameters"]
+
+
+def localPath(relpath: str) -> Path:
+    """A path relative to the file of the program that is running, or else to the working directory."""
+    scope = _scope()
+    if scope is None:
+        return Path.cwd() / relpath
+    path: Path = scope["__builtins__"]["localPath"](relpath)
+    return path
+
+
+def in_initial_scenario() -> bool:
+    """``initial scenario`` of the language."""
+    language = _language()
+    return True if language is None else bool(language.operation("initial scenario"))
+
+
+def isActive() -> bool:
+    """Whether a program is being compiled, or simulated."""
+    return current.get() is not None
+
+
+def simulationInProgress() -> bool:
+    """Whether a simulation is running."""
+    return isinstance(current.get(), RunContext)
+
+
+FUNCTIONS: Final[Mapping[str, Callable[..., Any]]] = MappingProxyType(
+    {
+        **{name: _function(_operate, name, *row) for name, row in _OPERATORS.items()},
+        **{name: _function(_specify, name, *row) for name, row in _SPECIFIERS.items()},
+        **{
+            function.__name__: function
+            for function in (
+                With,
+                new,
+                ego,
+                workspace,
+                param,
+                mutate,
+                globalParameters,
+                localPath,
+                in_initial_scenario,
+                isActive,
+                simulationInProgress,
+            )
+        },
+    }
+)
+"""All of them, by their established names."""
+
+
+def __getattr__(name: str) -> Any:
+    try:
+        return FUNCTIONS[name]
+    except KeyError:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}") from None
+
+
+__all__ = ["FUNCTIONS"]

@@ -1,0 +1,97 @@
+"""What running a program produces: the raw material of a scenario."""
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from scenic.graph.node import Node
+from scenic.language.spans import Span
+from scenic.runtime.dynamics.declarations import Declared, Required
+from scenic.runtime.dynamics.definitions import Invocable, ModularScenario
+from scenic.runtime.instances.objects import Object, Point
+from scenic.runtime.program.context import Context
+from scenic.runtime.python.samples import Globals
+from scenic.runtime.regions.base import Workspace
+from scenic.runtime.visibility.seeing import Sighting
+
+
+@dataclass(frozen=True, slots=True)
+class Requirement:
+    """One ``require`` statement.
+
+    ``probability`` is that with which it is enforced in a scene; ``label`` names it in reports. ``build`` makes the
+    condition again, from objects that have been mutated since.
+    """
+
+    condition: Node
+    probability: float
+    label: str
+    span: Span | None = None
+    filename: str | None = None
+    build: Callable[[], Node] | None = field(default=None, compare=False)
+    formula: Required | None = field(default=None, compare=False)
+    """The requirement as simulations follow it."""
+
+    def rebuilt(self) -> "Requirement":
+        """The requirement about the objects as they are now."""
+        return self if self.build is None else replace(self, condition=self.build())
+
+
+@dataclass(slots=True)
+class Program:
+    """Everything that the modules of one compilation have produced so far, in order.
+
+    ``overrides`` are parameters given from outside: they win over every ``param`` statement.
+    """
+
+    overrides: Mapping[str, Any] = field(default_factory=dict)
+    context: Context = field(default_factory=Context)
+    instances: list[Point] = field(default_factory=list)
+    objects: list[Object] = field(default_factory=list)
+    requirements: list[Requirement] = field(default_factory=list)
+    sightings: list[tuple[Point, Sighting]] = field(default_factory=list)
+    """Instances that somebody must see, or must not."""
+    parameters: dict[str, Any] = field(default_factory=dict)
+    read_parameters: set[str] = field(default_factory=set)
+    """Parameters that the program has asked for by name."""
+    simulator: Callable[[], Any] | None = None
+    declared: Declared = field(default_factory=Declared)
+    """What the program asks of simulations, beside requirements."""
+    invocables: list[type[Invocable]] = field(default_factory=list)
+    """The behaviors, monitors and scenarios that it defines."""
+    top: ModularScenario | None = None
+    """The scenario that the program means, where it is one of those that it defines."""
+    ego: Object | None = None
+    workspace: Workspace | None = None
+    places: dict[int, tuple[Span | None, str | None]] = field(default_factory=dict)
+    """Where each instance was created, by its identity: span and file."""
+    names: Globals = field(default_factory=Globals)
+    """Global names as they are when the program has run, for the functions and methods in its scenes."""
+
+    def reachable(self) -> Iterator[Any]:
+        """Values of which simulations need samples."""
+        yield from self.objects
+        yield from self.instances
+        yield from self.parameters.values()
+        for invocable in self.invocables:
+            yield from invocable._definition.functions
+        yield from self.declared.random_parts()
+        for requirement in self.requirements:
+            if requirement.formula is not None:
+                for atom in requirement.formula.atoms:
+                    yield from atom.random_parts()
+        yield self.top
+
+
+@dataclass(slots=True)
+class Module:
+    """One file of the program while it runs."""
+
+    filename: str
+    ego: Object | None = None
+    workspace: Workspace | None = None
+    is_model: bool = False
+    package: str = ""
+    """The package that relative imports start from."""
+    scope: dict[str, Any] = field(default_factory=dict)
+    """The module's global names."""

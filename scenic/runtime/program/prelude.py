@@ -1,0 +1,655 @@
+"""The prelude: the one object that generated code talks to.
+
+The compiler translates a program to Python that calls methods of ``__scenic__``, a `Prelude`, and otherwise is the program
+itself. Names such as ``Range`` are not translated: they are builtins of generated modules (`builtin_names`). Each
+module of a program has its own prelude; all of a compilation share a `Program` and a `Context`.
+
+The same generated code serves two readings. While a scenario is compiled its context is symbolic and values are nodes of
+the graph; during a simulation the context draws at once, and conditions are evaluated where they stand.
+"""
+
+import builtins
+import sys
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
+from functools import partial
+from itertools import accumulate
+from pathlib import Path
+from types import CodeType, MappingProxyType, ModuleType
+from typing import Any, Protocol
+
+from scenic.graph.construction import make_node
+from scenic.graph.kinds import Kind
+from scenic.graph.operations import TABLE
+from scenic.language.errors import (
+    InvalidScenarioError,
+    RejectionException,
+    ScenicTypeError,
+    UnsupportedError,
+)
+from scenic.runtime.dynamics.declarations import Kept, required
+from scenic.runtime.dynamics.definitions import behavior_of
+from scenic.runtime.dynamics.language import Dynamics
+from scenic.runtime.dynamics.run import RunContext
+from scenic.runtime.elements.functions import convert
+from scenic.runtime.elements.operators import OPERATORS, operation
+from scenic.runtime.elements.specifiers import (
+    BUILDERS,
+    Specifier,
+    UserSpecifier,
+    is_kind,
+    is_unknown,
+    specify,
+)
+from scenic.runtime.instances import mutation
+from scenic.runtime.instances.objects import Object, Point
+from scenic.runtime.instances.placeholders import may_mutate
+from scenic.runtime.instances.properties import ATTRIBUTES, PropertyDefinition
+from scenic.runtime.instances.resolution import build
+from scenic.runtime.program import builtins as names
+from scenic.runtime.program import conditions
+from scenic.runtime.program.conditions import Condition
+from scenic.runtime.program.context import Context, current, here
+from scenic.runtime.program.outcome import Module, Program, Requirement
+from scenic.runtime.python.class_members import sample_of
+from scenic.runtime.python.importing import beside, forget_stranger
+from scenic.runtime.python.ownership import PRELUDE
+from scenic.runtime.python.samples import Sample, may_return_instances
+from scenic.runtime.python.starred_calls import spread
+from scenic.runtime.regions.base import Region, Workspace, everywhere
+from scenic.runtime.regions.choice import as_region
+from scenic.runtime.temporal.formulas import is_temporal
+from scenic.runtime.values.choices import per_option
+from scenic.runtime.values.lazy import definite
+from scenic.runtime.values.methods import OrientationMethods, VectorMethods
+from scenic.runtime.values.values import (
+    Random,
+    as_node,
+    as_value,
+    describe,
+    is_answered_by_code,
+    is_random,
+    operate,
+    to_orientation,
+)
+from scenic.runtime.visibility.flat import sees_in_mode
+
+COMPARISONS: Mapping[str, str] = MappingProxyType(
+    {
+        "<": "less",
+        "<=": "less or equal",
+        ">": "greater",
+        ">=": "greater or equal",
+        "==": "equal",
+        "!=": "not equal",
+    }
+)
+
+_OF_ORDER = ("__eq__", "__ne__", "__lt__", "__le__", "__gt__", "__ge__")
+
+
+class Modules(Protocol):
+    """Where modules of Scenic code come from (`scenic.compiler.loader`, passed in)."""
+
+    def find(self, name: str) -> Path | None:
+        """The file of a module, or ``None`` if no Scenic module of that name exists."""
+
+    def code(self, path: Path) -> CodeType:
+        """The compiled code of a file; raises `ScenicSyntaxError`."""
+
+
+class Prelude(Dynamics):
+    """What one module of generated code can do. Method names are fixed by the compiler."""
+
+    Object = Object
+
+    def __init__(self, context: Context, program: Program, module: Module, modules: "Loader") -> None:
+        self._compilation = context
+        context.objects = program.objects
+        self._program = program
+        self._module = module
+        self._modules = modules
+
+    @property
+    def modules(self) -> Iterable[ModuleType]:
+        """The modules of the language that the program has imported."""
+        return self._modules.loaded
+
+    # As a value that functions of the program reach: what they read of it is the ego
+
+    def snapshot(self) -> "Prelude":
+        """The prelude with the ego and workspace of this moment, whatever the program sets later."""
+        return Prelude(self._compilation, self._program, replace(self._module), self._modules)
+
+    def random_parts(self) -> list[Any]:
+        """The ego, for sampling."""
+        return [self._module.ego]
+
+    def sampled(self, sample: Sample) -> "Prelude":
+        """The prelude whose ego is that of a sample."""
+        module = replace(self._module, ego=sample.value(self._module.ego))
+        return Prelude(self._compilation, self._program, module, self._modules)
+
+    def __eq__(self, other: object) -> bool:
+        """Whether two preludes are of the same module in the same state."""
+        if not isinstance(other, Prelude):
+            return NotImplemented
+        mine, theirs = self._module, other._module
+        return (
+            mine.ego is theirs.ego and mine.workspace is theirs.workspace and mine.filename == theirs.filename
+        )
+
+    __hash__ = object.__hash__
+
+    @property
+    def _context(self) -> Context:
+        """How the program is read: that of the running simulation, if one is."""
+        active = current.get()
+        return active if isinstance(active, RunContext) else self._compilation
+
+    # Ego and workspace
+
+    @property
+    def ego(self) -> Any:
+        """The ego object; raises `InvalidScenarioError` before it is set."""
+        run = self._run
+        if run is not None and run.current.ego is not None:
+            return run.current.ego
+        if self._module.ego is None:
+            raise InvalidScenarioError(
+                "the ego object is used before it is set",
+                span=here(),
+                help="write `ego = new Object ...` first",
+            )
+        return self._module.ego
+
+    @ego.setter
+    def ego(self, value: Any) -> None:
+        if not isinstance(value, Object):
+            made = value.__name__ if isinstance(value, type) else "Object"
+            hint = f"write `ego = new {made}`, with specifiers where they are needed"
+            raise ScenicTypeError(f"the ego must be an object, not {describe(value)}", span=here(), help=hint)
+        run = self._run
+        if run is not None:
+            run.current.ego = value
+            for scenario in run.scenarios:
+                if scenario.ego is None:
+                    scenario.ego = value
+        else:
+            self._module.ego = value
+
+    def _ego(self) -> Any:
+        return self.ego
+
+    @property
+    def workspace(self) -> Any:
+        """The workspace; all of space where the program sets none."""
+        known = self._known_workspace()
+        if known is None:
+            raise InvalidScenarioError(
+                "the workspace is used before it is set",
+                span=here(),
+                help="write `workspace = Workspace(region)` first",
+            )
+        return known
+
+    @workspace.setter
+    def workspace(self, value: Any) -> None:
+        if not isinstance(value, Workspace):
+            raise ScenicTypeError(
+                f"the workspace must be a Workspace, not {describe(value)}",
+                span=here(),
+                help="write `workspace = Workspace(region)`",
+            )
+        if self._run is not None:
+            self._run.current.workspace = value
+        else:
+            self._module.workspace = value
+
+    def _known_workspace(self) -> Workspace | None:
+        """The workspace of the scenario that is running, else of the module, if it is set."""
+        run = self._run
+        own: Workspace | None = None if run is None else run.current.workspace
+        return self._module.workspace if own is None else own
+
+    # Instances
+
+    def specifier(self, name: str, *operands: Any, property: str | None = None) -> Specifier:
+        """One specifier of ``new``."""
+        if name not in BUILDERS:
+            raise UnsupportedError(f"the specifier `{name}` is not supported yet", span=here())
+        if property is not None:
+            if property == "heading" and self._context.mode_2d:
+                return specify("facing", self._ego, *operands)
+            own = self._module.scope.get(property)
+            if isinstance(own, UserSpecifier):
+                (value,) = operands
+                return own(*value) if type(value) is tuple else own(value)
+            return specify(name, self._ego, property, *operands)
+        if name in ("visible", "not visible"):
+            workspace = self._known_workspace()
+            return specify(name, self._ego, *operands, everywhere if workspace is None else workspace)
+        return specify(name, self._ego, *operands)
+
+    def new(self, cls: Any, *specifiers: Specifier) -> Any:
+        """A new instance of a Scenic class."""
+        if not (isinstance(cls, type) and issubclass(cls, Point)):
+            raise ScenicTypeError(
+                f"`new` needs a Scenic class, not {describe(cls)}",
+                span=here(),
+                help="Python classes are called: `C(...)`",
+            )
+        if self._context.evaluating and issubclass(cls, Object):
+            raise InvalidScenarioError(
+                "a requirement cannot create an object",
+                span=here(),
+                help="create it before the `require` statement; points may be created in a requirement",
+            )
+        instance = build(cls, specifiers, mode_2d=self._context.mode_2d)
+        if self._context.evaluating:
+            return instance
+        if isinstance(instance, Object):
+            instance.__dict__["behavior"] = per_option(instance.behavior, behavior_of)
+        sightings = [specifier.sighting for specifier in specifiers if specifier.sighting is not None]
+        if self._run is not None:
+            context = self._context
+            for sighting in sightings:
+                seen = sees_in_mode(sighting.observer, instance, context.present, mode_2d=context.mode_2d)
+                if bool(seen) != sighting.wanted:
+                    raise RejectionException(f"whether the {cls.__name__} is seen")
+            self._run.create(instance)
+            return instance
+        self._program.sightings += [(instance, sighting) for sighting in sightings]
+        self._program.instances.append(instance)
+        if isinstance(instance, Object):
+            self._program.objects.append(instance)
+        self._program.places[id(instance)] = (here(), self._module.filename)
+        return instance
+
+    def property(
+        self, name: str, attributes: Sequence[str], value: Callable[[Any], Any], reads: Sequence[str]
+    ) -> PropertyDefinition:
+        """One property definition of a class."""
+        assert set(attributes) <= ATTRIBUTES, attributes
+        if name == "heading" and self._context.mode_2d:
+            return PropertyDefinition(
+                "parentOrientation",
+                frozenset(attributes),
+                lambda instance: to_orientation(value(instance)),
+                tuple(reads),
+                here(),
+            )
+        return PropertyDefinition(name, frozenset(attributes), value, tuple(reads), here())
+
+    # Operators
+
+    def operation(self, name: str, *operands: Any) -> Any:
+        """One of the language's own operators."""
+        if name in OPERATORS:
+            return operation(name, self._ego, *operands)
+        if name == "initial scenario":
+            return self._context.is_symbolic
+        raise UnsupportedError(f"the operator `{name}` is not supported yet", span=here())
+
+    def convert(self, name: str, *args: Any) -> Any:
+        """``int(x)``, ``float(x)``, ``str(x)``."""
+        return convert(name, *args)
+
+    def spread(self, function: Any, parts: Sequence[tuple[bool, Any]], keywords: Mapping[str, Any]) -> Any:
+        """``function(a, *b, k=c)``, where ``parts`` tells of each argument whether it is starred."""
+        return spread(function, parts, keywords)
+
+    # Statements
+
+    def param(self, values: Mapping[str, Any]) -> None:
+        """``param name = value, ...``."""
+        if self._context.evaluating or not self._context.is_symbolic:
+            raise InvalidScenarioError(
+                "parameters cannot be set here",
+                span=here(),
+                help="set them where the program describes the scenario, outside of requirements and simulations",
+            )
+        program = self._program
+        for name, value in values.items():
+            definite(value, f"parameter {name!r}")
+            if name in program.overrides:
+                program.parameters[name] = program.overrides[name]
+            elif not (self._module.is_model and name in program.parameters):
+                program.parameters[name] = value
+
+    def model(self, name: str, scope: dict[str, Any]) -> None:
+        """``model name``: everything that the module defines, with its parameters as defaults."""
+        if self._module.is_model:
+            raise InvalidScenarioError("a model cannot itself use `model`", span=here())
+        self._modules.use_model(name, scope, self._module)
+
+    def mutate(self, targets: Sequence[Any] | None = None, scale: Any = 1) -> None:
+        """``mutate a, b by scale``; without targets all objects so far."""
+        if self._context.evaluating:
+            raise InvalidScenarioError(
+                "a requirement cannot mutate objects", span=here(), help="mutate them before or after it"
+            )
+        run = self._run
+        if targets is not None:
+            chosen = targets
+        else:
+            chosen = self._program.objects if run is None else run.current.objects
+        mutation.request(chosen, scale)
+        if run is not None:
+            run.check_mutable(chosen)
+
+    def simulator(self, make: Callable[[], Any]) -> None:
+        """``simulator expr``: kept, and evaluated when a simulator is asked for."""
+        self._program.simulator = make
+
+    def require(
+        self, condition: Condition, *, probability: float | None = None, name: str | None = None
+    ) -> None:
+        """``require condition``: recorded while compiling, checked or followed during a simulation."""
+        if self._context.evaluating:
+            raise InvalidScenarioError(
+                "a requirement cannot contain another one",
+                span=here(),
+                help="return the condition, and join conditions with `and`",
+            )
+        span = here()
+        label = name or (f"requirement on line {span.line}" if span else "requirement")
+        formula = required(condition.tree, label, span, self._module.filename)
+        if probability not in (None, 1) and is_temporal(formula.formula):
+            raise InvalidScenarioError(
+                "a temporal requirement cannot have a probability",
+                span=span,
+                help="leave the probability out",
+            )
+        chance = 1.0 if probability is None else probability
+        if not self._context.is_symbolic:
+            self._require_now(formula, chance)
+            return
+        assert condition.build is not None
+        self._program.requirements.append(
+            Requirement(
+                condition.build(), chance, label, span, self._module.filename, condition.build, formula
+            )
+        )
+
+    # Conditions
+
+    def condition(
+        self,
+        symbolic: Callable[..., Any] | None,
+        concrete: Callable[..., Any],
+        captured: Sequence[Any],
+        margin: Callable[..., Any] | None = None,
+    ) -> Condition:
+        """A leaf of a condition; see `scenic.runtime.program.conditions`."""
+        kept = Kept(concrete, captured, margin)
+        build = conditions.leaf(symbolic, concrete, captured) if self._context.is_symbolic else None
+        return Condition(kept, build)
+
+    def conjunction(self, *parts: Condition) -> Condition:
+        """``and``."""
+        return conditions.connected("and", parts)
+
+    def disjunction(self, *parts: Condition) -> Condition:
+        """``or``."""
+        return conditions.connected("or", parts)
+
+    def negation(self, part: Condition) -> Condition:
+        """``not``."""
+        return conditions.negated(part)
+
+    def temporal(self, operator: str, *parts: Condition) -> Condition:
+        """A temporal operator, or ``implies``."""
+        return conditions.in_time(operator, parts)
+
+    # Inside the symbolic reading of a condition
+
+    def provided(self, name: str, function: Any) -> Any:
+        """The function, if it is the one that every module finds in scope under this name."""
+        if function is not names.provided(name):
+            raise conditions.NotSymbolicError
+        return function
+
+    def read(self, value: Any, name: str) -> Any:
+        """An attribute, read when the condition is evaluated."""
+        return getattr(value, name)
+
+    def call(self, value: Any, name: str, *args: Any) -> Any:
+        """A method that takes random arguments; any other is called on samples."""
+        if not isinstance(value, VectorMethods | OrientationMethods | Region | Random | Object):
+            raise conditions.NotSymbolicError
+        if isinstance(value, Object) and getattr(type(value), name, None) is not getattr(Object, name, None):
+            raise conditions.NotSymbolicError  # The program's own method: never traced.
+        return getattr(value, name)(*args)
+
+    def compare(self, operator: str, left: Any, right: Any) -> Any:
+        """``left operator right`` as a truth value, which may be random."""
+        if may_return_instances(left) or may_return_instances(right):
+            return Random.later(TABLE[COMPARISONS[operator]].python, left, right)
+        if any(is_answered_by_code(item, _OF_ORDER) for item in (left, right)):
+            raise conditions.NotSymbolicError
+        if is_random(left) or is_random(right):
+            return operate(COMPARISONS[operator], left, right)
+        if isinstance(left, Point) or isinstance(right, Point):
+            raise conditions.NotSymbolicError  # Whether two instances are equal is decided on their samples.
+        return operate(COMPARISONS[operator], left, right)
+
+    def contains(self, item: Any, container: Any) -> Any:
+        """``item in container``: containment in a region, else Python's."""
+        region = as_region(container)
+        # Of a value that is unknown until it is drawn, the draw has to tell whether all of it has to lie in the region.
+        if region is None or is_unknown(item):
+            raise conditions.NotSymbolicError
+        return region.containsObject(item) if is_kind(item, Object) else region.containsPoint(item)
+
+    def all_of(self, *values: Any) -> Any:
+        """``and`` of truth values inside an expression."""
+        return self._logic("and", values)
+
+    def any_of(self, *values: Any) -> Any:
+        """``or`` of truth values inside an expression."""
+        return self._logic("or", values)
+
+    def invert(self, value: Any) -> Any:
+        """``not`` of a truth value inside an expression."""
+        return as_value(conditions.connect("not", [conditions.truth(value)]))
+
+    def _logic(self, operation: str, values: Sequence[Any]) -> Any:
+        nodes = [as_node(value) for value in values]
+        if not all(node.kind is Kind.BOOLEAN for node in nodes):
+            raise conditions.NotSymbolicError  # Python's `and` and `or` give an operand, not a truth value.
+        return as_value(conditions.connect(operation, nodes))
+
+    def choose(self, test: Condition, then: Callable[[], Any], otherwise: Callable[[], Any]) -> Any:
+        """``then if test else otherwise``."""
+        assert test.build is not None
+        node = test.build()
+        if node.is_constant:
+            return then() if node.value else otherwise()
+        return as_value(make_node(TABLE["if"], [node, as_node(then()), as_node(otherwise())], span=here()))
+
+
+class Loader:
+    """Runs the modules of one compilation, each afresh.
+
+    Args:
+        modules: finds and compiles files of Scenic code.
+        context: how the program is being read.
+        program: what the modules produce.
+        model: replaces the module of every ``model`` statement.
+
+    """
+
+    def __init__(
+        self, modules: Modules, context: Context, program: Program, *, model: str | None = None
+    ) -> None:
+        self._modules = modules
+        self._context = context
+        self._program = program
+        self._model = model
+        self._folder = "."
+        self._loaded: dict[Path, ModuleType] = {}
+        self._states: dict[Path, Module] = {}
+        self._packages: dict[str, ModuleType] = {}
+        self._python: dict[str, ModuleType] = {}
+
+    @property
+    def loaded(self) -> Iterable[ModuleType]:
+        """The modules that have been imported."""
+        return self._loaded.values()
+
+    def run(
+        self, code: CodeType, filename: str, scope: Mapping[str, Any] | None = None
+    ) -> tuple[ModuleType, Module]:
+        """Run the code of a file as a module, with these globals to begin with."""
+        state = Module(filename)
+        self._folder = str(Path(filename).parent)
+        module = ModuleType(Path(filename).stem)
+        vars(module).update(scope or {})
+        self._execute(code, module, state)
+        return module, state
+
+    def _execute(self, code: CodeType, module: ModuleType, state: Module) -> None:
+        prelude = Prelude(self._context, self._program, state, self)
+        scope = state.scope = module.__dict__
+        scope[PRELUDE] = prelude
+        scope["__file__"] = state.filename
+        scope["__builtins__"] = names.builtin_names(
+            self._program, state.filename, lambda *args: self._import(state, *args)
+        )
+        self._context.mutates |= may_mutate(code)
+        exec(code, scope)
+
+    def _import(
+        self,
+        importer: Module,
+        name: str,
+        globals: Mapping[str, Any] | None = None,
+        locals: Mapping[str, Any] | None = None,
+        fromlist: Sequence[str] | None = (),
+        level: int = 0,
+    ) -> Any:
+        """``__import__`` of generated modules: Scenic modules first, then Python's."""
+        if level:
+            base = importer.package.rsplit(".", level - 1)[0] if level > 1 else importer.package
+            name = f"{base}.{name}".strip(".") if base else name
+        path = self._modules.find(name) if name else None
+        if path is None:
+            return self._import_python(importer, name, globals, locals, fromlist or (), level)
+        module = self._load(path, name, importer)
+        for item in fromlist or ():
+            # As in Python, modules of a package are among its attributes once somebody has imported them from it.
+            if not hasattr(module, item) and (found := self._modules.find(f"{name}.{item}")) is not None:
+                setattr(module, item, self._load(found, f"{name}.{item}", importer))
+        if fromlist:
+            return module
+        # `import a.b` binds `a`, by whose attributes all modules are found that are imported so.
+        while "." in name:
+            name, _, last = name.rpartition(".")
+            package = self._package(name, importer)
+            setattr(package, last, module)
+            module = package
+        return module
+
+    def _package(self, name: str, importer: Module) -> ModuleType:
+        """The module of a package: that of its file, or else one that only leads to its parts."""
+        path = self._modules.find(name)
+        if path is not None and (path.stem == "__init__" or path in self._loaded):
+            return self._load(path, name, importer)
+        if name not in self._packages:
+            self._packages[name] = ModuleType(name)
+            # So it is known as one of the program's, whose values are sampled.
+            vars(self._packages[name])[PRELUDE] = importer.scope[PRELUDE]
+            self._join(name)
+        return self._present(self._packages[name])
+
+    def _join(self, name: str) -> None:
+        """Let a package that leads to modules of Scenic lead to what Python finds in it, too."""
+        if name in self._packages and name in self._python:
+            vars(self._packages[name])["__getattr__"] = partial(getattr, self._python[name])
+
+    @staticmethod
+    def _present(module: ModuleType) -> ModuleType:
+        """The module in the sample, or the running simulation, whose code imports it."""
+        sample = sample_of(sys._getframe(1))
+        own: ModuleType = module if sample is None else sample.value(module)
+        return own
+
+    def _import_python(
+        self,
+        importer: Module,
+        name: str,
+        globals: Mapping[str, Any] | None,
+        locals: Mapping[str, Any] | None,
+        fromlist: Sequence[str],
+        level: int,
+    ) -> Any:
+        """A module of Python, or a folder some of whose modules are Scenic's."""
+        folder = Path(self._folder)
+        parts = {item: path for item in fromlist if (path := self._modules.find(f"{name}.{item}".strip(".")))}
+        others = [item for item in fromlist if item not in parts]
+        if not parts or others:
+            forget_stranger(name, folder)
+            with beside(folder):
+                found = builtins.__import__(
+                    name, globals, locals, others, 0 if importer.package or not level else level
+                )
+            if not parts:
+                if fromlist:
+                    return found
+                for package in accumulate(name.split("."), "{}.{}".format):
+                    self._python[package] = sys.modules[package]
+                    self._join(package)
+                top = found.__name__
+                return self._present(self._packages[top]) if top in self._packages else found
+        holder = ModuleType(name)
+        if others:
+            vars(holder).update(vars(found))
+        for item, path in parts.items():
+            setattr(holder, item, self._load(path, f"{name}.{item}".strip("."), importer))
+        return holder
+
+    def _load(self, path: Path, name: str, importer: Module, *, is_model: bool = False) -> ModuleType:
+        active = current.get()
+        loaded = self._loaded
+        if isinstance(active, RunContext) and path not in loaded:
+            loaded = active.run.modules
+        if path not in loaded:
+            module = ModuleType(name)
+            loaded[path] = module
+            if isinstance(active, RunContext):
+                active.run.copies.adopt(module)
+            package = name if path.stem == "__init__" else name.rpartition(".")[0]
+            state = self._states[path] = Module(
+                str(path), is_model=is_model or importer.is_model, package=package
+            )
+            self._execute(self._modules.code(path), module, state)
+        if not isinstance(active, RunContext):
+            state = self._states[path]
+            if importer.ego is None:
+                importer.ego = state.ego
+            if importer.workspace is None:
+                importer.workspace = state.workspace
+        return self._present(loaded[path])
+
+    def use_model(self, name: str, scope: dict[str, Any], importer: Module) -> None:
+        """Give a module everything that a model defines."""
+        chosen = self._model or name
+        path = self._modules.find(chosen)
+        if path is None:
+            raise InvalidScenarioError(
+                f"there is no world model {chosen!r}",
+                code="SC406",
+                span=here(),
+                help="a model is a .scenic file beside the program or on Python's path",
+            )
+        module = self._load(path, chosen, importer, is_model=True)
+        public = getattr(module, "__all__", None)
+        scope.update(
+            (key, value)
+            for key, value in vars(module).items()
+            if (key in public if public is not None else not key.startswith("_"))
+        )
+
+
+__all__ = ["COMPARISONS", "Condition", "Loader", "Modules", "Prelude"]

@@ -1,0 +1,37 @@
+"""Objects of our own classes, and of those that derive from them, whose attributes may hold values of a program."""
+
+import copy as shallow
+from typing import Any
+
+from scenic.runtime.python.ownership import slots
+
+__all__ = ["Carrier"]
+
+
+class Carrier:
+    """What a program may make of random values or instances, or of functions that read some."""
+
+    def random_parts(self) -> list[Any]:
+        """What may be random in it, for sampling."""
+        return [type(self), *_held(self).values()]
+
+    def sampled(self, sample: Any) -> Any:
+        """The same of sampled values; itself where they are those that it has."""
+        made = shallow.copy(self)
+        sample.remember(self, made)  # Its parts may lead back to it.
+        cls = sample.value(type(self))
+        held = _held(self)
+        values = {name: sample.value(item) for name, item in held.items()}
+        if cls is type(self) and all(values[name] is item for name, item in held.items()):
+            sample.remember(self, self)
+            return self
+        object.__setattr__(made, "__class__", cls)
+        for name, item in values.items():
+            object.__setattr__(made, name, item)
+        return made
+
+
+def _held(carrier: Carrier) -> dict[str, Any]:
+    """The attributes that it holds itself, by name."""
+    kept = {name: getattr(carrier, name) for name in slots(type(carrier)) if hasattr(carrier, name)}
+    return {**kept, **getattr(carrier, "__dict__", {})}

@@ -1,0 +1,570 @@
+"""Vector fields: an orientation for every point (sections 4.1 and 6.2 of the specification).
+
+The function of a field is the program's own code, called on sampled points. Fields made of polygons have a closed form, over
+arrays of points.
+"""
+
+import math
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from copy import copy
+from functools import cached_property, partial
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from scenic.graph import quaternions
+from scenic.graph.kinds import Column, Kind
+from scenic.graph.operation import Call, Operation, always
+from scenic.language.errors import RejectionException, ScenicTypeError, ScenicValueError
+from scenic.runtime.geometry.cell_index import CellIndex
+from scenic.runtime.program.context import here
+from scenic.runtime.python.opaque import Calls, Rows, evaluated, is_later, later, together
+from scenic.runtime.values.lazy import Lazy, defer, reads_of, resolve
+from scenic.runtime.values.values import (
+    Orientation,
+    Random,
+    Vector,
+    apply,
+    as_value,
+    describe,
+    operate,
+    options_of,
+    per_option,
+    to_orientation,
+    to_scalar,
+    to_vector,
+)
+
+Points = NDArray[np.float64]
+Headings = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+_MANY_REGIONS: Final = 16
+"""Regions of a field from which on an index pays."""
+
+
+class VectorField:
+    """An orientation for every point, given by a function.
+
+    Args:
+        name: for messages.
+        value: from a vector to a heading, a triple of Euler angles or an orientation.
+        minSteps: the least number of steps by which the field is followed.
+        defaultStepSize: metres; longer ways are followed in steps of at most this length.
+
+    """
+
+    def __init__(
+        self, name: str, value: Callable[[Any], Any], minSteps: int = 4, defaultStepSize: float = 5
+    ) -> None:
+        self.name = name
+        self.value = value
+        self.valueType = Orientation
+        self.minSteps = minSteps
+        self.defaultStepSize = defaultStepSize
+
+    def _asked(self) -> dict[str, Any]:
+        """The functions that it was given, by the names of the attributes that hold them."""
+        held = {name: self.__dict__.get(name) for name in ("value", "headingFunction")}
+        return {
+            name: function
+            for name, function in held.items()
+            if function is not None and getattr(function, "__self__", None) is not self
+        }
+
+    def random_parts(self) -> list[Any]:
+        """Functions, which may read random values, for sampling."""
+        return list(self._asked().values())
+
+    def sampled(self, sample: Any) -> "VectorField":
+        """The field whose functions read sampled values; itself where they read none."""
+        asked = self._asked()
+        functions = {name: sample.value(function) for name, function in asked.items()}
+        if all(functions[name] is function for name, function in asked.items()):
+            return self
+        field = copy(self)
+        if "value" not in asked:
+            functions["value"] = field._value  # type: ignore[attr-defined] # it is computed by a method of its own
+        field.__dict__.update(functions)
+        return field
+
+    def __getitem__(self, position: Any) -> Any:
+        """The orientation at a point."""
+        place = to_vector(position, f"field {self.name!r}")
+        if isinstance(place, Lazy):
+            return defer(self.__getitem__, place)
+        if isinstance(place, Random):
+            return as_value(later(_VALUE, self.value, (place,)))
+        return _oriented(self.value, place)
+
+    def at(self, position: Any) -> Any:
+        """The orientation at a point."""
+        return self[position]
+
+    def followFrom(
+        self, position: Any, distance: Any, steps: int | None = None, stepSize: float | None = None
+    ) -> Any:
+        """The point that is reached from ``position`` by following the field for a distance (metres).
+
+        By Euler's method: ``steps`` steps, or as many as keep each below ``stepSize``.
+        """
+        place = to_vector(position, "`follow ... from`")
+        length = to_scalar(distance, "`follow ... for`")
+        if isinstance(place, Lazy) or isinstance(length, Lazy):
+            return defer(self.followFrom, place, length, steps, stepSize)
+        law = (steps, self.minSteps, self.defaultStepSize if stepSize is None else stepSize)
+        if isinstance(place, Random) or isinstance(length, Random) or is_later(self.value):
+            return as_value(later(_FOLLOW, _followed, (self.value, place, length, law)))
+        return _followed(self.value, place, length, law)
+
+    @staticmethod
+    def forUnionOf(regions: Iterable[Any], tolerance: float = 0) -> "PiecewiseVectorField | None":  # noqa: ARG004 - of the established call
+        """The field that takes each point's orientation from the first region that holds it; ``None`` without any."""
+        members = list(regions)
+        if not any(member.orientation is not None for member in members):
+            return None
+        return PiecewiseVectorField("union", members)
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} {self.name}>"
+
+
+class PolygonalVectorField(VectorField):
+    """A field that is constant on polygons.
+
+    Args:
+        name: for messages.
+        cells: pairs of a polygon (shapely's) and a heading in radians, or ``None`` for that of ``headingFunction``.
+        headingFunction: the heading at points of cells that have none of their own.
+        defaultHeading: the heading outside of all cells; ``None`` rejects samples that need one there.
+
+    """
+
+    def __init__(
+        self,
+        name: str,
+        cells: Iterable[tuple[Any, float | None]],
+        headingFunction: Callable[[Any], Any] | None = None,
+        defaultHeading: float | None = None,
+        **options: Any,
+    ) -> None:
+        self.cells = tuple(cells)
+        for _, heading in self.cells:
+            if heading is None and headingFunction is None:
+                raise ScenicTypeError(
+                    f"field {name!r} has a cell without a heading",
+                    span=here(),
+                    help="give a `headingFunction`",
+                )
+        self.headingFunction = headingFunction
+        self.defaultHeading = defaultHeading
+        self._table: Headings | None = None
+        if all(heading is not None for _, heading in self.cells):
+            headings = [*(heading for _, heading in self.cells), defaultHeading or 0.0]
+            self._table = np.array(headings, dtype=np.float64)
+        self._index: CellIndex | None = None
+        super().__init__(name, self._value, **options)
+
+    def _nearest_cells(self, x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.intp]:
+        """The first cell that holds each point; the number of cells where none does."""
+        if self._index is None:
+            self._index = CellIndex([_polygon(cell) for cell, _ in self.cells])
+        return self._index.first_at(x, y)
+
+    def headings(self, points: Points) -> tuple[Headings, NDArray[np.bool_]]:
+        """Headings at points ``(n, 3)``, and which points have one; for fields without a function."""
+        assert self._table is not None
+        cells = self._nearest_cells(points[:, 0], points[:, 1])
+        return self._table[cells], (cells < len(self.cells)) | (self.defaultHeading is not None)
+
+    @property
+    def _is_table(self) -> bool:
+        return self._table is not None
+
+    def _value(self, point: Any) -> Any:
+        (cell,) = self._nearest_cells(np.array([point.x]), np.array([point.y]))
+        if cell < len(self.cells):
+            heading = self.cells[cell][1]
+            if heading is not None:
+                return heading
+            assert self.headingFunction is not None
+            return self.headingFunction(point)
+        if self.defaultHeading is None:
+            raise RejectionException(f"field {self.name!r} has no direction at {point!r}")
+        return self.defaultHeading
+
+    def __getitem__(self, position: Any) -> Any:
+        place = to_vector(position, f"field {self.name!r}")
+        if isinstance(place, Random) and self._is_table:
+            return Orientation.fromEuler(apply(_HEADING, place, payload=self), 0, 0)
+        return super().__getitem__(place)
+
+    def followFrom(
+        self, position: Any, distance: Any, steps: int | None = None, stepSize: float | None = None
+    ) -> Any:
+        place = to_vector(position, "`follow ... from`")
+        length = to_scalar(distance, "`follow ... for`")
+        if self._is_table and (isinstance(place, Random) or isinstance(length, Random)):
+            law = (steps, self.minSteps, self.defaultStepSize if stepSize is None else stepSize)
+            return apply(_FOLLOW_TABLE, place, length, payload=(self, law))
+        return super().followFrom(place, length, steps, stepSize)
+
+
+class PiecewiseVectorField(VectorField):
+    """A field that takes each point's orientation from the first region with one that holds the point.
+
+    Args:
+        name: for messages.
+        regions: with preferred orientations.
+        defaultHeading: the heading outside of all of them; ``None`` rejects samples that need one there.
+
+    """
+
+    def __init__(
+        self, name: str, regions: Iterable[Any], defaultHeading: float | None = None, **options: Any
+    ) -> None:
+        self.regions = tuple(regions)
+        self.defaultHeading = defaultHeading
+        self._oriented = tuple(region for region in self.regions if region.orientation is not None)
+        super().__init__(name, self._value, **options)
+
+    @cached_property
+    def _index(self) -> CellIndex | None:
+        """Finds the region that holds a point, if they are many and fixed polygons."""
+        if len(self._oriented) < _MANY_REGIONS:
+            return None
+        polygons = [
+            None if getattr(region, "is_random", False) else getattr(region, "polygons", None)
+            for region in self._oriented
+        ]
+        return None if any(item is None for item in polygons) else CellIndex(polygons)
+
+    def _likely(self, point: Any) -> Iterator[Any]:
+        """The regions in their order, before them the one that holds the point as seen from above."""
+        if self._index is not None:
+            x, y, _ = to_vector(point)
+            number = int(self._index.first_at(np.array([x]), np.array([y]))[0])
+            yield from self._oriented[number : number + 1]
+        yield from self._oriented
+
+    def _value(self, point: Any) -> Any:
+        for region in self._likely(point):
+            if region.containsPoint(point):
+                return region.orientation[point]
+        if self.defaultHeading is None:
+            raise RejectionException(f"field {self.name!r} has no direction at {point!r}")
+        return self.defaultHeading
+
+
+class PolyhedronVectorField(VectorField):
+    """A field that is constant on volumes.
+
+    Args:
+        name: for messages.
+        cells: pairs of a region and an orientation (or heading), or ``None`` for that of ``headingFunction``.
+        headingFunction: the orientation at points of cells that have none of their own.
+        defaultHeading: the orientation outside of all cells; ``None`` rejects samples that need one there.
+
+    """
+
+    def __init__(
+        self,
+        name: str,
+        cells: Iterable[tuple[Any, Any]],
+        headingFunction: Callable[[Any], Any] | None = None,
+        defaultHeading: Any = None,
+        **options: Any,
+    ) -> None:
+        self.cells = tuple(cells)
+        self.headingFunction = headingFunction
+        self.defaultHeading = defaultHeading
+        super().__init__(name, self._value, **options)
+
+    def _value(self, point: Any) -> Any:
+        for region, orientation in self.cells:
+            if region.containsPoint(point):
+                if orientation is None and self.headingFunction is not None:
+                    return self.headingFunction(point)
+                return orientation
+        if self.defaultHeading is None:
+            raise RejectionException(f"field {self.name!r} has no direction at {point!r}")
+        return self.defaultHeading
+
+
+class RegionField(VectorField):
+    """The orientations that the points of a region have by themselves: along a line, across a surface."""
+
+    def __init__(self, region: Any) -> None:
+        self.region = region
+        super().__init__(f"orientation of {region!r}", region.own_orientation)
+
+    def _asked(self) -> dict[str, Any]:
+        return {}
+
+    def __getitem__(self, position: Any) -> Any:
+        place = to_vector(position, f"field {self.name!r}")
+        return (
+            defer(self.__getitem__, place) if isinstance(place, Lazy) else self.region.own_orientation(place)
+        )
+
+
+def _polygon(cell: Any) -> Any:
+    """A shapely polygon: the cell itself, or that of a polygonal region."""
+    return getattr(cell, "polygons", cell)
+
+
+class FieldChoice(VectorField):
+    """One of several fields, drawn at random."""
+
+    def __init__(self, choice: Random) -> None:
+        super().__init__("chosen at random", self.__getitem__)
+        self._choice = choice
+
+    def __getitem__(self, position: Any) -> Any:
+        place = to_vector(position, "a field")
+        if isinstance(place, Lazy):
+            return defer(self.__getitem__, place)
+        return per_option(self._choice, lambda field: field_of(field, "a field")[place])
+
+    def followFrom(
+        self, position: Any, distance: Any, steps: int | None = None, stepSize: float | None = None
+    ) -> Any:
+        place, length = to_vector(position, "`follow ... from`"), to_scalar(distance, "`follow ... for`")
+        if isinstance(place, Lazy) or isinstance(length, Lazy):
+            return defer(self.followFrom, place, length, steps, stepSize)
+        return per_option(
+            self._choice, lambda field: field_of(field, "a field").followFrom(place, length, steps, stepSize)
+        )
+
+
+def is_field(value: Any) -> bool:
+    """Whether a value is a field, or a random choice of which some option is one."""
+    return isinstance(value, VectorField) or any(map(is_field, options_of(value)))
+
+
+def is_certainly_field(value: Any) -> bool:
+    """Whether a value is a field, or a random choice among fields."""
+    options = options_of(value)
+    return isinstance(value, VectorField) or (bool(options) and all(map(is_certainly_field, options)))
+
+
+def field_of(value: Any, what: str) -> VectorField:
+    """A field; raises `ScenicTypeError` for anything else."""
+    if isinstance(value, VectorField):
+        return value
+    if is_certainly_field(value):
+        return FieldChoice(value)
+    hint = None
+    if isinstance(value, type):
+        hint = f"to create an instance write `new {value.__name__} at ...`"
+    raise ScenicTypeError(f"{what}: expected a vector field, not {describe(value)}", span=here(), help=hint)
+
+
+def frame_at(direction: Any, position: Any, what: str) -> Any:
+    """A direction as an orientation; a field's is that at a point."""
+    if type(direction) is float:  # the most frequent one
+        return Orientation.fromEuler(direction, 0.0, 0.0)
+    if isinstance(direction, VectorField):
+        return direction[position]
+    if not is_field(direction):
+        return to_orientation(direction, what)
+    place = to_vector(position, what)
+    return per_option(direction, lambda option: frame_at(option, place, what))
+
+
+def relative_to(value: Any, frame: Any) -> Lazy:
+    """``value relative to frame`` with a field: lazy, since a field means its direction where the object will be."""
+
+    def compute(instance: Any) -> Any:
+        outer, inner = (
+            frame_at(resolve(operand, instance), instance.position, "`relative to`")
+            for operand in (frame, value)
+        )
+        return operate("compose", outer, inner)
+
+    return Lazy(frozenset({"position"}) | reads_of((value, frame)), compute)
+
+
+# On samples
+
+Law = tuple[int | None, int, float]
+"""Number of steps if fixed, least number, and longest step."""
+
+_MOST_STEPS: Final = 1_000_000
+"""Steps of a way, at most: beyond, it is a mistake, and would take for ever."""
+
+
+def _oriented(function: Callable[[Any], Any], point: Any) -> Any:
+    return to_orientation(function(point), "the value of a field")
+
+
+def _steps(distance: float, law: Law) -> int:
+    steps, least, size = law
+    if steps is not None:
+        return steps
+    if not -math.inf < distance <= _MOST_STEPS * size:
+        raise ScenicValueError(
+            f"a field cannot be followed for {distance:g} m in steps of {size:g} m",
+            span=here(),
+            help="give the field a larger `defaultStepSize`, or follow it less far",
+        )
+    return max(least, 1, math.ceil(distance / size))
+
+
+def _followed(function: Callable[[Any], Any], point: Any, distance: float, law: Law) -> Any:
+    count = _steps(distance, law)
+    step = Vector.of((0.0, distance / count, 0.0))
+    for _ in range(count):
+        point = point.offsetRotated(_oriented(function, point), step)
+    return point
+
+
+def _values(call: Call, *columns: Column) -> Column:
+    failed = np.zeros(call.lanes, dtype=np.bool_)
+    turns, error = _turns(evaluated(call, columns, _ABSENT), failed)
+    if error is not None:
+        call.fault(failed, error)
+    return turns
+
+
+def _turns(values: Sequence[Any], failed: Mask) -> tuple[NDArray[np.float64], Exception | None]:
+    """Values of a field as quaternions ``(n, 4)``; marks the lanes whose value is none, and gives the first error."""
+    if all(type(value) in _HEADINGS for value in values):
+        yaw = np.array([0.0 if value is _ABSENT else float(value) for value in values])
+        return quaternions.from_euler(yaw, np.zeros(1), np.zeros(1)), None
+    rows = np.zeros((len(values), 4))
+    rows[:, 3] = 1.0
+    first: Exception | None = None
+    for lane, value in enumerate(values):
+        if value is not _ABSENT:
+            try:
+                rows[lane] = to_orientation(value, "the value of a field").q
+            except ScenicTypeError as error:
+                failed[lane] = True
+                first = error if first is None else first
+    return rows, first
+
+
+class _Absent:
+    """Stands for a value that no call has given; ``None`` would be one that the function gives."""
+
+
+_ABSENT: Final = _Absent()
+_HEADINGS: Final = (float, int, _Absent)
+
+
+def _follow(call: Call, *columns: Column) -> Column:
+    rows = together(call, columns, partial(_followed_together, call.lanes))
+    if rows is None:
+        rows = np.zeros((call.lanes, 3))
+        for lane, value in enumerate(evaluated(call, columns)):
+            if value is not None:
+                rows[lane] = tuple(value)
+    return rows
+
+
+def _followed_together(lanes: int, calls: Calls, rows: Rows) -> Column:
+    """As `_followed`, step by step in all lanes."""
+    place = np.zeros((lanes, 3))
+    stride = np.zeros((lanes, 3))
+    counts = np.zeros(lanes, dtype=np.int64)
+    for lane in calls.present:
+        _, point, distance, law = rows[lane]
+        place[lane] = tuple(point)
+        try:
+            counts[lane] = _steps(distance, law)
+        except ScenicValueError as endless:
+            calls.mark(lane, endless)
+            continue
+        stride[lane, 1] = distance / counts[lane]
+    for step in range(int(counts.max(initial=0))):
+        moving = np.flatnonzero((step < counts) & ~calls.failed & ~calls.rejected)
+        points = [(Vector.of(row),) for row in zip(*place[moving].T.tolist(), strict=True)]
+        values: list[Any] = [_ABSENT] * lanes
+        if len(moving):
+            calls.each(rows[moving[0]][0], moving.tolist(), points, values)
+        failed = np.zeros(lanes, dtype=np.bool_)
+        turns, error = _turns(values, failed)
+        if error is not None:
+            for lane in np.flatnonzero(failed).tolist():
+                calls.mark(lane, error)
+        place[moving] += quaternions.rotate(turns[moving], stride[moving])
+    return place
+
+
+_VALUE = Operation(
+    "field value",
+    always(Kind.ORIENTATION),
+    _values,
+    "The value of a field, by its own function.",
+    pure=False,
+    faults=True,
+    rejects=True,
+)
+_FOLLOW = Operation(
+    "follow field",
+    always(Kind.VECTOR),
+    _follow,
+    "The end of a way along a field, by its own function.",
+    pure=False,
+    faults=True,
+    rejects=True,
+)
+
+
+def _headings(call: Call, points: Column) -> Column:
+    headings, known = call.payload.headings(points)
+    call.reject(~known)
+    return np.asarray(headings)
+
+
+_HEADING = Operation(
+    "field heading",
+    always(Kind.SCALAR),
+    _headings,
+    "The heading of a field of polygons; the candidate is rejected where it has none.",
+    rejects=True,
+    missing="direction of the field",
+)
+
+
+def _follow_table(call: Call, points: Column, distance: Column) -> Column:
+    field, (steps, least, size) = call.payload
+    lanes = max(len(points), len(distance))
+    place = np.array(np.broadcast_to(points, (lanes, 3)))
+    length = np.broadcast_to(distance, lanes)
+    counts = np.full(lanes, steps) if steps is not None else np.maximum(max(least, 1), np.ceil(length / size))
+    missing = np.zeros(lanes, dtype=np.bool_)
+    for step in range(int(counts.max(initial=0))):
+        moving = np.flatnonzero(step < counts)
+        headings, known = field.headings(place[moving])
+        missing[moving] |= ~known
+        stride = length[moving] / counts[moving]
+        place[moving, 0] -= stride * np.sin(headings)
+        place[moving, 1] += stride * np.cos(headings)
+    call.reject(missing)
+    return place
+
+
+_FOLLOW_TABLE = Operation(
+    "follow polygons",
+    always(Kind.VECTOR),
+    _follow_table,
+    "The end of a way along a field of polygons; the candidate is rejected where the way leaves them.",
+    rejects=True,
+    missing="direction of the field",
+)
+
+
+__all__ = [
+    "PiecewiseVectorField",
+    "PolygonalVectorField",
+    "PolyhedronVectorField",
+    "RegionField",
+    "VectorField",
+    "field_of",
+    "frame_at",
+    "is_field",
+    "relative_to",
+]

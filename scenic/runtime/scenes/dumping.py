@@ -1,0 +1,142 @@
+"""A scene as a program: concrete objects that compile back to the same scene."""
+
+import math
+from collections.abc import Iterator, Mapping
+from keyword import iskeyword
+from typing import Any
+
+import numpy as np
+
+from scenic.language.keywords import HARD_KEYWORDS
+from scenic.runtime.elements.shapes import BoxShape, ConeShape, CylinderShape, Shape, SpheroidShape
+from scenic.runtime.instances.objects import Object, OrientedPoint, Point
+from scenic.runtime.regions.base import Everywhere, Region
+from scenic.runtime.values.values import Orientation, Vector
+
+_LEFT_OUT = frozenset(
+    {
+        "allowCollisions",
+        "position",
+        "orientation",
+        "heading",
+        "mutator",
+        "mutationScale",
+        "observations",
+        "sensors",
+        "behavior",
+        "lastActions",
+        "regionContainedIn",
+        "requireVisible",
+    }
+)
+"""Properties that the placement gives, that follow from others, or that would make requirements anew: those of the scene were judged when it was sampled."""
+
+_PRIMITIVES = (BoxShape, ConeShape, CylinderShape, SpheroidShape)
+
+
+class NoLiteralError(Exception):
+    """A value that cannot be written as an expression."""
+
+
+def program_of(
+    objects: tuple[Any, ...], ego: Any, params: Mapping[str, Any], names: Mapping[Any, str]
+) -> str:
+    """The text of a program whose only scene has these objects and parameters.
+
+    Values that have no literal (regions, meshes made in memory, instances of the program's own Python classes) are left
+    out, and named in comments.
+    """
+    lines: list[str] = []
+    for name, value in params.items():
+        is_word = name.isidentifier() and not iskeyword(name) and name not in HARD_KEYWORDS
+        key = name if is_word else repr(name)
+        try:
+            lines.append(f"param {key} = {literal(value)}")
+        except NoLiteralError:
+            lines.append(f"# param {key}: {_described(value)}")
+    classes = {type(item).__name__: type(item) for item in objects if type(item) is not Object}
+    for name in classes:
+        lines += [f"class {name}:", "    pass"]
+    used: set[str] = set()
+    for number, item in enumerate(objects):
+        name = "ego" if item is ego else names.get(item, "")
+        if not name.isidentifier() or name in used:
+            name = f"object_{number}"
+        used.add(name)
+        lines += _instance(name, item)
+    return "\n".join(lines) + "\n"
+
+
+def _instance(name: str, item: Any) -> Iterator[str]:
+    parts = [f"at {literal(item.position)}"]
+    comments = []
+    for key, value in item.properties.items():
+        if key in _LEFT_OUT:
+            continue
+        try:
+            parts.append(f"with {key} {literal(value)}")
+        except NoLiteralError:
+            comments.append(f"    # {key}: {_described(value)}")
+    parts += ["with allowCollisions True", "with regionContainedIn everywhere"]
+    yield f"{name} = new {type(item).__name__} {parts[0]},"
+    for part in parts[1:-1]:
+        yield f"    {part},"
+    yield f"    {parts[-1]}"
+    yield from comments
+
+
+def literal(value: Any) -> str:
+    """A value as an expression of the language; raises `NoLiteralError` where there is none."""
+    if isinstance(value, np.generic):
+        value = value.item()
+    if value is None or isinstance(value, bool):
+        return repr(value)
+    # Classes derived of these, such as enumerations, show themselves in ways that are no expressions.
+    if isinstance(value, int):
+        return int.__repr__(value)
+    if isinstance(value, str):
+        return str.__repr__(value)
+    if isinstance(value, float):
+        text = float.__repr__(value)
+        return text if math.isfinite(value) else f"float({text!r})"
+    if isinstance(value, Vector):
+        return f"({value.x!r}, {value.y!r}, {value.z!r})"
+    if isinstance(value, Orientation):
+        return f"Orientation.fromQuaternion(({value.x!r}, {value.y!r}, {value.z!r}, {value.w!r}))"
+    if isinstance(value, tuple):
+        inside = ", ".join(map(literal, value))
+        return f"({inside},)" if len(value) == 1 else f"({inside})"
+    if isinstance(value, list):
+        return f"[{', '.join(map(literal, value))}]"
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{literal(key)}: {literal(item)}" for key, item in value.items()) + "}"
+    if isinstance(value, Shape):
+        return _shape(value)
+    if isinstance(value, Everywhere):
+        return "everywhere"
+    if isinstance(value, OrientedPoint) and not isinstance(value, Object):
+        return f"(new OrientedPoint at {literal(value.position)}, with parentOrientation {literal(value.orientation)})"
+    if type(value) is Point:
+        return f"(new Point at {literal(value.position)})"
+    raise NoLiteralError
+
+
+def _shape(shape: Shape) -> str:
+    source = shape.source
+    options = [f"dimensions={literal(tuple(float(size) for size in shape.dimensions))}"]
+    options += [f"{name}={literal(value)}" for name, value in source.parameters.items()]
+    if source.initial_rotation is not None:
+        options.append(f"initial_rotation={literal(tuple(source.initial_rotation))}")
+    if isinstance(shape, _PRIMITIVES):
+        return f"{type(shape).__name__}({', '.join(options)})"
+    if source.path is not None:
+        return f"MeshShape.fromFile({source.path!r}, {', '.join(options)})"
+    raise NoLiteralError
+
+
+def _described(value: Any) -> str:
+    text = f"a {type(value).__name__}" if isinstance(value, Region) else repr(value)
+    return text.replace("\n", " ")[:80]
+
+
+__all__ = ["NoLiteralError", "literal", "program_of"]

@@ -1,0 +1,491 @@
+"""A compiled scenario, from which scenes are sampled."""
+
+import math
+import random
+import time
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import repeat
+from pathlib import Path
+from typing import Any
+
+from scenic.graph.domain import Domain
+from scenic.graph.draws import Counter, Lanes, Source
+from scenic.graph.node import Graph
+from scenic.graph.points import PointSet
+from scenic.language.errors import (
+    InvalidScenarioError,
+    Located,
+    RejectionException,
+    SamplingError,
+    SerializationError,
+    annotate,
+)
+from scenic.language.spans import Span
+from scenic.language.spelling import nearest_attribute
+from scenic.runtime.instances.objects import Object
+from scenic.runtime.instances.population import Populations
+from scenic.runtime.program.outcome import Program
+from scenic.runtime.python.samples import dependencies
+from scenic.runtime.regions.base import Region, Workspace, everywhere
+from scenic.runtime.sampling.driving import driven
+from scenic.runtime.sampling.engine import Accepted, CandidateError, Engine
+from scenic.runtime.sampling.foresight import SEED_BITS, Foreseen
+from scenic.runtime.sampling.pending import Task
+from scenic.runtime.sampling.planning import Outline, outline
+from scenic.runtime.sampling.report import Exhausted
+from scenic.runtime.scenes.saving import SavedScene, draws_of, fixed_draws, source_of
+from scenic.runtime.scenes.scene import Family, Scene
+
+PROOF_CANDIDATES = 200
+"""Candidates looked at to illustrate why no scene exists, where that is proven."""
+
+OPAQUE_ATTEMPTS = 1000
+"""Candidates tried for one scene of a program whose only random numbers could be those of its own functions."""
+
+DEFAULT_ATTEMPTS = 100_000
+"""Candidates tried for one scene before giving up, unless the caller says otherwise."""
+
+
+@dataclass(frozen=True, slots=True)
+class Axis:
+    """An axis of the unit cube: one draw of the program, and where it stands."""
+
+    address: int
+    span: Span | None
+
+
+class Scenario:
+    """What a program describes.
+
+    Made by `scenic.load` and by the established `scenarioFromFile` and `scenarioFromString`.
+    """
+
+    def __init__(
+        self,
+        program: Program,
+        *,
+        filename: str,
+        ego: Object | None,
+        workspace: Workspace | None,
+        names: Mapping[int, str],
+        mode_2d: bool = False,
+        digest: str = "",
+        view: Callable[[Scene], Any] | None = None,
+        recipe: tuple[Any, ...] | None = None,
+        regions: Mapping[str, Region] | None = None,
+    ) -> None:
+        self._recipe = recipe
+        self.filename = filename
+        self.digest = digest
+        """What a saved scene remembers of the program."""
+        self._view = view
+        self._condition: tuple[Mapping[int, float], Mapping[int, int]] = ({}, {})
+        self.workspace = workspace or Workspace(everywhere)
+        self.egoObject = ego
+        self.outline: Outline = outline(program, ego, self.workspace, mode_2d=mode_2d)
+        self._program = program
+        self._names = names
+        # What nothing in the scenes depends on is not drawn, and has no value there.
+        self._regions = {
+            name: region
+            for name, region in (regions or {}).items()
+            if all(
+                node in self.outline.graph.index
+                for node in Graph(dependencies([region])).nodes
+                if node.is_drawn
+            )
+        }
+        self._engine = Engine(self.outline.plan())
+        self._foreseen = Foreseen(self._foresee)
+        self._impossible: tuple[str, ...] = ()
+        self._family = Family(
+            program,
+            ego,
+            Populations(self.objects, [*program.parameters.values(), *self._regions.values()], program.names),
+            self.workspace,
+            names,
+            digest,
+            self.sceneToBytes,
+            self,
+            view,
+            self._regions,
+        )
+
+    @property
+    def objects(self) -> tuple[Object, ...]:
+        """The objects of the program, whose properties may be random: the ego first, then in order of creation."""
+        others = tuple(item for item in self._program.objects if item is not self.egoObject)
+        return others if self.egoObject is None else (self.egoObject, *others)
+
+    @property
+    def params(self) -> dict[str, Any]:
+        """The global parameters, which may be random."""
+        return dict(self._program.parameters)
+
+    @property
+    def axes(self) -> tuple[Axis, ...]:
+        """The axes of the unit cube that scenes are drawn from: the columns of `scenic.GivenPoints`."""
+        graph = self.outline.graph
+        spans = (node.span if isinstance(node.span, Span) else None for node in graph.axes)
+        return tuple(Axis(graph.address(node), span) for node, span in zip(graph.axes, spans, strict=True))
+
+    @property
+    def requirements(self) -> tuple[Any, ...]:
+        """The ``require`` statements, in program order."""
+        return tuple(self._program.requirements)
+
+    @property
+    def domain(self) -> Domain:
+        """The part of the unit cube that is sampled."""
+        return self._engine.plan.domain
+
+    def prepare(self) -> None:
+        """Make what the first scene would otherwise wait for."""
+        self._engine.prepare()
+
+    def restrict(self, domain: Domain, *, impossible: Sequence[str] = ()) -> None:
+        """Sample from a part of the cube only. It must hold every point that meets the requirements.
+
+        ``impossible`` names requirements that are proven to fail everywhere; then nothing is sampled at all.
+        """
+        self._engine = Engine(self.outline.plan(domain))
+        self._foreseen = Foreseen(self._foresee)
+        self._impossible = tuple(impossible)
+
+    def stream(
+        self,
+        n: int,
+        *,
+        seed: int,
+        first: int = 0,
+        max_attempts: int | None = None,
+        time_limit: float | None = None,
+        lanes: int | None = None,
+        source: PointSet | None = None,
+    ) -> Iterator[Scene | Exhausted]:
+        """Scenes ``first`` to ``first + n`` of a seed, in order, as they are found.
+
+        Args:
+            n: how many.
+            seed: any integer; scene ``k`` of a seed is always the same.
+            first: number of the first scene.
+            max_attempts: candidates tried for one scene before it is given up as `Exhausted`.
+            time_limit: seconds for all of them; scenes not found by then are `Exhausted`.
+            lanes: candidates evaluated at a time. Changes speed and memory, never the scenes.
+            source: where random numbers come from, if they are not hashed: `scenic.Sobol` for scenes that are spread evenly,
+                `scenic.GivenPoints` for points of the cube that somebody chose. The words that key draws which take tries
+                are hashed all the same.
+
+        Raises:
+            SamplingError: if a requirement or property fails on a candidate; an exception of the program's own code keeps
+                its type, and tells the place in a note.
+
+        """
+        tasks = zip(repeat(seed), range(first, first + n))  # one of them has no end
+        deadline = None if time_limit is None else time.monotonic() + time_limit
+        yield from self._find(tasks, max_attempts=max_attempts, deadline=deadline, lanes=lanes, source=source)
+
+    def _find(
+        self,
+        tasks: Iterable[tuple[int, int]],
+        *,
+        max_attempts: int | None = None,
+        deadline: float | None = None,
+        lanes: int | None = None,
+        source: PointSet | None = None,
+    ) -> Iterator[Scene | Exhausted]:
+        if self._impossible:
+            return self._not_found(tasks)
+        limit = self._most_attempts(max_attempts)
+        if source is not None and not source.retries:
+            limit = 1
+        results = self._engine_of(source).scenes(tasks, max_attempts=limit, deadline=deadline, lanes=lanes)
+        return self._scenes(results)
+
+    def _foresee(
+        self, tasks: Iterable[tuple[int, int]], max_attempts: int, more: bool
+    ) -> Iterator[Scene | Exhausted]:
+        """The same for tasks without end."""
+        if self._impossible:
+            return self._not_found(tasks)
+        limit = self._most_attempts(max_attempts)
+        return self._scenes(self._engine.foresee(tasks, max_attempts=limit, more=more))
+
+    def _not_found(self, tasks: Iterable[tuple[int, int]]) -> Iterator[Exhausted]:
+        report = None
+        for seed, k in tasks:
+            report = report or self._engine.report(Task(seed, k), PROOF_CANDIDATES)
+            yield Exhausted(seed, k, 0, "impossible", report)
+
+    def _most_attempts(self, wanted: int | None) -> int:
+        limit = DEFAULT_ATTEMPTS if wanted is None else wanted
+        nodes = self._engine.plan.graph.nodes
+        if any(node.is_axis for node in nodes):
+            return limit
+        # Every attempt is the same, unless the program's own functions draw random numbers.
+        return min(limit, OPAQUE_ATTEMPTS if any(node.is_drawn for node in nodes) else 1)
+
+    def _scenes(self, results: Iterator[Accepted | Exhausted]) -> Iterator[Scene | Exhausted]:
+        family = self._family
+        try:
+            for result in results:
+                if isinstance(result, Exhausted):
+                    yield result
+                else:
+                    found, lane = result
+                    yield Scene(found, lane, family)
+        except CandidateError as error:
+            failure = error
+        else:
+            return
+        problem = self._sampling_error(failure)
+        if problem is failure.__cause__:
+            raise problem  # which may have a cause of its own
+        raise problem from failure.__cause__
+
+    def sample(
+        self,
+        n: int = 1,
+        *,
+        seed: int | None = None,
+        max_attempts: int | None = None,
+        time_limit: float | None = None,
+        lanes: int | None = None,
+        source: PointSet | None = None,
+    ) -> list[Scene]:
+        """``n`` scenes of a seed (drawn from Python's ``random`` if not given); ``source`` as of `stream`.
+
+        Raises:
+            RejectionException: if a scene is not found within the limits; the message lists what rejected it.
+            SamplingError: if a requirement or property fails on a candidate; an exception of the program's own code keeps
+                its type, and tells the place in a note.
+
+        """
+        chosen = random.getrandbits(SEED_BITS) if seed is None else seed
+        scenes = []
+        for result in self.stream(
+            n, seed=chosen, max_attempts=max_attempts, time_limit=time_limit, lanes=lanes, source=source
+        ):
+            if isinstance(result, Exhausted):
+                raise RejectionException(exhaustion_message(result))
+            scenes.append(result)
+        return scenes
+
+    def generate(
+        self, maxIterations: int = 2000, verbosity: int = 0, feedback: Any = None, *, seed: int | None = None
+    ) -> tuple[Scene, int]:
+        """One scene, and the number of candidates tried for it.
+
+        Without ``seed`` one is drawn from Python's ``random``, so that scripts which call ``random.seed`` repeat.
+        ``verbosity`` and ``feedback`` are accepted for compatibility.
+
+        Raises:
+            RejectionException: if none of ``maxIterations`` candidates meets the requirements.
+
+        """
+        if seed is None:
+            result = self._foreseen.take(random.getrandbits(SEED_BITS), maxIterations)
+            if isinstance(result, Exhausted):
+                raise RejectionException(exhaustion_message(result))
+            return result, result.attempts
+        (scene,) = self.sample(1, seed=seed, max_attempts=maxIterations)
+        return scene, scene.attempts
+
+    def generateBatch(
+        self, numScenes: int, maxIterations: float = math.inf, verbosity: int = 0, feedback: Any = None
+    ) -> tuple[list[Scene], int]:
+        """Scenes, and the total number of candidates tried for them, ``maxIterations`` at most.
+
+        Without that limit, a scene for which `DEFAULT_ATTEMPTS` candidates were rejected ends the search, too.
+        """
+        most = DEFAULT_ATTEMPTS if maxIterations == math.inf else int(maxIterations)
+        scenes = self.sample(numScenes, max_attempts=most)
+        tried = sum(scene.attempts for scene in scenes)
+        if tried > maxIterations:
+            raise RejectionException(f"failed to generate {numScenes} scenes in {maxIterations} iterations")
+        return scenes, tried
+
+    def _sampling_error(self, error: CandidateError) -> Exception:
+        cause, check = error.__cause__, error.check
+        if isinstance(cause, Located) and not isinstance(cause, SamplingError):
+            cause.span = cause.span or check.span
+            cause.filename = cause.filename or check.filename or self.filename
+            return cause
+        near = None if cause is None else nearest_attribute(cause)
+        found = SamplingError(
+            f"{check.label} failed" + ("" if cause is None else f": {type(cause).__name__}: {cause}"),
+            span=check.span,
+            filename=check.filename or self.filename,
+            help=f"did you mean `{near}`?"
+            if near
+            else "this came up in a sampled candidate; guard against the value, or reject it by a `require`",
+        )
+        if not isinstance(cause, Exception) or isinstance(cause, Located):
+            return found
+        # The program's own exception keeps its type; a note tells where it came up.
+        annotate(cause, found.diagnostic(), f"{found} (attempt {error.attempt} at scene {error.k})")
+        return cause
+
+    @property
+    def userRequirements(self) -> tuple[Any, ...]:
+        """The same as `requirements`."""
+        return self.requirements
+
+    def containerOfObject(self, obj: Object) -> Region:
+        """The region that must hold an object: its own, else the workspace."""
+        own = obj.regionContainedIn
+        return self.workspace.region if own is None else own
+
+    def validate(self) -> None:
+        """Nothing to do: whatever is fixed is checked when the program is loaded."""
+
+    def setSampleChecker(self, checker: Any) -> None:
+        """Nothing to do: in which order requirements are checked follows what they cost and reject."""
+
+    def resetExternalSampler(self) -> None:
+        """Nothing to do: there are no external samplers."""
+
+    # Scenes as data
+
+    def sceneToBytes(self, scene: Scene, allowPickle: bool = False) -> bytes:
+        """A scene as data, which `sceneFromBytes` takes up again. ``allowPickle`` is accepted for compatibility."""
+        numbers, words = draws_of(scene.found, scene.lane)
+        return SavedScene(
+            scene.digest, scene.found.task(scene.lane), scene.attempts, numbers, words
+        ).to_bytes()
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """A scenario is pickled as its program, and compiled anew by whoever unpickles it."""
+        if self._recipe is None:
+            raise TypeError("a scenario that was made by hand cannot be pickled")
+        return self._recipe
+
+    def __deepcopy__(self, _memo: Any) -> "Scenario":
+        return self  # scenes do not depend on what has been sampled before
+
+    def __copy__(self) -> "Scenario":
+        return self
+
+    def sceneFromBytes(self, data: bytes, verify: bool = True, allowPickle: bool = False) -> Scene:
+        """The scene in the data of `sceneToBytes`, exactly as it was.
+
+        Raises:
+            SerializationError: if the data is damaged, or of another program (not checked if ``verify`` is false).
+
+        """
+        saved = SavedScene.from_bytes(data)
+        if verify and saved.program != self.digest:
+            raise SerializationError(
+                "the saved scene is of another program",
+                help="load the program, parameters and options with which it was saved",
+            )
+        source = source_of(saved, self._engine.plan.graph)
+        return Scene(*self._engine.replay(source, saved.task, saved.attempts), self._family)
+
+    def replay(self, path: str | Path) -> Scene:
+        """The scene that `Scene.save` has written; raises `SerializationError` as `sceneFromBytes` does."""
+        return self.sceneFromBytes(Path(path).read_bytes())
+
+    @property
+    def has_simulator(self) -> bool:
+        """Whether the program says which simulator runs it."""
+        return self._program.simulator is not None
+
+    def getSimulator(self) -> Any:
+        """What the program's ``simulator`` statement says; raises ``RuntimeError`` if it has none."""
+        if self._program.simulator is None:
+            raise RuntimeError("the program has no `simulator` statement, so no simulator is known")
+        return self._program.simulator()
+
+    def simulationToBytes(self, simulation: Any, allowPickle: bool = False) -> bytes:
+        """A simulation as data: its scene, and what has been drawn in it. `simulationFromBytes` runs it again."""
+        scene = self.sceneToBytes(simulation.scene)
+        return len(scene).to_bytes(4, "little") + scene + bytes(simulation.getReplay())
+
+    def simulationFromBytes(
+        self, data: bytes, simulator: Any, *, verify: bool = True, allowPickle: bool = False, **options: Any
+    ) -> Any:
+        """Run the simulation in the data of `simulationToBytes` again; ``options`` are those of `Simulator.simulate`.
+
+        Raises:
+            SerializationError: if the data is damaged, or of another program (not checked if ``verify`` is false).
+
+        """
+        end = 4 + int.from_bytes(data[:4], "little")
+        if len(data) < end:
+            raise SerializationError("the saved simulation is damaged", help="save it again")
+        scene = self.sceneFromBytes(data[4:end], verify=verify)
+        return simulator.replay(scene, data[end:], **options)
+
+    def conditionOn(
+        self,
+        scene: Scene | None = None,
+        objects: Sequence[Any] = (),
+        params: Mapping[str, Any] | Sequence[str] = (),
+    ) -> None:
+        """Let objects and parameters have the values of a scene in all later scenes; those not named vary as before.
+
+        Args:
+            scene: a scene of this scenario.
+            objects: objects of the scenario, or their places in its `objects`.
+            params: names of global parameters.
+
+        All random values that they depend on are fixed, also where others depend on them too.
+
+        """
+        if scene is None:
+            self._condition = ({}, {})
+        else:
+            values = [*map(self._object, objects), *map(self._parameter, params)]
+            nodes = Graph(dependencies(values)).nodes
+            numbers, words = draws_of(scene.found, scene.lane, nodes)
+            self._condition = ({**self._condition[0], **numbers}, {**self._condition[1], **words})
+        self._engine = Engine(self.outline.plan(), self._conditioned(lambda lanes: Counter(lanes.keys)))
+        self._foreseen = Foreseen(self._foresee)
+
+    def _object(self, item: Any) -> Any:
+        """An object, given by itself or by its place."""
+        if not isinstance(item, int):
+            return item
+        count = len(self.objects)
+        if not -count <= item < count:
+            raise InvalidScenarioError(
+                f"there is no object {item} in the scenario, which has {count}",
+                help="places count from 0, in the order of the scenario's `objects`",
+            )
+        return self.objects[item]
+
+    def _parameter(self, name: str) -> Any:
+        parameters = self._program.parameters
+        if name not in parameters:
+            raise InvalidScenarioError(
+                f"the scenario has no parameter {name!r}",
+                help=f"its parameters are {', '.join(parameters)}" if parameters else "it has none",
+            )
+        return parameters[name]
+
+    def _conditioned(self, source: Callable[[Lanes], Source]) -> Callable[[Lanes], Source]:
+        """A source in which what `conditionOn` says is fixed, whatever it says later."""
+        numbers, words = self._condition
+        if not numbers and not words:
+            return source
+        return lambda lanes: fixed_draws(numbers, words, source(lanes))
+
+    def _engine_of(self, points: PointSet | None) -> Engine:
+        """What samples by rows of a point set; the usual engine where there is none."""
+        if points is None:
+            return self._engine
+        return self._engine.driven(self._conditioned(driven(points, self._engine.plan.graph)))
+
+
+def exhaustion_message(exhausted: Exhausted) -> str:
+    """Why a scene was not found, with the share of each requirement."""
+    head = {
+        "attempts": f"no scene was found within {exhausted.attempts} candidates",
+        "time": f"no scene was found in the time given ({exhausted.attempts} candidates)",
+        "impossible": "no scene exists: the requirements cannot hold together",
+    }[exhausted.reason]
+    culprits = exhausted.report.culprits()
+    blame = "".join(f"\n{row.label} rejected every candidate" for row in culprits)
+    return f"{head}{blame}\n{exhausted.report}"

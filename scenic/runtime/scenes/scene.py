@@ -1,0 +1,252 @@
+"""Scenes: one sample of a scenario."""
+
+import sys
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, TextIO
+
+from scenic.graph.node import Node
+from scenic.language.spans import Span
+from scenic.runtime.dynamics.declarations import Copier
+from scenic.runtime.instances.objects import Object, Point
+from scenic.runtime.instances.population import Populations
+from scenic.runtime.program.outcome import Program, Requirement
+from scenic.runtime.python.samples import dependencies
+from scenic.runtime.regions.base import Region, Workspace
+from scenic.runtime.sampling.engine import Found
+from scenic.runtime.scenes.dumping import program_of
+from scenic.runtime.scenes.files import whole
+
+
+@dataclass(frozen=True, slots=True)
+class Origin:
+    """What an object is in all scenes of its program.
+
+    ``names`` are its properties, ``given`` those that the program gives, ``fixed`` those that are the same in every scene.
+    """
+
+    names: tuple[str, ...]
+    given: tuple[str, ...]
+    fixed: frozenset[str]
+
+    @classmethod
+    def of(cls, instance: Point) -> "Origin":
+        """That of an instance of the program."""
+        values = instance.__dict__
+        names = tuple(sorted(values.get("_names", instance.scenic_properties)))
+        mutable = bool(dependencies([values.get("mutationScale")])) or values.get("mutationScale") != 0
+        fixed = () if mutable else (name for name in names if not dependencies([values.get(name)]))
+        return cls(names, tuple(sorted(values.get("_given", names))), frozenset(fixed))
+
+    def read(self, thing: Any, name: str) -> Any:
+        """The value of a property in one scene."""
+        return getattr(thing, name)
+
+
+@dataclass(frozen=True, slots=True)
+class Family:
+    """What all scenes of a scenario have in common.
+
+    ``populations`` makes their objects, ``names`` are the variables that hold these, by the identities of the program's.
+    ``keep`` gives a scene as data, ``view`` shows it.
+    """
+
+    program: Program
+    ego: Object | None
+    populations: Populations
+    workspace: Workspace
+    names: Mapping[int, str]
+    digest: str
+    keep: Callable[["Scene"], bytes]
+    scenario: Any
+    view: Callable[["Scene"], Any] | None
+    regions: Mapping[str, Region]
+
+
+class Scene:
+    """Concrete objects and parameters. Values are taken from the sample when they are first looked at.
+
+    Made for every scene, so of few attributes; what all scenes of a scenario share is in its ``family``.
+    """
+
+    _sample: Copier | None = None
+    _objects: tuple[Any, ...] | None = None
+    _params: dict[str, Any] | None = None
+
+    def __init__(self, found: Found, lane: int, family: Family) -> None:
+        self.found = found
+        self.lane = lane
+        self._family = family
+
+    @property
+    def seed(self) -> int:
+        """Seed of the run that made the scene."""
+        return self.found.seeds[self.lane]
+
+    @property
+    def k(self) -> int:
+        """Number of the scene in that run, from 0; with `seed` it determines the scene."""
+        return self.found.numbers[self.lane]
+
+    @property
+    def attempts(self) -> int:
+        """Candidates tried until this one was accepted, itself included."""
+        return self.found.attempts[self.lane]
+
+    @property
+    def workspace(self) -> Workspace:
+        """The region in which everything takes place."""
+        return self._family.workspace
+
+    @property
+    def digest(self) -> str:
+        """What a saved scene remembers of the program."""
+        return self._family.digest
+
+    def lookup(self, node: Node) -> Any:
+        """The value of a node in this scene."""
+        return self.found.batch.value(node, self.lane)
+
+    @property
+    def dimension(self) -> int:
+        """How many axes the unit cube has that scenes of the program are drawn from."""
+        return self.found.batch.graph.dimension
+
+    @property
+    def program(self) -> Program:
+        """What the scene is a sample of."""
+        return self._family.program
+
+    def enforces(self, requirement: Requirement) -> bool:
+        """Whether a requirement of the program is among those that the scene has to meet: soft ones may not be."""
+        if requirement.probability == 1:
+            return True
+        soft = [item for item in self.program.requirements if item.probability < 1 and not _always(item)]
+        if requirement not in soft:
+            return True
+        return self.found.is_active(self.lane, soft.index(requirement), requirement.probability)
+
+    def within(self, copies: Copier) -> "Scene":
+        """The same scene over other copies of its values, as a simulation changes them."""
+        scene = self.__copy__()
+        scene._sample = copies
+        scene._objects = scene._params = None
+        return scene
+
+    @property
+    def objects(self) -> tuple[Any, ...]:
+        """All objects: the ego first, then the others in order of creation."""
+        if self._objects is None:
+            sample = self._values()
+            if self._objects is None:
+                self._objects = tuple(map(sample.value, self._family.populations.objects))
+        return self._objects
+
+    def _values(self) -> Copier:
+        """The values of the program in this scene."""
+        if self._sample is None:
+            # Scenes of a batch have their objects made together.
+            population = self._family.populations.of(self.found)
+            self._sample, self._objects = population.take(self.lane)
+        return self._sample
+
+    def place(self, number: int) -> tuple[Span | None, str | None]:
+        """Where the program creates the object of that number: span and file, as far as they are known."""
+        return self.program.places.get(id(self._family.populations.objects[number]), (None, None))
+
+    @property
+    def egoObject(self) -> Any:
+        """The ego, or ``None``."""
+        return None if self._family.ego is None else self.objects[0]
+
+    @property
+    def params(self) -> dict[str, Any]:
+        """Values of the global parameters."""
+        if self._params is None:
+            sample = self._values()
+            self._params = {name: sample.value(value) for name, value in self.program.parameters.items()}
+        return self._params
+
+    @property
+    def names(self) -> dict[Any, str]:
+        """The variable of the program that holds each object, where there is one."""
+        return {
+            item: name
+            for item in self.objects
+            if (name := self._family.names.get(id(item.__dict__.get("_source")))) is not None
+        }
+
+    @property
+    def regions(self) -> dict[str, Region]:
+        """The regions that variables of the program hold, by name, as they are in this scene."""
+        sample = self._values()
+        return {name: sample.value(region) for name, region in self._family.regions.items()}
+
+    def origin(self, thing: Any) -> Origin:
+        """What an object of the scene is in all scenes of the program."""
+        source = thing.__dict__.get("_source", thing)
+        known = source.__dict__.get("_origin")
+        if known is None:
+            known = source.__dict__["_origin"] = Origin.of(source)
+        origin: Origin = known
+        return origin
+
+    def show(self, axes: bool = True) -> Any:
+        """Show the scene in a browser, as a page in which it can be turned; returns the file of the page.
+
+        ``axes`` is accepted for compatibility.
+        """
+        view = self._family.view
+        return None if view is None else view(self)
+
+    def show3D(self, axes: bool = True) -> Any:
+        """The same as `show`."""
+        return self.show(axes)
+
+    def show2D(self, zoom: Any = None, block: bool = True) -> Any:
+        """The same as `show`; the arguments are accepted for compatibility."""
+        return self.show()
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """A scene is pickled as its scenario and its draws."""
+        return _taken_up, (self._family.scenario, self._family.keep(self))
+
+    def __copy__(self) -> "Scene":
+        scene = object.__new__(type(self))
+        scene.__dict__.update(self.__dict__)
+        return scene
+
+    def __deepcopy__(self, _memo: Any) -> "Scene":
+        """The same scene with objects of its own."""
+        scene = self.__copy__()
+        scene._sample = scene._objects = scene._params = None
+        return scene
+
+    def save(self, path: str | Path) -> None:
+        """Write the scene to a file, from which `Scenario.replay` takes it up again; the file is complete or absent."""
+        content = self._family.keep(self)
+        with whole(Path(path)) as stream:
+            stream.write(content)
+
+    def dump(self) -> str:
+        """A program whose only scene is this one: concrete objects, no requirements."""
+        return program_of(self.objects, self.egoObject, self.params, self.names)
+
+    def dumpAsScenicCode(self, stream: TextIO | None = None) -> None:
+        """Write `dump` to a stream (standard output by default)."""
+        (sys.stdout if stream is None else stream).write(self.dump())
+
+    def __repr__(self) -> str:
+        return f"<Scene {self.k} of seed {self.seed}: {len(self.objects)} objects>"
+
+
+def _always(requirement: Requirement) -> bool:
+    """Whether a requirement needs no check, since it holds in every scene."""
+    return requirement.condition.is_constant and bool(requirement.condition.value)
+
+
+def _taken_up(scenario: Any, data: bytes) -> Scene:
+    """The scene of its draws, with objects of its own."""
+    scene: Scene = scenario.sceneFromBytes(data)
+    return scene

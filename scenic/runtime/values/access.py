@@ -1,0 +1,240 @@
+"""Parts of random values: elements, attributes, and what calls of them give."""
+
+import functools
+import operator
+from collections.abc import Mapping, Sequence
+from types import BuiltinFunctionType, MappingProxyType
+from typing import Any, Final
+
+import numpy as np
+
+from scenic.graph import construction
+from scenic.graph.bounds import Bounds
+from scenic.graph.kinds import Kind
+from scenic.graph.node import Node
+from scenic.graph.operation import Call, Operation, always, by_lane
+from scenic.graph.operations import TABLE
+from scenic.runtime.program.context import here
+from scenic.runtime.python.class_members import member
+from scenic.runtime.values.applying import apply, operate
+from scenic.runtime.values.choices import MISSING, MOST_OPTIONS, drawn_option, select
+from scenic.runtime.values.nodes import DICTIONARY, LIST, TUPLE, as_node, as_value, kind_of
+from scenic.runtime.values.random_values import Random, is_random
+
+NOTHING = "there is nothing to choose from"
+
+
+def element_of(index: Node, lists: Sequence[Sequence[Node]], draw: Random) -> Any:
+    """The element at the share ``draw`` of the length of one of several lists, which ``index`` draws.
+
+    Samples in which the list is empty are rejected.
+    """
+    results = []
+    for elements in lists:
+        if elements:
+            place = apply(_PLACE, draw, payload=len(elements))
+            results.append(as_node(select(as_node(place), elements)))
+        else:
+            results.append(construction.make_node(_NOTHING, (), span=here()))
+    return select(index, results)
+
+
+def elements_of(node: Node) -> Sequence[Node] | None:
+    """The elements of a list or tuple of fixed length, as nodes; ``None`` for anything else."""
+    if node.operation in (LIST, TUPLE):
+        return node.operands
+    if node.is_constant and type(node.value) in (list, tuple):
+        return [as_node(item) for item in node.value]
+    return None
+
+
+def element_at(node: Node, index: Any) -> Any:
+    """An element of a choice among containers: the choice among their elements. ``None`` for other operands."""
+    if node.operation is not TABLE["select"] or type(index) not in (int, str):
+        return None
+    draw, *options = node.operands
+    if len(options) > MOST_OPTIONS:
+        return None
+    results = []
+    for option in options:
+        try:
+            if option.operation in (LIST, TUPLE) and type(index) is int:
+                results.append(option.operands[index])
+            elif option.operation is DICTIONARY and option.payload is not None:
+                results.append(option.operands[option.payload[index]])
+            elif option.is_constant and type(option.value) in (list, tuple, dict):
+                results.append(as_node(option.value[index]))
+            else:
+                return None
+        except LookupError as error:
+            results.append(construction.make_node(MISSING, (), error, here()))
+    return select(draw, results)
+
+
+def element(value: Random, index: Any) -> Any:
+    """What a random container, or a choice among containers, has at an index."""
+    if holds_instances(value.node):
+        # Instances as they are in the sample; that they are instances is not known before (section 8.1).
+        return Random.later(operator.getitem, value, index)
+    found = element_at(value.node, index)
+    return operate("getitem", value, index) if found is None else found
+
+
+_PARAMETERS: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType(
+    {
+        "range": ("low", "high"),
+        "discrete range": ("low", "high"),
+        "normal": ("mean", "stdDev"),
+        "truncated normal": ("mean", "stdDev"),
+    }
+)
+"""Parameters of primitive laws that scripts ask for, in the order of their operands."""
+
+
+def attribute(value: Random, name: str) -> Any:
+    """An attribute of a random value. A choice gives the choice among the options' attributes."""
+    node = value.node
+    names = _PARAMETERS.get(node.operation.name, ())
+    if name in names:
+        return as_value(node.operands[1 + names.index(name)])
+    if node.operation is TABLE["select"]:
+        index, *options = node.operands
+        return select(index, [_attribute_of_option(option, name) for option in options])
+    if node.kind.is_number and hasattr(0.0 if node.kind is Kind.SCALAR else 0, name):
+        return apply(_GETATTR, value, name)
+    if node.kind.is_number or node.kind in (Kind.VECTOR, Kind.ORIENTATION):
+        raise AttributeError(
+            f"a random {node.kind.value} has no attribute {name!r}", name=name, obj=type(value)
+        )
+    return Random.later(getattr, value, name) if holds_instances(node) else apply(_GETATTR, value, name)
+
+
+def called(value: Random, args: Sequence[Any], kwargs: dict[str, Any]) -> Any:
+    """The result of calling a random value. A choice among functions calls each with the arguments."""
+    node = value.node
+    if node.operation is TABLE["select"]:
+        index, *options = node.operands
+        results = []
+        for option in options:
+            if option.operation is MISSING:
+                results.append(option)
+            elif option.is_constant and _is_of_runtime(option.value) and not _draws(option.value):
+                results.append(_traced(option.value, args, kwargs))
+            elif option.is_constant and isinstance(option.value, BuiltinFunctionType):
+                results.append(_call_in_lanes(option, args, kwargs))
+            else:
+                results.append(as_node(Random.later(as_value(option), *args, **kwargs)))
+        return select(index, results)
+    return Random.later(value, *args, **kwargs)
+
+
+_DRAWING: Final = frozenset({"sample", "uniformPointInner"})
+"""Methods of the runtime that draw whenever they are called: of a choice they are called in each sample."""
+
+
+def _draws(function: Any) -> bool:
+    return getattr(function, "__name__", None) in _DRAWING
+
+
+def _is_of_runtime(function: Any) -> bool:
+    """Whether a callable is one of the runtime's own, which take random arguments; what programs define does not."""
+    defined = getattr(function, "__func__", function)
+    module = getattr(defined, "__module__", None) or ""
+    return module.startswith("scenic.runtime.")
+
+
+def _traced(function: Any, args: Sequence[Any], kwargs: dict[str, Any]) -> Node:
+    """The result of a call; an error of it counts only where this option is drawn, and with the arguments of that sample."""
+    try:
+        return as_node(function(*args, **kwargs))
+    except Exception as error:  # noqa: BLE001 - whatever the call raises
+        if is_random(args) or is_random(kwargs):
+            return as_node(Random.later(function, *args, **kwargs))
+        return construction.make_node(MISSING, (), error, here())
+
+
+def _call_in_lanes(function: Node, args: Sequence[Any], kwargs: dict[str, Any]) -> Node:
+    operands = [function, *(as_node(item) for item in (*args, *kwargs.values()))]
+    names, positional = tuple(kwargs), len(args)
+
+    def invoke(target: Any, *values: Any) -> Any:
+        return target(*values[:positional], **dict(zip(names, values[positional:], strict=True)))
+
+    operation = Operation("call", always(Kind.OTHER), by_lane, "A call of Python's own.", python=invoke)
+    return construction.make_node(operation, operands, span=here())
+
+
+def _attribute_of_option(option: Node, name: str) -> Node:
+    if option.operation is MISSING:
+        return option
+    value = drawn_option(option)
+    if kind_of(value) is Kind.OBJECT and _is_computed(type(value), name):  # type: ignore[arg-type] # classes are hashable
+        return as_node(Random.later(getattr, value, name))
+    try:
+        return as_node(getattr(value, name))
+    except AttributeError as error:
+        return construction.make_node(MISSING, (), error, here())
+
+
+@functools.lru_cache(maxsize=1024)
+def _is_computed(cls: type, name: str) -> bool:
+    """Whether an attribute is computed by code of the program, which has to see sampled values."""
+    found = member(cls, name)
+    code = found.fget if isinstance(found, property) else getattr(found, "func", None)
+    return isinstance(found, property | functools.cached_property) and not _is_of_runtime(code)
+
+
+def holds_instances(node: Node) -> bool:
+    """Whether instances of the program are among the constants that a node is made of, or in containers there."""
+    stack, seen = [node], {node}
+    while stack:
+        below = stack.pop()
+        if below.is_constant:
+            if below.kind is Kind.OBJECT or (below.kind.is_boxed and _with_instances(below.value)):
+                return True
+        elif not below.is_drawn and below.operation.pure:  # calls on samples give sampled instances
+            new = [operand for operand in below.operands if operand not in seen]
+            seen.update(new)
+            stack.extend(new)
+    return False
+
+
+def _with_instances(value: Any) -> bool:
+    if isinstance(value, dict):
+        value = list(value.values())
+    if isinstance(value, tuple | list | set | frozenset):
+        return any(_with_instances(item) for item in value)
+    return holds_instances(value.node) if isinstance(value, Random) else kind_of(value) is Kind.OBJECT
+
+
+def _nothing(call: Call) -> Any:
+    call.reject(np.ones(1, dtype=np.bool_))
+    return np.empty(1, dtype=object)
+
+
+_NOTHING = Operation(
+    "nothing",
+    always(Kind.OTHER),
+    _nothing,
+    "An element of an empty list; a sample that draws it is rejected.",
+    pure=False,
+    rejects=True,
+)
+
+
+_PLACE = Operation(
+    "place in a list",
+    always(Kind.INTEGER),
+    lambda call, draw: np.minimum((draw * call.payload).astype(np.int64), call.payload - 1),
+    "The place of an element that is drawn by a number of the unit interval; payload the length.",
+    bounds=lambda count, draw: Bounds(
+        np.clip(np.floor(draw.lower * count) - 1, 0, count - 1),
+        np.clip(np.floor(draw.upper * count) + 1, 0, count - 1),
+    ),
+    stacks=True,
+)
+
+
+_GETATTR = Operation(
+    "attribute", always(Kind.OTHER), by_lane, "An attribute of a random value.", python=getattr
+)

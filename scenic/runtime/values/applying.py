@@ -1,0 +1,159 @@
+"""Operations on values: at once where all operands are definite, as new nodes of the graph otherwise."""
+
+from collections.abc import Callable, Iterable, Sequence
+from types import MappingProxyType
+from typing import Any, Final
+
+import numpy as np
+
+from scenic.graph import construction
+from scenic.graph.batch import Batch
+from scenic.graph.draws import Counter
+from scenic.graph.kinds import Kind
+from scenic.graph.node import Graph, Node, axis, constant, key
+from scenic.graph.operation import Call, Operation
+from scenic.graph.operations import TABLE
+from scenic.graph.schedule import Scheduler
+from scenic.language.errors import InvalidScenarioError
+from scenic.runtime.program.context import here, next_address, uniform_draw
+from scenic.runtime.values.choices import is_answered_by_code, over_options
+from scenic.runtime.values.definite import Orientation, Vector, scalar_of
+from scenic.runtime.values.lazy import Lazy, defer
+from scenic.runtime.values.nodes import CODEC, as_node, as_value
+from scenic.runtime.values.random_values import Random
+
+
+def operate(name: str, *operands: Any, payload: Any = None) -> Any:
+    """Apply an operation of the table to values."""
+    return apply(TABLE[name], *operands, payload=payload)
+
+
+def apply(operation: Operation, *operands: Any, payload: Any = None) -> Any:
+    """Apply any operation to values: at once when all are definite, as a new node otherwise; later where one is lazy."""
+    if operation.scalar is not None:
+        result = _at_once(operation.scalar, payload, operands)
+        if result is not NotImplemented:
+            return result
+    if any(isinstance(operand, Lazy) for operand in operands):
+        return defer(apply, operation, *operands, payload=payload)
+    nodes = [as_node(operand) for operand in operands]
+    if operation.pure and all(node.is_constant for node in nodes):
+        return folded(operation, nodes, payload)
+    if operation.pure and operation.is_python(nodes, Kind.OTHER):
+        if any(node.kind.is_boxed for node in nodes) and _is_of_code(operation, operands):
+            return Random.later(operation.python, *operands)
+        distributed = over_options(nodes, lambda *options: operation.python(*options))  # type: ignore[misc] # it has one
+        if distributed is not None:
+            return distributed
+    return as_value(construction.make_node(operation, nodes, payload, here()))
+
+
+def _is_of_code(operation: Operation, operands: Sequence[Any]) -> bool:
+    """Whether classes of the program define what Python's function gives for an operand: of samples it has to be asked."""
+    # Python's operators and functions have the names of the methods that they call: `operator.add`, `len`.
+    name = operation.python.__name__.strip("_")  # type: ignore[union-attr] # it has one
+    methods = (f"__{name}__", f"__r{name}__", *_INSTEAD.get(name, ()))
+    return any(is_answered_by_code(operand, methods) for operand in operands)
+
+
+_INSTEAD: Final = MappingProxyType(
+    {"int": ("__index__", "__trunc__"), "float": ("__index__",), "str": ("__repr__",)}
+)
+"""Methods that Python calls where a class has none of the function's own name."""
+
+
+def _at_once(scalar: Callable[..., Any], payload: Any, operands: Sequence[Any]) -> Any:
+    """The value of an operation on plain numbers, vectors and orientations; ``NotImplemented`` where there are others."""
+    rows = []
+    for operand in operands:
+        cls = type(operand)
+        if cls is Vector or cls is Orientation:
+            rows.append(operand._row)
+        elif cls is float or cls is int:
+            rows.append(operand)
+        else:
+            return NotImplemented
+    return _of_row(scalar(payload, *rows))
+
+
+def _of_row(result: Any) -> Any:
+    if type(result) is not tuple:
+        return result
+    value: Any = object.__new__(Vector if len(result) == 3 else Orientation)
+    value._row = result
+    return value
+
+
+def unary(name: str) -> Callable[[Any], Any]:
+    """`operate` for one operation of one operand without data, for what simulations do all the time."""
+    operation, scalar = TABLE[name], scalar_of(name)
+
+    def applied(operand: Any) -> Any:
+        cls = type(operand)
+        if cls is float:
+            result = scalar(None, operand)
+        elif cls is Vector or cls is Orientation:
+            result = scalar(None, operand._row)
+        else:
+            return apply(operation, operand)
+        if type(result) is float:
+            return result
+        return apply(operation, operand) if result is NotImplemented else _of_row(result)
+
+    return applied
+
+
+def binary(name: str) -> Callable[[Any, Any], Any]:
+    """`operate` for one operation of two operands without data, for what simulations do all the time."""
+    operation, scalar = TABLE[name], scalar_of(name)
+
+    def applied(left: Any, right: Any) -> Any:
+        first, second = type(left), type(right)
+        if second is Vector and (first is Vector or first is Orientation):
+            return _of_row(scalar(None, left._row, right._row))
+        if first is float and second is float:
+            result = scalar(None, left, right)
+            return apply(operation, left, right) if result is NotImplemented else result
+        return apply(operation, left, right)
+
+    return applied
+
+
+def folded(operation: Operation, nodes: Sequence[Node], payload: Any) -> Any:
+    """The value of an operation on constants; raises what a sample of it would raise."""
+    kind = operation.kind(nodes, payload)
+    plain = all(node.kind.is_number for node in nodes) or kind.is_boxed
+    if operation.python is not None and (plain or any(node.kind.is_boxed for node in nodes)):
+        return operation.python(*(node.value for node in nodes))
+    call = Call(
+        (1,), payload, [None] * len(nodes), kinds=[node.kind for node in nodes], kind=kind, codec=CODEC
+    )
+    with np.errstate(all="ignore"):
+        column = operation.batch(call, *(node.payload.column for node in nodes))
+    if call.error is not None:
+        raise call.error
+    if call.status is not None:
+        raise InvalidScenarioError(
+            f"there is no {operation.missing}", span=here(), help="every sample would be rejected"
+        )
+    return CODEC.decode(kind, column[:1])[0]
+
+
+def fixed_batch(nodes: Iterable[Node]) -> Batch:
+    """A batch of one lane that holds fixed nodes."""
+    return Batch(Scheduler(Graph(nodes)), Counter(np.zeros(1, dtype=np.uint64)), CODEC)
+
+
+def uniform() -> Any:
+    """One axis of the cube as a value: uniform on (0, 1)."""
+    drawn = uniform_draw()
+    return Random(axis(here(), next_address())) if drawn is None else drawn
+
+
+def random_key() -> Any:
+    """A random word as a value, which keys the further draws of an operation that retries."""
+    drawn = uniform_draw()
+    if drawn is None:
+        return Random(key(here(), next_address()))
+    # As a value it would be a number again, and no word.
+    return Random(constant(drawn, Kind.KEY, int(drawn * 2.0**52)))

@@ -1,0 +1,144 @@
+"""Choices, option by option: a function of a choice is the choice among its results."""
+
+from collections.abc import Callable, Sequence
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from scenic.graph import construction
+from scenic.graph.kinds import Kind
+from scenic.graph.node import Node
+from scenic.graph.operation import Call, Operation, always
+from scenic.graph.operations import TABLE
+from scenic.runtime.program.context import here
+from scenic.runtime.python.ownership import is_own_function
+from scenic.runtime.values.definite import Orientation, Vector
+from scenic.runtime.values.nodes import CONTAINERS_MADE, as_node, as_value, kind_of
+from scenic.runtime.values.random_values import Random
+
+MOST_OPTIONS = 256
+"""Options of a choice for each of which a call is made at once, at most."""
+
+
+def over_options(operands: Sequence[Node], function: Callable[..., Any]) -> Any:
+    """The result of a function that depends on nothing but its operands, where these are constants and choices by one draw.
+
+    It is the choice among the results, so that no sample needs a call: what the options give is computed here. An option for
+    which the function fails does so only in samples that draw it. ``None`` for other operands, and for choices among instances.
+    """
+    choices = [node for node in operands if not node.is_constant]
+    if not choices or not all(_is_choice_of_data(node) for node in choices):
+        return None
+    index, count = choices[0].operands[0], len(choices[0].operands) - 1
+    if count > MOST_OPTIONS or any(node.operands[0] is not index for node in choices):
+        return None
+    results: list[Node] = []
+    for place in range(1, count + 1):
+        values = [(node if node.is_constant else node.operands[place]).value for node in operands]
+        try:
+            results.append(as_node(function(*values)))
+        except Exception as error:  # noqa: BLE001 - whatever it raises is an error where this option is drawn
+            results.append(construction.make_node(MISSING, (), error, here()))
+    return select(index, results)
+
+
+def _is_choice_of_data(node: Node) -> bool:
+    """Whether a node is a choice among constants that are data of Python, in which nothing is random."""
+    if node.operation is not TABLE["select"]:
+        return False
+    return all(option.is_constant and _is_data(option.value) for option in node.operands[1:])
+
+
+def _is_data(value: Any) -> bool:
+    cls = type(value)
+    if cls in (list, tuple, set, frozenset):
+        return all(map(_is_data, value))
+    if cls is dict:
+        return all(_is_data(key) and _is_data(item) for key, item in value.items())
+    return value is None or cls in (int, float, bool, str, bytes, slice, Vector, Orientation)
+
+
+def is_answered_by_code(value: Any, methods: Sequence[str]) -> bool:
+    """Whether methods of the program's classes answer for a value: they have to be asked of the sampled one."""
+    if not isinstance(value, Random):
+        return _has_own(value, methods)
+    stack, seen = [value.node], {value.node}
+    while stack:
+        node = stack.pop()
+        if node.is_constant:
+            if node.kind.is_boxed and _has_own(node.value, methods):
+                return True
+        elif node.kind.is_boxed and (not node.operation.strict or node.operation in CONTAINERS_MADE):
+            # What these hand on; anything else is computed, and where instances answer for it, of sampled ones.
+            new = [operand for operand in node.operands if operand not in seen]
+            seen.update(new)
+            stack.extend(new)
+    return False
+
+
+def _has_own(value: Any, methods: Sequence[str]) -> bool:
+    return any(is_own_function(getattr(type(value), name, None)) for name in methods)
+
+
+def select(index: Node, options: Sequence[Node]) -> Any:
+    return as_value(construction.make_node(TABLE["select"], [index, *options], span=here()))
+
+
+def _missing(call: Call) -> Any:
+    call.fault(np.ones(1, dtype=np.bool_), call.payload)
+    return np.empty(1, dtype=object)
+
+
+MISSING = Operation(
+    "missing attribute",
+    always(Kind.OTHER),
+    _missing,
+    "An attribute that an option of a choice does not have; an error only where that option is drawn.",
+    pure=False,
+    faults=True,
+)
+
+
+def drawn_option(option: Node) -> Any:
+    """The value of an option of a choice, as the choice draws it: an instance after mutation."""
+    value = as_value(option)
+    return Random.stand_in(value) if kind_of(value) is Kind.OBJECT else value
+
+
+def options_of(value: Any) -> tuple[Any, ...]:
+    """The options of a random choice; none of any other value."""
+    if isinstance(value, Random) and value.node.operation is TABLE["select"]:
+        return tuple(as_value(option) for option in value.node.operands[1:])
+    return ()
+
+
+def is_open(value: Any) -> bool:
+    """Whether a random value, or some option of it, can be of any type until it is drawn (section 4.3)."""
+    if not isinstance(value, Random) or not value.node.kind.is_boxed:
+        return False
+    options = options_of(value)
+    return not options or any(map(is_open, options))
+
+
+def per_option(value: Any, function: Callable[[Any], Any]) -> Any:
+    """``function`` of a value; of each option where the value is a random choice, and the choice among the results.
+
+    Options that are choices themselves are taken apart likewise.
+    """
+    if isinstance(value, Random) and value.node.operation is TABLE["select"]:
+        index, *options = value.node.operands
+        return select(index, [as_node(per_option(drawn_option(option), function)) for option in options])
+    return function(value)
+
+
+def as_drawn(function: Callable[[Any, Any], Any], first: Any, second: Any) -> Any:
+    """``function(first, second)`` where the second decides what is done, and may be random.
+
+    Of a choice it is asked of each option; where only the draw shows what the second is, of what is drawn.
+    """
+    if not isinstance(second, Random) or not second.node.kind.is_boxed:
+        return function(first, second)
+    if is_open(second):
+        return Random.later(function, first, second)
+    return per_option(second, partial(function, first))

@@ -1,0 +1,157 @@
+"""What operators and specifiers take for a number, a vector, a heading or an orientation (section 4.3 of the specification)."""
+
+from collections.abc import Callable
+from typing import Any
+
+from scenic.graph.kinds import Kind
+from scenic.graph.operation import Operation, always, by_lane
+from scenic.graph.operations import TABLE
+from scenic.language.errors import ScenicTypeError
+from scenic.runtime.program.context import here
+from scenic.runtime.values.applying import apply, operate
+from scenic.runtime.values.choices import drawn_option, select
+from scenic.runtime.values.definite import Orientation, Vector
+from scenic.runtime.values.describing import wrong_type
+from scenic.runtime.values.lazy import Lazy, defer
+from scenic.runtime.values.nodes import ROWS, as_node, is_number, is_orientation, is_vector
+from scenic.runtime.values.random_values import Random
+
+
+def to_scalar(value: Any, what: str = "") -> Any:
+    """A real number, as a float."""
+    if type(value) is float:
+        return value
+    if isinstance(value, Lazy):
+        return defer(to_scalar, value, what)
+    if isinstance(value, Random):
+        if value.node.kind is Kind.SCALAR:
+            return value
+        if value.node.kind.is_number:
+            return operate("float", value)
+        if value.node.kind.is_boxed:
+            if all(option.kind.is_number for option in value.node.operands[1:]):
+                # A choice among integers and floats: as floats its options have one kind, which analysis understands.
+                return _coerce_boxed(value, Kind.SCALAR, to_scalar, what)
+            return _coerce_later(value, Kind.SCALAR, to_scalar, what)
+    elif is_number(value):
+        return float(value)
+    raise wrong_type("a number", value, what)
+
+
+def to_vector(value: Any, what: str = "") -> Any:
+    """A vector: also a pair (z = 0), a triple, and anything with a position."""
+    if isinstance(value, Vector):
+        return value
+    if isinstance(value, Lazy):
+        return defer(to_vector, value, what)
+    if isinstance(value, Random):
+        if value.node.kind is Kind.VECTOR:
+            return value
+        if value.node.kind.is_boxed:
+            return _coerce_boxed(value, Kind.VECTOR, to_vector, what)
+        raise wrong_type("a vector", value, what)
+    if isinstance(value, ROWS):
+        if len(value) not in (2, 3):
+            raise ScenicTypeError(
+                f"{what + ': ' if what else ''}a vector has 2 or 3 coordinates, not {len(value)}",
+                span=here(),
+            )
+        return vector(*value)
+    if hasattr(value, "toVector") and not isinstance(value, type):
+        return value.toVector()
+    raise wrong_type("a vector", value, what)
+
+
+def to_heading(value: Any, what: str = "") -> Any:
+    """A heading in radians: a number, the global yaw of an orientation, the heading of an oriented point."""
+    if type(value) is float:
+        return value
+    if isinstance(value, Lazy):
+        return defer(to_heading, value, what)
+    if isinstance(value, Random):
+        if value.node.kind.is_number:
+            return to_scalar(value)
+        if value.node.kind is Kind.ORIENTATION:
+            return value.yaw
+        if value.node.kind.is_boxed:
+            return _coerce_boxed(value, Kind.SCALAR, to_heading, what)
+    elif is_number(value):
+        return float(value)
+    elif hasattr(value, "toHeading") and not isinstance(value, type):
+        return value.toHeading()
+    raise wrong_type("a heading", value, what)
+
+
+def to_orientation(value: Any, what: str = "") -> Any:
+    """An orientation: also a heading, a triple of Euler angles, and anything that has an orientation."""
+    if isinstance(value, Orientation):
+        return value
+    if type(value) is float:
+        return Orientation.fromEuler(value, 0.0, 0.0)
+    if isinstance(value, Lazy):
+        return defer(to_orientation, value, what)
+    if isinstance(value, Random):
+        if value.node.kind is Kind.ORIENTATION:
+            return value
+        if value.node.kind.is_number:
+            return Orientation.fromEuler(value, 0, 0)
+        if value.node.kind is Kind.VECTOR:
+            return Orientation.fromEuler(*value)
+        if value.node.kind.is_boxed:
+            return _coerce_boxed(value, Kind.ORIENTATION, to_orientation, what)
+    elif is_number(value):
+        return Orientation.fromEuler(value, 0, 0)
+    elif isinstance(value, Vector) or (isinstance(value, ROWS) and len(value) == 3):
+        return Orientation.fromEuler(*value)
+    elif hasattr(value, "toOrientation") and not isinstance(value, type):
+        return value.toOrientation()
+    raise wrong_type("an orientation (a heading, Euler angles or an oriented point)", value, what)
+
+
+def vector(x: Any, y: Any, z: Any = 0) -> Any:
+    """The vector of three numbers."""
+    if type(x) is float and type(y) is float and type(z) is float:
+        return Vector.of((x, y, z))
+    if is_number(x) and is_number(y) and is_number(z):
+        return Vector.of((float(x), float(y), float(z)))
+    return operate("vector", to_scalar(x), to_scalar(y), to_scalar(z))
+
+
+def _coerce_boxed(value: Random, kind: Kind, function: Callable[..., Any], what: str) -> Any:
+    """Coerce option by option where ``value`` is a choice, else when it is sampled."""
+    if value.node.operation is TABLE["select"]:
+        index, *options = value.node.operands
+        return select(index, [as_node(function(drawn_option(option), what)) for option in options])
+    return _coerce_later(value, kind, function, what)
+
+
+def _coerce_later(value: Random, kind: Kind, function: Callable[..., Any], what: str) -> Any:
+    return when_drawn(value, kind, lambda sampled: function(sampled, what))
+
+
+def when_drawn(value: Random, kind: Kind, function: Callable[[Any], Any]) -> Any:
+    """What a function makes of the value that is drawn."""
+    operation = Operation(
+        f"to {kind.value}",
+        always(kind),
+        by_lane,
+        "A coercion that has to wait for the sampled value.",
+        python=function,
+    )
+    return apply(operation, value)
+
+
+def with_vector(name: str, left: Any, right: Any) -> Any:
+    """An operation on two values read as vectors; ``NotImplemented`` where one is none."""
+    try:
+        return operate(name, to_vector(left), to_vector(right))
+    except ScenicTypeError:
+        return NotImplemented
+
+
+def with_number(name: str, left: Any, right: Any) -> Any:
+    """An operation on a vector and a number; ``NotImplemented`` where it is none."""
+    is_scalar = is_number(right) or isinstance(right, Random)
+    if is_scalar and not is_vector(right) and not is_orientation(right):
+        return operate(name, left, to_scalar(right))
+    return NotImplemented
