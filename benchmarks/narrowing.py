@@ -27,7 +27,7 @@ def ours(path: Path, *, prune: bool) -> tuple[float, float] | None:
     """Candidates and milliseconds a scene; ``None`` if 100,000 candidates were too few for one of them."""
     scenario = scenic.scenarioFromFile(str(path))
     if not prune:
-        scenario.restrict(Domain.whole(scenario.outline.graph.dimension))
+        scenario = scenario.within(Domain.whole(scenario.outline.graph.dimension))
     begun = time.perf_counter()
     try:
         scenes = scenario.sample(SCENES, seed=1)

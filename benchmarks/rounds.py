@@ -74,7 +74,7 @@ def main() -> None:
     arguments = parser.parse_args()
     if arguments.child:
         before = memory()
-        engine = scenic.scenarioFromString(boxes(200, 300))._engine
+        engine = scenic.scenarioFromString(boxes(200, 300))._sampler.engine
         milliseconds(engine, LANES[-1], 1)
         print(
             f"200 boxes, {LANES[-1]} lanes: {memory():.0f} MiB, {before:.0f} of them before anything is loaded"
@@ -91,7 +91,9 @@ def main() -> None:
     }
     print(f"{'':24}" + "".join(f"{lanes:>9}" for lanes in LANES))
     for name, scenario in scenarios.items():
-        costs = [milliseconds(scenario._engine, lanes, 12 if lanes < LANES[-1] else 5) for lanes in LANES]
+        costs = [
+            milliseconds(scenario._sampler.engine, lanes, 12 if lanes < LANES[-1] else 5) for lanes in LANES
+        ]
         print(f"{name:24}" + "".join(f"{cost:9.2f}" for cost in costs), flush=True)
 
 

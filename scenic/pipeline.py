@@ -2,32 +2,30 @@
 
 import inspect
 import sys
-from collections.abc import Mapping
-from dataclasses import replace
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from pathlib import Path
-from types import CodeType, FrameType, ModuleType, TracebackType
-from typing import Any, Final
+from types import CodeType, FrameType, MappingProxyType, ModuleType, TracebackType
+from typing import TYPE_CHECKING, Any, Final
 
 from scenic.analysis.contraction import contract
 from scenic.analysis.facts import Fact
 from scenic.compiler import loader
 from scenic.compiler.compile import compile_text
-from scenic.compiler.tracebacks import SOURCE_NAME, Locator, locate, raised_at
-from scenic.language.diagnostics import Diagnostic, Label
+from scenic.compiler.tracebacks import SOURCE_NAME, Locator
+from scenic.failures import diagnose, placed
+from scenic.graph.domain import Domain
+from scenic.language.diagnostics import Diagnostic
 from scenic.language.errors import (
     InvalidScenarioError,
-    Located,
-    RejectionException,
     ScenarioChoiceError,
     ScenicSyntaxError,
-    annotate,
-    annotation,
     compile_error,
 )
 from scenic.language.garbage import promote_young
 from scenic.language.source import Source, read_source
 from scenic.language.spans import Span
-from scenic.language.spelling import nearest, nearest_attribute
+from scenic.language.spelling import nearest
 from scenic.runtime.dynamics.definitions import ModularScenario
 from scenic.runtime.instances.mutation import apply_noise
 from scenic.runtime.instances.objects import Object, Point
@@ -36,10 +34,15 @@ from scenic.runtime.program.outcome import Module, Program
 from scenic.runtime.program.prelude import Loader
 from scenic.runtime.python.importing import beside
 from scenic.runtime.python.random_state import preserved, seed_globals
-from scenic.runtime.regions.base import Everywhere, Nowhere, Region, Workspace
+from scenic.runtime.regions.base import Everywhere, Nowhere, Region, Workspace, everywhere
+from scenic.runtime.sampling.planning import Outline, outline
 from scenic.runtime.scenes.saving import program_digest
-from scenic.runtime.scenes.scenario import Scenario
+from scenic.runtime.scenes.scenario import Scenario, Services
+from scenic.runtime.scenes.scene import Scene
 from scenic.runtime.values.values import is_random
+
+if TYPE_CHECKING:
+    from scenic.batch.simulations import SimulationRow
 
 PROGRAM_SEED = 0
 """Seed of Python's and NumPy's global generators while a program runs, so that it builds the same graph each time."""
@@ -72,9 +75,8 @@ def load(
     """
     file = Path(path)
     source = Source(sys.stdin.read(), "<stdin>") if str(path) == "-" else read_source(file)
-    return _scenario(
-        source.text, source.filename, params or {}, model, scenario, mode2D, prune=prune, strict_params=True
-    )
+    options = _Options(params or {}, model, scenario, mode2D, prune, strict_params=True)
+    return _scenario(source.text, source.filename, options)
 
 
 _EXTENSIONS: Final = (".scenic", ".sc")
@@ -99,7 +101,8 @@ def scenarioFromFile(
     source = read_source(Path(path))
     if Path(path).suffix not in _EXTENSIONS:
         raise RuntimeError(f"'{path}' is no Scenic program by its name: it ends in neither .scenic nor .sc")
-    return _scenario(source.text, str(path), params or {}, model, scenario, mode2D, prune=_pruning_wanted())
+    options = _Options(params or {}, model, scenario, mode2D, _pruning_wanted())
+    return _scenario(source.text, str(path), options)
 
 
 def scenarioFromString(
@@ -112,7 +115,7 @@ def scenarioFromString(
     mode2D: bool = False,
 ) -> Scenario:
     """The scenario of a program given as text."""
-    return _scenario(text, filename, params or {}, model, scenario, mode2D, prune=_pruning_wanted())
+    return _scenario(text, filename, _Options(params or {}, model, scenario, mode2D, _pruning_wanted()))
 
 
 def _pruning_wanted() -> bool:
@@ -144,56 +147,19 @@ def deep_check(path: str | Path) -> tuple[Diagnostic, ...]:
             item.help,
             item.labels,
         )
-        for item in prove(scenario.outline.graph, conditions(scenario))
+        for item in prove(scenario.outline.graph, conditions(scenario.outline))
     )
 
 
-def conditions(scenario: Scenario) -> list[Fact]:
-    """The hard requirements of a scenario, as analysis reads them: those of the program, then containment and visibility."""
-    outline = scenario.outline
+def conditions(outlined: Outline) -> list[Fact]:
+    """The hard requirements of an outline as analysis reads them: the program's, then containment and visibility."""
     return [
-        *(Fact(item.condition, item.label, item.span, False, item.filename) for item in outline.requirements),
-        *(Fact(item.node, item.label, item.span, True, item.filename) for item in outline.built_in),
+        *(
+            Fact(item.condition, item.label, item.span, False, item.filename)
+            for item in outlined.requirements
+        ),
+        *(Fact(item.node, item.label, item.span, True, item.filename) for item in outlined.built_in),
     ]
-
-
-def diagnose(error: BaseException) -> Diagnostic | None:
-    """An exception as a diagnostic: with its place in the program, if the program or its use caused it."""
-    if isinstance(error, Located):
-        return error.diagnostic()
-    told = annotation(error)
-    if told is not None:
-        return _with_origin(told, error)
-    place = locate(error.__traceback__) if error.__traceback__ is not None else None
-    if place is None:
-        return None
-    if isinstance(error, ModuleNotFoundError):
-        return Diagnostic(
-            "SC406",
-            f"there is no module {error.name!r}",
-            place.span,
-            filename=place.filename,
-            help="modules are .scenic files beside the program, or anything that Python can import",
-        )
-    near = nearest_attribute(error)
-    found = Diagnostic(
-        "SC400",
-        f"{type(error).__name__}: {error}",
-        place.span,
-        filename=place.filename,
-        help=f"did you mean `{near}`?" if near else "the program raised this exception while it ran",
-    )
-    return _with_origin(found, error)
-
-
-def _with_origin(found: Diagnostic, error: BaseException) -> Diagnostic:
-    """The diagnostic with the line that raised the exception, where that is another one."""
-    origin = raised_at(error)
-    if origin is None or found.span is None or found.labels:
-        return found
-    if origin.filename == found.filename and found.span.line <= origin.span.line <= found.span.end_line:
-        return found
-    return replace(found, labels=(Label(origin.span, "raised here", origin.filename),))
 
 
 # From text to scenario
@@ -212,98 +178,127 @@ class _Modules:
         return loader.load_code(path)
 
 
-def _scenario(
-    text: str,
-    filename: str,
-    params: Mapping[str, Any],
-    model: str | None,
-    chosen: str | None,
-    mode_2d: bool,
-    *,
-    prune: bool = True,
-    strict_params: bool = False,
-) -> Scenario:
-    options = {"params": dict(params), "model": model, "scenario": chosen, "2d": mode_2d}
+@dataclass(frozen=True, slots=True)
+class _Options:
+    """How a program is compiled; see `load`."""
+
+    params: Mapping[str, Any] = MappingProxyType({})
+    model: str | None = None
+    scenario: str | None = None
+    mode_2d: bool = False
+    prune: bool = True
+    strict_params: bool = False
+    """Whether a parameter that the program does not use is an error."""
+
+    def digest(self, text: str) -> str:
+        """The digest of a program and of all options that change its scenes."""
+        return program_digest(
+            text,
+            {
+                "params": dict(self.params),
+                "model": self.model,
+                "scenario": self.scenario,
+                "2d": self.mode_2d,
+            },
+        )
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        values = (dict(self.params), self.model, self.scenario, self.mode_2d, self.prune, self.strict_params)
+        return _Options, values
+
+
+@dataclass(frozen=True, slots=True)
+class _Ran:
+    """A program that has run once."""
+
+    program: Program
+    outline: Outline
+    ego: Object | None
+    workspace: Workspace
+    names: Mapping[int, str]
+    regions: Mapping[str, Region]
+
+
+def _scenario(text: str, filename: str, options: _Options) -> Scenario:
+    """From text to scenario: compile, run, outline, contract."""
+    ran = _run(_compiled(text, filename), text, filename, options)
+    domain, impossible = _narrowed(ran.outline) if options.prune else (None, ())
+    scenario = Scenario(
+        ran.program,
+        ran.outline,
+        filename=filename,
+        text=text,
+        ego=ran.ego,
+        workspace=ran.workspace,
+        names=ran.names,
+        regions=ran.regions,
+        domain=domain,
+        impossible=impossible,
+        digest=options.digest(text),
+        services=Services(show_page, (_scenario, (text, filename, options)), _sample, _simulate),
+    )
+    scenario.prepare()
+    promote_young()
+    return scenario
+
+
+def _compiled(text: str, filename: str) -> CodeType:
     compiled = compile_text(text, filename=filename)
     if compiled.code is None:
         errors = [item for item in compiled.diagnostics if item.severity == "error"]
         failure = compile_error(errors, filename=filename)
         failure.program = text
         raise failure
+    return compiled.code
+
+
+def _run(code: CodeType, text: str, filename: str, options: _Options) -> _Ran:
+    """Run a program once, which makes its graph."""
     locator = Locator()
 
     def span_of(where: FrameType | TracebackType) -> Span | None:
         place = locator.place(where)
         return None if place is None else place.span
 
-    context = Context(locate=span_of, name=locator.name, mode_2d=mode_2d)
-    program = Program(overrides=dict(params), context=context)
-    modules = Loader(_Modules(Path(filename).parent), context, program, model=model)
+    context = Context(locate=span_of, name=locator.name, mode_2d=options.mode_2d)
+    program = Program(overrides=dict(options.params), context=context)
+    modules = Loader(_Modules(Path(filename).parent), context, program, model=options.model)
     token = current.set(context)
     try:
-        with preserved(), beside(Path(filename).parent):
-            seed_globals(PROGRAM_SEED)
-            module, state = modules.run(compiled.code, filename, {SOURCE_NAME: Source(text, filename)})
-            program.top = _run_chosen(module, state, chosen)
-            program.ego, program.workspace = state.ego, state.workspace
-            apply_noise(program)
-            if context.looks:
-                # What may stand in the way of a look is all there only now.
-                program.requirements[:] = [requirement.rebuilt() for requirement in program.requirements]
-        _settle_parameters(program, strict=strict_params)
-        scenario = Scenario(
-            program,
-            filename=filename,
-            ego=state.ego,
-            workspace=state.workspace,
-            names=_names(module, state.ego),
-            regions=_regions(module),
-            mode_2d=mode_2d,
-            digest=program_digest(text, options),
-            view=show_page,
-            recipe=(_anew, (text, filename, dict(params), model, chosen, mode_2d, prune, strict_params)),
-        )
-    except SystemExit as error:
-        place = locate(error.__traceback__) if error.__traceback__ is not None else None
-        raise InvalidScenarioError(
-            f"the program ended itself (`sys.exit`, with {error.code!r}) before it described a scenario",
-            span=None if place is None else place.span,
-            filename=filename if place is None else place.filename,
-            help="raise an exception that says what is wrong instead",
-        ) from error
-    except RejectionException as error:
-        place = locate(error.__traceback__) if error.__traceback__ is not None else None
-        raise InvalidScenarioError(
-            "the program rejected itself while it ran: every scene would be rejected",
-            span=None if place is None else place.span,
-            filename=filename if place is None else place.filename,
-            help="raise `RejectionException` only in what is evaluated on samples",
-        ) from error
-    except Located as error:
-        if error.span is None or error.filename is None:
-            place = locate(error.__traceback__) if error.__traceback__ is not None else None
-            error.span = error.span or (place.span if place else None)
-            error.filename = error.filename or (place.filename if place else filename)
-        if error.filename == filename:
-            error.program = text
-        raise
-    except Exception as error:
-        found = diagnose(error)
-        if found is not None and found.span is not None:
-            annotate(
-                error,
-                found,
-                f"{found.filename}:{found.span.line}:{found.span.column + 1}: raised while the program ran",
-            )
-        raise
+        with placed(text, filename):
+            with preserved(), beside(Path(filename).parent):
+                seed_globals(PROGRAM_SEED)
+                module, state = modules.run(code, filename, {SOURCE_NAME: Source(text, filename)})
+                program.top = _run_chosen(module, state, options.scenario)
+                program.ego, program.workspace = state.ego, state.workspace
+                apply_noise(program)
+                if context.looks:
+                    # Only now everything is there that may hide something.
+                    program.requirements[:] = [item.rebuilt() for item in program.requirements]
+            _settle_parameters(program, strict=options.strict_params)
+            workspace = state.workspace or Workspace(everywhere)
+            outlined = outline(program, state.ego, workspace, mode_2d=options.mode_2d)
     finally:
         current.reset(token)
-    if prune:
-        pruning = contract(scenario.outline.graph, conditions(scenario))
-        scenario.restrict(pruning.domain, impossible=[item.label for item in pruning.impossible])
-    scenario.prepare()
-    promote_young()
-    return scenario
+    return _Ran(program, outlined, state.ego, workspace, _names(module, state.ego), _regions(module))
+
+
+def _narrowed(outlined: Outline) -> tuple[Domain, tuple[str, ...]]:
+    """The part of the cube that the requirements allow, and the labels of those that cannot hold."""
+    pruning = contract(outlined.graph, conditions(outlined))
+    return pruning.domain, tuple(item.label for item in pruning.impossible)
+
+
+def _sample(scenario: Scenario, n: int, **options: Any) -> Iterator[Scene]:
+    from scenic.batch.scenes import sampled_in_processes
+
+    return sampled_in_processes(scenario, n, **options)
+
+
+def _simulate(scenario: Scenario, n: int, **options: Any) -> "list[SimulationRow]":
+    from scenic.batch.simulations import simulated
+
+    return simulated(scenario, n, **options)
 
 
 def show_page(scene: Any) -> Path:
@@ -317,20 +312,6 @@ def show_page(scene: Any) -> Path:
     file.write_text(page([scene], "scene"), encoding="utf-8")
     webbrowser.open(file.as_uri())
     return file
-
-
-def _anew(
-    text: str,
-    filename: str,
-    params: Mapping[str, Any],
-    model: str | None,
-    chosen: str | None,
-    mode_2d: bool,
-    prune: bool,
-    strict: bool,
-) -> Scenario:
-    """A scenario compiled once more, after it was pickled."""
-    return _scenario(text, filename, params, model, chosen, mode_2d, prune=prune, strict_params=strict)
 
 
 def _run_chosen(module: ModuleType, state: Module, chosen: str | None) -> ModularScenario | None:
@@ -430,7 +411,6 @@ def _regions(module: ModuleType) -> dict[str, Region]:
 __all__ = [
     "conditions",
     "deep_check",
-    "diagnose",
     "load",
     "scenarioFromFile",
     "scenarioFromString",

@@ -20,7 +20,7 @@ import numpy as np
 import pytest
 
 import scenic
-from scenic.pipeline import diagnose
+from scenic.failures import diagnose
 from scenic.runtime.instances.objects import Point
 from scenic.runtime.regions.base import Region
 from scenic.runtime.values.values import Orientation, Vector

@@ -13,11 +13,11 @@ from click.testing import CliRunner
 import scenic
 from scenic.cli.check import check
 from scenic.compiler.check import check_text
+from scenic.failures import diagnose
 from scenic.language.diagnostics import Diagnostic, Severity
 from scenic.language.errors import Located, UnsupportedError
 from scenic.language.names import NAMES
 from scenic.language.support import refused_features
-from scenic.pipeline import diagnose
 from scenic.runtime.program.builtins import Unsupported, builtin_names
 from scenic.runtime.program.outcome import Program
 from tests.runtime.programs import marked

@@ -218,7 +218,7 @@ def _results(tasks: Sequence[Task], jobs: int | None) -> Iterator[tuple[int, Out
         checker = Checker()
         yield from ((index, checker(task)) for index, task in enumerate(tasks))
         return
-    from scenic.cli.workers import run, usable_cpus  # takes a while to import
+    from scenic.batch.workers import run, usable_cpus  # takes a while to import
 
     yield from run(Checker(), tasks, jobs=jobs or usable_cpus(), lost=_lost)
 

@@ -192,10 +192,10 @@ def _diagnostics(error: Exception) -> tuple[Diagnostic, ...]:
         return error.diagnostics
     if isinstance(error, Located):
         return (error.diagnostic(),)
-    pipeline = sys.modules.get("scenic.pipeline")
-    if pipeline is not None:
+    failures = sys.modules.get("scenic.failures")
+    if failures is not None:
         # A program was run: the exception may be its own.
-        found: Diagnostic | None = pipeline.diagnose(error)
+        found: Diagnostic | None = failures.diagnose(error)
         if found is not None:
             return (found,)
     return ()

@@ -182,8 +182,10 @@ def sample(
     deadline = None if time_limit is None else time.monotonic() + time_limit
 
     # These bring in NumPy and the geometry libraries.
-    from scenic.cli import batches
+    from scenic.batch import scenes as batches
     from scenic.formats.json_lines import SceneLines
+    from scenic.formats.resuming import continued
+    from scenic.graph.points import Sobol
     from scenic.pipeline import load
     from scenic.runtime.sampling.report import Exhausted
 
@@ -198,12 +200,12 @@ def sample(
     done = 0
     points = "sobol" if sobol else None
     if grown is not None and resume:
-        seed, done = batches.continued(grown, loaded.digest, seed, first, count, points=points)
+        seed, done = continued(grown, loaded.digest, seed, first, count, points=points)
     if seed is None:
         seed = secrets.randbits(32)
         sys.stderr.write(f"seed {seed} (the same scenes again: --seed {seed})\n")
     lines = SceneLines((path.name, loaded.digest), changed=properties == "changed", points=points)
-    job = batches.Job(seed, first + done, first + count, max_attempts, deadline, sobol)
+    job = batches.Job(seed, first + done, first + count, max_attempts, deadline, Sobol() if sobol else None)
     missing: list[Exhausted] = []
     to_terminal = target == sinks.STANDARD_OUTPUT and sys.stdout.isatty()
     left = None if deadline is None else max(0.0, deadline - time.monotonic()) + PATIENCE
@@ -218,8 +220,8 @@ def sample(
         advance = stack.enter_context(_progress(count, shown=not to_terminal))
         advance(done, 0)
         if jobs > 1 and count - done > 1:
-            for made in batches.in_processes(loaded, lines, job, jobs):
-                put(made.lines)
+            for made in batches.in_processes(loaded, lines.encoded, job, jobs):
+                put(made.encoded)
                 missing.extend(made.missing)
                 advance(made.job.last - made.job.first, made.attempts)
         else:

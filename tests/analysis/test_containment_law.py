@@ -50,7 +50,7 @@ def test_a_wide_range_in_a_small_workspace(name: str) -> None:
     found, attempts = sampled(scenario(text.format(100)), 1)
     assert attempts <= most
     narrow = scenario(text.format(1.5))
-    narrow.restrict(Domain.whole(narrow.outline.graph.dimension))
+    narrow = narrow.within(Domain.whole(narrow.outline.graph.dimension))
     expected, rejected = sampled(narrow, 2)
     assert rejected > attempts
     same_law(found, expected)

@@ -7,7 +7,7 @@ import pytest
 
 import scenic
 from scenic.cli import sample
-from scenic.pipeline import diagnose
+from scenic.failures import diagnose
 from tests.cli.commands import run_here
 
 TOOLS = "def boom(v):\n    raise ValueError(f'boom')\ndef root(v):\n    import math\n    return math.sqrt(-1 - v)\n"

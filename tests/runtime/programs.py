@@ -7,7 +7,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 import scenic
-from scenic.pipeline import diagnose
+from scenic.failures import diagnose
 from scenic.runtime.elements.shapes import Shape
 from scenic.runtime.instances.objects import Point
 from scenic.runtime.regions.base import Region

@@ -110,7 +110,7 @@ def values(program: Any, seed: int) -> np.ndarray[Any, Any]:
 @pytest.mark.parametrize("name", list(PRUNED))
 def test_pruning_keeps_the_law(name: str) -> None:
     pruned, whole = scenario(PRUNED[name]), scenario(PRUNED[name])
-    whole.restrict(Domain.whole(whole.outline.graph.dimension))
+    whole = whole.within(Domain.whole(whole.outline.graph.dimension))
     found, expected = values(pruned, 1), values(whole, 2)
     for column in range(found.shape[1]):
         assert stats.ks_2samp(found[:, column], expected[:, column]).pvalue > FALSE_ALARM
@@ -126,7 +126,7 @@ def test_pruning_keeps_the_law(name: str) -> None:
 def test_every_scene_of_the_whole_lies_in_the_pruned_part() -> None:
     for text in PRUNED.values():
         pruned, whole = scenario(text), scenario(text)
-        whole.restrict(Domain.whole(whole.outline.graph.dimension))
+        whole = whole.within(Domain.whole(whole.outline.graph.dimension))
         low, high = values(pruned, 1).min(axis=0), values(pruned, 1).max(axis=0)
         spread = high - low
         found = values(whole, 2)
@@ -215,7 +215,7 @@ def test_candidates_in_which_a_requirement_fails_count_as_rejected() -> None:
         "require 1 / x > 0.5 as A\nrequire same(x == 1) as B\nrequire same(y > 2) as C\n"
     )
     program = scenario(text)
-    program.restrict(Domain.whole(program.outline.graph.dimension))
+    program = program.within(Domain.whole(program.outline.graph.dimension))
     (result,) = program.stream(1, seed=2, max_attempts=300)
     assert isinstance(result, Exhausted)
     found = rows(result)
@@ -429,7 +429,7 @@ def test_what_is_restricted_is_so_at_once() -> None:
     random.seed(1)
     for _ in range(20):
         program.generate()
-    program.restrict(Domain(np.array([[0.25]]), np.array([[0.5]])))
+    program = program.within(Domain(np.array([[0.25]]), np.array([[0.5]])))
     assert all(0.25 <= program.generate()[0].params["x"] <= 0.5 for _ in range(20))
 
 
@@ -471,7 +471,7 @@ def test_the_first_error_of_the_program_is_told() -> None:
     )
     for seed in range(30):
         program = scenario(text)
-        for check in program._engine.plan.checks:
+        for check in program._sampler.engine.plan.checks:
             check.separate = seed % 2 == 0  # each looks at those alone that the ones before leave
         with pytest.raises(ValueError, match="first"):
             program.sample(1, seed=seed)
@@ -484,7 +484,7 @@ def test_of_values_that_fail_together_the_first_is_told(reverse: bool) -> None:
         "@distributionFunction\ndef first(v): raise KeyError(v)\n@distributionFunction\ndef second(v): raise ValueError(v)\n"
         "x = Range(0, 1)\nparam a = first(x), b = second(x)\n"
     )
-    for number, check in enumerate(program._engine.plan.checks):
+    for number, check in enumerate(program._sampler.engine.plan.checks):
         check.cost = 1000.0 - number if reverse else number
     with pytest.raises(KeyError):
         program.sample(1, seed=1)
@@ -494,7 +494,7 @@ def test_reports_do_not_depend_on_how_many_lanes_there_are() -> None:
     program = scenario(
         "x = Range(0, 1)\ny = Range(0, 1)\ndef same(v): return v\nrequire same(x) > 2\nrequire same(y) > 0.5\n"
     )
-    engine = program._engine
+    engine = program._sampler.engine
     report = engine.report(Task(3, 0), 500)
     first, second = (row.rejected for row in report.rows)
     assert first == 1
@@ -509,7 +509,7 @@ def test_reports_are_of_the_candidates_that_were_tried() -> None:
     SEEN.append(seen.append)
     engine = scenario(
         f"from {__name__} import SEEN\ndef note(v):\n    SEEN[-1](v)\n    return False\nx = Range(0, 1)\nrequire note(x)\n"
-    )._engine
+    )._sampler.engine
     for seed, k in ((0, 0), (3, 0), (0, 4), (3, 4), (-1, 7), (2**70, 1)):
         seen.clear()
         (given_up,) = engine.scenes([(seed, k)], max_attempts=40, lanes=7)
@@ -525,7 +525,7 @@ def test_reports_are_of_the_candidates_that_were_tried() -> None:
 
 def test_lanes_are_bounded_by_their_memory() -> None:
     def most(objects: int) -> int:
-        plan = replace(scenario("x = Range(0, 1)\n")._engine.plan, bodies=objects)
+        plan = replace(scenario("x = Range(0, 1)\n")._sampler.engine.plan, bodies=objects)
         return Engine(plan)._pace.most
 
     assert most(1) == DEFAULT_LANES

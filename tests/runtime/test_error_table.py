@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 import scenic
+from scenic.failures import diagnose
 from scenic.language import errors
 from scenic.language.diagnostics import CODES
 from scenic.language.errors import (
@@ -21,7 +22,6 @@ from scenic.language.errors import (
     ScenicValueError,
     SpecifierError,
 )
-from scenic.pipeline import diagnose
 from tests.runtime.programs import failure, scenario
 
 ERRORS: list[tuple[type[Exception], str, str, str]] = [

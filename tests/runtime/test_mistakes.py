@@ -9,9 +9,9 @@ import pytest
 from scenic.core.regions import PolylineRegion
 
 import scenic
+from scenic.failures import diagnose
 from scenic.language.diagnostics import CODES
 from scenic.language.errors import ScenicWarning
-from scenic.pipeline import diagnose
 from tests.runtime.programs import failure, marked
 
 MISTAKES = [

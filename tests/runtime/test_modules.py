@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 import scenic
+from scenic.failures import diagnose
 from scenic.language.errors import InvalidScenarioError
-from scenic.pipeline import diagnose
 from scenic.simulators.dummy import DummySimulator
 
 

@@ -431,7 +431,7 @@ def test_pruning_changes_no_law(name: str) -> None:
     for prune in (True, False):
         program = scenario(PROGRAMS[name])
         if not prune:
-            program.restrict(Domain.whole(program.outline.graph.dimension))
+            program = program.within(Domain.whole(program.outline.graph.dimension))
         scenes = program.sample(150, seed=5)
         places.append(np.array([tuple(scene.objects[-1].position)[:2] for scene in scenes]))
         tried.append(sum(scene.attempts for scene in scenes) / 150)

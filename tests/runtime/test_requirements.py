@@ -543,8 +543,8 @@ OVERFLOWING = [
 
 def attempts_of(program: Scenario) -> Batch:
     """A batch of the first attempts at a scene."""
-    return program._engine._batch(
-        program._engine._source(_attempts(Task(1, 0), np.arange(40, dtype=np.int64)))
+    return program._sampler.engine._batch(
+        program._sampler.engine._source(_attempts(Task(1, 0), np.arange(40, dtype=np.int64)))
     )
 
 
@@ -556,7 +556,7 @@ def test_what_overflows_makes_no_object() -> None:
     finite = np.isfinite(batch.full(as_node(program.params["big"])))
     assert set(finite.tolist()) == {True, False}
     found = {}
-    for check in program._engine.plan.checks:
+    for check in program._sampler.engine.plan.checks:
         if check.label.startswith("finite"):
             found[check.span.line - 3] = check.test(batch).holds.tolist()
         elif check.label.startswith("positive"):
@@ -573,10 +573,10 @@ def test_sizes_that_may_be_nothing_are_looked_at() -> None:
         "x = Range(0, 1)\n" + "".join(f"new Object with {name} {size}\n" for name, size in texts)
     )
     batch = attempts_of(program)
-    x = batch.full(program._engine.plan.graph.nodes[0])
+    x = batch.full(program._sampler.engine.plan.graph.nodes[0])
     found = {
         (check.label, check.span.line - 2): check.test(batch).holds.tolist()
-        for check in program._engine.plan.checks
+        for check in program._sampler.engine.plan.checks
         if check.label.startswith("positive")
     }
     assert found == {
@@ -622,7 +622,9 @@ def test_what_may_be_infinite_is_looked_at_and_nothing_else() -> None:
     head = "x = Range(0, 1)\nbig = 1e308 * Range(0, 3)\n@distributionFunction\ndef f(v): return v\n"
     texts = [*FINITE, *MAYBE_INFINITE]
     program = scenario(head + "".join(f"new Object {text}\n" for text in texts))
-    lines = {check.span.line for check in program._engine.plan.checks if check.label.startswith("finite")}
+    lines = {
+        check.span.line for check in program._sampler.engine.plan.checks if check.label.startswith("finite")
+    }
     first = head.count("\n") + 1
     assert [text for line, text in enumerate(texts, first) if line in lines] == MAYBE_INFINITE
 

@@ -15,8 +15,8 @@ import pytest
 import trimesh
 
 import scenic
+from scenic.failures import diagnose
 from scenic.language.errors import InvalidScenarioError, ScenicWarning, SerializationError
-from scenic.pipeline import diagnose
 from scenic.runtime.scenes.dumping import literal, program_of
 from scenic.runtime.scenes.files import whole
 from tests.runtime.programs import fingerprint, scenario

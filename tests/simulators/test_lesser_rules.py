@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 import scenic
-from scenic.cli.simulate import _Kept
+from scenic.batch.keeping import Kept
 from scenic.language.errors import (
     DivergenceError,
     InvalidScenarioError,
@@ -533,7 +533,7 @@ def test_each_property_without_a_value_takes_a_type_of_its_own() -> None:
 
 
 def test_a_look_back_in_one_try_is_remembered_in_the_next() -> None:
-    kept = _Kept(None, "jsonl", False)
+    kept = Kept(None, "jsonl", shown=False)
     courses = [Latest("state"), Latest("state")]
     for course in courses:
         course.append(1)

@@ -89,7 +89,7 @@ def test_what_rows_do_not_give_is_a_function_of_seed_and_number_too() -> None:
         "import random\ndef some(v): return hash(v) % 3 == 0\ndef noise(v): return v + random.random()\nx = Range(0, 1)\n"
         "require some(x)\ny = noise(x)\nrequire y > 0.5\nparam y = y\n"
     )
-    for check in program._engine.plan.checks:
+    for check in program._sampler.engine.plan.checks:
         check.separate = True  # each is made in those lanes alone that the ones before leave
     sobol = scenic.Sobol()
     together = [scene.params["y"] for scene in program.sample(20, seed=4, source=sobol)]

@@ -334,6 +334,22 @@ class Engine:
 
         return Found([task.seed], [task.k], [attempts], batch, alone), 0
 
+    def accepted(self, seed: int, numbers: NDArray[np.int64], attempts: NDArray[np.int64]) -> list[Accepted]:
+        """Scenes of a seed of which the accepted candidates are known; no check is made again.
+
+        Args:
+            seed: their seed.
+            numbers: which scenes of the seed, ``(n,)``.
+            attempts: how many candidates were tried for each, the accepted one included, ``(n,)``.
+
+        """
+        seeds = np.repeat(seed_word(seed), len(numbers))
+        keys = attempt_keys(scene_keys(seeds, numbers), attempts - 1)
+        batch = self._batch(self._source(Lanes(seeds, numbers, attempts - 1, keys)))
+        batch.settle(self.plan.outputs)
+        found = Found([seed] * len(numbers), numbers.tolist(), attempts.tolist(), batch, self._alone)
+        return [(found, lane) for lane in range(len(numbers))]
+
     def _batch(self, source: Source, *, grouped: bool = True) -> Batch:
         return Batch(
             self._scheduler if grouped else self._single,

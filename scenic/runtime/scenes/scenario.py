@@ -9,8 +9,10 @@ from itertools import repeat
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from scenic.graph.domain import Domain
-from scenic.graph.draws import Counter, Lanes, Source
 from scenic.graph.node import Graph
 from scenic.graph.points import PointSet
 from scenic.language.errors import (
@@ -27,24 +29,14 @@ from scenic.runtime.instances.objects import Object
 from scenic.runtime.instances.population import Populations
 from scenic.runtime.program.outcome import Program
 from scenic.runtime.python.samples import dependencies
-from scenic.runtime.regions.base import Region, Workspace, everywhere
-from scenic.runtime.sampling.driving import driven
-from scenic.runtime.sampling.engine import Accepted, CandidateError, Engine
+from scenic.runtime.regions.base import Region, Workspace
+from scenic.runtime.sampling.engine import Accepted, CandidateError
 from scenic.runtime.sampling.foresight import SEED_BITS, Foreseen
-from scenic.runtime.sampling.pending import Task
-from scenic.runtime.sampling.planning import Outline, outline
+from scenic.runtime.sampling.planning import Outline
 from scenic.runtime.sampling.report import Exhausted
-from scenic.runtime.scenes.saving import SavedScene, draws_of, fixed_draws, source_of
+from scenic.runtime.scenes.sampler import DEFAULT_ATTEMPTS, Sampler
+from scenic.runtime.scenes.saving import SavedScene, draws_of, source_of
 from scenic.runtime.scenes.scene import Family, Scene
-
-PROOF_CANDIDATES = 200
-"""Candidates looked at to illustrate why no scene exists, where that is proven."""
-
-OPAQUE_ATTEMPTS = 1000
-"""Candidates tried for one scene of a program whose only random numbers could be those of its own functions."""
-
-DEFAULT_ATTEMPTS = 100_000
-"""Candidates tried for one scene before giving up, unless the caller says otherwise."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,8 +47,22 @@ class Axis:
     span: Span | None
 
 
+@dataclass(frozen=True, slots=True)
+class Services:
+    """What a scenario offers that is computed above the runtime."""
+
+    view: Callable[[Scene], Any] | None = None
+    """Shows a scene (`Scene.show`)."""
+    recipe: tuple[Any, ...] | None = None
+    """Compiles the program once more, as ``__reduce__`` returns it."""
+    sample: Callable[..., Iterator[Scene]] | None = None
+    """Samples in several processes: ``(scenario, n, processes=, **limits)``."""
+    simulate: Callable[..., Any] | None = None
+    """Simulates scenes: ``(scenario, n, **options)``."""
+
+
 class Scenario:
-    """What a program describes.
+    """A compiled program, which samples scenes and simulates them.
 
     Made by `scenic.load` and by the established `scenarioFromFile` and `scenarioFromString`.
     """
@@ -64,52 +70,67 @@ class Scenario:
     def __init__(
         self,
         program: Program,
+        outline: Outline,
         *,
         filename: str,
+        text: str,
         ego: Object | None,
-        workspace: Workspace | None,
+        workspace: Workspace,
         names: Mapping[int, str],
-        mode_2d: bool = False,
+        regions: Mapping[str, Region],
+        domain: Domain | None = None,
+        impossible: Sequence[str] = (),
         digest: str = "",
-        view: Callable[[Scene], Any] | None = None,
-        recipe: tuple[Any, ...] | None = None,
-        regions: Mapping[str, Region] | None = None,
+        services: Services | None = None,
     ) -> None:
-        self._recipe = recipe
         self.filename = filename
+        self.text = text
+        """The program's text."""
         self.digest = digest
         """What a saved scene remembers of the program."""
-        self._view = view
-        self._condition: tuple[Mapping[int, float], Mapping[int, int]] = ({}, {})
-        self.workspace = workspace or Workspace(everywhere)
+        self.workspace = workspace
         self.egoObject = ego
-        self.outline: Outline = outline(program, ego, self.workspace, mode_2d=mode_2d)
+        self.outline: Outline = outline
         self._program = program
-        self._names = names
-        # What nothing in the scenes depends on is not drawn, and has no value there.
+        self._services = services or Services()
+        # A region that nothing in the scenes depends on is not drawn, and has no value there.
         self._regions = {
             name: region
-            for name, region in (regions or {}).items()
+            for name, region in regions.items()
             if all(
-                node in self.outline.graph.index
-                for node in Graph(dependencies([region])).nodes
-                if node.is_drawn
+                node in outline.graph.index for node in Graph(dependencies([region])).nodes if node.is_drawn
             )
         }
-        self._engine = Engine(self.outline.plan())
+        self._names = names
+        self._unconditioned = self._sampler = Sampler(outline, domain, impossible=impossible)
         self._foreseen = Foreseen(self._foresee)
-        self._impossible: tuple[str, ...] = ()
         self._family = Family(
             program,
             ego,
             Populations(self.objects, [*program.parameters.values(), *self._regions.values()], program.names),
-            self.workspace,
+            workspace,
             names,
             digest,
             self.sceneToBytes,
             self,
-            view,
+            self._services.view,
             self._regions,
+        )
+
+    def within(self, domain: Domain) -> "Scenario":
+        """The same scenario, sampled from another part of the cube, which must hold all points that meet the requirements."""
+        return Scenario(
+            self._program,
+            self.outline,
+            filename=self.filename,
+            text=self.text,
+            ego=self.egoObject,
+            workspace=self.workspace,
+            names=self._names,
+            regions=self._regions,
+            domain=domain,
+            digest=self.digest,
+            services=self._services,
         )
 
     @property
@@ -138,20 +159,11 @@ class Scenario:
     @property
     def domain(self) -> Domain:
         """The part of the unit cube that is sampled."""
-        return self._engine.plan.domain
+        return self._sampler.plan.domain
 
     def prepare(self) -> None:
         """Make what the first scene would otherwise wait for."""
-        self._engine.prepare()
-
-    def restrict(self, domain: Domain, *, impossible: Sequence[str] = ()) -> None:
-        """Sample from a part of the cube only. It must hold every point that meets the requirements.
-
-        ``impossible`` names requirements that are proven to fail everywhere; then nothing is sampled at all.
-        """
-        self._engine = Engine(self.outline.plan(domain))
-        self._foreseen = Foreseen(self._foresee)
-        self._impossible = tuple(impossible)
+        self._sampler.engine.prepare()
 
     def stream(
         self,
@@ -184,47 +196,16 @@ class Scenario:
         """
         tasks = zip(repeat(seed), range(first, first + n))  # one of them has no end
         deadline = None if time_limit is None else time.monotonic() + time_limit
-        yield from self._find(tasks, max_attempts=max_attempts, deadline=deadline, lanes=lanes, source=source)
-
-    def _find(
-        self,
-        tasks: Iterable[tuple[int, int]],
-        *,
-        max_attempts: int | None = None,
-        deadline: float | None = None,
-        lanes: int | None = None,
-        source: PointSet | None = None,
-    ) -> Iterator[Scene | Exhausted]:
-        if self._impossible:
-            return self._not_found(tasks)
-        limit = self._most_attempts(max_attempts)
-        if source is not None and not source.retries:
-            limit = 1
-        results = self._engine_of(source).scenes(tasks, max_attempts=limit, deadline=deadline, lanes=lanes)
-        return self._scenes(results)
+        yield from self._scenes(
+            self._sampler.find(
+                tasks, max_attempts=max_attempts, deadline=deadline, lanes=lanes, source=source
+            )
+        )
 
     def _foresee(
         self, tasks: Iterable[tuple[int, int]], max_attempts: int, more: bool
     ) -> Iterator[Scene | Exhausted]:
-        """The same for tasks without end."""
-        if self._impossible:
-            return self._not_found(tasks)
-        limit = self._most_attempts(max_attempts)
-        return self._scenes(self._engine.foresee(tasks, max_attempts=limit, more=more))
-
-    def _not_found(self, tasks: Iterable[tuple[int, int]]) -> Iterator[Exhausted]:
-        report = None
-        for seed, k in tasks:
-            report = report or self._engine.report(Task(seed, k), PROOF_CANDIDATES)
-            yield Exhausted(seed, k, 0, "impossible", report)
-
-    def _most_attempts(self, wanted: int | None) -> int:
-        limit = DEFAULT_ATTEMPTS if wanted is None else wanted
-        nodes = self._engine.plan.graph.nodes
-        if any(node.is_axis for node in nodes):
-            return limit
-        # Every attempt is the same, unless the program's own functions draw random numbers.
-        return min(limit, OPAQUE_ATTEMPTS if any(node.is_drawn for node in nodes) else 1)
+        return self._scenes(self._sampler.foresee(tasks, max_attempts, more))
 
     def _scenes(self, results: Iterator[Accepted | Exhausted]) -> Iterator[Scene | Exhausted]:
         family = self._family
@@ -253,8 +234,18 @@ class Scenario:
         time_limit: float | None = None,
         lanes: int | None = None,
         source: PointSet | None = None,
+        processes: int = 1,
     ) -> list[Scene]:
-        """``n`` scenes of a seed (drawn from Python's ``random`` if not given); ``source`` as of `stream`.
+        """``n`` scenes of a seed (drawn from Python's ``random`` if not given).
+
+        Args:
+            n: how many.
+            seed: any integer; scene ``k`` of a seed is always the same.
+            max_attempts: candidates tried for one scene before it is given up.
+            time_limit: seconds for all of them.
+            lanes: candidates evaluated at a time. Changes speed and memory, never the scenes.
+            source: random numbers that are not hashed; see `stream`.
+            processes: how many processes look for scenes. Changes speed, never the scenes.
 
         Raises:
             RejectionException: if a scene is not found within the limits; the message lists what rejected it.
@@ -263,6 +254,9 @@ class Scenario:
 
         """
         chosen = random.getrandbits(SEED_BITS) if seed is None else seed
+        if processes > 1 and self._services.sample is not None:
+            limits = {"max_attempts": max_attempts, "time_limit": time_limit, "source": source}
+            return list(self._services.sample(self, n, seed=chosen, processes=processes, **limits))
         scenes = []
         for result in self.stream(
             n, seed=chosen, max_attempts=max_attempts, time_limit=time_limit, lanes=lanes, source=source
@@ -271,6 +265,25 @@ class Scenario:
                 raise RejectionException(exhaustion_message(result))
             scenes.append(result)
         return scenes
+
+    def accepted(
+        self, seed: int, first: int, attempts: NDArray[np.int64], *, source: PointSet | None = None
+    ) -> Iterator[Scene]:
+        """Scenes from number ``first`` on of a seed, given how many candidates each took, ``(n,)``.
+
+        Only the accepted candidates are evaluated, and no requirement is checked again.
+        """
+        numbers = np.arange(first, first + len(attempts), dtype=np.int64)
+        return (
+            Scene(found, lane, self._family)
+            for found, lane in self._sampler.accepted(seed, numbers, attempts, source)
+        )
+
+    def simulate(self, n: int = 1, **options: Any) -> Any:
+        """Simulate scenes 0 to ``n`` of a seed; see `scenic.batch.simulations.simulated` for the options and the result."""
+        if self._services.simulate is None:
+            raise TypeError("a scenario that was made by hand cannot be simulated")
+        return self._services.simulate(self, n, **options)
 
     def generate(
         self, maxIterations: int = 2000, verbosity: int = 0, feedback: Any = None, *, seed: int | None = None
@@ -357,9 +370,9 @@ class Scenario:
 
     def __reduce__(self) -> tuple[Any, ...]:
         """A scenario is pickled as its program, and compiled anew by whoever unpickles it."""
-        if self._recipe is None:
+        if self._services.recipe is None:
             raise TypeError("a scenario that was made by hand cannot be pickled")
-        return self._recipe
+        return self._services.recipe
 
     def __deepcopy__(self, _memo: Any) -> "Scenario":
         return self  # scenes do not depend on what has been sampled before
@@ -380,8 +393,8 @@ class Scenario:
                 "the saved scene is of another program",
                 help="load the program, parameters and options with which it was saved",
             )
-        source = source_of(saved, self._engine.plan.graph)
-        return Scene(*self._engine.replay(source, saved.task, saved.attempts), self._family)
+        source = source_of(saved, self.outline.graph)
+        return Scene(*self._sampler.engine.replay(source, saved.task, saved.attempts), self._family)
 
     def replay(self, path: str | Path) -> Scene:
         """The scene that `Scene.save` has written; raises `SerializationError` as `sceneFromBytes` does."""
@@ -435,13 +448,11 @@ class Scenario:
 
         """
         if scene is None:
-            self._condition = ({}, {})
+            self._sampler = self._unconditioned
         else:
             values = [*map(self._object, objects), *map(self._parameter, params)]
             nodes = Graph(dependencies(values)).nodes
-            numbers, words = draws_of(scene.found, scene.lane, nodes)
-            self._condition = ({**self._condition[0], **numbers}, {**self._condition[1], **words})
-        self._engine = Engine(self.outline.plan(), self._conditioned(lambda lanes: Counter(lanes.keys)))
+            self._sampler = self._sampler.fixed(*draws_of(scene.found, scene.lane, nodes))
         self._foreseen = Foreseen(self._foresee)
 
     def _object(self, item: Any) -> Any:
@@ -464,19 +475,6 @@ class Scenario:
                 help=f"its parameters are {', '.join(parameters)}" if parameters else "it has none",
             )
         return parameters[name]
-
-    def _conditioned(self, source: Callable[[Lanes], Source]) -> Callable[[Lanes], Source]:
-        """A source in which what `conditionOn` says is fixed, whatever it says later."""
-        numbers, words = self._condition
-        if not numbers and not words:
-            return source
-        return lambda lanes: fixed_draws(numbers, words, source(lanes))
-
-    def _engine_of(self, points: PointSet | None) -> Engine:
-        """What samples by rows of a point set; the usual engine where there is none."""
-        if points is None:
-            return self._engine
-        return self._engine.driven(self._conditioned(driven(points, self._engine.plan.graph)))
 
 
 def exhaustion_message(exhausted: Exhausted) -> str:

@@ -14,10 +14,11 @@ from typing import Any
 import pytest
 
 import scenic
-from scenic.cli import workers
-from scenic.cli.batches import Job, Made, ResumeError, WorkerDiedError, _Pieces, continued, in_processes
+from scenic.batch import workers
+from scenic.batch.scenes import Job, Made, WorkerDiedError, _Pieces, in_processes
 from scenic.formats.growing import GrowingFile
 from scenic.formats.json_lines import SceneLines
+from scenic.formats.resuming import ResumeError, continued
 from tests.cli.commands import run_here
 
 PROGRAM = """
@@ -130,7 +131,7 @@ def made_by(run: Any, monkeypatch: pytest.MonkeyPatch, job: Job) -> bytes:
     """The lines of a job by processes that answer as ``run`` says."""
     scenario = scenic.scenarioFromString("ego = new Object with foo Range(0, 1)\n")
     monkeypatch.setattr(workers, "run", run)
-    return b"".join(made.lines for made in in_processes(scenario, SceneLines(), job, 2))
+    return b"".join(made.encoded for made in in_processes(scenario, SceneLines().encoded, job, 2))
 
 
 def test_pieces_are_told_in_order_whatever_the_order_in_which_they_are_made(
@@ -169,9 +170,9 @@ def test_a_piece_that_fails_in_a_process_alone_is_made_here(monkeypatch: pytest.
                 yield number, Made(piece, b"", (), failed=True) if fails(piece) else function(piece)
 
         monkeypatch.setattr(workers, "run", run)
-        made = list(in_processes(scenario, SceneLines(), job, 2))
+        made = list(in_processes(scenario, SceneLines().encoded, job, 2))
         return (
-            b"".join(each.lines for each in made),
+            b"".join(each.encoded for each in made),
             [each.k for piece in made for each in piece.missing],
             [k for piece in made for k in range(piece.job.first, piece.job.last)],
             sum(piece.attempts for piece in made),
@@ -409,3 +410,25 @@ def test_pieces_are_a_job_whole_however_long_they_take(seconds: float, jobs: int
         reached = piece.last
         pieces.learn(Made(piece, b"", (), seconds=seconds))
     assert reached == 9003
+
+
+@pytest.mark.parametrize("source", [None, scenic.Sobol()])
+def test_scenario_samples_the_same_scenes_in_processes(source: Any) -> None:
+    scenario = scenic.scenarioFromString(
+        "param noise = Normal(0, 1)\nego = new Object with foo Range(0, 1)\nrequire[0.5] ego.foo < 0.3\nrequire ego.foo < 0.8\n"
+    )
+    alone = scenario.sample(60, seed=4, source=source)
+    shared = scenario.sample(60, seed=4, source=source, processes=2)
+    assert [scene.params["noise"] for scene in shared] == [scene.params["noise"] for scene in alone]
+    assert [scene.attempts for scene in shared] == [scene.attempts for scene in alone]
+    assert scenario.sceneToBytes(shared[7]) == scenario.sceneToBytes(alone[7])
+
+
+def test_scenario_rejects_in_processes_as_alone() -> None:
+    scenario = scenic.scenarioFromString("ego = new Object with foo Range(0, 1)\nrequire ego.foo < 0.5\n")
+    messages = []
+    for processes in (1, 2):
+        with pytest.raises(scenic.RejectionException) as caught:
+            scenario.sample(40, seed=1, max_attempts=1, processes=processes)
+        messages.append(str(caught.value))
+    assert messages[0] == messages[1]

@@ -1,23 +1,23 @@
-"""``scenic sample -j``: JSON Lines of many scenes, made by several processes, in order and the same whatever their number.
+"""Many scenes, made by several processes: in order, and the same whatever their number.
 
-A worker gets a run of scene numbers and answers with their lines; which worker makes which run changes nothing, since a scene
-is a function of the seed and its number. A worker that dies is replaced, and its run is made again.
+A worker gets a run of scene numbers and returns the scenes in encoded form (their JSON Lines, or the numbers of their accepted
+candidates). Any worker may make any run, since a scene is a function of the seed and its number. A worker that dies is
+replaced, and its run is made again.
 """
 
-import json
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from functools import partial
 from pickle import PickleBuffer
 from typing import TYPE_CHECKING, Final
 
-from scenic.formats.growing import GrowingFile
-from scenic.formats.json_lines import SceneLines
-from scenic.graph.points import Sobol
-from scenic.language.errors import Located
+import numpy as np
+
+from scenic.graph.points import PointSet
+from scenic.language.errors import Located, RejectionException
 from scenic.runtime.sampling.report import Exhausted
-from scenic.runtime.scenes.scenario import Scenario
+from scenic.runtime.scenes.scenario import Scenario, exhaustion_message
 from scenic.runtime.scenes.scene import Scene
 
 if TYPE_CHECKING:
@@ -37,11 +37,8 @@ _LONGEST: Final = 4096
 
 _TRIES: Final = 3
 
-
-class ResumeError(Located):
-    """Lines that a run cannot go on with."""
-
-    code = "SC609"
+Encode = Callable[[Scene], bytes]
+"""Turns a scene into bytes; it must be picklable where processes are not forked."""
 
 
 class WorkerDiedError(Located):
@@ -54,7 +51,7 @@ class WorkerDiedError(Located):
 class Job:
     """What to sample: scenes ``first`` to ``last`` (exclusive) of a seed, within limits.
 
-    ``deadline`` is a time of `time.monotonic`; ``sobol`` says that the scenes are rows of Sobol's sequence.
+    ``deadline`` is a time of `time.monotonic`; ``source`` gives random numbers that are not hashed (see `Scenario.stream`).
     """
 
     seed: int
@@ -62,15 +59,15 @@ class Job:
     last: int
     max_attempts: int | None
     deadline: float | None
-    sobol: bool = False
+    source: PointSet | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class Made:
-    """What came of a job: lines, scenes not found, and whether it has to be made by the parent, to show an error."""
+    """The result of a job: encoded scenes, scenes not found, and whether the parent has to make it to show an error."""
 
     job: Job
-    lines: "ReadableBuffer"
+    encoded: "ReadableBuffer"
     missing: tuple[Exhausted, ...]
     attempts: int = 0
     seconds: float = 0.0
@@ -87,54 +84,19 @@ def results_of(scenario: Scenario, job: Job) -> Iterator[Scene | Exhausted]:
         first=job.first,
         max_attempts=job.max_attempts,
         time_limit=limit,
-        source=Sobol() if job.sobol else None,
+        source=job.source,
     )
 
 
-def continued(
-    grown: GrowingFile, digest: str, seed: int | None, first: int, count: int, *, points: str | None = None
-) -> tuple[int | None, int]:
-    """The seed of the run that is resumed, and how many of its scenes are done.
-
-    ``points`` is what scenes are made of, if not of random numbers. Raises `ResumeError` where the lines are of another program, of other options or of another run.
-    """
-    kept = grown.kept()
-    if not kept:
-        return seed, 0
-    try:
-        head, last = (json.loads(line) for line in (kept[0], kept[-1]))
-        made, begun, reached = (head["digest"], int(head["seed"])), int(head["k"]), int(last["k"])
-        same = made == (last["digest"], int(last["seed"]))
-        alike = head.get("points") == last.get("points") == points
-    except (ValueError, KeyError, TypeError) as error:
-        raise ResumeError(f"'{grown.path}' does not hold scenes of an earlier run ({error})") from error
-    if made[0] != digest:
-        raise ResumeError(
-            f"'{grown.path}' holds scenes of another program, or of the same with other options",
-            help="the program has changed since: sample to a new file",
-        )
-    if not alike:
-        raise ResumeError(
-            f"'{grown.path}' holds scenes of other random numbers",
-            help="give --sobol as in the run that is resumed, or leave it away as there",
-        )
-    if not same or (seed is not None and seed != made[1]) or not first <= begun or reached >= first + count:
-        raise ResumeError(
-            f"'{grown.path}' holds scenes {begun} to {reached} of seed {made[1]}, which this run does not make",
-            help="give the same --seed, --first and -n as before, or a larger -n",
-        )
-    return made[1], reached + 1 - first
-
-
-def _alone(lines: SceneLines, job: Job, result: Scene | Exhausted) -> Made:
+def _alone(encode: Encode, job: Job, result: Scene | Exhausted) -> Made:
     """What comes of the part of a job that is one scene."""
     part = replace(job, first=result.k, last=result.k + 1)
     if isinstance(result, Exhausted):
         return Made(part, b"", (result,), result.attempts)
-    return Made(part, lines.encoded(result), (), result.attempts)
+    return Made(part, encode(result), (), result.attempts)
 
 
-def _make(scenario: Scenario, lines: SceneLines, job: Job) -> Made:
+def _make(scenario: Scenario, encode: Encode, job: Job) -> Made:
     text, missing, attempts = bytearray(), [], 0
     begun = time.monotonic()
     try:
@@ -143,18 +105,50 @@ def _make(scenario: Scenario, lines: SceneLines, job: Job) -> Made:
             if isinstance(result, Exhausted):
                 missing.append(result)
             else:
-                text += lines.encoded(result)
+                text += encode(result)
     except Exception:  # noqa: BLE001 - the parent makes the job again, and shows the error with its place
         return Made(job, b"", (), failed=True)
     return Made(job, PickleBuffer(text), tuple(missing), attempts, time.monotonic() - begun)
 
 
-def in_processes(scenario: Scenario, lines: SceneLines, job: Job, jobs: int) -> Iterator[Made]:
-    """What comes of a job, in order, in pieces that several processes make.
+def sampled_in_processes(
+    scenario: Scenario,
+    n: int,
+    *,
+    seed: int,
+    processes: int,
+    max_attempts: int | None = None,
+    time_limit: float | None = None,
+    source: PointSet | None = None,
+) -> Iterator[Scene]:
+    """Scenes 0 to ``n`` of a seed, found by several processes.
+
+    Workers return the number of each scene's accepted candidate. The parent evaluates these candidates alone.
+
+    Raises:
+        RejectionException: if a scene is not found within the limits.
+        WorkerDiedError: if processes keep dying.
+
+    """
+    deadline = None if time_limit is None else time.monotonic() + time_limit
+    job = Job(seed, 0, n, max_attempts, deadline, source)
+    for made in in_processes(scenario, _accepted_attempt, job, processes):
+        if made.missing:
+            raise RejectionException(exhaustion_message(made.missing[0]))
+        attempts = np.frombuffer(bytes(made.encoded), dtype=np.int64)
+        yield from scenario.accepted(seed, made.job.first, attempts, source=source)
+
+
+def _accepted_attempt(scene: Scene) -> bytes:
+    return np.int64(scene.attempts).tobytes()
+
+
+def in_processes(scenario: Scenario, encode: Encode, job: Job, jobs: int) -> Iterator[Made]:
+    """The results of a job, in order, in pieces that several processes make.
 
     Raises `WorkerDiedError` where processes keep dying, and whatever sampling raises.
     """
-    yield from _ordered(scenario, lines, _Pieces(job, jobs), jobs, tries=_TRIES)
+    yield from _ordered(scenario, encode, _Pieces(job, jobs), jobs, tries=_TRIES)
 
 
 class _Pieces:
@@ -181,12 +175,10 @@ class _Pieces:
         self._usual = max(self._usual, self._size)
 
 
-def _ordered(
-    scenario: Scenario, lines: SceneLines, pieces: _Pieces, jobs: int, *, tries: int
-) -> Iterator[Made]:
+def _ordered(scenario: Scenario, encode: Encode, pieces: _Pieces, jobs: int, *, tries: int) -> Iterator[Made]:
     waiting: dict[int, Made] = {}
     upcoming = 0
-    for index, made in _made(scenario, lines, pieces, jobs):
+    for index, made in _made(scenario, encode, pieces, jobs):
         if made.seconds:
             pieces.learn(made)
         waiting[index] = made
@@ -194,34 +186,32 @@ def _ordered(
             ready = waiting.pop(upcoming)
             upcoming += 1
             if ready.died is not None:
-                ready = _again(scenario, lines, ready, tries)
+                ready = _again(scenario, encode, ready, tries)
             if ready.failed:
                 # Raises what the worker met, here where it can be shown with its place, after what comes before.
                 for result in results_of(scenario, ready.job):
-                    yield _alone(lines, ready.job, result)
+                    yield _alone(encode, ready.job, result)
             else:
                 yield ready
 
 
-def _made(
-    scenario: Scenario, lines: SceneLines, pieces: Iterable[Job], jobs: int
-) -> Iterator[tuple[int, Made]]:
+def _made(scenario: Scenario, encode: Encode, pieces: Iterable[Job], jobs: int) -> Iterator[tuple[int, Made]]:
     """What comes of pieces in several processes, as it comes, with their numbers."""
-    from scenic.cli import workers  # a sixteenth of a start, which one process can do without
+    from scenic.batch import workers  # takes a sixteenth of a start, which one process can do without
 
     return workers.run(
-        partial(_make, scenario, lines),
+        partial(_make, scenario, encode),
         pieces,
         jobs=jobs,
         lost=lambda piece, code: Made(piece, b"", (), died=code),
     )
 
 
-def _again(scenario: Scenario, lines: SceneLines, made: Made, tries: int) -> Made:
+def _again(scenario: Scenario, encode: Encode, made: Made, tries: int) -> Made:
     """A piece whose worker died, made by another one."""
     code = made.died
     for _ in range(tries):
-        ((_, again),) = _made(scenario, lines, [made.job], 1)
+        ((_, again),) = _made(scenario, encode, [made.job], 1)
         if again.died is None:
             return again
         code = again.died

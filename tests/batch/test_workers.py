@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from scenic.cli.workers import run, usable_cpus
+from scenic.batch.workers import run, usable_cpus
 
 METHODS = ["fork", "spawn"]
 
@@ -102,7 +102,7 @@ def test_several_buffers_of_one_answer(method: str) -> None:
 
 
 def test_buffers_without_files_in_memory(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("scenic.cli.workers._memory_file", None)
+    monkeypatch.setattr("scenic.batch.workers._memory_file", None)
     test_buffers("fork")
 
 

@@ -1,0 +1,97 @@
+"""The file and the page data of a simulation that is running."""
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final, Literal
+
+if TYPE_CHECKING:
+    from scenic.formats.course_page import PoseTape
+    from scenic.formats.trajectories import TrajectoryFile
+    from scenic.simulators.simulation import OnState, Poses, Simulation
+
+__all__ = ["Form", "Kept", "about_file"]
+
+Form = Literal["jsonl", "parquet"]
+"""The format of a trajectory's file, which is also its suffix."""
+
+_FIRST_LINE: Final = 1 << 24
+"""The longest first line of a file of ours that is read."""
+
+
+def about_file(path: Path, form: Form) -> Any:
+    """The document about the whole simulation that a trajectory's file begins with.
+
+    Raises ``OSError`` or ``ValueError`` where it cannot be read.
+    """
+    if form == "parquet":
+        from scenic.formats.trajectory_tables import parquet_about
+
+        return parquet_about(path)
+    with path.open(encoding="utf-8") as stream:
+        return json.loads(stream.readline(_FIRST_LINE))
+
+
+class Kept:
+    """Everything that is kept of a simulation while it runs; each new try starts from nothing.
+
+    Args:
+        path: the file of its trajectory, if there is to be one.
+        form: the format of that file.
+        shown: whether the simulation goes onto a page.
+
+    """
+
+    def __init__(self, path: Path | None, form: Form, *, shown: bool) -> None:
+        self._path = path
+        self._form = form
+        self._shown = shown
+        self._file: TrajectoryFile | None = None
+        self._tape: PoseTape | None = None
+        self._simulation: Simulation | None = None
+        self._looked_back = False
+
+    def begin(self) -> "OnState":
+        """The function to call with each state of a new try."""
+        from scenic.formats.course_page import PoseTape
+        from scenic.formats.trajectories import LinesFile
+        from scenic.formats.trajectory_tables import ParquetFile
+
+        self.close()
+        self.looked_back()
+        if self._path is not None:
+            self._file = ParquetFile(self._path) if self._form == "parquet" else LinesFile(self._path)
+        self._tape = PoseTape() if self._shown else None
+        return self._add
+
+    def _add(self, simulation: "Simulation", poses: "Poses", actions: Mapping[Any, Any]) -> None:
+        from scenic.formats.trajectories import step_document
+
+        self._simulation = simulation
+        if self._file is not None:
+            self._file.add(step_document(simulation, poses, actions))
+        if self._tape is not None:
+            self._tape.add(poses)
+
+    def looked_back(self) -> bool:
+        """Whether a try read more of its course than was kept."""
+        from scenic.simulators.results import Latest
+
+        if self._simulation is not None:
+            courses = self._simulation.trajectory, self._simulation.actionSequence
+            self._looked_back |= any(isinstance(course, Latest) and course.missed for course in courses)
+        return self._looked_back
+
+    def finish(self, simulation: "Simulation", about: Mapping[str, Any]) -> dict[str, Any] | None:
+        """Complete the file; returns the data for the page."""
+        from scenic.formats.course_page import course_data
+
+        if self._file is not None:
+            self._file.finish(about)
+        return None if self._tape is None else course_data(simulation, self._tape)
+
+    def close(self) -> None:
+        """Discard the file of an unfinished try."""
+        if self._file is not None:
+            self._file.close()
+            self._file = None

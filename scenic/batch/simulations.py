@@ -1,0 +1,316 @@
+"""Many simulations of a scenario, made by several processes, each a function of seed and number alone."""
+
+import random
+from collections.abc import Generator, Iterator, Mapping, Sequence
+from contextlib import closing
+from dataclasses import dataclass, replace
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from scenic.batch.keeping import Form, Kept, about_file
+from scenic.language.diagnostics import Diagnostic
+
+if TYPE_CHECKING:
+    from scenic.runtime.scenes.scenario import Scenario
+    from scenic.simulators.batch import Numbered
+    from scenic.simulators.simulator import Simulator
+
+__all__ = ["Running", "SimulationError", "SimulationRow", "Simulations", "simulated"]
+
+_NOTHING_KEPT: Final = (
+    "nothing of this simulation is kept; make room or name another place, and give the same command again"
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Running:
+    """How simulations run; everything here but ``stuck_after`` decides what comes out."""
+
+    seed: int
+    max_steps: int | None = 100
+    timestep: float | None = None
+    """Seconds in a step; the simulator's own if ``None``."""
+    tries: int = 20
+    """Simulations tried of one scene before it is given up as rejected."""
+    stuck_after: float = 10.0
+    """Seconds that the program may run within one step."""
+    sobol: bool = False
+    """Whether scenes and simulations are rows of Sobol's sequence."""
+
+    def options(self) -> dict[str, Any]:
+        """The arguments of `simulate_number` that decide what comes out."""
+        options: dict[str, Any] = {
+            "seed": self.seed,
+            "maxSteps": self.max_steps,
+            "timestep": self.timestep,
+            "tries": self.tries,
+        }
+        return {**options, "sobol": True} if self.sobol else options
+
+
+@dataclass(frozen=True, slots=True)
+class SimulationRow:
+    """What became of simulation ``k``: exactly one of ``about``, ``missing`` and ``error`` is set.
+
+    Attributes:
+        k: its number in the run of the seed.
+        about: the document about the whole simulation (`scenic.formats.trajectories.course_document`): steps, why it ended,
+            verdicts and robustness of requirements, records.
+        page: data for the page that plays it, if one is wanted.
+        missing: why there is no simulation (no scene was found, or all tries were rejected).
+        rejections: the reasons that rejected the tries with their counts, the most frequent first.
+        error: what went wrong.
+
+    """
+
+    k: int
+    about: Mapping[str, Any] | None = None
+    page: Mapping[str, Any] | None = None
+    missing: str | None = None
+    rejections: tuple[tuple[str, int], ...] = ()
+    error: Diagnostic | None = None
+
+
+class SimulationError(RuntimeError):
+    """A simulation that failed; ``row`` tells which, and its ``error`` why."""
+
+    def __init__(self, row: SimulationRow) -> None:
+        assert row.error is not None
+        super().__init__(f"simulation {row.k} failed: {row.error.message}")
+        self.row = row
+
+
+class Simulations:
+    """Makes simulations of a scenario by their numbers.
+
+    Args:
+        scenario: what to simulate; other processes compile its program for themselves.
+        simulator: the name of a simulator (see `choose_simulator`), or a simulator, which must be picklable where other
+            processes are not forked.
+        running: how simulations run.
+        folder: where trajectories are kept, if anywhere.
+        form: the format of their files.
+        shown: whether rows carry data for a page.
+
+    Raises:
+        SimulatorChoiceError: if there is no such simulator.
+
+    """
+
+    def __init__(
+        self,
+        scenario: "Scenario",
+        simulator: "str | Simulator | None",
+        running: Running,
+        *,
+        folder: Path | None = None,
+        form: Form = "jsonl",
+        shown: bool = False,
+    ) -> None:
+        self._scenario = scenario
+        self._named = simulator
+        self._running = running
+        self._folder = folder
+        self._form: Form = form
+        self._shown = shown
+        self._simulator: Simulator | None = None
+        self._looking_back: bool | None = None
+        self.simulator  # noqa: B018 - raises at once what is wrong with it
+
+    def __getstate__(self) -> dict[str, Any]:
+        # A process that starts afresh makes its own simulator.
+        return {**self.__dict__, "_simulator": None}
+
+    @property
+    def simulator(self) -> "Simulator":
+        """The simulator of this process."""
+        from scenic.simulators.simulator import Simulator
+
+        if isinstance(self._named, Simulator):
+            return self._named
+        if self._simulator is None:
+            self._simulator = self._choose(self._named)
+        return self._simulator
+
+    def _choose(self, name: str | None) -> "Simulator":
+        from scenic.runtime.python.importing import beside, forget_stranger
+        from scenic.simulators.batch import choose_simulator
+
+        # A simulator of the user's own may lie beside the program, like everything that the program imports.
+        folder = Path(self._scenario.filename).absolute().parent
+        module, colon, _ = (name or "").partition(":")
+        if colon:
+            forget_stranger(module, folder)
+        with beside(folder):
+            return choose_simulator(name, self._scenario)
+
+    def rows(self, numbers: Sequence[int], processes: int = 1) -> Generator[SimulationRow, None, None]:
+        """The simulations of these numbers, in any order, as they are made."""
+        if processes == 1 or len(numbers) < 2:
+            yield from map(self, numbers)
+            return
+        from scenic.batch import workers
+
+        for _, row in workers.run(self, numbers, jobs=processes, lost=_lost):
+            yield row
+
+    def known(self, k: int) -> SimulationRow | None:
+        """Simulation ``k`` as an earlier run has kept it, if that was of the same program, seed and settings."""
+        path = self._file(k)
+        if path is None or self._shown:
+            return None
+        try:
+            found = about_file(path, self._form)
+        except (OSError, ValueError):
+            return None
+        if not isinstance(found, dict) or found.get("settings") != self._settings():
+            return None
+        return SimulationRow(k, about=found)
+
+    def _file(self, k: int) -> Path | None:
+        return None if self._folder is None else self._folder / f"simulation-{k:04d}.{self._form}"
+
+    def _settings(self) -> dict[str, Any]:
+        """Everything that a simulation depends on beside its number."""
+        return {
+            "program": self._scenario.digest,
+            "simulator": type(self.simulator).__name__,
+            **self._running.options(),
+        }
+
+    def __call__(self, k: int) -> SimulationRow:
+        """Make simulation ``k`` and its file. Raises nothing but interruptions."""
+        try:
+            return self._one(k)
+        except SystemExit as error:
+            message = (
+                f"the simulator or the program has asked for the end of the process (exit code {error.code})"
+            )
+            return SimulationRow(k, error=Diagnostic("SC503", message, help="raise an exception instead"))
+        except Exception as error:  # noqa: BLE001 - it is reported, and the other simulations go on
+            return SimulationRow(k, error=_failure(error))
+
+    def _one(self, k: int) -> SimulationRow:
+        from scenic.formats.trajectories import course_document
+
+        with closing(Kept(self._file(k), self._form, shown=self._shown)) as kept:
+            numbered = self._simulated(k, kept)
+            done = numbered.simulation
+            if done is None:
+                what = f"rejected ({numbered.tries} tried)" if numbered.has_scene else "no scene found"
+                return SimulationRow(k, missing=what, rejections=numbered.rejections)
+            about = {**course_document(done, k=k, tries=numbered.tries), "settings": self._settings()}
+            return SimulationRow(k, about=about, page=kept.finish(done, about))
+
+    def _simulated(self, k: int, kept: Kept) -> "Numbered":
+        """Simulation ``k``, with its whole course in memory if the program's text looks back at it.
+
+        Code elsewhere may do so, too: then the simulation is made again. Each simulation decides this for itself, so that
+        files do not depend on which simulations a process makes.
+        """
+        from scenic.simulators.batch import simulate_number
+        from scenic.simulators.results import NotKeptError
+
+        simulate = partial(
+            simulate_number,
+            self._scenario,
+            self.simulator,
+            k=k,
+            stuck_after=self._running.stuck_after,
+            stuck_is_error=True,
+            beginning=kept.begin,
+            enableReplay=False,
+            **self._running.options(),
+        )
+        if self._looks_back():
+            return simulate(keep_course=True)
+        try:
+            numbered = simulate(keep_course=False)
+        except Exception as error:
+            if not (kept.looked_back() or NotKeptError.behind(error)):
+                raise
+        else:
+            if not kept.looked_back():
+                return numbered
+        return simulate(keep_course=True)
+
+    def _looks_back(self) -> bool:
+        """Whether the program's text names something that needs the whole course."""
+        if self._looking_back is None:
+            self._looking_back = any(name in self._scenario.text for name in ("trajectory", "actionSequence"))
+        return self._looking_back
+
+
+def simulated(
+    scenario: "Scenario",
+    n: int,
+    *,
+    seed: int | None = None,
+    first: int = 0,
+    simulator: "str | Simulator | None" = None,
+    max_steps: int | None = 100,
+    timestep: float | None = None,
+    tries: int = 20,
+    folder: str | Path | None = None,
+    processes: int = 1,
+) -> list[SimulationRow]:
+    """Simulate scenes ``first`` to ``first + n`` of a seed.
+
+    Args:
+        scenario: the scenario.
+        n: how many simulations.
+        seed: any integer (drawn from Python's ``random`` if not given); simulation ``k`` of a seed is always the same.
+        first: the number of the first one.
+        simulator: ``kinematic``, ``mujoco``, ``dummy``, ``MODULE:CLASS`` or a simulator; the program's own by default.
+        max_steps: steps of a simulation at most.
+        timestep: seconds in a step; the simulator's own if not given.
+        tries: simulations tried of one scene before it is given up as rejected.
+        folder: where trajectories are kept; those that are there already are not made again.
+        processes: how many processes simulate. Changes speed, never what comes out.
+
+    Returns:
+        The rows of all simulations, in order.
+
+    Raises:
+        SimulationError: if the program or the simulator fails in one of them.
+        SimulatorChoiceError: if there is no such simulator.
+
+    """
+    from scenic.formats.files import make_folder
+
+    place = None if folder is None else Path(folder)
+    if place is not None:
+        make_folder(place)
+    running = Running(random.getrandbits(63) if seed is None else seed, max_steps, timestep, tries)
+    batch = Simulations(scenario, simulator, running, folder=place)
+    numbers = range(first, first + n)
+    found = {row.k: row for row in _known(batch, numbers)}
+    with closing(batch.rows([k for k in numbers if k not in found], processes)) as rows:
+        for row in rows:
+            if row.error is not None:
+                raise SimulationError(row)
+            found[row.k] = row
+    return [found[k] for k in numbers]
+
+
+def _known(batch: Simulations, numbers: Sequence[int]) -> Iterator[SimulationRow]:
+    return (row for k in numbers if (row := batch.known(k)) is not None)
+
+
+def _failure(error: Exception) -> Diagnostic:
+    from scenic.failures import diagnose
+    from scenic.formats.files import OutputError
+
+    found = diagnose(error)
+    if found is None:
+        message = f"{type(error).__name__}: {error}"
+        found = Diagnostic("SC503", message, help="the simulator raised this")
+    if isinstance(error, OutputError) or (isinstance(error, OSError) and error.filename is not None):
+        found = replace(found, help=_NOTHING_KEPT)
+    return found
+
+
+def _lost(k: int, code: int) -> SimulationRow:
+    message = f"the process of simulation {k} died (exit code {code})"
+    return SimulationRow(k, error=Diagnostic("SC503", message))

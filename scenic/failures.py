@@ -1,0 +1,110 @@
+"""Failures of programs as diagnostics: what a program's code raises, with its place in the text."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+
+from scenic.compiler.tracebacks import locate, raised_at
+from scenic.language.diagnostics import Diagnostic, Label
+from scenic.language.errors import (
+    InvalidScenarioError,
+    Located,
+    RejectionException,
+    annotate,
+    annotation,
+)
+from scenic.language.spelling import nearest_attribute
+
+__all__ = ["diagnose", "placed"]
+
+
+def diagnose(error: BaseException) -> Diagnostic | None:
+    """An exception as a diagnostic: with its place in the program, if the program or its use caused it."""
+    if isinstance(error, Located):
+        return error.diagnostic()
+    told = annotation(error)
+    if told is not None:
+        return _with_origin(told, error)
+    place = locate(error.__traceback__) if error.__traceback__ is not None else None
+    if place is None:
+        return None
+    if isinstance(error, ModuleNotFoundError):
+        return Diagnostic(
+            "SC406",
+            f"there is no module {error.name!r}",
+            place.span,
+            filename=place.filename,
+            help="modules are .scenic files beside the program, or anything that Python can import",
+        )
+    near = nearest_attribute(error)
+    found = Diagnostic(
+        "SC400",
+        f"{type(error).__name__}: {error}",
+        place.span,
+        filename=place.filename,
+        help=f"did you mean `{near}`?" if near else "the program raised this exception while it ran",
+    )
+    return _with_origin(found, error)
+
+
+def _with_origin(found: Diagnostic, error: BaseException) -> Diagnostic:
+    """The diagnostic with the line that raised the exception, where that is another one."""
+    origin = raised_at(error)
+    if origin is None or found.span is None or found.labels:
+        return found
+    if origin.filename == found.filename and found.span.line <= origin.span.line <= found.span.end_line:
+        return found
+    return replace(found, labels=(Label(origin.span, "raised here", origin.filename),))
+
+
+@contextmanager
+def placed(text: str, filename: str) -> Iterator[None]:
+    """Give errors that a program raises while it runs their place in its text.
+
+    Raises:
+        InvalidScenarioError: in place of ``SystemExit`` and of a rejection, which describe no scenario.
+
+    """
+    try:
+        yield
+    except SystemExit as error:
+        raise _no_scenario(
+            error,
+            filename,
+            f"the program ended itself (`sys.exit`, with {error.code!r}) before it described a scenario",
+            "raise an exception that says what is wrong instead",
+        ) from error
+    except RejectionException as error:
+        raise _no_scenario(
+            error,
+            filename,
+            "the program rejected itself while it ran: every scene would be rejected",
+            "raise `RejectionException` only in what is evaluated on samples",
+        ) from error
+    except Located as error:
+        if error.span is None or error.filename is None:
+            place = locate(error.__traceback__) if error.__traceback__ is not None else None
+            error.span = error.span or (place.span if place else None)
+            error.filename = error.filename or (place.filename if place else filename)
+        if error.filename == filename:
+            error.program = text
+        raise
+    except Exception as error:
+        found = diagnose(error)
+        if found is not None and found.span is not None:
+            annotate(
+                error,
+                found,
+                f"{found.filename}:{found.span.line}:{found.span.column + 1}: raised while the program ran",
+            )
+        raise
+
+
+def _no_scenario(error: BaseException, filename: str, message: str, help: str) -> InvalidScenarioError:
+    place = locate(error.__traceback__) if error.__traceback__ is not None else None
+    return InvalidScenarioError(
+        message,
+        span=None if place is None else place.span,
+        filename=filename if place is None else place.filename,
+        help=help,
+    )

@@ -1,0 +1,49 @@
+"""Runs that go on with the JSON Lines of an earlier one."""
+
+import json
+
+from scenic.formats.growing import GrowingFile
+from scenic.language.errors import Located
+
+__all__ = ["ResumeError", "continued"]
+
+
+class ResumeError(Located):
+    """Lines that a run cannot go on with."""
+
+    code = "SC609"
+
+
+def continued(
+    grown: GrowingFile, digest: str, seed: int | None, first: int, count: int, *, points: str | None = None
+) -> tuple[int | None, int]:
+    """The seed of the run that is resumed, and how many of its scenes are done.
+
+    ``points`` is what scenes are made of, if not of random numbers. Raises `ResumeError` where the lines are of another program, of other options or of another run.
+    """
+    kept = grown.kept()
+    if not kept:
+        return seed, 0
+    try:
+        head, last = (json.loads(line) for line in (kept[0], kept[-1]))
+        made, begun, reached = (head["digest"], int(head["seed"])), int(head["k"]), int(last["k"])
+        same = made == (last["digest"], int(last["seed"]))
+        alike = head.get("points") == last.get("points") == points
+    except (ValueError, KeyError, TypeError) as error:
+        raise ResumeError(f"'{grown.path}' does not hold scenes of an earlier run ({error})") from error
+    if made[0] != digest:
+        raise ResumeError(
+            f"'{grown.path}' holds scenes of another program, or of the same with other options",
+            help="the program has changed since: sample to a new file",
+        )
+    if not alike:
+        raise ResumeError(
+            f"'{grown.path}' holds scenes of other random numbers",
+            help="give --sobol as in the run that is resumed, or leave it away as there",
+        )
+    if not same or (seed is not None and seed != made[1]) or not first <= begun or reached >= first + count:
+        raise ResumeError(
+            f"'{grown.path}' holds scenes {begun} to {reached} of seed {made[1]}, which this run does not make",
+            help="give the same --seed, --first and -n as before, or a larger -n",
+        )
+    return made[1], reached + 1 - first

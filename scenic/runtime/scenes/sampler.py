@@ -1,0 +1,124 @@
+"""A plan being sampled: the engine that knows what its rounds cost, and what is fixed in every scene."""
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from scenic.graph.domain import Domain
+from scenic.graph.draws import Counter, Lanes, Source
+from scenic.graph.points import PointSet
+from scenic.runtime.sampling.driving import driven
+from scenic.runtime.sampling.engine import Accepted, Engine, Plan
+from scenic.runtime.sampling.pending import Task
+from scenic.runtime.sampling.planning import Outline
+from scenic.runtime.sampling.report import Exhausted
+from scenic.runtime.scenes.saving import fixed_draws
+
+PROOF_CANDIDATES = 200
+"""Candidates that illustrate why no scene exists, where that is proven."""
+
+OPAQUE_ATTEMPTS = 1000
+"""Candidates tried for one scene of a program whose only random numbers could be those of its own functions."""
+
+DEFAULT_ATTEMPTS = 100_000
+"""Candidates tried for one scene before giving up, unless the caller says otherwise."""
+
+Results = Iterator[Accepted | Exhausted]
+
+
+class Sampler:
+    """Finds the scenes of an outline.
+
+    Args:
+        outline: the checks and the graph of the program.
+        domain: the part of the cube to sample from; it must hold every point that meets the requirements.
+        impossible: labels of requirements that are proven to fail everywhere; then nothing is sampled.
+        numbers: draws of axes that are fixed in every scene, by address.
+        words: draws of keys that are fixed in every scene, by address.
+
+    """
+
+    def __init__(
+        self,
+        outline: Outline,
+        domain: Domain | None = None,
+        *,
+        impossible: Sequence[str] = (),
+        numbers: Mapping[int, float] | None = None,
+        words: Mapping[int, int] | None = None,
+    ) -> None:
+        self._outline = outline
+        self._impossible = tuple(impossible)
+        self._numbers, self._words = dict(numbers or {}), dict(words or {})
+        self.engine = Engine(outline.plan(domain), self._fixing(lambda lanes: Counter(lanes.keys)))
+
+    @property
+    def plan(self) -> Plan:
+        """The plan that is sampled."""
+        return self.engine.plan
+
+    def fixed(self, numbers: Mapping[int, float], words: Mapping[int, int]) -> "Sampler":
+        """A sampler in which these draws are fixed, too.
+
+        It samples the whole cube, since the fixed values may lie outside of the narrowed domain.
+        """
+        return Sampler(self._outline, numbers={**self._numbers, **numbers}, words={**self._words, **words})
+
+    def find(
+        self,
+        tasks: Iterable[tuple[int, int]],
+        *,
+        max_attempts: int | None,
+        deadline: float | None = None,
+        lanes: int | None = None,
+        source: PointSet | None = None,
+    ) -> Results:
+        """The scenes of ``tasks``, in order; the arguments are those of `Scenario.stream`."""
+        if self._impossible:
+            return self._not_found(tasks)
+        limit = self._most_attempts(max_attempts)
+        if source is not None and not source.retries:
+            limit = 1
+        engine = self._engine_of(source)
+        return engine.scenes(tasks, max_attempts=limit, deadline=deadline, lanes=lanes)
+
+    def foresee(self, tasks: Iterable[tuple[int, int]], max_attempts: int, more: bool) -> Results:
+        """The scenes of tasks without end; ``more`` tells whether to expect that more than the first one is wanted."""
+        if self._impossible:
+            return self._not_found(tasks)
+        return self.engine.foresee(tasks, max_attempts=self._most_attempts(max_attempts), more=more)
+
+    def accepted(
+        self, seed: int, numbers: NDArray[np.int64], attempts: NDArray[np.int64], source: PointSet | None
+    ) -> list[Accepted]:
+        """Scenes of a seed of which the accepted candidates are known."""
+        return self._engine_of(source).accepted(seed, numbers, attempts)
+
+    def _not_found(self, tasks: Iterable[tuple[int, int]]) -> Iterator[Exhausted]:
+        report = None
+        for seed, k in tasks:
+            report = report or self.engine.report(Task(seed, k), PROOF_CANDIDATES)
+            yield Exhausted(seed, k, 0, "impossible", report)
+
+    def _most_attempts(self, wanted: int | None) -> int:
+        limit = DEFAULT_ATTEMPTS if wanted is None else wanted
+        nodes = self.plan.graph.nodes
+        if any(node.is_axis for node in nodes):
+            return limit
+        # Every attempt is the same, unless the program's own functions draw random numbers.
+        return min(limit, OPAQUE_ATTEMPTS if any(node.is_drawn for node in nodes) else 1)
+
+    def _fixing(self, source: Callable[[Lanes], Source]) -> Callable[[Lanes], Source]:
+        if not self._numbers and not self._words:
+            return source
+        return lambda lanes: fixed_draws(self._numbers, self._words, source(lanes))
+
+    def _engine_of(self, points: PointSet | None) -> Engine:
+        """The engine that samples rows of a point set; the usual engine where there is none."""
+        if points is None:
+            return self.engine
+        return self.engine.driven(self._fixing(driven(points, self.plan.graph)))
+
+
+__all__ = ["DEFAULT_ATTEMPTS", "Sampler"]

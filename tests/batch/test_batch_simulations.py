@@ -1,0 +1,50 @@
+from pathlib import Path
+
+import pytest
+
+import scenic
+from scenic.batch.simulations import SimulationError
+
+PROGRAM = """
+behavior Drive():
+    while True:
+        take ()
+ego = new Object with behavior Drive, with velocity (Range(0, 2), 0, 0), with foo Range(0, 1)
+record ego.position.x as x
+require always ego.position.x < 100
+terminate after 3 steps
+"""
+
+
+def test_simulations_do_not_depend_on_the_number_of_processes(tmp_path: Path) -> None:
+    scenario = scenic.scenarioFromString(PROGRAM)
+    alone = scenario.simulate(4, seed=3, folder=tmp_path / "alone")
+    shared = scenario.simulate(4, seed=3, processes=2, folder=tmp_path / "shared")
+    assert alone == shared
+    assert [row.k for row in alone] == [0, 1, 2, 3]
+    assert all(row.about is not None and row.about["steps"] == 3 for row in alone)
+    assert len({row.about["records"]["x"][-1][1] for row in alone if row.about}) == 4
+    for k in range(4):
+        name = f"simulation-{k:04d}.jsonl"
+        assert (tmp_path / "alone" / name).read_bytes() == (tmp_path / "shared" / name).read_bytes()
+
+
+def test_kept_simulations_are_not_made_again(tmp_path: Path) -> None:
+    scenario = scenic.scenarioFromString(PROGRAM)
+    first = scenario.simulate(2, seed=3, folder=tmp_path)
+    times = {path: path.stat().st_mtime_ns for path in tmp_path.iterdir()}
+    again = scenario.simulate(3, seed=3, folder=tmp_path)
+    assert [row.about for row in again[:2]] == [row.about for row in first]
+    assert {path: path.stat().st_mtime_ns for path in times} == times
+
+
+def test_a_failing_simulation_is_raised_with_its_diagnostic() -> None:
+    scenario = scenic.scenarioFromString(
+        "behavior B():\n    take 1 / 0\nego = new Object with behavior B\n", filename="failing.scenic"
+    )
+    with pytest.raises(SimulationError, match="simulation 0 failed") as caught:
+        scenario.simulate(1, seed=1)
+    found = caught.value.row.error
+    assert found is not None
+    assert found.span is not None
+    assert found.span.line == 2
