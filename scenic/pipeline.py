@@ -3,9 +3,9 @@
 import inspect
 import sys
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
-from types import CodeType, FrameType, MappingProxyType, ModuleType, TracebackType
+from types import CodeType, FrameType, ModuleType, TracebackType
 from typing import TYPE_CHECKING, Any, Final
 
 from scenic.analysis.contraction import contract
@@ -75,7 +75,7 @@ def load(
     """
     file = Path(path)
     source = Source(sys.stdin.read(), "<stdin>") if str(path) == "-" else read_source(file)
-    options = _Options(params or {}, model, scenario, mode2D, prune, strict_params=True)
+    options = _Options(dict(params or {}), model, scenario, mode2D, prune, strict_params=True)
     return _scenario(source.text, source.filename, options)
 
 
@@ -101,7 +101,7 @@ def scenarioFromFile(
     source = read_source(Path(path))
     if Path(path).suffix not in _EXTENSIONS:
         raise RuntimeError(f"'{path}' is no Scenic program by its name: it ends in neither .scenic nor .sc")
-    options = _Options(params or {}, model, scenario, mode2D, _pruning_wanted())
+    options = _Options(dict(params or {}), model, scenario, mode2D, _pruning_wanted())
     return _scenario(source.text, str(path), options)
 
 
@@ -115,7 +115,7 @@ def scenarioFromString(
     mode2D: bool = False,
 ) -> Scenario:
     """The scenario of a program given as text."""
-    return _scenario(text, filename, _Options(params or {}, model, scenario, mode2D, _pruning_wanted()))
+    return _scenario(text, filename, _Options(dict(params or {}), model, scenario, mode2D, _pruning_wanted()))
 
 
 def _pruning_wanted() -> bool:
@@ -182,7 +182,7 @@ class _Modules:
 class _Options:
     """How a program is compiled; see `load`."""
 
-    params: Mapping[str, Any] = MappingProxyType({})
+    params: Mapping[str, Any] = field(default_factory=dict)
     model: str | None = None
     scenario: str | None = None
     mode_2d: bool = False

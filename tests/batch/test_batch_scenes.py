@@ -425,7 +425,9 @@ def test_scenario_samples_the_same_scenes_in_processes(source: Any) -> None:
 
 
 def test_scenario_rejects_in_processes_as_alone() -> None:
-    scenario = scenic.scenarioFromString("ego = new Object with foo Range(0, 1)\nrequire ego.foo < 0.5\n")
+    scenario = scenic.scenarioFromString(
+        "def half(v): return v < 0.5\nego = new Object with foo Range(0, 1)\nrequire half(ego.foo)\n"
+    )
     messages = []
     for processes in (1, 2):
         with pytest.raises(scenic.RejectionException) as caught:
