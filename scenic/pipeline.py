@@ -202,6 +202,21 @@ class _Options:
             },
         )
 
+    def given(self) -> dict[str, Any]:
+        """The keyword arguments of `load` that differ from the defaults."""
+        given: dict[str, Any] = {}
+        if self.params:
+            given["params"] = dict(self.params)
+        if self.model is not None:
+            given["model"] = self.model
+        if self.scenario is not None:
+            given["scenario"] = self.scenario
+        if self.mode_2d:
+            given["mode2D"] = True
+        if not self.prune:
+            given["prune"] = False
+        return given
+
     def __reduce__(self) -> tuple[Any, ...]:
         values = (dict(self.params), self.model, self.scenario, self.mode_2d, self.prune, self.strict_params)
         return _Options, values
@@ -235,7 +250,9 @@ def _scenario(text: str, filename: str, options: _Options) -> Scenario:
         domain=domain,
         impossible=impossible,
         digest=options.digest(text),
-        services=Services(show_page, (_scenario, (text, filename, options)), _sample, _simulate),
+        services=Services(
+            show_page, (_scenario, (text, filename, options)), options.given(), _sample, _simulate
+        ),
     )
     scenario.prepare()
     promote_young()

@@ -6,7 +6,8 @@ replaced, and its run is made again.
 """
 
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from functools import partial
 from pickle import PickleBuffer
@@ -14,6 +15,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from scenic.batch.engines import Engine, OverExecutor, Processes
 from scenic.graph.points import PointSet
 from scenic.language.errors import Located, RejectionException
 from scenic.runtime.sampling.report import Exhausted
@@ -37,8 +39,11 @@ _LONGEST: Final = 4096
 
 _TRIES: Final = 3
 
-Encode = Callable[[Scene], bytes]
-"""Turns a scene into bytes; it must be picklable where processes are not forked."""
+Encode = Callable[[Scenario, Sequence[Scene]], bytes]
+"""Turns some scenes of a scenario into bytes; it must be picklable where processes are not forked."""
+
+_BLOCK: Final = 1024
+"""Scenes encoded together."""
 
 
 class WorkerDiedError(Located):
@@ -88,24 +93,55 @@ def results_of(scenario: Scenario, job: Job) -> Iterator[Scene | Exhausted]:
     )
 
 
-def _alone(encode: Encode, job: Job, result: Scene | Exhausted) -> Made:
-    """What comes of the part of a job that is one scene."""
+def encoded_here(scenario: Scenario, encode: Encode, job: Job) -> Iterator[Made]:
+    """The results of a job, in order, in pieces that this process makes; raises whatever sampling raises."""
+    block: list[Scene] = []
+    first, due = job.first, time.monotonic() + _SECONDS
+
+    def made(missing: tuple[Exhausted, ...], last: int) -> Made:
+        attempts = sum(scene.attempts for scene in block) + sum(item.attempts for item in missing)
+        part = replace(job, first=first, last=last)
+        return Made(part, encode(scenario, block) if block else b"", missing, attempts)
+
+    for result in results_of(scenario, job):
+        if isinstance(result, Exhausted):
+            yield made((result,), result.k + 1)
+        else:
+            block.append(result)
+            if len(block) < _BLOCK and time.monotonic() < due:
+                continue
+            yield made((), result.k + 1)
+        block.clear()
+        first, due = result.k + 1, time.monotonic() + _SECONDS
+    if block:
+        yield made((), job.last)
+
+
+def _alone(scenario: Scenario, encode: Encode, job: Job, result: Scene | Exhausted) -> Made:
+    """The result of the part of a job that is one scene."""
     part = replace(job, first=result.k, last=result.k + 1)
     if isinstance(result, Exhausted):
         return Made(part, b"", (result,), result.attempts)
-    return Made(part, encode(result), (), result.attempts)
+    return Made(part, encode(scenario, [result]), (), result.attempts)
 
 
 def _make(scenario: Scenario, encode: Encode, job: Job) -> Made:
-    text, missing, attempts = bytearray(), [], 0
+    text, attempts = bytearray(), 0
+    missing: list[Exhausted] = []
+    block: list[Scene] = []
     begun = time.monotonic()
     try:
         for result in results_of(scenario, job):
             attempts += result.attempts
             if isinstance(result, Exhausted):
                 missing.append(result)
-            else:
-                text += encode(result)
+                continue
+            block.append(result)
+            if len(block) == _BLOCK:
+                text += encode(scenario, block)
+                block.clear()
+        if block:
+            text += encode(scenario, block)
     except Exception:  # noqa: BLE001 - the parent makes the job again, and shows the error with its place
         return Made(job, b"", (), failed=True)
     return Made(job, PickleBuffer(text), tuple(missing), attempts, time.monotonic() - begun)
@@ -120,8 +156,9 @@ def sampled_in_processes(
     max_attempts: int | None = None,
     time_limit: float | None = None,
     source: PointSet | None = None,
+    executor: Executor | None = None,
 ) -> Iterator[Scene]:
-    """Scenes 0 to ``n`` of a seed, found by several processes.
+    """Scenes 0 to ``n`` of a seed, found by several processes: our own, or those of ``executor``.
 
     Workers return the number of each scene's accepted candidate. The parent evaluates these candidates alone.
 
@@ -132,23 +169,25 @@ def sampled_in_processes(
     """
     deadline = None if time_limit is None else time.monotonic() + time_limit
     job = Job(seed, 0, n, max_attempts, deadline, source)
-    for made in in_processes(scenario, _accepted_attempt, job, processes):
+    engine = Processes(processes) if executor is None else OverExecutor(executor, max(2, processes))
+    for made in in_processes(scenario, _accepted_attempts, job, engine):
         if made.missing:
             raise RejectionException(exhaustion_message(made.missing[0]))
         attempts = np.frombuffer(bytes(made.encoded), dtype=np.int64)
-        yield from scenario.accepted(seed, made.job.first, attempts, source=source)
+        numbers = np.arange(made.job.first, made.job.last, dtype=np.int64)
+        yield from scenario.found(seed, numbers, attempts, source=source)
 
 
-def _accepted_attempt(scene: Scene) -> bytes:
-    return np.int64(scene.attempts).tobytes()
+def _accepted_attempts(_: Scenario, scenes: Sequence[Scene]) -> bytes:
+    return np.array([scene.attempts for scene in scenes], dtype=np.int64).tobytes()
 
 
-def in_processes(scenario: Scenario, encode: Encode, job: Job, jobs: int) -> Iterator[Made]:
-    """The results of a job, in order, in pieces that several processes make.
+def in_processes(scenario: Scenario, encode: Encode, job: Job, engine: Engine) -> Iterator[Made]:
+    """The results of a job, in order, in pieces that the workers of an engine make.
 
     Raises `WorkerDiedError` where processes keep dying, and whatever sampling raises.
     """
-    yield from _ordered(scenario, encode, _Pieces(job, jobs), jobs, tries=_TRIES)
+    yield from _ordered(scenario, encode, _Pieces(job, engine.jobs), engine)
 
 
 class _Pieces:
@@ -175,10 +214,10 @@ class _Pieces:
         self._usual = max(self._usual, self._size)
 
 
-def _ordered(scenario: Scenario, encode: Encode, pieces: _Pieces, jobs: int, *, tries: int) -> Iterator[Made]:
+def _ordered(scenario: Scenario, encode: Encode, pieces: _Pieces, engine: Engine) -> Iterator[Made]:
     waiting: dict[int, Made] = {}
     upcoming = 0
-    for index, made in _made(scenario, encode, pieces, jobs):
+    for index, made in _made(scenario, encode, pieces, engine):
         if made.seconds:
             pieces.learn(made)
         waiting[index] = made
@@ -186,32 +225,29 @@ def _ordered(scenario: Scenario, encode: Encode, pieces: _Pieces, jobs: int, *, 
             ready = waiting.pop(upcoming)
             upcoming += 1
             if ready.died is not None:
-                ready = _again(scenario, encode, ready, tries)
+                ready = _again(scenario, encode, ready, engine)
             if ready.failed:
                 # Raises what the worker met, here where it can be shown with its place, after what comes before.
                 for result in results_of(scenario, ready.job):
-                    yield _alone(encode, ready.job, result)
+                    yield _alone(scenario, encode, ready.job, result)
             else:
                 yield ready
 
 
-def _made(scenario: Scenario, encode: Encode, pieces: Iterable[Job], jobs: int) -> Iterator[tuple[int, Made]]:
-    """What comes of pieces in several processes, as it comes, with their numbers."""
-    from scenic.batch import workers  # takes a sixteenth of a start, which one process can do without
-
-    return workers.run(
-        partial(_make, scenario, encode),
-        pieces,
-        jobs=jobs,
-        lost=lambda piece, code: Made(piece, b"", (), died=code),
+def _made(
+    scenario: Scenario, encode: Encode, pieces: Iterable[Job], engine: Engine
+) -> Iterator[tuple[int, Made]]:
+    """The results of pieces as they come, with the numbers of the pieces."""
+    return engine.run(
+        partial(_make, scenario, encode), pieces, lost=lambda piece, code: Made(piece, b"", (), died=code)
     )
 
 
-def _again(scenario: Scenario, encode: Encode, made: Made, tries: int) -> Made:
+def _again(scenario: Scenario, encode: Encode, made: Made, engine: Engine) -> Made:
     """A piece whose worker died, made by another one."""
     code = made.died
-    for _ in range(tries):
-        ((_, again),) = _made(scenario, encode, [made.job], 1)
+    for _ in range(_TRIES):
+        ((_, again),) = _made(scenario, encode, [made.job], engine)
         if again.died is None:
             return again
         code = again.died

@@ -2,12 +2,14 @@
 
 import random
 from collections.abc import Generator, Iterator, Mapping, Sequence
+from concurrent.futures import Executor
 from contextlib import closing
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
+from scenic.batch.engines import Engine, OverExecutor, Processes
 from scenic.batch.keeping import Form, Kept, about_file
 from scenic.language.diagnostics import Diagnostic
 
@@ -145,14 +147,14 @@ class Simulations:
         with beside(folder):
             return choose_simulator(name, self._scenario)
 
-    def rows(self, numbers: Sequence[int], processes: int = 1) -> Generator[SimulationRow, None, None]:
-        """The simulations of these numbers, in any order, as they are made."""
-        if processes == 1 or len(numbers) < 2:
+    def rows(
+        self, numbers: Sequence[int], engine: Engine | None = None
+    ) -> Generator[SimulationRow, None, None]:
+        """The simulations of these numbers, in any order, as the engine (else this process) makes them."""
+        if engine is None or len(numbers) < 2:
             yield from map(self, numbers)
             return
-        from scenic.batch import workers
-
-        for _, row in workers.run(self, numbers, jobs=processes, lost=_lost):
+        for _, row in engine.run(self, numbers, lost=_lost):
             yield row
 
     def known(self, k: int) -> SimulationRow | None:
@@ -254,6 +256,7 @@ def simulated(
     tries: int = 20,
     folder: str | Path | None = None,
     processes: int = 1,
+    executor: Executor | None = None,
 ) -> list[SimulationRow]:
     """Simulate scenes ``first`` to ``first + n`` of a seed.
 
@@ -268,6 +271,7 @@ def simulated(
         tries: simulations tried of one scene before it is given up as rejected.
         folder: where trajectories are kept; those that are there already are not made again.
         processes: how many processes simulate. Changes speed, never what comes out.
+        executor: runs the simulations in place of processes of our own, ``processes`` at a time.
 
     Returns:
         The rows of all simulations, in order.
@@ -286,7 +290,12 @@ def simulated(
     batch = Simulations(scenario, simulator, running, folder=place)
     numbers = range(first, first + n)
     found = {row.k: row for row in _known(batch, numbers)}
-    with closing(batch.rows([k for k in numbers if k not in found], processes)) as rows:
+    engine: Engine | None = None
+    if executor is not None:
+        engine = OverExecutor(executor, max(2, processes))
+    elif processes > 1:
+        engine = Processes(processes)
+    with closing(batch.rows([k for k in numbers if k not in found], engine)) as rows:
         for row in rows:
             if row.error is not None:
                 raise SimulationError(row)

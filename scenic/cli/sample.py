@@ -1,6 +1,7 @@
 """``scenic sample``: scenes from a program, as text, 3D files, a page or images."""
 
 import secrets
+import shlex
 import signal
 import sys
 import time
@@ -21,6 +22,8 @@ from scenic.language.errors import Located
 
 if TYPE_CHECKING:
     from _typeshed import ReadableBuffer
+
+    from scenic.batch.engines import Engine
 
 __all__ = ["NOT_ALL", "sample"]
 
@@ -82,9 +85,24 @@ NOT_ALL: Final = 3
     "-o",
     "--output",
     metavar="OUT",
-    help="JSON Lines to this file, or a 3D file for each scene if OUT ends in .glb or .obj; - is standard output, which is "
-    "the default without --view and --png.",
+    help="JSON Lines to this file, columns if OUT ends in .parquet, a 3D file for each scene if it ends in .glb or .obj, a data "
+    "set of many files if it ends in / or is a folder; - is standard output, which is the default without --view and --png.",
 )
+@click.option(
+    "--format",
+    "form",
+    type=click.Choice(["parquet", "jsonl"]),
+    help="Format of the files of a data set.  [default: parquet]",
+)
+@click.option(
+    "--part-size",
+    metavar="N",
+    type=click.IntRange(min=1),
+    default=65536,
+    show_default=True,
+    help="Scenes in each file of a data set.",
+)
+@click.option("--dask", metavar="ADDRESS", help="Sample on a Dask cluster: the address of its scheduler.")
 @click.option(
     "--view", metavar="PAGE.html", help="Make a page in which the scenes can be turned and stepped through."
 )
@@ -133,6 +151,9 @@ def sample(
     max_attempts: int | None,
     time_limit: float | None,
     output: str | None,
+    form: str | None,
+    part_size: int,
+    dask: str | None,
     view: str | None,
     png: str | None,
     camera: str | None,
@@ -150,6 +171,8 @@ def sample(
     path = Path(file)
     chosen: list[sinks.Sink] = []
     target: Path | None = None
+    dataset: Path | None = None
+    table: Path | None = None
     # All of them are checked before anything is sampled.
     if camera is not None:
         if output is None:
@@ -157,7 +180,11 @@ def sample(
         chosen.append(sinks.labelled(Path(output), camera, image_size))
     elif output is not None or (view is None and png is None):
         named = Path(output or "-")
-        if sinks.is_lines(named):
+        if sinks.is_dataset(output):
+            dataset = named
+        elif sinks.is_table(named):
+            table = named
+        elif sinks.is_lines(named):
             target = named
         else:
             chosen.append(sinks.scene_file(named, count, first))
@@ -174,15 +201,21 @@ def sample(
                 first,
             )
         )
-    if chosen and (jobs > 1 or resume):
-        raise click.UsageError("-j and --resume are for JSON Lines alone, without images, pages and 3D files")
-    if resume and target in (None, sinks.STANDARD_OUTPUT):
-        raise click.UsageError("--resume needs the file to go on with: -o OUT.jsonl")
+    if chosen and (jobs > 1 or resume or dask is not None or dataset is not None or table is not None):
+        raise click.UsageError(
+            "-j, --dask, --resume, data sets and Parquet go without images, pages and 3D files"
+        )
+    if resume and (target == sinks.STANDARD_OUTPUT or (target is None and dataset is None)):
+        raise click.UsageError("--resume needs a file or a data set to go on with: -o OUT.jsonl, -o FOLDER/")
+    if form is not None and dataset is None:
+        raise click.UsageError("--format is for data sets: -o FOLDER/")
     grown = None if target in (None, sinks.STANDARD_OUTPUT) else GrowingFile(target, resume=resume)
     deadline = None if time_limit is None else time.monotonic() + time_limit
 
     # These bring in NumPy and the geometry libraries.
     from scenic.batch import scenes as batches
+    from scenic.batch.datasets import Run, make_dataset, write_table
+    from scenic.batch.manifest import Manifest
     from scenic.formats.json_lines import SceneLines
     from scenic.formats.resuming import continued
     from scenic.graph.points import Sobol
@@ -199,11 +232,25 @@ def sample(
         )
     done = 0
     points = "sobol" if sobol else None
+    if dataset is not None and resume:
+        seed = Manifest.load(dataset).seed if seed is None else seed
     if grown is not None and resume:
         seed, done = continued(grown, loaded.digest, seed, first, count, points=points)
     if seed is None:
         seed = secrets.randbits(32)
         sys.stderr.write(f"seed {seed} (the same scenes again: --seed {seed})\n")
+    manifest = Manifest.of(
+        loaded,
+        seed=seed,
+        first=first,
+        count=count,
+        form=form or "parquet",
+        part_size=part_size,
+        points=points,
+        max_attempts=max_attempts,
+        properties=properties,
+        command=shlex.join(["scenic", *sys.argv[1:]]),
+    )
     lines = SceneLines((path.name, loaded.digest), changed=properties == "changed", points=points)
     job = batches.Job(seed, first + done, first + count, max_attempts, deadline, Sobol() if sobol else None)
     missing: list[Exhausted] = []
@@ -217,10 +264,16 @@ def sample(
     with _ended_by_signals(), endless, ExitStack() as stack:
         takers = [stack.enter_context(sink) for sink in chosen]
         put = _to_output if grown is None else stack.enter_context(grown).write
+        engine = stack.enter_context(_engine(jobs, dask))
         advance = stack.enter_context(_progress(count, shown=not to_terminal))
         advance(done, 0)
-        if jobs > 1 and count - done > 1:
-            for made in batches.in_processes(loaded, lines.encoded, job, jobs):
+        run = Run(engine, deadline, advance)
+        if dataset is not None:
+            missing.extend(make_dataset(loaded, dataset, manifest, run, resume=resume).missing)
+        elif table is not None:
+            missing.extend(write_table(loaded, table, manifest, run).missing)
+        elif engine is not None and count - done > 1:
+            for made in batches.in_processes(loaded, lines.block, job, engine):
                 put(made.encoded)
                 missing.extend(made.missing)
                 advance(made.job.last - made.job.first, made.attempts)
@@ -244,6 +297,18 @@ def sample(
         )
         return NOT_ALL
     return CLEAN
+
+
+@contextmanager
+def _engine(jobs: int, dask: str | None) -> "Iterator[Engine | None]":
+    """The place where scenes are sampled; ``None`` is this process."""
+    from scenic.batch.engines import DaskCluster, Processes
+
+    if dask is None:
+        yield Processes(jobs) if jobs > 1 else None
+        return
+    with DaskCluster(dask) as cluster:
+        yield cluster
 
 
 PATIENCE: Final = 10.0

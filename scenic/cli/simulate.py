@@ -13,7 +13,7 @@ import click
 
 from scenic.cli.options import program_options, seconds, sobol_option
 from scenic.cli.output import CLEAN, FINDINGS, show_diagnostics
-from scenic.cli.sample import NOT_ALL, _ended_by_signals, _progress
+from scenic.cli.sample import NOT_ALL, _ended_by_signals, _engine, _progress
 from scenic.cli.sinks import check_page
 
 if TYPE_CHECKING:
@@ -86,6 +86,7 @@ __all__ = ["simulate"]
 @click.option(
     "-j", "jobs", metavar="J", type=click.IntRange(min=1), default=1, help="Processes.  [default: 1]"
 )
+@click.option("--dask", metavar="ADDRESS", help="Simulate on a Dask cluster: the address of its scheduler.")
 @click.option(
     "-o",
     "--output",
@@ -123,6 +124,7 @@ def simulate(
     model: str | None,
     mode_2d: bool,
     jobs: int,
+    dask: str | None,
     output: Path | None,
     form: str,
     view: Path | None,
@@ -164,7 +166,8 @@ def simulate(
     with (
         _ended_by_signals(),
         _progress(len(missing), shown=not sys.stdout.isatty()) as advance,
-        closing(batch.rows(missing, jobs)) as rows,
+        _engine(jobs, dask) as engine,
+        closing(batch.rows(missing, engine)) as rows,
     ):
         for row in rows:
             found[row.k] = row

@@ -74,6 +74,10 @@ class SceneLines:
         """The line with its end, as files hold it."""
         return self.line(scene).encode("ascii") + b"\n"
 
+    def block(self, _scenario: object, scenes: Iterable[Scene]) -> bytes:
+        """The lines of some scenes, as files hold them."""
+        return b"".join(map(self.encoded, scenes))
+
     def _object(self, scene: Scene, thing: SceneObject, name: str | None, numbers: Mapping[int, int]) -> str:
         origin = scene.origin(thing)
         template = self._templates.get(id(origin))

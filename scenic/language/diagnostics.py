@@ -184,6 +184,8 @@ CODES: Final = MappingProxyType(
         "SC608": "time limit over before sampling",
         "SC609": "run cannot be resumed",
         "SC610": "sampling process died",
+        "SC611": "cluster cannot be used",
+        "SC612": "data set cannot be used",
         # Found by analysis.
         "SC700": "requirements contradict each other",
         "SC701": "requirement always holds",

@@ -15,6 +15,7 @@ import pytest
 
 import scenic
 from scenic.batch import workers
+from scenic.batch.engines import Processes
 from scenic.batch.scenes import Job, Made, WorkerDiedError, _Pieces, in_processes
 from scenic.formats.growing import GrowingFile
 from scenic.formats.json_lines import SceneLines
@@ -131,7 +132,7 @@ def made_by(run: Any, monkeypatch: pytest.MonkeyPatch, job: Job) -> bytes:
     """The lines of a job by processes that answer as ``run`` says."""
     scenario = scenic.scenarioFromString("ego = new Object with foo Range(0, 1)\n")
     monkeypatch.setattr(workers, "run", run)
-    return b"".join(made.encoded for made in in_processes(scenario, SceneLines().encoded, job, 2))
+    return b"".join(made.encoded for made in in_processes(scenario, SceneLines().block, job, Processes(2)))
 
 
 def test_pieces_are_told_in_order_whatever_the_order_in_which_they_are_made(
@@ -170,7 +171,7 @@ def test_a_piece_that_fails_in_a_process_alone_is_made_here(monkeypatch: pytest.
                 yield number, Made(piece, b"", (), failed=True) if fails(piece) else function(piece)
 
         monkeypatch.setattr(workers, "run", run)
-        made = list(in_processes(scenario, SceneLines().encoded, job, 2))
+        made = list(in_processes(scenario, SceneLines().block, job, Processes(2)))
         return (
             b"".join(each.encoded for each in made),
             [each.k for piece in made for each in piece.missing],

@@ -4,7 +4,8 @@ import math
 import random
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from concurrent.futures import Executor
+from dataclasses import dataclass, field
 from itertools import repeat
 from pathlib import Path
 from typing import Any
@@ -34,6 +35,7 @@ from scenic.runtime.sampling.engine import Accepted, CandidateError
 from scenic.runtime.sampling.foresight import SEED_BITS, Foreseen
 from scenic.runtime.sampling.planning import Outline
 from scenic.runtime.sampling.report import Exhausted
+from scenic.runtime.scenes.fingerprint import fingerprint
 from scenic.runtime.scenes.sampler import DEFAULT_ATTEMPTS, Sampler
 from scenic.runtime.scenes.saving import SavedScene, draws_of, source_of
 from scenic.runtime.scenes.scene import Family, Scene
@@ -55,6 +57,8 @@ class Services:
     """Shows a scene (`Scene.show`)."""
     recipe: tuple[Any, ...] | None = None
     """Compiles the program once more, as ``__reduce__`` returns it."""
+    options: Mapping[str, Any] = field(default_factory=dict)
+    """The keyword arguments of `scenic.load` with which the program was compiled."""
     sample: Callable[..., Iterator[Scene]] | None = None
     """Samples in several processes: ``(scenario, n, processes=, **limits)``."""
     simulate: Callable[..., Any] | None = None
@@ -138,6 +142,10 @@ class Scenario:
         """The objects of the program, whose properties may be random: the ego first, then in order of creation."""
         others = tuple(item for item in self._program.objects if item is not self.egoObject)
         return others if self.egoObject is None else (self.egoObject, *others)
+
+    def variable(self, thing: Object) -> str | None:
+        """The variable of the program that holds one of the `objects`, where there is one."""
+        return self._names.get(id(thing))
 
     @property
     def params(self) -> dict[str, Any]:
@@ -235,6 +243,7 @@ class Scenario:
         lanes: int | None = None,
         source: PointSet | None = None,
         processes: int = 1,
+        executor: Executor | None = None,
     ) -> list[Scene]:
         """``n`` scenes of a seed (drawn from Python's ``random`` if not given).
 
@@ -246,6 +255,7 @@ class Scenario:
             lanes: candidates evaluated at a time. Changes speed and memory, never the scenes.
             source: random numbers that are not hashed; see `stream`.
             processes: how many processes look for scenes. Changes speed, never the scenes.
+            executor: looks for scenes in place of processes of our own, ``processes`` ranges at a time.
 
         Raises:
             RejectionException: if a scene is not found within the limits; the message lists what rejected it.
@@ -254,8 +264,13 @@ class Scenario:
 
         """
         chosen = random.getrandbits(SEED_BITS) if seed is None else seed
-        if processes > 1 and self._services.sample is not None:
-            limits = {"max_attempts": max_attempts, "time_limit": time_limit, "source": source}
+        if (processes > 1 or executor is not None) and self._services.sample is not None:
+            limits = {
+                "max_attempts": max_attempts,
+                "time_limit": time_limit,
+                "source": source,
+                "executor": executor,
+            }
             return list(self._services.sample(self, n, seed=chosen, processes=processes, **limits))
         scenes = []
         for result in self.stream(
@@ -266,14 +281,35 @@ class Scenario:
             scenes.append(result)
         return scenes
 
-    def accepted(
-        self, seed: int, first: int, attempts: NDArray[np.int64], *, source: PointSet | None = None
+    @property
+    def options(self) -> Mapping[str, Any]:
+        """The keyword arguments of `scenic.load` with which the program was compiled."""
+        return self._services.options
+
+    @property
+    def fingerprint(self) -> str:
+        """Digest of the graph and of the narrowed domain; see `scenic.runtime.scenes.fingerprint`."""
+        return fingerprint(self.outline.graph, self.domain)
+
+    def found(
+        self,
+        seed: int,
+        numbers: NDArray[np.int64],
+        attempts: NDArray[np.int64],
+        *,
+        source: PointSet | None = None,
     ) -> Iterator[Scene]:
-        """Scenes from number ``first`` on of a seed, given how many candidates each took, ``(n,)``.
+        """Scenes of a seed, given how many candidates each took.
 
         Only the accepted candidates are evaluated, and no requirement is checked again.
+
+        Args:
+            seed: their seed.
+            numbers: which scenes of the seed, ``(n,)``.
+            attempts: candidates tried for each, the accepted one included, ``(n,)``.
+            source: random numbers that are not hashed; see `stream`.
+
         """
-        numbers = np.arange(first, first + len(attempts), dtype=np.int64)
         return (
             Scene(found, lane, self._family)
             for found, lane in self._sampler.accepted(seed, numbers, attempts, source)

@@ -1,0 +1,117 @@
+"""``scenic dataset``: what a data set is, whether it is whole, and several made one."""
+
+import sys
+from pathlib import Path
+
+import click
+
+from scenic.cli.output import CLEAN, FINDINGS, has_colours
+
+__all__ = ["dataset"]
+
+
+@click.group()
+def dataset() -> None:
+    """Look at, verify and merge data sets, the folders that `scenic sample -o FOLDER/` makes."""
+
+
+@dataset.command()
+@click.argument("folder", metavar="FOLDER", type=click.Path(path_type=Path))
+def info(folder: Path) -> int:
+    """Show how a data set was made, and how much of it is there."""
+    from rich.console import Console
+    from rich.table import Table
+
+    from scenic.batch.manifest import Manifest
+
+    manifest = Manifest.load(folder)
+    attempts = sum(part.attempts for part in manifest.parts)
+    missing = sum(len(part.missing) for part in manifest.parts)
+    table = Table.grid(padding=(0, 2))
+    done = sum(part.last - part.first for part in manifest.parts)
+    rows = [
+        ("program", f"{manifest.program} ({manifest.digest[:12]})"),
+        ("scenes", f"{manifest.rows:,} of {manifest.count:,}, from number {manifest.first} on"),
+        ("not found", f"{missing:,}"),
+        ("state", "complete" if manifest.is_complete else f"{done:,} looked for; go on with --resume"),
+        ("seed", str(manifest.seed)),
+        ("format", f"{manifest.form}, {len(manifest.parts)} parts of {manifest.part_size:,}"),
+        ("acceptance", f"{manifest.rows / attempts:.3g}" if attempts else "unknown"),
+        ("time", f"{manifest.seconds:.1f} s"),
+        ("meshes", ", ".join(manifest.meshes) or "none"),
+        ("versions", ", ".join(f"{name} {version}" for name, version in manifest.versions.items())),
+        ("command", manifest.command or "unknown"),
+    ]
+    for row in rows:
+        table.add_row(*row)
+    Console(no_color=not has_colours(sys.stdout), highlight=False, soft_wrap=True).print(table)
+    return CLEAN
+
+
+@dataset.command()
+@click.argument("folder", metavar="FOLDER", type=click.Path(path_type=Path))
+@click.option("--program", metavar="FILE", help="The program.  [default: where it was]")
+@click.option(
+    "--share",
+    metavar="P%",
+    default="1%",
+    show_default=True,
+    help="Share of the scenes to make again and compare; 0 compares only the files with their digests.",
+)
+def verify(folder: Path, program: str | None, share: str) -> int:
+    """Check that a data set is whole, and that its scenes are those of the program.
+
+    Exit codes: 0 all is well, 1 something is damaged, 2 wrong usage.
+    """
+    from scenic.batch.manifest import Manifest
+    from scenic.batch.verifying import verify as damages_of
+
+    wanted = _share(share)
+    manifest = Manifest.load(folder)
+    scenario = None
+    if wanted > 0:
+        from scenic.pipeline import load
+
+        scenario = load(program or folder / manifest.source, **manifest.options)
+    compared = 0
+
+    def advance(count: int) -> None:
+        nonlocal compared
+        compared += count
+
+    found = list(damages_of(folder, scenario, share=wanted, advance=advance))
+    for item in found:
+        print(f"{folder / item.file}: {item.what}")
+    if not manifest.is_complete:
+        print(f"{folder}: not complete: {manifest.rows:,} of {manifest.count:,} scenes")
+    print(f"{len(manifest.parts)} parts, {compared:,} scenes compared, {len(found)} damaged")
+    return FINDINGS if found else CLEAN
+
+
+def _share(text: str) -> float:
+    try:
+        value = float(text.removesuffix("%")) / (100 if text.endswith("%") else 1)
+    except ValueError:
+        value = -1.0
+    if not 0 <= value <= 1:
+        raise click.BadParameter(f"'{text}' is not a share: give 1% or 0.01", param_hint="--share")
+    return value
+
+
+@dataset.command()
+@click.argument("folders", metavar="FOLDER...", nargs=-1, required=True, type=click.Path(path_type=Path))
+@click.option(
+    "-o",
+    "--output",
+    metavar="FOLDER",
+    required=True,
+    type=click.Path(path_type=Path),
+    help="The joined data set.",
+)
+def merge(folders: tuple[Path, ...], output: Path) -> int:
+    """Join data sets of one program and seed, made by `--first` on several machines."""
+    from scenic.batch.verifying import merge as joined
+
+    manifest = joined(folders, output)
+    print(f"{manifest.rows:,} scenes in {len(manifest.parts)} parts")
+    return CLEAN
