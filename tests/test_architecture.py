@@ -16,7 +16,7 @@ LAYERS = {
     "graph": set(),
     "runtime": {"graph", "language"},
     "analysis": {"graph", "runtime", "language", "compiler"},
-    "formats": {"runtime", "language"},
+    "formats": {"runtime", "graph", "language"},
     "simulators": {"runtime", "graph", "language", "formats"},
     "batch": {"simulators", "formats", "runtime", "graph", "language"},
     "configuration": {"language"},
