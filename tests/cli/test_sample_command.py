@@ -113,7 +113,6 @@ def test_a_part_of_a_run_is_that_part(folder: Path) -> None:
         (["balls.scenic", "-p", "fra=2"], 2, "far"),
         (["balls.scenic", "-n", "0"], 2, "-n"),
         (["balls.scenic", "-o", "no/such/folder.jsonl"], 2, "SC601"),
-        (["balls.scenic", "-o", "."], 2, "SC601"),
         (["balls.scenic", "--scenario", "Other"], 2, "SC605"),
         (["balls.scenic", "-o", "x.png"], 2, "--png"),
         (["never.scenic"], 3, "line 2"),
