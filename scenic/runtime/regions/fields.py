@@ -5,6 +5,7 @@ arrays of points.
 """
 
 import math
+from abc import abstractmethod
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from copy import copy
 from functools import cached_property, partial
@@ -130,7 +131,37 @@ class VectorField:
         return f"<{type(self).__name__} {self.name}>"
 
 
-class PolygonalVectorField(VectorField):
+class TabulatedField(VectorField):
+    """A field whose headings are computed for many points at a time.
+
+    Subclasses implement `headings`; `_is_table` may take that back.
+    """
+
+    _is_table: bool = True
+    """Whether `headings` answers for every point."""
+
+    @abstractmethod
+    def headings(self, points: Points) -> tuple[Headings, Mask]:
+        """Headings ``(n,)``, anticlockwise from north, at points ``(n, 3)``, and which points have one, ``(n,)``."""
+
+    def __getitem__(self, position: Any) -> Any:
+        place = to_vector(position, f"field {self.name!r}")
+        if isinstance(place, Random) and self._is_table:
+            return Orientation.fromEuler(apply(_HEADING, place, payload=self), 0, 0)
+        return super().__getitem__(place)
+
+    def followFrom(
+        self, position: Any, distance: Any, steps: int | None = None, stepSize: float | None = None
+    ) -> Any:
+        place = to_vector(position, "`follow ... from`")
+        length = to_scalar(distance, "`follow ... for`")
+        if self._is_table and (isinstance(place, Random) or isinstance(length, Random)):
+            law = (steps, self.minSteps, self.defaultStepSize if stepSize is None else stepSize)
+            return apply(_FOLLOW_TABLE, place, length, payload=(self, law))
+        return super().followFrom(place, length, steps, stepSize)
+
+
+class PolygonalVectorField(TabulatedField):
     """A field that is constant on polygons.
 
     Args:
@@ -179,7 +210,7 @@ class PolygonalVectorField(VectorField):
         return self._table[cells], (cells < len(self.cells)) | (self.defaultHeading is not None)
 
     @property
-    def _is_table(self) -> bool:
+    def _is_table(self) -> bool:  # type: ignore[override] # only where every cell has a heading of its own
         return self._table is not None
 
     def _value(self, point: Any) -> Any:
@@ -193,22 +224,6 @@ class PolygonalVectorField(VectorField):
         if self.defaultHeading is None:
             raise RejectionException(f"field {self.name!r} has no direction at {point!r}")
         return self.defaultHeading
-
-    def __getitem__(self, position: Any) -> Any:
-        place = to_vector(position, f"field {self.name!r}")
-        if isinstance(place, Random) and self._is_table:
-            return Orientation.fromEuler(apply(_HEADING, place, payload=self), 0, 0)
-        return super().__getitem__(place)
-
-    def followFrom(
-        self, position: Any, distance: Any, steps: int | None = None, stepSize: float | None = None
-    ) -> Any:
-        place = to_vector(position, "`follow ... from`")
-        length = to_scalar(distance, "`follow ... for`")
-        if self._is_table and (isinstance(place, Random) or isinstance(length, Random)):
-            law = (steps, self.minSteps, self.defaultStepSize if stepSize is None else stepSize)
-            return apply(_FOLLOW_TABLE, place, length, payload=(self, law))
-        return super().followFrom(place, length, steps, stepSize)
 
 
 class PiecewiseVectorField(VectorField):
@@ -562,6 +577,7 @@ __all__ = [
     "PolygonalVectorField",
     "PolyhedronVectorField",
     "RegionField",
+    "TabulatedField",
     "VectorField",
     "field_of",
     "frame_at",

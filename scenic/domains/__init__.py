@@ -1,0 +1,1 @@
+"""Domains: world models, each for a kind of scenarios."""

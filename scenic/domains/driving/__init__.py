@@ -1,0 +1,1 @@
+"""The driving domain: road networks, cars and pedestrians, how they behave and are simulated."""

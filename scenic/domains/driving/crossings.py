@@ -1,0 +1,100 @@
+"""Pedestrian crossings, from the crosswalks of a map."""
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from scenic.domains.driving.building import BuiltRoad, Tell, area_of
+from scenic.domains.driving.elements import Intersection, PedestrianCrossing, Road, Sidewalk
+from scenic.domains.driving.kinds import VehicleType
+from scenic.domains.driving.network import Network
+from scenic.formats.opendrive.curves import Curve, cubic_values
+from scenic.formats.opendrive.records import Crosswalk, Problem
+
+__all__ = ["add_crossings"]
+
+Floats = NDArray[np.float64]
+
+
+def add_crossings(network: Network, built: Mapping[str, BuiltRoad], tell: Tell) -> None:
+    """Give a network its crossings."""
+    import shapely
+
+    made = []
+    inside = {
+        id(road): intersection for intersection in network.intersections for road in _roads_in(network, intersection)
+    }
+    for road in built.values():
+        for number, crosswalk in enumerate(road.record.crosswalks):
+            corners = _corners(road, crosswalk)
+            polygon = area_of(shapely.MultiPoint(corners).convex_hull) if np.isfinite(corners).all() else None
+            if polygon is None:
+                message = f"crosswalk {crosswalk.id} of road {road.record.id} has no area: left out"
+                tell(Problem("SC621", message, crosswalk.line, "crosswalk"))
+                continue
+            crossing = PedestrianCrossing(
+                network,
+                f"road{road.record.id}_crossing{number}",
+                polygon,
+                id=crosswalk.id,
+                vehicles=frozenset({VehicleType.PEDESTRIAN}),
+            )
+            network.elements[crossing.uid] = crossing
+            parent: Road | Intersection = inside.get(id(road.road), road.road)
+            crossing.parent = parent
+            left, right = _long_sides(polygon)
+            crossing.place((left + right) / 2, left, right)
+            parent.crossings += (crossing,)
+            made.append(crossing)
+    network.crossings = tuple(made)
+    for crossing in made:
+        ends = [_sidewalk_at(network, crossing.line[0]), _sidewalk_at(network, crossing.line[-1])]
+        crossing.startSidewalk, crossing.endSidewalk = ends
+        for sidewalk in dict.fromkeys(end for end in ends if end is not None):
+            sidewalk.crossings += (crossing,)
+
+
+def _roads_in(network: Network, intersection: Intersection) -> list[Road]:
+    lanes = set(map(id, intersection._connecting))
+    return [road for road in network.connectingRoads if any(id(lane) in lanes for lane in road.lanes)]
+
+
+def _corners(road: BuiltRoad, crosswalk: Crosswalk) -> Floats:
+    """The corners of a crosswalk, ``(n, 2)``."""
+    curve = Curve(road.record.geometry)
+
+    def place(s: float, t: float) -> tuple[Floats, float]:
+        at = np.array([min(max(s, 0.0), curve.length)])
+        points, headings = curve.at(at)
+        heading = float(headings[0])
+        offset = t + float(cubic_values(road.record.lane_offset, at)[0])
+        return points[0] + offset * np.array([-np.sin(heading), np.cos(heading)]), heading
+
+    if crosswalk.along_road:
+        return np.array([place(s, t)[0] for s, t in crosswalk.corners])
+    origin, heading = place(crosswalk.s, crosswalk.t)
+    heading += crosswalk.heading
+    cos, sin = np.cos(heading), np.sin(heading)
+    local = np.array(crosswalk.corners)
+    return np.asarray(origin + local @ np.array([[cos, sin], [-sin, cos]]))
+
+
+def _long_sides(polygon: object) -> tuple[Floats, Floats]:
+    """The two long sides of the smallest rectangle round a polygon, in one direction, ``(2, 2)`` each."""
+    import shapely
+
+    box = shapely.get_coordinates(shapely.minimum_rotated_rectangle(polygon))[:4]
+    if np.hypot(*(box[1] - box[0])) < np.hypot(*(box[2] - box[1])):
+        box = np.roll(box, -1, axis=0)
+    return box[[3, 2]], box[[0, 1]]
+
+
+def _sidewalk_at(network: Network, place: Floats) -> Sidewalk | None:
+    """The sidewalk nearest to the end of a crossing, within a lane's width."""
+    import shapely
+
+    point = shapely.Point(place)
+    near = [(sidewalk.polygon.distance(point), index) for index, sidewalk in enumerate(network.sidewalks)]
+    best = min(near, default=None)
+    return network.sidewalks[best[1]] if best is not None and best[0] <= 3.5 else None

@@ -1,0 +1,610 @@
+"""The elements of a road network: polygonal regions with a direction (section 2 of the driving specification)."""
+
+from collections.abc import Sequence
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from scenic.domains.driving.kinds import ManeuverType, VehicleType
+from scenic.graph.kinds import Column
+from scenic.language.errors import RejectionException
+from scenic.runtime.geometry.polygons import Polygons
+from scenic.runtime.regions.base import Points, Region
+from scenic.runtime.regions.fields import RegionField
+from scenic.runtime.regions.lines import PolylineRegion
+from scenic.runtime.regions.planar import PolygonalRegion
+from scenic.runtime.values.values import Orientation
+
+if TYPE_CHECKING:
+    from scenic.domains.driving.network import Network
+
+__all__ = [
+    "Intersection",
+    "Lane",
+    "LaneGroup",
+    "LaneSection",
+    "LinearElement",
+    "Maneuver",
+    "NetworkElement",
+    "PedestrianCrossing",
+    "Road",
+    "RoadSection",
+    "Shoulder",
+    "Sidewalk",
+    "Signal",
+]
+
+Floats = NDArray[np.float64]
+
+CARS = frozenset({VehicleType.CAR})
+
+
+def _required(value: Any, what: str) -> Any:
+    """A value that is there; rejects the sample otherwise."""
+    if value is None:
+        raise RejectionException(what)
+    return value
+
+
+class NetworkElement(PolygonalRegion):
+    """A part of a road network.
+
+    Attributes:
+        uid: unique text in its network.
+        id: its id in the file, if it has one.
+        name: its name in the file, else empty.
+        network: the network.
+        polygon: its area, shapely's.
+        vehicleTypes: the road users that may be there.
+        speedLimit: in m/s, if the file says.
+        tags: further words of the file.
+
+    """
+
+    def __init__(
+        self,
+        network: "Network",
+        uid: str,
+        polygon: Any,
+        *,
+        id: Any = None,
+        name: str = "",
+        speed: float | None = None,
+        vehicles: frozenset[VehicleType] = CARS,
+        tags: frozenset[str] = frozenset(),
+    ) -> None:
+        Region.__init__(self, name=name)
+        self.network = network
+        self.uid = uid
+        self.id = id
+        self.name = name
+        self.polygon = polygon
+        self.speedLimit = speed
+        self.vehicleTypes = vehicles
+        self.tags = tags
+        self._z = 0.0
+        self.orientation = RegionField(self)
+        self.has_orientation = True
+
+    @cached_property
+    def outline(self) -> Polygons:  # type: ignore[override] # made when somebody needs it
+        """The polygons, for computations."""
+        return Polygons(self.polygon)
+
+    @property
+    def elementType(self) -> str:
+        """The name of the class."""
+        return type(self).__name__
+
+    def random_parts(self) -> list[Any]:
+        return []
+
+    def sampled(self, sample: Any) -> Region:
+        return self
+
+    def _guides(self) -> Sequence["LinearElement"]:
+        """The elements whose directions hold where they are, in their order; the nearest one elsewhere."""
+        raise NotImplementedError
+
+    def orientations(self, points: Points, *columns: Column) -> Column:
+        """Directions ``(n, 4)`` at points: of the first guide that holds a point, else of the nearest one."""
+        headings = self.headings_at(points[:, :2])
+        frames = np.zeros((len(points), 4))
+        frames[:, 2], frames[:, 3] = np.sin(headings / 2), np.cos(headings / 2)
+        return frames
+
+    def headings_at(self, places: Floats) -> Floats:
+        """Headings ``(n,)``, anticlockwise from north, at places ``(n, 2)``."""
+        guides = self._guides()
+        chosen = np.full(len(places), -1)
+        for number, guide in enumerate(guides):
+            if len(guides) == 1:
+                chosen[:] = 0
+                break
+            free = chosen < 0
+            if not free.any():
+                break
+            chosen[free] = np.where(guide.outline.contains(*places[free].T), number, -1)
+        lost = chosen < 0
+        if lost.any():
+            distances = np.stack([guide.outline.distances(*places[lost].T) for guide in guides])
+            chosen[lost] = distances.argmin(axis=0)
+        headings = np.empty(len(places))
+        for number in np.unique(chosen):
+            mine = chosen == number
+            headings[mine] = guides[number].along(places[mine])
+        return headings
+
+    def nominalDirectionsAt(self, point: Any) -> tuple[Orientation, ...]:
+        """The directions of traffic that are possible at a point; here one."""
+        return (self.orientation[point],)
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} {self.name or ''!r} id={self.id} uid={self.uid!r}>"
+
+    def __reduce__(self) -> Any:
+        return _element_of, (self.network, self.uid)
+
+
+def _element_of(network: "Network", uid: str) -> NetworkElement:
+    return network.elements[uid]
+
+
+class LinearElement(NetworkElement):
+    """An element with a direction.
+
+    Attributes:
+        line: the vertices of its centerline, in its direction, ``(n, 2)``.
+        left: those of its left edge.
+        right: those of its right edge.
+
+    """
+
+    line: Floats
+    left: Floats
+    right: Floats
+    _successor: Any = None
+    _predecessor: Any = None
+
+    def place(self, line: Floats, left: Floats, right: Floats) -> None:
+        """Give the element its lines, ``(n, 2)`` each."""
+        self.line, self.left, self.right = line, left, right
+
+    @cached_property
+    def centerline(self) -> PolylineRegion:
+        """The middle of the element, in its direction."""
+        return _polyline(self.line)
+
+    @cached_property
+    def leftEdge(self) -> PolylineRegion:
+        """The left edge, in the direction of the element."""
+        return _polyline(self.left)
+
+    @cached_property
+    def rightEdge(self) -> PolylineRegion:
+        """The right edge, in the direction of the element."""
+        return _polyline(self.right)
+
+    @property
+    def successor(self) -> Any:
+        """The element that follows; rejects the sample if there is none."""
+        return _required(self._successor, f"{self.uid} has no successor")
+
+    @property
+    def predecessor(self) -> Any:
+        """The element before this one; rejects the sample if there is none."""
+        return _required(self._predecessor, f"{self.uid} has no predecessor")
+
+    def _guides(self) -> Sequence["LinearElement"]:
+        return (self,)
+
+    def along(self, places: Floats) -> Floats:
+        """Headings ``(n,)``, anticlockwise from north, of the segments of the centerline nearest to places ``(n, 2)``."""
+        return self._segments.headings(places)
+
+    @cached_property
+    def _segments(self) -> "Segments":
+        return Segments(self.line)
+
+    def flowFrom(self, point: Any, distance: Any, steps: int | None = None, stepSize: float = 5) -> Any:
+        """The point reached by following the element's direction from a point for a distance in metres."""
+        return self.orientation.followFrom(point, distance, steps=steps, stepSize=stepSize)
+
+
+class Segments:
+    """The segments of a line ``(n, 2)``, and which is nearest to a place."""
+
+    __slots__ = ("delta", "heading", "square", "starts")
+
+    def __init__(self, line: Floats) -> None:
+        self.starts = line[:-1]
+        self.delta = np.diff(line, axis=0)
+        self.square = np.maximum((self.delta**2).sum(axis=1), 1e-18)
+        self.heading = np.arctan2(-self.delta[:, 0], self.delta[:, 1])
+
+    def nearest(self, places: Floats) -> NDArray[np.intp]:
+        """Index of the nearest segment of each place, ``(n,)``."""
+        result = np.empty(len(places), dtype=np.intp)
+        block = max(1, 1_000_000 // len(self.starts))
+        for start in range(0, len(places), block):
+            some = places[start : start + block, None] - self.starts
+            share = np.clip((some * self.delta).sum(axis=-1) / self.square, 0, 1)
+            away = some - share[..., None] * self.delta
+            result[start : start + block] = (away**2).sum(axis=-1).argmin(axis=1)
+        return result
+
+    def headings(self, places: Floats) -> Floats:
+        """Heading of the nearest segment of each place, ``(n,)``."""
+        return np.asarray(self.heading[self.nearest(places)])
+
+
+def _polyline(line: Floats) -> PolylineRegion:
+    return PolylineRegion([(float(x), float(y), 0.0) for x, y in line])
+
+
+class LaneSection(LinearElement):
+    """The part of a lane in one section of its road."""
+
+    lane: "Lane"
+    group: "LaneGroup"
+    road: "Road"
+    openDriveID: int
+    isForward: bool
+    adjacentLanes: tuple["LaneSection", ...] = ()
+    _laneToLeft: "LaneSection | None" = None
+    _laneToRight: "LaneSection | None" = None
+    _fasterLane: "LaneSection | None" = None
+    _slowerLane: "LaneSection | None" = None
+
+    @property
+    def laneToLeft(self) -> "LaneSection":
+        """The lane to the left, perhaps of oncoming traffic; rejects the sample if there is none."""
+        found: LaneSection = _required(self._laneToLeft, f"{self.uid} has no lane to its left")
+        return found
+
+    @property
+    def laneToRight(self) -> "LaneSection":
+        """The lane to the right; rejects the sample if there is none."""
+        found: LaneSection = _required(self._laneToRight, f"{self.uid} has no lane to its right")
+        return found
+
+    @property
+    def fasterLane(self) -> "LaneSection":
+        """The faster lane of the same direction; rejects the sample if there is none."""
+        found: LaneSection = _required(self._fasterLane, f"{self.uid} has no faster lane")
+        return found
+
+    @property
+    def slowerLane(self) -> "LaneSection":
+        """The slower lane of the same direction; rejects the sample if there is none."""
+        found: LaneSection = _required(self._slowerLane, f"{self.uid} has no slower lane")
+        return found
+
+    def shiftedBy(self, offset: int) -> "LaneSection":
+        """The lane section ``offset`` lanes to the left (to the right if negative); rejects the sample if there is none."""
+        current = self
+        for _ in range(abs(offset)):
+            current = current.laneToLeft if offset > 0 else current.laneToRight
+        return current
+
+
+class Lane(LinearElement):
+    """A lane along a whole road."""
+
+    group: "LaneGroup"
+    road: "Road"
+    sections: tuple[LaneSection, ...] = ()
+    maneuvers: tuple["Maneuver", ...] = ()
+
+    @cached_property
+    def adjacentLanes(self) -> tuple["Lane", ...]:
+        """The lanes beside any of its sections."""
+        found = [beside.lane for section in self.sections for beside in section.adjacentLanes]
+        return tuple(dict.fromkeys(lane for lane in found if lane is not self))
+
+    def sectionAt(self, point: Any, reject: Any = False) -> LaneSection | None:
+        """The section at a point; ``None`` (or a rejection if ``reject``) elsewhere."""
+        found: LaneSection | None = self.network.findPointIn(point, self.sections, reject)
+        return found
+
+
+class LaneGroup(LinearElement):
+    """All lanes of one direction of a road, the lane nearest the curb first."""
+
+    road: "Road"
+    lanes: tuple[Lane, ...] = ()
+    _curb: Floats
+    _sidewalk: "Sidewalk | None" = None
+    _bikeLane: Lane | None = None
+    _shoulder: "Shoulder | None" = None
+    _opposite: "LaneGroup | None" = None
+
+    @cached_property
+    def curb(self) -> PolylineRegion:
+        """The border of the road on this side, in the direction of traffic."""
+        return _polyline(self._curb)
+
+    def _guides(self) -> Sequence[LinearElement]:
+        return self.lanes
+
+    @property
+    def sidewalk(self) -> "Sidewalk":
+        """The sidewalk on this side; rejects the sample if there is none."""
+        found: Sidewalk = _required(self._sidewalk, f"{self.uid} has no sidewalk")
+        return found
+
+    @property
+    def bikeLane(self) -> Lane:
+        """The bicycle lane on this side; rejects the sample if there is none."""
+        found: Lane = _required(self._bikeLane, f"{self.uid} has no bicycle lane")
+        return found
+
+    @property
+    def shoulder(self) -> "Shoulder":
+        """The shoulder on this side; rejects the sample if there is none."""
+        found: Shoulder = _required(self._shoulder, f"{self.uid} has no shoulder")
+        return found
+
+    @property
+    def opposite(self) -> "LaneGroup":
+        """The lanes of the other direction; rejects the sample on a one-way road."""
+        found: LaneGroup = _required(self._opposite, f"{self.uid} has no opposite group")
+        return found
+
+    def laneAt(self, point: Any, reject: Any = False) -> Lane | None:
+        """The lane at a point; ``None`` (or a rejection if ``reject``) elsewhere."""
+        found: Lane | None = self.network.findPointIn(point, self.lanes, reject)
+        return found
+
+
+class RoadSection(LinearElement):
+    """A part of a road with constant lanes."""
+
+    road: "Road"
+    lanes: tuple[LaneSection, ...] = ()
+    forwardLanes: tuple[LaneSection, ...] = ()
+    backwardLanes: tuple[LaneSection, ...] = ()
+    lanesByOpenDriveID: dict[int, LaneSection]
+
+    def _guides(self) -> Sequence[LinearElement]:
+        return self.lanes or (self,)
+
+    def laneAt(self, point: Any, reject: Any = False) -> LaneSection | None:
+        """The lane section at a point; ``None`` (or a rejection if ``reject``) elsewhere."""
+        found: LaneSection | None = self.network.findPointIn(point, self.lanes, reject)
+        return found
+
+
+class Road(LinearElement):
+    """A road of the map; it runs along its reference line."""
+
+    lanes: tuple[Lane, ...] = ()
+    forwardLanes: LaneGroup | None = None
+    backwardLanes: LaneGroup | None = None
+    laneGroups: tuple[LaneGroup, ...] = ()
+    sections: tuple[RoadSection, ...] = ()
+    signals: tuple["Signal", ...] = ()
+    crossings: tuple["PedestrianCrossing", ...] = ()
+    sidewalks: tuple["Sidewalk", ...] = ()
+
+    def _guides(self) -> Sequence[LinearElement]:
+        return self.lanes or (self,)
+
+    @property
+    def is1Way(self) -> bool:
+        """Whether all lanes have one direction."""
+        return len(self.laneGroups) < 2
+
+    @cached_property
+    def sidewalkRegion(self) -> Region:
+        """All of its sidewalks."""
+        return union_region(self.sidewalks)
+
+    def sectionAt(self, point: Any, reject: Any = False) -> RoadSection | None:
+        """The road section at a point; ``None`` (or a rejection if ``reject``) elsewhere."""
+        found: RoadSection | None = self.network.findPointIn(point, self.sections, reject)
+        return found
+
+    def laneSectionAt(self, point: Any, reject: Any = False) -> LaneSection | None:
+        """The lane section at a point; ``None`` (or a rejection if ``reject``) elsewhere."""
+        lane = self.laneAt(point, reject)
+        return None if lane is None else lane.sectionAt(point, reject)
+
+    def laneAt(self, point: Any, reject: Any = False) -> Lane | None:
+        """The lane at a point; ``None`` (or a rejection if ``reject``) elsewhere."""
+        found: Lane | None = self.network.findPointIn(point, self.lanes, reject)
+        return found
+
+    def laneGroupAt(self, point: Any, reject: Any = False) -> LaneGroup | None:
+        """The lane group at a point; ``None`` (or a rejection if ``reject``) elsewhere."""
+        found: LaneGroup | None = self.network.findPointIn(point, self.laneGroups, reject)
+        return found
+
+    def crossingAt(self, point: Any, reject: Any = False) -> "PedestrianCrossing | None":
+        """The crossing at a point; ``None`` (or a rejection if ``reject``) elsewhere."""
+        found: PedestrianCrossing | None = self.network.findPointIn(point, self.crossings, reject)
+        return found
+
+    def shiftLanes(self, point: Any, offset: int) -> Any:
+        """The point at the same share of its lane section, ``offset`` lanes to the left; ``None`` where there is no such lane."""
+        section = self.laneSectionAt(point)
+        if section is None:
+            return None
+        current: LaneSection | None = section
+        for _ in range(abs(offset)):
+            if current is not None:
+                current = current._laneToLeft if offset > 0 else current._laneToRight
+        if current is None:
+            return None
+        share = share_along(section.line, point)
+        if current.isForward != section.isForward:
+            share = 1 - share
+        return current.centerline.pointAlongBy(share, normalized=True)
+
+
+class Sidewalk(LinearElement):
+    """A sidewalk along one side of a road."""
+
+    road: Road
+    crossings: tuple["PedestrianCrossing", ...] = ()
+
+
+class Shoulder(LinearElement):
+    """The shoulder, parking, stop and border lanes along one side of a road."""
+
+    road: Road
+    group: LaneGroup | None = None
+
+
+class PedestrianCrossing(LinearElement):
+    """A crosswalk."""
+
+    parent: "Road | Intersection"
+    startSidewalk: Sidewalk | None = None
+    endSidewalk: Sidewalk | None = None
+
+
+class Intersection(NetworkElement):
+    """A junction of the map."""
+
+    roads: tuple[Road, ...] = ()
+    incomingLanes: tuple[Lane, ...] = ()
+    outgoingLanes: tuple[Lane, ...] = ()
+    maneuvers: tuple["Maneuver", ...] = ()
+    signals: tuple["Signal", ...] = ()
+    crossings: tuple[PedestrianCrossing, ...] = ()
+    _connecting: tuple[Lane, ...] = ()
+
+    def _guides(self) -> Sequence[LinearElement]:
+        return self._connecting
+
+    @property
+    def is3Way(self) -> bool:
+        """Whether three roads meet."""
+        return len(self.roads) == 3
+
+    @property
+    def is4Way(self) -> bool:
+        """Whether four roads meet."""
+        return len(self.roads) == 4
+
+    @property
+    def isSignalized(self) -> bool:
+        """Whether there is any signal, stop signs included."""
+        return bool(self.signals)
+
+    @property
+    def hasTrafficLights(self) -> bool:
+        """Whether there is a traffic light."""
+        return any(signal.isTrafficLight for signal in self.signals)
+
+    def maneuversAt(self, point: Any) -> list["Maneuver"]:
+        """The maneuvers whose connecting lane holds a point."""
+        found = []
+        for maneuver in self.maneuvers:
+            lane = maneuver.connectingLane
+            if lane is not None and lane.containsPoint(self.network.vector(point)):
+                found.append(maneuver)
+        return found
+
+    def nominalDirectionsAt(self, point: Any) -> tuple[Orientation, ...]:
+        """The directions of the maneuvers that are possible at a point; that of the nearest one where none is."""
+        lanes = [maneuver.connectingLane for maneuver in self.maneuversAt(point)]
+        if not lanes:
+            return (self.orientation[point],)
+        return tuple(lane.orientation[point] for lane in lanes if lane is not None)
+
+
+class Maneuver:
+    """A way through an intersection, or on along a road.
+
+    Attributes:
+        type: the kind of turn.
+        startLane: the lane in which it begins.
+        endLane: the lane in which it ends.
+        connectingLane: the lane through the intersection; ``None`` where there is none.
+        intersection: the intersection; ``None`` outside of any.
+
+    """
+
+    def __init__(
+        self, startLane: Lane, endLane: Lane, connectingLane: Lane | None, intersection: Intersection | None
+    ) -> None:
+        self.startLane = startLane
+        self.endLane = endLane
+        self.connectingLane = connectingLane
+        self.intersection = intersection
+        self.type = ManeuverType.guessTypeFromLanes(startLane, endLane, connectingLane)
+
+    @cached_property
+    def conflictingManeuvers(self) -> tuple["Maneuver", ...]:
+        """Maneuvers of the intersection from other lanes whose ways cross this one."""
+        import shapely
+
+        if self.intersection is None or self.connectingLane is None:
+            return ()
+        mine = shapely.linestrings(self.connectingLane.line)
+        return tuple(
+            other
+            for other in self.intersection.maneuvers
+            if other.startLane is not self.startLane
+            and other.connectingLane is not None
+            and mine.intersects(shapely.linestrings(other.connectingLane.line))
+        )
+
+    @cached_property
+    def reverseManeuvers(self) -> tuple["Maneuver", ...]:
+        """Maneuvers of the intersection from the road where this one ends to the road where it begins."""
+        if self.intersection is None:
+            return ()
+        return tuple(
+            other
+            for other in self.intersection.maneuvers
+            if other.startLane.road is self.endLane.road and other.endLane.road is self.startLane.road
+        )
+
+    def __repr__(self) -> str:
+        return f"<Maneuver {self.type.name} {self.startLane.uid} -> {self.endLane.uid}>"
+
+
+class Signal:
+    """A traffic sign or light."""
+
+    def __init__(self, uid: str, openDriveID: str, country: str, type: str) -> None:
+        self.uid = uid
+        self.openDriveID = openDriveID
+        self.country = country
+        self.type = type
+
+    @property
+    def isTrafficLight(self) -> bool:
+        """Whether it is a traffic light, by its type in the file."""
+        return self.type in ("1000001", "1000011")
+
+    def __repr__(self) -> str:
+        return f"<Signal {self.uid} type={self.type}>"
+
+
+def union_region(elements: Sequence[NetworkElement]) -> Region:
+    """The union of elements as a region with their directions; the empty region if there are none."""
+    import shapely
+
+    from scenic.runtime.regions.base import nowhere
+
+    if not elements:
+        return nowhere
+    return PolygonalRegion(
+        polygon=shapely.union_all([element.polygon for element in elements]),
+        orientation=elements[0].network.direction_of(elements),
+    )
+
+
+def share_along(line: Floats, point: Any) -> float:
+    """The share of a line's length at the place nearest to a point."""
+    import shapely
+
+    string = shapely.linestrings(line)
+    x, y, *_ = point.position if hasattr(point, "position") else point
+    return float(string.project(shapely.Point(x, y), normalized=True))

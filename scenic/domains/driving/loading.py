@@ -1,0 +1,180 @@
+"""From a map file to its network."""
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, fields
+from functools import lru_cache
+from pathlib import Path
+from typing import Any, Final
+
+from scenic.domains.driving.building import BuiltRoad, LaneTypes, build_roads
+from scenic.domains.driving.crossings import add_crossings
+from scenic.domains.driving.linking import link_roads
+from scenic.domains.driving.network import Network
+from scenic.formats.opendrive.curves import cubic_values
+from scenic.formats.opendrive.reader import read_map, told
+from scenic.formats.opendrive.records import Problem
+from scenic.formats.opendrive.shapes import MAX_ERROR
+from scenic.formats.opendrive.xml_tree import MapError
+from scenic.language.diagnostics import Diagnostic, Severity
+from scenic.language.spans import Span
+from scenic.language.spelling import nearest
+
+__all__ = ["MapOptions", "load_network", "map_file", "network_of"]
+
+SUFFIX: Final = ".xodr"
+
+
+@dataclass(frozen=True, slots=True)
+class MapOptions:
+    """How a map becomes a network (the parameter ``map_options``).
+
+    Attributes:
+        tolerance: metres within which an element counts as being at a place that none holds.
+        ref_points: samples of each piece of a reference line, at least; accuracy comes from ``max_error``.
+        max_error: metres by which chords may deviate from curves.
+        fill_gaps: whether to join linked lanes across small gaps.
+        fill_intersections: whether to fill holes inside intersections.
+        elide_short_roads: accepted; roads without area are always left out.
+        drivable_lane_types: types of lanes for traffic.
+        sidewalk_lane_types: types of lanes that are sidewalks.
+        shoulder_lane_types: types of lanes that are shoulders.
+        useCache: whether a network that was kept may be used.
+        writeCache: whether to keep the network.
+
+    """
+
+    tolerance: float = 0.05
+    ref_points: int = 2
+    max_error: float = MAX_ERROR
+    fill_gaps: bool = True
+    fill_intersections: bool = True
+    elide_short_roads: bool = False
+    drivable_lane_types: frozenset[str] = LaneTypes().drivable
+    sidewalk_lane_types: frozenset[str] = LaneTypes().sidewalk
+    shoulder_lane_types: frozenset[str] = LaneTypes().shoulder
+    useCache: bool = True
+    writeCache: bool = True
+
+    @classmethod
+    def of(cls, given: Mapping[str, Any]) -> "MapOptions":
+        """The options of a mapping; raises ``TypeError`` for unknown names."""
+        known = [field.name for field in fields(cls)]
+        for name in given:
+            if name not in known:
+                near = nearest(name, known)
+                hint = f"did you mean {near!r}?" if near else f"the options are {', '.join(known)}"
+                raise TypeError(f"a map has no option {name!r}: {hint}")
+        lanes = {name: frozenset(value) for name, value in given.items() if name.endswith("_types")}
+        return cls(**{**given, **lanes})
+
+    @property
+    def types(self) -> LaneTypes:
+        """The types of lanes."""
+        return LaneTypes(self.drivable_lane_types, self.sidewalk_lane_types, self.shoulder_lane_types)
+
+
+def load_network(path: Any, given: Mapping[str, Any]) -> Network:
+    """The network of a map file; see `Network.fromFile`."""
+    options = MapOptions.of(given)
+    file = map_file(path)
+    return network_of(file.read_bytes(), str(file), options)
+
+
+def map_file(path: Any) -> Path:
+    """The file of a map, whose suffix may be left out.
+
+    Raises:
+        FileNotFoundError: if there is none.
+        IsADirectoryError: if it is a folder.
+        ValueError: if its name tells of a format that is not read.
+
+    """
+    file = Path(path)
+    if not file.suffix and not file.is_file():
+        file = file.with_suffix(SUFFIX)
+    if file.is_dir():
+        raise IsADirectoryError(f"'{file}' is a folder, not a map: give the .xodr file")
+    if file.suffix.lower() != SUFFIX:
+        raise ValueError(f"'{file}' is not a map that scenic reads: it reads OpenDRIVE, {SUFFIX} files")
+    if not file.is_file():
+        beside = sorted(item.name for item in file.parent.glob(f"*{SUFFIX}")) if file.parent.is_dir() else []
+        hint = f"; there are {', '.join(beside[:8])}" if beside else ""
+        raise FileNotFoundError(f"there is no map '{file}'{hint}")
+    return file
+
+
+@lru_cache(maxsize=8)
+def network_of(content: bytes, filename: str, options: MapOptions) -> Network:
+    """The network of the text of a map; once in a process for equal content and options.
+
+    Raises `MapError` if it is not a map, or has no lane for traffic.
+    """
+    map = read_map(content, filename)
+    problems = list(map.problems)
+    tell: Callable[[Problem], None] = problems.append
+    left = sum(road.left_hand for road in map.roads) * 2 > len(map.roads)
+    network = Network(tolerance=options.tolerance, driveOnLeft=left)
+    built = build_roads(
+        network,
+        map,
+        tell,
+        types=options.types,
+        max_error=options.max_error,
+        min_points=max(2, options.ref_points),
+    )
+    if not any(road.road.lanes for road in built.values()):
+        raise MapError(
+            "the map has no lane for traffic",
+            filename=filename,
+            span=Span(1, 0, 1, 1),
+            help="types of lanes for traffic can be given by the option `drivable_lane_types`",
+        )
+    link_roads(
+        network,
+        map,
+        built,
+        tell,
+        fill_gaps=options.fill_gaps,
+        fill_intersections=options.fill_intersections,
+    )
+    add_crossings(network, built, tell)
+    network._elevation = _Elevation(network, built)
+    network.problems = tuple(_diagnostic(problem, filename) for problem in told(tuple(problems)))
+    return network
+
+
+def _diagnostic(problem: Problem, filename: str) -> Diagnostic:
+    span = Span(problem.line, 0, problem.line, 1) if problem.line > 0 else None
+    return Diagnostic(problem.code, problem.message, span, Severity.WARNING, filename)
+
+
+class _Elevation:
+    """The height of roads: the profile of the reference line, tilted by the superelevation."""
+
+    def __init__(self, network: Network, built: Mapping[str, BuiltRoad]) -> None:
+        self._network = network
+        self._built = {id(road.road): road for road in built.values()}
+
+    def __call__(self, point: Any) -> float | None:
+        import numpy as np
+        import shapely
+
+        best: tuple[float, float] | None = None
+        for road in self._network.allRoads:
+            if not road.outline.holds_point(point.x, point.y):
+                continue
+            built = self._built[id(road)]
+            line = shapely.linestrings(road.line)
+            s = float(line.project(shapely.Point(point.x, point.y))) * built.record.length / max(line.length, 1e-9)
+            place = np.array([s])
+            height = float(cubic_values(built.record.elevation, place)[0])
+            tilt = float(cubic_values(built.record.superelevation, place)[0])
+            if tilt:
+                x, y = line.interpolate(line.project(shapely.Point(point.x, point.y))).coords[0]
+                heading = road.along(np.array([[point.x, point.y]]))[0] + math.pi / 2
+                across = (point.y - y) * math.cos(heading) - (point.x - x) * math.sin(heading)
+                height += across * math.tan(tilt)
+            if best is None or abs(height - point.z) < best[0]:
+                best = abs(height - point.z), height
+        return None if best is None else best[1]

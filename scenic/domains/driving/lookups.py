@@ -1,0 +1,189 @@
+"""Which elements are at a place, for many places at a time, and the direction of traffic there."""
+
+from collections.abc import Sequence
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from scenic.domains.driving.elements import LinearElement, NetworkElement, Segments
+from scenic.runtime.geometry.cell_index import CellIndex
+from scenic.runtime.geometry.ragged import expand
+from scenic.runtime.regions.fields import TabulatedField
+
+__all__ = ["Finder", "RoadDirection"]
+
+Floats = NDArray[np.float64]
+Indices = NDArray[np.intp]
+
+
+class Finder:
+    """Finds elements by place.
+
+    Args:
+        elements: the elements, in order of precedence.
+        tolerance: metres within which an element counts as being at a place that none holds.
+
+    """
+
+    def __init__(self, elements: Sequence[NetworkElement], tolerance: float) -> None:
+        self.elements = tuple(elements)
+        self._tolerance = tolerance
+
+    @cached_property
+    def _cells(self) -> CellIndex:
+        return CellIndex([element.polygon for element in self.elements])
+
+    @cached_property
+    def _tree(self) -> Any:
+        import shapely
+
+        return shapely.STRtree([element.polygon for element in self.elements])
+
+    def holding(self, places: Floats) -> Indices:
+        """Index of the first element that holds each place ``(n, 2)``; their number where none does."""
+        if not self.elements:
+            return np.zeros(len(places), dtype=np.intp)
+        return self._cells.first_at(places[:, 0], places[:, 1])
+
+    def near(self, places: Floats) -> Indices:
+        """As `holding`; where none holds a place, the first one within the tolerance."""
+        import shapely
+
+        found = self.holding(places)
+        lost = np.flatnonzero(found == len(self.elements))
+        if len(lost) and self.elements and self._tolerance > 0:
+            points = shapely.points(places[lost])
+            pairs = self._tree.query(points, predicate="dwithin", distance=self._tolerance)
+            np.minimum.at(found, lost[pairs[0]], pairs[1])
+        return found
+
+    def nearest(self, places: Floats) -> Indices:
+        """Index of the first element that holds each place, else of the nearest one."""
+        import shapely
+
+        found = self.holding(places)
+        lost = np.flatnonzero(found == len(self.elements))
+        if len(lost):
+            pairs = self._tree.query_nearest(shapely.points(places[lost]), all_matches=False)
+            found[lost[pairs[0]]] = pairs[1]
+        return found
+
+    def at(self, x: float, y: float) -> NetworkElement | None:
+        """The element at one place: the first that holds it, else the first within the tolerance."""
+        (index,) = self.near(np.array([[x, y]]))
+        return self.elements[index] if index < len(self.elements) else None
+
+
+class RoadDirection(TabulatedField):
+    """The direction of traffic: that of the first element that holds a point, and 0 (north) elsewhere.
+
+    Args:
+        name: for messages.
+        elements: the elements, in order of precedence.
+        tolerance: see `Finder`.
+
+    """
+
+    def __init__(self, name: str, elements: Sequence[NetworkElement], tolerance: float) -> None:
+        self._finder = Finder(elements, tolerance)
+        super().__init__(name, self._value)
+
+    @cached_property
+    def _guides(self) -> tuple[tuple[LinearElement, ...], Indices, Indices]:
+        """All guides of the elements, and where those of each element begin and how many there are."""
+        groups = [tuple(element._guides()) for element in self._finder.elements]
+        counts = np.array([len(group) for group in groups], dtype=np.intp)
+        starts = np.cumsum(counts) - counts
+        return tuple(guide for group in groups for guide in group), starts, counts
+
+    @cached_property
+    def _segments(self) -> tuple[Floats, Floats, Floats, Floats, Indices, Indices]:
+        """Starts, steps, squared lengths and headings of the segments of all guides, and which are those of each."""
+        parts = [Segments(guide.line) for guide in self._guides[0]]
+        counts = np.array([len(part.starts) for part in parts], dtype=np.intp)
+        return (
+            np.concatenate([part.starts for part in parts]),
+            np.concatenate([part.delta for part in parts]),
+            np.concatenate([part.square for part in parts]),
+            np.concatenate([part.heading for part in parts]),
+            np.cumsum(counts) - counts,
+            counts,
+        )
+
+    def headings(self, points: Floats) -> tuple[Floats, NDArray[np.bool_]]:
+        """Headings at points ``(n, 3)``; every point has one."""
+        places = np.asarray(points)[:, :2]
+        headings = np.zeros(len(places))
+        found = self._finder.near(places)
+        there = np.flatnonzero(found < len(self._finder.elements))
+        if len(there):
+            guide = self._guide_at(places[there], found[there])
+            headings[there] = self._along(places[there], guide)
+        return headings, np.ones(len(places), dtype=np.bool_)
+
+    def _guide_at(self, places: Floats, element: Indices) -> Indices:
+        """The guide that holds each place, the first of its element; else the nearest one."""
+        import shapely
+
+        guides, starts, counts = self._guides
+        polygons = self._polygons
+        result = starts[element].copy()
+        several = np.flatnonzero(counts[element] > 1)
+        if not len(several):
+            return result
+        owner, place = expand(counts[element[several]])
+        candidate = starts[element[several]][owner] + place
+        x, y = places[several][owner].T
+        held = shapely.intersects_xy(polygons[candidate], x, y)
+        none = len(guides)
+        first = np.full(len(several), none, dtype=np.intp)
+        np.minimum.at(first, owner[held], candidate[held])
+        lost = first == none
+        if lost.any():
+            mine = lost[owner]
+            away = shapely.distance(polygons[candidate[mine]], shapely.points(x[mine], y[mine]))
+            order = np.lexsort((candidate[mine], away, owner[mine]))
+            owners = owner[mine][order]
+            begins = np.flatnonzero(np.concatenate([[True], owners[1:] != owners[:-1]]))
+            first[owners[begins]] = candidate[mine][order][begins]
+        result[several] = first
+        return result
+
+    @cached_property
+    def _polygons(self) -> NDArray[np.object_]:
+        import shapely
+
+        polygons = np.array([guide.polygon for guide in self._guides[0]], dtype=object)
+        shapely.prepare(polygons)
+        return polygons
+
+    def _along(self, places: Floats, guide: Indices) -> Floats:
+        """Headings of the segments of guides that are nearest to places."""
+        starts, delta, square, heading, first, counts = self._segments
+        result = np.empty(len(places))
+        block = 65536
+        for begin in range(0, len(places), block):
+            mine = guide[begin : begin + block]
+            owner, place = expand(counts[mine])
+            segment = first[mine][owner] + place
+            offset = places[begin : begin + block][owner] - starts[segment]
+            share = np.clip((offset * delta[segment]).sum(axis=1) / square[segment], 0, 1)
+            away = ((offset - share[:, None] * delta[segment]) ** 2).sum(axis=1)
+            order = np.lexsort((segment, away, owner))
+            begins = np.searchsorted(owner[order], np.arange(len(mine)))
+            result[begin : begin + block] = heading[segment[order][begins]]
+        return result
+
+    def _value(self, point: Any) -> float:
+        headings, _ = self.headings(np.array([[point.x, point.y, 0.0]]))
+        return float(headings[0])
+
+    def random_parts(self) -> list[Any]:
+        return []
+
+    def sampled(self, sample: Any) -> "RoadDirection":
+        return self
+
+

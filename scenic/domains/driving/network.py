@@ -1,0 +1,313 @@
+"""Road networks: all elements of a map, and which of them are where (section 2.7 of the driving specification)."""
+
+from collections.abc import Callable, Sequence
+from functools import cached_property
+from typing import Any
+
+from scenic.domains.driving.elements import (
+    Intersection,
+    Lane,
+    LaneGroup,
+    LaneSection,
+    NetworkElement,
+    PedestrianCrossing,
+    Road,
+    RoadSection,
+    Shoulder,
+    Sidewalk,
+    union_region,
+)
+from scenic.domains.driving.lookups import Finder, RoadDirection
+from scenic.language.diagnostics import Diagnostic
+from scenic.language.errors import RejectionException
+from scenic.runtime.python.opaque import call_later
+from scenic.runtime.regions.base import Region, nowhere
+from scenic.runtime.regions.lines import PolylineRegion
+from scenic.runtime.regions.planar import PolygonalRegion
+from scenic.runtime.values.lazy import Lazy, defer
+from scenic.runtime.values.values import Vector, is_random, to_vector
+
+__all__ = ["Network"]
+
+
+class Network:
+    """A road network, which never changes.
+
+    Attributes:
+        elements: all elements by ``uid``.
+        roads: ordinary roads, in the order of the file.
+        connectingRoads: roads within intersections.
+        intersections: the intersections.
+        crossings: the pedestrian crossings.
+        sidewalks: the sidewalks.
+        shoulders: the shoulders.
+        driveOnLeft: whether traffic keeps left.
+        tolerance: metres within which an element counts as being at a place that none holds.
+        problems: what is wrong with the map, and what was done instead.
+
+    """
+
+    def __init__(self, *, tolerance: float = 0.05, driveOnLeft: bool = False) -> None:
+        self.tolerance = tolerance
+        self.driveOnLeft = driveOnLeft
+        self.elements: dict[str, NetworkElement] = {}
+        self.roads: tuple[Road, ...] = ()
+        self.connectingRoads: tuple[Road, ...] = ()
+        self.intersections: tuple[Intersection, ...] = ()
+        self.crossings: tuple[PedestrianCrossing, ...] = ()
+        self.sidewalks: tuple[Sidewalk, ...] = ()
+        self.shoulders: tuple[Shoulder, ...] = ()
+        self.problems: tuple[Diagnostic, ...] = ()
+        self._fillings: tuple[Any, ...] = ()
+        """Polygons that close gaps between the ends of linked lanes."""
+        self._elevation: Callable[[Any], float | None] = lambda _: None
+        self._finders: dict[Any, Finder] = {}
+
+    # What there is
+
+    @cached_property
+    def allRoads(self) -> tuple[Road, ...]:
+        """Ordinary roads, then connecting ones."""
+        return (*self.roads, *self.connectingRoads)
+
+    @cached_property
+    def laneGroups(self) -> tuple[LaneGroup, ...]:
+        """The lane groups of all roads."""
+        return tuple(group for road in self.allRoads for group in road.laneGroups)
+
+    @cached_property
+    def lanes(self) -> tuple[Lane, ...]:
+        """The lanes of all roads."""
+        return tuple(lane for road in self.allRoads for lane in road.lanes)
+
+    @cached_property
+    def roadSections(self) -> tuple[RoadSection, ...]:
+        """The sections of ordinary roads."""
+        return tuple(section for road in self.roads for section in road.sections)
+
+    @cached_property
+    def laneSections(self) -> tuple[LaneSection, ...]:
+        """The sections of all lanes."""
+        return tuple(section for lane in self.lanes for section in lane.sections)
+
+    # Regions
+
+    @cached_property
+    def drivableRegion(self) -> Region:
+        """Roads and intersections, without shoulders."""
+        return self._region((*self.intersections, *self.roads), self._fillings)
+
+    @cached_property
+    def roadRegion(self) -> Region:
+        """Ordinary roads."""
+        return self._region(self.roads)
+
+    @cached_property
+    def laneRegion(self) -> Region:
+        """All lanes."""
+        return self._region(self.lanes)
+
+    @cached_property
+    def intersectionRegion(self) -> Region:
+        """All intersections."""
+        return self._region(self.intersections)
+
+    @cached_property
+    def walkableRegion(self) -> Region:
+        """Sidewalks and crossings."""
+        return self._region((*self.sidewalks, *self.crossings))
+
+    @cached_property
+    def sidewalkRegion(self) -> Region:
+        """All sidewalks."""
+        return self._region(self.sidewalks)
+
+    @cached_property
+    def crossingRegion(self) -> Region:
+        """All pedestrian crossings."""
+        return self._region(self.crossings)
+
+    @cached_property
+    def shoulderRegion(self) -> Region:
+        """All shoulders."""
+        return self._region(self.shoulders)
+
+    @cached_property
+    def curbRegion(self) -> Region:
+        """The curbs of ordinary roads, in the direction of the traffic beside them."""
+        curbs = [group.curb for road in self.roads for group in road.laneGroups]
+        if not curbs:
+            return nowhere
+        import shapely
+
+        return PolylineRegion(polyline=shapely.MultiLineString([curb.lineString for curb in curbs]))
+
+    def _region(self, elements: Sequence[NetworkElement], fillings: Sequence[Any] = ()) -> Region:
+        import shapely
+
+        if not fillings:
+            return union_region(elements)
+        if not elements:
+            return nowhere
+        merged = shapely.union_all([*(element.polygon for element in elements), *fillings])
+        return PolygonalRegion(polygon=merged, orientation=self.direction_of(elements))
+
+    def direction_of(self, elements: Sequence[NetworkElement]) -> RoadDirection:
+        """The field of the first of some elements that holds a point."""
+        return RoadDirection("direction of elements", elements, self.tolerance)
+
+    @cached_property
+    def roadDirection(self) -> RoadDirection:
+        """The direction of traffic."""
+        elements = (*self.intersections, *self.roads, *self.shoulders)
+        return RoadDirection("roadDirection", elements, self.tolerance)
+
+    # What is where
+
+    def vector(self, point: Any) -> Vector:
+        """A point as a vector; its height does not count."""
+        place = to_vector(point, "a point of the map")
+        return place  # type: ignore[no-any-return]
+
+    def findPointIn(self, point: Any, elems: Sequence[NetworkElement], reject: Any = False) -> Any:
+        """The first of some elements that contains a point; if none does, the first within the tolerance.
+
+        Args:
+            point: anything with a position. Where it is random, so is the element.
+            elems: the elements, in order of precedence.
+            reject: what to do where there is none: true or a message rejects the sample, else the answer is ``None``.
+
+        """
+        place = self.vector(point)
+        if isinstance(place, Lazy):
+            return defer(self.findPointIn, place, elems, reject)
+        if is_random(place):
+            return call_later(self.findPointIn, place, elems, reject)
+        found = self._finder(tuple(elems)).at(place.x, place.y)
+        if found is None and reject:
+            raise RejectionException(reject if isinstance(reject, str) else "there is no such element at the point")
+        return found
+
+    def _finder(self, elements: tuple[NetworkElement, ...]) -> Finder:
+        key = tuple(element.uid for element in elements) if len(elements) < 32 else (len(elements), elements[0].uid, elements[-1].uid)
+        finder = self._finders.get(key)
+        if finder is None:
+            finder = self._finders[key] = Finder(elements, self.tolerance)
+        return finder
+
+    def elementAt(self, point: Any, reject: Any = False) -> Any:
+        """The intersection, road, shoulder or sidewalk at a point, the first of these."""
+        return self.findPointIn(
+            point, (*self.intersections, *self.roads, *self.shoulders, *self.sidewalks), reject
+        )
+
+    def roadAt(self, point: Any, reject: Any = False) -> Any:
+        """The road at a point: an ordinary one first, then a connecting one."""
+        return self.findPointIn(point, self.allRoads, reject)
+
+    def laneAt(self, point: Any, reject: Any = False) -> Any:
+        """The lane at a point."""
+        return self.findPointIn(point, self.lanes, reject)
+
+    def laneSectionAt(self, point: Any, reject: Any = False) -> Any:
+        """The lane section at a point."""
+        return self._through(point, reject, self.laneAt, "sectionAt")
+
+    def laneGroupAt(self, point: Any, reject: Any = False) -> Any:
+        """The lane group at a point."""
+        return self._through(point, reject, self.roadAt, "laneGroupAt")
+
+    def crossingAt(self, point: Any, reject: Any = False) -> Any:
+        """The pedestrian crossing at a point."""
+        return self.findPointIn(point, self.crossings, reject)
+
+    def intersectionAt(self, point: Any, reject: Any = False) -> Any:
+        """The intersection at a point."""
+        return self.findPointIn(point, self.intersections, reject)
+
+    def sidewalkAt(self, point: Any, reject: Any = False) -> Any:
+        """The sidewalk at a point."""
+        return self.findPointIn(point, self.sidewalks, reject)
+
+    def shoulderAt(self, point: Any, reject: Any = False) -> Any:
+        """The shoulder at a point."""
+        return self.findPointIn(point, self.shoulders, reject)
+
+    def _through(self, point: Any, reject: Any, outer: Callable[..., Any], inner: str) -> Any:
+        """An element that is found through the one that it is in."""
+        place = self.vector(point)
+        if isinstance(place, Lazy):
+            return defer(self._through, place, reject, outer, inner)
+        if is_random(place):
+            return call_later(self._through, place, reject, outer, inner)
+        found = outer(place, reject)
+        return None if found is None else getattr(found, inner)(place, reject)
+
+    def nominalDirectionsAt(self, point: Any, reject: Any = False) -> Any:
+        """The directions of traffic that are possible at a point: several in an intersection, none off the road."""
+        place = self.vector(point)
+        if isinstance(place, Lazy):
+            return defer(self.nominalDirectionsAt, place, reject)
+        if is_random(place):
+            return call_later(self.nominalDirectionsAt, place, reject)
+        found = self.findPointIn(place, (*self.intersections, *self.roads, *self.shoulders), reject)
+        return () if found is None else found.nominalDirectionsAt(place)
+
+    def elevationAt(self, point: Any) -> Any:
+        """The height of the road at a point in metres, ``None`` off the road; z of the point chooses between levels."""
+        place = self.vector(point)
+        if isinstance(place, Lazy):
+            return defer(self.elevationAt, place)
+        if is_random(place):
+            return call_later(self.elevationAt, place)
+        return self._elevation(place)
+
+    # Files
+
+    @classmethod
+    def fromFile(cls, path: Any, useCache: bool = True, writeCache: bool = True, **options: Any) -> "Network":
+        """The network of a map file.
+
+        Args:
+            path: an OpenDRIVE file; ``.xodr`` may be left out.
+            useCache: whether a network that was kept may be used.
+            writeCache: whether to keep the network.
+            options: see `scenic.domains.driving.loading.MapOptions`.
+
+        Raises:
+            FileNotFoundError: if there is no such file.
+            ValueError: if its name tells of another format.
+            MapError: if it is not a map.
+
+        """
+        from scenic.domains.driving.loading import load_network
+
+        return load_network(path, options)
+
+    @classmethod
+    def fromOpenDrive(cls, path: Any, **options: Any) -> "Network":
+        """The network of an OpenDRIVE file; see `fromFile`."""
+        return cls.fromFile(path, **options)
+
+    def svg(self, width: int = 1200) -> str:
+        """A drawing of the network from above, as SVG."""
+        from scenic.domains.driving.drawing import svg
+
+        return svg(self, width)
+
+    def show(self, labelIncomingLanes: bool = False, showCurbArrows: bool = False) -> Any:
+        """Draw the network in a browser; the arguments are accepted for compatibility."""
+        from scenic.domains.driving.drawing import show
+
+        return show(self)
+
+    def __repr__(self) -> str:
+        return f"<Network of {len(self.roads)} roads, {len(self.intersections)} intersections>"
+
+    def __deepcopy__(self, _memo: Any) -> "Network":
+        return self
+
+    def __copy__(self) -> "Network":
+        return self
+
+

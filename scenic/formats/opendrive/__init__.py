@@ -1,0 +1,1 @@
+"""Road maps in the OpenDRIVE format: from text to records, and the curves of reference lines."""
