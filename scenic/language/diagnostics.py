@@ -186,6 +186,11 @@ CODES: Final = MappingProxyType(
         "SC610": "sampling process died",
         "SC611": "cluster cannot be used",
         "SC612": "data set cannot be used",
+        "SC620": "map cannot be used",
+        "SC621": "road of a map repaired or left out",
+        "SC622": "lane of a map repaired or left out",
+        "SC623": "link of a map dropped",
+        "SC624": "junction of a map repaired or left out",
         # Found by analysis.
         "SC700": "requirements contradict each other",
         "SC701": "requirement always holds",
