@@ -100,7 +100,7 @@ def build_roads(
 ) -> dict[str, BuiltRoad]:
     """The roads of a map by their ids, each with its lanes, groups, sections, sidewalks and shoulders.
 
-    A road without drivable lanes is kept if it has a sidewalk or a shoulder. One that fails costs itself alone.
+    A road without drivable lanes is no road. One that fails costs itself alone.
     """
     shapes: list[RoadShape] = []
     for record in map.roads:
@@ -222,15 +222,11 @@ class _RoadBuilder:
         return (id > 0) == (self._forward_side > 0)
 
     def build(self) -> BuiltRoad | None:
-        if not any(self._drivable) and not any(s.polygon is not None for row in (*self._walks, *self._shoulders) for s in row):
-            message = f"road {self._record.id} has no lane for traffic: left out"
-            self._tell(Problem("SC622", message, self._record.line, "no lanes"))
+        if not any(self._drivable):
             return None
         record = self._record
         tags = frozenset({record.type}) if record.type else frozenset()
         polygon = union_of(self._outlines())
-        if polygon is None:
-            polygon = union_of(s.polygon for row in (*self._walks, *self._shoulders) for s in row)
         road = self._register(
             Road, self._uid, polygon, id=number_or_text(record.id), name=record.name, speed=record.speed, tags=tags
         )

@@ -139,7 +139,8 @@ class _Linker:
             ways.append((incoming, self._touching(incoming, junction.id, connecting, connection), connecting, connection))
         if junction.type == "virtual":
             return
-        polygon = union_of(road.road.polygon for road in inside if road.road.lanes)
+        through = {id(road): road for road in (*inside, *(way[2] for way in ways)) if road.road.lanes}
+        polygon = union_of(lane.polygon for road in through.values() for lane in road.road.lanes)
         if polygon is None or not ways:
             if inside or junction.connections:
                 message = f"junction {junction.id} has no connection that can be used: left out"

@@ -171,9 +171,10 @@ class RoadDirection(TabulatedField):
             offset = places[begin : begin + block][owner] - starts[segment]
             share = np.clip((offset * delta[segment]).sum(axis=1) / square[segment], 0, 1)
             away = ((offset - share[:, None] * delta[segment]) ** 2).sum(axis=1)
-            order = np.lexsort((segment, away, owner))
-            begins = np.searchsorted(owner[order], np.arange(len(mine)))
-            result[begin : begin + block] = heading[segment[order][begins]]
+            least = np.minimum.reduceat(away, np.cumsum(counts[mine]) - counts[mine])
+            best = np.flatnonzero(away == least[owner])
+            _, once = np.unique(owner[best], return_index=True)
+            result[begin : begin + block] = heading[segment[best[once]]]
         return result
 
     def _value(self, point: Any) -> float:
