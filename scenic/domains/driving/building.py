@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import Any, Final
 
 import numpy as np
@@ -20,7 +21,7 @@ from scenic.domains.driving.elements import (
     Signal,
 )
 from scenic.domains.driving.kinds import VehicleType
-from scenic.domains.driving.network import Network
+from scenic.domains.driving.network import RoadNetwork
 from scenic.formats.opendrive import records
 from scenic.formats.opendrive.records import MapRecords, Problem
 from scenic.formats.opendrive.shapes import RoadShape, SectionShape, joined, road_shape
@@ -38,7 +39,7 @@ class LaneTypes:
     """Which types of lanes of the file are what."""
 
     drivable: frozenset[str] = frozenset(
-        "driving entry exit offRamp onRamp connectingRamp slipLane bidirectional".split()
+        ["driving", "entry", "exit", "offRamp", "onRamp", "connectingRamp", "slipLane", "bidirectional"]
     )
     sidewalk: frozenset[str] = frozenset({"sidewalk", "walking"})
     shoulder: frozenset[str] = frozenset({"shoulder", "parking", "stop", "border"})
@@ -90,7 +91,7 @@ Tell = Callable[[Problem], None]
 
 
 def build_roads(
-    network: Network,
+    network: RoadNetwork,
     map: MapRecords,
     tell: Tell,
     *,
@@ -110,7 +111,7 @@ def build_roads(
             message = f"road {record.id} is left out: its geometry cannot be computed ({error})"
             tell(Problem("SC621", message, record.line, "road"))
     strips = {id(shape): _strips_of(shape, types) for shape in shapes}
-    _fill_polygons([strip for rows in strips.values() for row in rows for strip in row], tell)
+    _fill_polygons([strip for rows in strips.values() for row in rows for strip in row])
     built: dict[str, BuiltRoad] = {}
     for shape in shapes:
         made = _RoadBuilder(network, shape, strips[id(shape)], types, tell).build()
@@ -131,7 +132,7 @@ def _strips_of(shape: RoadShape, types: LaneTypes) -> list[list[_Strip]]:
     ]
 
 
-def _fill_polygons(strips: Sequence[_Strip], tell: Tell) -> None:
+def _fill_polygons(strips: Sequence[_Strip]) -> None:
     """Give strips their polygons, all in one go; those without area keep none."""
     import shapely
 
@@ -196,7 +197,7 @@ def union_of(polygons: Iterable[Any]) -> Any:
 
 class _RoadBuilder:
     def __init__(
-        self, network: Network, shape: RoadShape, rows: list[list[_Strip]], types: LaneTypes, tell: Tell
+        self, network: RoadNetwork, shape: RoadShape, rows: list[list[_Strip]], types: LaneTypes, tell: Tell
     ) -> None:
         self._network = network
         self._shape = shape
@@ -228,7 +229,13 @@ class _RoadBuilder:
         tags = frozenset({record.type}) if record.type else frozenset()
         polygon = union_of(self._outlines())
         road = self._register(
-            Road, self._uid, polygon, id=number_or_text(record.id), name=record.name, speed=record.speed, tags=tags
+            Road,
+            self._uid,
+            polygon,
+            id=number_or_text(record.id),
+            name=record.name,
+            speed=record.speed,
+            tags=tags,
         )
         built = BuiltRoad(record, self._shape, road)
         sections = self._lane_sections(road, tags)
@@ -311,19 +318,17 @@ class _RoadBuilder:
         chains: list[list[LaneSection]] = []
         taken: set[int] = set()
         merging: list[tuple[LaneSection, LaneSection]] = []
-        following: list[dict[int, int]] = []
-        for number in range(len(sections) - 1):
-            following.append(self._following(number, sections))
+        following = [self._following(number, sections) for number in range(len(sections) - 1)]
         for number, row in enumerate(sections):
-            for id, section in row.items():
+            for key, section in row.items():
                 if id_of(section) not in lane_of:
                     chain = [section]
                     chains.append(chain)
                     lane_of[id_of(section)] = chain
                 chain = lane_of[id_of(section)]
-                if number == len(following) or id not in following[number]:
+                if number == len(following) or key not in following[number]:
                     continue
-                after = sections[number + 1].get(following[number][id])
+                after = sections[number + 1].get(following[number][key])
                 if after is None:
                     continue
                 if id_of(after) in taken:
@@ -354,7 +359,7 @@ class _RoadBuilder:
             )
             for part in parts:
                 part.lane = lane
-            for before, after in zip(parts, parts[1:], strict=False):
+            for before, after in pairwise(parts):
                 before._successor, after._predecessor = after, before
             lanes.append(lane)
         for section, after in merging:
@@ -366,26 +371,28 @@ class _RoadBuilder:
                 section._predecessor = after
                 section.lane._predecessor = after.lane
         road.lanes = tuple(lanes)
-        built.lanes_by_section = [{id: section.lane for id, section in row.items()} for row in sections]
+        built.lanes_by_section = [{key: part.lane for key, part in row.items()} for row in sections]
 
     def _following(self, number: int, sections: list[dict[int, LaneSection]]) -> dict[int, int]:
         """For lanes of a section, by id, the lane of the next section that they lead into along the reference line."""
         here = {strip.id: strip.lane for strip in self._drivable[number]}
         there = {strip.id: strip.lane for strip in self._drivable[number + 1]}
         found = {}
-        for id, lane in here.items():
+        for key, lane in here.items():
             if lane.successor is not None and lane.successor in there:
-                found[id] = lane.successor
-        for id, lane in there.items():
+                found[key] = lane.successor
+        for key, lane in there.items():
             if lane.predecessor is not None and lane.predecessor in here and lane.predecessor not in found:
-                found[lane.predecessor] = id  # the link is given on one side only
+                found[lane.predecessor] = key  # the link is given on one side only
         linked = any(lane.successor is not None for lane in here.values()) or any(
             lane.predecessor is not None for lane in there.values()
         )
         if not linked:
-            found = {id: id for id in here if id in there}
+            found = {key: key for key in here if key in there}
         return {
-            id: other for id, other in found.items() if sections[number][id].isForward == self._is_forward(other)
+            key: other
+            for key, other in found.items()
+            if sections[number][key].isForward == self._is_forward(other)
         }
 
     def _groups(self, road: Road) -> None:
@@ -416,7 +423,9 @@ class _RoadBuilder:
                 road.forwardLanes = group
             else:
                 road.backwardLanes = group
-        road.laneGroups = tuple(group for group in (road.forwardLanes, road.backwardLanes) if group is not None)
+        road.laneGroups = tuple(
+            group for group in (road.forwardLanes, road.backwardLanes) if group is not None
+        )
         if road.forwardLanes is not None and road.backwardLanes is not None:
             road.forwardLanes._opposite = road.backwardLanes
             road.backwardLanes._opposite = road.forwardLanes
@@ -452,28 +461,30 @@ class _RoadBuilder:
                 tags=road.tags,
             )
             section.road = road
-            ids = sorted(row)  # from right to left along the road
-            section.lanes = tuple(row[id] for id in ids)
+            section.lanes = tuple(row[key] for key in sorted(row))  # from right to left along the road
             section.forwardLanes = tuple(lane for lane in section.lanes if lane.isForward)
             section.backwardLanes = tuple(lane for lane in section.lanes if not lane.isForward)
             section.lanesByOpenDriveID = dict(row)
             bounds = shape.boundaries
             section.place(shape.reference, bounds[drivable[0].index], bounds[drivable[-1].index + 1])
             made.append(section)
-        for before, after in zip(made, made[1:], strict=False):
+        for before, after in pairwise(made):
             before._successor, after._predecessor = after, before
         road.sections = tuple(made)
 
     def _neighbours(self, rows: list[dict[int, LaneSection]]) -> None:
         for row in rows:
-            for id, section in row.items():
-                inner = id + 1 if id < 0 else id - 1
-                inner = inner or (1 if id < 0 else -1)
-                outer = id - 1 if id < 0 else id + 1
+            for key, section in row.items():
+                inner = key + 1 if key < 0 else key - 1
+                inner = inner or (1 if key < 0 else -1)
+                outer = key - 1 if key < 0 else key + 1
                 middle, edge = row.get(inner), row.get(outer)
                 left, right = (edge, middle) if self._record.left_hand else (middle, edge)
                 section._laneToLeft, section._laneToRight = left, right
-                same = [lane if lane is not None and lane.isForward == section.isForward else None for lane in (left, right)]
+                same = [
+                    lane if lane is not None and lane.isForward == section.isForward else None
+                    for lane in (left, right)
+                ]
                 faster, slower = same[::-1] if self._record.left_hand else same
                 section._fasterLane, section._slowerLane = faster, slower
                 section.adjacentLanes = tuple(lane for lane in (left, right) if lane is not None)
@@ -503,9 +514,7 @@ class _RoadBuilder:
         self._network.sidewalks += tuple(sidewalks)
         self._network.shoulders += tuple(shoulders)
 
-    def _side(
-        self, road: Road, cls: type[Any], rows: list[list[_Strip]], forward: bool, uid: str
-    ) -> Any:
+    def _side(self, road: Road, cls: type[Any], rows: list[list[_Strip]], forward: bool, uid: str) -> Any:
         """All strips of one kind on one side as an element: the outermost run of each section."""
         left, right, polygons = [], [], []
         for row in rows:

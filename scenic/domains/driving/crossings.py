@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from scenic.domains.driving.building import BuiltRoad, Tell, area_of
 from scenic.domains.driving.elements import Intersection, PedestrianCrossing, Road, Sidewalk
 from scenic.domains.driving.kinds import VehicleType
-from scenic.domains.driving.network import Network
+from scenic.domains.driving.network import RoadNetwork
 from scenic.formats.opendrive.curves import Curve, cubic_values
 from scenic.formats.opendrive.records import Crosswalk, Problem
 
@@ -17,13 +17,15 @@ __all__ = ["add_crossings"]
 Floats = NDArray[np.float64]
 
 
-def add_crossings(network: Network, built: Mapping[str, BuiltRoad], tell: Tell) -> None:
+def add_crossings(network: RoadNetwork, built: Mapping[str, BuiltRoad], tell: Tell) -> None:
     """Give a network its crossings."""
     import shapely
 
     made = []
     inside = {
-        id(road): intersection for intersection in network.intersections for road in _roads_in(network, intersection)
+        id(road): intersection
+        for intersection in network.intersections
+        for road in _roads_in(network, intersection)
     }
     for road in built.values():
         for number, crosswalk in enumerate(road.record.crosswalks):
@@ -55,7 +57,7 @@ def add_crossings(network: Network, built: Mapping[str, BuiltRoad], tell: Tell) 
             sidewalk.crossings += (crossing,)
 
 
-def _roads_in(network: Network, intersection: Intersection) -> list[Road]:
+def _roads_in(network: RoadNetwork, intersection: Intersection) -> list[Road]:
     lanes = set(map(id, intersection._connecting))
     return [road for road in network.connectingRoads if any(id(lane) in lanes for lane in road.lanes)]
 
@@ -90,7 +92,7 @@ def _long_sides(polygon: object) -> tuple[Floats, Floats]:
     return box[[3, 2]], box[[0, 1]]
 
 
-def _sidewalk_at(network: Network, place: Floats) -> Sidewalk | None:
+def _sidewalk_at(network: RoadNetwork, place: Floats) -> Sidewalk | None:
     """The sidewalk nearest to the end of a crossing, within a lane's width."""
     import shapely
 

@@ -18,7 +18,7 @@ from scenic.runtime.regions.planar import PolygonalRegion
 from scenic.runtime.values.values import Orientation
 
 if TYPE_CHECKING:
-    from scenic.domains.driving.network import Network
+    from scenic.domains.driving.network import RoadNetwork
 
 __all__ = [
     "Intersection",
@@ -65,7 +65,7 @@ class NetworkElement(PolygonalRegion):
 
     def __init__(
         self,
-        network: "Network",
+        network: "RoadNetwork",
         uid: str,
         polygon: Any,
         *,
@@ -148,7 +148,7 @@ class NetworkElement(PolygonalRegion):
         return _element_of, (self.network, self.uid)
 
 
-def _element_of(network: "Network", uid: str) -> NetworkElement:
+def _element_of(network: "RoadNetwork", uid: str) -> NetworkElement:
     return network.elements[uid]
 
 

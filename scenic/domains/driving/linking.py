@@ -15,7 +15,7 @@ from scenic.domains.driving.building import (
     union_of,
 )
 from scenic.domains.driving.elements import Intersection, Lane, LaneGroup, Maneuver, Road, Signal
-from scenic.domains.driving.network import Network
+from scenic.domains.driving.network import RoadNetwork
 from scenic.formats.opendrive import records
 from scenic.formats.opendrive.records import Link, MapRecords, Problem
 
@@ -28,7 +28,7 @@ _OPPOSITE: Final = {"start": "end", "end": "start"}
 
 
 def link_roads(
-    network: Network,
+    network: RoadNetwork,
     map: MapRecords,
     built: Mapping[str, BuiltRoad],
     tell: Tell,
@@ -50,12 +50,13 @@ def link_roads(
 
 class _Linker:
     def __init__(
-        self, network: Network, map: MapRecords, built: Mapping[str, BuiltRoad], tell: Tell
+        self, network: RoadNetwork, map: MapRecords, built: Mapping[str, BuiltRoad], tell: Tell
     ) -> None:
         self._network = network
         self._map = map
         self._built = built
         self._tell = tell
+        self._names = {road.id for road in map.roads}
         self._intersections: dict[str, Intersection] = {}
         self._maneuvers: dict[int, list[Maneuver]] = defaultdict(list)
         self._joints: list[tuple[Lane, Lane]] = []
@@ -71,8 +72,10 @@ class _Linker:
                     continue
                 other = self._built.get(link.id)
                 if other is None:
-                    if not any(record.id == link.id for record in self._map.roads):
-                        message = f"road {road.record.id} is linked to road {link.id}, which is not there: dropped"
+                    if link.id not in self._names:
+                        message = (
+                            f"road {road.record.id} is linked to road {link.id}, which is not there: dropped"
+                        )
                         self._tell(Problem("SC623", message, link.line, "link"))
                     continue
                 contact = link.contact or self._contact(other, road.record.id)
@@ -85,22 +88,22 @@ class _Linker:
 
     def _lanes(self, road: BuiltRoad, end: str, other: BuiltRoad, contact: str) -> None:
         """Link lanes at an end of a road with those at the end of another one that touches it."""
-        for id, lane in road.contact_lanes(end):
+        for key, lane in road.contact_lanes(end):
             section = road.record.sections[0 if end == "start" else -1]
-            record = next(item for item in section.lanes if item.id == id)
+            record = next(item for item in section.lanes if item.id == key)
             target = record.predecessor if end == "start" else record.successor
             if target is None:
-                target = self._back_link(other, contact, id)
+                target = self._back_link(other, contact, key)
             if target is None:
                 continue
             beyond = other.lane_at(contact, target)
             if beyond is None:
                 if self._is_declared(other, contact, target):
                     continue
-                message = f"lane {id} of road {road.record.id} is linked to lane {target} of road {other.record.id}, which is not there: dropped"
+                message = f"lane {key} of road {road.record.id} is linked to lane {target} of road {other.record.id}, which is not there: dropped"
                 self._tell(Problem("SC623", message, record.line, "lane link"))
                 continue
-            forward = road.lane_at(end, id).sections[0].isForward  # type: ignore[union-attr] # it is there
+            forward = road.lane_at(end, key).sections[0].isForward  # type: ignore[union-attr] # it is there
             leaves = forward == (end == "end")
             before, after = (lane, beyond) if leaves else (beyond, lane)
             self._join(before, after)
@@ -118,7 +121,10 @@ class _Linker:
 
     def _join(self, before: Lane, after: Lane) -> None:
         before._successor, after._predecessor = after, before
-        before.sections[-1]._successor, after.sections[0]._predecessor = after.sections[0], before.sections[-1]
+        before.sections[-1]._successor, after.sections[0]._predecessor = (
+            after.sections[0],
+            before.sections[-1],
+        )
         self._joints.append((before, after))
 
     # Junctions
@@ -130,21 +136,32 @@ class _Linker:
         inside = [road for road in self._built.values() if road.record.junction == junction.id]
         ways: list[tuple[BuiltRoad, str, BuiltRoad, records.Connection]] = []
         for connection in junction.connections:
-            incoming, connecting = self._built.get(connection.incoming), self._built.get(connection.connecting)
+            incoming, connecting = (
+                self._built.get(connection.incoming),
+                self._built.get(connection.connecting),
+            )
             if incoming is None or connecting is None:
                 missing = connection.incoming if incoming is None else connection.connecting
+                if missing in self._names:
+                    continue  # a road without lanes for traffic
                 message = f"a connection of junction {junction.id} names road {missing}, which is not there: dropped"
                 self._tell(Problem("SC624", message, connection.line, "connection"))
                 continue
-            ways.append((incoming, self._touching(incoming, junction.id, connecting, connection), connecting, connection))
+            ways.append(
+                (
+                    incoming,
+                    self._touching(incoming, junction.id, connecting, connection),
+                    connecting,
+                    connection,
+                )
+            )
         if junction.type == "virtual":
             return
         through = {id(road): road for road in (*inside, *(way[2] for way in ways)) if road.road.lanes}
         polygon = union_of(lane.polygon for road in through.values() for lane in road.road.lanes)
         if polygon is None or not ways:
-            if inside or junction.connections:
-                message = f"junction {junction.id} has no connection that can be used: left out"
-                self._tell(Problem("SC624", message, junction.line, "junction"))
+            message = f"junction {junction.id} has no connection that can be used: left out"
+            self._tell(Problem("SC624", message, junction.line, "junction"))
             return
         if fill:
             parts = [shapely.Polygon(part.exterior) for part in getattr(polygon, "geoms", [polygon])]
@@ -165,7 +182,7 @@ class _Linker:
         for incoming, end, connecting, connection in ways:
             ends.setdefault(incoming.record.id, (incoming, end))
             links = connection.links or tuple(
-                records.LaneLinks(id, id) for id, _ in incoming.contact_lanes(end)
+                records.LaneLinks(key, key) for key, _ in incoming.contact_lanes(end)
             )
             for link in links:
                 start = incoming.lane_at(end, link.source)
@@ -264,7 +281,9 @@ class _Linker:
         first = [road.id for road in self._map.roads]
         place = {name: index for index, name in enumerate(first)}
         self._network.connectingRoads = tuple(
-            sorted(set(self._network.connectingRoads), key=lambda road: place[str(road.uid).removeprefix("road")])
+            sorted(
+                set(self._network.connectingRoads), key=lambda road: place[str(road.uid).removeprefix("road")]
+            )
         )
 
     def _at_end(self, link: Link | None) -> Road | Intersection | None:
@@ -314,7 +333,9 @@ class _Linker:
                     continue
                 signal = known.get(item.id)
                 if signal is None:
-                    message = f"road {built.record.id} refers to signal {item.id}, which is not there: dropped"
+                    message = (
+                        f"road {built.record.id} refers to signal {item.id}, which is not there: dropped"
+                    )
                     self._tell(Problem("SC623", message, item.line, "signal"))
                     continue
                 added.append(Signal(f"signal{signal.id}", signal.id, signal.country, signal.type))
@@ -324,7 +345,9 @@ class _Linker:
             signals = {signal.uid: signal for signal in intersection.signals}
             for built in self._built.values():
                 if built.record.junction == name or built.road in intersection.roads:
-                    signals.update({signal.uid: signal for signal in built.road.signals if signal.uid not in signals})
+                    signals.update(
+                        {signal.uid: signal for signal in built.road.signals if signal.uid not in signals}
+                    )
             intersection.signals = tuple(signals.values())
 
     def gaps(self) -> Iterable[Any]:

@@ -5,12 +5,12 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, TypeVar
 
 from scenic.domains.driving.building import BuiltRoad, LaneTypes, build_roads
 from scenic.domains.driving.crossings import add_crossings
 from scenic.domains.driving.linking import link_roads
-from scenic.domains.driving.network import Network
+from scenic.domains.driving.network import RoadNetwork
 from scenic.formats.opendrive.curves import cubic_values
 from scenic.formats.opendrive.reader import read_map, told
 from scenic.formats.opendrive.records import Problem
@@ -23,6 +23,8 @@ from scenic.language.spelling import nearest
 __all__ = ["MapOptions", "load_network", "map_file", "network_of"]
 
 SUFFIX: Final = ".xodr"
+
+_Network = TypeVar("_Network", bound=RoadNetwork)
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,11 +76,13 @@ class MapOptions:
         return LaneTypes(self.drivable_lane_types, self.sidewalk_lane_types, self.shoulder_lane_types)
 
 
-def load_network(path: Any, given: Mapping[str, Any]) -> Network:
-    """The network of a map file; see `Network.fromFile`."""
+def load_network(path: Any, given: Mapping[str, Any], cls: type[_Network]) -> _Network:
+    """The network of a map file, of a class; see `Network.fromFile`."""
     options = MapOptions.of(given)
     file = map_file(path)
-    return network_of(file.read_bytes(), str(file), options)
+    network = network_of(file.read_bytes(), str(file), options, cls)  # type: ignore[arg-type] # classes can be hashed
+    assert isinstance(network, cls)
+    return network
 
 
 def map_file(path: Any) -> Path:
@@ -91,11 +95,11 @@ def map_file(path: Any) -> Path:
 
     """
     file = Path(path)
-    if not file.suffix and not file.is_file():
+    if not file.suffix and not file.is_file() and file.with_suffix(SUFFIX).is_file():
         file = file.with_suffix(SUFFIX)
     if file.is_dir():
         raise IsADirectoryError(f"'{file}' is a folder, not a map: give the .xodr file")
-    if file.suffix.lower() != SUFFIX:
+    if file.suffix and file.suffix.lower() != SUFFIX:
         raise ValueError(f"'{file}' is not a map that scenic reads: it reads OpenDRIVE, {SUFFIX} files")
     if not file.is_file():
         beside = sorted(item.name for item in file.parent.glob(f"*{SUFFIX}")) if file.parent.is_dir() else []
@@ -105,19 +109,21 @@ def map_file(path: Any) -> Path:
 
 
 @lru_cache(maxsize=8)
-def network_of(content: bytes, filename: str, options: MapOptions) -> Network:
+def network_of(
+    content: bytes, filename: str, options: MapOptions, cls: type[RoadNetwork] = RoadNetwork
+) -> RoadNetwork:
     """The network of the text of a map; once in a process for equal content and options.
 
     Raises `MapError` if it is not a map, or has no lane for traffic.
     """
-    map = read_map(content, filename)
-    problems = list(map.problems)
+    records = read_map(content, filename)
+    problems = list(records.problems)
     tell: Callable[[Problem], None] = problems.append
-    left = sum(road.left_hand for road in map.roads) * 2 > len(map.roads)
-    network = Network(tolerance=options.tolerance, driveOnLeft=left)
+    left = sum(road.left_hand for road in records.roads) * 2 > len(records.roads)
+    network = cls(tolerance=options.tolerance, driveOnLeft=left)
     built = build_roads(
         network,
-        map,
+        records,
         tell,
         types=options.types,
         max_error=options.max_error,
@@ -132,7 +138,7 @@ def network_of(content: bytes, filename: str, options: MapOptions) -> Network:
         )
     link_roads(
         network,
-        map,
+        records,
         built,
         tell,
         fill_gaps=options.fill_gaps,
@@ -152,7 +158,7 @@ def _diagnostic(problem: Problem, filename: str) -> Diagnostic:
 class _Elevation:
     """The height of roads: the profile of the reference line, tilted by the superelevation."""
 
-    def __init__(self, network: Network, built: Mapping[str, BuiltRoad]) -> None:
+    def __init__(self, network: RoadNetwork, built: Mapping[str, BuiltRoad]) -> None:
         self._network = network
         self._built = {id(road.road): road for road in built.values()}
 
@@ -166,7 +172,11 @@ class _Elevation:
                 continue
             built = self._built[id(road)]
             line = shapely.linestrings(road.line)
-            s = float(line.project(shapely.Point(point.x, point.y))) * built.record.length / max(line.length, 1e-9)
+            s = (
+                float(line.project(shapely.Point(point.x, point.y)))
+                * built.record.length
+                / max(line.length, 1e-9)
+            )
             place = np.array([s])
             height = float(cubic_values(built.record.elevation, place)[0])
             tilt = float(cubic_values(built.record.superelevation, place)[0])

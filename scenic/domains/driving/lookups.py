@@ -186,5 +186,3 @@ class RoadDirection(TabulatedField):
 
     def sampled(self, sample: Any) -> "RoadDirection":
         return self
-
-

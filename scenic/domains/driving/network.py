@@ -25,12 +25,12 @@ from scenic.runtime.regions.base import Region, nowhere
 from scenic.runtime.regions.lines import PolylineRegion
 from scenic.runtime.regions.planar import PolygonalRegion
 from scenic.runtime.values.lazy import Lazy, defer
-from scenic.runtime.values.values import Vector, is_random, to_vector
+from scenic.runtime.values.values import is_random, to_vector
 
-__all__ = ["Network"]
+__all__ = ["RoadNetwork"]
 
 
-class Network:
+class RoadNetwork:
     """A road network, which never changes.
 
     Attributes:
@@ -164,10 +164,9 @@ class Network:
 
     # What is where
 
-    def vector(self, point: Any) -> Vector:
+    def vector(self, point: Any) -> Any:
         """A point as a vector; its height does not count."""
-        place = to_vector(point, "a point of the map")
-        return place  # type: ignore[no-any-return]
+        return to_vector(point, "a point of the map")
 
     def findPointIn(self, point: Any, elems: Sequence[NetworkElement], reject: Any = False) -> Any:
         """The first of some elements that contains a point; if none does, the first within the tolerance.
@@ -185,11 +184,17 @@ class Network:
             return call_later(self.findPointIn, place, elems, reject)
         found = self._finder(tuple(elems)).at(place.x, place.y)
         if found is None and reject:
-            raise RejectionException(reject if isinstance(reject, str) else "there is no such element at the point")
+            raise RejectionException(
+                reject if isinstance(reject, str) else "there is no such element at the point"
+            )
         return found
 
     def _finder(self, elements: tuple[NetworkElement, ...]) -> Finder:
-        key = tuple(element.uid for element in elements) if len(elements) < 32 else (len(elements), elements[0].uid, elements[-1].uid)
+        key = (
+            tuple(element.uid for element in elements)
+            if len(elements) < 32
+            else (len(elements), elements[0].uid, elements[-1].uid)
+        )
         finder = self._finders.get(key)
         if finder is None:
             finder = self._finders[key] = Finder(elements, self.tolerance)
@@ -262,52 +267,11 @@ class Network:
             return call_later(self.elevationAt, place)
         return self._elevation(place)
 
-    # Files
-
-    @classmethod
-    def fromFile(cls, path: Any, useCache: bool = True, writeCache: bool = True, **options: Any) -> "Network":
-        """The network of a map file.
-
-        Args:
-            path: an OpenDRIVE file; ``.xodr`` may be left out.
-            useCache: whether a network that was kept may be used.
-            writeCache: whether to keep the network.
-            options: see `scenic.domains.driving.loading.MapOptions`.
-
-        Raises:
-            FileNotFoundError: if there is no such file.
-            ValueError: if its name tells of another format.
-            MapError: if it is not a map.
-
-        """
-        from scenic.domains.driving.loading import load_network
-
-        return load_network(path, options)
-
-    @classmethod
-    def fromOpenDrive(cls, path: Any, **options: Any) -> "Network":
-        """The network of an OpenDRIVE file; see `fromFile`."""
-        return cls.fromFile(path, **options)
-
-    def svg(self, width: int = 1200) -> str:
-        """A drawing of the network from above, as SVG."""
-        from scenic.domains.driving.drawing import svg
-
-        return svg(self, width)
-
-    def show(self, labelIncomingLanes: bool = False, showCurbArrows: bool = False) -> Any:
-        """Draw the network in a browser; the arguments are accepted for compatibility."""
-        from scenic.domains.driving.drawing import show
-
-        return show(self)
-
     def __repr__(self) -> str:
         return f"<Network of {len(self.roads)} roads, {len(self.intersections)} intersections>"
 
-    def __deepcopy__(self, _memo: Any) -> "Network":
+    def __deepcopy__(self, _memo: Any) -> "RoadNetwork":
         return self
 
-    def __copy__(self) -> "Network":
+    def __copy__(self) -> "RoadNetwork":
         return self
-
-

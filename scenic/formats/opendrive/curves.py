@@ -153,7 +153,10 @@ class _Polynomial:
             index = np.clip(np.searchsorted(self._parameters, p) - 1, 0, len(self._parameters) - 2)
             start = self._parameters[index]
             half = (p - start)[:, None] / 2
-            way = self._lengths[index] + (self._speed(start[:, None] + half * (1 + _NODES)) @ _WEIGHTS) * half[:, 0]
+            way = (
+                self._lengths[index]
+                + (self._speed(start[:, None] + half * (1 + _NODES)) @ _WEIGHTS) * half[:, 0]
+            )
             p = np.clip(p + (ds - way) / np.maximum(self._speed(p), 1e-9), 0, self._parameters[-1])
         return _poly(self._u, p), _poly(self._v, p), np.arctan2(_poly(self._dv, p), _poly(self._du, p))
 
@@ -184,8 +187,12 @@ def cubic_values(cubics: Sequence[Cubic], s: Floats, *, before: float = 0.0) -> 
 def cubic_bend(cubics: Sequence[Cubic], length: float) -> float:
     """The largest second derivative of a piecewise cubic, over pieces that are at most ``length`` long."""
     ends = [*(cubic.start for cubic in cubics[1:]), length + (cubics[0].start if cubics else 0)]
-    bends = [
-        max(abs(2 * cubic.c), abs(2 * cubic.c + 6 * cubic.d * max(0.0, end - cubic.start)))
-        for cubic, end in zip(cubics, ends, strict=True)
-    ] if cubics else [0.0]
+    bends = (
+        [
+            max(abs(2 * cubic.c), abs(2 * cubic.c + 6 * cubic.d * max(0.0, end - cubic.start)))
+            for cubic, end in zip(cubics, ends, strict=True)
+        ]
+        if cubics
+        else [0.0]
+    )
     return max(bends)

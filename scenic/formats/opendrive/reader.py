@@ -6,6 +6,8 @@ Anything that is wrong with a part of the file costs at most that part, and is t
 import math
 from collections import Counter
 from collections.abc import Iterator
+from dataclasses import replace
+from itertools import pairwise
 from typing import Final, Literal
 
 from scenic.formats.opendrive.records import (
@@ -85,7 +87,9 @@ class _Reader:
                 self._tell("SC621", f"road {name} is left out: {wrong}", wrong.line, "road")
                 continue
             if road.id in roads:
-                self._tell("SC621", f"road {road.id} is there twice: the second is left out", road.line, "twice")
+                self._tell(
+                    "SC621", f"road {road.id} is there twice: the second is left out", road.line, "twice"
+                )
             else:
                 roads[road.id] = road
         junctions: dict[str, Junction] = {}
@@ -192,7 +196,7 @@ class _Reader:
             if longest.length <= 0:
                 raise _Wrong("its reference line has no length", plan.line)
             pieces = [longest]
-        for index, (piece, after) in enumerate(zip(pieces, pieces[1:], strict=False)):
+        for index, (piece, after) in enumerate(pairwise(list(pieces))):
             real = after.s - piece.s
             if abs(real - piece.length) > _AGREEMENT:
                 message = (
@@ -200,15 +204,15 @@ class _Reader:
                     f"but the next one begins {real:.4f} m on: that counts"
                 )
                 self._tell("SC621", message, piece.line, "length")
-            pieces[index] = _with_length(piece, real)
+            pieces[index] = replace(piece, length=real)
         first = pieces[0].s
         if first:
             # Everything else counts from the start of the road.
-            pieces[0] = Geometry(**{**_fields(pieces[0]), "s": 0.0, "length": pieces[0].length})
+            pieces[0] = replace(pieces[0], s=0.0)
             if abs(first) > _AGREEMENT:
                 self._tell("SC621", f"road {road} begins at s = {first:g}, not 0", pieces[0].line, "start")
             for index in range(1, len(pieces)):
-                pieces[index] = Geometry(**{**_fields(pieces[index]), "s": pieces[index].s - first})
+                pieces[index] = replace(pieces[index], s=pieces[index].s - first)
         end = pieces[-1].s + pieces[-1].length
         if abs(declared - end) > max(_AGREEMENT, 1e-3 * end):
             message = f"road {road} is declared {declared:.3f} m long, its reference line is {end:.3f} m"
@@ -223,7 +227,10 @@ class _Reader:
             start = _number(element, "s", 0.0)
             if sections and start <= sections[-1].s:
                 self._tell(
-                    "SC622", f"a lane section of road {road} is out of order: left out", element.line, "section"
+                    "SC622",
+                    f"a lane section of road {road} is out of order: left out",
+                    element.line,
+                    "section",
                 )
                 continue
             if start >= end - _SHORTEST and sections:
@@ -270,7 +277,9 @@ class _Reader:
         for element in () if signals is None else signals.children:
             if element.tag not in ("signal", "signalReference") or "id" not in element.attributes:
                 continue
-            valid = [(v.attributes.get("fromLane"), v.attributes.get("toLane")) for v in element.all("validity")]
+            valid = [
+                (v.attributes.get("fromLane"), v.attributes.get("toLane")) for v in element.all("validity")
+            ]
             if valid and all(pair == ("0", "0") for pair in valid):
                 continue
             given = element.attributes
@@ -323,7 +332,9 @@ class _Reader:
                 try:
                     links.append(LaneLinks(_integer(link, "from"), _integer(link, "to")))
                 except _Wrong as wrong:
-                    self._tell("SC624", f"a lane link of junction {name} is left out: {wrong}", wrong.line, "link")
+                    self._tell(
+                        "SC624", f"a lane link of junction {name} is left out: {wrong}", wrong.line, "link"
+                    )
             connecting = given.get("connectingRoad", given.get("linkedRoad", ""))
             contact = _contact(given.get("contactPoint")) or "start"
             connections.append(
@@ -400,9 +411,7 @@ def _speed(element: Element | None) -> float | None:
 def _cubics(element: Element, tag: str, start: str) -> Iterator[Cubic]:
     found = {}
     for item in element.all(tag):
-        cubic = Cubic(
-            _number(item, start, 0.0), *(_number(item, name, 0.0) for name in ("a", "b", "c", "d"))
-        )
+        cubic = Cubic(_number(item, start, 0.0), *(_number(item, name, 0.0) for name in ("a", "b", "c", "d")))
         found[cubic.start] = cubic
     yield from (found[key] for key in sorted(found))
 
@@ -419,8 +428,8 @@ def _geometry(element: Element) -> Geometry:
     numbers = tuple(_number(shape, name) for name in _NUMBERS[shape.tag])
     normalized = shape.tag == "paramPoly3" and shape.attributes.get("pRange", "normalized") != "arcLength"
     kind: Shape = shape.tag  # type: ignore[assignment] # it is one of the keys of the table
-    place = (_number(element, name) for name in ("s", "x", "y", "hdg", "length"))
-    return Geometry(*place, kind, numbers, normalized, element.line)
+    s, x, y, heading, length = (_number(element, name) for name in ("s", "x", "y", "hdg", "length"))
+    return Geometry(s, x, y, heading, length, kind, numbers, normalized, element.line)
 
 
 _NUMBERS: Final[dict[str, tuple[str, ...]]] = {
@@ -430,14 +439,6 @@ _NUMBERS: Final[dict[str, tuple[str, ...]]] = {
     "poly3": ("a", "b", "c", "d"),
     "paramPoly3": ("aU", "bU", "cU", "dU", "aV", "bV", "cV", "dV"),
 }
-
-
-def _fields(piece: Geometry) -> dict[str, object]:
-    return {name: getattr(piece, name) for name in Geometry.__slots__}
-
-
-def _with_length(piece: Geometry, length: float) -> Geometry:
-    return Geometry(**{**_fields(piece), "length": length})  # type: ignore[arg-type]
 
 
 def _lane(element: Element) -> Lane:
@@ -474,7 +475,7 @@ def _crosswalk(element: Element) -> Crosswalk | None:
         local = [(_number(c, "u"), _number(c, "v")) for c in outline.all("cornerLocal")]
         corners = along or local
         if len(corners) >= 3:
-            place = (_number(element, name, 0.0) for name in ("s", "t", "hdg"))
+            s, t, heading = (_number(element, name, 0.0) for name in ("s", "t", "hdg"))
             name = element.attributes.get("id", "")
-            return Crosswalk(name, *place, tuple(corners), bool(along), element.line)
+            return Crosswalk(name, s, t, heading, tuple(corners), bool(along), element.line)
     return None

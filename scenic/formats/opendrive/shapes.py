@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Final
 
 import numpy as np
@@ -113,7 +114,7 @@ def _samples(
     counts = []
     bends = curve.bends()
     pieces = np.array([piece[0] for piece in bends])
-    for left, right in zip(knots[:-1], knots[1:], strict=True):
+    for left, right in pairwise(knots):
         index = max(0, int(np.searchsorted(pieces, left, side="right")) - 1)
         begin, finish, curvature = bends[index]
         total = curvature * (1 + curvature * reach) + bend
@@ -128,9 +129,7 @@ def _samples(
     return np.append(np.concatenate(parts), knots[-1]) if parts else knots
 
 
-def _offsets(
-    road: Road, section: LaneSection, s: Floats, tell: Callable[[Problem], None]
-) -> Floats:
+def _offsets(road: Road, section: LaneSection, s: Floats, tell: Callable[[Problem], None]) -> Floats:
     """Offsets of all boundaries from the reference line, ``(m + 1, n)``, from left to right."""
     middle = cubic_values(road.lane_offset, s)
     ds = s - section.s
@@ -173,7 +172,7 @@ def joined(lines: Sequence[Floats]) -> Floats:
     if len(points) < 2:
         return points
     keep = np.concatenate([[True], np.abs(np.diff(points, axis=0)).max(axis=1) > 1e-6])
-    kept = points[keep]
+    kept: Floats = points[keep]
     if len(kept) > 1:
         kept[-1] = points[-1]
     return kept

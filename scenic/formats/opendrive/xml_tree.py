@@ -9,7 +9,9 @@ from scenic.language.spans import Span
 
 __all__ = ["Element", "MapError", "read_tree"]
 
-_SKIPPED: Final = frozenset({"userData", "roadMark", "surface", "railroad", "controller", "geoReference", "dataQuality"})
+_SKIPPED: Final = frozenset(
+    {"userData", "roadMark", "surface", "railroad", "controller", "geoReference", "dataQuality"}
+)
 """Elements in which nothing is of interest (the text of ``geoReference`` is kept apart)."""
 
 
@@ -95,5 +97,3 @@ def read_tree(content: bytes, filename: str) -> tuple[Element, str]:
 
 def _line(number: int) -> Span:
     return Span(number, 0, number, 1)
-
-

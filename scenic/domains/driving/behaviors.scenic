@@ -1,0 +1,175 @@
+"""Behaviors of cars and pedestrians (section 5.5 of the driving specification)."""
+
+from scenic.domains.driving.actions import *
+from scenic.domains.driving.lines import FollowedLine, concatenateCenterlines
+from scenic.domains.driving.roads import ManeuverType
+from scenic.domains.driving.maneuvering import (
+    closest_vehicle, intersection_ahead, nearest_end, next_maneuver, sidewalk_under, wholly_in_intersection,
+)
+
+
+behavior ConstantThrottleBehavior(x):
+    """Keep the throttle at x."""
+    while True:
+        take SetThrottleAction(x), SetReverseAction(False), SetHandBrakeAction(False)
+
+
+behavior AccelerateForwardBehavior():
+    """Set the throttle to one half, once."""
+    take SetReverseAction(False), SetHandBrakeAction(False), SetThrottleAction(0.5)
+
+
+behavior WalkForwardBehavior():
+    """Walk along the sidewalk to one of its ends, chosen at random; straight ahead where there is no sidewalk."""
+    walk = sidewalk_under(self)
+    if walk is None:
+        take SetWalkingDirectionAction(self.heading), SetWalkingSpeedAction(1)
+    else:
+        forward = Uniform(True, False)
+        end = nearest_end(walk, forward)
+        while (distance from self to end) > 1:
+            along = walk.orientation[self.position].yaw
+            take SetWalkingDirectionAction(along if forward else along + 180 deg), SetWalkingSpeedAction(1)
+        take SetWalkingSpeedAction(0)
+
+
+behavior FollowLaneBehavior(target_speed=10, laneToFollow=None, is_oppositeTraffic=False):
+    """Follow a lane, and at intersections go on: straight ahead if that is possible, else any way.
+
+    Arguments:
+        target_speed: m/s.
+        laneToFollow: the lane; the own one by default.
+        is_oppositeTraffic: whether to drive against the direction of the lane.
+    """
+    lane = self.lane if laneToFollow is None else laneToFollow
+    line = FollowedLine(lane)
+    ahead = intersection_ahead(lane)
+    entering = False
+    original_speed = target_speed
+    turning = False
+    past_steer = 0
+    longitudinal, lateral = simulation().getLaneFollowingControllers(self)
+    while True:
+        if not entering and (distance from self to ahead) < 10:
+            maneuvers = next_maneuver(lane)
+            if not maneuvers:
+                take SetBrakeAction(1.0)
+                return
+            chosen = Uniform(*maneuvers)
+            if chosen.connectingLane is None:
+                line = FollowedLine(lane, chosen.endLane)
+            else:
+                line = FollowedLine(lane, chosen.connectingLane, chosen.endLane)
+            lane = chosen.endLane
+            ahead = intersection_ahead(lane)
+            entering = True
+            if chosen.type is not ManeuverType.STRAIGHT:
+                target_speed = 5
+                turning = True
+        if entering and lane.containsPoint(self.position):
+            entering = False
+            target_speed = original_speed
+            if turning:
+                longitudinal, lateral = simulation().getLaneFollowingControllers(self)
+                turning = False
+        if turning and wholly_in_intersection(self):
+            longitudinal, lateral = simulation().getTurningControllers(self)
+            while wholly_in_intersection(self):
+                cte = line.signed_distance(self.position)
+                control = RegulatedControlAction(
+                    longitudinal.run_step(target_speed - self.speed), lateral.run_step(cte), past_steer)
+                take control
+                past_steer = control.steer
+            longitudinal, lateral = simulation().getLaneFollowingControllers(self)
+        cte = line.signed_distance(self.position)
+        if is_oppositeTraffic:
+            cte = -cte
+        control = RegulatedControlAction(
+            longitudinal.run_step(target_speed - self.speed), lateral.run_step(cte), past_steer)
+        take control
+        past_steer = control.steer
+
+
+behavior FollowTrajectoryBehavior(target_speed=10, trajectory=None, turn_speed=None):
+    """Follow lanes one after the other, slower in intersections.
+
+    Arguments:
+        target_speed: m/s.
+        trajectory: the lanes.
+        turn_speed: m/s within intersections; half the target speed by default.
+    """
+    if not isinstance(trajectory, (list, tuple)) or not trajectory:
+        raise TypeError('FollowTrajectoryBehavior needs a trajectory: a list of lanes that is not empty')
+    turn = target_speed / 2 if turn_speed is None else turn_speed
+    line = FollowedLine(*trajectory)
+    end = intersection_ahead(trajectory[-1])
+    past_steer = 0
+    longitudinal, lateral = simulation().getLaneFollowingControllers(self)
+    while (distance from self to end) >= 5:
+        inside = wholly_in_intersection(self)
+        if inside:
+            longitudinal, lateral = simulation().getTurningControllers(self)
+            while wholly_in_intersection(self):
+                control = RegulatedControlAction(
+                    longitudinal.run_step(turn - self.speed),
+                    lateral.run_step(line.signed_distance(self.position)), past_steer)
+                take control
+                past_steer = control.steer
+            longitudinal, lateral = simulation().getLaneFollowingControllers(self)
+        control = RegulatedControlAction(
+            longitudinal.run_step(target_speed - self.speed),
+            lateral.run_step(line.signed_distance(self.position)), past_steer)
+        take control
+        past_steer = control.steer
+
+
+behavior TurnBehavior(trajectory, target_speed=6):
+    """Follow a line, or lanes, as long as the whole car is in an intersection."""
+    line = FollowedLine(*trajectory) if isinstance(trajectory, (list, tuple)) else FollowedLine(trajectory)
+    longitudinal, lateral = simulation().getTurningControllers(self)
+    past_steer = 0
+    while wholly_in_intersection(self):
+        control = RegulatedControlAction(
+            longitudinal.run_step(target_speed - self.speed),
+            lateral.run_step(line.signed_distance(self.position)), past_steer)
+        take control
+        past_steer = control.steer
+
+
+behavior LaneChangeBehavior(laneSectionToSwitch, is_oppositeTraffic=False, target_speed=10):
+    """Change to the lane of a lane section.
+
+    Arguments:
+        laneSectionToSwitch: the section of the lane to change to.
+        is_oppositeTraffic: whether that lane is one of oncoming traffic.
+        target_speed: m/s.
+    """
+    lane = laneSectionToSwitch.lane
+    line = FollowedLine(lane)
+    ahead = intersection_ahead(lane)
+    appended = False
+    past_steer = 0
+    longitudinal, lateral = simulation().getLaneChangingControllers(self)
+    cte = line.signed_distance(self.position)
+    while abs(cte) >= 0.1:
+        if not appended and (distance from self to ahead) < 3:
+            maneuvers = next_maneuver(lane)
+            if maneuvers:
+                chosen = Uniform(*maneuvers)
+                ways = [way for way in (lane, chosen.connectingLane, chosen.endLane) if way is not None]
+                line = FollowedLine(*ways)
+            appended = True
+        control = RegulatedControlAction(
+            longitudinal.run_step(target_speed - self.speed),
+            lateral.run_step(-cte if is_oppositeTraffic else cte), past_steer)
+        take control
+        past_steer = control.steer
+        cte = line.signed_distance(self.position)
+
+
+behavior DriveAvoidingCollisions(target_speed=25, avoidance_threshold=10):
+    """Follow the lane, and brake while another vehicle is near."""
+    try:
+        do FollowLaneBehavior(target_speed=target_speed)
+    interrupt when closest_vehicle(self) <= avoidance_threshold:
+        take SetThrottleAction(0), SetBrakeAction(1)

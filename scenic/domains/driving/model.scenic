@@ -1,0 +1,216 @@
+"""The world model of the driving domain: a road network, cars and pedestrians on it, and what they do."""
+
+from scenic.domains.driving.actions import *
+from scenic.domains.driving.behaviors import *
+from scenic.domains.driving.roads import (
+    Intersection, Lane, LaneGroup, LaneSection, ManeuverType, Network, NetworkElement, PedestrianCrossing, Road,
+    RoadSection, Shoulder, Sidewalk,
+)
+from scenic.domains.driving.setting import is2DMode, nearer, network_of_program
+from scenic.domains.driving.workspace import DrivingWorkspace
+from scenic.simulators.utils.colors import Color
+from scenic.core.distributions import RejectionException
+
+param use2DMap = is2DMode()
+param map_options = {}
+
+network = network_of_program(globalParameters)
+workspace = DrivingWorkspace(network)
+
+road = network.drivableRegion
+curb = network.curbRegion
+sidewalk = network.sidewalkRegion
+shoulder = network.shoulderRegion
+roadOrShoulder = road.union(shoulder)
+intersection = network.intersectionRegion
+roadDirection = network.roadDirection
+
+
+class DrivingObject:
+    """Anything that takes part in traffic."""
+
+    elevation[dynamic]: None if is2DMode() else float(self.position.z)
+    requireVisible: False
+
+    @property
+    def isVehicle(self):
+        return False
+
+    @property
+    def isCar(self):
+        return False
+
+    @property
+    def isPedestrian(self):
+        return False
+
+    @property
+    def roadNetwork(self):
+        return network
+
+    @property
+    def lane(self):
+        return network.laneAt(self, reject='object is not in a lane')
+
+    @property
+    def _lane(self):
+        return network.laneAt(self)
+
+    @property
+    def laneSection(self):
+        return network.laneSectionAt(self, reject='object is not in a lane')
+
+    @property
+    def _laneSection(self):
+        return network.laneSectionAt(self)
+
+    @property
+    def laneGroup(self):
+        return network.laneGroupAt(self, reject='object is not in a lane')
+
+    @property
+    def _laneGroup(self):
+        return network.laneGroupAt(self)
+
+    @property
+    def oppositeLaneGroup(self):
+        return self.laneGroup.opposite
+
+    @property
+    def road(self):
+        return network.roadAt(self, reject='object is not on a road')
+
+    @property
+    def _road(self):
+        return network.roadAt(self)
+
+    @property
+    def intersection(self):
+        return network.intersectionAt(self, reject='object is not in an intersection')
+
+    @property
+    def _intersection(self):
+        return network.intersectionAt(self)
+
+    @property
+    def crossing(self):
+        return network.crossingAt(self, reject='object is not in a crossing')
+
+    @property
+    def _crossing(self):
+        return network.crossingAt(self)
+
+    @property
+    def element(self):
+        return network.elementAt(self, reject='object is not on any network element')
+
+    @property
+    def _element(self):
+        return network.elementAt(self)
+
+    def distanceToClosest(self, type):
+        """The distance to the nearest other object of a class in metres; infinite if there is none."""
+        closest = float('inf')
+        for other in simulation().objects:
+            if other is not self and isinstance(other, type):
+                away = distance from self to other
+                if 0 < away < closest:
+                    closest = away
+        return closest
+
+    def setPosition(self, pos, elevation):
+        raise NotImplementedError('the simulator does not say how objects are moved')
+
+    def setVelocity(self, vel):
+        raise NotImplementedError('the simulator does not say how velocities are set')
+
+
+class Vehicle(DrivingObject):
+    """A vehicle somewhere on the road, facing along it."""
+
+    regionContainedIn: roadOrShoulder
+    position: new Point on road
+    roadDeviation: 0
+    parentOrientation: (roadDirection at self.position) + self.roadDeviation
+    viewAngle: 90 deg
+    width: 2
+    length: 4.5
+    color: Color.defaultCarColor()
+    wheelbase: 0.6 * self.length
+    maxSteeringAngle: 35 deg
+    wheelDiameter: 0.7
+    trackWidth: 0.85 * self.width
+    groundClearance: 0.5 * self.wheelDiameter
+    maxSpeed: 45
+    maxAcceleration: 5
+    maxDeceleration: 10
+
+    @property
+    def isVehicle(self):
+        return True
+
+
+class Car(Vehicle):
+    """A car."""
+
+    @property
+    def isCar(self):
+        return True
+
+
+class NPCCar(Car):
+    """A car that may be simulated coarsely."""
+
+
+class Pedestrian(DrivingObject):
+    """A pedestrian somewhere on a sidewalk or a crossing."""
+
+    regionContainedIn: network.walkableRegion
+    position: new Point on network.walkableRegion
+    parentOrientation: Range(0, 360) deg
+    viewAngle: 90 deg
+    width: 0.75
+    length: 0.75
+    color: [0, 0.5, 1]
+    mass: 65
+
+    @property
+    def isPedestrian(self):
+        return True
+
+
+def withinDistanceToAnyCars(car, thresholdDistance):
+    """Whether some other vehicle is nearer than the threshold, in any direction."""
+    return bool(nearer(car, thresholdDistance, Vehicle))
+
+
+def withinDistanceToAnyObjs(vehicle, thresholdDistance):
+    """Whether the vehicle sees some object nearer than the threshold."""
+    return any(vehicle can see other for other in nearer(vehicle, thresholdDistance, Object))
+
+
+def withinDistanceToAnyPedestrians(vehicle, thresholdDistance):
+    """Whether the vehicle sees a pedestrian nearer than the threshold to its front."""
+    front = front of vehicle
+    for other in nearer(vehicle, thresholdDistance + vehicle.length, Pedestrian):
+        if (distance from front to other) < thresholdDistance and (vehicle can see other):
+            return True
+    return False
+
+
+def withinDistanceToObjsInLane(vehicle, thresholdDistance):
+    """Whether the vehicle sees some object nearer than the threshold in its lane, or in its intersection."""
+    for other in nearer(vehicle, thresholdDistance, Object):
+        if not (vehicle can see other):
+            continue
+        inter = network.intersectionAt(vehicle)
+        if inter is not None:
+            if inter is network.intersectionAt(other):
+                return True
+        else:
+            own = network.laneAt(vehicle)
+            if own is not None and own is network.laneAt(other):
+                return True
+    return False
+
+

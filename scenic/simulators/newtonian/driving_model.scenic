@@ -1,0 +1,38 @@
+"""The driving world model, simulated by the built-in simulator."""
+
+from scenic.domains.driving.model import *
+from scenic.simulators.newtonian.controls import Driven, Walking
+from scenic.simulators.newtonian.simulator import NewtonianSimulator
+
+param render = False
+
+simulator NewtonianSimulator(network)
+
+
+class NewtonianActor(DrivingObject):
+    """An object of the built-in simulator."""
+
+
+class Vehicle(Driven, Vehicle, NewtonianActor):
+    pass
+
+
+class Car(Vehicle):
+    @property
+    def isCar(self):
+        return True
+
+
+class NPCCar(Car):
+    pass
+
+
+class Pedestrian(Walking, Pedestrian, NewtonianActor):
+    pass
+
+
+class Debris:
+    """Something on the road that does not move."""
+
+    position: new Point on road
+    yaw: Range(0, 360) deg

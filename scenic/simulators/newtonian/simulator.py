@@ -1,0 +1,151 @@
+"""The built-in simulator of traffic in the plane (section 5.4 of the driving specification).
+
+Cars have a signed speed along their heading, changed by throttle and brakes, and turn by their steering. Everything else keeps its
+velocity. Objects pass through each other.
+"""
+
+import math
+from collections.abc import Mapping
+from typing import Any, Final
+
+from scenic.domains.driving.controllers import PIDLateralController, PIDLongitudinalController
+from scenic.domains.driving.simulators import DrivingSimulation, DrivingSimulator
+from scenic.runtime.scenes.scene import Scene
+from scenic.runtime.values.values import Orientation, Vector
+from scenic.simulators.cameras import Cameras
+
+__all__ = ["NewtonianSimulation", "NewtonianSimulator"]
+
+_ACCELERATION: Final = 5.6
+"""Of full throttle, in m/s^2."""
+_BRAKING: Final = 6.8
+"""Of full brakes, in m/s^2."""
+_UPRIGHT: Final = Orientation()
+
+
+class _State:
+    """An object of the simulation on plain numbers."""
+
+    __slots__ = ("heading", "is_car", "length", "position", "rate", "speed", "velocity")
+
+    def __init__(self, obj: Any) -> None:
+        self.position: tuple[float, float, float] = tuple(obj.position)
+        self.velocity: tuple[float, float, float] = tuple(obj.velocity)
+        self.heading = float(obj.heading)
+        self.is_car = bool(getattr(obj, "isCar", False))
+        self.length = float(obj.length)
+        self.rate = 0.0
+        x, y, _ = self.velocity
+        self.speed = y * math.cos(self.heading) - x * math.sin(self.heading)
+
+
+class NewtonianSimulation(DrivingSimulation):
+    """One run; see `NewtonianSimulator`."""
+
+    def __init__(self, scene: Scene, *, timestep: float | None = None, **options: Any) -> None:
+        self._states: dict[int, _State] = {}
+        self._cameras = Cameras()
+        super().__init__(scene, timestep=0.1 if timestep is None else timestep, **options)
+
+    def createObjectInSimulator(self, obj: Any) -> None:
+        """Take the object's pose and velocity over."""
+        self._states[id(obj)] = _State(obj)
+        if getattr(obj, "isCar", False):
+            obj.resetControls()
+
+    def sense(self) -> None:
+        """Let cameras see."""
+        self._cameras.deliver(self)
+        super().sense()
+
+    def place(self, obj: Any, position: Any) -> None:
+        """Move an object."""
+        self._states[id(obj)].position = tuple(position)
+
+    def push(self, obj: Any, velocity: Any) -> None:
+        """Set the velocity of an object."""
+        state = self._states[id(obj)]
+        x, y, z = velocity
+        state.velocity = (x, y, z)
+        state.speed = y * math.cos(state.heading) - x * math.sin(state.heading)
+
+    def step(self) -> None:
+        """Advance all objects."""
+        dt = float(self.timestep)
+        for obj in self.objects:
+            state = self._states[id(obj)]
+            if state.is_car:
+                self._drive(obj.controls, state, dt)
+            x, y, z = state.position
+            vx, vy, vz = state.velocity
+            state.position = (x + vx * dt, y + vy * dt, z + vz * dt)
+            if state.rate:
+                state.heading = math.pi - (math.pi - state.heading - state.rate * dt) % (2 * math.pi)
+
+    def _drive(self, controls: Any, state: _State, dt: float) -> None:
+        speed = state.speed
+        brake = max(controls.brake, controls.handbrake)
+        if brake > 0:
+            change = _BRAKING * brake * dt
+            speed = max(0.0, speed - change) if speed >= 0 else min(0.0, speed + change)
+        else:
+            change = _ACCELERATION * controls.throttle * dt
+            speed += -change if controls.reverse else change
+        state.speed = speed
+        state.rate = -speed * math.sin(controls.steering * math.pi / 2) / state.length
+        state.velocity = (-speed * math.sin(state.heading), speed * math.cos(state.heading), 0.0)
+
+    def getProperties(self, obj: Any, properties: Any) -> Mapping[str, Any]:
+        """The present values of an object."""
+        state = self._states[id(obj)]
+        stored = obj.__dict__
+        yaw = state.heading
+        parent = stored["parentOrientation"]
+        if parent is not _UPRIGHT and parent != _UPRIGHT:
+            yaw = (yaw - parent.yaw + math.pi) % (2 * math.pi) - math.pi
+        x, y, z = state.velocity
+        values: dict[str, Any] = {
+            "position": Vector.of(state.position),
+            "velocity": Vector.of(state.velocity),
+            "speed": math.sqrt(x * x + y * y + z * z),
+            "angularSpeed": abs(state.rate),
+            "angularVelocity": Vector.of((0.0, 0.0, state.rate)),
+            "yaw": yaw,
+            "elevation": None if stored.get("elevation") is None else state.position[2],
+        }
+        return {name: values[name] if name in values else stored[name] for name in properties}
+
+    def getLaneFollowingControllers(
+        self, agent: Any
+    ) -> tuple[PIDLongitudinalController, PIDLateralController]:
+        """Controllers tuned for the cars of this simulator."""
+        return self._controllers(agent, (0.1, 0.1, 0.02), (0.2, 0.1, 0))
+
+    def getTurningControllers(self, agent: Any) -> tuple[PIDLongitudinalController, PIDLateralController]:
+        """Controllers tuned for the cars of this simulator."""
+        return self._controllers(agent, (0.2, 0.2, 0.2), (0.4, 0.1, 0))
+
+    def getLaneChangingControllers(
+        self, agent: Any
+    ) -> tuple[PIDLongitudinalController, PIDLateralController]:
+        """Controllers tuned for the cars of this simulator."""
+        return self._controllers(agent, (0.2, 0.2, 0.02), (0.1, 0.3, 0))
+
+
+class NewtonianSimulator(DrivingSimulator):
+    """Simulates traffic in the plane.
+
+    Args:
+        network: accepted for compatibility; drawings take the network of the scene.
+        render: accepted for compatibility; `scenic simulate --view` makes a page that plays the simulation.
+        export_gif: accepted for compatibility.
+
+    """
+
+    def __init__(self, network: Any = None, render: bool = False, export_gif: bool = False) -> None:
+        super().__init__()
+        self.network = network
+
+    def createSimulation(self, scene: Scene, **options: Any) -> NewtonianSimulation:
+        """A simulation that has run."""
+        return NewtonianSimulation(scene, **options)

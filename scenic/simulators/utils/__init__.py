@@ -1,0 +1,1 @@
+"""Parts that world models of several simulators share."""

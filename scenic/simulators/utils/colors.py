@@ -1,0 +1,95 @@
+"""Colours of cars (section 1.6 of the driving specification)."""
+
+import colorsys
+import random
+from typing import Any, Final, NamedTuple
+
+from scenic.runtime.elements.distributions import Discrete, Normal, Range
+from scenic.runtime.instances.mutators import Mutator
+from scenic.runtime.python.opaque import call_later
+from scenic.runtime.values.values import is_random
+
+__all__ = ["Color", "ColorMutator", "NoisyColorDistribution"]
+
+_DEVIATION: Final = 0.1
+"""Standard deviation of hue, lightness and saturation of a car's colour."""
+
+
+class Color(NamedTuple):
+    """A colour with parts from 0 to 1."""
+
+    r: float
+    g: float
+    b: float
+
+    @staticmethod
+    def withBytes(color: Any) -> "Color":
+        """The colour of parts from 0 to 255."""
+        return Color(*(part / 255 for part in color))
+
+    @staticmethod
+    def realToByte(color: Any) -> tuple[int, ...]:
+        """The parts of a colour as integers from 0 to 255."""
+        return tuple(round(255 * part) for part in color)
+
+    @staticmethod
+    def uniformColor() -> Any:
+        """A colour whose parts are uniform and independent."""
+        return _color(Range(0, 1), Range(0, 1), Range(0, 1))
+
+    @staticmethod
+    def defaultCarColor() -> Any:
+        """The colour of a car: one of nine common ones, with noise."""
+        return NoisyColorDistribution(Discrete(dict(_CAR_COLORS)))
+
+
+def _color(*parts: Any) -> Any:
+    return call_later(Color, *parts) if is_random(parts) else Color(*parts)
+
+
+_CAR_COLORS: Final = tuple(
+    (Color.withBytes(parts), weight)
+    for parts, weight in (
+        ((248, 248, 248), 0.24),
+        ((50, 50, 50), 0.19),
+        ((188, 185, 183), 0.16),
+        ((130, 130, 130), 0.15),
+        ((194, 92, 85), 0.10),
+        ((75, 119, 157), 0.07),
+        ((197, 166, 134), 0.05),
+        ((219, 191, 105), 0.02),
+        ((68, 160, 135), 0.02),
+    )
+)
+
+
+def NoisyColorDistribution(
+    baseColor: Any, hueNoise: Any = None, lightnessNoise: Any = None, saturationNoise: Any = None
+) -> Any:
+    """A colour about ``baseColor``: hue, lightness and saturation shifted by independent normal draws and clamped to [0, 1]."""
+    noise = [
+        Normal(0, _DEVIATION) if part is None else part
+        for part in (hueNoise, lightnessNoise, saturationNoise)
+    ]
+    values = (baseColor, *noise)
+    return call_later(_shifted, *values) if is_random(values) else _shifted(*values)
+
+
+def _shifted(color: Any, hue: float, lightness: float, saturation: float) -> Color:
+    h, l, s = colorsys.rgb_to_hls(*color)  # noqa: E741 - the names of the colour space
+    parts = (_clamped(h + hue), _clamped(l + lightness), _clamped(s + saturation))
+    return Color(*colorsys.hls_to_rgb(*parts))
+
+
+def _clamped(part: float) -> float:
+    return min(1.0, max(0.0, part))
+
+
+class ColorMutator(Mutator):
+    """Adds normal noise to the colour of mutated objects."""
+
+    def appliedTo(self, obj: Any) -> tuple[Any, bool]:
+        """The object with a changed colour."""
+        scale = 0.05 * obj.mutationScale
+        color = Color(*(_clamped(part + random.gauss(0, scale)) for part in obj.color))
+        return obj._copyWith(color=color), True

@@ -1,0 +1,119 @@
+"""Small OpenDRIVE maps for tests, as text: roads by a few words each."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+__all__ = ["RoadText", "cross", "map_text", "straight"]
+
+LANES = '<laneSection s="0"><left>{left}</left><center><lane id="0" type="none"/></center><right>{right}</right></laneSection>'
+
+
+def lane(
+    id: int,
+    type: str = "driving",
+    width: str = '<width sOffset="0" a="3.5" b="0" c="0" d="0"/>',
+    *,
+    before: int | None = None,
+    after: int | None = None,
+) -> str:
+    links = "" if before is None else f'<predecessor id="{before}"/>'
+    links += "" if after is None else f'<successor id="{after}"/>'
+    return f'<lane id="{id}" type="{type}" level="false"><link>{links}</link>{width}</lane>'
+
+
+def two_way(before: bool = True, after: bool = True, *, sidewalk: bool = True) -> str:
+    """A lane of 3.5 m and a sidewalk of 2 m in each direction."""
+    walk = '<width sOffset="0" a="2" b="0" c="0" d="0"/>'
+    ends = {id: {"before": id if before else None, "after": id if after else None} for id in (1, -1)}
+    left = (lane(2, "sidewalk", walk) if sidewalk else "") + lane(1, **ends[1])
+    right = lane(-1, **ends[-1]) + (lane(-2, "sidewalk", walk) if sidewalk else "")
+    return LANES.format(left=left, right=right)
+
+
+@dataclass
+class RoadText:
+    """A road: ``geometry`` are the XML elements of its planView; lengths in metres, headings in radians from east."""
+
+    id: str
+    length: float
+    geometry: str
+    lanes: str = field(default_factory=two_way)
+    junction: str = "-1"
+    link: str = ""
+    rest: str = ""
+    attributes: str = ""
+
+    def __str__(self) -> str:
+        return (
+            f'<road name="" length="{self.length!r}" id="{self.id}" junction="{self.junction}" {self.attributes}>'
+            f"<link>{self.link}</link><planView>{self.geometry}</planView><lanes>{self.lanes}</lanes>{self.rest}</road>"
+        )
+
+
+def line(x: float, y: float, heading: float, length: float, s: float = 0.0) -> str:
+    return piece(x, y, heading, length, "<line/>", s)
+
+
+def piece(x: float, y: float, heading: float, length: float, shape: str, s: float = 0.0) -> str:
+    return f'<geometry s="{s!r}" x="{x!r}" y="{y!r}" hdg="{heading!r}" length="{length!r}">{shape}</geometry>'
+
+
+def map_text(roads: Sequence[object], junctions: str = "", *, namespace: str = "") -> str:
+    return (
+        f'<?xml version="1.0"?>\n<OpenDRIVE{namespace}><header revMajor="1" revMinor="4"/>\n'
+        + "\n".join(map(str, roads))
+        + f"\n{junctions}</OpenDRIVE>\n"
+    )
+
+
+def straight(length: float = 100.0, **given: str) -> str:
+    """One road of two lanes along the x axis."""
+    return map_text([RoadText("1", length, line(0, 0, 0, length), two_way(False, False), **given)])
+
+
+def cross(arm: float = 60.0, half: float = 10.0, *, signal: str = "") -> str:
+    """Four roads of two lanes that meet at the origin; each way through the junction is a road of its own.
+
+    Road ``i`` (1 to 4) comes in from the direction ``(i - 1) * 90`` degrees and ends at the junction.
+    """
+    roads: list[RoadText] = []
+    connections: list[str] = []
+    turns: list[tuple[int, int]] = [(i, j) for i in range(4) for j in range(4) if i != j]
+    for i in range(4):
+        way = i * math.pi / 2
+        x, y = (half + arm) * math.cos(way), (half + arm) * math.sin(way)
+        signals = f"<signals>{signal}</signals>" if signal and i == 0 else ""
+        roads.append(
+            RoadText(
+                str(i + 1),
+                arm,
+                line(x, y, way + math.pi, arm),
+                two_way(False, False),
+                link='<successor elementType="junction" elementId="9"/>',
+                rest=signals,
+            )
+        )
+    for number, (i, j) in enumerate(turns):
+        start, end = i * math.pi / 2, j * math.pi / 2
+        x, y = half * math.cos(start), half * math.sin(start)
+        heading = start + math.pi
+        turn = (end - heading + math.pi) % (2 * math.pi) - math.pi
+        if abs(turn) < 1e-9:
+            length, shape = 2 * half, "<line/>"
+        else:
+            radius = half
+            length, shape = abs(turn) * radius, f'<arc curvature="{math.copysign(1 / radius, turn)!r}"/>'
+        name = str(100 + number)
+        one_way = LANES.format(left="", right=lane(-1, before=-1, after=1))
+        link = (
+            f'<predecessor elementType="road" elementId="{i + 1}" contactPoint="end"/>'
+            f'<successor elementType="road" elementId="{j + 1}" contactPoint="end"/>'
+        )
+        roads.append(RoadText(name, length, piece(x, y, heading, length, shape), one_way, "9", link))
+        connections.append(
+            f'<connection id="{number}" incomingRoad="{i + 1}" connectingRoad="{name}" contactPoint="start">'
+            '<laneLink from="-1" to="-1"/></connection>'
+        )
+    junction = f'<junction id="9" name="crossing">{"".join(connections)}</junction>'
+    return map_text(roads, junction)
