@@ -25,7 +25,7 @@ def lane(
 def two_way(before: bool = True, after: bool = True, *, sidewalk: bool = True) -> str:
     """A lane of 3.5 m and a sidewalk of 2 m in each direction."""
     walk = '<width sOffset="0" a="2" b="0" c="0" d="0"/>'
-    ends = {id: {"before": id if before else None, "after": id if after else None} for id in (1, -1)}
+    ends = {side: {"before": side if before else None, "after": side if after else None} for side in (1, -1)}
     left = (lane(2, "sidewalk", walk) if sidewalk else "") + lane(1, **ends[1])
     right = lane(-1, **ends[-1]) + (lane(-2, "sidewalk", walk) if sidewalk else "")
     return LANES.format(left=left, right=right)
