@@ -64,6 +64,16 @@ class Polygons:
         return float(self.polygon.area)
 
     @cached_property
+    def as_row(self) -> Any:
+        """The polygon, prepared for questions, as an array ``(1,)`` of shapely geometries."""
+        import shapely
+
+        shapely.prepare(self.polygon)
+        row = np.empty(1, dtype=np.object_)
+        row[0] = self.polygon
+        return row
+
+    @cached_property
     def convex_corners(self) -> Floats | None:
         """The vertices ``(k, 2)``, anticlockwise, of a single convex polygon; ``None`` for others."""
         if self.polygon.geom_type != "Polygon" or self.polygon.interiors:

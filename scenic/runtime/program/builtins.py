@@ -27,9 +27,9 @@ from scenic.runtime.regions.planar import (
     PolygonalFootprintRegion,
     PolygonalRegion,
     RectangularRegion,
-    SectorRegion,
 )
 from scenic.runtime.regions.scattered import GridRegion, PointSetRegion
+from scenic.runtime.regions.sectors import SectorRegion
 from scenic.runtime.regions.volumes import BoxRegion, SpheroidRegion
 from scenic.runtime.values.values import Orientation, Vector
 

@@ -23,7 +23,7 @@ from scenic.runtime.geometry.poses import Poses
 from scenic.runtime.geometry.prisms import prism, shadow, slice_at
 from scenic.runtime.program.context import here
 from scenic.runtime.python.opaque import evaluated, later
-from scenic.runtime.regions.base import Everywhere, Mask, Nowhere, Region, Workspace, nowhere
+from scenic.runtime.regions.base import MEETS_BODY, Everywhere, Mask, Nowhere, Region, Workspace, nowhere
 from scenic.runtime.regions.body_regions import OccupiedSpace, SideSurface
 from scenic.runtime.regions.choice import RegionChoice, as_region
 from scenic.runtime.regions.composite import (
@@ -60,6 +60,7 @@ from scenic.runtime.values.values import (
     Orientation,
     Random,
     Vector,
+    apply,
     as_node,
     as_value,
     describe,
@@ -366,9 +367,10 @@ def intersects(first: Any, second: Any) -> Any:
         return False
     if isinstance(a, Everywhere) or isinstance(b, Everywhere):
         return True
-    for view, space in ((a, b), (b, a)):
-        if isinstance(view, ViewRegion) and isinstance(space, OccupiedSpace):
-            return view.meets(space)
+    for region, space in ((a, b), (b, a)):
+        seen = isinstance(region, ViewRegion)
+        if isinstance(space, OccupiedSpace) and (seen or region.is_random or space.is_random):
+            return apply(MEETS_BODY, *space.parameters, *region.parameters, payload=region)
     if a.is_random or b.is_random:
         return as_value(later(_MEET, _meet, (a, b)))
     return _meet(a, b)

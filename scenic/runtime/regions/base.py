@@ -26,6 +26,7 @@ from scenic.language.errors import (
 )
 from scenic.runtime.geometry.collision import Body
 from scenic.runtime.program.context import here
+from scenic.runtime.regions.flat import Flat
 from scenic.runtime.regions.knowledge import (
     Containment,
     containment_bounds,
@@ -36,7 +37,7 @@ from scenic.runtime.regions.knowledge import (
     point_bounds,
     point_inverse,
 )
-from scenic.runtime.regions.nearness import SLACK, at_any_height
+from scenic.runtime.regions.nearness import SLACK, at_any_height, body_box, only_within
 from scenic.runtime.regions.scalar_regions import Single
 from scenic.runtime.regions.stacked import Stack, body_operands, is_body, placed_of
 from scenic.runtime.values.lazy import defer, is_lazy
@@ -140,6 +141,10 @@ class Region(metaclass=_RegionType):
         mask: Mask = self.algebra.meets_bodies(self, body, lanes, columns)
         return mask
 
+    def from_above(self, *columns: Column) -> Flat | None:
+        """The region as geometries of level planes or columns; ``None`` where it is neither, or they are not known."""
+        return None
+
     def draw_points(self, uniforms: Column, keys: Column, *columns: Column) -> tuple[Points, Mask | None]:
         """Uniform points ``(n, 3)`` from uniform numbers ``(draws, n)``, and where there is one (``None``: everywhere).
 
@@ -156,6 +161,13 @@ class Region(metaclass=_RegionType):
     def distances(self, points: Points, *columns: Column) -> NDArray[np.float64]:
         """Distances of points ``(n, 3)`` from the region, shape ``(n,)``; 0 inside."""
         raise unsupported(f"the distance to a region of the kind {type(self).__name__}")
+
+    def nearest(self, points: Points, *columns: Column) -> Points | None:
+        """The points ``(n, 3)`` of the region nearest to points ``(n, 3)``; ``None`` where they are not known.
+
+        Of a region of the plane, and of a column, nearest seen from above: the z of the points stays.
+        """
+        return None
 
     def gaps(self, points: Points, *columns: Column) -> NDArray[np.float64]:
         """How far points ``(n, 3)`` are at least from the region as a container, shape ``(n,)``; 0 where unknown."""
@@ -452,6 +464,27 @@ _CONTAINS_BODY = Operation(
 )
 
 
+def _meets_body(call: Call, *columns: Column) -> Column:
+    stack = Stack(call, columns)
+    met = call.payload.meets_bodies(stack.body(0), stack.rows, *stack.columns(4))
+    return stack.restored(np.asarray(met, dtype=np.bool_))
+
+
+def _meets_bounds(region: Region, *operands: Bounds | None) -> Bounds:
+    return only_within(body_box(*operands[:3]), region.container_extent(*operands[4:]), np.zeros(1))
+
+
+MEETS_BODY = Operation(
+    "region meets object",
+    always(Kind.BOOLEAN),
+    _meets_body,
+    "Whether a region shares a point with an object; payload the region.",
+    bounds=_meets_bounds,
+    stacks=True,
+    partial=True,
+)
+
+
 def _draw(call: Call, *columns: Column) -> Column:
     region: Region = call.payload
     count = region.draws
@@ -519,6 +552,9 @@ class Everywhere(Region):
     def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
         return np.ones(lanes, dtype=np.bool_)
 
+    def meets_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
+        return np.ones(lanes, dtype=np.bool_)
+
     def sizes(self, *columns: Column) -> NDArray[np.float64]:
         return np.full(1, np.inf)
 
@@ -554,6 +590,9 @@ class Nowhere(Region):
         return np.zeros(len(points), dtype=np.bool_)
 
     def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
+        return np.zeros(lanes, dtype=np.bool_)
+
+    def meets_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
         return np.zeros(lanes, dtype=np.bool_)
 
     def sizes(self, *columns: Column) -> NDArray[np.float64]:
@@ -617,6 +656,15 @@ class Workspace(Region):
 
     def orientations(self, points: Points, *columns: Column) -> Column:
         return self.region.orientations(points, *columns)
+
+    def meets_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
+        return self.region.meets_bodies(body, lanes, *columns)
+
+    def from_above(self, *columns: Column) -> Flat | None:
+        return self.region.from_above(*columns)
+
+    def nearest(self, points: Points, *columns: Column) -> Points | None:
+        return self.region.nearest(points, *columns)
 
     def distances(self, points: Points, *columns: Column) -> NDArray[np.float64]:
         return self.region.distances(points, *columns)

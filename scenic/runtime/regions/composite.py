@@ -5,7 +5,7 @@ These are the general forms, for members of any kind with parameters of any kind
 """
 
 from abc import abstractmethod
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import reduce
 from typing import Any, Final, TypeVar
 
@@ -20,6 +20,7 @@ from scenic.runtime.geometry.collision import Body
 from scenic.runtime.program.context import here
 from scenic.runtime.regions.base import Mask, Points, Region, Workspace
 from scenic.runtime.regions.choice import RegionChoice
+from scenic.runtime.regions.flat import Flat, rows_of, upright_boxes
 from scenic.runtime.regions.nearness import hull_of
 from scenic.runtime.regions.planar import Footprint, PlanarRegion
 
@@ -87,16 +88,79 @@ class Composite(Region):
         return region
 
     def distances(self, points: Points, *columns: Column) -> NDArray[np.float64]:
-        """By the closed form that each lane has; `UnsupportedError` where there is none, as with points and lines."""
+        """By members where the nearest point of one decides, elsewhere by what is left of the plane in each lane.
+
+        What has neither has the distance of the closed form of the lane; `UnsupportedError` where there is none, as with
+        points and lines.
+        """
+        lanes = max(len(points), *map(len, columns), 1)
+        points = np.broadcast_to(points, (lanes, 3))
+        result = self.decided(points, columns)
+        left = np.flatnonzero(np.isnan(result))
+        if not len(left):
+            return result
+        mine = rows_of(columns, left)
+        flat = self.from_above(*mine)
+        if flat is not None:
+            result[left] = flat.distances(points[left])
+            return result
         if not self.is_random:
             return super().distances(points, *columns)
-        lanes = max(len(points), *map(len, columns))
-        result = np.empty(lanes)
-        for lane in range(lanes):
+        for lane in left.tolist():
             region = self.in_lane(lane, columns)
-            place = points[lane : lane + 1] if len(points) > 1 else points
+            place = points[lane : lane + 1]
             result[lane] = region.distances(place, *region.fixed_columns("the distance"))[0]
         return result
+
+    def decided(self, points: Points, columns: Sequence[Column]) -> NDArray[np.float64]:
+        """The distances ``(n,)`` that members decide; not a number where none does."""
+        return np.full(len(points), np.nan)
+
+    def meets_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
+        """Where probes of the body lie in the region, or what is left of the plane in a lane meets its outline."""
+        result = np.array(np.broadcast_to(self.may_meet(body, lanes, columns), lanes))
+        left = np.flatnonzero(result)
+        if not len(left):
+            return result
+        rest = left[~self._meets_surely(body, left, rows_of(columns, left))]
+        if len(rest):
+            mine = rows_of(columns, rest)
+            flat = self.from_above(*mine)
+            if flat is not None:
+                result[rest] = flat.meets(body, rest)
+            else:
+                result[rest] = self._meets_solidly(body, rest, columns)
+        return result
+
+    @abstractmethod
+    def may_meet(self, body: Body, lanes: int, columns: Sequence[Column]) -> Mask:
+        """In which lanes the members do not rule out that a body meets the region, ``(lanes | 1,)``."""
+
+    def _meets_surely(self, body: Body, lanes: NDArray[np.intp], columns: Sequence[Column]) -> Mask:
+        """In which of some lanes, whose columns these are, a known point of the body lies in the region."""
+        if not _is_flat(self):
+            held: Mask = np.zeros(len(lanes), dtype=np.bool_)
+            for points in _known_points(body, lanes):
+                held |= exactly_contains(self, points, columns)
+            return held
+        level = next((m.heights(*c) for m, c in _leaves(self, columns) if isinstance(m, PlanarRegion)), None)
+        height = None if level is None else np.broadcast_to(level, len(lanes))
+        every = np.arange(len(lanes))
+        boxes, rectangles = upright_boxes(body.take(lanes), every, height)
+        places = np.concatenate([rectangles.centre[:, np.newaxis], rectangles.corners()], axis=1)
+        held = np.zeros(len(lanes), dtype=np.bool_)
+        for number in range(places.shape[1]):
+            points = np.zeros((len(lanes), 3))
+            points[:, :2] = places[:, number]
+            if height is not None:
+                points[:, 2] = height
+            held |= exactly_contains(self, points, columns)
+        return held & boxes
+
+    def _meets_solidly(self, body: Body, lanes: NDArray[np.intp], columns: Sequence[Column]) -> Mask:
+        """In which of some lanes the closed form of the lane meets the body, one lane after the other."""
+        every: Mask = self.algebra.meets_bodies(self, body.take(lanes), len(lanes), rows_of(columns, lanes))
+        return every
 
     def extent(self, *parameters: Bounds | None) -> Bounds | None:
         return self._box_of([member.extent(*mine) for member, mine in self._parts(parameters)])
@@ -193,6 +257,26 @@ class Composite(Region):
         return None
 
 
+def _levelled(region: Composite, points: Points, columns: Sequence[Column]) -> Points:
+    """Points at the height of the first member of the plane, where there is one."""
+    for leaf, mine in _leaves(region, columns):
+        if isinstance(leaf, PlanarRegion):
+            points = np.array(points)
+            points[:, 2] = leaf.heights(*mine)
+            break
+    return points
+
+
+def _joined(join: Callable[[Flat, Flat], Flat | None], parts: Sequence[Flat | None]) -> Flat | None:
+    """Geometries of members, joined one after the other; ``None`` where one has none."""
+    result = parts[0]
+    for part in parts[1:]:
+        if result is None or part is None:
+            return None
+        result = join(result, part)
+    return result
+
+
 # Masks and columns of members are combined two by two, as `reduce` does: some may have a single row, and others one for each lane.
 def _all(masks: Sequence[Mask]) -> Mask:
     return np.asarray(reduce(np.logical_and, masks), dtype=np.bool_)
@@ -217,6 +301,38 @@ def exactly_contains(region: Region, points: Points, columns: Sequence[Column]) 
     if isinstance(region, PlanarRegion):
         inside = inside & (np.abs(points[:, 2] - region.heights(*columns)) <= LEVEL)
     return np.broadcast_to(inside, len(points))
+
+
+def _leaves(region: Region, columns: Sequence[_Part]) -> Iterator[tuple[Region, Sequence[_Part]]]:
+    """The members of members, with their columns."""
+    if isinstance(region, Composite):
+        for member, mine in region._parts(columns):
+            yield from _leaves(member, mine)
+    else:
+        yield region, columns
+
+
+def _is_flat(region: Region) -> bool:
+    """Whether all leaves lie in planes or are columns."""
+    return all(isinstance(leaf, PlanarRegion | Footprint) for leaf, _ in _leaves(region, region.parameters))
+
+
+def _known_points(body: Body, lanes: NDArray[np.intp]) -> Iterator[Points]:
+    """Points ``(n, 3)`` that bodies hold for certain, in some lanes: vertices, and middles of convex ones."""
+    part = body.take(lanes)
+    count = len(lanes)
+    most = max(min(len(mesh.vertices), _PROBES) for mesh in body.meshes)
+    for number in range(-1, most):
+        points = np.empty((count, 3))
+        for mesh, chosen in part.by_mesh(count):
+            vertex = mesh.vertices[mesh.faces[0, 0]]
+            if number >= 0:
+                vertex = mesh.outermost[number % len(mesh.outermost)]
+            elif mesh.is_convex:
+                vertex = mesh.outermost.mean(axis=0)
+            poses = part.poses.take(chosen)
+            points[chosen] = poses.to_world(vertex[np.newaxis, np.newaxis])[:, 0]
+        yield points
 
 
 class IntersectionRegion(Composite):
@@ -268,6 +384,30 @@ class IntersectionRegion(Composite):
 
     def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
         return _all([member.contains_bodies(body, lanes, *mine) for member, mine in self._parts(columns)])
+
+    def may_meet(self, body: Body, lanes: int, columns: Sequence[Column]) -> Mask:
+        return _all([member.meets_bodies(body, lanes, *mine) for member, mine in self._parts(columns)])
+
+    def from_above(self, *columns: Column) -> Flat | None:
+        return _joined(Flat.intersection, [member.from_above(*mine) for member, mine in self._parts(columns)])
+
+    def decided(self, points: Points, columns: Sequence[Column]) -> NDArray[np.float64]:
+        """The distance to a member whose nearest point lies in all others."""
+        result = super().decided(points, columns)
+        for member, mine in self._parts(columns):
+            found = member.nearest(points, *mine)
+            if found is None:
+                continue
+            found = _levelled(self, found, columns)
+            held = [
+                exactly_contains(other, found, theirs)
+                for other, theirs in self._parts(columns)
+                if other is not member
+            ]
+            if held:
+                closest = np.isnan(result) & _all(held)
+                result[closest] = np.broadcast_to(member.distances(points, *mine), len(points))[closest]
+        return result
 
     @property
     def footprint(self) -> Region:
@@ -348,7 +488,12 @@ class UnionRegion(Composite):
         left = np.flatnonzero(~inside)
         if not self.is_random or not len(left):
             return inside
-        for lane in left[self._hold_vertices(body, left, columns)].tolist():
+        left = left[self._hold_vertices(body, left, columns)]
+        flat = self.from_above(*rows_of(columns, left)) if len(left) else None
+        if flat is not None:
+            inside[left] = flat.holds(body, left)
+            return inside
+        for lane in left.tolist():
             region = self.in_lane(lane, columns)
             if not isinstance(region, UnionRegion):
                 part = body if len(body) == 1 else body.take(np.array([lane]))
@@ -371,7 +516,13 @@ class UnionRegion(Composite):
         return held
 
     def meets_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
+        return self.may_meet(body, lanes, columns)
+
+    def may_meet(self, body: Body, lanes: int, columns: Sequence[Column]) -> Mask:
         return _any([member.meets_bodies(body, lanes, *mine) for member, mine in self._parts(columns)])
+
+    def from_above(self, *columns: Column) -> Flat | None:
+        return _joined(Flat.union, [member.from_above(*mine) for member, mine in self._parts(columns)])
 
     def gaps(self, points: Points, *columns: Column) -> NDArray[np.float64]:
         return np.asarray(
@@ -426,10 +577,27 @@ class DifferenceRegion(Composite):
         inside = np.broadcast_to(first.contains_bodies(body, lanes, *mine), lanes).copy()
         held = np.flatnonzero(inside)
         if len(held):
-            part = body if len(body) == 1 else body.take(held)
-            rows = [column if len(column) == 1 else column[held] for column in others]
-            inside[held] = ~second.meets_bodies(part, len(held), *rows)
+            # A container of the plane holds what is above it: what is cut out of it is cut out at every height.
+            hole = second.footprint if _is_flat(self) else second
+            inside[held] = ~hole.meets_bodies(body.take(held), len(held), *rows_of(others, held))
         return inside
+
+    def may_meet(self, body: Body, lanes: int, columns: Sequence[Column]) -> Mask:
+        (first, mine), _ = self._parts(columns)
+        return first.meets_bodies(body, lanes, *mine)
+
+    def from_above(self, *columns: Column) -> Flat | None:
+        return _joined(Flat.difference, [member.from_above(*mine) for member, mine in self._parts(columns)])
+
+    def decided(self, points: Points, columns: Sequence[Column]) -> NDArray[np.float64]:
+        """The distance to the first member, where its nearest point is not in the second."""
+        result = super().decided(points, columns)
+        (first, mine), (second, others) = self._parts(columns)
+        found = first.nearest(points, *mine)
+        if found is not None:
+            outside = ~exactly_contains(second, _levelled(self, found, columns), others)
+            result[outside] = np.broadcast_to(first.distances(points, *mine), len(points))[outside]
+        return result
 
     @property
     def footprint(self) -> Region:

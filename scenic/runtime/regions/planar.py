@@ -18,9 +18,12 @@ from scenic.graph.operations.functions import length_bounds
 from scenic.language.errors import InvalidScenarioError, ScenicTypeError, ScenicValueError
 from scenic.runtime.geometry import containment
 from scenic.runtime.geometry.collision import Body
+from scenic.runtime.geometry.outlines import Geometries
 from scenic.runtime.geometry.polygons import Polygons
+from scenic.runtime.geometry.rectangles import Rectangles
 from scenic.runtime.program.context import here
 from scenic.runtime.regions.base import Mask, Points, Region, unsupported
+from scenic.runtime.regions.flat import Flat, meets_flat
 from scenic.runtime.regions.scalar_regions import Disc, Polygon, Rectangle, Single
 from scenic.runtime.values.values import (
     apply,
@@ -123,9 +126,33 @@ class PlanarRegion(Region):
     def beside(self, points: Points, *columns: Column) -> Column:
         """Distances of points ``(n, 3)`` from the region seen from above, ``(n,)``; z is ignored."""
 
+    @abstractmethod
+    def geometries(self, *columns: Column) -> Geometries:
+        """The region as shapely polygons, ``(n | 1,)``."""
+
+    @abstractmethod
+    def nearest(self, points: Points, *columns: Column) -> Points:
+        """The points ``(n, 3)`` of the region nearest to points ``(n, 3)`` of its plane; the z of the points stays."""
+
     def heights(self, *columns: Column) -> Column:
         """The z of the plane, ``(n | 1,)``."""
         return np.zeros(1)
+
+    def from_above(self, *columns: Column) -> Flat:
+        return Flat(self.geometries(*columns), self.heights(*columns))
+
+    def meets_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
+        return meets_flat(self, body, lanes, columns, self.heights(*columns))
+
+    def meets_rectangles(self, rectangles: Rectangles, *columns: Column) -> tuple[Mask, Mask]:
+        """Which rectangles ``(n,)`` meet the region, and for which of the others this is left open: here all."""
+        return np.zeros(1, dtype=np.bool_), np.ones(1, dtype=np.bool_)
+
+    def meets_outlines(self, outlines: Geometries, *columns: Column) -> Mask:
+        """Which shapely geometries ``(n,)`` meet the region."""
+        import shapely
+
+        return np.asarray(shapely.intersects(self.geometries(*columns), outlines))
 
     def gaps(self, points: Points, *columns: Column) -> Column:
         return self.beside(points, *columns)
@@ -139,6 +166,17 @@ class PlanarRegion(Region):
         landed = vector(target.x, target.y, self.height)
         place = apply(_LAND, landed, *self.parameters, payload=self)
         return place, self.orientation_at(place)
+
+
+def nearest_by_geometry(geometries: Geometries, points: Points) -> Points:
+    """The points ``(n, 3)`` of shapely geometries ``(n | 1,)`` nearest to points ``(n, 3)``, whose z stays."""
+    import shapely
+
+    places = shapely.points(points[:, :2])
+    ways = shapely.shortest_line(geometries, places)
+    found = np.array(points)
+    found[:, :2] = shapely.get_coordinates(shapely.get_point(ways, 0))
+    return found
 
 
 def _land(call: Call, points: Points, *columns: Column) -> Column:
@@ -157,7 +195,7 @@ _LAND = Operation(
 )
 
 
-def _positive(value: Any, what: str) -> Any:
+def positive(value: Any, what: str) -> Any:
     size = to_scalar(value, what)
     if is_number(size) and not size >= 0:
         raise ScenicValueError(
@@ -177,7 +215,7 @@ def _disc_point(_call: Call, first: Column, second: Column) -> Column:
     return disc_points(first, second)
 
 
-def _disc_extent(center: Bounds | None, radius: Bounds | None) -> Bounds | None:
+def disc_extent(center: Bounds | None, radius: Bounds | None) -> Bounds | None:
     """The box of a level disc, from bounds of its centre and radius."""
     if center is None or radius is None:
         return None
@@ -215,7 +253,7 @@ class CircularRegion(PlanarRegion):
 
     def __init__(self, center: Any, radius: Any, resolution: int = 32, *, name: str | None = None) -> None:
         self.center = to_vector(center, "`CircularRegion` center")
-        self.radius = _positive(radius, "`CircularRegion` radius")
+        self.radius = positive(radius, "`CircularRegion` radius")
         self.resolution = resolution
         super().__init__(self.center, self.radius, name=name)
 
@@ -255,7 +293,7 @@ class CircularRegion(PlanarRegion):
         return center - reach, center + reach
 
     def extent(self, *parameters: Bounds | None) -> Bounds | None:
-        return super().extent(*parameters) or _disc_extent(*parameters)
+        return super().extent(*parameters) or disc_extent(*parameters)
 
     def sizes(self, *columns: Column) -> Column:
         return np.asarray(math.pi * columns[1] ** 2)
@@ -274,12 +312,39 @@ class CircularRegion(PlanarRegion):
         dx, dy = points[:, 0] - center[:, 0], points[:, 1] - center[:, 1]
         return np.asarray(np.maximum(np.hypot(dx, dy) - radius, 0))
 
-    def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
+    def nearest(self, points: Points, *columns: Column) -> Points:
         center, radius = columns
+        offset = points[:, :2] - center[:, :2]
+        away = np.hypot(offset[:, 0], offset[:, 1])
+        share = np.minimum(1.0, radius / np.where(away > 0, away, 1.0))
+        found = np.array(points)
+        found[:, :2] = center[:, :2] + share[:, np.newaxis] * offset
+        return found
+
+    def meets_rectangles(self, rectangles: Rectangles, *columns: Column) -> tuple[Mask, Mask]:
+        met: Mask = rectangles.distances(columns[0][:, :2]) <= columns[1]
+        return met, np.zeros(1, dtype=np.bool_)
+
+    def meets_outlines(self, outlines: Geometries, *columns: Column) -> Mask:
+        import shapely
+
+        center, radius = columns
+        return np.asarray(shapely.distance(outlines, shapely.points(center[:, :2])) <= radius)
+
+    def geometries(self, *columns: Column) -> Geometries:
+        import shapely
+
+        return np.asarray(shapely.polygons(self._corners(*columns)), dtype=np.object_)
+
+    def _corners(self, center: Column, radius: Column) -> Column:
+        """The vertices ``(n | 1, k, 2)`` of the polygon that stands for the disc, anticlockwise."""
         angles = np.arange(4 * self.resolution) * (math.pi / (2 * self.resolution))
         circle = np.stack([np.cos(angles), np.sin(angles)], axis=-1)
-        corners = center[:, np.newaxis, :2] + radius[:, np.newaxis, np.newaxis] * circle
-        return containment.in_convex_polygon(body, corners, lanes)
+        corners: Column = center[:, np.newaxis, :2] + radius[:, np.newaxis, np.newaxis] * circle
+        return corners
+
+    def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
+        return containment.in_convex_polygon(body, self._corners(*columns), lanes)
 
 
 class RectangularRegion(PlanarRegion):
@@ -301,8 +366,8 @@ class RectangularRegion(PlanarRegion):
     ) -> None:
         self.position = to_vector(position, "`RectangularRegion` position")
         self.heading = to_heading(heading, "`RectangularRegion` heading")
-        self.width = _positive(width, "`RectangularRegion` width")
-        self.length = _positive(length, "`RectangularRegion` length")
+        self.width = positive(width, "`RectangularRegion` width")
+        self.length = positive(length, "`RectangularRegion` length")
         super().__init__(self.position, self.heading, self.width, self.length, name=name)
 
     @property
@@ -392,7 +457,7 @@ class RectangularRegion(PlanarRegion):
         if found is not None or width is None or length is None:
             return found
         diagonal = length_bounds([width, length])
-        return _disc_extent(position, Bounds(diagonal.lower / 2, diagonal.upper / 2))
+        return disc_extent(position, Bounds(diagonal.lower / 2, diagonal.upper / 2))
 
     def sizes(self, *columns: Column) -> Column:
         return np.asarray(columns[2] * columns[3])
@@ -420,14 +485,41 @@ class RectangularRegion(PlanarRegion):
         cos, sin = np.cos(heading), np.sin(heading)
         return dx * cos + dy * sin, dy * cos - dx * sin
 
+    def nearest(self, points: Points, *columns: Column) -> Points:
+        across, along = self._local(points, *columns)
+        position, heading, width, length = columns
+        x, y = np.clip(across, -width / 2, width / 2), np.clip(along, -length / 2, length / 2)
+        cos, sin = np.cos(heading), np.sin(heading)
+        found = np.array(points)
+        inside = (x == across) & (y == along)
+        found[:, 0] = np.where(inside, points[:, 0], position[:, 0] + (x * cos - y * sin))
+        found[:, 1] = np.where(inside, points[:, 1], position[:, 1] + (x * sin + y * cos))
+        return found
+
+    def meets_rectangles(self, rectangles: Rectangles, *columns: Column) -> tuple[Mask, Mask]:
+        position, heading, width, length = columns
+        axis = np.stack([np.cos(heading), np.sin(heading)], axis=-1)
+        half = np.stack(np.broadcast_arrays(width, length), axis=-1) / 2
+        return Rectangles(position[:, :2], axis, half).meet(rectangles), np.zeros(1, dtype=np.bool_)
+
+    def geometries(self, *columns: Column) -> Geometries:
+        import shapely
+
+        return np.asarray(shapely.polygons(self._corners(*columns)), dtype=np.object_)
+
     def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
+        return containment.in_convex_polygon(body, self._corners(*columns), lanes)
+
+    @staticmethod
+    def _corners(*columns: Column) -> Column:
+        """The corners ``(n | 1, 4, 2)``, anticlockwise."""
         position, heading, width, length = columns
         cos, sin = np.cos(heading), np.sin(heading)
         corners = np.empty((max(map(len, columns)), 4, 2))
         for corner, (x, y) in enumerate(((-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5))):
             corners[:, corner, 0] = position[:, 0] + (x * width * cos - y * length * sin)
             corners[:, corner, 1] = position[:, 1] + (x * width * sin + y * length * cos)
-        return containment.in_convex_polygon(body, corners, lanes)
+        return corners
 
 
 class PolygonalRegion(PlanarRegion):
@@ -501,125 +593,14 @@ class PolygonalRegion(PlanarRegion):
     def sizes(self, *columns: Column) -> Column:
         return np.full(1, self.outline.area)
 
+    def nearest(self, points: Points, *columns: Column) -> Points:
+        return nearest_by_geometry(self.geometries(*columns), points)
+
+    def geometries(self, *columns: Column) -> Geometries:
+        return self.outline.as_row
+
     def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
         return containment.in_polygons(body, self.outline, lanes)
-
-
-class SectorRegion(PlanarRegion):
-    """A sector of a disc.
-
-    Args:
-        center: of the disc; points are drawn at its z.
-        radius: metres.
-        heading: of the middle of the sector, radians.
-        angle: how wide it is, radians.
-        resolution: vertices per quadrant of the polygon that must hold the outline of an object.
-
-    """
-
-    parameter_names = ("center", "radius", "heading", "angle")
-    draws = 2
-
-    def __init__(
-        self,
-        center: Any,
-        radius: Any,
-        heading: Any,
-        angle: Any,
-        resolution: int = 32,
-        *,
-        name: str | None = None,
-    ) -> None:
-        self.center = to_vector(center, "`SectorRegion` center")
-        self.radius = _positive(radius, "`SectorRegion` radius")
-        self.heading = to_heading(heading, "`SectorRegion` heading")
-        self.angle = _positive(angle, "`SectorRegion` angle")
-        self.resolution = resolution
-        super().__init__(self.center, self.radius, self.heading, self.angle, name=name)
-
-    @property
-    def height(self) -> Any:
-        return self.center.z
-
-    def draw_points(self, uniforms: Column, keys: Column, *columns: Column) -> tuple[Points, Mask | None]:
-        center, radius, heading, angle = columns
-        reach = radius * np.sqrt(uniforms[0])
-        way = heading + (uniforms[1] - 0.5) * np.minimum(angle, 2 * math.pi)
-        offset = np.stack([-reach * np.sin(way), reach * np.cos(way), np.zeros_like(reach)], axis=-1)
-        return center + offset, None
-
-    def heights(self, *columns: Column) -> Column:
-        return columns[0][:, 2]
-
-    def box(self, *columns: Column) -> tuple[Points, Points]:
-        center, radius, heading, angle = columns
-        # The centre, both ends of the arc, and where the arc crosses a direction of the axes.
-        half = np.minimum(angle / 2, math.pi)
-        ways = [heading - half, heading + half]
-        for quarter in range(4):
-            way = np.full_like(heading, quarter * math.pi / 2)
-            off = np.remainder(way - heading + math.pi, 2 * math.pi) - math.pi
-            ways.append(np.where(np.abs(off) <= half, way, heading + half))
-        lanes = max(map(len, columns))
-        points = np.zeros((lanes, 7, 3))
-        for number, way in enumerate(ways):
-            points[:, number, 0], points[:, number, 1] = -radius * np.sin(way), radius * np.cos(way)
-        return center + points.min(axis=1), center + points.max(axis=1)
-
-    def extent(self, *parameters: Bounds | None) -> Bounds | None:
-        return super().extent(*parameters) or _disc_extent(*parameters[:2])
-
-    def sizes(self, *columns: Column) -> Column:
-        return np.asarray(np.minimum(columns[3], 2 * math.pi) / 2 * columns[1] ** 2)
-
-    def _polar(self, points: Points, center: Column, heading: Column) -> tuple[Column, Column]:
-        """Distance from the centre, and angle from the middle of the sector, at most pi."""
-        dx, dy = points[:, 0] - center[:, 0], points[:, 1] - center[:, 1]
-        turned = np.arctan2(-dx, dy) - heading
-        return np.hypot(dx, dy), np.abs(np.remainder(turned + math.pi, 2 * math.pi) - math.pi)
-
-    def contains_points(self, points: Points, *columns: Column) -> Mask:
-        center, radius, heading, angle = columns
-        reach, turned = self._polar(points, center, heading)
-        return np.asarray((reach <= radius) & ((turned <= angle / 2) | (reach == 0)))
-
-    def beside(self, points: Points, *columns: Column) -> Column:
-        center, radius, heading, angle = columns
-        reach, turned = self._polar(points, center, heading)
-        # Beside the sector the nearest point lies on one of its two straight edges.
-        away = np.maximum(turned - angle / 2, 0)
-        along = np.clip(reach * np.cos(away), 0, radius)
-        edge = np.hypot(reach * np.cos(away) - along, reach * np.sin(away))
-        return np.asarray(np.where(away > 0, edge, np.maximum(reach - radius, 0)))
-
-    def polygons_now(self) -> Any:
-        return self._polygon(tuple(self.center), self.radius, self.heading, self.angle)
-
-    def _polygon(self, center: Sequence[float], radius: float, heading: float, angle: float) -> Any:
-        import shapely
-
-        if angle >= 2 * math.pi:
-            return shapely.Point(center[0], center[1]).buffer(radius, quad_segs=self.resolution)
-        count = max(2, math.ceil(angle / (math.pi / 2) * self.resolution) + 1)
-        ways = heading + np.linspace(-angle / 2, angle / 2, count)
-        arc = np.column_stack([center[0] - radius * np.sin(ways), center[1] + radius * np.cos(ways)])
-        return shapely.Polygon([(center[0], center[1]), *arc.tolist()])
-
-    def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
-        center, radius, heading, angle = columns
-        if all(len(column) == 1 for column in columns):
-            polygon = self._polygon(center[0].tolist(), float(radius[0]), float(heading[0]), float(angle[0]))
-            return (
-                containment.in_polygons(body, Polygons(polygon), lanes)
-                if polygon.area > 0
-                else np.zeros(lanes, np.bool_)
-            )
-        result = np.zeros(lanes, dtype=np.bool_)
-        for lane in range(lanes):
-            mine = [column if len(column) == 1 else column[[lane]] for column in columns]
-            part = body if len(body) == 1 else body.take(np.array([lane]))
-            result[lane] = self.contains_bodies(part, 1, *mine)[0]
-        return result
 
 
 class Footprint(Region):
@@ -641,6 +622,15 @@ class Footprint(Region):
 
     def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
         return self.region.contains_bodies(body, lanes, *columns)
+
+    def meets_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
+        return meets_flat(self.region, body, lanes, columns, None)
+
+    def from_above(self, *columns: Column) -> Flat:
+        return Flat(self.region.geometries(*columns), None)
+
+    def nearest(self, points: Points, *columns: Column) -> Points:
+        return self.region.nearest(points, *columns)
 
     def distances(self, points: Points, *columns: Column) -> Column:
         return self.region.beside(points, *columns)

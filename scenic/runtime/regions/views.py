@@ -10,8 +10,7 @@ import numpy as np
 
 from scenic.graph.bounds import Bounds
 from scenic.graph.draws import mix, open_unit, words_of
-from scenic.graph.kinds import Column, Kind
-from scenic.graph.operation import Call, Operation, always
+from scenic.graph.kinds import Column
 from scenic.language.errors import ScenicValueError
 from scenic.runtime.geometry import containment, distance
 from scenic.runtime.geometry.bodies import Body
@@ -29,14 +28,11 @@ from scenic.runtime.geometry.visibility.regions import (
 from scenic.runtime.geometry.visibility.views import CORNERS, Views
 from scenic.runtime.program.context import here
 from scenic.runtime.regions.base import Everywhere, Mask, Points, Region, Workspace
-from scenic.runtime.regions.body_regions import OccupiedSpace
 from scenic.runtime.regions.composite import DifferenceRegion, IntersectionRegion
 from scenic.runtime.regions.nearness import grown
 from scenic.runtime.regions.planar import CircularRegion
-from scenic.runtime.regions.stacked import body_of
 from scenic.runtime.values.values import (
     Orientation,
-    apply,
     is_number,
     operate,
     to_orientation,
@@ -120,10 +116,6 @@ class ViewRegion(Region):
     def meets_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
         """A body reaches into the view if it could be seen were nothing in the way."""
         return np.asarray(prove(views_over(columns), body, (), lanes) != Proof.HIDDEN)
-
-    def meets(self, space: OccupiedSpace) -> Any:
-        """Whether an object's space reaches into the view."""
-        return apply(_TOUCHES, *space.parameters, *self.parameters, payload=self)
 
     def solid(self) -> Mesh:
         """The mesh of a view without random parameters, in the world; see `distances`."""
@@ -219,22 +211,6 @@ def views_over(columns: Sequence[Column]) -> Views:
     one, none = np.ones(1), np.zeros((1, 2))
     angles = region_angles(angles)
     return Views(camera, orientation, angles, distance, one, none, np.zeros(1, dtype=np.bool_))
-
-
-def _touches(
-    call: Call, position: Column, orientation: Column, size: Column, shape: Column, *columns: Column
-) -> Column:
-    region: ViewRegion = call.payload
-    operands = (position, orientation, size, shape, *columns)
-    return region.meets_bodies(body_of(*operands[:4]), max(map(len, operands)), *columns)
-
-
-_TOUCHES = Operation(
-    "view reaches body",
-    always(Kind.BOOLEAN),
-    _touches,
-    "Whether a body reaches into a view, occlusion ignored.",
-)
 
 
 class NearView(Region):

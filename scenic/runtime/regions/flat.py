@@ -1,0 +1,178 @@
+"""Regions of the plane, and columns above and below them, as shapely geometries over lanes; and how bodies meet them."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from scenic.graph.kinds import Column
+from scenic.runtime.geometry.bodies import Body
+from scenic.runtime.geometry.outlines import Geometries, cuts, shadows, upright
+from scenic.runtime.geometry.polygons import TOLERANCE
+from scenic.runtime.geometry.poses import Poses
+from scenic.runtime.geometry.rectangles import Rectangles
+
+Mask = NDArray[np.bool_]
+_SLACK = 1e-9
+"""Metres by which boxes may lie apart and be looked at: more than rounding."""
+
+
+@dataclass(frozen=True, slots=True)
+class Flat:
+    """What lies in a level plane, or above and below it, in each lane.
+
+    Attributes:
+        geometries: shapely geometries, ``(n | 1,)``.
+        heights: of the planes, ``(n | 1,)``; ``None`` for columns, which have every height.
+
+    """
+
+    geometries: Geometries
+    heights: Column | None
+
+    def intersection(self, other: "Flat") -> "Flat":
+        """What lies in both."""
+        import shapely
+
+        shared = shapely.intersection(self.geometries, other.geometries)
+        if self.heights is None or other.heights is None:
+            return Flat(shared, other.heights if self.heights is None else self.heights)
+        return Flat(np.where(self.heights == other.heights, shared, shapely.Polygon()), self.heights)
+
+    def difference(self, other: "Flat") -> "Flat | None":
+        """What lies in the first alone; ``None`` for a column without a plane."""
+        import shapely
+
+        rest = shapely.difference(self.geometries, other.geometries)
+        if other.heights is None:
+            return Flat(rest, self.heights)
+        if self.heights is None:
+            return None
+        return Flat(np.where(self.heights == other.heights, rest, self.geometries), self.heights)
+
+    def union(self, other: "Flat") -> "Flat | None":
+        """What lies in either; ``None`` unless all heights are the same."""
+        import shapely
+
+        if self.heights is None or other.heights is None:
+            same = self.heights is None and other.heights is None
+        else:
+            same = bool((self.heights == other.heights).all())
+        return Flat(shapely.union(self.geometries, other.geometries), self.heights) if same else None
+
+    def meets(self, body: Body, lanes: NDArray[np.intp]) -> Mask:
+        """In which of some lanes, of which these are the geometries, a body shares a point with them."""
+        import shapely
+
+        return np.asarray(shapely.intersects(self.geometries, outlines(body, lanes, self.heights)))
+
+    def holds(self, body: Body, lanes: NDArray[np.intp]) -> Mask:
+        """In which of some lanes, of which these are the geometries, the column over them holds the body."""
+        import shapely
+
+        grown = shapely.buffer(self.geometries, TOLERANCE, join_style="mitre")
+        return np.asarray(shapely.covers(grown, shadows(body, lanes)))
+
+    def distances(self, points: NDArray[np.float64]) -> Column:
+        """Distances ``(n,)`` of points ``(n, 3)``; 0 inside, infinite where nothing is left."""
+        import shapely
+
+        beside = shapely.distance(self.geometries, shapely.points(points[:, 0], points[:, 1]))
+        beside = np.where(np.isnan(beside), np.inf, beside)
+        return beside if self.heights is None else np.hypot(beside, points[:, 2] - self.heights)
+
+
+def outlines(body: Body, lanes: NDArray[np.intp], heights: Column | None) -> Geometries:
+    """Cuts through a body at heights ``(n | 1,)``, or its outlines from above where there are no heights."""
+    return shadows(body, lanes) if heights is None else cuts(body, lanes, heights)
+
+
+class MeetingFlat(Protocol):
+    """Regions of the plane that bodies can meet."""
+
+    def box(self, *columns: Column) -> tuple[Column, Column]:
+        """Lower and upper corners ``(n | 1, 3)``."""
+
+    def meets_rectangles(self, rectangles: Rectangles, *columns: Column) -> tuple[Mask, Mask]:
+        """Which rectangles ``(n,)`` meet the region, and of which this is left open."""
+
+    def meets_outlines(self, outlines: Geometries, *columns: Column) -> Mask:
+        """Which geometries ``(n,)`` meet the region."""
+
+
+def rows_of(columns: Sequence[Column], lanes: NDArray[np.intp]) -> list[Column]:
+    """The columns in some lanes; a single row stays one."""
+    return [column if len(column) == 1 else column[lanes] for column in columns]
+
+
+def meets_flat(
+    region: MeetingFlat, body: Body, lanes: int, columns: Sequence[Column], heights: Column | None
+) -> Mask:
+    """In which lanes a body meets a region of planes at ``heights``, or its column where they are ``None``.
+
+    Upright boxes are compared as rectangles, in closed form; other bodies by their outlines.
+    """
+    result = np.zeros(lanes, dtype=np.bool_)
+    lower, upper = body.poses.bounds()
+    low, high = region.box(*columns)
+    near = (low[:, :2] <= upper[:, :2] + _SLACK) & (high[:, :2] >= lower[:, :2] - _SLACK)
+    close = near[:, 0] & near[:, 1]
+    if heights is not None:
+        close = close & (lower[:, 2] - _SLACK <= heights) & (heights <= upper[:, 2] + _SLACK)
+    left = np.flatnonzero(np.broadcast_to(close, lanes))
+    if not len(left):
+        return result
+    boxes, rectangles = upright_boxes(body, left, heights)
+    if boxes.any():
+        mine = left[boxes]
+        met, is_open = region.meets_rectangles(rectangles.take(boxes), *rows_of(columns, mine))
+        result[mine] = met
+        left = np.concatenate([left[~boxes], mine[np.broadcast_to(is_open & ~met, len(mine))]])
+    if len(left):
+        level = None if heights is None else rows_of([heights], left)[0]
+        result[left] = region.meets_outlines(outlines(body, left, level), *rows_of(columns, left))
+    return result
+
+
+def upright_boxes(body: Body, lanes: NDArray[np.intp], heights: Column | None) -> tuple[Mask, Rectangles]:
+    """In which of some lanes the body is an upright box, which a plane meets; and the outlines of the bodies' boxes."""
+    count = len(lanes)
+    poses = body.poses.take(lanes)
+    full = Poses(
+        np.broadcast_to(poses.position, (count, 3)),
+        np.broadcast_to(poses.orientation, (count, 4)),
+        np.broadcast_to(poses.size, (count, 3)),
+    )
+    boxes = np.array(upright(full))
+    numbers = (
+        np.zeros(count, dtype=np.intp)
+        if body.choice is None
+        else np.broadcast_to(body.choice if len(body.choice) == 1 else body.choice[lanes], count)
+    )
+    boxes &= np.array([mesh.is_box for mesh in body.meshes])[numbers]
+    if heights is not None:
+        middle, half = full.position[:, 2], full.size[:, 2] / 2
+        level = heights if len(heights) == 1 else heights[lanes]
+        boxes &= (middle - half <= level) & (level <= middle + half)
+    return boxes, Rectangles.under(full)
+
+
+def ragged_polygons(points: NDArray[np.float64], counts: NDArray[np.intp]) -> Geometries:
+    """Polygons ``(n,)`` whose outlines are the first ``counts`` ``(n,)`` of points ``(n, k, 2)``."""
+    import shapely
+
+    used = np.arange(points.shape[1]) < counts[:, np.newaxis]
+    owner = np.nonzero(used)[0]
+    return np.asarray(shapely.polygons(shapely.linearrings(points[used], indices=owner)), dtype=np.object_)
+
+
+__all__ = [
+    "Flat",
+    "meets_flat",
+    "outlines",
+    "ragged_polygons",
+    "rows_of",
+    "upright_boxes",
+]
