@@ -178,7 +178,8 @@ MODULES: Final[Mapping[str, Mapping[str, str]]] = MappingProxyType(
                     " PolygonalFootprintRegion"
                 ),
             ),
-            ("scenic.runtime.regions.base", "Region AllRegion=Everywhere EmptyRegion=Nowhere"),
+            ("scenic.runtime.regions.base", "Region"),
+            ("scenic.runtime.regions.spaces", "AllRegion=Everywhere EmptyRegion=Nowhere"),
             ("scenic.runtime.regions.composite", "IntersectionRegion UnionRegion DifferenceRegion"),
             ("scenic.runtime.regions.voxels", "VoxelRegion"),
             ("scenic.runtime.regions.views", "ViewRegion"),

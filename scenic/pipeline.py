@@ -34,7 +34,8 @@ from scenic.runtime.program.outcome import Module, Program
 from scenic.runtime.program.prelude import Loader
 from scenic.runtime.python.importing import beside
 from scenic.runtime.python.random_state import preserved, seed_globals
-from scenic.runtime.regions.base import Everywhere, Nowhere, Region, Workspace, everywhere
+from scenic.runtime.regions.base import Region
+from scenic.runtime.regions.spaces import Everywhere, Nowhere, Workspace, everywhere
 from scenic.runtime.sampling.planning import Outline, outline
 from scenic.runtime.scenes.saving import program_digest
 from scenic.runtime.scenes.scenario import Scenario, Services

@@ -10,6 +10,7 @@ Run by hand on a quiet machine; nothing here is a test.
 import argparse
 import json
 import math
+import os
 import shlex
 import statistics
 import subprocess
@@ -43,7 +44,11 @@ def ours(path: str) -> float:
 def theirs(command: str, path: str, scenes: int, seed: int) -> float:
     """Milliseconds a scene of the other implementation; not a number where it refuses the program."""
     arguments = [*shlex.split(command), path, "-n", str(scenes), "--seed", str(seed), "--time"]
-    shown = subprocess.run([*arguments, "--observe", "x=1"], capture_output=True, text=True, check=False)
+    # The other implementation may have our import name: it must not find our tree.
+    environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+    shown = subprocess.run(
+        [*arguments, "--observe", "x=1"], capture_output=True, text=True, check=False, env=environment
+    )
     rows = [json.loads(line) for line in shown.stdout.splitlines() if line.startswith("{")]
     seconds = [row["seconds"] for row in rows if "seconds" in row]
     return statistics.fmean(seconds) * 1e3 if seconds else math.nan
@@ -84,7 +89,9 @@ def main() -> None:
                     flush=True,
                 )
     if ratios:
-        print(f"geometric mean {math.exp(statistics.fmean(map(math.log, ratios))):.0f}x, least {min(ratios):.1f}x")
+        print(
+            f"geometric mean {math.exp(statistics.fmean(map(math.log, ratios))):.0f}x, least {min(ratios):.1f}x"
+        )
 
 
 if __name__ == "__main__":

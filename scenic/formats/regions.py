@@ -10,7 +10,7 @@ import numpy.typing as npt
 from scenic.formats.instances import Array
 from scenic.formats.poses import rotation_matrix
 from scenic.runtime.geometry.mesh import Mesh
-from scenic.runtime.regions.base import Region, Workspace
+from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.body_regions import OccupiedSpace, SideSurface
 from scenic.runtime.regions.composite import (
     Composite,
@@ -23,6 +23,7 @@ from scenic.runtime.regions.lines import LineRegion
 from scenic.runtime.regions.meshes import solid_in_world
 from scenic.runtime.regions.planar import CircularRegion, Footprint, PlanarRegion, RectangularRegion
 from scenic.runtime.regions.scattered import PointSetRegion
+from scenic.runtime.regions.spaces import Workspace
 from scenic.runtime.regions.views import ViewRegion
 from scenic.runtime.regions.volumes import BoxRegion, SpheroidRegion
 from scenic.runtime.regions.voxels import VoxelRegion

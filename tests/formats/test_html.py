@@ -10,8 +10,8 @@ from scipy.spatial.transform import Rotation
 from scenic.formats.html import page
 from scenic.formats.regions import bounds, outlines, view_outline
 from scenic.runtime.geometry.visibility.views import Views
-from scenic.runtime.regions.base import Workspace
 from scenic.runtime.regions.planar import CircularRegion, PolygonalRegion, RectangularRegion
+from scenic.runtime.regions.spaces import Workspace
 from scenic.runtime.regions.views import ViewRegion
 from scenic.runtime.regions.volumes import BoxRegion, SpheroidRegion
 from tests.formats.stand_ins import BALL, Chair, Object, Scene, Turn

@@ -11,10 +11,10 @@ import scenic
 from scenic.formats.html import page
 from scenic.formats.regions import _cell_edges, _longest, _mesh_lines, bounds, outlines
 from scenic.runtime.geometry.mesh import Mesh
-from scenic.runtime.regions.base import everywhere, nowhere
 from scenic.runtime.regions.composite import IntersectionRegion
 from scenic.runtime.regions.lines import PathRegion
 from scenic.runtime.regions.planar import CircularRegion
+from scenic.runtime.regions.spaces import everywhere, nowhere
 from scenic.runtime.regions.volumes import BoxRegion, SpheroidRegion
 from tests.formats.test_html import data_of
 from tests.runtime.geometry.samples import SHAPES

@@ -16,9 +16,9 @@ from scenic.graph.bounds import Bounds
 from scenic.graph.operations import TABLE
 from scenic.language.errors import RandomControlFlowError, ScenicTypeError
 from scenic.runtime.python.purity import is_pure
-from scenic.runtime.regions.base import Workspace, everywhere, nowhere
 from scenic.runtime.regions.choice import RegionChoice
 from scenic.runtime.regions.fields import VectorField
+from scenic.runtime.regions.spaces import Workspace, everywhere, nowhere
 from scenic.runtime.values.coercions import to_heading
 from scenic.runtime.values.values import Orientation, Vector
 from tests.runtime.programs import FALSE_ALARM, draws, failure, params, place, scenario, scene, thing

@@ -31,8 +31,8 @@ from scenic.runtime.regions.lines import PathRegion
 from scenic.runtime.regions.meshes import MeshSurfaceRegion, MeshVolumeRegion
 from scenic.runtime.regions.nearness import SLACK, body_reach, grown, separation
 from scenic.runtime.regions.planar import DISC_POINT, CircularRegion, RectangularRegion
-from scenic.runtime.regions.sectors import SectorRegion
 from scenic.runtime.regions.scattered import PointSetRegion
+from scenic.runtime.regions.sectors import SectorRegion
 from scenic.runtime.regions.volumes import BALL_POINT, BoxRegion, SpheroidRegion
 from scenic.runtime.values.values import Orientation, Random, Vector
 from scenic.runtime.visibility.flat import _SEES as SEES_IN_PLANE

@@ -13,10 +13,11 @@ from scenic.language.errors import ScenicTypeError
 from scenic.runtime.geometry import primitives
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.poses import Floats, Poses
-from scenic.runtime.regions.base import Region, Workspace
+from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.choice import RegionChoice
 from scenic.runtime.regions.composite import IntersectionRegion
 from scenic.runtime.regions.planar import DISC_POINT
+from scenic.runtime.regions.spaces import Workspace
 from scenic.runtime.values.values import Vector
 from tests.runtime.programs import draws, params, thing
 

@@ -15,7 +15,8 @@ from scenic.graph.bounds import Bounds
 from scenic.runtime.geometry import primitives
 from scenic.runtime.geometry.scalar_bodies import placed as placed_at
 from scenic.runtime.regions import choice, composite, knowledge, views
-from scenic.runtime.regions.base import Region, Workspace, everywhere, nowhere
+from scenic.runtime.regions.base import Region
+from scenic.runtime.regions.spaces import Workspace, everywhere, nowhere
 from scenic.runtime.values.values import Orientation, Vector
 from tests.recorded import FOLDER, hold
 from tests.runtime import matrices

@@ -11,11 +11,12 @@ from scenic.runtime.elements.shapes import BoxShape, ConeShape, CylinderShape
 from scenic.runtime.geometry import primitives
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.poses import Poses
-from scenic.runtime.regions.base import Region, Workspace
+from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.choice import RegionChoice
 from scenic.runtime.regions.composite import DifferenceRegion, IntersectionRegion, exactly_contains
 from scenic.runtime.regions.lines import PathRegion
 from scenic.runtime.regions.planar import CircularRegion, RectangularRegion
+from scenic.runtime.regions.spaces import Workspace
 from scenic.runtime.regions.stacked import body_of
 from scenic.runtime.regions.volumes import BoxRegion, SpheroidRegion
 from scenic.runtime.values.values import Orientation, Vector, uniform

@@ -21,7 +21,6 @@ from scenic.language.errors import (
 from scenic.runtime.geometry import primitives
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.poses import Poses
-from scenic.runtime.regions.base import Workspace, nowhere
 from scenic.runtime.regions.choice import RegionChoice
 from scenic.runtime.regions.composite import (
     DifferenceRegion,
@@ -35,6 +34,7 @@ from scenic.runtime.regions.fields import (
     PolyhedronVectorField,
     VectorField,
 )
+from scenic.runtime.regions.spaces import Workspace, nowhere
 from scenic.runtime.values.values import Orientation, Vector
 from tests.runtime.programs import FALSE_ALARM, draws, failure, params, scenario
 

@@ -19,11 +19,12 @@ from scipy.spatial.transform import Rotation
 from scenic.language.errors import InvalidScenarioError, ScenicTypeError
 from scenic.runtime.geometry import primitives
 from scenic.runtime.geometry.poses import Floats
-from scenic.runtime.regions.base import Region, Workspace, nowhere
+from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.composite import Composite, DifferenceRegion, IntersectionRegion, UnionRegion
 from scenic.runtime.regions.fields import VectorField
 from scenic.runtime.regions.lines import LineRegion
 from scenic.runtime.regions.planar import Footprint, PlanarRegion
+from scenic.runtime.regions.spaces import Workspace, nowhere
 from scenic.runtime.values.values import Orientation, Vector
 from tests.runtime.programs import thing
 

@@ -19,9 +19,10 @@ from scenic.graph.bounds import Bounds
 from scenic.language.errors import UndefinedSamplingException, UnsupportedError
 from scenic.runtime.regions import body_regions as bodies
 from scenic.runtime.regions import choice, composite, lines, planar, views, volumes
-from scenic.runtime.regions.base import Region, Workspace, everywhere, nowhere
+from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.drawn import DrawnRegion
 from scenic.runtime.regions.fields import VectorField
+from scenic.runtime.regions.spaces import Workspace, everywhere, nowhere
 from tests.runtime.programs import FALSE_ALARM, scenario
 
 TILT = Orientation.fromEuler(0.7, 0.4, -0.3)

@@ -12,7 +12,7 @@ import scenic
 from scenic.runtime.geometry import body_points, primitives
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.poses import Poses
-from scenic.runtime.regions.base import everywhere
+from scenic.runtime.regions.spaces import everywhere
 from scenic.runtime.regions.views import NearView, ViewRegion
 from scenic.runtime.regions.volumes import BoxRegion
 from tests.runtime.programs import params, thing

@@ -16,11 +16,12 @@ from scenic.language.errors import InvalidScenarioError, ScenicTypeError
 from scenic.language.spans import Span
 from scenic.runtime.instances.objects import Object, OrientedPoint, Point
 from scenic.runtime.program.context import current, here
-from scenic.runtime.regions.base import Everywhere, Region, Workspace
+from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.choice import as_region
 from scenic.runtime.regions.drawn import DrawnRegion
 from scenic.runtime.regions.fields import field_of, frame_at, is_field
 from scenic.runtime.regions.scattered import PointSetRegion
+from scenic.runtime.regions.spaces import Everywhere, Workspace
 from scenic.runtime.regions.views import place_near
 from scenic.runtime.values.lazy import Lazy, defer, reads_of, resolve
 from scenic.runtime.values.values import (

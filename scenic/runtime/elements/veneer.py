@@ -20,7 +20,7 @@ from scenic.runtime.instances import mutation
 from scenic.runtime.instances.objects import SIDES
 from scenic.runtime.instances.resolution import build
 from scenic.runtime.program.context import current
-from scenic.runtime.regions.base import everywhere
+from scenic.runtime.regions.spaces import everywhere
 
 _OPERATORS: Final[Mapping[str, tuple[str, str, str]]] = MappingProxyType(
     {

@@ -5,6 +5,7 @@ from functools import cached_property
 from typing import Any, Final
 
 import numpy as np
+import numpy.typing as npt
 
 from scenic.runtime.geometry.poses import Booleans, Floats
 
@@ -64,7 +65,7 @@ class Polygons:
         return float(self.polygon.area)
 
     @cached_property
-    def as_row(self) -> Any:
+    def as_row(self) -> npt.NDArray[np.object_]:
         """The polygon, prepared for questions, as an array ``(1,)`` of shapely geometries."""
         import shapely
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scenic.runtime.geometry.poses import Booleans, Floats, Poses
+from scenic.runtime.geometry.poses import Booleans, Floats, Indices, Poses
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +75,7 @@ class Rectangles:
         corners: Floats = self.centre[:, np.newaxis] + turned
         return corners
 
-    def take(self, lanes: Floats) -> "Rectangles":
+    def take(self, lanes: Booleans | Indices) -> "Rectangles":
         """The rectangles of some lanes."""
         return Rectangles(
             *(part if len(part) == 1 else part[lanes] for part in (self.centre, self.axis, self.half))

@@ -19,7 +19,7 @@ from scenic.runtime.program.outcome import Program
 from scenic.runtime.python import custom_distributions as laws
 from scenic.runtime.regions import algebra as algebra  # gives regions their algebra
 from scenic.runtime.regions import fields
-from scenic.runtime.regions.base import Workspace, everywhere, nowhere, unsupported
+from scenic.runtime.regions.base import unsupported
 from scenic.runtime.regions.lines import PathRegion, PolylineRegion
 from scenic.runtime.regions.meshes import MeshSurfaceRegion, MeshVolumeRegion
 from scenic.runtime.regions.planar import (
@@ -30,6 +30,7 @@ from scenic.runtime.regions.planar import (
 )
 from scenic.runtime.regions.scattered import GridRegion, PointSetRegion
 from scenic.runtime.regions.sectors import SectorRegion
+from scenic.runtime.regions.spaces import Workspace, everywhere, nowhere
 from scenic.runtime.regions.volumes import BoxRegion, SpheroidRegion
 from scenic.runtime.values.values import Orientation, Vector
 

@@ -11,7 +11,7 @@ from scenic.runtime.dynamics.definitions import Invocable, ModularScenario
 from scenic.runtime.instances.objects import Object, Point
 from scenic.runtime.program.context import Context
 from scenic.runtime.python.samples import Globals
-from scenic.runtime.regions.base import Workspace
+from scenic.runtime.regions.spaces import Workspace
 from scenic.runtime.visibility.seeing import Sighting
 
 

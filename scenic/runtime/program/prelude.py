@@ -56,8 +56,9 @@ from scenic.runtime.python.importing import beside, forget_stranger
 from scenic.runtime.python.ownership import PRELUDE
 from scenic.runtime.python.samples import Sample, may_return_instances
 from scenic.runtime.python.starred_calls import spread
-from scenic.runtime.regions.base import Region, Workspace, everywhere
+from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.choice import as_region
+from scenic.runtime.regions.spaces import Workspace, everywhere
 from scenic.runtime.temporal.formulas import is_temporal
 from scenic.runtime.values.choices import per_option
 from scenic.runtime.values.lazy import definite

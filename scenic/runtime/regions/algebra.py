@@ -23,7 +23,7 @@ from scenic.runtime.geometry.poses import Poses
 from scenic.runtime.geometry.prisms import prism, shadow, slice_at
 from scenic.runtime.program.context import here
 from scenic.runtime.python.opaque import evaluated, later
-from scenic.runtime.regions.base import MEETS_BODY, Everywhere, Mask, Nowhere, Region, Workspace, nowhere
+from scenic.runtime.regions.base import MEETS_BODY, Mask, Region
 from scenic.runtime.regions.body_regions import OccupiedSpace, SideSurface
 from scenic.runtime.regions.choice import RegionChoice, as_region
 from scenic.runtime.regions.composite import (
@@ -50,6 +50,7 @@ from scenic.runtime.regions.planar import (
     PolygonalRegion,
 )
 from scenic.runtime.regions.scattered import PointSetRegion
+from scenic.runtime.regions.spaces import Everywhere, Nowhere, Workspace, nowhere
 from scenic.runtime.regions.stacked import is_body
 from scenic.runtime.regions.views import ViewRegion
 from scenic.runtime.regions.volumes import BoxRegion, PlacedVolume

@@ -145,6 +145,18 @@ class Region(metaclass=_RegionType):
         """The region as geometries of level planes or columns; ``None`` where it is neither, or they are not known."""
         return None
 
+    def half_spaces(self, *columns: Column) -> NDArray[np.float64] | None:
+        """The region as a bounded polytope, half-spaces ``(n | 1, k, 4)``; ``None`` where it is none, or has many faces."""
+        return None
+
+    def ball(self, *columns: Column) -> tuple[Points, NDArray[np.float64]] | None:
+        """Centre ``(n | 1, 3)`` and radius ``(n | 1,)`` of a region that is a ball in all lanes; ``None`` of others."""
+        return None
+
+    def is_surely_convex(self) -> bool:
+        """Whether the region is known to be convex whatever its parameters."""
+        return False
+
     def draw_points(self, uniforms: Column, keys: Column, *columns: Column) -> tuple[Points, Mask | None]:
         """Uniform points ``(n, 3)`` from uniform numbers ``(draws, n)``, and where there is one (``None``: everywhere).
 
@@ -533,168 +545,8 @@ _ORIENTATION = Operation(
 )
 
 
-class Everywhere(Region):
-    """All of space."""
-
-    dimension = np.inf
-
-    def __init__(self, name: str | None = None) -> None:
-        super().__init__(name=name)
-
-    def __repr__(self) -> str:
-        return self.name or "everywhere"
-
-    __str__ = __repr__
-
-    def contains_points(self, points: Points, *columns: Column) -> Mask:
-        return np.ones(len(points), dtype=np.bool_)
-
-    def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
-        return np.ones(lanes, dtype=np.bool_)
-
-    def meets_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
-        return np.ones(lanes, dtype=np.bool_)
-
-    def sizes(self, *columns: Column) -> NDArray[np.float64]:
-        return np.full(1, np.inf)
-
-    def uniform_placement(self) -> tuple[Any, Any]:
-        raise InvalidScenarioError(
-            "no point can be drawn uniformly from all of space",
-            span=here(),
-            help="draw from a bounded region, or set `workspace = Workspace(region)`",
-        )
-
-    def distances(self, points: Points, *columns: Column) -> NDArray[np.float64]:
-        return np.zeros(len(points))
-
-    def project(self, point: Any, direction: Any) -> tuple[Any, Any]:
-        return point, None
-
-
-class Nowhere(Region):
-    """The empty region."""
-
-    dimension = 0
-    may_find_none = True
-
-    def __init__(self, name: str | None = None) -> None:
-        super().__init__(name=name)
-
-    def __repr__(self) -> str:
-        return self.name or "nowhere"
-
-    __str__ = __repr__
-
-    def contains_points(self, points: Points, *columns: Column) -> Mask:
-        return np.zeros(len(points), dtype=np.bool_)
-
-    def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
-        return np.zeros(lanes, dtype=np.bool_)
-
-    def meets_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
-        return np.zeros(lanes, dtype=np.bool_)
-
-    def sizes(self, *columns: Column) -> NDArray[np.float64]:
-        return np.zeros(1)
-
-    def distances(self, points: Points, *columns: Column) -> NDArray[np.float64]:
-        return np.full(len(points), np.inf)
-
-    def draw_points(self, uniforms: Column, keys: Column, *columns: Column) -> tuple[Points, Mask | None]:
-        lanes = uniforms.shape[1]
-        return np.zeros((lanes, 3)), np.zeros(lanes, dtype=np.bool_)
-
-    def uniformPointInner(self) -> Any:
-        raise RejectionException("no point can be drawn from the empty region")
-
-    def project(self, point: Any, direction: Any) -> tuple[Any, Any]:
-        raise InvalidScenarioError("nothing lands on the empty region", span=here())
-
-    def uniform_placement(self) -> tuple[Any, Any]:
-        raise InvalidScenarioError("no point can be drawn from the empty region", span=here())
-
-
 _TRIES = 10_000
 """Draws of a point before a region counts as empty."""
-
-everywhere = Everywhere(name="everywhere")
-nowhere = Nowhere(name="nowhere")
-
-
-class Workspace(Region):
-    """The region in which everything takes place; delegates to the region it is made of."""
-
-    dimension: float
-
-    def __init__(self, region: Any = everywhere, *, name: str | None = None) -> None:
-        if not isinstance(region, Region):
-            raise ScenicTypeError(f"a workspace is made of a region, not of {region!r}", span=here())
-        if region.is_random:
-            raise InvalidScenarioError(
-                "the workspace's region must be fixed",
-                span=here(),
-                help="for a random place use `with regionContainedIn`, or `in` the region",
-            )
-        super().__init__(*region.parameters, name=name)
-        self.region = region
-        self.has_orientation, self.orientation = region.has_orientation, region.orientation
-        self.dimension = region.dimension
-        self.draws, self.may_find_none, self.tolerance = region.draws, region.may_find_none, region.tolerance
-
-    def single(self) -> Single | None:
-        return self.region.at_once
-
-    def contains_points(self, points: Points, *columns: Column) -> Mask:
-        return self.region.contains_points(points, *columns)
-
-    def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
-        return self.region.contains_bodies(body, lanes, *columns)
-
-    def draw_points(self, uniforms: Column, keys: Column, *columns: Column) -> tuple[Points, Mask | None]:
-        return self.region.draw_points(uniforms, keys, *columns)
-
-    def orientations(self, points: Points, *columns: Column) -> Column:
-        return self.region.orientations(points, *columns)
-
-    def meets_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
-        return self.region.meets_bodies(body, lanes, *columns)
-
-    def from_above(self, *columns: Column) -> Flat | None:
-        return self.region.from_above(*columns)
-
-    def nearest(self, points: Points, *columns: Column) -> Points | None:
-        return self.region.nearest(points, *columns)
-
-    def distances(self, points: Points, *columns: Column) -> NDArray[np.float64]:
-        return self.region.distances(points, *columns)
-
-    def gaps(self, points: Points, *columns: Column) -> NDArray[np.float64]:
-        return self.region.gaps(points, *columns)
-
-    def box(self, *columns: Column) -> tuple[Points, Points]:
-        return self.region.box(*columns)
-
-    def container_box(self, *columns: Column) -> tuple[Points, Points]:
-        return self.region.container_box(*columns)
-
-    def sizes(self, *columns: Column) -> NDArray[np.float64]:
-        return self.region.sizes(*columns)
-
-    def uniform_placement(self) -> tuple[Any, Any]:
-        return self.region.uniform_placement()
-
-    def project(self, point: Any, direction: Any) -> tuple[Any, Any]:
-        return self.region.project(point, direction)
-
-    @property
-    def footprint(self) -> Region:
-        return self.region.footprint
-
-    def __getattr__(self, name: str) -> Any:
-        if name.startswith("_") or name == "region":
-            raise AttributeError(name)
-        return getattr(self.region, name)
 
 
 def unsupported(what: str) -> UnsupportedError:
@@ -705,13 +557,9 @@ def unsupported(what: str) -> UnsupportedError:
 
 
 __all__ = [
-    "Everywhere",
+    "MEETS_BODY",
     "Mask",
-    "Nowhere",
     "Points",
     "Region",
-    "Workspace",
-    "everywhere",
-    "nowhere",
     "unsupported",
 ]

@@ -15,6 +15,7 @@ from scenic.graph.operation import Call, Operation, always
 from scenic.language.errors import ScenicTypeError
 from scenic.runtime.geometry import body_points, containment, distance, projection, surface
 from scenic.runtime.geometry.collision import Body, collide
+from scenic.runtime.geometry.polytopes import half_spaces
 from scenic.runtime.geometry.scalar_bodies import gap
 from scenic.runtime.geometry.surface import Side
 from scenic.runtime.program.context import here
@@ -69,6 +70,14 @@ class OccupiedSpace(Region):
 
     def meets_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
         return np.asarray(~collide([body_of(*columns), body], np.array([[0, 1]]), lanes=lanes).free)
+
+    def half_spaces(self, *columns: Column) -> Column | None:
+        body = body_of(*columns)
+        return half_spaces(body.meshes[0], body.poses) if body.choice is None else None
+
+    def is_surely_convex(self) -> bool:
+        shape = self.parameters[3]
+        return not is_random(shape) and bool(shape.mesh.is_convex)
 
     def draw_points(self, uniforms: Column, keys: Column, *columns: Column) -> tuple[Points, Mask | None]:
         return body_points.draw_points(body_of(*columns), uniforms, keys)

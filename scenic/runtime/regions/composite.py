@@ -16,13 +16,16 @@ from scenic.graph.bounds import Bounds
 from scenic.graph.draws import mix, open_unit
 from scenic.graph.kinds import Column
 from scenic.language.errors import InvalidScenarioError, ScenicTypeError
+from scenic.runtime.geometry import polytopes
 from scenic.runtime.geometry.collision import Body
+from scenic.runtime.geometry.containment import extreme_corners
 from scenic.runtime.program.context import here
-from scenic.runtime.regions.base import Mask, Points, Region, Workspace
+from scenic.runtime.regions.base import Mask, Points, Region
 from scenic.runtime.regions.choice import RegionChoice
 from scenic.runtime.regions.flat import Flat, rows_of, upright_boxes
 from scenic.runtime.regions.nearness import hull_of
 from scenic.runtime.regions.planar import Footprint, PlanarRegion
+from scenic.runtime.regions.spaces import Workspace
 
 TRIES: Final = 2_000
 """Draws of one point before a region counts as empty in a lane."""
@@ -104,6 +107,10 @@ class Composite(Region):
         if flat is not None:
             result[left] = flat.distances(points[left])
             return result
+        solid = self.solid_distances(points[left], mine)
+        if solid is not None:
+            result[left] = solid
+            return result
         if not self.is_random:
             return super().distances(points, *columns)
         for lane in left.tolist():
@@ -111,6 +118,10 @@ class Composite(Region):
             place = points[lane : lane + 1]
             result[lane] = region.distances(place, *region.fixed_columns("the distance"))[0]
         return result
+
+    def solid_distances(self, points: Points, columns: Sequence[Column]) -> NDArray[np.float64] | None:
+        """The distances ``(n,)`` of points from what is left of convex solids with few faces; ``None`` for others."""
+        return None
 
     def decided(self, points: Points, columns: Sequence[Column]) -> NDArray[np.float64]:
         """The distances ``(n,)`` that members decide; not a number where none does."""
@@ -158,9 +169,26 @@ class Composite(Region):
         return held & boxes
 
     def _meets_solidly(self, body: Body, lanes: NDArray[np.intp], columns: Sequence[Column]) -> Mask:
-        """In which of some lanes the closed form of the lane meets the body, one lane after the other."""
-        every: Mask = self.algebra.meets_bodies(self, body.take(lanes), len(lanes), rows_of(columns, lanes))
-        return every
+        """In which of some lanes what is left of solids meets the body.
+
+        Bodies and members that are not convex, or have many faces, are combined exactly, one lane after the other.
+        """
+        part, mine = body.take(lanes), rows_of(columns, lanes)
+        result = np.zeros(len(lanes), dtype=np.bool_)
+        for mesh, chosen in part.by_mesh(len(lanes)):
+            own = rows_of(mine, chosen)
+            poses = part.poses.take(chosen)
+            planes = polytopes.half_spaces(mesh, poses)
+            met = None if planes is None else self.meets_polytopes(planes, len(chosen), own)
+            if met is None:
+                alone = Body((mesh,), None, poses)
+                met = self.algebra.meets_bodies(self, alone, len(chosen), own)
+            result[chosen] = met
+        return result
+
+    def meets_polytopes(self, planes: Column, lanes: int, columns: Sequence[Column]) -> Mask | None:
+        """Which polytopes ``(n | 1, k, 4)`` meet the region; ``None`` unless its members are convex and have few faces."""
+        return None
 
     def extent(self, *parameters: Bounds | None) -> Bounds | None:
         return self._box_of([member.extent(*mine) for member, mine in self._parts(parameters)])
@@ -318,20 +346,19 @@ def _is_flat(region: Region) -> bool:
 
 
 def _known_points(body: Body, lanes: NDArray[np.intp]) -> Iterator[Points]:
-    """Points ``(n, 3)`` that bodies hold for certain, in some lanes: vertices, and middles of convex ones."""
-    part = body.take(lanes)
-    count = len(lanes)
-    most = max(min(len(mesh.vertices), _PROBES) for mesh in body.meshes)
-    for number in range(-1, most):
+    """Points ``(n, 3)`` that bodies hold for certain, in some lanes: extreme corners, and middles of convex ones."""
+    part, count = body.take(lanes), len(lanes)
+    known = []
+    for mesh in body.meshes:
+        corners = extreme_corners(mesh)
+        first = mesh.vertices.mean(axis=0) if mesh.is_convex else corners[0]
+        known.append(np.concatenate([first[np.newaxis], corners]))
+    for number in range(1 + min(_PROBES, max(map(len, known)) - 1)):
         points = np.empty((count, 3))
         for mesh, chosen in part.by_mesh(count):
-            vertex = mesh.vertices[mesh.faces[0, 0]]
-            if number >= 0:
-                vertex = mesh.outermost[number % len(mesh.outermost)]
-            elif mesh.is_convex:
-                vertex = mesh.outermost.mean(axis=0)
-            poses = part.poses.take(chosen)
-            points[chosen] = poses.to_world(vertex[np.newaxis, np.newaxis])[:, 0]
+            mine = known[body.meshes.index(mesh)]
+            place = mine[min(number, len(mine) - 1)]
+            points[chosen] = part.poses.take(chosen).to_world(place[np.newaxis, np.newaxis])[:, 0]
         yield points
 
 
@@ -387,6 +414,24 @@ class IntersectionRegion(Composite):
 
     def may_meet(self, body: Body, lanes: int, columns: Sequence[Column]) -> Mask:
         return _all([member.meets_bodies(body, lanes, *mine) for member, mine in self._parts(columns)])
+
+    def half_spaces(self, *columns: Column) -> NDArray[np.float64] | None:
+        parts = [member.half_spaces(*mine) for member, mine in self._parts(columns)]
+        known = [part for part in parts if part is not None]
+        return polytopes.joined(*known) if len(known) == len(parts) else None
+
+    def meets_polytopes(self, planes: Column, lanes: int, columns: Sequence[Column]) -> Mask | None:
+        own = self.half_spaces(*columns)
+        if own is None:
+            return None
+        every = polytopes.joined(own, planes)
+        return np.broadcast_to(polytopes.edges(every).valid.any(axis=1), lanes)
+
+    def solid_distances(self, points: Points, columns: Sequence[Column]) -> NDArray[np.float64] | None:
+        planes = self.half_spaces(*columns)
+        if planes is None:
+            return None
+        return polytopes.distances(np.broadcast_to(planes, (len(points), *planes.shape[1:])), points)
 
     def from_above(self, *columns: Column) -> Flat | None:
         return _joined(Flat.intersection, [member.from_above(*mine) for member, mine in self._parts(columns)])
@@ -486,12 +531,14 @@ class UnionRegion(Composite):
         one = _any([member.contains_bodies(body, lanes, *mine) for member, mine in self._parts(columns)])
         inside = np.array(np.broadcast_to(one, lanes))
         left = np.flatnonzero(~inside)
-        if not self.is_random or not len(left):
+        if not len(left):
             return inside
         left = left[self._hold_vertices(body, left, columns)]
         flat = self.from_above(*rows_of(columns, left)) if len(left) else None
         if flat is not None:
             inside[left] = flat.holds(body, left)
+            return inside
+        if not self.is_random:
             return inside
         for lane in left.tolist():
             region = self.in_lane(lane, columns)
@@ -585,6 +632,40 @@ class DifferenceRegion(Composite):
     def may_meet(self, body: Body, lanes: int, columns: Sequence[Column]) -> Mask:
         (first, mine), _ = self._parts(columns)
         return first.meets_bodies(body, lanes, *mine)
+
+    def meets_polytopes(self, planes: Column, lanes: int, columns: Sequence[Column]) -> Mask | None:
+        """Where a vertex of what the polytope shares with the first member lies outside the second, which is convex."""
+        (first, mine), (second, others) = self._parts(columns)
+        own = first.half_spaces(*mine)
+        if own is None or not second.is_surely_convex():
+            return None
+        found = polytopes.edges(polytopes.joined(own, planes))
+        result = np.zeros(len(found.valid), dtype=np.bool_)
+        for ends in (found.starts, found.ends):
+            lane, edge = np.nonzero(found.valid)
+            outside = ~second.contains_points(ends[lane, edge], *rows_of(others, lane))
+            np.logical_or.at(result, lane, outside)
+        return np.broadcast_to(result, lanes)
+
+    def solid_distances(self, points: Points, columns: Sequence[Column]) -> NDArray[np.float64] | None:
+        (first, mine), (second, others) = self._parts(columns)
+        planes = first.half_spaces(*mine)
+        if planes is None:
+            return None
+        planes = np.broadcast_to(planes, (len(points), *planes.shape[1:]))
+        holes = second.half_spaces(*others)
+        if holes is not None:
+            # Outside a polytope is beyond one of its planes.
+            beyond = [
+                polytopes.distances(polytopes.joined(planes, -holes[:, [number]]), points)
+                for number in range(holes.shape[1])
+            ]
+            return np.asarray(reduce(np.minimum, beyond))
+        ball = second.ball(*others)
+        if ball is None:
+            return None
+        centre, radius = (np.broadcast_to(part, (len(points), *part.shape[1:])) for part in ball)
+        return polytopes.distances_without_ball(planes, centre, radius, points)
 
     def from_above(self, *columns: Column) -> Flat | None:
         return _joined(Flat.difference, [member.from_above(*mine) for member, mine in self._parts(columns)])

@@ -27,10 +27,11 @@ from scenic.runtime.geometry.visibility.regions import (
 )
 from scenic.runtime.geometry.visibility.views import CORNERS, Views
 from scenic.runtime.program.context import here
-from scenic.runtime.regions.base import Everywhere, Mask, Points, Region, Workspace
+from scenic.runtime.regions.base import Mask, Points, Region
 from scenic.runtime.regions.composite import DifferenceRegion, IntersectionRegion
 from scenic.runtime.regions.nearness import grown
 from scenic.runtime.regions.planar import CircularRegion
+from scenic.runtime.regions.spaces import Everywhere, Workspace
 from scenic.runtime.values.values import (
     Orientation,
     is_number,

@@ -13,6 +13,8 @@ from scenic.graph.operation import Call, Operation, always
 from scenic.language.errors import ScenicValueError
 from scenic.runtime.geometry import containment, primitives
 from scenic.runtime.geometry.collision import Body, collide
+from scenic.runtime.geometry.mesh import Mesh
+from scenic.runtime.geometry.polytopes import half_spaces
 from scenic.runtime.geometry.poses import Poses
 from scenic.runtime.geometry.scalar_bodies import Placed, placed
 from scenic.runtime.program.context import here
@@ -116,6 +118,19 @@ class PlacedVolume(Region):
         """Centre and radius of the ball around the box of its dimensions."""
         return self.position, operate("divide", operate("norm", self.dimensions), 2)
 
+    @staticmethod
+    @abstractmethod
+    def unit_mesh() -> Mesh:
+        """The mesh of dimensions 1 as which the volume collides."""
+
+    def is_surely_convex(self) -> bool:
+        return True
+
+    def meets_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
+        dimensions, position, rotation = columns
+        solid = Body((self.unit_mesh(),), None, Poses(position, rotation, dimensions))
+        return np.asarray(~collide([solid, body], np.array([[0, 1]]), lanes=lanes).free)
+
     @abstractmethod
     def unit_points(self, uniforms: Column) -> Points:
         """Uniform points ``(n, 3)`` of the volume of dimensions 1 about the origin, from numbers ``(3, n)``."""
@@ -152,6 +167,10 @@ def _local(points: Points, dimensions: Column, position: Column, rotation: Colum
 class BoxRegion(PlacedVolume):
     """A solid box."""
 
+    @staticmethod
+    def unit_mesh() -> Mesh:
+        return primitives.box()
+
     def single(self) -> Single | None:
         return Box(self._as_body(), self.rotation.q, self.dimensions.row)
 
@@ -179,10 +198,14 @@ class BoxRegion(PlacedVolume):
         beside = np.maximum((np.abs(_local(points, *columns)) - 0.5) * columns[0], 0)
         return np.asarray(np.sqrt(beside[:, 0] ** 2 + beside[:, 1] ** 2 + beside[:, 2] ** 2))
 
-    def meets_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
+    def half_spaces(self, *columns: Column) -> Column | None:
         dimensions, position, rotation = columns
-        box = Body((primitives.box(),), None, Poses(position, rotation, dimensions))
-        return np.asarray(~collide([box, body], np.array([[0, 1]]), lanes=lanes).free)
+        return half_spaces(primitives.box(), Poses(position, rotation, dimensions))
+
+    def nearest(self, points: Points, *columns: Column) -> Points:
+        dimensions, position, rotation = columns
+        inside = np.clip(_local(points, *columns), -0.5, 0.5) * dimensions
+        return position + quaternions.rotate(rotation, inside)
 
     def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
         return containment.in_box(body, columns[0], columns[1], columns[2], lanes)
@@ -221,6 +244,16 @@ class SpheroidRegion(PlacedVolume):
     def __init__(self, dimensions: Any = (2, 2, 2), *args: Any, **options: Any) -> None:
         super().__init__(dimensions, *args, **options)
 
+    @staticmethod
+    def unit_mesh() -> Mesh:
+        return primitives.spheroid()
+
+    def ball(self, *columns: Column) -> tuple[Points, Column] | None:
+        dimensions, position, _ = columns
+        if not (dimensions == dimensions[:, :1]).all():
+            return None
+        return position, dimensions[:, 0] / 2
+
     def single(self) -> Single | None:
         return Ball(self._as_body())
 
@@ -247,16 +280,30 @@ class SpheroidRegion(PlacedVolume):
         inside: Mask = x * x + y * y + z * z <= 0.25
         return inside
 
-    def distances(self, points: Points, *columns: Column) -> Column:
-        """By the root of a decreasing function of one variable, bisected until the interval is spent.
+    def nearest(self, points: Points, *columns: Column) -> Points:
+        dimensions, position, rotation = columns
+        inside = self.contains_points(points, *columns)
+        local = _local(points, *columns) * dimensions
+        found = np.where(local < 0, -1.0, 1.0) * self._feet(np.abs(local), dimensions)
+        placed = position + quaternions.rotate(rotation, found)
+        return np.where(inside[:, np.newaxis], points, placed)
 
-        The nearest point x of the surface to an outer point y has x = a^2 y / (t + a^2), componentwise over the
+    def distances(self, points: Points, *columns: Column) -> Column:
+        point = np.abs(_local(points, *columns)) * columns[0]
+        gap = point - self._feet(point, columns[0])
+        distance = np.sqrt(gap[:, 0] ** 2 + gap[:, 1] ** 2 + gap[:, 2] ** 2)
+        return np.where(self.contains_points(points, *columns), 0.0, distance)
+
+    @staticmethod
+    def _feet(point: Points, dimensions: Column) -> Points:
+        """The points of the surface nearest to outer points of the first octant, in the frame of the ellipsoid, in metres.
+
+        By the root of a decreasing function of one variable, bisected until the interval is spent. The nearest point x of the surface to an outer point y has x = a^2 y / (t + a^2), componentwise over the
         half axes a, for the t > 0 that puts x on the surface (D. Eberly, "Distance from a Point to an Ellipse, an
         Ellipsoid, or a Hyperellipsoid", 2013).
         """
-        half = columns[0] / 2
+        half = dimensions / 2
         squares = half * half
-        point = np.abs(_local(points, *columns)) * columns[0]
         length = np.sqrt(point[:, 0] ** 2 + point[:, 1] ** 2 + point[:, 2] ** 2)
         low, high = np.zeros_like(length), length * np.maximum(np.maximum(half[:, 0], half[:, 1]), half[:, 2])
         for _ in range(BISECTIONS):
@@ -264,9 +311,8 @@ class SpheroidRegion(PlacedVolume):
             ratio = half * point / (middle[:, np.newaxis] + squares)
             outside = ratio[:, 0] ** 2 + ratio[:, 1] ** 2 + ratio[:, 2] ** 2 > 1
             low, high = np.where(outside, middle, low), np.where(outside, high, middle)
-        gap = point - squares * point / (high[:, np.newaxis] + squares)
-        distance = np.sqrt(gap[:, 0] ** 2 + gap[:, 1] ** 2 + gap[:, 2] ** 2)
-        return np.where(self.contains_points(points, *columns), 0.0, distance)
+        feet: Points = squares * point / (high[:, np.newaxis] + squares)
+        return feet
 
     def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
         return containment.in_ellipsoid(body, columns[0], columns[1], columns[2], lanes)

@@ -23,8 +23,9 @@ from scenic.runtime.instances.objects import Object
 from scenic.runtime.program.conditions import connect, truth
 from scenic.runtime.program.outcome import Program, Requirement
 from scenic.runtime.python.samples import dependencies
-from scenic.runtime.regions.base import Everywhere, Region, Workspace
+from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.choice import as_region
+from scenic.runtime.regions.spaces import Everywhere, Workspace
 from scenic.runtime.regions.stacked import body_operands
 from scenic.runtime.sampling.checks import (
     BUILT_IN,

@@ -10,7 +10,8 @@ import numpy as np
 from scenic.language.keywords import HARD_KEYWORDS
 from scenic.runtime.elements.shapes import BoxShape, ConeShape, CylinderShape, Shape, SpheroidShape
 from scenic.runtime.instances.objects import Object, OrientedPoint, Point
-from scenic.runtime.regions.base import Everywhere, Region
+from scenic.runtime.regions.base import Region
+from scenic.runtime.regions.spaces import Everywhere
 from scenic.runtime.values.values import Orientation, Vector
 
 _LEFT_OUT = frozenset(

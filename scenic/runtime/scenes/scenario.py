@@ -30,7 +30,8 @@ from scenic.runtime.instances.objects import Object
 from scenic.runtime.instances.population import Populations
 from scenic.runtime.program.outcome import Program
 from scenic.runtime.python.samples import dependencies
-from scenic.runtime.regions.base import Region, Workspace
+from scenic.runtime.regions.base import Region
+from scenic.runtime.regions.spaces import Workspace
 from scenic.runtime.sampling.engine import Accepted, CandidateError
 from scenic.runtime.sampling.foresight import SEED_BITS, Foreseen
 from scenic.runtime.sampling.planning import Outline

@@ -13,7 +13,8 @@ from scenic.runtime.instances.objects import Object, Point
 from scenic.runtime.instances.population import Populations
 from scenic.runtime.program.outcome import Program, Requirement
 from scenic.runtime.python.samples import dependencies
-from scenic.runtime.regions.base import Region, Workspace
+from scenic.runtime.regions.base import Region
+from scenic.runtime.regions.spaces import Workspace
 from scenic.runtime.sampling.engine import Found
 from scenic.runtime.scenes.dumping import program_of
 from scenic.runtime.scenes.files import whole
