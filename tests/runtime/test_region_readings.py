@@ -335,7 +335,7 @@ param near = near.radius, d = ring.distanceTo((0, 0)), e = ring.distanceTo((5, 0
 def test_what_has_no_distance_says_so() -> None:
     for name in NO_DISTANCE:
         with pytest.raises(UnsupportedError):
-            REGIONS[name].distances(np.zeros((1, 3)), *columns_of(REGIONS[name]))
+            REGIONS[name].distances(around(REGIONS[name]), *columns_of(REGIONS[name]))
 
 
 @pytest.mark.parametrize("name", ["space of an object", "mesh", "whole surface of an object", "surface"])
