@@ -591,7 +591,7 @@ def union_region(elements: Sequence[NetworkElement]) -> Region:
     """The union of elements as a region with their directions; the empty region if there are none."""
     import shapely
 
-    from scenic.runtime.regions.base import nowhere
+    from scenic.runtime.regions.spaces import nowhere
 
     if not elements:
         return nowhere

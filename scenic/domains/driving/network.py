@@ -21,9 +21,10 @@ from scenic.domains.driving.lookups import Finder, RoadDirection
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.errors import RejectionException
 from scenic.runtime.python.opaque import call_later
-from scenic.runtime.regions.base import Region, nowhere
+from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.lines import PolylineRegion
 from scenic.runtime.regions.planar import PolygonalRegion
+from scenic.runtime.regions.spaces import nowhere
 from scenic.runtime.values.lazy import Lazy, defer
 from scenic.runtime.values.values import is_random, to_vector
 

@@ -3,7 +3,7 @@
 from typing import Any
 
 from scenic.domains.driving.network import RoadNetwork
-from scenic.runtime.regions.base import Workspace, everywhere
+from scenic.runtime.regions.spaces import Workspace, everywhere
 
 __all__ = ["DrivingWorkspace"]
 
