@@ -65,7 +65,7 @@ class CarlaActor(DrivingObject):
         simulation().push(self, vel)
 
 
-class Vehicle(Vehicle, CarlaActor, Steers):
+class Vehicle(CarlaActor, Vehicle, Steers):
     """A vehicle."""
 
     def setThrottle(self, throttle):
@@ -136,7 +136,7 @@ class Bus(Vehicle):
     defaultHeight: 4
 
 
-class Pedestrian(Pedestrian, CarlaActor, Walks):
+class Pedestrian(CarlaActor, Pedestrian, Walks):
     """A pedestrian."""
 
     blueprint: Uniform(*ids('walker'))
