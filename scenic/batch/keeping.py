@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING, Any, Final, Literal
 
 if TYPE_CHECKING:
     from scenic.formats.course_page import PoseTape
+    from scenic.formats.openscenario import OpenScenarioFile
     from scenic.formats.trajectories import TrajectoryFile
     from scenic.simulators.simulation import OnState, Poses, Simulation
 
 __all__ = ["Form", "Kept", "about_file"]
 
-Form = Literal["jsonl", "parquet"]
+Form = Literal["jsonl", "parquet", "xosc"]
 """The format of a trajectory's file, which is also its suffix."""
 
 _FIRST_LINE: Final = 1 << 24
@@ -28,6 +29,10 @@ def about_file(path: Path, form: Form) -> Any:
         from scenic.formats.trajectory_tables import parquet_about
 
         return parquet_about(path)
+    if form == "xosc":
+        from scenic.formats.openscenario import openscenario_about
+
+        return openscenario_about(path)
     with path.open(encoding="utf-8") as stream:
         return json.loads(stream.readline(_FIRST_LINE))
 
@@ -47,6 +52,7 @@ class Kept:
         self._form = form
         self._shown = shown
         self._file: TrajectoryFile | None = None
+        self._story: OpenScenarioFile | None = None
         self._tape: PoseTape | None = None
         self._simulation: Simulation | None = None
         self._looked_back = False
@@ -59,7 +65,11 @@ class Kept:
 
         self.close()
         self.looked_back()
-        if self._path is not None:
+        if self._path is not None and self._form == "xosc":
+            from scenic.formats.openscenario import OpenScenarioFile
+
+            self._story = OpenScenarioFile(self._path)
+        elif self._path is not None:
             self._file = ParquetFile(self._path) if self._form == "parquet" else LinesFile(self._path)
         self._tape = PoseTape() if self._shown else None
         return self._add
@@ -70,6 +80,8 @@ class Kept:
         self._simulation = simulation
         if self._file is not None:
             self._file.add(step_document(simulation, poses, actions))
+        if self._story is not None:
+            self._story.add(poses)
         if self._tape is not None:
             self._tape.add(poses)
 
@@ -88,6 +100,8 @@ class Kept:
 
         if self._file is not None:
             self._file.finish(about)
+        if self._story is not None:
+            self._story.finish(simulation, about)
         return None if self._tape is None else course_data(simulation, self._tape)
 
     def close(self) -> None:
@@ -95,3 +109,4 @@ class Kept:
         if self._file is not None:
             self._file.close()
             self._file = None
+        self._story = None

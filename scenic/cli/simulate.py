@@ -49,7 +49,7 @@ __all__ = ["simulate"]
 @click.option(
     "--simulator",
     metavar="NAME",
-    help="kinematic, mujoco, dummy, or MODULE:CLASS.  [default: the program's, else kinematic]",
+    help="kinematic, mujoco, newtonian, dummy, or MODULE:CLASS.  [default: the program's, else kinematic]",
 )
 @click.option(
     "--time",
@@ -97,10 +97,10 @@ __all__ = ["simulate"]
 @click.option(
     "--format",
     "form",
-    type=click.Choice(["jsonl", "parquet"]),
+    type=click.Choice(["jsonl", "parquet", "openscenario"]),
     default="jsonl",
     show_default=True,
-    help="How to keep them: JSON Lines, or columns (needs the extra `parquet`).",
+    help="How to keep them: JSON Lines, columns (extra `parquet`), or OpenSCENARIO XML (extra `openscenario`).",
 )
 @click.option(
     "--view",
@@ -151,6 +151,10 @@ def simulate(
         from scenic.formats.trajectory_tables import parquet_support
 
         parquet_support()
+    if form == "openscenario":
+        from scenic.formats.openscenario import openscenario_support
+
+        openscenario_support()
     if output is not None:
         make_folder(output)
     is_drawn = seed is None
@@ -185,7 +189,9 @@ def simulate(
     return FINDINGS if failed else code
 
 
-_FORMS: Final[Mapping[str, "Form"]] = MappingProxyType({"jsonl": "jsonl", "parquet": "parquet"})
+_FORMS: Final[Mapping[str, "Form"]] = MappingProxyType(
+    {"jsonl": "jsonl", "parquet": "parquet", "openscenario": "xosc"}
+)
 
 
 def _show(row: "SimulationRow") -> int:

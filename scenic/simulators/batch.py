@@ -69,6 +69,7 @@ _PLACES: Final = MappingProxyType(
     {
         "kinematic": "scenic.simulators.kinematic:KinematicSimulator",
         "mujoco": "scenic.simulators.mujoco:MujocoSimulator",
+        "newtonian": "scenic.simulators.newtonian:NewtonianSimulator",
         "dummy": "scenic.simulators.dummy:DummySimulator",
     }
 )

@@ -2,9 +2,17 @@
 
 from collections.abc import Mapping, Sequence
 from enum import Enum
-from typing import Any
+from typing import Any, Self
 
-__all__ = ["ActionsTaken", "Latest", "NotKeptError", "SimulationResult", "TerminationType", "kept"]
+__all__ = [
+    "ActionsTaken",
+    "Latest",
+    "NotKeptError",
+    "SimulationResult",
+    "SimulationState",
+    "TerminationType",
+    "kept",
+]
 
 
 class TerminationType(Enum):
@@ -23,6 +31,29 @@ class ActionsTaken(dict[Any, tuple[Any, ...]]):
 
     def __missing__(self, key: Any) -> tuple[Any, ...]:
         return ()
+
+
+class SimulationState(tuple[Any, ...]):
+    """The positions of all objects in one state of a simulation.
+
+    Attributes:
+        positions: the same positions, in metres.
+        orientations: how the objects stand.
+
+    """
+
+    positions: tuple[Any, ...]
+    orientations: tuple[Any, ...]
+
+    def __new__(cls, positions: tuple[Any, ...], orientations: tuple[Any, ...]) -> Self:
+        """Make a state that keeps both."""
+        made = super().__new__(cls, positions)
+        made.positions = positions
+        made.orientations = orientations
+        return made
+
+    def __getnewargs__(self) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
+        return self.positions, self.orientations
 
 
 class NotKeptError(LookupError):

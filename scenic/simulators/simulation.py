@@ -28,7 +28,14 @@ from scenic.runtime.python.random_state import preserved, restore, seed_globals,
 from scenic.runtime.scenes.scene import Scene
 from scenic.runtime.values.values import describe, kind_of
 from scenic.simulators.replays import Replay, Tape, fresh_key
-from scenic.simulators.results import ActionsTaken, Latest, SimulationResult, TerminationType, kept
+from scenic.simulators.results import (
+    ActionsTaken,
+    Latest,
+    SimulationResult,
+    SimulationState,
+    TerminationType,
+    kept,
+)
 from scenic.simulators.watching import Watch
 
 __all__ = ["OnState", "Poses", "Simulation"]
@@ -325,8 +332,10 @@ class Simulation(ABC):
                 action.applyTo(agent, self)
 
     def currentState(self) -> Any:
-        """What the trajectory keeps of the present state: the positions of the objects."""
-        return tuple(obj.position for obj in self.objects)
+        """The present state for the trajectory: positions and orientations of the objects."""
+        return SimulationState(
+            tuple([obj.position for obj in self.objects]), tuple([obj.orientation for obj in self.objects])
+        )
 
     def valuesHaveDiverged(self, obj: Any, prop: str, expected: Any, actual: Any) -> bool:
         """Whether a property differs from the replayed simulation's by more than the tolerance."""

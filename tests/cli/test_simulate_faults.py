@@ -97,7 +97,7 @@ def test_a_simulator_that_asks_for_the_end_costs_one_simulation(folder: Path) ->
         ("fragile_simulator:Unreachable", "cannot be made: no server at port 2000", ""),
         ("fragile_simulator:Other", "'fragile_simulator:Other' is no simulator", "derive from"),
         ("Kinematics", "there is no simulator 'Kinematics'", "did you mean kinematic?"),
-        (":", "there is no simulator ':'", "kinematic, mujoco, dummy, or MODULE:CLASS"),
+        (":", "there is no simulator ':'", "kinematic, mujoco, newtonian, dummy, or MODULE:CLASS"),
     ],
 )
 def test_simulators_that_cannot_be_had(folder: Path, name: str, words: str, help: str) -> None:
