@@ -26,6 +26,7 @@ LAYERS = {
     "lsp": {"ide", "language", "configuration", "project"},
     "playground": {"ide"},
     "cli": {
+        "domains",
         "batch",
         "formats",
         "runtime",

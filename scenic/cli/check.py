@@ -67,6 +67,9 @@ def _selectors(_context: click.Context, _option: click.Parameter, given: tuple[s
 @click.option("--fix", is_flag=True, help="Make the repairs that are certain, in the files.")
 @click.option("--diff", is_flag=True, help="Show these repairs as a patch instead, and change nothing.")
 @click.option("--deep", is_flag=True, help="Run the programs, and add what analysis proves about them.")
+@click.option(
+    "--strict", is_flag=True, help="What is wrong with a part of a road map is an error, not a warning."
+)
 @click.option("--config", metavar="FILE", help="Take [tool.scenic] from this file, for all programs.")
 @click.option("--no-config", is_flag=True, help="Read no configuration.")
 @click.option(
@@ -91,6 +94,7 @@ def check(
     fix: bool,
     diff: bool,
     deep: bool,
+    strict: bool,
     config: str | None,
     no_config: bool,
     stdin_filename: str | None,
@@ -98,7 +102,7 @@ def check(
     verbose: bool,
     exit_zero: bool,
 ) -> int:
-    """Report what is wrong with programs.
+    """Report what is wrong with programs and road maps (.xodr).
 
     Each PATH is a file, a folder that is searched for *.scenic and *.sc, or - for standard input; without any, the
     current folder is searched. Runs none of the programs' code, unless --deep is given.
@@ -142,6 +146,7 @@ def check(
                 deep=deep,
                 fixing=fixing,
                 text=text,
+                strict=strict,
             )
         )
     problems = [*configurations.problems, *problems]

@@ -49,6 +49,8 @@ class Task:
     deep: bool = False
     fixing: Fixing = Fixing.NONE
     text: str | None = None
+    strict: bool = False
+    """Whether what is wrong with a part of a map is an error."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,7 +89,7 @@ class Checker:
 
 def _outcome(task: Task, surroundings_of: SurroundingsOf) -> Outcome:
     try:
-        if task.fixing is Fixing.NONE:
+        if task.fixing is Fixing.NONE or task.filename.lower().endswith(MAP_SUFFIX):
             return Outcome(_check(task, surroundings_of))
         return _repair(task, surroundings_of)
     except Located as error:
@@ -107,12 +109,34 @@ def fault(filename: str, what: str) -> Diagnostic:
     )
 
 
+MAP_SUFFIX: Final = ".xodr"
+"""Ending of the names of road maps, which are checked, too."""
+
+
 def _check(task: Task, surroundings_of: SurroundingsOf) -> tuple[Diagnostic, ...]:
+    if task.filename.lower().endswith(MAP_SUFFIX) and task.text is None:
+        return task.rules.apply(_check_map(task))
     source = Source(task.text, task.filename) if task.text is not None else read_source(task.filename)
     found = check_text(source.text, filename=task.filename, surroundings_of=surroundings_of)
     if task.deep and not any(item.severity is Severity.ERROR or item.code == UNSUPPORTED for item in found):
         found = in_order((*found, *_deep(task, source)), filename=task.filename)
     return task.rules.apply(found)
+
+
+def _check_map(task: Task) -> tuple[Diagnostic, ...]:
+    """What is wrong with a road map."""
+    from scenic.domains.driving.loading import (  # bring in NumPy and the geometry libraries
+        MapOptions,
+        network_of,
+    )
+
+    try:
+        content = Path(task.filename).read_bytes()
+    except OSError as error:
+        reason = (error.strerror or str(error)).lower()
+        return (Diagnostic("SC600", f"the map cannot be read: {reason}", filename=task.filename),)
+    found = network_of(content, task.filename, MapOptions()).problems
+    return tuple(replace(item, severity=Severity.ERROR) for item in found) if task.strict else found
 
 
 def _deep(task: Task, source: Source) -> tuple[Diagnostic, ...]:

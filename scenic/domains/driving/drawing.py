@@ -1,48 +1,47 @@
 """Drawings of road networks from above, which need no display."""
 
+from collections.abc import Sequence
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final
 from xml.sax.saxutils import escape
 
 import numpy as np
 
 if TYPE_CHECKING:
+    from scenic.domains.driving.elements import NetworkElement
     from scenic.domains.driving.network import RoadNetwork
 
-__all__ = ["show", "svg"]
+__all__ = ["png", "show", "svg"]
 
 _MARGIN: Final = 5.0
 """Metres."""
 
-_STYLE: Final = """
-.road { fill: #5b6068 } .intersection { fill: #6d737c } .shoulder { fill: #8f8a80 }
-.sidewalk { fill: #c9c4ba } .crossing { fill: #f2f2f2; fill-opacity: .75 }
-.lane { fill: none; stroke: #e9e6df; stroke-width: .12; stroke-opacity: .8 }
-.way { fill: none; stroke: #ffd166; stroke-width: .15; stroke-dasharray: 1.5 1.5; stroke-opacity: .7 }
-"""
+_GROUND: Final = "#e4ebdd"
+_COLORS: Final = MappingProxyType(
+    {
+        "road": "#5b6068",
+        "intersection": "#6d737c",
+        "shoulder": "#8f8a80",
+        "sidewalk": "#c9c4ba",
+        "crossing": "#f2f2f2",
+        "lane": "#e9e6df",
+        "way": "#ffd166",
+    }
+)
 
 
 def svg(network: "RoadNetwork", width: int = 1200) -> str:
     """A drawing as SVG text, ``width`` pixels wide: areas, edges of lanes, and their middles with the direction of traffic."""
-    import shapely
-
-    elements = [*network.allRoads, *network.sidewalks, *network.shoulders, *network.crossings]
-    left, bottom, right, top = shapely.total_bounds([element.polygon for element in elements])
-    left, bottom, right, top = left - _MARGIN, bottom - _MARGIN, right + _MARGIN, top + _MARGIN
+    left, bottom, right, top = _bounds(network)
     height = round(width * (top - bottom) / (right - left))
     view = f"{left:.2f} {-top:.2f} {right - left:.2f} {top - bottom:.2f}"
     parts = [
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" viewBox="{view}">',
-        f"<style>{_STYLE}</style>",
-        f'<rect x="{left:.2f}" y="{-top:.2f}" width="100%" height="100%" fill="#e4ebdd"/>',
+        f"<style>{_style()}</style>",
+        f'<rect x="{left:.2f}" y="{-top:.2f}" width="100%" height="100%" fill="{_GROUND}"/>',
     ]
-    for word, some in (
-        ("shoulder", network.shoulders),
-        ("sidewalk", network.sidewalks),
-        ("road", network.allRoads),
-        ("intersection", network.intersections),
-        ("crossing", network.crossings),
-    ):
+    for word, some in _areas(network):
         parts += [
             f'<path class="{word}" d="{_area(element.polygon)}"><title>{escape(element.uid)}</title></path>'
             for element in some
@@ -55,6 +54,14 @@ def svg(network: "RoadNetwork", width: int = 1200) -> str:
     return "\n".join(parts)
 
 
+def _style() -> str:
+    areas = " ".join(f".{word} {{ fill: {color} }}" for word, color in _COLORS.items())
+    lines = " ".join(
+        f".{word} {{ fill: none; stroke: {_COLORS[word]}; stroke-width: .13 }}" for word in ("lane", "way")
+    )
+    return f"{areas} {lines} .way {{ stroke-dasharray: 1.5 1.5; stroke-opacity: .7 }}"
+
+
 def _way(line: Any) -> str:
     points = np.round(np.asarray(line), 2).tolist()
     return "M" + "L".join(f"{x:g} {-y:g}" for x, y in points)
@@ -65,6 +72,65 @@ def _area(polygon: Any) -> str:
     for part in getattr(polygon, "geoms", [polygon]):
         rings += [part.exterior, *part.interiors]
     return "".join(_way([point[:2] for point in ring.coords]) + "Z" for ring in rings)
+
+
+def png(network: "RoadNetwork", width: int = 1600) -> bytes:
+    """A drawing as the content of a PNG file, ``width`` pixels wide.
+
+    Raises ``MissingLibraryError`` without Pillow.
+    """
+    import io
+
+    import shapely
+
+    from scenic.formats.png import require_pillow
+
+    library = require_pillow()
+    from PIL import ImageDraw
+
+    left, bottom, right, top = _bounds(network)
+    scale = width / (right - left)
+    # Drawn at twice the size, so that edges are smooth.
+    size = (2 * width, max(2, round(2 * scale * (top - bottom))))
+    image = library.new("RGB", size, _GROUND)
+    draw = ImageDraw.Draw(image)
+
+    def pixels(line: Any) -> list[tuple[float, float]]:
+        points = np.asarray(line)[:, :2]
+        return [(2 * scale * (x - left), 2 * scale * (top - y)) for x, y in points.tolist()]
+
+    for word, some in _areas(network):
+        for element in some:
+            for part in shapely.get_parts(element.polygon):
+                draw.polygon(pixels(part.exterior.coords), fill=_COLORS[word])
+                for ring in part.interiors:
+                    draw.polygon(pixels(ring.coords), fill=_GROUND)
+    for road in network.roads:
+        for lane in road.lanes:
+            for edge in (lane.left, lane.right):
+                draw.line(pixels(edge), fill=_COLORS["lane"], width=2)
+    stream = io.BytesIO()
+    image.resize((size[0] // 2, size[1] // 2), library.Resampling.LANCZOS).save(stream, "PNG")
+    return stream.getvalue()
+
+
+def _bounds(network: "RoadNetwork") -> tuple[float, float, float, float]:
+    import shapely
+
+    elements = [*network.allRoads, *network.sidewalks, *network.shoulders, *network.crossings]
+    left, bottom, right, top = shapely.total_bounds([element.polygon for element in elements]).tolist()
+    return left - _MARGIN, bottom - _MARGIN, right + _MARGIN, top + _MARGIN
+
+
+def _areas(network: "RoadNetwork") -> tuple[tuple[str, Sequence["NetworkElement"]], ...]:
+    """The areas to draw, those on top last."""
+    return (
+        ("shoulder", network.shoulders),
+        ("sidewalk", network.sidewalks),
+        ("road", network.allRoads),
+        ("intersection", network.intersections),
+        ("crossing", network.crossings),
+    )
 
 
 def show(network: "RoadNetwork") -> Path:

@@ -1,0 +1,84 @@
+"""``scenic map``: what is in a road map, and drawings of it."""
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from scenic.cli.output import CLEAN, has_colours
+from scenic.cli.sinks import OutputChoiceError
+
+if TYPE_CHECKING:
+    from scenic.domains.driving.roads import Network
+
+__all__ = ["map_command"]
+
+
+@click.command("map")
+@click.argument("file", metavar="FILE", type=click.Path(path_type=Path))
+@click.option(
+    "-o",
+    "--output",
+    metavar="OUT",
+    type=click.Path(path_type=Path),
+    help="Draw the map from above: OUT ends in .svg or .png.",
+)
+@click.option(
+    "--width",
+    metavar="PIXELS",
+    type=click.IntRange(min=50),
+    default=1600,
+    show_default=True,
+    help="Of the drawing.",
+)
+def map_command(file: Path, output: Path | None, width: int) -> int:
+    """Show what is in a road map, or draw it.
+
+    Problems of the map are listed by `scenic check FILE`.
+    """
+    from scenic.domains.driving.drawing import png, svg
+    from scenic.formats.files import check_writable, write
+
+    if output is not None:
+        check_writable(output)
+        if output.suffix.lower() not in (".svg", ".png"):
+            raise OutputChoiceError(
+                f"maps are not drawn as {output.suffix or 'a file without an ending'}",
+                help="give a name that ends in .svg or .png",
+            )
+    network = _loaded(file)
+    if output is not None:
+        drawn = svg(network, width).encode() if output.suffix.lower() == ".svg" else png(network, width)
+        write(output, drawn)
+        return CLEAN
+    from rich.console import Console
+    from rich.table import Table
+
+    table = Table.grid(padding=(0, 2))
+    length = sum(road.centerline.length for road in network.roads)
+    drivable = network.drivableRegion.area  # type: ignore[attr-defined] # there is at least one road
+    for row in (
+        (
+            "roads",
+            f"{len(network.roads)}, {length / 1000:.1f} km, and {len(network.connectingRoads)} in intersections",
+        ),
+        ("lanes", f"{len(network.lanes)}, {drivable:,.0f} m2 for traffic"),
+        ("intersections", str(len(network.intersections))),
+        ("sidewalks", f"{len(network.sidewalks)}, and {len(network.crossings)} crossings"),
+        ("shoulders", str(len(network.shoulders))),
+        ("traffic", "keeps left" if network.driveOnLeft else "keeps right"),
+        ("problems", f"{len(network.problems)} (scenic check {file})" if network.problems else "none"),
+    ):
+        table.add_row(*row)
+    Console(no_color=not has_colours(sys.stdout), highlight=False).print(table)
+    return CLEAN
+
+
+def _loaded(file: Path) -> "Network":
+    from scenic.domains.driving.roads import Network
+
+    try:
+        return Network.fromFile(file)
+    except (OSError, ValueError) as error:
+        raise OutputChoiceError(str(error), help="give an OpenDRIVE file") from error
