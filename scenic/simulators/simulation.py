@@ -3,7 +3,7 @@
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Generator, Mapping, Sequence
 from contextlib import ExitStack
-from typing import Any, TypeAlias
+from typing import Any, Final, TypeAlias
 
 from scenic.graph.kinds import Kind
 from scenic.language.diagnostics import Diagnostic
@@ -26,7 +26,7 @@ from scenic.runtime.instances.properties import Finals
 from scenic.runtime.python.ownership import PRELUDE
 from scenic.runtime.python.random_state import preserved, restore, seed_globals, states
 from scenic.runtime.scenes.scene import Scene
-from scenic.runtime.values.values import describe, kind_of
+from scenic.runtime.values.values import Orientation, Vector, describe, kind_of
 from scenic.simulators.replays import Replay, Tape, fresh_key
 from scenic.simulators.results import (
     ActionsTaken,
@@ -473,6 +473,8 @@ class Simulation(ABC):
 
     def _checked(self, obj: Any, name: str, old: Any, value: Any) -> Any:
         """The value as the object stores it; raises ``RuntimeError`` for one of another type than before."""
+        if type(value) is type(old) and type(old) in _SIMPLE:
+            return value
         kind, wanted = kind_of(value), kind_of(old)
         if wanted.is_number and wanted is not Kind.BOOLEAN and kind.is_number and kind is not Kind.BOOLEAN:
             return float(value) if type(old) is float else value
@@ -504,6 +506,10 @@ class Simulation(ABC):
     def replaying(self) -> bool:
         """Whether draws of an earlier simulation are still used."""
         return self._tape.replaying
+
+
+_SIMPLE: Final = frozenset({float, bool, Vector, Orientation})
+"""Types whose values are all of one kind."""
 
 
 class _Isolated:

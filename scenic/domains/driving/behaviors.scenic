@@ -1,11 +1,13 @@
 """Behaviors of cars and pedestrians (section 5.5 of the driving specification)."""
 
 from scenic.domains.driving.actions import *
+from scenic.domains.driving.following import Driver
 from scenic.domains.driving.lines import FollowedLine, concatenateCenterlines
 from scenic.domains.driving.roads import ManeuverType
 from scenic.domains.driving.maneuvering import (
-    closest_vehicle, intersection_ahead, nearest_end, next_maneuver, sidewalk_under, wholly_in_intersection,
+    closest_vehicle, intersection_ahead, nearest_end, next_maneuver, sidewalk_under,
 )
+from scenic.domains.driving.watching import InsideWatch, Nearness
 
 
 behavior ConstantThrottleBehavior(x):
@@ -43,14 +45,15 @@ behavior FollowLaneBehavior(target_speed=10, laneToFollow=None, is_oppositeTraff
     """
     lane = self.lane if laneToFollow is None else laneToFollow
     line = FollowedLine(lane)
-    ahead = intersection_ahead(lane)
+    ahead = Nearness(intersection_ahead(lane))
+    inside = InsideWatch(self)
     entering = False
     original_speed = target_speed
     turning = False
-    past_steer = 0
-    longitudinal, lateral = simulation().getLaneFollowingControllers(self)
+    driver = Driver(self)
+    driver.keep_lane()
     while True:
-        if not entering and (distance from self to ahead) < 10:
+        if not entering and ahead.closer_than(10, self.position):
             maneuvers = next_maneuver(lane)
             if not maneuvers:
                 take SetBrakeAction(1.0)
@@ -61,33 +64,24 @@ behavior FollowLaneBehavior(target_speed=10, laneToFollow=None, is_oppositeTraff
             else:
                 line = FollowedLine(lane, chosen.connectingLane, chosen.endLane)
             lane = chosen.endLane
-            ahead = intersection_ahead(lane)
+            ahead = Nearness(intersection_ahead(lane))
+            reached = Nearness(lane)
             entering = True
             if chosen.type is not ManeuverType.STRAIGHT:
                 target_speed = 5
                 turning = True
-        if entering and lane.containsPoint(self.position):
+        if entering and reached.closer_than(1e-9, self.position):
             entering = False
             target_speed = original_speed
             if turning:
-                longitudinal, lateral = simulation().getLaneFollowingControllers(self)
+                driver.keep_lane()
                 turning = False
-        if turning and wholly_in_intersection(self):
-            longitudinal, lateral = simulation().getTurningControllers(self)
-            while wholly_in_intersection(self):
-                cte = line.signed_distance(self.position)
-                control = RegulatedControlAction(
-                    longitudinal.run_step(target_speed - self.speed), lateral.run_step(cte), past_steer)
-                take control
-                past_steer = control.steer
-            longitudinal, lateral = simulation().getLaneFollowingControllers(self)
-        cte = line.signed_distance(self.position)
-        if is_oppositeTraffic:
-            cte = -cte
-        control = RegulatedControlAction(
-            longitudinal.run_step(target_speed - self.speed), lateral.run_step(cte), past_steer)
-        take control
-        past_steer = control.steer
+        if turning and inside():
+            driver.turn()
+            while inside():
+                take driver.follow(line, target_speed)
+            driver.keep_lane()
+        take driver.follow(line, target_speed, oncoming=is_oppositeTraffic)
 
 
 behavior FollowTrajectoryBehavior(target_speed=10, trajectory=None, turn_speed=None):
@@ -102,38 +96,27 @@ behavior FollowTrajectoryBehavior(target_speed=10, trajectory=None, turn_speed=N
         raise TypeError('FollowTrajectoryBehavior needs a trajectory: a list of lanes that is not empty')
     turn = target_speed / 2 if turn_speed is None else turn_speed
     line = FollowedLine(*trajectory)
-    end = intersection_ahead(trajectory[-1])
-    past_steer = 0
-    longitudinal, lateral = simulation().getLaneFollowingControllers(self)
-    while (distance from self to end) >= 5:
-        inside = wholly_in_intersection(self)
-        if inside:
-            longitudinal, lateral = simulation().getTurningControllers(self)
-            while wholly_in_intersection(self):
-                control = RegulatedControlAction(
-                    longitudinal.run_step(turn - self.speed),
-                    lateral.run_step(line.signed_distance(self.position)), past_steer)
-                take control
-                past_steer = control.steer
-            longitudinal, lateral = simulation().getLaneFollowingControllers(self)
-        control = RegulatedControlAction(
-            longitudinal.run_step(target_speed - self.speed),
-            lateral.run_step(line.signed_distance(self.position)), past_steer)
-        take control
-        past_steer = control.steer
+    end = Nearness(intersection_ahead(trajectory[-1]))
+    inside = InsideWatch(self)
+    driver = Driver(self)
+    driver.keep_lane()
+    while not end.closer_than(5, self.position):
+        if inside():
+            driver.turn()
+            while inside():
+                take driver.follow(line, turn)
+            driver.keep_lane()
+        take driver.follow(line, target_speed)
 
 
 behavior TurnBehavior(trajectory, target_speed=6):
     """Follow a line, or lanes, as long as the whole car is in an intersection."""
     line = FollowedLine(*trajectory) if isinstance(trajectory, (list, tuple)) else FollowedLine(trajectory)
-    longitudinal, lateral = simulation().getTurningControllers(self)
-    past_steer = 0
-    while wholly_in_intersection(self):
-        control = RegulatedControlAction(
-            longitudinal.run_step(target_speed - self.speed),
-            lateral.run_step(line.signed_distance(self.position)), past_steer)
-        take control
-        past_steer = control.steer
+    inside = InsideWatch(self)
+    driver = Driver(self)
+    driver.turn()
+    while inside():
+        take driver.follow(line, target_speed)
 
 
 behavior LaneChangeBehavior(laneSectionToSwitch, is_oppositeTraffic=False, target_speed=10):
@@ -146,25 +129,19 @@ behavior LaneChangeBehavior(laneSectionToSwitch, is_oppositeTraffic=False, targe
     """
     lane = laneSectionToSwitch.lane
     line = FollowedLine(lane)
-    ahead = intersection_ahead(lane)
+    ahead = Nearness(intersection_ahead(lane))
     appended = False
-    past_steer = 0
-    longitudinal, lateral = simulation().getLaneChangingControllers(self)
-    cte = line.signed_distance(self.position)
-    while abs(cte) >= 0.1:
-        if not appended and (distance from self to ahead) < 3:
+    driver = Driver(self)
+    driver.change_lane()
+    while abs(line.signed_distance(self.position)) >= 0.1:
+        if not appended and ahead.closer_than(3, self.position):
             maneuvers = next_maneuver(lane)
             if maneuvers:
                 chosen = Uniform(*maneuvers)
                 ways = [way for way in (lane, chosen.connectingLane, chosen.endLane) if way is not None]
                 line = FollowedLine(*ways)
             appended = True
-        control = RegulatedControlAction(
-            longitudinal.run_step(target_speed - self.speed),
-            lateral.run_step(-cte if is_oppositeTraffic else cte), past_steer)
-        take control
-        past_steer = control.steer
-        cte = line.signed_distance(self.position)
+        take driver.follow(line, target_speed, oncoming=is_oppositeTraffic)
 
 
 behavior DriveAvoidingCollisions(target_speed=25, avoidance_threshold=10):

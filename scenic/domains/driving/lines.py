@@ -1,5 +1,6 @@
 """Lines that are followed: signed distances, with a hint of where the car was before."""
 
+import math
 from collections.abc import Sequence
 from typing import Any, Final
 
@@ -35,28 +36,29 @@ class FollowedLine:
 
     """
 
-    __slots__ = ("_dx", "_dy", "_hint", "_square", "_x", "_y")
+    __slots__ = ("_hint", "_segments")
 
     def __init__(self, *parts: Any) -> None:
         self._hint = 0
-        self._take(np.concatenate([_vertices(part) for part in parts]))
-
-    def _take(self, points: Floats) -> None:
+        points = np.concatenate([_vertices(part) for part in parts])
         steps = np.diff(points, axis=0)
-        keep = (steps**2).sum(axis=1) > 1e-12
-        starts, steps = points[:-1][keep], steps[keep]
-        self._x, self._y = starts[:, 0].tolist(), starts[:, 1].tolist()
-        self._dx, self._dy = steps[:, 0].tolist(), steps[:, 1].tolist()
-        self._square = (steps**2).sum(axis=1).tolist()
+        square = (steps**2).sum(axis=1)
+        keep = square > 1e-12
+        rows = np.column_stack((points[:-1], steps, square))[keep]
+        self._segments: list[tuple[float, ...]] = [tuple(row) for row in rows.tolist()]
 
-    def _away(self, index: int, x: float, y: float) -> tuple[float, float]:
-        """Squared distance from a segment, and the side: positive to its left."""
-        a, b = x - self._x[index], y - self._y[index]
-        dx, dy = self._dx[index], self._dy[index]
-        share = (a * dx + b * dy) / self._square[index]
-        share = 0.0 if share < 0 else min(share, 1.0)
-        u, v = a - share * dx, b - share * dy
-        return u * u + v * v, dx * b - dy * a
+    def _nearest(self, low: int, high: int, x: float, y: float) -> tuple[float, float, int]:
+        """Squared distance from the nearest segment among some, the side (positive to its left), and its index."""
+        best, side, where = math.inf, 0.0, low
+        for index, (x0, y0, dx, dy, square) in enumerate(self._segments[low:high], low):
+            a, b = x - x0, y - y0
+            share = (a * dx + b * dy) / square
+            share = 0.0 if share < 0.0 else min(share, 1.0)
+            u, v = a - share * dx, b - share * dy
+            away = u * u + v * v
+            if away < best:
+                best, side, where = away, dx * b - dy * a, index
+        return best, side, where
 
     def signed_distance(self, point: Any) -> float:
         """The distance of a point from the line in metres, positive to the left of it.
@@ -64,20 +66,18 @@ class FollowedLine:
         Only segments near the last nearest one are looked at, unless the point is farther away than these reach.
         """
         x, y, *_ = point
-        count = len(self._x)
-        low, high = max(0, self._hint - _WINDOW), min(count, self._hint + _WINDOW + 1)
-        best, side, where = float("inf"), 0.0, self._hint
-        for index in range(low, high):
-            square, turn = self._away(index, x, y)
-            if square < best:
-                best, side, where = square, turn, index
+        count = len(self._segments)
+        hint = self._hint
+        # A point that moves by less than a segment in a step has one of these three nearest.
+        low, high = max(0, hint - 1), min(count, hint + 2)
+        best, side, where = self._nearest(low, high, x, y)
+        if (where == low and low > 0) or (where == high - 1 and high < count):
+            low, high = max(0, hint - _WINDOW), min(count, hint + _WINDOW + 1)
+            best, side, where = self._nearest(low, high, x, y)
         if (where == low and low > 0) or (where == high - 1 and high < count) or best > 100.0:
-            for index in range(count):
-                square, turn = self._away(index, x, y)
-                if square < best:
-                    best, side, where = square, turn, index
+            best, side, where = self._nearest(0, count, x, y)
         self._hint = where
-        distance: float = best**0.5
+        distance = math.sqrt(best)
         return distance if side >= 0 else -distance
 
 

@@ -1,5 +1,6 @@
 """Decisions of behaviors: what lies ahead of a lane, and where a car is."""
 
+import math
 from typing import Any
 
 from scenic.domains.driving.elements import Lane, Maneuver, NetworkElement, Sidewalk
@@ -13,7 +14,6 @@ __all__ = [
     "nearest_end",
     "next_maneuver",
     "sidewalk_under",
-    "wholly_in_intersection",
 ]
 
 
@@ -31,21 +31,15 @@ def next_maneuver(lane: Lane) -> tuple[Maneuver, ...]:
     return straight or lane.maneuvers
 
 
-def wholly_in_intersection(agent: Any) -> bool:
-    """Whether the whole of an object is in one intersection."""
-    found = agent.roadNetwork.intersectionAt(agent.position)
-    return found is not None and bool(found.containsObject(agent))
-
-
 def closest_vehicle(agent: Any) -> float:
     """The distance from an object to the nearest other vehicle in metres; infinite if there is none."""
-    here = agent.position
-    away = [
-        here.distanceTo(other.position)
-        for other in running_simulation().objects
-        if other is not agent and getattr(other, "isVehicle", False)
-    ]
-    return min(away, default=float("inf"))
+    x, y, z = agent.position
+    closest = math.inf
+    for other in running_simulation().objects:
+        if other is not agent and getattr(other, "isVehicle", False):
+            a, b, c = other.position
+            closest = min(closest, (a - x) ** 2 + (b - y) ** 2 + (c - z) ** 2)
+    return math.sqrt(closest)
 
 
 def sidewalk_under(agent: Any) -> Sidewalk | None:

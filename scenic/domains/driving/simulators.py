@@ -1,5 +1,6 @@
 """Bases of simulators for the driving domain."""
 
+import math
 from typing import Any
 
 from scenic.domains.driving.controllers import PIDLateralController, PIDLongitudinalController
@@ -24,6 +25,19 @@ class DrivingSimulation(Simulation):
             PIDLongitudinalController(*along, dt=dt),
             PIDLateralController(*(car if is_car else others), dt=dt),
         )
+
+    def steering_for(self, agent: Any, curvature: float) -> float:
+        """The position of the steering wheel, -1 (left) to 1, by which an agent drives a curve.
+
+        A car turns about its rear axle by ``tan(angle of the front wheels) / wheelbase``.
+
+        Args:
+            agent: the agent.
+            curvature: of its way, in 1/m, positive to the left.
+
+        """
+        angle: float = math.atan(curvature * agent.wheelbase) / agent.maxSteeringAngle
+        return min(1.0, max(-1.0, -angle))
 
     def getLaneFollowingControllers(self, agent: Any) -> Controllers:
         """Controllers that keep an agent in its lane."""

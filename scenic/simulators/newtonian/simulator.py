@@ -115,6 +115,11 @@ class NewtonianSimulation(DrivingSimulation):
         }
         return {name: values[name] if name in values else stored[name] for name in properties}
 
+    def steering_for(self, agent: Any, curvature: float) -> float:
+        """The position of the steering wheel by which a car of this simulator drives a curve."""
+        sine = min(1.0, max(-1.0, curvature * agent.length))
+        return -math.asin(sine) / (math.pi / 2)
+
     def getLaneFollowingControllers(
         self, agent: Any
     ) -> tuple[PIDLongitudinalController, PIDLateralController]:
