@@ -3,7 +3,7 @@
 import math
 from typing import Any
 
-from scenic.runtime.values.values import Vector
+from scenic.runtime.values.values import Vector, to_orientation
 from scenic.simulators.actions import Action
 
 __all__ = [
@@ -11,6 +11,7 @@ __all__ = [
     "RegulatedControlAction",
     "SetBrakeAction",
     "SetHandBrakeAction",
+    "SetOrientationAction",
     "SetPositionAction",
     "SetReverseAction",
     "SetSpeedAction",
@@ -80,6 +81,17 @@ class SetPositionAction(Action):
     def applyTo(self, agent: Any, simulation: Any) -> None:
         """Move the agent."""
         agent.setPosition(self.pos, agent.elevation)
+
+
+class SetOrientationAction(Action):
+    """Turn to an orientation, or to a heading (radians, anticlockwise from north)."""
+
+    def __init__(self, orientation: Any) -> None:
+        self.orientation = to_orientation(orientation)
+
+    def applyTo(self, agent: Any, simulation: Any) -> None:
+        """Turn the agent."""
+        agent.setOrientation(self.orientation)
 
 
 class OffsetAction(Action):

@@ -7,6 +7,8 @@ from scenic.domains.driving.roads import ManeuverType
 from scenic.domains.driving.maneuvering import (
     closest_vehicle, intersection_ahead, nearest_end, next_maneuver, sidewalk_under,
 )
+from scenic.domains.driving.trajectories import Route, Trajectory
+from scenic.domains.driving.walking import arrived, heading_to, places_of, walking_step
 from scenic.domains.driving.watching import InsideWatch, Nearness
 
 
@@ -33,6 +35,43 @@ behavior WalkForwardBehavior():
             along = walk.orientation[self.position].yaw
             take SetWalkingDirectionAction(along if forward else along + 180 deg), SetWalkingSpeedAction(1)
         take SetWalkingSpeedAction(0)
+
+
+behavior WalkTo(place, speed=1.4):
+    """Walk straight to a place and stop there.
+
+    Arguments:
+        place: a point, or an object.
+        speed: m/s.
+    """
+    do WalkPath([place], speed)
+
+
+behavior WalkPath(path, speed=1.4):
+    """Walk along a path and stop at its end.
+
+    Arguments:
+        path: a polyline, an element of the network with a centerline, or places in order.
+        speed: m/s.
+    """
+    for place in places_of(path):
+        while not arrived(self, place, speed):
+            take SetWalkingDirectionAction(heading_to(self, place)), SetWalkingSpeedAction(speed)
+    take SetWalkingSpeedAction(0)
+
+
+behavior Walk(path, speed=Range(0.9, 1.8)):
+    """Walk along a path, around what stands there and yielding to cars, and stop at its end.
+
+    Arguments:
+        path: a polyline, an element of the network with a centerline, or places in order.
+        speed: m/s.
+    """
+    for place in places_of(path):
+        while not arrived(self, place, speed):
+            heading, now = walking_step(self, place, speed)
+            take SetWalkingDirectionAction(heading), SetWalkingSpeedAction(now)
+    take SetWalkingSpeedAction(0)
 
 
 behavior FollowLaneBehavior(target_speed=10, laneToFollow=None, is_oppositeTraffic=False):
@@ -89,14 +128,12 @@ behavior FollowTrajectoryBehavior(target_speed=10, trajectory=None, turn_speed=N
 
     Arguments:
         target_speed: m/s.
-        trajectory: the lanes.
+        trajectory: the lanes, or a `Trajectory`, whose speeds come before those given here.
         turn_speed: m/s within intersections; half the target speed by default.
     """
-    if not isinstance(trajectory, (list, tuple)) or not trajectory:
-        raise TypeError('FollowTrajectoryBehavior needs a trajectory: a list of lanes that is not empty')
+    route = Route(trajectory)
     turn = target_speed / 2 if turn_speed is None else turn_speed
-    line = FollowedLine(*trajectory)
-    end = Nearness(intersection_ahead(trajectory[-1]))
+    end = Nearness(route.end)
     inside = InsideWatch(self)
     driver = Driver(self)
     driver.keep_lane()
@@ -104,14 +141,14 @@ behavior FollowTrajectoryBehavior(target_speed=10, trajectory=None, turn_speed=N
         if inside():
             driver.turn()
             while inside():
-                take driver.follow(line, turn)
+                take driver.follow(route.line, route.speed(turn))
             driver.keep_lane()
-        take driver.follow(line, target_speed)
+        take driver.follow(route.line, route.speed(target_speed))
 
 
 behavior TurnBehavior(trajectory, target_speed=6):
     """Follow a line, or lanes, as long as the whole car is in an intersection."""
-    line = FollowedLine(*trajectory) if isinstance(trajectory, (list, tuple)) else FollowedLine(trajectory)
+    line = Route(trajectory if isinstance(trajectory, (list, tuple, Trajectory)) else [trajectory]).line
     inside = InsideWatch(self)
     driver = Driver(self)
     driver.turn()

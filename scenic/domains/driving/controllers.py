@@ -1,8 +1,10 @@
 """Controllers of cars (section 5.3 of the driving specification)."""
 
+import math
 from collections import deque
+from typing import Any
 
-__all__ = ["PIDLateralController", "PIDLongitudinalController"]
+__all__ = ["PIDLateralController", "PIDLongitudinalController", "PurePursuitLateralController"]
 
 
 class PIDLongitudinalController:
@@ -57,6 +59,37 @@ class PIDLateralController:
         self._previous = cte
         k_p, k_d, k_i = self._gains
         return _clipped(k_p * cte + k_d * derivative + k_i * self._integral)
+
+
+class PurePursuitLateralController:
+    """Steering towards a place ahead on the line (R. C. Coulter, Implementation of the Pure Pursuit Path Tracking Algorithm, 1992).
+
+    The place is farther ahead the faster the car is. Give it to a car as its property `lateralController`.
+
+    Args:
+        lookahead: metres ahead at rest.
+        gain: seconds by which the place is farther ahead.
+
+    Raises:
+        ValueError: ``lookahead`` is not positive, or ``gain`` negative.
+
+    """
+
+    def __init__(self, lookahead: float = 3.0, gain: float = 0.4) -> None:
+        if not (lookahead > 0 and gain >= 0):
+            raise ValueError(f"lookahead must be positive and gain not negative, not {lookahead} and {gain}")
+        self._lookahead = lookahead
+        self._gain = gain
+
+    def curvature(self, agent: Any, line: Any, *, oncoming: bool = False) -> float:
+        """The curvature (1/m, positive to the left) of the arc from an agent to the place ahead on a `FollowedLine`."""
+        line.signed_distance(agent.position)
+        reach = self._lookahead + self._gain * agent.speed
+        x, y = line.ahead(-reach if oncoming else reach)
+        dx: float = x - agent.position[0]
+        dy: float = y - agent.position[1]
+        aside: float = -(dx * math.cos(agent.heading) + dy * math.sin(agent.heading))
+        return 2 * aside / max(dx * dx + dy * dy, 1e-9)
 
 
 def _clipped(signal: float) -> float:

@@ -1,6 +1,7 @@
 """Lines that are followed: signed distances, with a hint of where the car was before."""
 
 import math
+from bisect import bisect_right
 from collections.abc import Sequence
 from typing import Any, Final
 
@@ -34,9 +35,13 @@ class FollowedLine:
     Args:
         parts: lanes, or polylines, end to end.
 
+    Attributes:
+        lengths: metres along the line to each of its points.
+        progress: metres along the line to the place nearest to the last point asked about.
+
     """
 
-    __slots__ = ("_hint", "_segments")
+    __slots__ = ("_hint", "_segments", "lengths", "progress")
 
     def __init__(self, *parts: Any) -> None:
         self._hint = 0
@@ -46,6 +51,8 @@ class FollowedLine:
         keep = square > 1e-12
         rows = np.column_stack((points[:-1], steps, square))[keep]
         self._segments: list[tuple[float, ...]] = [tuple(row) for row in rows.tolist()]
+        self.lengths: list[float] = [0.0, *np.cumsum(np.sqrt(square[keep])).tolist()]
+        self.progress = 0.0
 
     def _nearest(self, low: int, high: int, x: float, y: float) -> tuple[float, float, int]:
         """Squared distance from the nearest segment among some, the side (positive to its left), and its index."""
@@ -77,8 +84,22 @@ class FollowedLine:
         if (where == low and low > 0) or (where == high - 1 and high < count) or best > 100.0:
             best, side, where = self._nearest(0, count, x, y)
         self._hint = where
+        x0, y0, dx, dy, square = self._segments[where]
+        share = ((x - x0) * dx + (y - y0) * dy) / square
+        self.progress = self.lengths[where] + math.sqrt(square) * (0.0 if share < 0.0 else min(share, 1.0))
         distance = math.sqrt(best)
         return distance if side >= 0 else -distance
+
+    def ahead(self, distance: float) -> tuple[float, float]:
+        """The place on the line a distance in metres beyond `progress`; past its ends the line goes on straight.
+
+        A negative distance looks against the direction of the line.
+        """
+        along = self.progress + distance
+        index = min(max(bisect_right(self.lengths, along) - 1, 0), len(self._segments) - 1)
+        x0, y0, dx, dy, square = self._segments[index]
+        share = (along - self.lengths[index]) / math.sqrt(square)
+        return x0 + share * dx, y0 + share * dy
 
 
 def _vertices(part: Any) -> Floats:

@@ -2,6 +2,9 @@
 
 from scenic.domains.driving.actions import *
 from scenic.domains.driving.behaviors import *
+from scenic.domains.driving.controllers import (
+    PIDLateralController, PIDLongitudinalController, PurePursuitLateralController,
+)
 from scenic.domains.driving.roads import (
     Intersection, Lane, LaneGroup, LaneSection, ManeuverType, Network, NetworkElement, PedestrianCrossing, Road,
     RoadSection, Shoulder, Sidewalk,
@@ -121,6 +124,9 @@ class DrivingObject:
     def setPosition(self, pos, elevation):
         raise NotImplementedError('the simulator does not say how objects are moved')
 
+    def setOrientation(self, orientation):
+        raise NotImplementedError('the simulator does not say how objects are turned')
+
     def setVelocity(self, vel):
         raise NotImplementedError('the simulator does not say how velocities are set')
 
@@ -144,6 +150,8 @@ class Vehicle(DrivingObject):
     maxSpeed: 45
     maxAcceleration: 5
     maxDeceleration: 10
+    longitudinalController: None
+    lateralController: None
 
     @property
     def isVehicle(self):

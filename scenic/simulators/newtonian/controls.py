@@ -1,12 +1,13 @@
 """The controls of a car in the built-in simulator."""
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
 from scenic.domains.driving.actions import Steers, Walks
 from scenic.runtime.program.builtins import running_simulation
 
-__all__ = ["Controls", "Driven", "Walking"]
+__all__ = ["Controls", "Driven", "Gait", "Walking"]
 
 
 @dataclass(slots=True)
@@ -26,6 +27,10 @@ class _Moved:
     def setPosition(self, pos: Any, elevation: Any) -> None:
         """Teleport to a position."""
         running_simulation().place(self, pos)
+
+    def setOrientation(self, orientation: Any) -> None:
+        """Turn to an orientation, of which the plane keeps the heading."""
+        running_simulation().turn(self, orientation.yaw)
 
     def setVelocity(self, vel: Any) -> None:
         """Set the velocity in m/s."""
@@ -62,5 +67,39 @@ class Driven(_Moved, Steers):
         self.controls.reverse = reverse
 
 
+@dataclass(slots=True)
+class Gait:
+    """Direction (radians, anticlockwise from north) and speed (m/s) that a pedestrian has been told, if any."""
+
+    direction: float | None = None
+    speed: float | None = None
+
+
 class Walking(_Moved, Walks):
-    """A pedestrian whose velocity is set."""
+    """A pedestrian whose velocity is set; direction and speed stay until set again."""
+
+    gait: Gait
+    heading: float
+    speed: float
+    velocity: Any
+
+    def resetGait(self) -> None:
+        """Forget direction and speed."""
+        self.__dict__["gait"] = Gait()
+
+    def setWalkingDirection(self, heading: float) -> None:
+        """Walk on in another direction."""
+        self.gait.direction = heading
+        self._walk(heading, self.speed if self.gait.speed is None else self.gait.speed)
+
+    def setWalkingSpeed(self, speed: float) -> None:
+        """Walk on at another speed; in the direction of the own heading, if no other one has been set."""
+        self.gait.speed = speed
+        direction = self.gait.direction
+        if direction is None:
+            x, y, *_ = self.velocity
+            direction = math.atan2(-x, y) if math.hypot(x, y) > 1e-9 else self.heading
+        self._walk(direction, speed)
+
+    def _walk(self, heading: float, speed: float) -> None:
+        self.setVelocity((-speed * math.sin(heading), speed * math.cos(heading), 0.0))

@@ -13,6 +13,7 @@ from scenic.domains.driving.simulators import DrivingSimulation, DrivingSimulato
 from scenic.runtime.scenes.scene import Scene
 from scenic.runtime.values.values import Orientation, Vector
 from scenic.simulators.cameras import Cameras
+from scenic.simulators.newtonian.controls import Walking
 
 __all__ = ["NewtonianSimulation", "NewtonianSimulator"]
 
@@ -52,6 +53,8 @@ class NewtonianSimulation(DrivingSimulation):
         self._states[id(obj)] = _State(obj)
         if getattr(obj, "isCar", False):
             obj.resetControls()
+        if isinstance(obj, Walking):
+            obj.resetGait()
 
     def sense(self) -> None:
         """Let cameras see."""
@@ -61,6 +64,10 @@ class NewtonianSimulation(DrivingSimulation):
     def place(self, obj: Any, position: Any) -> None:
         """Move an object."""
         self._states[id(obj)].position = tuple(position)
+
+    def turn(self, obj: Any, heading: float) -> None:
+        """Turn an object to a heading in radians; a car drives on at its speed in the new direction."""
+        self._states[id(obj)].heading = heading
 
     def push(self, obj: Any, velocity: Any) -> None:
         """Set the velocity of an object."""
