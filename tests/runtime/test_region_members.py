@@ -669,7 +669,7 @@ def test_samples_of_regions_of_meshes_are_where_they_are_drawn(kind: str, center
             assert radius == pytest.approx(math.sqrt(width**2 + 2) / 2)
             assert region.containsPoint(middle) is (region.dimension == 3)
             if region.dimension == 2:
-                upper = middle + Vector(0, 0, 0.5)
+                upper = middle + Vector(0, 0, 0.5 / math.cos(pitch))
                 for found in (region.orientation[upper], region.orientation_at(upper)):
                     assert_same_rotation(found, euler(0, pitch))
 

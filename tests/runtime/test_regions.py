@@ -3,6 +3,8 @@
 The oracles are independent: dense points of a box around the region, and SciPy's and shapely's own answers.
 """
 
+import math
+
 import numpy as np
 import pytest
 from scipy import stats
@@ -10,6 +12,7 @@ from scipy.spatial.transform import Rotation
 
 import scenic
 from scenic.language.errors import InvalidScenarioError, ScenicTypeError, ScenicValueError
+from scenic.runtime.regions.planar import CircularRegion
 from scenic.runtime.values.values import Orientation
 from tests.runtime.programs import (
     FALSE_ALARM,
@@ -313,3 +316,103 @@ def test_points_of_regions_that_are_drawn_lie_all_over_those_of_their_scenes(kin
     if kind in ("rectangle", "box", "ball", "cone", "shell"):
         assert 2.5 < size[0] <= 5
         assert 0.1 < size[1] <= 0.4
+
+
+SHEET = (
+    "import trimesh\n"
+    "def sheet(*corners):\n"
+    "    return MeshSurfaceRegion(trimesh.Trimesh(corners, [(0, 1, 2), (0, 2, 3)]), centerMesh=False)\n"
+    "floor = sheet((-9, -9, 0), (9, -9, 0), (9, 9, 0), (-9, 9, 0))\n"
+    "wall = sheet((0, -9, 0), (0, 9, 0), (0, 9, 5), (0, -9, 5))\n"
+)
+
+
+def test_things_land_on_flat_meshes() -> None:
+    text = (
+        f"{SHEET}a = new Object at (3, 4, 7), on floor\nb = new Object at (4, 2, 3), on wall, with onDirection (1, 0, 0)\n"
+        "c = new Object in floor.intersect(BoxRegion(dimensions=(4, 4, 4))), with allowCollisions True\n"
+        "param held = [(1, 2, 0) in floor, (1, 2, 1) in floor, (0, 2, 3) in wall, (1, 2, 3) in wall]\n"
+        "param away = [distance from (1, 2, 3) to floor, distance from (-2, 0, 3) to wall]\n"
+        "param dimensions = list(floor.dimensions)\n"
+    )
+    for scene in scenario(text).sample(3, seed=1):
+        a, b, c = (tuple(item.position) for item in scene.objects)
+        assert a == pytest.approx((3, 4, 0.50005))
+        assert b == pytest.approx((0.50005, 2, 3))
+        assert max(map(abs, c[:2])) <= 2
+        assert c[2] == 0
+        assert scene.params["held"] == [True, False, True, False]
+        assert scene.params["away"] == pytest.approx([3, 2])
+        assert scene.params["dimensions"] == [18, 18, 0]
+
+
+def test_what_is_visible_in_2d_mode_lies_in_the_sector() -> None:
+    text = (
+        "workspace = Workspace(RectangularRegion((0, 0), 0, 40, 40))\n"
+        "ego = new Object with viewAngle 90 deg, with visibleDistance 15, facing 0.5\n"
+        "new Object visible, with requireVisible False\nnew Object not visible, with requireVisible False\n"
+    )
+    for scene in scenario(text, mode2D=True).sample(200, seed=2):
+        for item, seen in zip(scene.objects[1:], (True, False), strict=True):
+            x, y, _ = item.position
+            turn = abs((math.atan2(-x, y) - 0.5 + math.pi) % (2 * math.pi) - math.pi)
+            assert (math.hypot(x, y) <= 15 + 1e-9 and turn <= math.pi / 4 + 1e-9) == seen
+
+
+@pytest.mark.parametrize("place", ["with regionContainedIn nowhere", "with regionContainedIn apart"])
+def test_containers_that_are_certainly_empty_are_named(place: str) -> None:
+    text = f"apart = CircularRegion((0, 0), 1).intersect(CircularRegion((9, 0), 1))\nego = new Object at (Range(0, 1), 0), {place}\n"
+    with pytest.raises(InvalidScenarioError, match="inside its container, which is empty"):
+        scenario(text).sample(1, seed=1)
+
+
+def test_nothing_is_left_of_what_is_empty() -> None:
+    text = (
+        "p = PolygonalRegion([(0, 0), (1, 0), (1, 1)])\n"
+        "param area = PolygonalRegion.unionAll((p, nowhere)).area\n"
+        "param none = PolygonalRegion.unionAll([nowhere])\n"
+        "param left = BoxRegion(dimensions=(2, 2, 2)).voxelized(1).dilation(-5)\nego = new Object\n"
+    )
+    params = scenario(text).sample(1, seed=1)[0].params
+    assert params["area"] == 0.5
+    assert str(params["none"]) == str(params["left"]) == "nowhere"
+
+
+def test_surfaces_have_no_orientation_beside_them() -> None:
+    made = "r = BoxRegion(dimensions=(2, 2, 2)).getSurfaceRegion()\nego = new Object at (9, 9, 9)\n"
+    with pytest.raises(InvalidScenarioError, match="no orientation away from a surface"):
+        scenario(f"{made}param o = r.orientation[(5, 5, 5)]\n")
+    text = f"{made}z = Uniform(1, 1.5)\nparam o = r.orientation[(0.2, 0.1, z)]\nparam z = z\n"
+    assert {scene.params["z"] for scene in scenario(text).sample(20, seed=1)} == {1}
+
+
+@pytest.mark.parametrize(
+    "region",
+    [
+        "CircularRegion((0, 0), 3)",
+        "RectangularRegion((0, 0), 0, 3, 3)",
+        "SectorRegion((0, 0), 3, 0, 1)",
+        "BoxRegion(dimensions=(3, 3, 3))",
+        "CircularRegion((0, 0), 3).difference(CircularRegion((Range(0, 1), 0), 1))",
+        "BoxRegion(dimensions=(3, 3, 3)).getSurfaceRegion()",
+    ],
+)
+def test_fields_that_are_given_to_regions_hold(region: str) -> None:
+    text = (
+        f"r = {region}\nr.orientation = VectorField('f', lambda p: 1.5)\nego = new Object in r\n"
+        "param h = (ego.heading, r.orientation[(0, 0, 0)].yaw)\n"
+    )
+    for scene in scenario(text).sample(3, seed=1):
+        assert scene.params["h"] == pytest.approx((1.5, 1.5))
+
+
+def test_the_box_of_a_disc_holds_all_its_points() -> None:
+    disc = CircularRegion((0.1, 0.2), 0.3)
+    low, high = disc.AABB
+    angles = np.linspace(0, 2 * math.pi, 4000)
+    x, y = 0.1 + 0.3 * np.cos(angles), 0.2 + 0.3 * np.sin(angles)
+    held = disc.contains_points(np.column_stack([x, y, 0 * x]), *disc.fixed_columns("the test"))
+    for part, axis in ((x, 0), (y, 1)):
+        assert low[axis] <= part[held].min()
+        assert part[held].max() <= high[axis]
+    assert (low[0], high[1]) == pytest.approx((-0.2, 0.5))

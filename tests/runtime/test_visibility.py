@@ -229,10 +229,10 @@ def test_defaults_in_the_plane() -> None:
     assert answers(text) == {"height": 5, "base": (0, 0, 0), "gap": 0, "hides": False, "asked": True}
 
 
-def test_large_things_are_placed_visibly_wherever_a_part_is_in_view() -> None:
+def test_large_things_are_placed_visibly_with_their_middle_in_view() -> None:
     text = "ego = new Object with viewAngle 90 deg, with visibleDistance 5\nnew Object visible, with width 6, with length 8\n"
     scenes = scenic.scenarioFromString(text, mode2D=True).sample(200, seed=1)
-    assert max(math.hypot(*tuple(scene.objects[1].position)[:2]) for scene in scenes) > 8
+    assert 4.5 < max(math.hypot(*tuple(scene.objects[1].position)[:2]) for scene in scenes) <= 5
 
 
 @pytest.mark.parametrize("angle", [0.2, 1.5, math.pi - 0.1, math.pi + 0.3, 4.5, 6.2, 2 * math.pi])

@@ -22,7 +22,7 @@ from scenic.runtime.regions.drawn import DrawnRegion
 from scenic.runtime.regions.fields import field_of, frame_at, is_field
 from scenic.runtime.regions.scattered import PointSetRegion
 from scenic.runtime.regions.spaces import Everywhere, Workspace
-from scenic.runtime.regions.views import place_near
+from scenic.runtime.regions.views import place_in_plane, place_near
 from scenic.runtime.values.lazy import Lazy, defer, reads_of, resolve
 from scenic.runtime.values.values import (
     Orientation,
@@ -362,13 +362,20 @@ def visible(ego: Ego, viewer: Any, workspace: Region, *, wanted: bool = True) ->
         while isinstance(region, Workspace):
             region = region.region
         if wanted:
-            return {"position": place_near(observer, region, instance, mode_2d=mode_2d)}
+            place = (
+                place_in_plane(observer, region, seen=True)
+                if mode_2d
+                else place_near(observer, region, instance)
+            )
+            return {"position": place}
         if isinstance(region, Everywhere):
             raise InvalidScenarioError(
                 "`not visible` needs to know where the object may be",
                 span=here(),
                 help="set `workspace = Workspace(region)`, or say where: `not visible, in region`",
             )
+        if mode_2d:
+            return {"position": place_in_plane(observer, region, seen=False)}
         return {"position": region.uniform_placement()[0]}
 
     reads = ("regionContainedIn", "width", "length", "height") if wanted else ("regionContainedIn",)

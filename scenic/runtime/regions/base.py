@@ -106,6 +106,12 @@ class Region(metaclass=_RegionType):
         self.parameters: tuple[Any, ...] = parameters
         self.name = name
 
+    def __setattr__(self, name: str, value: Any) -> None:
+        object.__setattr__(self, name, value)
+        if name == "orientation" and value is not None:
+            # A field that the program gives to a region holds for its points.
+            object.__setattr__(self, "has_orientation", True)
+
     @classmethod
     def __subclasshook__(cls, other: type) -> bool:
         # Always a definite answer: else kindred of a subclass would count as of this class. `kindred` is not inherited.
@@ -231,13 +237,17 @@ class Region(metaclass=_RegionType):
 
     def orientation_at(self, point: Any) -> Any:
         """The preferred orientation at a point of the region; ``None`` if the region has none."""
-        if self.orientation is not None:
+        if self.orientation is not None and getattr(self.orientation, "region", None) is not self:
             return self.orientation[point]
         return self.own_orientation(point) if self.has_orientation else None
 
     def own_orientation(self, point: Any) -> Any:
         """The orientation that a point of the region has by itself (`orientations`)."""
         return apply(_ORIENTATION, to_vector(point), *self.parameters, payload=self)
+
+    def orientation_asked(self, point: Any) -> Any:
+        """`own_orientation`, asked by a program of any point."""
+        return self.own_orientation(point)
 
     def random_parts(self) -> list[Any]:
         """The parameters, what else is random with them, and the field of orientations, for sampling."""

@@ -356,10 +356,15 @@ class SideSurface(Region):
 
     def uniform_placement(self) -> tuple[Any, Any]:
         if self._fixed is not None:
-            return self._fixed.placement()
-        face = apply(_FACE, uniform(), *self.parameters, payload=self.facing)
-        point = apply(_FACE_POINT, face, uniform(), uniform(), *self.parameters)
-        return point, apply(_FACE_ORIENTATION, face, *self.parameters)
+            point, orientation = self._fixed.placement()
+        else:
+            face = apply(_FACE, uniform(), *self.parameters, payload=self.facing)
+            point = apply(_FACE_POINT, face, uniform(), uniform(), *self.parameters)
+            orientation = apply(_FACE_ORIENTATION, face, *self.parameters)
+        given = self.__dict__.get("orientation")
+        if given is None or getattr(given, "region", None) is self:
+            return point, orientation
+        return point, given[point]
 
     def project(self, point: Any, direction: Any) -> tuple[Any, Any]:
         place = to_vector(point)
@@ -409,6 +414,10 @@ class SideSurface(Region):
     def sizes(self, *columns: Column) -> Column:
         return body_points.areas(body_of(*columns), self.facing.side, self.facing.threshold)
 
+    def orientation_asked(self, point: Any) -> Any:
+        """The orientation of the nearest face; rejected for points that are not on the surface."""
+        return apply(_ORIENTATION_ON, point, *self.parameters, payload=self)
+
     @property
     def mesh(self) -> Any:
         """Its faces in the world as a mesh, trimesh's; of a surface without random parameters."""
@@ -427,8 +436,7 @@ class SideSurface(Region):
     @property
     def circumcircle(self) -> tuple[Any, Any]:
         """Centre and radius of the ball around the box of the whole body."""
-        position, _, size, _ = self.parameters
-        return position, operate("divide", operate("norm", size), 2)
+        return self.parameters[0], operate("divide", operate("norm", self.dimensions), 2)
 
     @property
     def boundingPolygon(self) -> Any:
@@ -441,6 +449,22 @@ class SideSurface(Region):
 
     def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
         return np.zeros(lanes, dtype=np.bool_)
+
+
+def _orientation_on(call: Call, points: Column, *columns: Column) -> Column:
+    region: SideSurface = call.payload
+    call.reject(~region.contains_points(points, *columns))
+    return region.orientations(points, *columns)
+
+
+_ORIENTATION_ON = Operation(
+    "orientation of a surface",
+    always(Kind.ORIENTATION),
+    _orientation_on,
+    "The preferred orientation of a surface at a point; rejected beside it.",
+    rejects=True,
+    missing="orientation away from a surface",
+)
 
 
 def _face(call: Call, *columns: Column) -> Column:

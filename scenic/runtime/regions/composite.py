@@ -277,8 +277,8 @@ class Composite(Region):
         return super().uniform_placement()
 
     def orientation_at(self, point: Any) -> Any:
-        if self._field is not None:
-            return self._field[point]
+        if self.orientation is not None:
+            return self.orientation[point]
         for member in self.members:
             if member.has_orientation:
                 return member.orientation_at(point) if self.has_orientation else None

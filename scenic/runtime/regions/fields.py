@@ -319,9 +319,9 @@ class RegionField(VectorField):
 
     def __getitem__(self, position: Any) -> Any:
         place = to_vector(position, f"field {self.name!r}")
-        return (
-            defer(self.__getitem__, place) if isinstance(place, Lazy) else self.region.own_orientation(place)
-        )
+        if isinstance(place, Lazy):
+            return defer(self.__getitem__, place)
+        return self.region.orientation_asked(place)
 
 
 def _polygon(cell: Any) -> Any:

@@ -59,7 +59,10 @@ class _Placement:
             )
             middle = operate("add", middle, operate("rotate", self.rotation, offset))
         shape = Shape(unit, tuple(extents.tolist()), ShapeSource("mesh"))
-        self.operands = (middle, self.rotation, self.dimensions, shape)
+        # A mesh has the coordinate 0 along an axis in which it is flat: there any size places it alike, but 0 cannot be undone.
+        sizes = zip(self.dimensions, extents.tolist(), strict=True)
+        spread = vector(*(size if extent > 0 else 1.0 for size, extent in sizes))
+        self.operands = (middle, self.rotation, spread, shape)
 
 
 def _mesh(mesh: Any, what: str) -> Mesh:

@@ -25,6 +25,7 @@ from scenic.runtime.program.context import here
 from scenic.runtime.regions.base import Mask, Points, Region, unsupported
 from scenic.runtime.regions.flat import Flat, meets_flat
 from scenic.runtime.regions.scalar_regions import Disc, Polygon, Rectangle, Single
+from scenic.runtime.regions.spaces import Nowhere
 from scenic.runtime.values.values import (
     apply,
     is_number,
@@ -110,14 +111,18 @@ class PlanarRegion(Region):
         return PolygonalRegion(polygon=self.polygons.buffer(distance), z=float(self.height))
 
     @staticmethod
-    def unionAll(regions: Iterable["PlanarRegion"], buf: float = 0) -> "PolygonalRegion":
-        """The union of regions; gaps that are narrower than twice ``buf`` metres are closed.
+    def unionAll(regions: Iterable[Region], buf: float = 0) -> Region:
+        """The union of regions, without those that are empty; gaps that are narrower than twice ``buf`` metres are closed.
 
         What the regions prefer as orientations it prefers, too, the first that holds a point before the others.
         """
-        members = list(regions)
-        if not members or not all(isinstance(member, PlanarRegion) for member in members):
+        given = list(regions)
+        members = [region for region in given if isinstance(region, PlanarRegion)]
+        empty = [region for region in given if isinstance(region, Nowhere)]
+        if len(members) + len(empty) < max(len(given), 1):
             raise ScenicTypeError("`unionAll` takes at least one polygonal region", span=here())
+        if not members:
+            return empty[0]
         merged = Polygons.union([Polygons(member.polygons) for member in members], buf)
         field = PlanarRegion.algebra.field_of_union(members)
         return PolygonalRegion(polygon=merged.polygon, z=float(members[0].height), orientation=field)
@@ -166,6 +171,12 @@ class PlanarRegion(Region):
         landed = vector(target.x, target.y, self.height)
         place = apply(_LAND, landed, *self.parameters, payload=self)
         return place, self.orientation_at(place)
+
+
+def rounded_outward(lower: Points, upper: Points) -> tuple[Points, Points]:
+    """Corners ``(n, 3)`` of level boxes, so much larger that points of what they are about are not beside them by rounding."""
+    slack = 8 * np.spacing(np.maximum(np.abs(lower), np.abs(upper))) * np.array([1.0, 1.0, 0.0])
+    return lower - slack, upper + slack
 
 
 def nearest_by_geometry(geometries: Geometries, points: Points) -> Points:
@@ -272,7 +283,8 @@ class CircularRegion(PlanarRegion):
 
     def uniform_placement(self) -> tuple[Any, Any]:
         offset = apply(DISC_POINT, uniform(), uniform())
-        return operate("add", self.center, operate("multiply", offset, self.radius)), None
+        point = operate("add", self.center, operate("multiply", offset, self.radius))
+        return point, self.orientation_at(point)
 
     def draw_points(self, uniforms: Column, keys: Column, *columns: Column) -> tuple[Points, Mask | None]:
         center, radius = columns
@@ -290,7 +302,7 @@ class CircularRegion(PlanarRegion):
     def box(self, *columns: Column) -> tuple[Points, Points]:
         center, radius = columns
         reach = radius[:, np.newaxis] * np.array([1.0, 1.0, 0.0])
-        return center - reach, center + reach
+        return rounded_outward(center - reach, center + reach)
 
     def extent(self, *parameters: Bounds | None) -> Bounds | None:
         return super().extent(*parameters) or disc_extent(*parameters)
@@ -405,7 +417,8 @@ class RectangularRegion(PlanarRegion):
         offset = vector(x, y, 0)
         if not is_number(self.heading) or self.heading != 0:
             offset = operate("rotate", frame, offset)
-        return operate("add", self.position, offset), None
+        point = operate("add", self.position, offset)
+        return point, self.orientation_at(point)
 
     def draw_points(self, uniforms: Column, keys: Column, *columns: Column) -> tuple[Points, Mask | None]:
         position, heading, width, length = columns

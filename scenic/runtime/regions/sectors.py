@@ -16,7 +16,7 @@ from scenic.runtime.geometry.polygons import Polygons
 from scenic.runtime.geometry.rectangles import Rectangles
 from scenic.runtime.regions.base import Mask, Points
 from scenic.runtime.regions.flat import Flat, ragged_polygons, rows_of
-from scenic.runtime.regions.planar import PlanarRegion, disc_extent, positive
+from scenic.runtime.regions.planar import PlanarRegion, disc_extent, positive, rounded_outward
 from scenic.runtime.values.values import to_heading, to_vector
 
 
@@ -79,7 +79,7 @@ class SectorRegion(PlanarRegion):
         points = np.zeros((lanes, 7, 3))
         for number, way in enumerate(ways):
             points[:, number, 0], points[:, number, 1] = -radius * np.sin(way), radius * np.cos(way)
-        return center + points.min(axis=1), center + points.max(axis=1)
+        return rounded_outward(center + points.min(axis=1), center + points.max(axis=1))
 
     def extent(self, *parameters: Bounds | None) -> Bounds | None:
         return super().extent(*parameters) or disc_extent(*parameters[:2])

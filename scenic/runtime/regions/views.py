@@ -30,17 +30,20 @@ from scenic.runtime.program.context import here
 from scenic.runtime.regions.base import Mask, Points, Region
 from scenic.runtime.regions.composite import DifferenceRegion, IntersectionRegion
 from scenic.runtime.regions.nearness import grown
-from scenic.runtime.regions.planar import CircularRegion
+from scenic.runtime.regions.planar import CircularRegion, PlanarRegion
+from scenic.runtime.regions.sectors import SectorRegion
 from scenic.runtime.regions.spaces import Everywhere, Workspace
 from scenic.runtime.values.values import (
     Orientation,
     is_number,
     operate,
+    per_option,
     to_orientation,
     to_scalar,
     to_vector,
     vector,
 )
+from scenic.runtime.visibility.flat import FULL_ANGLE
 from scenic.runtime.visibility.seeing import view_operands
 
 VIEW_PARAMETERS: Final = 5
@@ -299,15 +302,33 @@ def _rows(columns: Sequence[Column], lanes: Column) -> list[Column]:
     return [column if len(column) == 1 else column[lanes] for column in columns]
 
 
-def place_near(observer: Any, container: Region, thing: Any, *, mode_2d: bool) -> Any:
-    """A uniform point of a container, as far as an observer may see a thing there; in 2D mode, of the plane."""
-    if container.dimension < 2 or (mode_2d and container.dimension == 2):
+def place_near(observer: Any, container: Region, thing: Any) -> Any:
+    """A uniform point of a container, as far as an observer may see a thing there."""
+    if container.dimension < 2:
         return container.uniform_placement()[0]
-    if mode_2d:
-        camera, *_, distance = view_operands(observer)[:VIEW_PARAMETERS]
-        reach = operate("add", distance, operate("norm", vector(thing.width, thing.length, 0)))
-        return CircularRegion(camera, reach).uniform_placement()[0]
     return NearView(container, observer, thing).uniform_placement()[0]
+
+
+def place_in_plane(observer: Any, container: Region, *, seen: bool) -> Any:
+    """A uniform point of a container that an observer has in view, or has not, in 2D mode (section 5.5)."""
+
+    def place(viewer: Any) -> Any:
+        view = view_in_plane(viewer)
+        if not seen:
+            return container.difference(view).uniform_placement()[0]
+        region = view if isinstance(container, Everywhere) else container.intersect(view)
+        return region.uniform_placement()[0]
+
+    return per_option(observer, place)
+
+
+def view_in_plane(observer: Any) -> PlanarRegion:
+    """The disc or sector that an observer has in view in 2D mode."""
+    camera, _, angle, _, distance = view_operands(observer)[:VIEW_PARAMETERS]
+    center = vector(camera.x, camera.y, 0)
+    if not hasattr(type(observer), "toHeading") or (is_number(angle) and angle >= FULL_ANGLE):
+        return CircularRegion(center, distance)
+    return SectorRegion(center, distance, observer.heading, angle)
 
 
 def part_of(region: Region, observer: Any, *, seen: bool) -> Region:

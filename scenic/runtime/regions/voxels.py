@@ -16,6 +16,7 @@ from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.program.context import here
 from scenic.runtime.regions.base import Mask, Points, Region
 from scenic.runtime.regions.meshes import MeshVolumeRegion
+from scenic.runtime.regions.spaces import nowhere
 from scenic.runtime.regions.volumes import BoxRegion
 
 _INNER = 1 - 1e-9
@@ -225,8 +226,8 @@ class VoxelRegion(Region):
     def sizes(self, *columns: Column) -> NDArray[np.float64]:
         return np.array([len(self._cells) * float(self.pitch.prod())])
 
-    def dilation(self, iterations: int, structure: Any = None) -> "VoxelRegion":
-        """The region grown by cells that touch a filled one, so many times; shrunk where negative.
+    def dilation(self, iterations: int, structure: Any = None) -> Region:
+        """The region grown by cells that touch a filled one, so many times; shrunk where negative, `nowhere` if nothing is left.
 
         Args:
             iterations: how often.
@@ -240,6 +241,8 @@ class VoxelRegion(Region):
         grown = np.pad(self.filled, max(iterations, 0))
         change = ndimage.binary_dilation if iterations > 0 else ndimage.binary_erosion
         filled = change(grown, structure=structure, iterations=abs(iterations))
+        if not filled.any():
+            return nowhere
         corner = self.corner - max(iterations, 0) * self.pitch
         region = object.__new__(VoxelRegion)
         region._fill(np.asarray(filled), corner, self.pitch, self.orientation, None)

@@ -25,7 +25,7 @@ from scenic.runtime.program.outcome import Program, Requirement
 from scenic.runtime.python.samples import dependencies
 from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.choice import as_region
-from scenic.runtime.regions.spaces import Everywhere, Workspace
+from scenic.runtime.regions.spaces import Everywhere, Nowhere, Workspace
 from scenic.runtime.regions.stacked import body_operands
 from scenic.runtime.sampling.checks import (
     BUILT_IN,
@@ -219,6 +219,14 @@ def _containment(program: Program, workspace: Workspace) -> list[NodeCheck]:
         if region is None:
             raise InvalidScenarioError(
                 f"`regionContainedIn` must be a region, not {container!r}", span=_place(program, item)[0]
+            )
+        if isinstance(region, Nowhere):
+            span, filename = _place(program, item)
+            raise InvalidScenarioError(
+                f"this {_name(item)} cannot be inside its container, which is empty",
+                span=span,
+                filename=filename,
+                help="give it another `regionContainedIn`, or another place if that follows from `contained in`",
             )
         if region not in footprints:
             footprints[region] = region.footprint
