@@ -111,7 +111,8 @@ MODULES: Final[Mapping[str, Mapping[str, str]]] = MappingProxyType(
         ),
         "scenic.core.external_params": _homes(
             (_LANGUAGE, "VerifaiRange VerifaiDiscreteRange VerifaiOptions VerifaiParameter"),
-            (_INSIDE, "ExternalParameter ExternalSampler VerifaiSampler"),
+            ("scenic.runtime.elements.external", "ExternalParameter TimeSeries"),
+            ("scenic.falsification.external", "ExternalSampler VerifaiSampler"),
         ),
         "scenic.core.geometry": _homes(
             (_LANGUAGE, "sin cos hypot max min"),

@@ -27,6 +27,7 @@ from scenic.language.source import Source, read_source
 from scenic.language.spans import Span
 from scenic.language.spelling import nearest
 from scenic.runtime.dynamics.definitions import ModularScenario
+from scenic.runtime.elements.external import choosable_of
 from scenic.runtime.instances.mutation import apply_noise
 from scenic.runtime.instances.objects import Object, Point
 from scenic.runtime.program.context import Context, current
@@ -44,6 +45,7 @@ from scenic.runtime.values.values import is_random
 
 if TYPE_CHECKING:
     from scenic.batch.simulations import SimulationRow
+    from scenic.falsification.external import ExternalSampler
 
 PROGRAM_SEED = 0
 """Seed of Python's and NumPy's global generators while a program runs, so that it builds the same graph each time."""
@@ -252,7 +254,12 @@ def _scenario(text: str, filename: str, options: _Options) -> Scenario:
         impossible=impossible,
         digest=options.digest(text),
         services=Services(
-            show_page, (_scenario, (text, filename, options)), options.given(), _sample, _simulate
+            show_page,
+            (_scenario, (text, filename, options)),
+            options.given(),
+            _sample,
+            _simulate,
+            _external_sampler,
         ),
     )
     scenario.prepare()
@@ -280,6 +287,7 @@ def _run(code: CodeType, text: str, filename: str, options: _Options) -> _Ran:
 
     context = Context(locate=span_of, name=locator.name, mode_2d=options.mode_2d)
     program = Program(overrides=dict(options.params), context=context)
+    context.parameter = program.parameter
     modules = Loader(_Modules(Path(filename).parent), context, program, model=options.model)
     token = current.set(context)
     try:
@@ -293,6 +301,7 @@ def _run(code: CodeType, text: str, filename: str, options: _Options) -> _Ran:
                 if context.looks:
                     # Only now everything is there that may hide something.
                     program.requirements[:] = [item.rebuilt() for item in program.requirements]
+            program.external_names = _external_names({**program.parameters, **vars(module)}, context)
             _settle_parameters(program, strict=options.strict_params)
             workspace = state.workspace or Workspace(everywhere)
             outlined = outline(program, state.ego, workspace, mode_2d=options.mode_2d)
@@ -317,6 +326,12 @@ def _simulate(scenario: Scenario, n: int, **options: Any) -> "list[SimulationRow
     from scenic.batch.simulations import simulated
 
     return simulated(scenario, n, **options)
+
+
+def _external_sampler(scenario: Scenario) -> "ExternalSampler":
+    from scenic.falsification.external import external_sampler
+
+    return external_sampler(scenario)
 
 
 def show_page(scene: Any) -> Path:
@@ -412,6 +427,17 @@ def _names(module: ModuleType, ego: Object | None) -> dict[int, str]:
                     names.setdefault(id(item), f"{name}[{index}]")
     if ego is not None:
         names.setdefault(id(ego), "ego")
+    return names
+
+
+def _external_names(values: Mapping[str, Any], context: Context) -> dict[int, str]:
+    """Parameters and variables that hold external parameters, by address."""
+    places = {id(item): place for place, item in context.externals.items()}
+    names: dict[int, str] = {}
+    for name, value in values.items():
+        found = choosable_of(value)
+        if found is not None:
+            names.setdefault(places[id(found)], name)
     return names
 
 

@@ -20,6 +20,7 @@ LAYERS = {
     "simulators": {"runtime", "graph", "language", "formats", "domains"},
     "domains": {"runtime", "graph", "language", "formats", "simulators"},
     "batch": {"simulators", "formats", "runtime", "graph", "language"},
+    "falsification": {"batch", "simulators", "formats", "runtime", "graph", "language"},
     "configuration": {"language"},
     "project": {"language", "compiler", "configuration"},
     "ide": {"compiler", "language", "project"},
@@ -28,6 +29,7 @@ LAYERS = {
     "cli": {
         "domains",
         "batch",
+        "falsification",
         "formats",
         "runtime",
         "graph",
@@ -65,7 +67,7 @@ ONLY_IN = {
 """Libraries that only some layers may know."""
 
 HEAVY = {"scipy", "trimesh", "z3", "embreex", "shapely", "manifold3d", "PIL", "networkx"}
-HEAVY |= {"mujoco", "pyarrow", "imageio_ffmpeg"}
+HEAVY |= {"mujoco", "pyarrow", "imageio_ffmpeg", "cma", "optuna", "torch"}
 """Libraries that may not be imported when a module is."""
 
 

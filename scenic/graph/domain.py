@@ -79,6 +79,20 @@ class Domain:
         """Logarithm of each box's volume; of many axes the volume itself may be too small for a float."""
         return np.asarray(np.log(self.upper - self.lower).sum(axis=1))
 
+    def freed(self, axes: NDArray[np.bool_]) -> "Domain":
+        """A domain that holds this one and narrows none of some axes ``(dimension,)``."""
+
+        def part(one: "Domain") -> tuple[Floats, Floats]:
+            lower, upper = one.lower, one.upper
+            if ((lower[:, axes] > 0) | (upper[:, axes] < 1)).any():
+                # Boxes that differ in these axes may overlap without them: what remains is the box about them all.
+                lower, upper = lower.min(axis=0, keepdims=True), upper.max(axis=0, keepdims=True)
+                lower[:, axes], upper[:, axes] = 0, 1
+            return lower, upper
+
+        first, *others = (part(one) for one in self.parts)
+        return Domain(*first, tuple(Domain(*corners) for corners in others))
+
     def choose(self, draws: Floats) -> NDArray[np.intp]:
         """Boxes chosen by uniform numbers ``(parts, n)`` of the open unit interval, each by its volume; ``(parts, n)``."""
         return np.stack([part._choose(numbers) for part, numbers in zip(self.parts, draws, strict=True)])

@@ -184,13 +184,16 @@ _ALL = (
     _distribution("Uniform(value, ...)", "One of the values, each equally likely."),
     _distribution("Discrete({value: weight, ...})", "One of the values, with these relative weights."),
     _distribution("Options({value: weight, ...})", "Another name of `Discrete`; takes a sequence too."),
-    _distribution("VerifaiRange(low, high)", "A real number drawn by an external sampler.", available=False),
     _distribution(
-        "VerifaiDiscreteRange(low, high)", "An integer drawn by an external sampler.", available=False
+        "VerifaiRange(low, high, buckets=None, weights=None)",
+        "A real number that an external sampler may choose.",
     ),
-    _distribution("VerifaiOptions(options)", "An option drawn by an external sampler.", available=False),
-    _distribution("VerifaiParameter", "Base of the values drawn by an external sampler.", available=False),
-    _distribution("TimeSeries(parameter)", "A parameter drawn afresh at every step.", available=False),
+    _distribution(
+        "VerifaiDiscreteRange(low, high, weights=None)", "An integer that an external sampler may choose."
+    ),
+    _distribution("VerifaiOptions(options)", "An option that an external sampler may choose."),
+    _distribution("VerifaiParameter", "Base of the values that an external sampler may choose."),
+    _distribution("TimeSeries(parameter)", "An external parameter that has another value at every step."),
     # Shapes
     _shape("BoxShape(dimensions=(1, 1, 1), scale=1)", "A cuboid."),
     _shape("CylinderShape(dimensions=(1, 1, 1), scale=1, sections=24)", "A cylinder along the Z axis."),

@@ -85,6 +85,19 @@ def _weighted_integer(call: Call, axis: Column) -> Column:
     return np.asarray(first + _position(axis, cumulative))
 
 
+def _piecewise(call: Call, axis: Column) -> Column:
+    sums, edges = call.payload
+    return np.asarray(np.interp(axis, sums, edges))
+
+
+def _piecewise_bounds(payload: Any, axis: Bounds) -> Bounds:
+    sums, edges = payload
+    ends = (np.interp(end, sums, edges) for end in (axis.lower, axis.upper))
+    margin = 4 * intervals.EPSILON * max(map(abs, edges))
+    first, last = ends
+    return Bounds(np.maximum(first - margin, edges[0]), np.minimum(last + margin, edges[-1]))
+
+
 def _choice(call: Call, axis: Column) -> Column:
     return _position(axis, call.payload)
 
@@ -558,6 +571,14 @@ OPERATIONS = (
         inverse=_range_inverse,
         solver=_range_solver,
         faults=_may_be_endless,
+        stacks=True,
+    ),
+    Operation(
+        "piecewise",
+        always(Kind.SCALAR),
+        _piecewise,
+        "A real number with a piecewise constant density; payload cumulative probabilities from 0 on, and edges.",
+        bounds=_piecewise_bounds,
         stacks=True,
     ),
     Operation(

@@ -134,10 +134,10 @@ def DiscreteRange(low: Any, high: Any, weights: Sequence[float] | None = None) -
         raise ScenicValueError(
             f"`DiscreteRange` from {low} to {high} needs {count} weights, not {len(weights)}", span=here()
         )
-    fixed = [_weight(weight) for weight in weights]
+    fixed = [checked_weight(weight) for weight in weights]
     if not any(fixed):
-        raise _nothing("DiscreteRange")
-    return primitive("weighted integer", payload=(ends[0], _cumulative(fixed)))
+        raise nothing_to_choose("DiscreteRange")
+    return primitive("weighted integer", payload=(ends[0], cumulative(fixed)))
 
 
 def _end(value: Any) -> Any:
@@ -152,48 +152,51 @@ def _end(value: Any) -> Any:
 @_law("select", "look-up")
 def Uniform(*options: Any) -> Any:
     """One of the options, each equally likely. ``Uniform(*xs)`` draws from the elements of a list."""
-    return _choose(options, [1.0] * len(options), "Uniform")
+    return choose_among(options, [1.0] * len(options), "Uniform")
 
 
 @_law("select", "look-up")
 def Discrete(options: Mapping[Any, Any] | Iterable[Any]) -> Any:
     """One of the keys of a dictionary, with probability in proportion to its value."""
     if isinstance(options, Mapping):
-        return _choose(list(options), [_weight(weight) for weight in options.values()], "Discrete")
+        return choose_among(
+            list(options), [checked_weight(weight) for weight in options.values()], "Discrete"
+        )
     if (is_random(options) and not isinstance(options, tuple | list)) or not isinstance(options, Iterable):
         raise ScenicTypeError(
             f"`Discrete` takes a dictionary of weights or a fixed collection, not {describe(options)}",
             span=here(),
         )
     listed = list(options)
-    return _choose(listed, [1.0] * len(listed), "Options")
+    return choose_among(listed, [1.0] * len(listed), "Options")
 
 
 Options = Discrete
 
 
-def _choose(options: Sequence[Any], weights: Sequence[float], name: str) -> Any:
+def choose_among(options: Sequence[Any], weights: Sequence[float], name: str, index: Any = None) -> Any:
     if is_lazy(tuple(options)):
-        return defer(_choose, tuple(options), weights, name)
+        return defer(choose_among, tuple(options), weights, name, index)
     possible = [(option, weight) for option, weight in zip(options, weights, strict=True) if weight > 0]
     if not possible:
-        raise _nothing(name)
-    index = primitive("choice", payload=_cumulative([weight for _, weight in possible]))
+        raise nothing_to_choose(name)
+    if index is None:
+        index = primitive("choice", payload=cumulative([weight for _, weight in possible]))
     chosen = [option for option, _ in possible]
     if not isinstance(index, Random):
         return chosen[index]
     node = make_node(TABLE["select"], [as_node(index), *map(as_node, chosen)], span=here())
     # Drawing again keeps the options and draws only which one.
-    return as_value(node, lambda: _choose(options, weights, name))
+    return as_value(node, lambda: choose_among(options, weights, name))
 
 
-def _nothing(name: str) -> InvalidScenarioError:
+def nothing_to_choose(name: str) -> InvalidScenarioError:
     return InvalidScenarioError(
         f"`{name}` has nothing to choose from", span=here(), help="give at least one possible option"
     )
 
 
-def _weight(weight: Any) -> float:
+def checked_weight(weight: Any) -> float:
     if is_random(weight) or not is_number(weight):
         raise ScenicTypeError(f"a weight is a fixed number, not {describe(weight)}", span=here())
     if not 0 <= weight < math.inf:
@@ -203,11 +206,11 @@ def _weight(weight: Any) -> float:
     return float(weight)
 
 
-def _cumulative(weights: Sequence[float]) -> tuple[float, ...]:
+def cumulative(weights: Sequence[float]) -> tuple[float, ...]:
     """Cumulative probabilities; the last is exactly 1."""
     total = sum(weights)
     if math.isinf(total):
-        return _cumulative([weight / max(weights) for weight in weights])
+        return cumulative([weight / max(weights) for weight in weights])
     sums = list(itertools.accumulate(weight / total for weight in weights))
     return (*sums[:-1], 1.0)
 

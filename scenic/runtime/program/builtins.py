@@ -11,7 +11,7 @@ from scenic.language.errors import InvalidScenarioError, UnknownParameterError
 from scenic.runtime.dynamics.definitions import Behavior, Monitor
 from scenic.runtime.dynamics.recorders import File, Files
 from scenic.runtime.dynamics.run import RunContext
-from scenic.runtime.elements import distributions, functions, shapes
+from scenic.runtime.elements import distributions, external, functions, shapes
 from scenic.runtime.instances.mutators import Mutator
 from scenic.runtime.instances.objects import Object, OrientedPoint, Point
 from scenic.runtime.program.context import current, here
@@ -19,7 +19,6 @@ from scenic.runtime.program.outcome import Program
 from scenic.runtime.python import custom_distributions as laws
 from scenic.runtime.regions import algebra as algebra  # gives regions their algebra
 from scenic.runtime.regions import fields
-from scenic.runtime.regions.base import unsupported
 from scenic.runtime.regions.lines import PathRegion, PolylineRegion
 from scenic.runtime.regions.meshes import MeshSurfaceRegion, MeshVolumeRegion
 from scenic.runtime.regions.planar import (
@@ -108,41 +107,12 @@ _NAMES: Mapping[str, Any] = MappingProxyType(
         "File": File,
         "Files": Files,
         "simulation": running_simulation,
+        "TimeSeries": external.TimeSeries,
+        "VerifaiDiscreteRange": external.VerifaiDiscreteRange,
+        "VerifaiOptions": external.VerifaiOptions,
+        "VerifaiParameter": external.VerifaiParameter,
+        "VerifaiRange": external.VerifaiRange,
     }
-)
-
-_UNSUPPORTED = (
-    "TimeSeries",
-    "VerifaiDiscreteRange",
-    "VerifaiOptions",
-    "VerifaiParameter",
-    "VerifaiRange",
-)
-
-
-class Unsupported:
-    """A name of the language whose use is refused, with one clear diagnostic."""
-
-    def __init__(self, name: str) -> None:
-        self._name = name
-
-    def __call__(self, *_args: Any, **_kwargs: Any) -> Any:
-        raise unsupported(f"`{self._name}`")
-
-    def __getattr__(self, attribute: str) -> Any:
-        if attribute.startswith("__"):
-            raise AttributeError(attribute)
-        raise unsupported(f"`{self._name}.{attribute}`")
-
-    def __mro_entries__(self, _bases: Any) -> Any:
-        raise unsupported(f"`{self._name}`")
-
-    def __instancecheck__(self, _instance: Any) -> Any:
-        raise unsupported(f"`{self._name}`")
-
-
-_PROVIDED: Mapping[str, Any] = MappingProxyType(
-    {**_NAMES, **{name: Unsupported(name) for name in _UNSUPPORTED}}
 )
 
 
@@ -193,7 +163,7 @@ class GlobalParameters:
 
 def language_names() -> Mapping[str, Any]:
     """The language's own names, apart from those that depend on the module they are used in."""
-    return _PROVIDED
+    return _NAMES
 
 
 def provided(name: str) -> Any:

@@ -19,6 +19,7 @@ import numpy as np
 from scenic.graph.draws import address
 from scenic.language.errors import ScenicWarning
 from scenic.language.spans import Span
+from scenic.runtime.program.external import Choosable
 
 _PACKAGE: Final = f"{Path(__file__).parents[1]}{os.sep}"
 """Where the code of this package lies."""
@@ -72,6 +73,10 @@ class Context:
         """The sample on which Python code is being called."""
         self.concerns: Span | None = None
         """The place of what is worked on where no line of the program runs."""
+        self.externals: dict[int, Choosable] = {}
+        """What an external sampler may choose, by address."""
+        self.parameter: Callable[[str, Any], Any] = lambda _name, default: default
+        """A global parameter as the program has set it so far, or else a default."""
         self.looks = False
         """Whether some condition asks what is seen: it has to be made again when all objects are there."""
 

@@ -65,8 +65,15 @@ class Program:
     workspace: Workspace | None = None
     places: dict[int, tuple[Span | None, str | None]] = field(default_factory=dict)
     """Where each instance was created, by its identity: span and file."""
+    external_names: Mapping[int, str] = field(default_factory=dict)
+    """What the program calls its external parameters, by address."""
     names: Globals = field(default_factory=Globals)
     """Global names as they are when the program has run, for the functions and methods in its scenes."""
+
+    def parameter(self, name: str, default: Any = None) -> Any:
+        """A global parameter as it is so far, or else a default."""
+        self.read_parameters.add(name)
+        return self.overrides.get(name, self.parameters.get(name, default))
 
     def reachable(self) -> Iterator[Any]:
         """Values of which simulations need samples."""

@@ -1,12 +1,12 @@
 """A plan being sampled: the engine that knows what its rounds cost, and what is fixed in every scene."""
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from scenic.graph.domain import Domain
-from scenic.graph.draws import Counter, Lanes, Source
+from scenic.graph.draws import Counter, Lanes, Points, Source
 from scenic.graph.points import PointSet
 from scenic.runtime.sampling.driving import driven
 from scenic.runtime.sampling.engine import Accepted, Engine, Plan
@@ -94,6 +94,40 @@ class Sampler:
     ) -> list[Accepted]:
         """Scenes of a seed of which the accepted candidates are known."""
         return self._engine_of(source).accepted(seed, numbers, attempts)
+
+    def without_narrowing(self, addresses: Collection[int]) -> "Sampler":
+        """A sampler that narrows none of the axes at these addresses."""
+        graph = self.plan.graph
+        free = np.array([graph.address(node) in addresses for node in graph.axes], dtype=np.bool_)
+        domain = self.plan.domain
+        return Sampler(
+            self._outline,
+            domain.freed(free) if free.any() else domain,
+            impossible=self._impossible,
+            numbers=self._numbers,
+            words=self._words,
+        )
+
+    def chosen(
+        self,
+        numbers: Mapping[int, NDArray[np.float64]],
+        count: int,
+        *,
+        seed: int,
+        first: int,
+        max_attempts: int,
+    ) -> Results:
+        """Scenes ``first`` to ``first + count`` of a seed, in each of which some draws ``(count,)``, by address, are given."""
+        if self._impossible:
+            return self._not_found((seed, k) for k in range(first, first + count))
+
+        def source(lanes: Lanes) -> Source:
+            rows = lanes.scenes - first
+            return Points({place: column[rows] for place, column in numbers.items()}, Counter(lanes.keys))
+
+        engine = self.engine.driven(self._fixing(source))
+        tasks = ((seed, k) for k in range(first, first + count))
+        return engine.scenes(tasks, max_attempts=max_attempts)
 
     def _not_found(self, tasks: Iterable[tuple[int, int]]) -> Iterator[Exhausted]:
         report = None

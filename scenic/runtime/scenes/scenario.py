@@ -28,6 +28,7 @@ from scenic.language.spans import Span
 from scenic.language.spelling import nearest_attribute
 from scenic.runtime.instances.objects import Object
 from scenic.runtime.instances.population import Populations
+from scenic.runtime.program.external import Choosable
 from scenic.runtime.program.outcome import Program
 from scenic.runtime.python.samples import dependencies
 from scenic.runtime.regions.base import Region
@@ -64,6 +65,8 @@ class Services:
     """Samples in several processes: ``(scenario, n, processes=, **limits)``."""
     simulate: Callable[..., Any] | None = None
     """Simulates scenes: ``(scenario, n, **options)``."""
+    external_sampler: Callable[["Scenario"], Any] | None = None
+    """The sampler of the program's external parameters."""
 
 
 class Scenario:
@@ -109,6 +112,8 @@ class Scenario:
         self._names = names
         self._unconditioned = self._sampler = Sampler(outline, domain, impossible=impossible)
         self._foreseen = Foreseen(self._foresee)
+        self._choosing: Sampler | None = None
+        self._external_sampler: Any = None
         self._family = Family(
             program,
             ego,
@@ -159,6 +164,41 @@ class Scenario:
         graph = self.outline.graph
         spans = (node.span if isinstance(node.span, Span) else None for node in graph.axes)
         return tuple(Axis(graph.address(node), span) for node, span in zip(graph.axes, spans, strict=True))
+
+    @property
+    def externals(self) -> Mapping[int, Choosable]:
+        """The external parameters by the addresses of their draws, in the order in which the program makes them."""
+        return self._program.context.externals
+
+    @property
+    def external_names(self) -> Mapping[int, str]:
+        """Parameters or variables that hold external parameters, by address."""
+        return self._program.external_names
+
+    def chosen(
+        self,
+        numbers: Mapping[int, NDArray[np.float64]],
+        count: int,
+        *,
+        seed: int,
+        first: int = 0,
+        max_attempts: int = 1,
+    ) -> Iterator[Scene | Exhausted]:
+        """Scenes ``first`` to ``first + count`` of a seed, in which some draws are given; the others are hashed.
+
+        Args:
+            numbers: numbers ``(count,)`` of the open unit interval, by address.
+            count: how many scenes.
+            seed: any integer.
+            first: number of the first scene.
+            max_attempts: candidates tried for one scene, all with the given numbers.
+
+        """
+        if self._choosing is None:
+            self._choosing = self._sampler.without_narrowing(self.externals)
+        yield from self._scenes(
+            self._choosing.chosen(numbers, count, seed=seed, first=first, max_attempts=max_attempts)
+        )
 
     @property
     def requirements(self) -> tuple[Any, ...]:
@@ -328,12 +368,17 @@ class Scenario:
         """One scene, and the number of candidates tried for it.
 
         Without ``seed`` one is drawn from Python's ``random``, so that scripts which call ``random.seed`` repeat.
-        ``verbosity`` and ``feedback`` are accepted for compatibility.
+        ``verbosity`` is accepted for compatibility.
+
+        The external parameters of a program get their values from its sampler, for each candidate anew. ``feedback`` is for that
+        sampler: how good the scene before turned out to be, smaller being better. With ``seed`` they are drawn as all else is.
 
         Raises:
             RejectionException: if none of ``maxIterations`` candidates meets the requirements.
 
         """
+        if seed is None and self.externals and self._services.external_sampler is not None:
+            return self._generate_chosen(maxIterations, feedback)
         if seed is None:
             result = self._foreseen.take(random.getrandbits(SEED_BITS), maxIterations)
             if isinstance(result, Exhausted):
@@ -341,6 +386,23 @@ class Scenario:
             return result, result.attempts
         (scene,) = self.sample(1, seed=seed, max_attempts=maxIterations)
         return scene, scene.attempts
+
+    def _generate_chosen(self, most: int, feedback: Any) -> tuple[Scene, int]:
+        """One scene whose external parameters their sampler chooses."""
+        assert self._services.external_sampler is not None
+        if self._external_sampler is None:
+            self._external_sampler = self._services.external_sampler(self)
+        sampler = self._external_sampler
+        seed = random.getrandbits(SEED_BITS)
+        for attempt in range(most):
+            sampler.sample(feedback)
+            (result,) = self.chosen(sampler.numbers(), 1, seed=seed, first=attempt)
+            if not isinstance(result, Exhausted):
+                return result, attempt + 1
+            feedback = sampler.rejectionFeedback
+        raise RejectionException(
+            f"no scene was found within {most} candidates whose external parameters the sampler chose"
+        )
 
     def generateBatch(
         self, numScenes: int, maxIterations: float = math.inf, verbosity: int = 0, feedback: Any = None
@@ -394,7 +456,13 @@ class Scenario:
         """Nothing to do: in which order requirements are checked follows what they cost and reject."""
 
     def resetExternalSampler(self) -> None:
-        """Nothing to do: there are no external samplers."""
+        """Let the sampler of the external parameters begin anew."""
+        self._external_sampler = None
+
+    @property
+    def externalSampler(self) -> Any:
+        """The sampler of the external parameters once a scene has been generated, if there are any."""
+        return self._external_sampler
 
     # Scenes as data
 
@@ -490,6 +558,7 @@ class Scenario:
             values = [*map(self._object, objects), *map(self._parameter, params)]
             nodes = Graph(dependencies(values)).nodes
             self._sampler = self._sampler.fixed(*draws_of(scene.found, scene.lane, nodes))
+        self._choosing = None
         self._foreseen = Foreseen(self._foresee)
 
     def _object(self, item: Any) -> Any:

@@ -1,0 +1,1 @@
+"""Search for scenes and simulations in which requirements fail."""

@@ -1,0 +1,44 @@
+"""The samplers by name."""
+
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
+from typing import Any, Final
+
+from scenic.falsification.samplers.annealing import Annealing
+from scenic.falsification.samplers.buckets import Bandit, CrossEntropy, EpsilonGreedy
+from scenic.falsification.samplers.evolution import Evolution
+from scenic.falsification.samplers.models import Bayesian, Parzen
+from scenic.falsification.samplers.protocol import Sampler, SamplerError
+from scenic.falsification.samplers.sequences import Grid, Halton, Random, Sobol
+from scenic.falsification.space import Space
+from scenic.language.spelling import nearest
+
+__all__ = ["SAMPLERS", "make_sampler"]
+
+SAMPLERS: Final[Mapping[str, Callable[[Space, int, Any], Sampler]]] = MappingProxyType(
+    {
+        "random": Random,
+        "halton": Halton,
+        "sobol": Sobol,
+        "grid": Grid,
+        "ce": CrossEntropy,
+        "mab": Bandit,
+        "eg": EpsilonGreedy,
+        "sa": Annealing,
+        "bo": Bayesian,
+        "cma": Evolution,
+        "tpe": Parzen,
+    }
+)
+"""What makes samplers, of a space, a seed and options."""
+
+
+def make_sampler(name: str, space: Space, seed: int, given: Any = None) -> Sampler:
+    """The sampler of a name; raises `SamplerError` if there is none, or its library is missing."""
+    if name not in SAMPLERS:
+        near = nearest(name, SAMPLERS)
+        raise SamplerError(
+            f"there is no sampler {name!r}",
+            help=(f"did you mean {near!r}? " if near else "") + f"the samplers: {', '.join(SAMPLERS)}",
+        )
+    return SAMPLERS[name](space, seed, given)

@@ -1,0 +1,54 @@
+"""The protocol of samplers: ask for points, tell what came of them."""
+
+from collections.abc import Mapping
+from typing import Any, Protocol
+
+from scenic.falsification.space import Floats
+from scenic.language.errors import InvalidScenarioError, Located
+
+__all__ = ["Exhausted", "Sampler", "SamplerError", "options"]
+
+
+class SamplerError(Located):
+    """A sampler that cannot be had, or whose options make no sense."""
+
+    code = "SC604"
+
+
+class Exhausted(InvalidScenarioError):
+    """A sampler has no more points."""
+
+
+class Sampler(Protocol):
+    """Chooses the points of a search."""
+
+    @property
+    def batch(self) -> int | None:
+        """How many points it wants to be asked for at a time; ``None`` if that does not matter."""
+
+    def ask(self, count: int) -> Floats:
+        """The next points ``(count, d)``; raises `Exhausted` if there are none."""
+
+    def tell(self, points: Floats, values: Floats) -> None:
+        """What came of points ``(n, d)``: values ``(n,)``, smaller ones better, NaN where a point was rejected."""
+
+
+def options(given: Any, defaults: Mapping[str, Any], name: str) -> dict[str, Any]:
+    """The options of a sampler, from a mapping or from the attributes of an object.
+
+    Raises `SamplerError` for an option that the sampler does not have.
+    """
+    if given is None:
+        return dict(defaults)
+    plain = (
+        dict(given)
+        if isinstance(given, Mapping)
+        else {k: v for k, v in vars(given).items() if not k.startswith("_")}
+    )
+    unknown = [key for key in plain if key not in defaults]
+    if unknown:
+        raise SamplerError(
+            f"the sampler {name!r} has no option {unknown[0]!r}",
+            help=f"its options: {', '.join(defaults)}" if defaults else "it has none",
+        )
+    return {**defaults, **plain}

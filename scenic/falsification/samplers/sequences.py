@@ -1,0 +1,134 @@
+"""Samplers that do not learn: independent points, Halton's and Sobol's sequences, a grid."""
+
+import itertools
+from collections.abc import Sequence
+from typing import Any, Final
+
+import numpy as np
+
+from scenic.falsification.samplers.protocol import Exhausted, SamplerError, options
+from scenic.falsification.space import Floats, Space
+
+__all__ = ["Grid", "Halton", "Random", "Sobol"]
+
+
+class Random:
+    """Independent uniform points."""
+
+    batch = None
+
+    def __init__(self, space: Space, seed: int, given: Any = None) -> None:
+        options(given, {}, "random")
+        self._dimension = len(space)
+        self._generator = np.random.default_rng(seed)
+
+    def ask(self, count: int) -> Floats:
+        """See `Sampler.ask`."""
+        return self._generator.random((count, self._dimension))
+
+    def tell(self, points: Floats, values: Floats) -> None:
+        """Nothing to learn."""
+
+
+class Halton:
+    """Halton's sequence for continuous coordinates; discrete ones are independent."""
+
+    batch = None
+
+    def __init__(self, space: Space, seed: int, given: Any = None) -> None:
+        from scipy.stats import qmc
+
+        chosen = options(given, {"sample_index": 0, "bases_skipped": 0}, "halton")
+        self._continuous = [place for place, item in enumerate(space.coordinates) if item.count is None]
+        self._dimension = len(space)
+        self._skipped = int(chosen["bases_skipped"])
+        self._generator = np.random.default_rng(seed)
+        axes = len(self._continuous) + self._skipped
+        self._sequence: Any = qmc.Halton(max(axes, 1), scramble=False)
+        self._sequence.fast_forward(int(chosen["sample_index"]) + 1)
+
+    def ask(self, count: int) -> Floats:
+        """See `Sampler.ask`."""
+        points = self._generator.random((count, self._dimension))
+        if self._continuous:
+            points[:, self._continuous] = self._sequence.random(count)[:, self._skipped :]
+        return points
+
+    def tell(self, points: Floats, values: Floats) -> None:
+        """Nothing to learn."""
+
+
+class Sobol:
+    """Sobol's sequence, scrambled."""
+
+    batch = None
+
+    def __init__(self, space: Space, seed: int, given: Any = None) -> None:
+        from scipy.stats import qmc
+
+        options(given, {}, "sobol")
+        self._dimension = len(space)
+        self._sequence: Any = qmc.Sobol(
+            max(len(space), 1), scramble=True, bits=52, rng=np.random.default_rng(seed)
+        )
+
+    def ask(self, count: int) -> Floats:
+        """See `Sampler.ask`."""
+        import warnings
+
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", UserWarning)  # of numbers of points that are no power of two
+            points: Floats = self._sequence.random(count)[:, : self._dimension]
+        return points
+
+    def tell(self, points: Floats, values: Floats) -> None:
+        """Nothing to learn."""
+
+
+_POINTS: Final = 21
+
+
+class Grid:
+    """All points of a grid, the first coordinate changing fastest; its ends are included."""
+
+    batch = None
+
+    def __init__(self, space: Space, seed: int, given: Any = None) -> None:
+        chosen = options(given, {"N": _POINTS, "repeat": False}, "grid")
+        continuous = [item for item in space.coordinates if item.count is None]
+        wanted = chosen["N"]
+        counts = list(wanted) if isinstance(wanted, Sequence) else [wanted] * len(continuous)
+        if len(counts) != len(continuous) or any(int(count) < 1 for count in counts):
+            raise SamplerError(
+                f"the option `N` of the sampler 'grid' is {wanted!r}",
+                help=f"give one number from 1 on, or {len(continuous)} of them, one for each continuous parameter",
+            )
+        sizes = iter(counts)
+        self._axes = [
+            np.linspace(0, 1, int(next(sizes)))
+            if item.count is None
+            else (np.arange(item.count) + 0.5) / item.count
+            for item in space.coordinates
+        ]
+        self._repeat = bool(chosen["repeat"])
+        self._points = self._all()
+
+    def _all(self) -> Any:
+        while True:
+            for reverse in itertools.product(*reversed(self._axes)):
+                yield reverse[::-1]
+            if not self._repeat:
+                return
+
+    def ask(self, count: int) -> Floats:
+        """See `Sampler.ask`."""
+        rows = list(itertools.islice(self._points, count))
+        if not rows:
+            raise Exhausted(
+                "the sampler 'grid' has given all of its points",
+                help="set its option `repeat`, or a larger `N`",
+            )
+        return np.array(rows, dtype=np.float64).reshape(len(rows), len(self._axes))
+
+    def tell(self, points: Floats, values: Floats) -> None:
+        """Nothing to learn."""

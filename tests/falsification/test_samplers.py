@@ -1,0 +1,127 @@
+"""Samplers: laws, updates after feedback from the formulas, and that all of them find a minimum."""
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+
+from scenic.falsification.samplers import SAMPLERS, make_sampler
+from scenic.falsification.samplers.buckets import Bandit, CrossEntropy, EpsilonGreedy
+from scenic.falsification.samplers.protocol import Exhausted, SamplerError
+from scenic.falsification.space import Coordinate, Space
+
+SPACE = Space((Coordinate(1, "x"), Coordinate(2, "d", 1, 4, 4), Coordinate(3, "y", shares=(0.5, 0.0, 0.5))))
+WORKING = [name for name in SAMPLERS if name != "bo"]
+
+
+@pytest.mark.parametrize("name", WORKING)
+def test_points_lie_in_the_cube_and_follow_from_the_seed(name: str) -> None:
+    def run(seed: int) -> np.ndarray:
+        sampler = make_sampler(name, SPACE, seed)
+        rows = []
+        for _ in range(6):
+            points = sampler.ask(4)
+            sampler.tell(points, points.sum(axis=1) - 1)
+            rows.append(points)
+        return np.concatenate(rows)
+
+    found = run(5)
+    assert found.shape == (24, 3)
+    assert ((found >= 0) & (found <= 1)).all()
+    assert (run(5) == found).all()
+    if name != "grid":
+        assert (run(6) != found).any()
+
+
+@pytest.mark.parametrize("name", ["sa", "cma", "tpe"])
+def test_what_learns_comes_nearer_than_chance(name: str) -> None:
+    def best(name: str, seed: int) -> float:
+        sampler = make_sampler(name, Space(tuple(Coordinate(k, f"x{k}") for k in range(3))), seed)
+        least = math.inf
+        for _ in range(20):
+            points = sampler.ask(5)
+            values = np.abs(points - [0.3, 0.6, 0.8]).sum(axis=1)
+            sampler.tell(points, values)
+            least = min(least, float(values.min()))
+        return least
+
+    seeds = range(5 if name != "tpe" else 3)
+    assert np.median([best(name, seed) for seed in seeds]) < np.median(
+        [best("random", seed) for seed in range(9)]
+    )
+
+
+def test_cross_entropy_moves_towards_the_bucket_drawn() -> None:
+    sampler = CrossEntropy(SPACE, 0, {"alpha": 0.7, "thres": -0.5})
+    points = np.array([[0.45, 0.3, 0.9]])
+    sampler.tell(points, np.array([-0.5]))  # not below the threshold
+    assert [len(item) for item in sampler.distributions] == [5, 4, 3]
+    assert np.allclose(sampler.distributions[0], 0.2)
+    sampler.tell(points, np.array([-0.6]))
+    assert np.allclose(sampler.distributions[0], [0.14, 0.14, 0.44, 0.14, 0.14])
+    assert np.allclose(sampler.distributions[1], [0.175, 0.475, 0.175, 0.175])
+    assert np.allclose(sampler.distributions[2], [0.35, 0.0, 0.65])
+    sampler.tell(points, np.array([np.nan]))
+    assert np.allclose(sampler.distributions[2], [0.35, 0.0, 0.65])
+
+
+def test_epsilon_halves_every_hundred_updates() -> None:
+    sampler = EpsilonGreedy(SPACE, 0)
+    assert sampler.epsilon == 0.5
+    sampler.tell(np.full((100, 3), 0.5), np.ones(100))
+    assert sampler.epsilon == 0.25
+
+
+def test_a_bandit_takes_the_highest_bound() -> None:
+    sampler = Bandit(Space((Coordinate(1, "x"),)), 0)
+    counts, errors, time = np.ones(5), np.zeros(5), 1
+    rng = np.random.default_rng(3)
+    for _ in range(200):
+        (point,) = sampler.ask(1)
+        bucket = min(int(point[0] * 5), 4)
+        bound = errors / counts + np.sqrt(2 * math.log(time) / counts)
+        assert bound[bucket] == pytest.approx(bound.max())
+        value = -1.0 if bucket == 3 and rng.random() < 0.8 else 1.0
+        sampler.tell(point[np.newaxis], np.array([value]))
+        counts[bucket] += 1
+        errors[bucket] += value < 0
+        time += 1
+    assert sampler.counts[0].tolist() == counts.tolist()
+    assert counts.argmax() == 3
+
+
+def test_a_grid_is_the_product_with_the_first_coordinate_fastest() -> None:
+    sampler = make_sampler("grid", SPACE, 0, {"N": [3, 2]})
+    found = sampler.ask(100)
+    values = [
+        tuple(item.value(place) for item, place in zip(SPACE.coordinates, row, strict=True)) for row in found
+    ]
+    wanted = [(x, d, y) for y, d, x in itertools.product([0, 1], [1, 2, 3, 4], [0, 0.5, 1])]
+    assert values == wanted
+    with pytest.raises(Exhausted):
+        sampler.ask(1)
+    again = make_sampler("grid", SPACE, 0, {"N": [3, 2], "repeat": True})
+    assert (again.ask(30)[24:] == found[:6]).all()
+    with pytest.raises(SamplerError, match="`N`"):
+        make_sampler("grid", SPACE, 0, {"N": [3]})
+
+
+def test_coordinates_become_numbers_of_the_law() -> None:
+    places = np.array([0.0, 0.25, 0.4, 0.99, 1.0])
+    assert SPACE.coordinates[1].number(places) == pytest.approx([0.125, 0.375, 0.375, 0.875, 0.875])
+    assert SPACE.coordinates[2].number(places) == pytest.approx([0, 0.375, 0.5, 0.985, 1])
+    assert all(
+        (item.number(places) > 0).all() and (item.number(places) < 1).all() for item in SPACE.coordinates
+    )
+    for item in SPACE.coordinates:
+        value = item.value(0.3)
+        assert item.value(item.coordinate(value)) == pytest.approx(value)
+
+
+def test_bayesian_optimisation_says_what_it_needs(monkeypatch: pytest.MonkeyPatch) -> None:
+    import sys
+
+    monkeypatch.setitem(sys.modules, "torch", None)
+    with pytest.raises(SamplerError, match="needs the package `torch`"):
+        make_sampler("bo", SPACE, 0)
