@@ -165,6 +165,25 @@ def test_road_direction_over_many_points_is_that_of_one(crossing: Network) -> No
         assert heading == pytest.approx(expected)
 
 
+def test_ways_against_traffic_are_divided_by_their_length(tmp_path: Path) -> None:
+    """Along an arc, by steps of at most 5 m; by four steps the end of 60 m would be 2 m beside the lane's middle."""
+    import scenic
+
+    arc = piece(0, 0, 0, 100.0, '<arc curvature="0.005"/>')
+    found = network(tmp_path, map_text([RoadText("1", 100.0, arc, two_way(False, False))]))
+    [lane] = [item for item in found.lanes if item.sections[0].isForward]
+    start = lane.line[-1]
+    end = found.roadDirection.followFrom(Vector(*map(float, start), 0), -60)
+    assert lane.centerline.distanceTo(end) < 1
+    program = (
+        f"param map = {str(tmp_path / 'map.xodr')!r}\nmodel scenic.domains.driving.model\n"
+        f"ego = new Car following roadDirection from {tuple(map(float, start))} for Uniform(-60, -60.0),\n"
+        "    with regionContainedIn None\n"
+    )
+    [scene] = scenic.scenarioFromString(program, mode2D=True).sample(1, seed=1)
+    assert scene.egoObject.position.distanceTo(end) < 1e-9
+
+
 def test_every_point_of_the_road_has_a_lane(crossing: Network) -> None:
     rng = np.random.default_rng(5)
     places = crossing.roadRegion.outline.sample(*rng.random((3, 5000)))

@@ -1,5 +1,6 @@
 """Which elements are at a place, for many places at a time, and the direction of traffic there."""
 
+import math
 from collections.abc import Sequence
 from functools import cached_property
 from typing import Any
@@ -11,6 +12,7 @@ from scenic.domains.driving.elements import LinearElement, NetworkElement, Segme
 from scenic.runtime.geometry.cell_index import CellIndex
 from scenic.runtime.geometry.ragged import expand
 from scenic.runtime.regions.fields import TabulatedField
+from scenic.runtime.values.values import is_number
 
 __all__ = ["Finder", "RoadDirection"]
 
@@ -85,6 +87,8 @@ class RoadDirection(TabulatedField):
         tolerance: see `Finder`.
 
     """
+
+    divides_backward = True
 
     def __init__(self, name: str, elements: Sequence[NetworkElement], tolerance: float) -> None:
         self._finder = Finder(elements, tolerance)
@@ -180,6 +184,14 @@ class RoadDirection(TabulatedField):
     def _value(self, point: Any) -> float:
         headings, _ = self.headings(np.array([[point.x, point.y, 0.0]]))
         return float(headings[0])
+
+    def followFrom(
+        self, position: Any, distance: Any, steps: int | None = None, stepSize: float | None = None
+    ) -> Any:
+        if steps is None and is_number(distance):
+            size = self.defaultStepSize if stepSize is None else stepSize
+            steps = max(self.minSteps, math.ceil(abs(distance) / size))
+        return super().followFrom(position, distance, steps, stepSize)
 
     def random_parts(self) -> list[Any]:
         return []

@@ -139,6 +139,8 @@ class TabulatedField(VectorField):
 
     _is_table: bool = True
     """Whether `headings` answers for every point."""
+    divides_backward: bool = False
+    """Whether a way against the field is divided by its length, as one along it is; else it takes the least number of steps."""
 
     @abstractmethod
     def headings(self, points: Points) -> tuple[Headings, Mask]:
@@ -549,7 +551,10 @@ def _follow_table(call: Call, points: Column, distance: Column) -> Column:
     lanes = max(len(points), len(distance))
     place = np.array(np.broadcast_to(points, (lanes, 3)))
     length = np.broadcast_to(distance, lanes)
-    counts = np.full(lanes, steps) if steps is not None else np.maximum(max(least, 1), np.ceil(length / size))
+    measured = np.abs(length) if field.divides_backward else length
+    counts = (
+        np.full(lanes, steps) if steps is not None else np.maximum(max(least, 1), np.ceil(measured / size))
+    )
     missing = np.zeros(lanes, dtype=np.bool_)
     for step in range(int(counts.max(initial=0))):
         moving = np.flatnonzero(step < counts)
