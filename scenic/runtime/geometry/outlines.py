@@ -11,6 +11,7 @@ import numpy.typing as npt
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.poses import Booleans, Floats, Indices, Poses
+from scenic.runtime.geometry.prisms import shadow
 from scenic.runtime.geometry.ragged import distinct, rows
 
 Geometries = npt.NDArray[np.object_]
@@ -36,6 +37,9 @@ def shadows(body: Body, lanes: Indices) -> Geometries:
                 world = _placed(part.poses, chosen[some], corners)
                 result[chosen[some]] = hulls(world[..., :2])
         else:
+            standing = np.broadcast_to(upright(part.poses.take(chosen)), len(chosen))
+            result[chosen[standing]] = _standing(mesh, part.poses, chosen[standing])
+            chosen = chosen[~standing]
             for some in rows(len(chosen), 3 * len(mesh.faces), _CHUNK):
                 world = _placed(part.poses, chosen[some], mesh.vertices)[..., :2]
                 flat = world[:, mesh.faces]
@@ -43,6 +47,20 @@ def shadows(body: Body, lanes: Indices) -> Geometries:
                 proper = first[..., 0] * second[..., 1] != first[..., 1] * second[..., 0]
                 triangles = np.where(proper, shapely.polygons(flat), None)
                 result[chosen[some]] = shapely.union_all(triangles, axis=1)
+    return result
+
+
+def _standing(mesh: Mesh, poses: Poses, lanes: Indices) -> Geometries:
+    """The outlines from above of a mesh that stands upright: all are images of one."""
+    import shapely
+
+    outline = mesh.derived(shadow)
+    points = shapely.get_coordinates(outline)
+    level = np.column_stack([points, np.zeros(len(points))])
+    result: Geometries = np.full(len(lanes), outline, dtype=np.object_)
+    for some in rows(len(lanes), len(points), _CHUNK):
+        world = _placed(poses, lanes[some], level)[..., :2]
+        result[some] = shapely.set_coordinates(result[some].copy(), world.reshape(-1, 2))
     return result
 
 
