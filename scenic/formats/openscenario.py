@@ -19,7 +19,13 @@ from scenic.formats.files import write
 from scenic.language.errors import UnsupportedError
 from scenic.runtime.values.values import Orientation, Vector
 
-__all__ = ["OpenScenarioFile", "openscenario_about", "openscenario_document", "openscenario_support"]
+__all__ = [
+    "OpenScenarioFile",
+    "openscenario_about",
+    "openscenario_document",
+    "openscenario_support",
+    "stands_on_ground",
+]
 
 Floats = NDArray[np.float64]
 Poses = Sequence[tuple[Any, Any]]
@@ -80,7 +86,7 @@ def openscenario_document(
         timestep: seconds between states.
         map_path: of the OpenDRIVE file.
         name: of the scenario.
-        flat: whether positions are on the ground, as in the 2D mode, rather than in the middle of the objects.
+        flat: whether positions are on the ground rather than in the middle of the objects.
         properties: of the file header.
 
     Raises:
@@ -119,6 +125,11 @@ def openscenario_document(
         osc_minor_version=3,
         header_properties=header if properties else None,
     )
+
+
+def stands_on_ground(scene: Any) -> bool:
+    """Whether positions in a scene are on the ground, as on flat maps, rather than in the middle of the objects."""
+    return bool(scene.program.context.mode_2d or scene.params.get("use2DMap"))
 
 
 def _entities(things: Sequence[Any], *, flat: bool) -> list[_Entity]:
@@ -272,7 +283,7 @@ class OpenScenarioFile:
             timestep=simulation.timestep,
             map_path=str(scene.params["map"]),
             name=self._path.stem,
-            flat=scene.program.context.mode_2d,
+            flat=stands_on_ground(scene),
             properties={_PROPERTY: json.dumps(about, allow_nan=False, separators=(",", ":"))},
         )
         tree = document.get_element()

@@ -13,7 +13,7 @@ from scenariogeneration import xosc
 
 import scenic
 from scenic.domains.driving.openscenario import toOpenScenario
-from scenic.formats.openscenario import openscenario_about
+from scenic.formats.openscenario import openscenario_about, openscenario_document
 from scenic.simulators.newtonian import NewtonianSimulator
 from tests.maps import cross
 
@@ -64,7 +64,12 @@ def wrapped(angle: float) -> float:
 @pytest.mark.parametrize("flat", [True, False])
 def test_a_reader_gives_the_trajectories_back(town: Path, flat: bool) -> None:
     done = simulated(town, TRAFFIC, flat=flat)
-    root = ElementTree.fromstring(ElementTree.tostring(toOpenScenario(done).get_element()))
+    document = toOpenScenario(done)
+    if not flat:
+        poses = [list(zip(state.positions, state.orientations, strict=True)) for state in done.trajectory]
+        options = {"timestep": 0.1, "map_path": str(town), "name": "solid", "flat": False}
+        document = openscenario_document(done.scene.objects, poses, **options)
+    root = ElementTree.fromstring(ElementTree.tostring(document.get_element()))
     read = polylines(root)
     names = ["same", "same_2", "Pedestrian2", "Object3"]
     assert [item.attrib["name"] for item in root.iter("ScenarioObject")] == names

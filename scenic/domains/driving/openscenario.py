@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from scenic.formats.openscenario import openscenario_document
+from scenic.formats.openscenario import openscenario_document, stands_on_ground
 from scenic.language.errors import UnsupportedError
 
 __all__ = ["toOpenScenario"]
@@ -45,7 +45,7 @@ def toOpenScenario(simulation: Any, mapPath: Any = None, scenarioName: str = "Sc
             timestep=simulation.timestep,
             map_path=str(path),
             name=scenarioName,
-            flat=scene.program.context.mode_2d,
+            flat=stands_on_ground(scene),
         )
     except UnsupportedError as error:
         raise ModuleNotFoundError(

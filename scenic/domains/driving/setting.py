@@ -3,10 +3,11 @@
 from typing import Any
 
 from scenic.domains.driving.roads import Network
+from scenic.language.errors import InvalidScenarioError
 from scenic.runtime.program.builtins import running_simulation
 from scenic.runtime.program.context import current
 
-__all__ = ["is2DMode", "nearer", "network_of_program"]
+__all__ = ["SettingError", "is2DMode", "nearer", "network_of_program"]
 
 
 def is2DMode() -> bool:
@@ -15,23 +16,55 @@ def is2DMode() -> bool:
     return context is not None and context.mode_2d
 
 
+class SettingError(InvalidScenarioError, RuntimeError):
+    """A driving program that has no usable map, or whose mode does not fit it; placed at the parameter to be changed."""
+
+    code = "SC620"
+
+
 def network_of_program(parameters: Any) -> Network:
     """The network of the map that a program's parameters name.
 
     Raises:
-        RuntimeError: if there is no map, or the mode does not fit.
+        MapError: the map cannot be read.
+        SettingError: there is no map, or the mode does not fit.
 
     """
     if "map" not in parameters:
-        raise RuntimeError(
-            "the driving model needs a map: set `param map = localPath('town.xodr')` before the `model` statement, "
-            "or give `--param map FILE`"
+        raise _wrong(
+            "map",
+            "the driving model needs a map",
+            "set `param map = localPath('town.xodr')` before the `model` statement, or give `--param map=FILE`",
         )
-    flat = bool(parameters["use2DMap"]) if "use2DMap" in parameters else is2DMode()
+    flat = bool(parameters["use2DMap"])
     if is2DMode() and not flat:
-        raise RuntimeError("in the 2D mode a map is flat: leave `use2DMap` out, or set it to True")
-    options = dict(parameters["map_options"]) if "map_options" in parameters else {}
-    return Network.fromFile(parameters["map"], **options)
+        raise _wrong("use2DMap", "in the 2D mode a map is flat", "leave `use2DMap` out, or set it to True")
+    if not flat:
+        raise _wrong(
+            "use2DMap",
+            "roads are flat: this program is compiled in the 3D mode",
+            "give `--2d` (`mode2D=True` from Python), or `--param use2DMap=True` for 3D objects on a flat map",
+        )
+    try:
+        return Network.fromFile(parameters["map"], **dict(parameters["map_options"]))
+    except TypeError as error:
+        name = "map_options" if parameters["map_options"] else "map"
+        raise _wrong(name, str(error), "see docs/driving.md for what it takes") from error
+    except (OSError, ValueError) as error:
+        raise _wrong(
+            "map",
+            str(error),
+            "paths are relative to the working directory; `localPath(...)` makes them relative to the program",
+        ) from error
+
+
+def _wrong(parameter: str, message: str, help: str) -> SettingError:
+    """An error at the place where the program sets a parameter, else at its `model` statement."""
+    error = SettingError(message, help=help)
+    context = current.get()
+    if context is None:
+        return error
+    return error.at(context.parameter_places.get(parameter, context.model_place))
 
 
 def nearer(agent: Any, threshold: float, kind: Any) -> list[Any]:
