@@ -130,7 +130,7 @@ class Simulation(ABC):
         self._now: Poses = ()
         self._enable_replay = enableReplay
         self._original = scene
-        self._copies = Copies(scene.found.batch, scene.lane)
+        self._copies = Copies(scene.found.batch, scene.lane, scene.program.originals)
         self._properties: dict[type, tuple[str, ...]] = {}
         self._sets: dict[type, frozenset[str]] = {}
         self._finals: dict[type, Finals] = {}
@@ -249,6 +249,7 @@ class Simulation(ABC):
             if not ended:
                 run.abandon()
                 self._restore()
+            self._copies.release()
             self._destroy_once()
 
     def _where_now(self, frame: Any) -> str:

@@ -1,8 +1,9 @@
 """The values of a program in one simulation.
 
 A simulation works on copies of its own: sampled values in place of random ones, objects whose properties change with time,
-functions over global names that they may assign. So nothing that happens in it is seen by the scene, by the program,
-or by another simulation.
+functions over global names that they may assign. So nothing that happens in it is seen by the scene
+or by another simulation. Containers that hold nothing of that are shared with the program, and filled as at first for each simulation
+(`scenic.runtime.python.originals`).
 """
 
 from collections.abc import Iterable
@@ -21,7 +22,8 @@ from scenic.runtime.python.ownership import (
     is_own_function,
     leads_back,
 )
-from scenic.runtime.python.samples import Lanes, Sample
+from scenic.runtime.python.originals import Originals
+from scenic.runtime.python.samples import Globals, Lanes, Sample
 
 __all__ = ["Copies"]
 
@@ -35,18 +37,27 @@ class Copies(Sample):
     Args:
         lanes: the values of nodes.
         lane: which of the lanes the scene is.
+        originals: the program's containers that it may share.
 
     """
 
-    __slots__ = ("_depth", "_filled", "_modules", "_own", "_waiting")
+    __slots__ = ("_depth", "_filled", "_modules", "_originals", "_own", "_shares", "_waiting")
 
-    def __init__(self, lanes: Lanes, lane: int) -> None:
-        super().__init__(lanes, lane)
+    def __init__(self, lanes: Lanes, lane: int, originals: Originals) -> None:
+        names = Globals()
+        names.contents = originals.contents
+        super().__init__(lanes, lane, names)
+        self._originals = originals
+        self._shares = originals.claim(self)
         self._filled: dict[int, set[str]] = {}
         self._own: dict[int, dict[str, Any]] = {}
         self._modules: dict[int, ModuleType] = {}
         self._depth = 0
         self._waiting: list[tuple[Point, Any]] = []
+
+    def release(self) -> None:
+        """The simulation has ended: another one may use what it has shared with the program."""
+        self._originals.release(self)
 
     def adopt(self, module: ModuleType) -> None:
         """A module is about to run that the simulation is the first to import, and that is its own therefore."""
@@ -61,8 +72,10 @@ class Copies(Sample):
         self._memo[id(copy)] = copy
 
     def _sampled(self, value: Any) -> Any:
+        if self._shares and value in self._originals:
+            return value
         # An array may be changed in place.
-        return value.copy() if type(value) is np.ndarray else super()._sampled(value)
+        return self._originals.contents(value).copy() if type(value) is np.ndarray else super()._sampled(value)
 
     def _stays(self, item: Any) -> bool:
         if isinstance(item, DECORATED):

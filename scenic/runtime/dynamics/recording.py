@@ -1,6 +1,7 @@
 """``record``: values of expressions, kept in the result of a simulation and written to files (section 12.8)."""
 
 import math
+from collections import deque
 from copy import copy
 from typing import TYPE_CHECKING, Any
 
@@ -52,7 +53,7 @@ class Recording:
         if step < self._delay or step % self._period != 0:
             return
         with self._run.condition():
-            value = self.use.value()
+            value = _as_it_is(self.use.value(), {})
         self.begun = True
         if self._recorder is not None:
             try:
@@ -85,6 +86,26 @@ class Recording:
         elif not self._ended and self._recorder is not None:
             self._recorder.endRecording(True)
         self._ended = True
+
+
+def _as_it_is(value: Any, made: dict[int, Any]) -> Any:
+    """A value whose containers the simulation, or the next one, does not change any more."""
+    cls = type(value)
+    if cls not in (list, tuple, dict, set, deque) and not (
+        cls.__module__ == "numpy" and cls.__name__ == "ndarray"
+    ):
+        return value
+    if id(value) in made:
+        return made[id(value)]
+    if cls is tuple:
+        return tuple(_as_it_is(item, made) for item in value)
+    copied = made[id(value)] = copy(value)
+    if cls in (list, deque):
+        for index, item in enumerate(copied):
+            copied[index] = _as_it_is(item, made)
+    elif cls is dict:
+        copied.update((key, _as_it_is(item, made)) for key, item in value.items())
+    return copied
 
 
 def check_duration(duration: tuple[Any, str] | None, what: str, least: float, span: Span | None) -> None:

@@ -1,6 +1,7 @@
 """What running a program produces: the raw material of a scenario."""
 
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -10,6 +11,7 @@ from scenic.runtime.dynamics.declarations import Declared, Required
 from scenic.runtime.dynamics.definitions import Invocable, ModularScenario
 from scenic.runtime.instances.objects import Object, Point
 from scenic.runtime.program.context import Context
+from scenic.runtime.python.originals import Originals
 from scenic.runtime.python.samples import Globals
 from scenic.runtime.regions.spaces import Workspace
 from scenic.runtime.visibility.seeing import Sighting
@@ -69,6 +71,32 @@ class Program:
     """What the program calls its external parameters, by address."""
     names: Globals = field(default_factory=Globals)
     """Global names as they are when the program has run, for the functions and methods in its scenes."""
+    scopes: list[dict[str, Any]] = field(default_factory=list)
+    """The global names of its modules."""
+    _originals: Originals | None = None
+
+    @property
+    def originals(self) -> Originals:
+        """The containers that simulations share; made for the first one."""
+        if self._originals is None:
+            named = [
+                value
+                for scope in self.scopes
+                for name, value in scope.items()
+                if not (name.startswith("__") and name.endswith("__"))
+            ]
+            self._originals = Originals([*named, *self.reachable()])
+            self.names.contents = self._originals.contents
+        return self._originals
+
+    @contextmanager
+    def undisturbed(self) -> Iterator[None]:
+        """Within this its containers hold what they held when it had run, whatever simulations have done."""
+        if self._originals is None:
+            yield
+        else:
+            with self._originals.put_back():
+                yield
 
     def parameter(self, name: str, default: Any = None) -> Any:
         """A global parameter as it is so far, or else a default."""

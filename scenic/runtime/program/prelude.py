@@ -522,6 +522,8 @@ class Loader:
             self._program, state.filename, lambda *args: self._import(state, *args)
         )
         self._context.mutates |= may_mutate(code)
+        if not isinstance(current.get(), RunContext):
+            self._program.scopes.append(scope)
         exec(code, scope)
 
     def _import(

@@ -12,7 +12,7 @@ from collections import OrderedDict, defaultdict, deque
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property, lru_cache, partial
-from types import CellType, CodeType, FunctionType, MethodType, ModuleType
+from types import BuiltinMethodType, CellType, CodeType, FunctionType, MethodType, ModuleType
 from typing import Any, Final, Protocol
 from weakref import ref
 
@@ -70,6 +70,8 @@ class Globals:
         self._varying: dict[type, bool] = {}
         self._owned: dict[type, bool] = {}
         self._placements: dict[int, tuple[Point, Placement]] = {}
+        self.contents: Callable[[Any], Any] | None = None
+        """What a container held when the program had run, once simulations may have changed it."""
 
     def of(self, function: FunctionType) -> list[tuple[str, Any]]:
         """Global names of the program that a function of the program, or code nested in it, may read."""
@@ -240,7 +242,7 @@ def reachable(values: Iterable[Any], names: Globals) -> Iterator[Any]:
         if isinstance(value, Random):
             stack.extend(_boxed_constants(value.node, seen))
         else:
-            stack.extend(reversed(list(_parts(value, names))))
+            stack.extend(reversed(list(parts(value, names))))
 
 
 _NUMBERS_AND_TEXT = (int, float, str, bytes)
@@ -270,7 +272,7 @@ def _boxed_constants(root: Node, seen: dict[int, Any]) -> list[Any]:
     return values
 
 
-def _parts(value: Any, names: Globals) -> Iterator[Any]:
+def parts(value: Any, names: Globals) -> Iterator[Any]:
     """What a value is made of, as far as sampling goes."""
     if isinstance(value, Point):
         yield from value.__dict__.get("_source", value).__dict__.values()
@@ -301,6 +303,9 @@ def _parts(value: Any, names: Globals) -> Iterator[Any]:
         yield from functions_of(value)
     elif isinstance(value, MethodType):
         yield from (value.__self__, value.__func__)
+    elif isinstance(value, BuiltinMethodType):
+        if type(value.__self__) in CONTAINERS:  # an alias of a method, as of `items.append`
+            yield value.__self__
     elif isinstance(value, partial):
         yield from (value.func, *value.args, *value.keywords.values(), *vars(value).values())
     elif isinstance(value, ModuleType) and PRELUDE in vars(value):
@@ -316,7 +321,7 @@ def _parts(value: Any, names: Globals) -> Iterator[Any]:
 
 
 _WITHOUT_MEMBERS = frozenset(
-    {tuple, frozenset, slice, FunctionType, MethodType, type, partial, ModuleType, *CONTAINERS}
+    {tuple, frozenset, slice, FunctionType, BuiltinMethodType, MethodType, type, partial, ModuleType, *CONTAINERS}
 )
 """Types of which no instance has members that a program has written."""
 
@@ -333,10 +338,16 @@ def _contents(module: ModuleType) -> dict[str, Any]:
 _MISSING: Final = object()
 
 
-def _kind_of_container(cls: type) -> Any:
+def kind_of_container(cls: type) -> Any:
     """Which of Python's containers that are changed in place a class is or derives from; ``None`` if it is none."""
     kinds = (list, deque, set, OrderedDict, defaultdict, dict)
     return next((kind for kind in kinds if issubclass(cls, kind)), None)
+
+
+def contents_of(container: Any) -> list[Any]:
+    """The items of a container now, or the pairs of a dictionary, whatever its class says of them."""
+    kind = kind_of_container(type(container))
+    return list(kind.items(container) if issubclass(kind, dict) else kind.__iter__(container))
 
 
 class Sample:
@@ -447,7 +458,7 @@ class Sample:
                 vars(copy).update(attributes)
             return copy
         if cls in CONTAINERS:
-            return self._container(value, _kind_of_container(cls), cls)
+            return self._container(value, kind_of_container(cls), cls)
         if isinstance(value, partial):
             given = map(self.value, (value.func, *value.args))
             keywords = {name: self.value(item) for name, item in value.keywords.items()}
@@ -464,6 +475,10 @@ class Sample:
             return value if self._stays(value) else self._decorated(value, self.value)
         if isinstance(value, MethodType):
             return MethodType(self.value(value.__func__), self.value(value.__self__))
+        if isinstance(value, BuiltinMethodType):
+            holder = value.__self__
+            own = self.value(holder) if type(holder) in CONTAINERS else holder
+            return value if own is holder else getattr(own, value.__name__)
         if isinstance(value, type):
             return self._class(value) if self._names.owns(value) and not self._stays(value) else value
         if hasattr(value, "sampled") and hasattr(value, "random_parts"):
@@ -488,12 +503,14 @@ class Sample:
         self.remember(container, copy)
         if kind is defaultdict:
             copy.default_factory = self.value(container.default_factory)
+        look_up = self._names.contents
+        held = contents_of(container) if look_up is None else look_up(container)
         if issubclass(kind, dict):
-            kind.update(copy, [(self.value(key), self.value(item)) for key, item in kind.items(container)])
+            kind.update(copy, [(self.value(key), self.value(item)) for key, item in held])
         elif kind is set:
-            set.update(copy, [self.value(item) for item in set.__iter__(container)])
+            set.update(copy, map(self.value, held))
         else:
-            kind.extend(copy, [self.value(item) for item in kind.__iter__(container)])
+            kind.extend(copy, map(self.value, held))
         return copy
 
     def _instance(self, instance: Point) -> Point:
@@ -559,7 +576,7 @@ class Sample:
         cls = self.value(type(instance))
         if cls is type(instance) and self._stays(instance):
             return instance
-        kind = _kind_of_container(type(instance))
+        kind = kind_of_container(type(instance))
         if kind is not None:
             copy = self._container(instance, kind, cls)
         else:

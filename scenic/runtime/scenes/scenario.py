@@ -259,7 +259,11 @@ class Scenario:
     def _scenes(self, results: Iterator[Accepted | Exhausted]) -> Iterator[Scene | Exhausted]:
         family = self._family
         try:
-            for result in results:
+            while True:
+                with self._program.undisturbed():
+                    result = next(results, None)
+                if result is None:
+                    return
                 if isinstance(result, Exhausted):
                     yield result
                 else:
@@ -267,8 +271,6 @@ class Scenario:
                     yield Scene(found, lane, family)
         except CandidateError as error:
             failure = error
-        else:
-            return
         problem = self._sampling_error(failure)
         if problem is failure.__cause__:
             raise problem  # which may have a cause of its own
@@ -351,10 +353,9 @@ class Scenario:
             source: random numbers that are not hashed; see `stream`.
 
         """
-        return (
-            Scene(found, lane, self._family)
-            for found, lane in self._sampler.accepted(seed, numbers, attempts, source)
-        )
+        with self._program.undisturbed():
+            accepted = self._sampler.accepted(seed, numbers, attempts, source)
+        return (Scene(found, lane, self._family) for found, lane in accepted)
 
     def simulate(self, n: int = 1, **options: Any) -> Any:
         """Simulate scenes 0 to ``n`` of a seed; see `scenic.batch.simulations.simulated` for the options and the result."""
@@ -499,7 +500,9 @@ class Scenario:
                 help="load the program, parameters and options with which it was saved",
             )
         source = source_of(saved, self.outline.graph)
-        return Scene(*self._sampler.engine.replay(source, saved.task, saved.attempts), self._family)
+        with self._program.undisturbed():
+            accepted = self._sampler.engine.replay(source, saved.task, saved.attempts)
+        return Scene(*accepted, self._family)
 
     def replay(self, path: str | Path) -> Scene:
         """The scene that `Scene.save` has written; raises `SerializationError` as `sceneFromBytes` does."""
