@@ -77,6 +77,9 @@ _HOMES = MappingProxyType(
     }
 )
 
+_PACKAGES = frozenset({"core", "domains", "simulators", "syntax"})
+"""Packages that scripts find after a bare ``import scenic``."""
+
 __all__ = [
     "Conditioned",
     "DepthSensor",
@@ -111,6 +114,8 @@ def __getattr__(name: str) -> Any:
         from importlib.metadata import version
 
         return version("scenic-lang")
+    if name in _PACKAGES:
+        return import_lasting(f"scenic.{name}")
     if name not in _HOMES:
         raise AttributeError(f"module 'scenic' has no attribute {name!r}")
     home = sys.modules.get(_HOMES[name]) or import_lasting(_HOMES[name])

@@ -3,7 +3,7 @@
 import inspect
 import sys
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import CodeType, FrameType, ModuleType, TracebackType
 from typing import TYPE_CHECKING, Any, Final
@@ -260,6 +260,7 @@ def _scenario(text: str, filename: str, options: _Options) -> Scenario:
             _sample,
             _simulate,
             _external_sampler,
+            lambda given: _scenario(text, filename, replace(options, params={**options.params, **given})),
         ),
     )
     scenario.prepare()

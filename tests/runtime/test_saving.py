@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 import trimesh
+from scenic.core.distributions import Range
 
 import scenic
 from scenic.failures import diagnose
@@ -709,3 +710,29 @@ def test_a_scene_that_is_taken_up_again_shows_all_that_it_showed() -> None:
         assert (region.center, region.radius) == (other.center, other.radius)
         for node in program.outline.graph.nodes:
             assert again.lookup(node) == scene.lookup(node)
+
+
+def test_parameters_are_conditioned_on_values_and_on_distributions() -> None:
+    program = scenario("param x = Range(0, 1)\nparam y = Range(0, 1)\nego = new Object at (globalParameters.x, Range(0, 1))\n")
+    (first,) = program.sample(1, seed=1)
+    program.conditionOn(first, params=["y"])
+    program.conditionOn(params={"x": 0.6})
+    later = program.sample(5, seed=2)
+    assert {(item.params["x"], item.egoObject.position.x) for item in later} == {(0.6, 0.6)}
+    assert {item.params["y"] for item in later} == {first.params["y"]}  # The earlier condition stays.
+    assert len({item.egoObject.position.y for item in later}) == 5
+    again = program.sceneFromBytes(program.sceneToBytes(later[0]))
+    assert again.egoObject.position == later[0].egoObject.position
+    # A scene of before still tells values.
+    program.conditionOn(first, objects=[0])
+    assert {item.egoObject.position.y for item in program.sample(3, seed=3)} == {first.egoObject.position.y}
+    program.conditionOn()
+    assert len({(item.params["x"], item.params["y"]) for item in program.sample(5, seed=2)}) == 5
+    program.conditionOn(params={"x": Range(0.6, 0.7)})
+    drawn = {program.generate()[0].params["x"] for _ in range(5)}
+    assert len(drawn) == 5
+    assert all(0.6 < x < 0.7 for x in drawn)
+    with pytest.raises(InvalidScenarioError, match="no parameter 'z'"):
+        program.conditionOn(params={"z": 1})
+    with pytest.raises(InvalidScenarioError, match="without a scene"):
+        program.conditionOn(params=["x"])

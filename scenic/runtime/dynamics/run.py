@@ -355,8 +355,10 @@ class Run:
         for scenario in (self.top, *(each for each in self.scenarios if each is not self.top)):
             with self.within(scenario):
                 for recording in scenario.records:
-                    moment = recording.use.moment
-                    if moment is None or (moment == "initial" and not recording.begun):
+                    if recording.use.moment == "initial" and not recording.begun:
+                        recording.add(step, records)
+                for recording in scenario.records:
+                    if recording.use.moment is None:
                         recording.add(step, records)
 
     def finish_records(self, scenario: ScenarioActivation) -> None:

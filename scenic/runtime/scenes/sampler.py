@@ -65,6 +65,10 @@ class Sampler:
         """
         return Sampler(self._outline, numbers={**self._numbers, **numbers}, words={**self._words, **words})
 
+    def on(self, other: "Sampler") -> "Sampler":
+        """Another program's sampler, in which the draws are fixed that are fixed in this one."""
+        return other.fixed(self._numbers, self._words) if self._numbers or self._words else other
+
     def find(
         self,
         tasks: Iterable[tuple[int, int]],

@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, field
-from itertools import repeat
+from itertools import chain, repeat
 from pathlib import Path
 from typing import Any
 
@@ -67,6 +67,8 @@ class Services:
     """Simulates scenes: ``(scenario, n, **options)``."""
     external_sampler: Callable[["Scenario"], Any] | None = None
     """The sampler of the program's external parameters."""
+    given: Callable[[Mapping[str, Any]], "Scenario"] | None = None
+    """Compiles the program once more with values of global parameters."""
 
 
 class Scenario:
@@ -110,7 +112,7 @@ class Scenario:
             )
         }
         self._names = names
-        self._unconditioned = self._sampler = Sampler(outline, domain, impossible=impossible)
+        self._sampler = Sampler(outline, domain, impossible=impossible)
         self._foreseen = Foreseen(self._foresee)
         self._choosing: Sampler | None = None
         self._external_sampler: Any = None
@@ -126,6 +128,7 @@ class Scenario:
             self._services.view,
             self._regions,
         )
+        self._unconditioned = {name: value for name, value in vars(self).items() if name != "_foreseen"}
 
     def within(self, domain: Domain) -> "Scenario":
         """The same scenario, sampled from another part of the cube, which must hold all points that meet the requirements."""
@@ -545,45 +548,73 @@ class Scenario:
         objects: Sequence[Any] = (),
         params: Mapping[str, Any] | Sequence[str] = (),
     ) -> None:
-        """Let objects and parameters have the values of a scene in all later scenes; those not named vary as before.
+        """Let objects and parameters have certain values in all later scenes; those not named vary as before.
+
+        Without arguments earlier conditions are lifted; otherwise they stay.
 
         Args:
-            scene: a scene of this scenario.
-            objects: objects of the scenario, or their places in its `objects`.
-            params: names of global parameters.
+            scene: a scene of this scenario, for values of it. All random values that they depend on are fixed, also where
+                others depend on them too.
+            objects: objects of the scenario, or their places in its `objects`, that are to be as in the scene.
+            params: names of global parameters that are to be as in the scene; or a mapping from names to values or
+                distributions, which the parameters have then wherever the program reads them.
 
-        All random values that they depend on are fixed, also where others depend on them too.
+        Raises:
+            InvalidScenarioError: if there is no such object or parameter.
 
         """
-        if scene is None:
-            self._sampler = self._unconditioned
+        if isinstance(params, Mapping):
+            given, names = params, ()
         else:
-            values = [*map(self._object, objects), *map(self._parameter, params)]
+            given, names = {}, params
+        if scene is None and (objects or names):
+            raise InvalidScenarioError(
+                "`conditionOn` without a scene has no values for objects, or for parameters that are only named",
+                help="pass the scene whose values they are to have, or `params={name: value}`",
+            )
+        for name in (*names, *given):
+            self._check_parameter(name)
+        if scene is not None:
+            values = [scene.sources[self._number(item)] for item in objects]
+            values += [scene.program.parameters[name] for name in names]
             nodes = Graph(dependencies(values)).nodes
             self._sampler = self._sampler.fixed(*draws_of(scene.found, scene.lane, nodes))
+        elif not given:
+            vars(self).update(self._unconditioned)
+        if given:
+            self._take_parameters(given)
         self._choosing = None
         self._foreseen = Foreseen(self._foresee)
 
-    def _object(self, item: Any) -> Any:
-        """An object, given by itself or by its place."""
+    def _take_parameters(self, given: Mapping[str, Any]) -> None:
+        """Go on as the same program with other values of parameters, under the conditions so far."""
+        if self._services.given is None:
+            raise TypeError("a scenario that was made by hand cannot be given parameters")
+        other = self._services.given(given)
+        other._sampler = self._sampler.on(other._sampler)
+        vars(self).update({name: vars(other)[name] for name in self._unconditioned})
+
+    def _number(self, item: Any) -> int:
+        """The place of an object, which is given by itself or by its place."""
         if not isinstance(item, int):
-            return item
+            families: tuple[Family, ...] = (self._family, self._unconditioned["_family"])
+            sources = [enumerate(family.populations.objects) for family in families]
+            return next(number for number, obj in chain(*sources) if obj is item)
         count = len(self.objects)
         if not -count <= item < count:
             raise InvalidScenarioError(
                 f"there is no object {item} in the scenario, which has {count}",
                 help="places count from 0, in the order of the scenario's `objects`",
             )
-        return self.objects[item]
+        return item
 
-    def _parameter(self, name: str) -> Any:
+    def _check_parameter(self, name: str) -> None:
         parameters = self._program.parameters
         if name not in parameters:
             raise InvalidScenarioError(
                 f"the scenario has no parameter {name!r}",
                 help=f"its parameters are {', '.join(parameters)}" if parameters else "it has none",
             )
-        return parameters[name]
 
 
 def exhaustion_message(exhausted: Exhausted) -> str:

@@ -115,6 +115,11 @@ class Scene:
         return self.found.batch.graph.dimension
 
     @property
+    def sources(self) -> tuple[Object, ...]:
+        """The objects of the program of which `objects` are samples."""
+        return self._family.populations.objects
+
+    @property
     def program(self) -> Program:
         """What the scene is a sample of."""
         return self._family.program
