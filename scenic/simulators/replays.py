@@ -113,7 +113,8 @@ class Tape:
         self._earlier = earlier
         self._key = key
         self._keep_draws = keep_draws
-        self._keep_states = keep_states
+        # What was recorded with its states is compared with them.
+        self._keep_states = keep_states or (earlier is not None and bool(earlier.states))
         self._tolerance = tolerance
         self._go_on = go_on
         self._state: list[float] = []

@@ -713,7 +713,9 @@ def test_a_scene_that_is_taken_up_again_shows_all_that_it_showed() -> None:
 
 
 def test_parameters_are_conditioned_on_values_and_on_distributions() -> None:
-    program = scenario("param x = Range(0, 1)\nparam y = Range(0, 1)\nego = new Object at (globalParameters.x, Range(0, 1))\n")
+    program = scenario(
+        "param x = Range(0, 1)\nparam y = Range(0, 1)\nego = new Object at (globalParameters.x, Range(0, 1))\n"
+    )
     (first,) = program.sample(1, seed=1)
     program.conditionOn(first, params=["y"])
     program.conditionOn(params={"x": 0.6})

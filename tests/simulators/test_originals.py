@@ -74,7 +74,7 @@ def _course(records: dict[str, list[tuple[int, object]]]) -> dict[str, list[obje
 
 
 EXPECTED = {
-    **dict.fromkeys(("log", "tagged", "pairs", "held", "mine"), [0, 1, 2, 3]),
+    **{name: [0, 1, 2, 3] for name in ("log", "tagged", "pairs", "held", "mine")},
     "own": [0, 2, 4, 6],
     "queue": [[], [0], [0, 1], [1, 2]],
     "grid": [0, 1, 2, 3],
@@ -86,13 +86,16 @@ EXPECTED = {
 def test_aliases_hold_and_simulations_are_independent(scenario: scenic.Scenario) -> None:
     first, second = scenario.sample(2, seed=1)
     results = [
-        DummySimulator().simulate(scene, maxSteps=3, maxIterations=1).result for scene in (first, second, first)
+        DummySimulator().simulate(scene, maxSteps=3, maxIterations=1).result
+        for scene in (first, second, first)
     ]
     for result in results:
         assert _course(result.records) == EXPECTED
 
 
-def test_what_the_last_simulation_left_is_there_to_be_seen_but_not_by_scenes(scenario: scenic.Scenario) -> None:
+def test_what_the_last_simulation_left_is_there_to_be_seen_but_not_by_scenes(
+    scenario: scenic.Scenario,
+) -> None:
     import aliases_of_containers
 
     (before,) = scenario.sample(1, seed=1)
@@ -107,9 +110,7 @@ def test_interleaved_simulations_do_not_see_each_other(scenario: scenic.Scenario
     scene, _ = scenario.generate(seed=1)
     simulator = DummySimulator()
     first, second = (
-        simulator.createSimulation(
-            scene, maxSteps=3, name=name, timestep=1, verbosity=0, deferred=True
-        )
+        simulator.createSimulation(scene, maxSteps=3, name=name, timestep=1, verbosity=0, deferred=True)
         for name in "ab"
     )
     for simulation in (first, second):
@@ -120,4 +121,6 @@ def test_interleaved_simulations_do_not_see_each_other(scenario: scenic.Scenario
         course = _course(simulation.result.records)
         for name in ("own", "pairs", "queue", "drawn", "mine", "whole"):  # what no Python module holds, too
             assert course[name] == EXPECTED[name]
-    assert DummySimulator().simulate(scene, maxSteps=3).result.records["log"] == list(enumerate(EXPECTED["log"]))
+    assert DummySimulator().simulate(scene, maxSteps=3).result.records["log"] == list(
+        enumerate(EXPECTED["log"])
+    )

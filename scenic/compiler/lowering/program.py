@@ -322,9 +322,10 @@ class _Program:
             guards = dynamics.guards(self, node, [])
             body.extend(self.block(node.setup or ()))
             functions, compose = dynamics.compose(self, node)
+        sets_up = constant(node.setup is not None, node)
         signature = self._with_instance(args, node, own)
         definition = dynamics.definition(
-            node, decorator="scenario", parts=[*guards, compose], arguments=signature, body=body
+            node, decorator="scenario", parts=[*guards, compose, sets_up], arguments=signature, body=body
         )
         lowered = self._kept(node, definition)
         return [*functions, *lowered] if isinstance(lowered, list) else [*functions, lowered]

@@ -14,6 +14,7 @@ from weakref import ref
 import numpy as np
 
 from scenic.runtime.instances.objects import Point
+from scenic.runtime.python.originals import Originals
 from scenic.runtime.python.ownership import (
     DECORATED,
     PRELUDE,
@@ -22,7 +23,6 @@ from scenic.runtime.python.ownership import (
     is_own_function,
     leads_back,
 )
-from scenic.runtime.python.originals import Originals
 from scenic.runtime.python.samples import Globals, Lanes, Sample
 
 __all__ = ["Copies"]
@@ -75,7 +75,9 @@ class Copies(Sample):
         if self._shares and value in self._originals:
             return value
         # An array may be changed in place.
-        return self._originals.contents(value).copy() if type(value) is np.ndarray else super()._sampled(value)
+        return (
+            self._originals.contents(value).copy() if type(value) is np.ndarray else super()._sampled(value)
+        )
 
     def _stays(self, item: Any) -> bool:
         if isinstance(item, DECORATED):

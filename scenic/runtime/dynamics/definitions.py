@@ -8,6 +8,7 @@ attributes. An instance made while the scenario is compiled may hold random valu
 import inspect
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from types import SimpleNamespace
 from typing import Any, ClassVar
 
 from scenic.language.diagnostics import Diagnostic
@@ -15,6 +16,7 @@ from scenic.language.errors import InvalidScenarioError, ScenicSyntaxError, Scen
 from scenic.language.spans import Span
 from scenic.runtime.program.context import current, here
 from scenic.runtime.values.describing import describe
+from scenic.runtime.values.lazy import Lazy, is_lazy, resolve
 from scenic.runtime.values.random_values import Random
 
 __all__ = ["Behavior", "Definition", "Invocable", "ModularScenario", "Monitor", "behavior_of", "define"]
@@ -38,6 +40,8 @@ class Definition:
     preconditions: Sequence[Guard] = ()
     invariants: Sequence[Guard] = ()
     span: Span | None = None
+    sets_up: bool = False
+    """Whether a scenario has a set-up of its own, and does not only compose others."""
 
     @property
     def functions(self) -> list[Callable[..., Any]]:
@@ -86,6 +90,13 @@ class Invocable:
         self._arguments = bound
         self._activation: Any = None
         self.__dict__.update(bound.arguments)
+
+    def settle(self) -> None:
+        """It is about to start: what its arguments read of scenarios that have started since is known now."""
+        given = self._arguments.arguments
+        for name, value in given.items():
+            if is_lazy(value):
+                given[name] = self.__dict__[name] = resolve(value, SimpleNamespace())
 
     def random_parts(self) -> list[Any]:
         """What may be random in it, for sampling."""
@@ -141,6 +152,15 @@ class ModularScenario(Invocable):
         activation = None if name.startswith("_") else self._activation
         if activation is not None and name in ("ego", "objects", "agents", "workspace"):
             return getattr(activation, name)
+        context = current.get()
+        if (
+            activation is None
+            and not name.startswith("_")
+            and getattr(context, "run", None) is not None
+            and not (context.evaluating or context.guarding)  # type: ignore[union-attr] # it is that of a run
+        ):
+            # It will have been set up when another scenario starts that has this for an argument.
+            return Lazy(frozenset(), lambda _: getattr(self, name))
         raise AttributeError(
             f"scenario {self._definition.name!r} has no variable {name!r}", name=name, obj=self
         )
@@ -163,6 +183,7 @@ def define(base: type[Invocable], definition: Definition, documentation: str | N
         "__doc__": documentation,
         "__module__": module,
         "_definition": definition,
+        "__signature__": definition.signature,
     }
     return type(definition.name, (base,), members)
 

@@ -46,6 +46,8 @@ class Guarded(ABC):
 
     def check_all(self) -> None:
         """Raise `GuardViolation` unless all guards hold."""
+        if self.instance is not None:
+            self.instance.settle()
         for guard in self.preconditions:
             self._check(guard, PreconditionViolation)
         self.check_invariants()

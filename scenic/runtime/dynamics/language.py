@@ -28,6 +28,7 @@ from scenic.runtime.dynamics.scenarios import not_a_monitor
 from scenic.runtime.program.context import Context, current, here
 from scenic.runtime.temporal.formulas import is_temporal
 from scenic.runtime.temporal.monitors import Monitor as Follower
+from scenic.runtime.values.lazy import definite
 from scenic.runtime.values.values import describe, is_number
 
 if TYPE_CHECKING:
@@ -81,13 +82,24 @@ class Dynamics:
         return make
 
     def scenario(
-        self, preconditions: Sequence[Guard], invariants: Sequence[Guard], compose: Callable[..., Any] | None
+        self,
+        preconditions: Sequence[Guard],
+        invariants: Sequence[Guard],
+        compose: Callable[..., Any] | None,
+        sets_up: bool,
     ) -> Callable[[Callable[..., Any]], Any]:
-        """A scenario definition, given guards and compose block; the function is its set-up."""
+        """A scenario definition, given guards and compose block; the function is its set-up, which may be empty."""
 
         def make(setup: Callable[..., Any]) -> Any:
             definition = Definition(
-                setup.__name__, _signature(setup, 1), compose, setup, preconditions, invariants, here()
+                setup.__name__,
+                _signature(setup, 1),
+                compose,
+                setup,
+                preconditions,
+                invariants,
+                here(),
+                sets_up,
             )
             return self._defined(define(ModularScenario, definition, setup.__doc__, setup.__module__))
 
@@ -104,8 +116,8 @@ class Dynamics:
         """``take``, and ``wait`` as taking nothing: what to yield."""
         instance._activation.direct = True
         if len(actions) == 1 and isinstance(actions[0], list | tuple):
-            return tuple(actions[0])
-        return actions
+            actions = tuple(actions[0])
+        return tuple(definite(action, "an action") for action in actions)
 
     def terminate(self, instance: Invocable, *, simulation: bool) -> Yielded:
         """``terminate``: what to yield."""

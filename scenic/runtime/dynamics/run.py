@@ -138,6 +138,9 @@ class Run:
         self.ending: Ending | None = None
         self.unmet: RejectSimulationException | None = None
         """That a requirement of a scenario did not hold when an exception stopped it; it rejects once that has been caught."""
+        self.in_first_setup = False
+        """Whether the set-up runs that is the first of the simulation: that of a program which only composes has been none."""
+        self._has_set_up = program.top is None or program.top._definition.sets_up
         self._finished = False
         self._count = 0
         self._creating: ScenarioActivation | None = None
@@ -179,6 +182,17 @@ class Run:
             self._creating = allowed
 
     @contextmanager
+    def setting_up(self, scenario: ScenarioActivation, *, counts: bool) -> Iterator[None]:
+        """The set-up of a scenario runs within this; ``counts`` if there is code of the program in it."""
+        before, self.in_first_setup = self.in_first_setup, counts and not self._has_set_up
+        self._has_set_up |= counts
+        try:
+            with self.within(scenario, creating=True):
+                yield
+        finally:
+            self.in_first_setup = before
+
+    @contextmanager
     def condition(self) -> Iterator[None]:
         """The condition of a requirement is evaluated within this, which draws and creates nothing."""
         context = self.context
@@ -199,18 +213,24 @@ class Run:
             context.guarding = before
 
     def holds(self, condition: Callable[[], Any]) -> bool:
-        """Whether a condition of an interrupt holds; one that reads a variable that is not set yet does not."""
+        """Whether a condition of an interrupt holds; one that reads a variable of a scenario that is not set yet does not."""
         context = self.context
         before = context.guarding
         context.guarding = True
         try:
             return bool(condition())
-        except (AttributeError, NameError) as error:
-            if isinstance(error, AttributeError) and not _is_unset(error):
-                raise
-            if isinstance(error, NameError) and not isinstance(error, UnboundLocalError):
-                raise
+        except UnboundLocalError:
             return False
+        except AttributeError as error:
+            owner = getattr(error, "obj", None)
+            if isinstance(owner, ModularScenario):
+                return False
+            if isinstance(owner, Invocable):
+                raise NameError(
+                    f"the variable {error.name!r} of {owner._kind} {owner._definition.name!r} is not set yet",
+                    name=error.name,
+                ) from error
+            raise
         finally:
             context.guarding = before
 
@@ -423,7 +443,12 @@ class Run:
             agent.__dict__["lastActions"] = tuple(actions)
             chosen[id(agent)] = actions
         # In the order of the agents, whatever the schedule was.
-        return {agent: chosen[id(agent)] for agent in simulation.agents if id(agent) in chosen}
+        # Agents whose behavior was taken back, as the override that gave it ended, are none any more.
+        return {
+            agent: chosen[id(agent)]
+            for agent in simulation.agents
+            if id(agent) in chosen and (chosen[id(agent)] or agent.behavior is not None)
+        }
 
     def _turn(self, agent: Any) -> tuple[Any, ...] | None:
         behavior: Behavior | None = agent.behavior
@@ -495,8 +520,3 @@ def _quietly(stop: Callable[[], None]) -> None:
     """Stop something; what its clean-up raises comes second to what ended the simulation."""
     with suppress(Exception):  # code of the program, run while another exception is on its way
         stop()
-
-
-def _is_unset(error: AttributeError) -> bool:
-    """Whether an attribute is missing because a local variable of a running instance is not set yet."""
-    return isinstance(getattr(error, "obj", None), Invocable)

@@ -81,10 +81,11 @@ class ScenarioActivation(Guarded):
         if self.instance is not None and self.parent is not None:
             self.instance._activation = self
             arguments = self.instance._arguments
-            setup = self.run.copies.value(self.instance._definition.setup)
+            definition = self.instance._definition
+            setup = self.run.copies.value(definition.setup)
             if mentions(setup.__code__, "mutate"):
                 self.awaited = []
-            with self.run.within(self, creating=True):
+            with self.run.setting_up(self, counts=definition.sets_up):
                 setup(self.instance, *arguments.args, **arguments.kwargs)
                 self.run.enter_awaited(self)
         self.go()

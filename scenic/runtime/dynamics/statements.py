@@ -5,7 +5,12 @@ from collections.abc import Callable, Generator, Iterator, Sequence
 from types import GeneratorType
 from typing import Any, Final, cast
 
-from scenic.language.errors import RejectSimulationException, ScenicTypeError, ScenicValueError
+from scenic.language.errors import (
+    InvariantViolation,
+    RejectSimulationException,
+    ScenicTypeError,
+    ScenicValueError,
+)
 from scenic.runtime.dynamics.activations import Activation, Yielded
 from scenic.runtime.dynamics.definitions import Behavior, Invocable, ModularScenario, Monitor
 from scenic.runtime.program.context import here
@@ -193,6 +198,9 @@ def interruptible(
     main: Any = None
     conditions = [condition for condition, _ in clauses]
     order = range(len(clauses) - 1, -1, -1)
+    waiting: set[int] = set()
+    """The blocks whose last yield was a statement of their own; the body is the last of all, -1."""
+    after_handler = False
     try:
         while True:
             selected = -1
@@ -207,11 +215,24 @@ def interruptible(
             else:
                 block = blocks[selected]
             if isinstance(block, GeneratorType):
+                violation: InvariantViolation | None = None
+                if after_handler and selected in waiting:
+                    # A handler may have broken in this step what the block that it preempted relies on.
+                    try:
+                        owner.check_invariants()
+                    except InvariantViolation as found:
+                        violation = found
                 try:
-                    output = next(cast("Iterator[Yielded]", block))
+                    output = (
+                        next(cast("Iterator[Yielded]", block))
+                        if violation is None
+                        else block.throw(violation)
+                    )
                 except StopIteration as end:
                     outcome = end.value
                 else:
+                    (waiting.add if owner.direct else waiting.discard)(selected)
+                    after_handler = False
                     yield output
                     continue
             else:
@@ -219,6 +240,8 @@ def interruptible(
             if outcome is not None or selected < 0:
                 return outcome  # type: ignore[no-any-return] # blocks return outcomes
             blocks[selected] = None
+            waiting.discard(selected)
+            after_handler = True
     finally:
         for block in (*blocks, main):
             if isinstance(block, GeneratorType):

@@ -289,7 +289,8 @@ class Prelude(Dynamics):
         if name in OPERATORS:
             return operation(name, self._ego, *operands)
         if name == "initial scenario":
-            return self._context.is_symbolic
+            run = self._run
+            return self._context.is_symbolic if run is None else run.in_first_setup
         raise UnsupportedError(f"the operator `{name}` is not supported yet", span=here())
 
     def convert(self, name: str, *args: Any) -> Any:
@@ -508,7 +509,7 @@ class Loader:
         """Run the code of a file as a module, with these globals to begin with."""
         state = Module(filename)
         self._folder = str(Path(filename).parent)
-        module = ModuleType(Path(filename).stem)
+        module = ModuleType("__main__")
         vars(module).update(scope or {})
         self._execute(code, module, state)
         return module, state

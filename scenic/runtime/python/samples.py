@@ -321,7 +321,18 @@ def parts(value: Any, names: Globals) -> Iterator[Any]:
 
 
 _WITHOUT_MEMBERS = frozenset(
-    {tuple, frozenset, slice, FunctionType, BuiltinMethodType, MethodType, type, partial, ModuleType, *CONTAINERS}
+    {
+        tuple,
+        frozenset,
+        slice,
+        FunctionType,
+        BuiltinMethodType,
+        MethodType,
+        type,
+        partial,
+        ModuleType,
+        *CONTAINERS,
+    }
 )
 """Types of which no instance has members that a program has written."""
 

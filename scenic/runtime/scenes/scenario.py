@@ -563,10 +563,8 @@ class Scenario:
             InvalidScenarioError: if there is no such object or parameter.
 
         """
-        if isinstance(params, Mapping):
-            given, names = params, ()
-        else:
-            given, names = {}, params
+        given: Mapping[str, Any] = params if isinstance(params, Mapping) else {}
+        names: Sequence[str] = () if isinstance(params, Mapping) else params
         if scene is None and (objects or names):
             raise InvalidScenarioError(
                 "`conditionOn` without a scene has no values for objects, or for parameters that are only named",
