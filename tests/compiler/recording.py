@@ -79,7 +79,9 @@ class Recorder:
         self._note("monitor")
         return lambda function: function
 
-    def scenario(self, preconditions: Sequence[Any], invariants: Sequence[Any], compose: Any) -> Any:
+    def scenario(
+        self, preconditions: Sequence[Any], invariants: Sequence[Any], compose: Any, sets_up: bool
+    ) -> Any:
         self._note("scenario")
 
         def keep(function: Any) -> Any:

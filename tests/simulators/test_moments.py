@@ -470,7 +470,7 @@ scenario Second():
         wait
         wait
 """
-    for before, alone in (("", []), (", with behavior B(0)", [0])):
+    for before, alone in (("", []), (", with behavior B(0)", [[0]])):
         done = DummySimulator().simulate(scene_of(text.format(before=before)), maxSteps=6)
         assert done is not None
         assert done.result is not None
@@ -478,7 +478,7 @@ scenario Second():
             [[2]],
             [[2]],
             [[1]],
-            [alone],
+            alone,
         ]
         assert list(done.agents) == [done.objects[0]]
 
