@@ -8,7 +8,7 @@ from concurrent.futures import Executor
 from dataclasses import dataclass, field
 from itertools import chain, repeat
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -71,6 +71,10 @@ class Services:
     """Compiles the program once more with values of global parameters."""
 
 
+_KEPT: Final = frozenset({"_foreseen", "_external_sampler"})
+"""Attributes of a scenario that conditions do not replace."""
+
+
 class Scenario:
     """A compiled program, which samples scenes and simulates them.
 
@@ -128,7 +132,7 @@ class Scenario:
             self._services.view,
             self._regions,
         )
-        self._unconditioned = {name: value for name, value in vars(self).items() if name != "_foreseen"}
+        self._unconditioned = {name: value for name, value in vars(self).items() if name not in _KEPT}
 
     def within(self, domain: Domain) -> "Scenario":
         """The same scenario, sampled from another part of the cube, which must hold all points that meet the requirements."""
@@ -591,6 +595,7 @@ class Scenario:
         other = self._services.given(given)
         other._sampler = self._sampler.on(other._sampler)
         vars(self).update({name: vars(other)[name] for name in self._unconditioned})
+        self._external_sampler = None
 
     def _number(self, item: Any) -> int:
         """The place of an object, which is given by itself or by its place."""
