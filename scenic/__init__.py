@@ -26,6 +26,7 @@ from scenic.language.garbage import import_lasting
 
 if TYPE_CHECKING:
     from scenic.compiler.parser import ParseResult, parse
+    from scenic.falsification.search import falsify
     from scenic.formats.reading import read_scenes
     from scenic.formats.trajectory_reading import read_trajectory
     from scenic.graph.points import GivenPoints, Sobol
@@ -65,6 +66,7 @@ _HOMES = MappingProxyType(
         "DepthSensor": "scenic.runtime.elements.sensors",
         "RGBSensor": "scenic.runtime.elements.sensors",
         "SSSensor": "scenic.runtime.elements.sensors",
+        "falsify": "scenic.falsification.search",
         "load": "scenic.pipeline",
         "read_scenes": "scenic.formats.reading",
         "read_trajectory": "scenic.formats.trajectory_reading",
@@ -98,6 +100,7 @@ __all__ = [
     "ScenicWarning",
     "Sobol",
     "SpecifierError",
+    "falsify",
     "load",
     "parse",
     "read_scenes",

@@ -147,6 +147,15 @@ class Simulations:
         with beside(folder):
             return choose_simulator(name, self._scenario)
 
+    def course_options(self) -> dict[str, Any]:
+        """The arguments of `Simulator.simulate` that say how a simulation runs."""
+        running = self._running
+        return {
+            "maxSteps": running.max_steps,
+            "timestep": running.timestep,
+            "stuck_after": running.stuck_after,
+        }
+
     def rows(
         self, numbers: Sequence[int], engine: Engine | None = None
     ) -> Generator[SimulationRow, None, None]:

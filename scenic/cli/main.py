@@ -32,6 +32,7 @@ _COMMANDS: Final[Mapping[str, tuple[str, str, str]]] = MappingProxyType(
         "map": ("scenic.cli.map", "map_command", "Show what is in a road map, or draw it."),
         "dataset": ("scenic.cli.dataset", "dataset", "Look at, verify and merge data sets."),
         "simulate": ("scenic.cli.simulate", "simulate", "Simulate scenes of a program."),
+        "falsify": ("scenic.cli.falsify", "falsify", "Search for scenes and simulations that fail."),
         "ast": ("scenic.cli.syntax_tree", "syntax_tree", "Show the syntax tree of a program."),
         "python": ("scenic.cli.python_code", "python_code", "Show the Python code that a program becomes."),
         "explain": ("scenic.cli.explain", "explain", "Explain a diagnostic by its code."),

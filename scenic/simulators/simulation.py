@@ -68,6 +68,7 @@ class Simulation(ABC):
         key: decides all random draws; drawn from Python's ``random`` if ``None``.
         source: what random numbers come from, given the source that hashes with the key; that one if ``None``.
         robustness: whether to compute by how much requirements hold.
+        keep_violations: let a simulation in which a requirement is violated run to its end, rather than reject it.
         stuck_after: seconds that the program's code may run in one step before `StuckBehaviorWarning` names its line.
         stuck_is_error: raise `StuckBehaviorError` then.
         keep_course: keep all states and actions, and what is recorded to files; if not, memory does not grow with the steps but
@@ -104,6 +105,7 @@ class Simulation(ABC):
         key: bytes | None = None,
         source: Sourcing | None = None,
         robustness: bool = False,
+        keep_violations: bool = False,
         stuck_after: float = 10.0,
         stuck_is_error: bool = False,
         keep_course: bool = True,
@@ -157,6 +159,7 @@ class Simulation(ABC):
             program.context.namer,
             mode_2d=program.context.mode_2d,
             robustness=robustness,
+            keep_violations=keep_violations,
             keep_draws=enableReplay,
             keep_files=keep_course,
         )

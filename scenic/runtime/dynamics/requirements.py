@@ -55,7 +55,7 @@ class Followed:
             verdict = self._monitor.add(self._holds)
             if self._robustness is not None:
                 self._robustness.add(self._margin)
-        if verdict is Verdict.FALSE:
+        if verdict is Verdict.FALSE and not run.keeps_violations:
             raise RejectSimulationException(f"{self._words} is violated")
 
     def _holds(self, index: int) -> bool:
@@ -72,7 +72,7 @@ class Followed:
     def finish(self) -> None:
         """The trace ends. Raises `RejectSimulationException` if the requirement does not hold on it."""
         verdict = self._monitor.verdict
-        if verdict is not None and not verdict:
+        if verdict is not None and not verdict and not self._run.keeps_violations:
             # One that is violated ends its scenario while that is told.
             how = "is violated" if verdict is Verdict.FALSE else "does not hold at the end"
             raise RejectSimulationException(f"{self._words} {how}")

@@ -99,6 +99,7 @@ class Run:
         name: names them, for the addresses of draws.
         mode_2d: whether the 2D compatibility mode is on.
         robustness: whether to follow by how much requirements hold, which needs memory for every step.
+        keep_violations: whether a violated requirement is told, rather than rejects the simulation.
         keep_draws: whether to remember what was drawn.
         keep_files: whether to keep in memory, too, what is recorded to files.
 
@@ -115,6 +116,7 @@ class Run:
         *,
         mode_2d: bool = False,
         robustness: bool = False,
+        keep_violations: bool = False,
         keep_draws: bool = True,
         keep_files: bool = True,
     ) -> None:
@@ -124,6 +126,7 @@ class Run:
         self.draws = Draws(source, self._where, lambda: simulation.currentTime, keep=keep_draws)
         self.context = RunContext(self, locate, name, mode_2d=mode_2d)
         self.wants_robustness = robustness
+        self.keeps_violations = keep_violations
         self.keeps_files = keep_files
         self.scenarios: list[ScenarioActivation] = []
         """Those that run, in the order in which they started."""

@@ -1,0 +1,225 @@
+"""``scenic falsify``: search for scenes and simulations in which requirements fail."""
+
+import secrets
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import click
+
+from scenic.cli.options import parameter_value, program_options, seconds
+from scenic.cli.output import CLEAN
+from scenic.cli.sample import NOT_ALL, _ended_by_signals, _engine, _progress
+
+__all__ = ["falsify"]
+
+
+def _options(_context: click.Context, _option: click.Parameter, given: tuple[str, ...]) -> dict[str, Any]:
+    found = {}
+    for item in given:
+        name, equals, value = item.partition("=")
+        if not equals or not name:
+            raise click.BadParameter(f"{item!r} is not of the form NAME=VALUE")
+        found[name] = parameter_value(value)
+    return found
+
+
+@click.command()
+@click.argument("file", metavar="FILE")
+@click.option(
+    "-n",
+    "count",
+    metavar="N",
+    type=click.IntRange(min=1),
+    default=1000,
+    help="Runs at most.  [default: 1000]",
+)
+@click.option(
+    "--sampler",
+    metavar="NAME",
+    default="cma",
+    help="random, halton, sobol, grid, ce, mab, eg, sa, cma, tpe or bo.  [default: cma]",
+)
+@click.option(
+    "--sampler-option",
+    "sampler_options",
+    metavar="NAME=VALUE",
+    multiple=True,
+    callback=_options,
+    help="An option of the sampler. Repeatable.",
+)
+@click.option(
+    "--objective",
+    "objectives",
+    metavar="NAME",
+    multiple=True,
+    help="A requirement, a record or a parameter to make small. Repeatable.  [default: the least robustness]",
+)
+@click.option(
+    "--minimize",
+    "expressions",
+    metavar="EXPR",
+    multiple=True,
+    help="An expression over records, or over parameters, to make small. Repeatable.",
+)
+@click.option(
+    "--threshold",
+    metavar="X",
+    type=float,
+    default=0.0,
+    help="Up to which value a run is a counterexample.  [default: 0]",
+)
+@click.option(
+    "--stop-after", metavar="K", type=click.IntRange(min=1), help="End after so many counterexamples."
+)
+@click.option(
+    "--time-limit",
+    metavar="T",
+    type=float,
+    callback=seconds,
+    help="Seconds after which no generation begins.",
+)
+@click.option(
+    "--space",
+    type=click.Choice(["auto", "external", "scene"]),
+    default="auto",
+    show_default=True,
+    help="What is searched: external parameters, or all draws of the scene.",
+)
+@click.option(
+    "--batch",
+    metavar="B",
+    type=click.IntRange(min=1),
+    help="Points asked for at a time.  [default: the sampler's]",
+)
+@click.option(
+    "--seed",
+    metavar="S",
+    type=int,
+    help="Searches of one seed are always the same. Without it, one is drawn and shown.",
+)
+@click.option("--static", is_flag=True, help="Search scenes by themselves, without simulations.")
+@click.option(
+    "--simulator",
+    metavar="NAME",
+    help="kinematic, mujoco, dummy, or MODULE:CLASS.  [default: the program's, else kinematic]",
+)
+@click.option(
+    "--steps",
+    "max_steps",
+    metavar="STEPS",
+    type=click.IntRange(min=0),
+    default=100,
+    help="Steps of a simulation at most.  [default: 100]",
+)
+@click.option(
+    "--timestep",
+    metavar="T",
+    type=float,
+    callback=seconds,
+    help="Seconds in a step.  [default: the simulator's]",
+)
+@program_options
+@click.option(
+    "-j", "jobs", metavar="J", type=click.IntRange(min=1), default=1, help="Processes.  [default: 1]"
+)
+@click.option("--dask", metavar="ADDRESS", help="Simulate on a Dask cluster: the address of its scheduler.")
+@click.option(
+    "-o",
+    "--output",
+    metavar="DIR",
+    type=click.Path(path_type=Path),
+    help="Keep runs and counterexamples in this folder.",
+)
+@click.option("--resume", is_flag=True, help="Go on with the search in the folder.")
+@click.option(
+    "--report", metavar="PAGE.html", type=click.Path(path_type=Path), help="Make a page about the search."
+)
+def falsify(
+    file: str,
+    count: int,
+    sampler: str,
+    sampler_options: Mapping[str, Any],
+    objectives: tuple[str, ...],
+    expressions: tuple[str, ...],
+    threshold: float,
+    stop_after: int | None,
+    time_limit: float | None,
+    space: str,
+    batch: int | None,
+    seed: int | None,
+    static: bool,
+    simulator: str | None,
+    max_steps: int,
+    timestep: float | None,
+    parameters: Mapping[str, Any],
+    scenario: str | None,
+    model: str | None,
+    mode_2d: bool,
+    jobs: int,
+    dask: str | None,
+    output: Path | None,
+    resume: bool,
+    report: Path | None,
+) -> int:
+    """Search for scenes and simulations in which requirements fail.
+
+    A run is a counterexample if its value is at most the threshold; of a requirement the value is its robustness.
+
+    Exit codes: 0 counterexamples were found, 1 the program has errors, 2 wrong usage, 3 none was found, 130 interrupted.
+    """
+    if resume and output is None:
+        raise click.UsageError("--resume needs the folder of the search: -o DIR")
+    from scenic.falsification.objectives import Objective
+    from scenic.falsification.search import Limits, Plan, search
+    from scenic.falsification.store import SearchFolder, manifest_of
+    from scenic.pipeline import load
+
+    if resume and seed is None and output is not None and (output / "manifest.json").exists():
+        seed = int(manifest_of(output)["seed"])
+    if seed is None:
+        seed = secrets.randbits(32)
+        sys.stderr.write(f"seed {seed} (the same search again: --seed {seed})\n")
+    loaded = load(Path(file), params=parameters, model=model, scenario=scenario, mode2D=mode_2d)
+    wanted = [
+        *(Objective(name=item) for item in objectives),
+        *(Objective(expression=item) for item in expressions),
+    ]
+    plan = Plan(
+        seed,
+        sampler,
+        sampler_options,
+        tuple(wanted) or (Objective(),),
+        threshold,
+        space,
+        batch,
+        simulator,
+        static,
+        max_steps,
+        timestep,
+    )
+    folder = None if output is None else SearchFolder(output, plan.settings(loaded), resume=resume)
+    with (
+        _ended_by_signals(),
+        _progress(count, shown=not sys.stdout.isatty()) as advance,
+        _engine(jobs, dask) as engine,
+    ):
+        limits = Limits(count, stop_after, time_limit, lambda _row: advance(1, 1))
+        result = search(loaded, plan, limits, engine=engine, folder=folder)
+    share, low, high = result.share()
+    failed = result.counterexamples
+    print(f"{len(result.rows)} runs, {result.evaluated} with a value, {len(failed)} counterexamples")
+    if result.evaluated:
+        print(f"share of counterexamples {share:.3g} (95% interval {low:.3g} to {high:.3g})")
+    worst = result.best
+    if worst is not None:
+        print(f"least value {min(map(float, worst['values'])):.6g} in run {worst['run']}")
+        for name, value in list(worst["point"].items())[:12]:
+            print(f"  {name} = {value:.6g}")
+    if report is not None:
+        from scenic.falsification.report import report_page
+        from scenic.formats.files import write
+
+        write(report, report_page(result, Path(file).name, links_from=report.parent).encode())
+    return CLEAN if failed else NOT_ALL

@@ -1,0 +1,177 @@
+"""One run of a search: a scene of a point, its simulation, its value."""
+
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import closing
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from scenic.batch.keeping import Kept
+from scenic.falsification.objectives import Objective, ObjectiveError
+from scenic.falsification.space import Floats, Space
+from scenic.falsification.store import number
+from scenic.formats.trajectories import course_document
+from scenic.runtime.sampling.report import Exhausted
+from scenic.runtime.scenes.scene import Scene
+
+if TYPE_CHECKING:
+    from scenic.batch.simulations import Simulations
+    from scenic.runtime.scenes.scenario import Scenario
+
+__all__ = ["Evaluation", "Task"]
+
+_ATTEMPTS: Final = 1000
+"""Candidates tried for one point of external parameters, the other draws anew each time."""
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """A run: its number, and the numbers of the draws by address."""
+
+    run: int
+    numbers: Mapping[int, float]
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """What runs are evaluated by; other processes get it whole.
+
+    Attributes:
+        scenario: the scenario.
+        simulations: how scenes are simulated; ``None`` if the scenes themselves are searched.
+        objectives: what is to become small.
+        space: the coordinates of the search.
+        seed: of all draws that are not searched.
+        threshold: up to which value a run is a counterexample.
+        folder: where counterexamples are kept, if anywhere.
+
+    """
+
+    scenario: "Scenario"
+    simulations: "Simulations | None"
+    objectives: tuple[Objective, ...]
+    space: Space
+    seed: int
+    threshold: float
+    folder: Path | None = None
+
+    @property
+    def attempts(self) -> int:
+        """Candidates tried for one point."""
+        searched = {item.address for item in self.space.coordinates}
+        return 1 if all(axis.address in searched for axis in self.scenario.axes) else _ATTEMPTS
+
+    def together(self, first: int, numbers: Floats) -> Iterator[dict[str, Any]]:
+        """Rows of the scenes of ``numbers`` ``(n, d)``, evaluated as columns; the first is run ``first``."""
+        by_address = {item.address: numbers[:, place] for place, item in enumerate(self.space.coordinates)}
+        results = self.scenario.chosen(
+            by_address, len(numbers), seed=self.seed, first=first, max_attempts=self.attempts
+        )
+        for run, result in enumerate(results, first):
+            if isinstance(result, Exhausted):
+                yield {"run": run, "status": "rejected", "values": None, "attempts": result.attempts}
+                continue
+            values = [item.of_scene(result) for item in self.objectives]
+            if min(values) <= self.threshold and self.folder is not None:
+                self._keep_scene(result, self._folder_of(run))
+            yield self._row(run, values, result.attempts)
+
+    def __call__(self, task: Task) -> dict[str, Any]:
+        """The row of one simulation. Raises nothing but interruptions and `ObjectiveError`."""
+        begun = time.perf_counter()
+        try:
+            row = self._simulated(task)
+        except ObjectiveError as error:
+            row = {
+                "run": task.run,
+                "status": "objective",
+                "values": None,
+                "error": error.message,
+                "help": error.help,
+            }
+        except Exception as error:  # noqa: BLE001 - it is told in the row, and the search goes on
+            words = f"{type(error).__name__}: {error}"
+            row = {"run": task.run, "status": "failed", "values": None, "error": words}
+        row["seconds"] = round(time.perf_counter() - begun, 4)
+        return row
+
+    def _simulated(self, task: Task) -> dict[str, Any]:
+        assert self.simulations is not None
+        columns = {place: np.array([value]) for place, value in task.numbers.items()}
+        (scene,) = self.scenario.chosen(
+            columns, 1, seed=self.seed, first=task.run, max_attempts=self.attempts
+        )
+        if isinstance(scene, Exhausted):
+            return {"run": task.run, "status": "rejected", "values": None, "attempts": scene.attempts}
+        waiting = None if self.folder is None else self.folder / f".run-{task.run:06d}.jsonl"
+        with closing(Kept(waiting, "jsonl", shown=waiting is not None)) as kept:
+            reasons: list[str] = []
+            done = self.simulations.simulator.simulate(
+                scene,
+                name=str(task.run),
+                key=f"{self.seed}:{task.run}:1".encode(),
+                robustness=True,
+                keep_violations=True,
+                stuck_is_error=True,
+                enableReplay=False,
+                on_state=kept.begin(),
+                onRejection=lambda error: reasons.append(str(error)),
+                **self.simulations.course_options(),
+            )
+            if done is None:
+                return {
+                    "run": task.run,
+                    "status": "rejected",
+                    "values": None,
+                    "attempts": scene.attempts,
+                    "error": reasons[-1] if reasons else None,
+                }
+            values = [item.of_simulation(done.result, scene.params) for item in self.objectives]
+            row = self._row(task.run, values, scene.attempts)
+            about = course_document(done, k=task.run, tries=1)
+            row["requirements"] = {
+                item["label"]: {"verdict": item["verdict"], "robustness": _plain(item["robustness"])}
+                for item in about["requirements"]
+            }
+            row["steps"] = about["steps"]
+            if row["status"] == "counterexample" and waiting is not None:
+                self._keep_course(scene, kept, done, about, task.run, waiting)
+            return row
+
+    def _row(self, run: int, values: Sequence[float], attempts: int) -> dict[str, Any]:
+        failed = min(values) <= self.threshold
+        return {
+            "run": run,
+            "status": "counterexample" if failed else "held",
+            "values": [number(value) for value in values],
+            "attempts": attempts,
+        }
+
+    def _folder_of(self, run: int) -> Path:
+        assert self.folder is not None
+        folder = self.folder / "counterexamples" / f"{run:04d}"
+        folder.mkdir(parents=True, exist_ok=True)
+        return folder
+
+    def _keep_scene(self, scene: Scene, folder: Path) -> None:
+        scene.save(folder / "scene.json")
+
+    def _keep_course(
+        self, scene: Scene, kept: Kept, done: Any, about: Mapping[str, Any], run: int, waiting: Path
+    ) -> None:
+        from scenic.formats.course_page import course_page
+        from scenic.formats.files import write
+
+        folder = self._folder_of(run)
+        self._keep_scene(scene, folder)
+        page = kept.finish(done, about)
+        waiting.replace(folder / "simulation.jsonl")
+        if page is not None:
+            write(folder / "play.html", course_page(f"run {run}", [page]).encode())
+
+
+def _plain(value: Any) -> Any:
+    return number(value) if isinstance(value, float) else value

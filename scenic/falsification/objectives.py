@@ -1,0 +1,146 @@
+"""What a search makes small: robustness of requirements, records, expressions, functions."""
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Any, Final
+
+from scenic.language.errors import Located
+from scenic.language.spelling import nearest
+from scenic.runtime.scenes.scene import Scene
+
+__all__ = ["Objective", "ObjectiveError"]
+
+
+class ObjectiveError(Located):
+    """An objective that cannot be evaluated."""
+
+    code = "SC604"
+
+
+_NAMES: Final[Mapping[str, Any]] = MappingProxyType(
+    {
+        **{name: getattr(math, name) for name in ("sqrt", "hypot", "sin", "cos", "exp", "log", "pi", "inf")},
+        "min": min,
+        "max": max,
+        "sum": sum,
+        "abs": abs,
+        "len": len,
+        "round": round,
+        "sorted": sorted,
+        "any": any,
+        "all": all,
+        "float": float,
+        "int": int,
+    }
+)
+"""What an expression finds beside records and parameters."""
+
+
+@dataclass(frozen=True)
+class Objective:
+    """What is to become small; by default the least robustness of all temporal requirements.
+
+    Attributes:
+        name: of a requirement (its label, or ``line 3``), of a ``record final``, or, of scenes, of a parameter.
+        expression: over records, as lists of their values, or of scenes over parameters, ``ego`` and ``objects``.
+        function: called with the result of a simulation, or with a scene.
+
+    """
+
+    name: str | None = None
+    expression: str | None = None
+    function: Callable[[Any], float] | None = None
+
+    @property
+    def label(self) -> str:
+        """What to call it."""
+        if self.function is not None:
+            return getattr(self.function, "__name__", "function")
+        return self.expression or self.name or "robustness"
+
+    def of_simulation(self, result: Any, params: Mapping[str, Any]) -> float:
+        """The value of a simulation's result; raises `ObjectiveError`."""
+        if self.function is not None:
+            return _number(self.function(result), self.label)
+        records = {name: _values(value) for name, value in result.records.items()}
+        if self.expression is not None:
+            return self._evaluated({**params, **records})
+        outcomes = [item for item in result.requirements if item.robustness is not None]
+        if self.name is None:
+            if not outcomes:
+                raise ObjectiveError(
+                    "the simulations follow no requirement, so that there is no robustness to make small",
+                    help="write `require always ...`, or name an objective: --minimize EXPRESSION",
+                )
+            return min(float(item.robustness) for item in outcomes)
+        for item in outcomes:
+            if self.name in (item.label, f"line {item.line}"):
+                return float(item.robustness)
+        if self.name in records:
+            return _number(records[self.name], self.name)
+        known = [*(item.label for item in outcomes), *records]
+        raise _unknown(self.name, known, "is neither a requirement nor recorded")
+
+    def of_scene(self, scene: Scene) -> float:
+        """The value of a scene; raises `ObjectiveError`."""
+        if self.function is not None:
+            return _number(self.function(scene), self.label)
+        params = scene.params
+        if self.expression is not None:
+            return self._evaluated({**params, "ego": scene.egoObject, "objects": scene.objects})
+        if self.name is None:
+            raise ObjectiveError(
+                "a search of scenes needs an objective",
+                help="name a parameter (--objective NAME) or an expression (--minimize EXPRESSION), or a --simulator",
+            )
+        if self.name not in params:
+            raise _unknown(self.name, list(params), "is no parameter of the program")
+        return _number(params[self.name], self.name)
+
+    def _evaluated(self, names: Mapping[str, Any]) -> float:
+        assert self.expression is not None
+        try:
+            code = compile(self.expression, "<objective>", "eval")
+            return _number(eval(code, {"__builtins__": {}, **_NAMES, **names}), self.expression)
+        except NameError as error:
+            raise _unknown(str(error.name), list(names), "is not recorded") from None
+        except ObjectiveError:
+            raise
+        except Exception as error:  # whatever the user's expression does
+            raise ObjectiveError(
+                f"the objective `{self.expression}` fails: {type(error).__name__}: {error}",
+                help="it is Python over records (lists of values) and parameters",
+            ) from error
+
+
+def _unknown(name: str, known: Sequence[str], words: str) -> ObjectiveError:
+    near = nearest(name, known)
+    return ObjectiveError(
+        f"the objective {name!r} {words}",
+        help=f"did you mean {near!r}?"
+        if near
+        else f"there are: {', '.join(known) or 'none'}; add `record ... as {name}`",
+    )
+
+
+def _values(record: Any) -> Any:
+    """The values of a series without their times; anything else as it is."""
+    if (
+        isinstance(record, Sequence)
+        and record
+        and all(isinstance(item, tuple) and len(item) == 2 for item in record)
+    ):
+        return [value for _, value in record]
+    return record
+
+
+def _number(value: Any, label: str) -> float:
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        raise ObjectiveError(
+            f"the objective `{label}` is no number, but {type(value).__name__}",
+            help='reduce a series to one number: --minimize "min(distance)"',
+        ) from None

@@ -1,0 +1,171 @@
+"""The report of a search as a page: values over runs, parameters, the worst runs."""
+
+import html
+import math
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from scenic.falsification.search import FalsificationResult
+from scenic.falsification.store import manifest_of, read_rows
+
+__all__ = ["importances", "load_result", "report_page"]
+
+_WIDTH: Final = 860
+_HEIGHT: Final = 260
+_EDGE: Final = 48
+_WORST: Final = 10
+_MOST_AXES: Final = 12
+_MOST_LINES: Final = 500
+
+_STYLE: Final = (
+    "body{font:15px/1.5 system-ui,sans-serif;max-width:900px;margin:2em auto;padding:0 1em;color:#222}"
+    "table{border-collapse:collapse}td,th{padding:.2em .8em;text-align:right;border-bottom:1px solid #ddd}"
+    "svg{background:#fafafa;border:1px solid #ddd}text{font-size:12px;fill:#555}"
+)
+
+
+def load_result(folder: Path) -> FalsificationResult:
+    """The result of the search that a folder keeps; raises `SearchFolderError` if there is none."""
+    about = manifest_of(folder)
+    return FalsificationResult(read_rows(folder), tuple(about.get("objectives", ())), folder)
+
+
+def importances(result: FalsificationResult) -> list[tuple[str, float]]:
+    """How strongly each coordinate goes with the value: the size of Spearman's rank correlation, the greatest first."""
+    rows = [row for row in result.rows if row["values"] is not None and math.isfinite(_value(row))]
+    if len(rows) < 3:
+        return []
+    values = _ranks([_value(row) for row in rows])
+    found = []
+    for name in rows[0]["point"]:
+        places = _ranks([row["point"][name] for row in rows])
+        spread = float(np.std(places) * np.std(values))
+        together = float(np.mean((places - places.mean()) * (values - values.mean())))
+        found.append((name, abs(together) / spread if spread else 0.0))
+    return sorted(found, key=lambda item: -item[1])
+
+
+def _ranks(values: Sequence[float]) -> Any:
+    from scipy.stats import rankdata
+
+    return rankdata(values)
+
+
+def _value(row: Any) -> float:
+    return min(map(float, row["values"]))
+
+
+def report_page(result: FalsificationResult, title: str, *, links_from: Path | None = None) -> str:
+    """The text of a page about a search.
+
+    Args:
+        result: the search.
+        title: the name of the program.
+        links_from: the folder of the page, for links to the pages that play counterexamples.
+
+    """
+    share, low, high = result.share()
+    failed = len(result.counterexamples)
+    known = [row for row in result.rows if row["values"] is not None]
+    parts = [
+        f"<h1>Search of {html.escape(title)}</h1>",
+        f"<p>Made small: {html.escape(', '.join(result.objectives))}.</p>",
+        f"<p>{len(result.rows)} runs, {len(known)} with a value, {failed} counterexamples",
+        f": {100 * share:.3g}% (95% interval {100 * low:.3g}% to {100 * high:.3g}%, Clopper-Pearson).</p>"
+        if known
+        else ".</p>",
+    ]
+    if known and not any(math.isfinite(_value(row)) for row in known):
+        parts.append(
+            "<p>All values are plus or minus infinity: of this objective only the truth is known, so nothing guides a search.</p>"
+        )
+    finite = [row for row in known if math.isfinite(_value(row))]
+    if finite:
+        parts += ["<h2>Value over runs</h2>", _progress(finite)]
+        ranked = importances(result)
+        shown = [name for name, _ in ranked[:_MOST_AXES]]
+        if shown:
+            parts += [
+                "<h2>Parameters</h2>",
+                _parallel(finite, shown),
+                _table(
+                    ("parameter", "rank correlation"),
+                    [(name, f"{size:.2f}") for name, size in ranked[:_MOST_AXES]],
+                ),
+            ]
+    worst = sorted(known, key=_value)[:_WORST]
+    parts += [
+        "<h2>The worst runs</h2>",
+        _table(
+            ("run", "value", "status", "point"),
+            [_described(row, result, links_from) for row in worst],
+            raw=True,
+        ),
+    ]
+    return f"<!doctype html><html lang='en'><meta charset='utf-8'><title>{html.escape(title)}</title><style>{_STYLE}</style>{''.join(parts)}</html>"
+
+
+def _described(row: Any, result: FalsificationResult, links_from: Path | None) -> tuple[str, ...]:
+    run = str(row["run"])
+    if result.folder is not None:
+        page = result.folder / "counterexamples" / f"{row['run']:04d}" / "play.html"
+        if page.exists():
+            run = f"<a href='{html.escape(os.path.relpath(page, links_from or result.folder))}'>{run}</a>"
+    point = ", ".join(
+        f"{html.escape(name)} = {value:.4g}" for name, value in list(row["point"].items())[:_MOST_AXES]
+    )
+    return run, f"{_value(row):.6g}", row["status"], point
+
+
+def _table(head: Sequence[str], rows: Sequence[Sequence[str]], *, raw: bool = False) -> str:
+    cells = "".join(f"<th>{item}</th>" for item in head)
+    lines = ("".join(f"<td>{item if raw else html.escape(item)}</td>" for item in row) for row in rows)
+    return f"<table><tr>{cells}</tr>{''.join(f'<tr>{line}</tr>' for line in lines)}</table>"
+
+
+def _scaled(values: Any, size: float, *, up: bool = False) -> Any:
+    low, high = float(np.min(values)), float(np.max(values))
+    places = (
+        (np.asarray(values, dtype=np.float64) - low) / (high - low)
+        if high > low
+        else np.full(len(values), 0.5)
+    )
+    return size - _EDGE - places * (size - 2 * _EDGE) if up else _EDGE + places * (size - 2 * _EDGE)
+
+
+def _progress(rows: Sequence[Any]) -> str:
+    values = np.array([_value(row) for row in rows])
+    best = np.minimum.accumulate(values)
+    across = _scaled([row["run"] for row in rows], _WIDTH)
+    down = _scaled(np.concatenate([values, best]), _HEIGHT, up=True)
+    dots = "".join(
+        f"<circle cx='{x:.1f}' cy='{y:.1f}' r='2.5' fill='{_colour(row)}'/>"
+        for x, y, row in zip(across, down, rows, strict=False)
+    )
+    line = " ".join(f"{x:.1f},{y:.1f}" for x, y in zip(across, down[len(values) :], strict=True))
+    words = f"<text x='4' y='{_EDGE}'>{values.max():.3g}</text><text x='4' y='{_HEIGHT - _EDGE}'>{values.min():.3g}</text>"
+    return f"<svg viewBox='0 0 {_WIDTH} {_HEIGHT}' width='100%'>{dots}<polyline points='{line}' fill='none' stroke='#444'/>{words}</svg>"
+
+
+def _colour(row: Any) -> str:
+    return "#c0392b" if row["status"] == "counterexample" else "#2e86c1"
+
+
+def _parallel(rows: Sequence[Any], names: Sequence[str]) -> str:
+    some = sorted(rows, key=_value, reverse=True)[-_MOST_LINES:]
+    columns = [_scaled([row["point"][name] for row in some], _HEIGHT, up=True) for name in names]
+    across = np.linspace(_EDGE, _WIDTH - _EDGE, len(names))
+    lines = "".join(
+        f"<polyline points='{' '.join(f'{x:.1f},{column[k]:.1f}' for x, column in zip(across, columns, strict=True))}'"
+        f" fill='none' stroke='{_colour(row)}' stroke-opacity='.35'/>"
+        for k, row in enumerate(some)
+    )
+    words = "".join(
+        f"<text x='{x:.1f}' y='{20 + 14 * (k % 2)}' text-anchor='middle'>{html.escape(name)}</text>"
+        for k, (x, name) in enumerate(zip(across, names, strict=True))
+    )
+    return f"<svg viewBox='0 0 {_WIDTH} {_HEIGHT}' width='100%'>{lines}{words}</svg>"

@@ -1,0 +1,351 @@
+"""The search: ask a sampler for points, evaluate them, tell it what came of them."""
+
+import math
+import random
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from scenic.batch.engines import Engine, Processes
+from scenic.batch.simulations import Running, Simulations
+from scenic.falsification.evaluating import Evaluation, Task
+from scenic.falsification.objectives import Objective, ObjectiveError
+from scenic.falsification.samplers import make_sampler
+from scenic.falsification.samplers.protocol import Exhausted
+from scenic.falsification.space import Floats, Space, space_of
+from scenic.falsification.store import SearchFolder
+from scenic.language.errors import InvalidScenarioError, Located
+
+if TYPE_CHECKING:
+    from scenic.runtime.scenes.scenario import Scenario
+    from scenic.simulators.simulator import Simulator
+
+__all__ = ["FalsificationResult", "Plan", "SearchError", "falsify", "search"]
+
+_GENERATION: Final = 8
+"""Points asked for at a time where a sampler does not care and simulations take long."""
+
+_STATIC_GENERATION: Final = 512
+"""The same for scenes by themselves."""
+
+_FAILURES: Final = 10
+"""Failing runs in a row that end a search."""
+
+
+class SearchError(Located):
+    """A search that cannot go on."""
+
+    code = "SC503"
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Everything that decides what a search finds."""
+
+    seed: int
+    sampler: str = "cma"
+    sampler_options: Mapping[str, Any] | None = None
+    objectives: tuple[Objective, ...] = (Objective(),)
+    threshold: float = 0.0
+    space: str = "auto"
+    batch: int | None = None
+    simulator: "str | Simulator | None" = None
+    is_static: bool = False
+    max_steps: int | None = 100
+    timestep: float | None = None
+
+    def settings(self, scenario: "Scenario") -> dict[str, Any]:
+        """The same as plain data."""
+        simulator = (
+            self.simulator
+            if self.simulator is None or isinstance(self.simulator, str)
+            else type(self.simulator).__name__
+        )
+        return {
+            "program": scenario.digest,
+            "file": scenario.filename,
+            "seed": self.seed,
+            "sampler": self.sampler,
+            "sampler options": dict(self.sampler_options or {}),
+            "objectives": [item.label for item in self.objectives],
+            "threshold": self.threshold,
+            "space": self.space,
+            "batch": self.batch,
+            "simulator": "none" if self.is_static else simulator,
+            "steps": self.max_steps,
+            "timestep": self.timestep,
+        }
+
+
+@dataclass
+class FalsificationResult:
+    """What a search has found.
+
+    Attributes:
+        rows: one mapping for each run: its number ``run``, ``status`` (held, counterexample, rejected, failed), ``values`` of the
+            objectives, ``point`` (values by name), ``numbers`` (of draws, by address in hexadecimal digits).
+        objectives: the names of the objectives.
+        folder: where it is kept.
+
+    """
+
+    rows: list[dict[str, Any]]
+    objectives: tuple[str, ...]
+    folder: Path | None = None
+
+    @property
+    def counterexamples(self) -> list[dict[str, Any]]:
+        """The runs that failed, the worst first."""
+        found = [row for row in self.rows if row["status"] == "counterexample"]
+        return sorted(found, key=lambda row: min(map(float, row["values"])))
+
+    @property
+    def evaluated(self) -> int:
+        """How many runs have a value."""
+        return sum(row["values"] is not None for row in self.rows)
+
+    @property
+    def best(self) -> dict[str, Any] | None:
+        """The run with the least value."""
+        known = [row for row in self.rows if row["values"] is not None]
+        return min(known, key=lambda row: min(map(float, row["values"])), default=None)
+
+    def share(self, confidence: float = 0.95) -> tuple[float, float, float]:
+        """The share of counterexamples, and the ends of its interval (Clopper and Pearson, 1934)."""
+        from scipy.stats import beta
+
+        total, failed = self.evaluated, len(self.counterexamples)
+        if total == 0:
+            return math.nan, 0.0, 1.0
+        rest = (1 - confidence) / 2
+        low = 0.0 if failed == 0 else float(beta.ppf(rest, failed, total - failed + 1))
+        high = 1.0 if failed == total else float(beta.ppf(1 - rest, failed + 1, total - failed))
+        return failed / total, low, high
+
+    def front(self) -> list[dict[str, Any]]:
+        """The runs than which no other is at least as small in all objectives and smaller in one (Pareto's)."""
+        known = [(tuple(map(float, row["values"])), row) for row in self.rows if row["values"] is not None]
+        return [
+            row
+            for values, row in known
+            if not any(
+                other != values and all(a <= b for a, b in zip(other, values, strict=True))
+                for other, _ in known
+            )
+        ]
+
+
+@dataclass
+class Limits:
+    """When a search ends."""
+
+    runs: int
+    stop_after: int | None = None
+    time_limit: float | None = None
+    told: Callable[[dict[str, Any]], None] = field(default=lambda _row: None)
+    """Called with each finished run, in order."""
+
+
+def search(
+    scenario: "Scenario",
+    plan: Plan,
+    limits: Limits,
+    *,
+    engine: Engine | None = None,
+    folder: SearchFolder | None = None,
+) -> FalsificationResult:
+    """Search a scenario, going on with what the folder holds.
+
+    Results depend on the plan alone: points are asked for and told in generations of a fixed size.
+
+    Raises:
+        ObjectiveError: the objective cannot be evaluated.
+        SamplerError: there is no such sampler.
+        SearchError: ten runs in a row failed.
+
+    """
+    space = space_of(scenario, plan.space)
+    if not len(space):
+        raise InvalidScenarioError(
+            "there is nothing to search: nothing in the program is random",
+            help="draw something by `Range`, or `VerifaiRange`",
+        )
+    sampler = make_sampler(plan.sampler, space, plan.seed, plan.sampler_options)
+    simulations = None
+    if not plan.is_static:
+        simulations = Simulations(
+            scenario, plan.simulator, Running(plan.seed, plan.max_steps, plan.timestep, tries=1)
+        )
+    evaluation = Evaluation(
+        scenario,
+        simulations,
+        plan.objectives,
+        space,
+        plan.seed,
+        plan.threshold,
+        None if folder is None else folder.path,
+    )
+    result = FalsificationResult(
+        [], tuple(item.label for item in plan.objectives), None if folder is None else folder.path
+    )
+    kept = [] if folder is None else folder.rows
+    deadline = None if limits.time_limit is None else time.monotonic() + limits.time_limit
+    failures = 0
+    while len(result.rows) < limits.runs:
+        if deadline is not None and time.monotonic() > deadline:
+            break
+        if limits.stop_after is not None and len(result.counterexamples) >= limits.stop_after:
+            break
+        size = plan.batch or sampler.batch or (_STATIC_GENERATION if plan.is_static else _GENERATION)
+        try:
+            points = sampler.ask(size)
+        except Exhausted:
+            break
+        first = len(result.rows)
+        wanted = min(len(points), limits.runs - first)
+        known = kept[first : first + wanted]
+        rows = [*known, *_evaluated(evaluation, points, first, len(known), wanted, engine)]
+        if folder is not None and len(rows) > len(known):
+            folder.add(rows[len(known) :])
+        for row in rows:
+            failures = failures + 1 if row["status"] == "failed" else 0
+            if failures == _FAILURES:
+                raise SearchError(
+                    f"{_FAILURES} runs in a row failed; the last one: {row['error']}",
+                    help="mend the program or the simulator; finished runs are kept, and --resume goes on",
+                )
+            limits.told(row)
+        result.rows.extend(rows)
+        values = np.array([_told(row) for row in rows], dtype=np.float64)
+        sampler.tell(points[: len(rows)], values)
+    return result
+
+
+def _told(row: Mapping[str, Any]) -> float:
+    return math.nan if row["values"] is None else min(map(float, row["values"]))
+
+
+def _evaluated(
+    evaluation: Evaluation, points: Floats, first: int, done: int, wanted: int, engine: Engine | None
+) -> list[dict[str, Any]]:
+    """The rows of points ``done`` to ``wanted`` of a generation whose first run has the number ``first``."""
+    if done >= wanted:
+        return []
+    space, numbers = evaluation.space, evaluation.space.numbers(points)
+    if evaluation.simulations is None:
+        rows = list(evaluation.together(first + done, numbers[done:wanted]))
+    else:
+        tasks = [
+            Task(
+                first + place,
+                {item.address: float(numbers[place, k]) for k, item in enumerate(space.coordinates)},
+            )
+            for place in range(done, wanted)
+        ]
+        if engine is None or len(tasks) < 2:
+            rows = [evaluation(task) for task in tasks]
+        else:
+            by_place = dict(engine.run(evaluation, tasks, lost=_lost))
+            rows = [by_place[place] for place in range(len(tasks))]
+    for place, row in enumerate(rows, done):
+        if row["status"] == "objective":
+            raise ObjectiveError(row["error"], help=row["help"])
+        row["point"] = _point(space, points[place])
+        row["numbers"] = {
+            f"{item.address:016x}": float(numbers[place, k]) for k, item in enumerate(space.coordinates)
+        }
+    return rows
+
+
+def _point(space: Space, point: Floats) -> dict[str, float]:
+    return {item.label: item.value(float(point[k])) for k, item in enumerate(space.coordinates)}
+
+
+def _lost(task: Task, code: int) -> dict[str, Any]:
+    return {
+        "run": task.run,
+        "status": "failed",
+        "values": None,
+        "error": f"its process died (exit code {code})",
+    }
+
+
+def falsify(
+    scenario: "Scenario",
+    simulator: "str | Simulator | None" = None,
+    *,
+    objective: "str | Objective | Callable[[Any], float] | Sequence[Any] | None" = None,
+    minimize: str | None = None,
+    sampler: str = "cma",
+    sampler_options: Mapping[str, Any] | None = None,
+    n: int = 1000,
+    seed: int | None = None,
+    threshold: float = 0.0,
+    stop_after: int | None = None,
+    time_limit: float | None = None,
+    space: str = "auto",
+    batch: int | None = None,
+    max_steps: int | None = 100,
+    timestep: float | None = None,
+    static: bool = False,
+    processes: int = 1,
+    folder: str | Path | None = None,
+    resume: bool = False,
+) -> FalsificationResult:
+    """Search for scenes, or for simulations, in which an objective is at most ``threshold``.
+
+    Args:
+        scenario: what to search.
+        simulator: the name of a simulator, or one; the program's own by default.
+        objective: the name of a requirement, of a record or of a parameter, a function of a simulation's result (or of a scene), an
+            `Objective`, or several of these; by default the least robustness of all temporal requirements.
+        minimize: an expression over records, or over parameters.
+        sampler: the name of a sampler; see `scenic.falsification.samplers`.
+        sampler_options: its options.
+        n: runs at most.
+        seed: any integer; drawn from Python's ``random`` if not given.
+        threshold: up to which value a run is a counterexample.
+        stop_after: counterexamples after which the search ends.
+        time_limit: seconds after which no generation begins.
+        space: ``external``, ``scene``, or ``auto``: external parameters if there are any, else all draws of the scene.
+        batch: points asked for at a time; results depend on it.
+        max_steps: steps of a simulation at most.
+        timestep: seconds in a step.
+        static: search scenes by themselves, without simulations.
+        processes: how many processes simulate; changes speed, never results.
+        folder: where runs and counterexamples are kept.
+        resume: go on with the search in the folder.
+
+    """
+    given = (
+        [] if objective is None else list(objective) if isinstance(objective, list | tuple) else [objective]
+    )
+    objectives = [_objective(item) for item in given]
+    if minimize is not None:
+        objectives.append(Objective(expression=minimize))
+    plan = Plan(
+        random.getrandbits(63) if seed is None else seed,
+        sampler,
+        sampler_options,
+        tuple(objectives) or (Objective(),),
+        threshold,
+        space,
+        batch,
+        simulator,
+        static,
+        max_steps,
+        timestep,
+    )
+    kept = None if folder is None else SearchFolder(Path(folder), plan.settings(scenario), resume=resume)
+    engine = Processes(processes) if processes > 1 else None
+    return search(scenario, plan, Limits(n, stop_after, time_limit), engine=engine, folder=kept)
+
+
+def _objective(item: Any) -> Objective:
+    if isinstance(item, Objective):
+        return item
+    return Objective(name=item) if isinstance(item, str) else Objective(function=item)

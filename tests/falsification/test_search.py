@@ -1,0 +1,203 @@
+"""Searches: the same rows however they run, what is kept of them, and what is said of bad input."""
+
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import pytest
+from click.testing import CliRunner, Result
+
+import scenic
+from scenic.cli.falsify import falsify as command
+from scenic.falsification.objectives import ObjectiveError
+from scenic.falsification.report import importances, load_result, report_page
+from scenic.falsification.search import FalsificationResult, SearchError
+from scenic.falsification.store import SearchFolderError, read_rows
+from scenic.language.errors import InvalidScenarioError
+
+BRAKE = """
+from scenic.simulators.kinematic import SetVelocity
+speed = VerifaiRange(2, 8)
+gap = VerifaiRange(4, 30)
+lead = new Object at (0, gap + 4)
+behavior Drive():
+    v = speed
+    while True:
+        if (distance to lead) < 12:
+            v = max(0, v - 0.25)
+        take SetVelocity((0, v, 0))
+ego = new Object with behavior Drive()
+record (distance from ego to lead) as gaps
+record final ego.position.y as y
+require always (distance from ego to lead) > 3
+"""
+
+STATIC = """
+xs = [Range(-5, 5) for i in range(4)]
+param total = sum([abs(x - 1) for x in xs]) - 3
+ego = new Object at xs[0] @ xs[1]
+require xs[2] > -4
+"""
+
+
+def rows_of(result: FalsificationResult) -> list[dict[str, Any]]:
+    return [{name: value for name, value in row.items() if name != "seconds"} for row in result.rows]
+
+
+def braking(**options: Any) -> FalsificationResult:
+    wanted = {"n": 24, "seed": 1, "timestep": 0.1, "max_steps": 40, **options}
+    return scenic.falsify(scenic.scenarioFromString(BRAKE), "kinematic", **wanted)
+
+
+def test_rows_are_equal_for_any_number_of_processes_and_after_a_resumption(tmp_path: Path) -> None:
+    whole = rows_of(braking(folder=tmp_path / "whole"))
+    assert rows_of(braking(processes=2)) == whole
+    lines = (tmp_path / "whole" / "runs.jsonl").read_bytes()
+    for number, cut in enumerate((0, len(lines) // 3, 2 * len(lines) // 3, len(lines) - 1)):
+        folder = tmp_path / f"cut{number}"
+        braking(folder=folder, n=1)
+        (folder / "runs.jsonl").write_bytes(lines[:cut])
+        assert rows_of(braking(folder=folder, resume=True, processes=1 + number % 2)) == whole
+        assert len(read_rows(folder)) == 24
+
+
+def test_a_counterexample_is_kept_and_is_one(tmp_path: Path) -> None:
+    result = braking(folder=tmp_path / "found")
+    worst = result.counterexamples[0]
+    folder = tmp_path / "found" / "counterexamples" / f"{worst['run']:04d}"
+    assert sorted(item.name for item in folder.iterdir()) == ["play.html", "scene.json", "simulation.jsonl"]
+    about = json.loads((folder / "simulation.jsonl").read_text().splitlines()[0])
+    (requirement,) = about["requirements"]
+    assert requirement["verdict"] == "FALSE"
+    assert requirement["robustness"] == worst["values"][0] <= 0
+    assert worst["values"][0] == pytest.approx(min(value for _, value in about["records"]["gaps"]) - 3)
+    scene = scenic.scenarioFromString(BRAKE).replay(folder / "scene.json")
+    assert scene.objects[1].position.y == pytest.approx(worst["point"]["gap"] + 4)
+    held = {row["run"] for row in result.rows if row["status"] == "held"}
+    assert held
+    assert not any((tmp_path / "found" / "counterexamples" / f"{run:04d}").exists() for run in held)
+    assert not list((tmp_path / "found").glob(".run*"))
+
+
+def test_static_searches_meet_the_requirements_and_find_the_least() -> None:
+    scenario = scenic.scenarioFromString(STATIC)
+    result = scenic.falsify(scenario, objective="total", static=True, n=2000, seed=3)
+    assert result.best is not None
+    assert float(result.best["values"][0]) == pytest.approx(-3, abs=0.1)
+    chance = scenic.falsify(scenario, objective="total", static=True, sampler="random", n=2000, seed=3)
+    assert chance.best is not None
+    assert float(chance.best["values"][0]) > float(result.best["values"][0])
+    for row in chance.rows[:20]:
+        numbers = {int(name, 16): number for name, number in row["numbers"].items()}
+        assert len(numbers) == 4
+
+
+def test_several_objectives_have_a_front() -> None:
+    scenario = scenic.scenarioFromString(STATIC)
+    result = scenic.falsify(
+        scenario,
+        objective=["total", lambda scene: scene.egoObject.position.x],
+        static=True,
+        n=200,
+        seed=3,
+        sampler="random",
+    )
+    front = [tuple(row["values"]) for row in result.front()]
+    everything = [tuple(row["values"]) for row in result.rows if row["values"]]
+    assert 0 < len(front) < 50
+    for values in everything:
+        assert any(all(a <= b for a, b in zip(best, values, strict=True)) for best in front)
+
+
+def test_objectives_of_simulations() -> None:
+    robust = [row["values"][0] for row in braking(n=8).rows]
+    least = [row["values"][0] for row in braking(n=8, minimize="min(gaps) - 3", sampler="cma").rows]
+    assert least == pytest.approx(robust)
+    final = braking(n=8, objective="y").rows
+    function = braking(n=8, objective=lambda result: result.records["y"]).rows
+    assert [row["values"] for row in final] == [row["values"] for row in function]
+    named = braking(n=8, objective="line 15").rows
+    assert [row["values"][0] for row in named] == robust
+
+
+@pytest.mark.parametrize(
+    ("options", "words", "help"),
+    [
+        ({"objective": "gap"}, "neither a requirement nor recorded", "did you mean 'gaps'?"),
+        ({"minimize": "min(gap)"}, "fails: TypeError|is not recorded", ""),
+        ({"minimize": "gaps"}, "is no number, but list", "min(distance)"),
+        ({"minimize": "min(gaps"}, "fails: SyntaxError", ""),
+    ],
+)
+def test_objectives_that_cannot_be_evaluated(options: dict[str, Any], words: str, help: str) -> None:
+    with pytest.raises(ObjectiveError, match=words) as caught:
+        braking(n=4, **options)
+    assert help in (caught.value.help or "")
+
+
+def test_programs_that_cannot_be_searched() -> None:
+    with pytest.raises(ObjectiveError, match="follow no requirement"):
+        scenic.falsify(scenic.scenarioFromString("ego = new Object at Range(0, 1) @ 0"), "dummy", n=2)
+    with pytest.raises(InvalidScenarioError, match="nothing to search"):
+        scenic.falsify(scenic.scenarioFromString("ego = new Object"), "dummy", n=2)
+    failing = "behavior B():\n    raise KeyError('x')\n    wait\nego = new Object at Range(0, 1) @ 0, with behavior B()\nrequire always True"
+    with pytest.raises(SearchError, match="10 runs in a row failed"):
+        scenic.falsify(scenic.scenarioFromString(failing), "dummy", n=30)
+
+
+def test_folders_of_other_searches(tmp_path: Path) -> None:
+    braking(folder=tmp_path / "a", n=2)
+    with pytest.raises(SearchFolderError, match="holds a search already"):
+        braking(folder=tmp_path / "a", n=2)
+    with pytest.raises(SearchFolderError, match="its seed differs"):
+        braking(folder=tmp_path / "a", n=2, seed=2, resume=True)
+    (tmp_path / "b").mkdir()
+    (tmp_path / "b" / "x").write_text("")
+    with pytest.raises(SearchFolderError, match="holds no search"):
+        braking(folder=tmp_path / "b", n=2, resume=True)
+
+
+def test_the_share_has_the_interval_of_clopper_and_pearson() -> None:
+    from scipy.stats import binomtest
+
+    rows = [
+        {"run": k, "status": "counterexample" if k < 3 else "held", "values": [k - 3.0]} for k in range(20)
+    ]
+    share, low, high = FalsificationResult(rows, ("x",)).share()
+    exact = binomtest(3, 20).proportion_ci(0.95, "exact")
+    assert (share, low, high) == pytest.approx((0.15, exact.low, exact.high))
+    assert math.isnan(FalsificationResult([], ("x",)).share()[0])
+
+
+def run(*arguments: str) -> Result:
+    return CliRunner().invoke(command, arguments, standalone_mode=False)
+
+
+def test_the_command(tmp_path: Path) -> None:
+    (tmp_path / "static.scenic").write_text(STATIC)
+    common = [
+        "static.scenic",
+        "--static",
+        "--objective",
+        "total",
+        "--seed",
+        "1",
+        "--sampler",
+        "random",
+        "-n",
+        "60",
+    ]
+    common[0] = str(tmp_path / "static.scenic")
+    done = run(*common, "-o", str(tmp_path / "out"), "--report", str(tmp_path / "report.html"))
+    assert done.return_value == 0, done.output
+    assert "60 runs" in done.output
+    assert "95% interval" in done.output
+    page = (tmp_path / "report.html").read_text()
+    assert "Value over runs" in page
+    assert "The worst runs" in page
+    kept = load_result(tmp_path / "out")
+    assert importances(kept)[0][1] > importances(kept)[-1][1]
+    assert report_page(kept, "static.scenic", links_from=tmp_path) == page
+    rare = run(*common, "--threshold", "-2.999")
+    assert rare.return_value == 3
