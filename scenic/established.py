@@ -256,7 +256,7 @@ MODULES: Final[Mapping[str, Mapping[str, str]]] = MappingProxyType(
             (
                 _ESTABLISHED,
                 (
-                    "Heading underlyingType isA canCoerce coerce toTypes toType toScalar toHeading toOrientation toVector"
+                    "Heading underlyingType isA canCoerce canCoerceType coerce toTypes toType toScalar toHeading toOrientation toVector"
                     " coerceToAny=toTypes"
                 ),
             ),
@@ -264,7 +264,7 @@ MODULES: Final[Mapping[str, Mapping[str, str]]] = MappingProxyType(
             (
                 _INSIDE,
                 (
-                    "TypeChecker TypeEqualityChecker TypecheckedDistribution canCoerceType coerceToFloat coerceToHeading"
+                    "TypeChecker TypeEqualityChecker TypecheckedDistribution coerceToFloat coerceToHeading"
                     " evaluateRequiringEqualTypes is_typing_generic unifierOfTypes unifyingType"
                 ),
             ),

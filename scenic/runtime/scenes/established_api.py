@@ -95,6 +95,13 @@ def canCoerce(thing: Any, ty: type, exact: bool = False) -> bool:
     return True
 
 
+def canCoerceType(typeA: type, typeB: type) -> bool:
+    """Whether values of one type can be taken as another: numbers as ``float``, pairs, triples and points as vectors."""
+    if issubclass(typeA, typeB) or (typeB is float and issubclass(typeA, int | float | np.number)):
+        return True
+    return typeB is Vector and issubclass(typeA, tuple | list | Vector | Point)
+
+
 def coerce(thing: Any, ty: type, error: str = "wrong type") -> Any:
     """A value as a type; raises ``TypeError`` with this message where it cannot be read so."""
     return toType(thing, ty, error)
