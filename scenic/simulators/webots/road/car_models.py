@@ -15,7 +15,7 @@ class CarModel:
     length: float
 
 
-carModels: Final = (
+carModels: Final = (  # noqa: N816 - the established name
     CarModel("BmwX5", 1.933, 4.854),
     CarModel("CitroenCZero", 1.475, 3.475),
     CarModel("LincolnMKZ", 1.864, 4.930),
@@ -25,4 +25,4 @@ carModels: Final = (
     CarModel("ToyotaPrius", 1.745, 4.480),
 )
 
-modelWithName: Final = {model.name: model for model in carModels}
+modelWithName: Final = {model.name: model for model in carModels}  # noqa: N816 - the established name
