@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
-.PHONY: demo test test-fast test-slow lint types fuzz generate playground extension pythons clean
+.PHONY: demo test test-fast lint types fuzz generate playground extension pythons clean
 
 $(STAMP): pyproject.toml hatch_build.py
 	$(PYTHON) -c 'import sys; sys.exit("Scenic needs Python 3.11 or newer; this is " + sys.version.split()[0]) if sys.version_info < (3, 11) else None'
@@ -15,13 +15,13 @@ $(STAMP): pyproject.toml hatch_build.py
 demo: $(STAMP)
 	$(BIN)/python -m examples.demo out
 
-test: test-fast test-slow
+# All tests, in one session whose workers take waiting tests from each other.
+test: $(STAMP)
+	$(BIN)/python -m pytest -q -n auto --dist worksteal
 
+# What a change needs before it is committed.
 test-fast: $(STAMP)
-	$(BIN)/python -m pytest -q -n auto -m 'not slow'
-
-test-slow: $(STAMP)
-	$(BIN)/python -m pytest -q -n auto -m slow
+	$(BIN)/python -m pytest -q -n auto --dist worksteal -m 'not slow'
 
 lint: $(STAMP)
 	$(BIN)/ruff check .

@@ -5,8 +5,6 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-import pytest
-
 ROOT = Path(__file__).parent.parent
 PACKAGE = ROOT / "scenic"
 
@@ -77,14 +75,13 @@ def modules() -> Iterator[tuple[str, Path]]:
             yield ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__"), path
 
 
-def imports(path: Path, *, at_start: bool = False) -> Iterator[str]:
-    """Names of modules that a file imports: everywhere in it, or only when it is itself imported."""
-    tree = ast.parse(path.read_text(encoding="utf-8"))
-    for node in _statements(tree, at_start):
+def imports(module: str, *, at_start: bool = False) -> Iterator[str]:
+    """Names of modules that a module imports: everywhere in it, or only when it is itself imported."""
+    for node in _statements(TREES[module], at_start):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
-            assert node.level == 0, f"{path}:{node.lineno}: relative import"
+            assert node.level == 0, f"{module}:{node.lineno}: relative import"
             assert node.module is not None
             yield node.module
             yield from (f"{node.module}.{alias.name}" for alias in node.names)
@@ -108,37 +105,55 @@ def layer(module: str) -> str | None:
 ALL = dict(modules())
 
 
-@pytest.mark.parametrize("module", ALL)
-def test_layers_import_downwards(module: str) -> None:
-    own = layer(module)
-    if own not in LAYERS:
-        return
-    wrong = {name for name in imports(ALL[module]) if layer(name) not in (None, own, *LAYERS[own])}
+TREES = {module: ast.parse(path.read_text(encoding="utf-8")) for module, path in ALL.items()}
+IMPORTS = {module: frozenset(imports(module)) for module in ALL}
+
+
+def test_layers_import_downwards() -> None:
+    wrong = [
+        f"{module} imports {name}"
+        for module, names in IMPORTS.items()
+        if (own := layer(module)) in LAYERS
+        for name in names
+        if layer(name) not in (None, own, *LAYERS[own])
+    ]
     assert not wrong
-    joins = {name for name in imports(ALL[module]) if name == "scenic.pipeline" and own != "cli"}
-    assert not joins, "only commands and the API call the pipeline"
 
 
-@pytest.mark.parametrize("module", ALL)
-def test_layers_keep_their_libraries(module: str) -> None:
-    own = layer(module)
-    for name in {name.partition(".")[0] for name in imports(ALL[module])} - {"scenic"}:
-        if name in sys.stdlib_module_names:
-            continue
-        assert own not in LIBRARIES or name in LIBRARIES[own], f"{own} imports {name}"
-        assert own in ONLY_IN.get(name, {own}), f"{own} imports {name}"
+def test_only_commands_and_the_api_call_the_pipeline() -> None:
+    joins = [
+        module
+        for module, names in IMPORTS.items()
+        if (own := layer(module)) in LAYERS and own != "cli" and "scenic.pipeline" in names
+    ]
+    assert not joins
 
 
-@pytest.mark.parametrize("module", ALL)
-def test_heavy_libraries_are_imported_where_they_are_used(module: str) -> None:
-    early = {name.partition(".")[0] for name in imports(ALL[module], at_start=True)} & HEAVY
+def test_layers_keep_their_libraries() -> None:
+    wrong = [
+        f"{module} imports {name}"
+        for module, names in IMPORTS.items()
+        for name in {name.partition(".")[0] for name in names} - {"scenic"} - sys.stdlib_module_names
+        if ((own := layer(module)) in LIBRARIES and name not in LIBRARIES[own])
+        or own not in ONLY_IN.get(name, {own})
+    ]
+    assert not wrong
+
+
+def test_heavy_libraries_are_imported_where_they_are_used() -> None:
+    early = [
+        f"{module} imports {name}"
+        for module in ALL
+        for name in imports(module, at_start=True)
+        if name.partition(".")[0] in HEAVY
+    ]
     assert not early
 
 
 def test_there_are_no_import_cycles() -> None:
     edges = {
-        module: {name for name in imports(path) if name in ALL and name != module}
-        for module, path in ALL.items()
+        module: {name for name in names if name in ALL and name != module}
+        for module, names in IMPORTS.items()
     }
     done: set[str] = set()
 
@@ -162,8 +177,7 @@ CHANGING = {"append", "extend", "insert", "add", "update", "setdefault", "pop", 
 def test_no_module_has_mutable_state() -> None:
     """Nothing that a module binds is changed by its functions: no ``global``, no change of a module's container."""
     found = []
-    for module, path in ALL.items():
-        tree = ast.parse(path.read_text(encoding="utf-8"))
+    for module, tree in TREES.items():
         containers = {
             target.id
             for node in tree.body

@@ -1,18 +1,22 @@
-"""Every operator, specifier, method and function over operands of every kind gives what was recorded.
+"""The table of operands: every operator, specifier, method and function accepts or refuses each kind as recorded.
 
-A case is a template; ``{a}`` stands for each kind of operand in turn, ``{b}`` and ``{n}`` for some.
+A case is a template; ``{a}`` stands for each kind of operand in turn, ``{b}`` and ``{n}`` for some. Accepted operands have a
+line each with the value; refused ones stand together behind the code of their diagnostic, so that a change of a message
+leaves the table as it is. (The words of messages are tested in `tests.compiler.test_messages` and beside each feature.)
 """
 
-import re
+from collections import defaultdict
 from collections.abc import Iterator
 from itertools import product
 from pathlib import Path
+from typing import NamedTuple
 
 import pytest
 
 import scenic
+from scenic.failures import diagnose
 from scenic.runtime.instances.objects import Point
-from tests.recorded import FOLDER, hold, said, shown, unusual
+from tests.recorded import FOLDER, hold, shown, unusual
 
 KINDS = {
     "integer": "3",
@@ -89,10 +93,22 @@ def expressions(template: str) -> Iterator[tuple[str, str]]:
 def answers(source: str) -> str:
     asked = list(expressions(source.rstrip("\n")))
     found = some([text for _, text in asked])
-    return "\n".join(f"{name} -> {answer}" for (name, _), answer in zip(asked, found, strict=True))
+    accepted, refused = [], defaultdict(list)
+    for (name, _), answer in zip(asked, found, strict=True):
+        if isinstance(answer, Refusal):
+            refused[answer.code].append(name)
+        else:
+            accepted.append(f"{name} -> {answer}")
+    return "\n".join([*accepted, *(f"{code}: {'; '.join(names)}" for code, names in sorted(refused.items()))])
 
 
-def some(asked: list[str]) -> list[str]:
+class Refusal(NamedTuple):
+    """The code of the diagnostic of a refused expression, or the type of an error without one."""
+
+    code: str
+
+
+def some(asked: list[str]) -> list[str | Refusal]:
     """The answers of many expressions, together in one program as far as no sample has a fault."""
     calls = "\n".join(f"attempt({number}, lambda: {text})" for number, text in enumerate(asked))
     try:
@@ -106,13 +122,14 @@ def some(asked: list[str]) -> list[str]:
     return [told(value) for value in scene.params["answers"].values()]
 
 
-def told(value: object) -> str:
+def told(value: object) -> str | Refusal:
     if isinstance(value, Point):
         left_out = {"allowCollisions", "tag"}
         return ", ".join(f"{name} {text}" for name, text in unusual(value).items() if name not in left_out)
-    if not isinstance(value, Exception):
-        return shown(value)
-    return re.sub(r"^\w+ [\d:-]+ (?=SC\d\d\d )", "", said(value).split("\n")[0])
+    if isinstance(value, Exception):
+        found = diagnose(value)
+        return Refusal(type(value).__name__ if found is None else found.code)
+    return shown(value)
 
 
 @pytest.mark.parametrize("path", sorted(FOLDER.glob("operands_*.txt")), ids=lambda path: path.stem)
