@@ -74,6 +74,23 @@ def test_cars_follow_curves_within_a_metre(folder: Path, controller: str) -> Non
     assert max(away) < (1.0 if controller == "None" else 0.25)
 
 
+@pytest.mark.parametrize("speed", [8, 10, 14, 20, 25])
+def test_lane_changes_settle_without_swinging(folder: Path, speed: int) -> None:
+    text = f"""
+behavior Change():
+    section = network.laneSectionAt((500, 1.75))
+    do LaneChangeBehavior(section, is_oppositeTraffic=True, target_speed={speed})
+    do FollowLaneBehavior({speed}, laneToFollow=section.lane, is_oppositeTraffic=True)
+ego = new Car at (20, -1.75), facing -90 deg, with speed {speed}, with behavior Change
+"""
+    aside = [state[0].y for state in simulated(folder, text, steps=250).trajectory]
+    assert max(aside) < 1.75 + 0.5
+    arrival = next(index for index, y in enumerate(aside) if y > 1.65)
+    assert arrival < 60
+    assert min(aside[arrival:]) > 1.75 - 0.5
+    assert abs(aside[-1] - 1.75) < 0.1
+
+
 def test_pure_pursuit_drives_the_arc_through_the_place_ahead() -> None:
     class Agent:
         position, heading, speed = (0.0, 0.0, 0.0), 0.0, 0.0

@@ -1,13 +1,17 @@
 """The driver of a car: controllers that follow a line, and the steering applied so far."""
 
 from copy import deepcopy
-from typing import Any
+from typing import Any, Final
 
 from scenic.domains.driving.actions import RegulatedControlAction, SetSteerAction
 from scenic.domains.driving.lines import FollowedLine
 from scenic.runtime.program.builtins import running_simulation
 
 __all__ = ["Driver"]
+
+
+_GRIP: Final = 6.0
+"""The lateral acceleration (m/s^2) that drivers do not exceed: about what tyres hold on a wet road."""
 
 
 class Driver:
@@ -64,6 +68,10 @@ class Driver:
             steering = self._lateral.run_step(-away if oncoming else away)
         else:
             steering = running_simulation().steering_for(agent, steers(agent, line, oncoming=oncoming))
+        # Sharper curves than the tyres hold would only make a fast car swing about the line.
+        sharpest = _GRIP / max(agent.speed, 1.0) ** 2
+        most = abs(running_simulation().steering_for(agent, sharpest))
+        steering = min(max(steering, -most), most)
         throttle = self._longitudinal.run_step(speed - agent.speed)
         action = RegulatedControlAction(throttle, steering, self._past)
         self._past = action.steer
