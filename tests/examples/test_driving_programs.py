@@ -58,6 +58,14 @@ def test_examples_sample(name: str) -> None:
                 assert road.buffer(0.01).contains(outline(thing, thing.position, thing.orientation))
 
 
+@pytest.mark.parametrize("name", [name for name in PROGRAMS if not name.startswith("carla")])
+def test_examples_run(name: str) -> None:
+    scenario = loaded(name)
+    done = scenario.getSimulator().simulate(scenario.sample(1, seed=1)[0], maxSteps=20, maxIterations=5)
+    assert done is not None
+    assert done.currentTime > 0
+
+
 def test_fifteen_programs() -> None:
     assert len(PROGRAMS) >= 15
 
