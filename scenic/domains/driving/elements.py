@@ -141,6 +141,16 @@ class NetworkElement(PolygonalRegion):
         """The directions of traffic that are possible at a point; here one."""
         return (self.orientation[point],)
 
+    def elevationAt(self, point: Any) -> Any:
+        """The height in metres of this element's own road at a point, whatever passes above or below; ``None`` off the road."""
+        return self.network.elevationAt(point, self.uid if isinstance(self, Road) else self._road_uid)
+
+    @property
+    def _road_uid(self) -> str | None:
+        """The ``uid`` of the road to which the element belongs; ``None`` for parts of intersections."""
+        road = getattr(self, "road", None)
+        return None if road is None else road.uid
+
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {self.name or ''!r} id={self.id} uid={self.uid!r}>"
 
@@ -530,13 +540,18 @@ class Maneuver:
     """
 
     def __init__(
-        self, startLane: Lane, endLane: Lane, connectingLane: Lane | None, intersection: Intersection | None
+        self,
+        startLane: Lane,
+        endLane: Lane,
+        connectingLane: Lane | None,
+        intersection: Intersection | None,
+        type: ManeuverType | None = None,
     ) -> None:
         self.startLane = startLane
         self.endLane = endLane
         self.connectingLane = connectingLane
         self.intersection = intersection
-        self.type = ManeuverType.guessTypeFromLanes(startLane, endLane, connectingLane)
+        self.type = type or ManeuverType.guessTypeFromLanes(startLane, endLane, connectingLane)
 
     @cached_property
     def conflictingManeuvers(self) -> tuple["Maneuver", ...]:

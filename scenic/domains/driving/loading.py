@@ -1,6 +1,6 @@
 """From a map file to its network."""
 
-import math
+import hashlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
 from functools import lru_cache
@@ -9,9 +9,10 @@ from typing import Any, Final, TypeVar
 
 from scenic.domains.driving.building import BuiltRoad, LaneTypes, build_roads
 from scenic.domains.driving.crossings import add_crossings
+from scenic.domains.driving.elevation import Elevation, RoadHeight
 from scenic.domains.driving.linking import link_roads
 from scenic.domains.driving.network import RoadNetwork
-from scenic.formats.opendrive.curves import cubic_values
+from scenic.domains.driving.storing import KIND, restored, stored
 from scenic.formats.opendrive.reader import read_map, told
 from scenic.formats.opendrive.records import Problem
 from scenic.formats.opendrive.shapes import MAX_ERROR
@@ -19,6 +20,7 @@ from scenic.formats.opendrive.xml_tree import MapError
 from scenic.language.diagnostics import Diagnostic, Severity
 from scenic.language.spans import Span
 from scenic.language.spelling import nearest
+from scenic.runtime.geometry.store import Arrays, kept
 
 __all__ = ["MapOptions", "load_network", "map_file", "network_of"]
 
@@ -70,6 +72,16 @@ class MapOptions:
         lanes = {name: frozenset(value) for name, value in given.items() if name.endswith("_types")}
         return cls(**{**given, **lanes})
 
+    def key(self) -> bytes:
+        """The options that decide about the network, as bytes that are the same in each run."""
+        shown = [
+            (field.name, sorted(value) if isinstance(value, frozenset) else value)
+            for field in fields(self)
+            if "Cache" not in field.name
+            for value in [getattr(self, field.name)]
+        ]
+        return repr(shown).encode()
+
     @property
     def types(self) -> LaneTypes:
         """The types of lanes."""
@@ -116,6 +128,25 @@ def network_of(
 
     Raises `MapError` if it is not a map, or has no lane for traffic.
     """
+    built: list[RoadNetwork] = []
+
+    def build() -> Arrays:
+        built.append(_build(content, filename, options, cls))
+        return stored(built[0])
+
+    key = hashlib.sha256(options.key() + content).digest()
+    arrays = kept(KIND, key, build, read=options.useCache, write=options.writeCache)
+    if built:
+        return built[0]
+    try:
+        return restored(arrays, filename, options.tolerance, cls)
+    except (LookupError, TypeError, ValueError):
+        # The file is whole, but not one that this version wrote.
+        return _build(content, filename, options, cls)
+
+
+def _build(content: bytes, filename: str, options: MapOptions, cls: type[RoadNetwork]) -> RoadNetwork:
+    """The network of the text of a map."""
     records = read_map(content, filename)
     problems = list(records.problems)
     tell: Callable[[Problem], None] = problems.append
@@ -145,7 +176,19 @@ def network_of(
         fill_intersections=options.fill_intersections,
     )
     add_crossings(network, built, tell)
-    network._elevation = _Elevation(network, built)
+    network._elevation = Elevation(
+        [
+            RoadHeight(
+                road.road.uid,
+                road.road.polygon,
+                road.road.line,
+                road.record.length,
+                road.record.elevation,
+                road.record.superelevation,
+            )
+            for road in built.values()
+        ]
+    )
     network.problems = tuple(_diagnostic(problem, filename) for problem in told(tuple(problems)))
     return network
 
@@ -153,38 +196,3 @@ def network_of(
 def _diagnostic(problem: Problem, filename: str) -> Diagnostic:
     span = Span(problem.line, 0, problem.line, 1) if problem.line > 0 else None
     return Diagnostic(problem.code, problem.message, span, Severity.WARNING, filename)
-
-
-class _Elevation:
-    """The height of roads: the profile of the reference line, tilted by the superelevation."""
-
-    def __init__(self, network: RoadNetwork, built: Mapping[str, BuiltRoad]) -> None:
-        self._network = network
-        self._built = {id(road.road): road for road in built.values()}
-
-    def __call__(self, point: Any) -> float | None:
-        import numpy as np
-        import shapely
-
-        best: tuple[float, float] | None = None
-        for road in self._network.allRoads:
-            if not road.outline.holds_point(point.x, point.y):
-                continue
-            built = self._built[id(road)]
-            line = shapely.linestrings(road.line)
-            s = (
-                float(line.project(shapely.Point(point.x, point.y)))
-                * built.record.length
-                / max(line.length, 1e-9)
-            )
-            place = np.array([s])
-            height = float(cubic_values(built.record.elevation, place)[0])
-            tilt = float(cubic_values(built.record.superelevation, place)[0])
-            if tilt:
-                x, y = line.interpolate(line.project(shapely.Point(point.x, point.y))).coords[0]
-                heading = road.along(np.array([[point.x, point.y]]))[0] + math.pi / 2
-                across = (point.y - y) * math.cos(heading) - (point.x - x) * math.sin(heading)
-                height += across * math.tan(tilt)
-            if best is None or abs(height - point.z) < best[0]:
-                best = abs(height - point.z), height
-        return None if best is None else best[1]

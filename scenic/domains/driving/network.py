@@ -4,6 +4,9 @@ from collections.abc import Callable, Sequence
 from functools import cached_property
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from scenic.domains.driving.elements import (
     Intersection,
     Lane,
@@ -17,6 +20,7 @@ from scenic.domains.driving.elements import (
     Sidewalk,
     union_region,
 )
+from scenic.domains.driving.elevation import Elevation
 from scenic.domains.driving.lookups import Finder, RoadDirection
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.errors import RejectionException
@@ -61,7 +65,7 @@ class RoadNetwork:
         self.problems: tuple[Diagnostic, ...] = ()
         self._fillings: tuple[Any, ...] = ()
         """Polygons that close gaps between the ends of linked lanes."""
-        self._elevation: Callable[[Any], float | None] = lambda _: None
+        self._elevation = Elevation(())
         self._finders: dict[Any, Finder] = {}
 
     # What there is
@@ -191,11 +195,7 @@ class RoadNetwork:
         return found
 
     def _finder(self, elements: tuple[NetworkElement, ...]) -> Finder:
-        key = (
-            tuple(element.uid for element in elements)
-            if len(elements) < 32
-            else (len(elements), elements[0].uid, elements[-1].uid)
-        )
+        key = tuple(map(id, elements))  # they live as long as the network does
         finder = self._finders.get(key)
         if finder is None:
             finder = self._finders[key] = Finder(elements, self.tolerance)
@@ -259,14 +259,25 @@ class RoadNetwork:
         found = self.findPointIn(place, (*self.intersections, *self.roads, *self.shoulders), reject)
         return () if found is None else found.nominalDirectionsAt(place)
 
-    def elevationAt(self, point: Any) -> Any:
-        """The height of the road at a point in metres, ``None`` off the road; z of the point chooses between levels."""
+    def elevationAt(self, point: Any, road: str | None = None) -> Any:
+        """The height in metres of the road at a point, ``None`` off the road.
+
+        Args:
+            point: anything with a position. Where roads pass above each other, its z chooses the nearest one.
+            road: the ``uid`` of the only road to look at.
+
+        """
         place = self.vector(point)
         if isinstance(place, Lazy):
-            return defer(self.elevationAt, place)
+            return defer(self.elevationAt, place, road)
         if is_random(place):
-            return call_later(self.elevationAt, place)
-        return self._elevation(place)
+            return call_later(self.elevationAt, place, road)
+        (height,) = self.elevations(np.array([[place.x, place.y, place.z]]), road)
+        return None if np.isnan(height) else float(height)
+
+    def elevations(self, points: NDArray[np.float64], road: str | None = None) -> NDArray[np.float64]:
+        """Heights ``(n,)`` of the road in metres at points ``(n, 3)``, NaN off the road; see `elevationAt`."""
+        return self._elevation.at(points, road)
 
     def __repr__(self) -> str:
         return f"<Network of {len(self.roads)} roads, {len(self.intersections)} intersections>"

@@ -43,23 +43,28 @@ def digest_of(*arrays: npt.NDArray[Any]) -> bytes:
     return digest.digest()
 
 
-def kept(kind: str, content: bytes, compute: Callable[[], Arrays]) -> Arrays:
+def kept(
+    kind: str, content: bytes, compute: Callable[[], Arrays], *, read: bool = True, write: bool = True
+) -> Arrays:
     """``compute()``, or what an earlier run got from it.
 
     Args:
         kind: a name and a version of what is computed; a new version whenever the result changes.
         content: the digest of all that it is computed from.
         compute: returns named arrays, none of them of objects.
+        read: use an earlier result if there is one.
+        write: keep the result for later runs.
 
     """
     folder = _folder()
     if folder is None:
         return compute()
     path = folder / f"{_key(kind, content)}{_SUFFIX}"
-    found = _read(path)
+    found = _read(path) if read else None
     if found is None:
         found = compute()
-        _write(path, found)
+        if write:
+            _write(path, found)
     return found
 
 

@@ -1,0 +1,293 @@
+"""Networks as arrays, in which the store keeps them from one run to the next (section 3.8).
+
+Areas are one array of well-known binary, lines one array of vertices; everything else (who follows whom, which lanes a
+road has) is text in JSON, in which elements are numbers. Nothing in it is ever executed.
+"""
+
+import json
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from types import MappingProxyType
+from typing import Any, Final, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from scenic.domains.driving.elements import (
+    Intersection,
+    Lane,
+    LaneGroup,
+    LaneSection,
+    LinearElement,
+    Maneuver,
+    NetworkElement,
+    PedestrianCrossing,
+    Road,
+    RoadSection,
+    Shoulder,
+    Sidewalk,
+    Signal,
+)
+from scenic.domains.driving.elevation import Elevation, RoadHeight
+from scenic.domains.driving.kinds import ManeuverType, VehicleType
+from scenic.domains.driving.network import RoadNetwork
+from scenic.formats.opendrive.records import Cubic
+from scenic.language.diagnostics import Diagnostic, Severity
+from scenic.language.spans import Span
+from scenic.runtime.geometry.store import Arrays
+
+__all__ = ["KIND", "restored", "stored"]
+
+KIND: Final = "road network 1"
+"""Name and version of the form; a new version whenever the network of a map changes."""
+
+_Network = TypeVar("_Network", bound=RoadNetwork)
+
+_CLASSES: Final = (
+    LaneSection, Lane, LaneGroup, RoadSection, Road, Sidewalk, Shoulder, PedestrianCrossing, Intersection,
+)  # fmt: skip
+
+_PLAIN: Final = MappingProxyType({LaneSection: ("openDriveID", "isForward")})
+"""Attributes that are numbers or flags."""
+
+_ONE: Final = MappingProxyType(
+    {
+        LaneSection: (
+            "_successor", "_predecessor", "lane", "group", "road",
+            "_laneToLeft", "_laneToRight", "_fasterLane", "_slowerLane",
+        ),
+        Lane: ("_successor", "_predecessor", "group", "road"),
+        LaneGroup: ("_successor", "_predecessor", "road", "_sidewalk", "_bikeLane", "_shoulder", "_opposite"),
+        RoadSection: ("_successor", "_predecessor", "road"),
+        Road: ("_successor", "_predecessor", "forwardLanes", "backwardLanes"),
+        Sidewalk: ("road",),
+        Shoulder: ("road", "group"),
+        PedestrianCrossing: ("parent", "startSidewalk", "endSidewalk"),
+        Intersection: (),
+    }
+)  # fmt: skip
+"""Attributes that are an element or ``None``."""
+
+_MANY: Final = MappingProxyType(
+    {
+        LaneSection: ("adjacentLanes",),
+        Lane: ("sections",),
+        LaneGroup: ("lanes",),
+        RoadSection: ("lanes", "forwardLanes", "backwardLanes"),
+        Road: ("lanes", "laneGroups", "sections", "crossings", "sidewalks"),
+        Sidewalk: ("crossings",),
+        Shoulder: (),
+        PedestrianCrossing: (),
+        Intersection: ("roads", "incomingLanes", "outgoingLanes", "crossings", "_connecting"),
+    }
+)
+"""Attributes that are tuples of elements."""
+
+_LISTS: Final = ("roads", "connectingRoads", "intersections", "crossings", "sidewalks", "shoulders")
+"""Attributes of a network that are tuples of elements."""
+
+
+def stored(network: RoadNetwork) -> Arrays:
+    """The arrays from which `restored` makes an equal network."""
+    elements = list(network.elements.values())
+    number: dict[int | None, int] = {id(element): index for index, element in enumerate(elements)}
+    number[id(None)] = -1
+    maneuvers = _distinct(
+        maneuver
+        for element in elements
+        if isinstance(element, Lane | Intersection)
+        for maneuver in element.maneuvers
+    )
+    signals = _distinct(
+        signal for element in elements if isinstance(element, Road | Intersection) for signal in element.signals
+    )
+    way = {id(item): index for index, item in enumerate(maneuvers)}
+    sign = {id(item): index for index, item in enumerate(signals)}
+    rows = []
+    for element in elements:
+        cls: Any = type(element)
+        row: list[Any] = [
+            _CLASSES.index(cls),
+            element.uid,
+            element.id,
+            element.name,
+            element.speedLimit,
+            sorted(kind.name for kind in element.vehicleTypes),
+            sorted(element.tags),
+            [getattr(element, name) for name in _PLAIN.get(cls, ())],
+            [number[id(getattr(element, name, None))] for name in _ONE[cls]],
+            [[number[id(item)] for item in getattr(element, name)] for name in _MANY[cls]],
+            [way[id(item)] for item in getattr(element, "maneuvers", ())],
+            [sign[id(item)] for item in getattr(element, "signals", ())],
+        ]
+        if isinstance(element, RoadSection):
+            row.append([number[id(item)] for item in element.lanesByOpenDriveID.values()])
+        rows.append(row)
+    text = {
+        "driveOnLeft": network.driveOnLeft,
+        "problems": [
+            (item.code, item.message, item.span.line if item.span is not None else 0)
+            for item in network.problems
+        ],
+        "elements": rows,
+        "maneuvers": [
+            (
+                number[id(item.startLane)],
+                number[id(item.endLane)],
+                number[id(item.connectingLane)],
+                number[id(item.intersection)],
+                item.type.name,
+            )
+            for item in maneuvers
+        ],
+        "signals": [(item.uid, item.openDriveID, item.country, item.type) for item in signals],
+        "lists": [[number[id(item)] for item in getattr(network, name)] for name in _LISTS],
+        "heights": [
+            (road.uid, road.length, [_numbers(cubic) for cubic in road.profile], [_numbers(c) for c in road.tilt])
+            for road in network._elevation.roads
+        ],
+    }
+    lines = [line for element in elements for line in _lines(element)]
+    return {
+        "text": np.frombuffer(json.dumps(text, separators=(",", ":")).encode(), dtype=np.uint8),
+        "vertices": np.concatenate([*lines, np.empty((0, 2))]),
+        "vertex_counts": np.array([len(line) for line in lines], dtype=np.int64),
+        **_binary("areas", [element.polygon for element in elements]),
+        **_binary("fillings", network._fillings),
+    }
+
+
+def restored(arrays: Arrays, filename: str, tolerance: float, cls: type[_Network]) -> _Network:
+    """The network of arrays that `stored` made.
+
+    Raises ``LookupError``, ``TypeError`` or ``ValueError`` where the arrays are not of this form.
+    """
+    text: Mapping[str, Any] = json.loads(arrays["text"].tobytes())
+    network = cls(tolerance=tolerance, driveOnLeft=text["driveOnLeft"])
+    rows, polygons = text["elements"], _polygons(arrays, "areas")
+    vertices = arrays["vertices"]
+    ends = np.cumsum(arrays["vertex_counts"]).tolist()
+    bounds = iter(zip([0, *ends], ends, strict=False))
+
+    def next_line() -> NDArray[np.float64]:
+        start, stop = next(bounds)
+        line: NDArray[np.float64] = vertices[start:stop]
+        return line
+
+    elements: list[Any] = [_element(network, row, area) for row, area in zip(rows, polygons, strict=True)]
+    network.elements = {element.uid: element for element in elements}
+    ways = [
+        Maneuver(
+            elements[start], elements[end], _at(elements, lane), _at(elements, inter), ManeuverType[kind]
+        )
+        for start, end, lane, inter, kind in text["maneuvers"]
+    ]
+    signs = [Signal(*fields) for fields in text["signals"]]
+    for element, row in zip(elements, rows, strict=True):
+        _link(element, row, elements, ways, signs, next_line)
+    for name, items in zip(_LISTS, text["lists"], strict=True):
+        setattr(network, name, tuple(elements[item] for item in items))
+    network.problems = tuple(
+        Diagnostic(code, message, Span(line, 0, line, 1) if line > 0 else None, Severity.WARNING, filename)
+        for code, message, line in text["problems"]
+    )
+    network._fillings = tuple(_polygons(arrays, "fillings"))
+    network._elevation = Elevation(
+        [
+            RoadHeight(uid, road.polygon, road.line, length, *(_cubics(profile), _cubics(tilt)))
+            for uid, length, profile, tilt in text["heights"]
+            for road in [network.elements[uid]]
+            if isinstance(road, Road)
+        ]
+    )
+    return network
+
+
+def _element(network: RoadNetwork, row: Sequence[Any], polygon: Any) -> NetworkElement:
+    kind, uid, id, name, speed, vehicles, tags = row[:7]
+    return _CLASSES[kind](
+        network,
+        uid,
+        polygon,
+        id=id,
+        name=name,
+        speed=speed,
+        vehicles=frozenset(VehicleType[item] for item in vehicles),
+        tags=frozenset(tags),
+    )
+
+
+def _link(
+    element: Any,
+    row: Sequence[Any],
+    elements: Sequence[Any],
+    maneuvers: Sequence[Maneuver],
+    signals: Sequence[Signal],
+    next_line: Callable[[], NDArray[np.float64]],
+) -> None:
+    """Give an element its attributes that name others, and its lines."""
+    cls: Any = type(element)
+    plain, one, many, ways, signs = row[7:12]
+    for name, value in zip(_PLAIN.get(cls, ()), plain, strict=True):
+        setattr(element, name, value)
+    for name, item in zip(_ONE[cls], one, strict=True):
+        setattr(element, name, _at(elements, item))
+    for name, items in zip(_MANY[cls], many, strict=True):
+        setattr(element, name, tuple(elements[item] for item in items))
+    if ways:
+        element.maneuvers = tuple(maneuvers[item] for item in ways)
+    if signs:
+        element.signals = tuple(signals[item] for item in signs)
+    if isinstance(element, LinearElement):
+        element.place(next_line(), next_line(), next_line())
+    if isinstance(element, LaneGroup):
+        element._curb = next_line()
+    if isinstance(element, RoadSection):
+        element.lanesByOpenDriveID = {elements[item].openDriveID: elements[item] for item in row[12]}
+
+
+def _lines(element: NetworkElement) -> Iterable[NDArray[np.float64]]:
+    """The lines of an element, in the order in which `_link` takes them."""
+    if isinstance(element, LinearElement):
+        yield from (element.line, element.left, element.right)
+    if isinstance(element, LaneGroup):
+        yield element._curb
+
+
+def _at(elements: Sequence[Any], index: int) -> Any:
+    return None if index < 0 else elements[index]
+
+
+def _distinct(items: Iterable[Any]) -> list[Any]:
+    """The items, each but once, by identity."""
+    return list({id(item): item for item in items}.values())
+
+
+def _numbers(cubic: Cubic) -> tuple[float, ...]:
+    return cubic.start, cubic.a, cubic.b, cubic.c, cubic.d
+
+
+def _cubics(rows: Iterable[Sequence[float]]) -> tuple[Cubic, ...]:
+    return tuple(Cubic(*row) for row in rows)
+
+
+def _binary(name: str, geometries: Sequence[Any]) -> Arrays:
+    """Geometries as two arrays: their well-known binary end to end, and the lengths of the parts."""
+    import shapely
+
+    parts = [shapely.to_wkb(geometry) for geometry in geometries]
+    return {
+        name: np.frombuffer(b"".join(parts), dtype=np.uint8),
+        f"{name}_sizes": np.array([len(part) for part in parts], dtype=np.int64),
+    }
+
+
+def _polygons(arrays: Arrays, name: str) -> list[Any]:
+    import shapely
+
+    content = arrays[name].tobytes()
+    ends = np.cumsum(arrays[f"{name}_sizes"]).tolist()
+    parts = [content[start:stop] for start, stop in zip([0, *ends], ends, strict=False)]
+    try:
+        return list(shapely.from_wkb(np.array(parts, dtype=object)))
+    except shapely.errors.GEOSException as error:
+        raise ValueError(str(error)) from None
