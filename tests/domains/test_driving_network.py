@@ -240,6 +240,24 @@ def test_every_kind_of_curve_makes_a_road(
         assert road.line[-1] == pytest.approx(end, abs=2e-3)
 
 
+def test_signals_count_where_they_are_valid(tmp_path: Path) -> None:
+    """A light that is valid for no lane of its own road counts where other roads refer to it, as exporters write it."""
+    light = '<signal id="5" s="1" t="4" type="1000001" country="OpenDRIVE"><validity fromLane="0" toLane="0"/></signal>'
+    reference = '<signals><signalReference id="5" s="9" t="0" orientation="+"/></signals>'
+    far = RoadText("8", 20.0, line(500, 0, 0, 20), rest=f"<signals>{light}</signals>")
+    text = (
+        cross()
+        .replace("</lanes></road>", f"</lanes>{reference}</road>", 1)
+        .replace("<junction", f"{far}<junction", 1)
+    )
+    found = network(tmp_path, text)
+    assert found.problems == ()
+    [inter] = found.intersections
+    assert inter.hasTrafficLights
+    assert [signal.openDriveID for signal in inter.signals] == ["5"]
+    assert found.elements["road8"].signals == ()
+
+
 BROKEN = {
     "namespace": map_text([RoadText("1", 20.0, line(0, 0, 0, 20))], namespace=' xmlns="http://code.asam.net/x"'),
     "length off": map_text(
@@ -261,6 +279,14 @@ BROKEN = {
     "missing link": straight(link='<successor elementType="road" elementId="77" contactPoint="start"/>'),
     "missing junction": straight(link='<successor elementType="junction" elementId="77"/>'),
     "lane twice": straight().replace('<lane id="-1"', '<lane id="-1" type="driving"></lane><lane id="-1"'),
+    "width twice": straight().replace("<width", '<width sOffset="0" a="3" b="0" c="0" d="0"/><width', 1),
+    "width without a coefficient": straight().replace(' c="0"', "", 1),
+    "late width": straight().replace('width sOffset="0"', 'width sOffset="20"', 1),
+    "two shapes": straight().replace("<line/>", '<line/><arc curvature="1"/>'),
+    "no type": straight().replace(' type="driving"', "", 1),
+    "link without contact": straight(link='<successor elementType="road" elementId="1"/>'),
+    "link without id": straight(link='<successor elementType="road" contactPoint="end"/>'),
+    "two links": straight(link=2 * '<successor elementType="junction" elementId="77"/>'),
     "junction without connections": straight().replace("</OpenDRIVE>", '<junction id="3"/></OpenDRIVE>'),
 }  # fmt: skip
 
@@ -275,6 +301,30 @@ def test_one_fault_costs_at_most_its_part(tmp_path: Path, name: str) -> None:
     for problem in found.problems:
         assert problem.span is not None
         assert problem.code.startswith("SC62")
+
+
+def test_numbers_out_of_all_measure_cost_their_road(tmp_path: Path) -> None:
+    """A length that would take hours to sample leaves out the road, not the map."""
+    endless = RoadText("2", 1e9, piece(0, 50, 0, 1e9, '<arc curvature="0.1"/>'))
+    text = map_text([RoadText("1", 100.0, line(0, 0, 0, 100)), endless])
+    found = network(tmp_path, text)
+    assert [road.id for road in found.roads] == [1]
+    assert "road 2 is left out" in found.problems[0].message
+
+
+def test_linked_lanes_that_lie_apart_are_reported(tmp_path: Path) -> None:
+    after = '<successor elementType="road" elementId="2" contactPoint="start"/>'
+    for gap, count, area in ((0.0, 0, 1400), (0.5, 0, 1403.5), (9.0, 2, 1400)):
+        roads = [
+            RoadText("1", 100.0, line(0, 0, 0, 100), link=after),
+            RoadText("2", 100.0, line(100 + gap, 0, 0, 100)),
+        ]
+        found = network(tmp_path, map_text(roads))
+        assert len(found.problems) == count, found.problems
+        assert all("though it leads into it" in problem.message for problem in found.problems)
+        assert found.drivableRegion.area == pytest.approx(area)
+        without = network(tmp_path, map_text(roads), fill_gaps=False)
+        assert without.drivableRegion.area == pytest.approx(1400)
 
 
 @pytest.mark.parametrize(
@@ -385,6 +435,8 @@ def test_broken_variants_give_no_traceback(tmp_path: Path, seed: int) -> None:
     ("town", "lanes", "elements", "areas"),
     [
         ("Town02", 88, 504, (10_019, 8_449, 1_570)),
+        ("Town06", 424, None, (85_541, 66_562, 18_979)),
+        ("Town07", 280, None, (19_761, 14_835, 4_928)),
         ("Town10HD", 168, None, (17_370, 10_874, 6_496)),
         ("Town04", 454, None, (108_661, 86_738, 21_950)),
     ],
@@ -396,3 +448,12 @@ def test_real_towns(town: str, lanes: int, elements: int | None, areas: tuple[fl
     regions = (found.drivableRegion, found.roadRegion, found.intersectionRegion)
     for region, area in zip(regions, areas, strict=True):
         assert region.area == pytest.approx(area, rel=0.005)
+    places = found.roadRegion.outline.sample(*np.random.default_rng(6).random((3, 20_000)))
+    assert (Finder(found.lanes, found.tolerance).near(places) < len(found.lanes)).all()
+
+
+@pytest.mark.skipif(MAPS is None, reason="needs SCENIC_TEST_MAPS, the folder of real maps")
+@pytest.mark.parametrize(("town", "lights"), [("Town01", 12), ("Town04", 12)])
+def test_traffic_lights_of_real_towns(town: str, lights: int) -> None:
+    found = Network.fromFile(Path(MAPS or "") / f"{town}.xodr")
+    assert sum(inter.isSignalized for inter in found.intersections) == lights

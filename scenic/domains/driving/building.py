@@ -167,7 +167,10 @@ def _folded(strip: _Strip) -> Any:
 
     left, right = strip.shape.boundaries[strip.index], strip.shape.boundaries[strip.index + 1]
     quads = np.stack([left[:-1], left[1:], right[1:], right[:-1]], axis=1)
-    return area_of(shapely.union_all(shapely.make_valid(shapely.polygons(quads))))
+    parts = shapely.polygons(quads)
+    wrong = ~shapely.is_valid(parts)
+    parts[wrong] = shapely.make_valid(parts[wrong])
+    return area_of(shapely.union_all(parts))
 
 
 def area_of(geometry: Any) -> Any:
@@ -252,7 +255,7 @@ class _RoadBuilder:
         road.signals = tuple(
             Signal(f"signal{signal.id}", signal.id, signal.country, signal.type)
             for signal in record.signals
-            if isinstance(signal, records.Signal)
+            if isinstance(signal, records.Signal) and signal.is_valid
         )
         return built
 

@@ -85,8 +85,12 @@ class NetworkElement(PolygonalRegion):
         self.vehicleTypes = vehicles
         self.tags = tags
         self._z = 0.0
-        self.orientation = RegionField(self)
         self.has_orientation = True
+
+    @cached_property
+    def orientation(self) -> RegionField:  # type: ignore[override] # made when somebody needs it
+        """The direction of traffic within the element."""
+        return RegionField(self)
 
     @cached_property
     def outline(self) -> Polygons:  # type: ignore[override] # made when somebody needs it

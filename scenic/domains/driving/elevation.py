@@ -46,7 +46,9 @@ class RoadHeight:
         s = along * (self.length / max(string.length, 1e-9))
         height = cubic_values(self.profile, s)
         if self.tilt:
-            before = shapely.get_coordinates(shapely.line_interpolate_point(string, np.maximum(along - 0.1, 0)))
+            before = shapely.get_coordinates(
+                shapely.line_interpolate_point(string, np.maximum(along - 0.1, 0))
+            )
             after = shapely.get_coordinates(shapely.line_interpolate_point(string, along + 0.1))
             way = after - before
             way /= np.maximum(np.hypot(*way.T), 1e-12)[:, None]

@@ -44,8 +44,9 @@ def link_roads(
     linker.road_ends()
     linker.maneuvers()
     linker.signals()
+    fillings = tuple(linker.gaps())
     if fill_gaps:
-        network._fillings = tuple(linker.gaps())
+        network._fillings = fillings
 
 
 class _Linker:
@@ -237,6 +238,10 @@ class _Linker:
         for end, at in (("end", incoming.record.successor), ("start", incoming.record.predecessor)):
             if at is not None and at.element == "junction" and at.id == junction:
                 return end
+        message = f"road {incoming.record.id} leads into junction {junction}, but has no link to it"
+        self._tell(
+            Problem("SC623", f"{message}: its end counts", incoming.record.line, "link of incoming road")
+        )
         return "end"
 
     def _beyond(
@@ -351,17 +356,27 @@ class _Linker:
             intersection.signals = tuple(signals.values())
 
     def gaps(self) -> Iterable[Any]:
-        """Polygons between the ends of lanes that are linked but do not touch."""
+        """Polygons between the ends of lanes that are linked but do not touch; reports those far apart."""
         import shapely
 
         limit = _GAP + self._network.tolerance
         for before, after in self._joints:
             corners = np.stack([before.left[-1], before.right[-1], after.right[0], after.left[0]])
             gap = max(np.hypot(*(corners[0] - corners[3])), np.hypot(*(corners[1] - corners[2])))
-            if 1e-3 < gap <= limit:
+            if gap > limit:
+                message = (
+                    f"{before.uid} ends {gap:.1f} m from where {after.uid} begins, though it leads into it: "
+                    "a link, a place or a width is wrong"
+                )
+                record = self._built_of(after).record
+                self._tell(Problem("SC623", message, record.line, "apart"))
+            elif gap > 1e-3:
                 hull = area_of(shapely.MultiPoint(corners).convex_hull)
                 if hull is not None:
                     yield hull
+
+    def _built_of(self, lane: Lane) -> BuiltRoad:
+        return self._built[lane.road.uid.removeprefix("road")]
 
 
 def _by_angle(lanes: list[Lane], middle: tuple[float, float], place: int) -> tuple[Lane, ...]:

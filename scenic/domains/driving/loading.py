@@ -7,7 +7,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any, Final, TypeVar
 
-from scenic.domains.driving.building import BuiltRoad, LaneTypes, build_roads
+from scenic.domains.driving.building import LaneTypes, build_roads
 from scenic.domains.driving.crossings import add_crossings
 from scenic.domains.driving.elevation import Elevation, RoadHeight
 from scenic.domains.driving.linking import link_roads
@@ -134,7 +134,7 @@ def network_of(
         built.append(_build(content, filename, options, cls))
         return stored(built[0])
 
-    key = hashlib.sha256(options.key() + content).digest()
+    key = hashlib.sha256(_code() + options.key() + content).digest()
     arrays = kept(KIND, key, build, read=options.useCache, write=options.writeCache)
     if built:
         return built[0]
@@ -143,6 +143,16 @@ def network_of(
     except (LookupError, TypeError, ValueError):
         # The file is whole, but not one that this version wrote.
         return _build(content, filename, options, cls)
+
+
+def _code() -> bytes:
+    """The digest of the modules that decide about networks: one that other code made is never used."""
+    here = Path(__file__).parent
+    folders = (here, here.parents[1] / "formats" / "opendrive")
+    digest = hashlib.sha256()
+    for file in sorted(file for folder in folders for file in folder.glob("*.py")):
+        digest.update(file.read_bytes())
+    return digest.digest()
 
 
 def _build(content: bytes, filename: str, options: MapOptions, cls: type[RoadNetwork]) -> RoadNetwork:

@@ -38,7 +38,7 @@ from scenic.runtime.geometry.store import Arrays
 __all__ = ["KIND", "restored", "stored"]
 
 KIND: Final = "road network 1"
-"""Name and version of the form; a new version whenever the network of a map changes."""
+"""Name and version of the form of the arrays."""
 
 _Network = TypeVar("_Network", bound=RoadNetwork)
 
@@ -98,7 +98,10 @@ def stored(network: RoadNetwork) -> Arrays:
         for maneuver in element.maneuvers
     )
     signals = _distinct(
-        signal for element in elements if isinstance(element, Road | Intersection) for signal in element.signals
+        signal
+        for element in elements
+        if isinstance(element, Road | Intersection)
+        for signal in element.signals
     )
     way = {id(item): index for index, item in enumerate(maneuvers)}
     sign = {id(item): index for index, item in enumerate(signals)}
@@ -142,7 +145,12 @@ def stored(network: RoadNetwork) -> Arrays:
         "signals": [(item.uid, item.openDriveID, item.country, item.type) for item in signals],
         "lists": [[number[id(item)] for item in getattr(network, name)] for name in _LISTS],
         "heights": [
-            (road.uid, road.length, [_numbers(cubic) for cubic in road.profile], [_numbers(c) for c in road.tilt])
+            (
+                road.uid,
+                road.length,
+                [_numbers(cubic) for cubic in road.profile],
+                [_numbers(c) for c in road.tilt],
+            )
             for road in network._elevation.roads
         ],
     }
@@ -203,12 +211,12 @@ def restored(arrays: Arrays, filename: str, tolerance: float, cls: type[_Network
 
 
 def _element(network: RoadNetwork, row: Sequence[Any], polygon: Any) -> NetworkElement:
-    kind, uid, id, name, speed, vehicles, tags = row[:7]
+    kind, uid, key, name, speed, vehicles, tags = row[:7]
     return _CLASSES[kind](
         network,
         uid,
         polygon,
-        id=id,
+        id=key,
         name=name,
         speed=speed,
         vehicles=frozenset(VehicleType[item] for item in vehicles),

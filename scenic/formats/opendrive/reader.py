@@ -5,7 +5,7 @@ Anything that is wrong with a part of the file costs at most that part, and is t
 
 import math
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import pairwise
 from typing import Final, Literal
@@ -158,10 +158,24 @@ class _Reader:
             element.line,
         )
 
+    def _once(self, where: str, elements: Sequence[Element]) -> None:
+        """Report elements of which there may be only one."""
+        if len(elements) > 1:
+            message = f"{where} has {len(elements)} elements <{elements[1].tag}>: the first counts"
+            self._tell("SC621", message, elements[1].line, "repeated")
+
     def _link(self, road: Element, which: str) -> Link | None:
         link = road.first("link")
-        end = None if link is None else link.first(which)
-        if end is None or "elementId" not in end.attributes:
+        if link is None:
+            return None
+        ends = list(link.all(which))
+        name = road.attributes.get("id", "?")
+        self._once(f"the link of road {name}", ends)
+        end = ends[0] if ends else None
+        if end is None:
+            return None
+        if "elementId" not in end.attributes:
+            self._tell("SC623", f"the {which} of road {name} has no 'elementId': dropped", end.line, "link")
             return None
         kind = end.attributes.get("elementType", "road")
         contact = end.attributes.get("contactPoint")
@@ -169,6 +183,9 @@ class _Reader:
             self._tell("SC623", f"a link to an element of the type {kind!r} is dropped", end.line, "link")
             return None
         element: Literal["road", "junction"] = "junction" if kind == "junction" else "road"
+        if element == "road" and contact not in ("start", "end"):
+            message = f"the {which} of road {name} has no 'contactPoint': the links of the other road decide"
+            self._tell("SC623", message, end.line, "contact")
         return Link(element, end.attributes["elementId"], _contact(contact), end.line)
 
     def _plan(self, road: str, plan: Element, declared: float) -> tuple[Geometry, ...]:
@@ -176,6 +193,7 @@ class _Reader:
         short: list[Geometry] = []
         for element in plan.all("geometry"):
             piece = _geometry(element)
+            self._once(f"a piece of road {road}", [part for part in element.children if part.tag in _NUMBERS])
             is_sharp = (
                 piece.shape == "spiral"
                 and piece.length > 0
@@ -260,6 +278,7 @@ class _Reader:
                 continue
             if lane.id == 0:
                 continue
+            self._lane_faults(f"lane {lane.id} of road {road}", element, lane)
             if lane.id in found:
                 message = f"lane {lane.id} of road {road} is there twice: the second is left out"
                 self._tell("SC622", message, lane.line, "twice")
@@ -271,19 +290,50 @@ class _Reader:
             found[lane.id] = lane
         return list(found.values())
 
+    def _lane_faults(self, name: str, element: Element, lane: Lane) -> None:
+        """Report attributes that a lane lacks, and what it has twice."""
+        if not element.attributes.get("type"):
+            self._tell("SC622", f"{name} has no type: it is for nobody", element.line, "no type")
+        starts = set()
+        for child in element.children:
+            if child.tag == "link":
+                for which in ("predecessor", "successor"):
+                    ends = list(child.all(which))
+                    self._once(f"the link of {name}", ends)
+                    if ends and "id" not in ends[0].attributes:
+                        self._tell(
+                            "SC623", f"the {which} of {name} has no id: dropped", ends[0].line, "lane link"
+                        )
+            elif child.tag == "width":
+                start = child.attributes.get("sOffset", "0")
+                if not starts and lane.widths[0].start > _SHORTEST:
+                    message = (
+                        f"the widths of {name} begin at sOffset = {start}, not 0: the first counts before"
+                    )
+                    self._tell("SC622", message, child.line, "width late")
+                if start in starts:
+                    message = f"{name} has two widths at sOffset = {start}: the last counts"
+                    self._tell("SC622", message, child.line, "width twice")
+                starts.add(start)
+                missing = [letter for letter in "abcd" if letter not in child.attributes]
+                if missing:
+                    message = f"a width of {name} has no {', '.join(missing)}: 0 counts"
+                    self._tell("SC622", message, child.line, "coefficients")
+
     # Beside the road
 
     def _signals(self, signals: Element | None) -> Iterator[Signal | SignalReference]:
         for element in () if signals is None else signals.children:
             if element.tag not in ("signal", "signalReference") or "id" not in element.attributes:
                 continue
-            valid = [
+            given = element.attributes
+            lanes = [
                 (v.attributes.get("fromLane"), v.attributes.get("toLane")) for v in element.all("validity")
             ]
-            if valid and all(pair == ("0", "0") for pair in valid):
-                continue
-            given = element.attributes
+            is_valid = not lanes or any(pair != ("0", "0") for pair in lanes)
             if element.tag == "signalReference":
+                if not is_valid:
+                    continue
                 yield SignalReference(given["id"], given.get("orientation", "none"), element.line)
                 continue
             try:
@@ -298,6 +348,7 @@ class _Reader:
                 given.get("subtype", ""),
                 given.get("orientation", "none"),
                 *place,
+                is_valid,
                 element.line,
             )
 
@@ -335,6 +386,13 @@ class _Reader:
                     self._tell(
                         "SC624", f"a lane link of junction {name} is left out: {wrong}", wrong.line, "link"
                     )
+            if len(set(links)) < len(links):
+                message = f"a connection of junction {name} has a lane link twice: once counts"
+                self._tell("SC624", message, item.line, "link twice")
+                links = list(dict.fromkeys(links))
+            if given.get("contactPoint") not in ("start", "end"):
+                message = f"a connection of junction {name} has no 'contactPoint': start counts"
+                self._tell("SC624", message, item.line, "contact of connection")
             connecting = given.get("connectingRoad", given.get("linkedRoad", ""))
             contact = _contact(given.get("contactPoint")) or "start"
             connections.append(

@@ -128,6 +128,8 @@ class Signal:
     orientation: str
     s: float
     t: float
+    is_valid: bool
+    """Valid for some lane of its own road, not only through references of others."""
     line: int
 
 

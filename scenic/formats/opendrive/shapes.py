@@ -23,6 +23,9 @@ _NEGATIVE: Final = -1e-3
 
 _SAME: Final = 1e-9
 
+_MOST: Final = 50_000
+"""Samples of a section beyond which a number in the file must be wrong; hours would pass otherwise."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SectionShape:
@@ -121,9 +124,11 @@ def _samples(
         step = np.sqrt(8 * max_error / total) if total > 0 else np.inf
         share = (right - left) / max(finish - begin, _SAME)
         least = np.ceil((min_points - 1) * share) if min_points > 2 else 1
-        counts.append(int(min(100_000, max(1, least, np.ceil((right - left) / step)))))
+        counts.append(max(1, least, np.ceil((right - left) / step)))
+    if not sum(counts) <= _MOST:
+        raise ValueError(f"it would take {sum(counts):.3g} points: a length, width or curvature is wrong")
     parts = [
-        left + (right - left) * np.arange(count) / count
+        left + (right - left) * np.arange(int(count)) / int(count)
         for left, right, count in zip(knots[:-1], knots[1:], counts, strict=True)
     ]
     return np.append(np.concatenate(parts), knots[-1]) if parts else knots
