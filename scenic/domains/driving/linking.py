@@ -363,9 +363,10 @@ class _Linker:
         for before, after in self._joints:
             corners = np.stack([before.left[-1], before.right[-1], after.right[0], after.left[0]])
             gap = max(np.hypot(*(corners[0] - corners[3])), np.hypot(*(corners[1] - corners[2])))
-            if gap > limit:
+            away = np.hypot(*(corners[0] + corners[1] - corners[2] - corners[3])) / 2
+            if away > limit:
                 message = (
-                    f"{before.uid} ends {gap:.1f} m from where {after.uid} begins, though it leads into it: "
+                    f"{before.uid} ends {away:.1f} m from where {after.uid} begins, though it leads into it: "
                     "a link, a place or a width is wrong"
                 )
                 record = self._built_of(after).record
