@@ -294,7 +294,7 @@ class _Reader:
         """Report attributes that a lane lacks, and what it has twice."""
         if not element.attributes.get("type"):
             self._tell("SC622", f"{name} has no type: it is for nobody", element.line, "no type")
-        starts = set()
+        starts: set[str] = set()
         for child in element.children:
             if child.tag == "link":
                 for which in ("predecessor", "successor"):
