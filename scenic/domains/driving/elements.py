@@ -88,7 +88,7 @@ class NetworkElement(PolygonalRegion):
         self.has_orientation = True
 
     @cached_property
-    def orientation(self) -> RegionField: # made when somebody needs it
+    def orientation(self) -> RegionField:  # made when somebody needs it
         """The direction of traffic within the element."""
         return RegionField(self)
 
