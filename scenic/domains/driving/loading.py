@@ -18,6 +18,7 @@ from scenic.formats.opendrive.records import Problem
 from scenic.formats.opendrive.shapes import MAX_ERROR
 from scenic.formats.opendrive.xml_tree import MapError
 from scenic.language.diagnostics import Diagnostic, Severity
+from scenic.language.garbage import no_garbage_collection
 from scenic.language.spans import Span
 from scenic.language.spelling import nearest
 from scenic.runtime.geometry.store import Arrays, kept
@@ -92,7 +93,8 @@ def load_network(path: Any, given: Mapping[str, Any], cls: type[_Network]) -> _N
     """The network of a map file, of a class; see `Network.fromFile`."""
     options = MapOptions.of(given)
     file = map_file(path)
-    network = network_of(file.read_bytes(), str(file), options, cls)  # type: ignore[arg-type] # classes can be hashed
+    with no_garbage_collection():
+        network = network_of(file.read_bytes(), str(file), options, cls)  # type: ignore[arg-type] # classes can be hashed
     assert isinstance(network, cls)
     return network
 
