@@ -22,10 +22,14 @@ def add_crossings(network: RoadNetwork, built: Mapping[str, BuiltRoad], tell: Te
     import shapely
 
     made = []
+    junction_of = {
+        id(lane): intersection for intersection in network.intersections for lane in intersection._connecting
+    }
     inside = {
-        id(road): intersection
-        for intersection in network.intersections
-        for road in _roads_in(network, intersection)
+        id(road): junction_of[id(lane)]
+        for road in network.connectingRoads
+        for lane in road.lanes
+        if id(lane) in junction_of
     }
     for road in built.values():
         for number, crosswalk in enumerate(road.record.crosswalks):
@@ -55,11 +59,6 @@ def add_crossings(network: RoadNetwork, built: Mapping[str, BuiltRoad], tell: Te
         crossing.startSidewalk, crossing.endSidewalk = ends
         for sidewalk in dict.fromkeys(end for end in ends if end is not None):
             sidewalk.crossings += (crossing,)
-
-
-def _roads_in(network: RoadNetwork, intersection: Intersection) -> list[Road]:
-    lanes = set(map(id, intersection._connecting))
-    return [road for road in network.connectingRoads if any(id(lane) in lanes for lane in road.lanes)]
 
 
 def _corners(road: BuiltRoad, crosswalk: Crosswalk) -> Floats:

@@ -58,6 +58,10 @@ class _Linker:
         self._built = built
         self._tell = tell
         self._names = {road.id for road in map.roads}
+        self._inside: dict[str | None, list[BuiltRoad]] = defaultdict(list)
+        """The roads within each junction."""
+        for road in built.values():
+            self._inside[road.record.junction].append(road)
         self._intersections: dict[str, Intersection] = {}
         self._maneuvers: dict[int, list[Maneuver]] = defaultdict(list)
         self._joints: list[tuple[Lane, Lane]] = []
@@ -134,7 +138,7 @@ class _Linker:
         """Make the intersection of a junction, and the ways through it."""
         import shapely
 
-        inside = [road for road in self._built.values() if road.record.junction == junction.id]
+        inside = self._inside[junction.id]
         ways: list[tuple[BuiltRoad, str, BuiltRoad, records.Connection]] = []
         for connection in junction.connections:
             incoming, connecting = (
@@ -348,11 +352,9 @@ class _Linker:
                 built.road.signals += tuple(added)
         for name, intersection in self._intersections.items():
             signals = {signal.uid: signal for signal in intersection.signals}
-            for built in self._built.values():
-                if built.record.junction == name or built.road in intersection.roads:
-                    signals.update(
-                        {signal.uid: signal for signal in built.road.signals if signal.uid not in signals}
-                    )
+            for road in (*(built.road for built in self._inside[name]), *intersection.roads):
+                for sign in road.signals:
+                    signals.setdefault(sign.uid, sign)
             intersection.signals = tuple(signals.values())
 
     def gaps(self) -> Iterable[Any]:
