@@ -130,6 +130,8 @@ def network_of(
 
     Raises `MapError` if it is not a map, or has no lane for traffic.
     """
+    if not (options.useCache or options.writeCache):
+        return _build(content, filename, options, cls)
     built: list[RoadNetwork] = []
 
     def build() -> Arrays:
