@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from scenic.simulators.batch import Numbered
     from scenic.simulators.simulator import Simulator
 
-__all__ = ["Running", "SimulationError", "SimulationRow", "Simulations", "simulated"]
+__all__ = ["Running", "SimulationError", "SimulationRow", "Simulations", "is_violated", "simulated"]
 
 _NOTHING_KEPT: Final = (
     "nothing of this simulation is kept; make room or name another place, and give the same command again"
@@ -37,6 +37,8 @@ class Running:
     """Simulations tried of one scene before it is given up as rejected."""
     stuck_after: float = 10.0
     """Seconds that the program may run within one step."""
+    keep_violations: bool = False
+    """Whether a simulation that violates a requirement runs to its end, rather than being rejected."""
     sobol: bool = False
     """Whether scenes and simulations are rows of Sobol's sequence."""
 
@@ -48,6 +50,8 @@ class Running:
             "timestep": self.timestep,
             "tries": self.tries,
         }
+        if self.keep_violations:
+            options["keep_violations"] = True
         return {**options, "sobol": True} if self.sobol else options
 
 
@@ -94,6 +98,7 @@ class Simulations:
         folder: where trajectories are kept, if anywhere.
         form: the format of their files.
         shown: whether rows carry data for a page.
+        only_violations: whether only simulations that violate a requirement are kept in the folder and shown.
 
     Raises:
         SimulatorChoiceError: if there is no such simulator.
@@ -109,7 +114,9 @@ class Simulations:
         folder: Path | None = None,
         form: Form = "jsonl",
         shown: bool = False,
+        only_violations: bool = False,
     ) -> None:
+        self._only_violations = only_violations
         self._scenario = scenario
         self._named = simulator
         self._running = running
@@ -212,7 +219,8 @@ class Simulations:
                 what = f"rejected ({numbered.tries} tried)" if numbered.has_scene else "no scene found"
                 return SimulationRow(k, missing=what, rejections=numbered.rejections)
             about = {**course_document(done, k=k, tries=numbered.tries), "settings": self._settings()}
-            return SimulationRow(k, about=about, page=kept.finish(done, about))
+            wanted = not self._only_violations or is_violated(about)
+            return SimulationRow(k, about=about, page=kept.finish(done, about) if wanted else None)
 
     def _simulated(self, k: int, kept: Kept) -> "Numbered":
         """Simulation ``k``, with its whole course in memory if the program's text looks back at it.
@@ -253,6 +261,11 @@ class Simulations:
         return self._looking_back
 
 
+def is_violated(about: Mapping[str, Any]) -> bool:
+    """Whether a simulation, by the document about it, violates a requirement or leaves one unmet at its end."""
+    return any(item["verdict"] in ("FALSE", "PRESUMABLY_FALSE") for item in about["requirements"])
+
+
 def simulated(
     scenario: "Scenario",
     n: int,
@@ -263,6 +276,7 @@ def simulated(
     max_steps: int | None = 100,
     timestep: float | None = None,
     tries: int = 20,
+    keep_violations: bool = False,
     folder: str | Path | None = None,
     processes: int = 1,
     executor: Executor | None = None,
@@ -278,6 +292,7 @@ def simulated(
         max_steps: steps of a simulation at most.
         timestep: seconds in a step; the simulator's own if not given.
         tries: simulations tried of one scene before it is given up as rejected.
+        keep_violations: let simulations that violate a requirement run to their end, rather than reject them.
         folder: where trajectories are kept; those that are there already are not made again.
         processes: how many processes simulate. Changes speed, never what comes out.
         executor: runs the simulations in place of processes of our own, ``processes`` at a time.
@@ -295,7 +310,13 @@ def simulated(
     place = None if folder is None else Path(folder)
     if place is not None:
         make_folder(place)
-    running = Running(random.getrandbits(63) if seed is None else seed, max_steps, timestep, tries)
+    running = Running(
+        random.getrandbits(63) if seed is None else seed,
+        max_steps,
+        timestep,
+        tries,
+        keep_violations=keep_violations,
+    )
     batch = Simulations(scenario, simulator, running, folder=place)
     numbers = range(first, first + n)
     found = {row.k: row for row in _known(batch, numbers)}

@@ -4,13 +4,16 @@ import secrets
 import sys
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from scenic.cli.options import parameter_value, program_options, seconds
 from scenic.cli.output import CLEAN
 from scenic.cli.sample import NOT_ALL, _ended_by_signals, _engine, _progress
+
+if TYPE_CHECKING:
+    from scenic.falsification.search import FalsificationResult
 
 __all__ = ["falsify"]
 
@@ -165,12 +168,21 @@ def falsify(
 ) -> int:
     """Search for scenes and simulations in which requirements fail.
 
+    Given the folder of a search in place of a program, makes its report again.
+
     A run is a counterexample if its value is at most the threshold; of a requirement the value is its robustness.
 
     Exit codes: 0 counterexamples were found, 1 the program has errors, 2 wrong usage, 3 none was found, 130 interrupted.
     """
     if resume and output is None:
         raise click.UsageError("--resume needs the folder of the search: -o DIR")
+    if Path(file).is_dir():
+        from scenic.falsification.report import load_result
+
+        page = report or Path(file) / "report.html"
+        _write_report(load_result(Path(file)), Path(file).name, page)
+        print(f"wrote {page}")
+        return CLEAN
     from scenic.falsification.objectives import Objective
     from scenic.falsification.search import Limits, Plan, search
     from scenic.falsification.store import SearchFolder, manifest_of
@@ -218,8 +230,12 @@ def falsify(
         for name, value in list(worst["point"].items())[:12]:
             print(f"  {name} = {value:.6g}")
     if report is not None:
-        from scenic.falsification.report import report_page
-        from scenic.formats.files import write
-
-        write(report, report_page(result, Path(file).name, links_from=report.parent).encode())
+        _write_report(result, Path(file).name, report)
     return CLEAN if failed else NOT_ALL
+
+
+def _write_report(result: "FalsificationResult", title: str, page: Path) -> None:
+    from scenic.falsification.report import report_page
+    from scenic.formats.files import write
+
+    write(page, report_page(result, title, links_from=page.parent).encode())

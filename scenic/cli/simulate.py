@@ -73,6 +73,20 @@ __all__ = ["simulate"]
     default=20,
     help="Simulate a scene so often before giving it up as rejected.  [default: 20]",
 )
+@click.option(
+    "--keep",
+    type=click.Choice(["all", "violations", "none"]),
+    default="none",
+    show_default=True,
+    help="Which simulations that violate a requirement are kept, rather than rejected and tried again: none of them, all"
+    " simulations whatever they do, or in the folder and page those with a violation alone.",
+)
+@click.option(
+    "--table",
+    metavar="FILE.csv",
+    type=click.Path(path_type=Path),
+    help="Write a row for each simulation: verdict, robustness, why it ended.",
+)
 @sobol_option
 @click.option(
     "--step-limit",
@@ -117,6 +131,8 @@ def simulate(
     max_steps: int,
     timestep: float | None,
     tries: int,
+    keep: str,
+    table: Path | None,
     sobol: bool,
     step_limit: float,
     parameters: Mapping[str, Any],
@@ -139,6 +155,7 @@ def simulate(
     """
     # These bring in NumPy and the geometry libraries.
     from scenic.batch.simulations import Running, Simulations
+    from scenic.batch.summaries import csv_of, summary
     from scenic.formats.files import make_folder, write
     from scenic.pipeline import load
 
@@ -160,8 +177,18 @@ def simulate(
     is_drawn = seed is None
     seed = secrets.randbits(32) if seed is None else seed
     loaded = load(Path(file), params=parameters, model=model, scenario=scenario, mode2D=mode_2d)
-    running = Running(seed, max_steps, timestep, tries, step_limit, sobol)
-    batch = Simulations(loaded, simulator, running, folder=output, form=_FORMS[form], shown=view is not None)
+    running = Running(
+        seed, max_steps, timestep, tries, step_limit, sobol=sobol, keep_violations=keep != "none"
+    )
+    batch = Simulations(
+        loaded,
+        simulator,
+        running,
+        folder=output,
+        form=_FORMS[form],
+        shown=view is not None,
+        only_violations=keep == "violations",
+    )
     if is_drawn:
         sys.stderr.write(f"seed {seed} (the same simulations again: --seed {seed})\n")
     numbers = range(first, first + count)
@@ -179,6 +206,12 @@ def simulate(
     code = CLEAN
     for k in numbers:
         code = max(code, _show(found[k]))
+    if keep != "none" or table is not None:
+        rows_in_order = [found[k] for k in numbers]
+        if len(rows_in_order) > 1:
+            print(summary(rows_in_order))
+        if table is not None:
+            write(table, csv_of(rows_in_order).encode())
     if view is not None:
         from scenic.formats.course_page import course_page
 

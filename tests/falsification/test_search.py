@@ -199,5 +199,7 @@ def test_the_command(tmp_path: Path) -> None:
     kept = load_result(tmp_path / "out")
     assert importances(kept)[0][1] > importances(kept)[-1][1]
     assert report_page(kept, "static.scenic", links_from=tmp_path) == page
+    assert run(str(tmp_path / "out")).return_value == 0
+    assert (tmp_path / "out" / "report.html").exists()
     rare = run(*common, "--threshold", "-2.999")
     assert rare.return_value == 3
