@@ -185,6 +185,10 @@ class UnsupportedError(ScenicError):
     code = "SC900"
 
 
+class UnknownPairError(UnsupportedError, NotImplementedError):
+    """A question about two regions of kinds for which the answer is not known."""
+
+
 class ScenicTypeError(Located, TypeError):
     """A value of the wrong type for an operator, specifier or property."""
 

@@ -4,10 +4,9 @@ Fixed regions are combined in closed form where there is one: polygons and lines
 manifold3d. Everything else, and everything random, becomes a composite region.
 """
 
-import itertools
 from collections.abc import Callable, Sequence
 from functools import partial
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 
@@ -17,9 +16,7 @@ from scenic.language.errors import InvalidScenarioError, ScenicTypeError
 from scenic.runtime.elements.shapes import Shape, ShapeSource
 from scenic.runtime.geometry import booleans, primitives
 from scenic.runtime.geometry.bodies import Body
-from scenic.runtime.geometry.collision import collide
 from scenic.runtime.geometry.mesh import Mesh
-from scenic.runtime.geometry.poses import Poses
 from scenic.runtime.geometry.prisms import prism, shadow, slice_at
 from scenic.runtime.program.context import here
 from scenic.runtime.python.opaque import evaluated, later
@@ -31,19 +28,19 @@ from scenic.runtime.regions.composite import (
     DifferenceRegion,
     IntersectionRegion,
     UnionRegion,
-    exactly_contains,
 )
 from scenic.runtime.regions.fields import PiecewiseVectorField, RegionField
+from scenic.runtime.regions.holding import HOLDS
 from scenic.runtime.regions.lines import LineRegion, PathRegion, PolylineRegion
+from scenic.runtime.regions.meeting import MEETING, cells_near
 from scenic.runtime.regions.meshes import (
     MeshSurfaceRegion,
     MeshVolumeRegion,
-    solid_in_world,
     surface_in_world,
     world_mesh,
 )
+from scenic.runtime.regions.pairs import Cell, PairTable
 from scenic.runtime.regions.planar import (
-    CircularRegion,
     Footprint,
     PlanarRegion,
     PolygonalFootprintRegion,
@@ -52,6 +49,7 @@ from scenic.runtime.regions.planar import (
 from scenic.runtime.regions.scattered import PointSetRegion
 from scenic.runtime.regions.spaces import Everywhere, Nowhere, Workspace, nowhere
 from scenic.runtime.regions.stacked import is_body
+from scenic.runtime.regions.terms import flat_of, holds, pieces_inside, prism_about, solid_of
 from scenic.runtime.regions.views import ViewRegion
 from scenic.runtime.regions.volumes import BoxRegion, PlacedVolume
 from scenic.runtime.regions.voxels import VoxelRegion
@@ -90,33 +88,6 @@ def _unwrapped(region: Region) -> Region:
 
 
 # Fixed regions in terms of other libraries
-
-
-def _solid(region: Region) -> Mesh | None:
-    """A fixed volume as a mesh of the world; ``None`` for other regions."""
-    if isinstance(region, OccupiedSpace):
-        return solid_in_world(region.fixed_columns("the solid"))
-    if isinstance(region, PlacedVolume):
-        dimensions, position, rotation = region.fixed_columns("the solid")
-        unit = primitives.box() if isinstance(region, BoxRegion) else primitives.spheroid()
-        return Mesh(Poses(position, rotation, dimensions).to_world(unit.vertices[np.newaxis])[0], unit.faces)
-    return None
-
-
-def _meshed(region: Region) -> Mesh | None:
-    """A fixed volume as a mesh of the world, views included, whose meshes are somewhat smaller than they are."""
-    return region.solid() if isinstance(region, ViewRegion) else _solid(region)
-
-
-def _flat(region: Region) -> tuple[Any, float | None] | None:
-    """A fixed region of the plane as a shapely geometry with its height; no height means all heights."""
-    if isinstance(region, PlanarRegion):
-        return region.polygons, float(region.height)
-    if isinstance(region, Footprint):
-        return region.polygons, None
-    if isinstance(region, PolylineRegion):
-        return region.lineString, 0.0
-    return None
 
 
 def region_of(geometry: Any, height: float | None, orientation: Any) -> Region:
@@ -166,12 +137,6 @@ def own_field(region: Region) -> RegionField:
     return RegionField(region)
 
 
-def _prism_about(solid: Mesh, polygon: Any) -> Mesh | None:
-    """The part of a footprint that can meet a solid, as a prism somewhat higher than it."""
-    low, high = float(solid.bounds[0][2]), float(solid.bounds[1][2])
-    return prism(polygon, low - 1, high + 1)
-
-
 def _volume(mesh: Mesh | None, orientation: Any = None) -> Region:
     if mesh is None or not mesh.volume > 0:
         return nowhere
@@ -203,7 +168,7 @@ def intersection(first: Any, second: Any) -> Region:
     if not (a.is_random or b.is_random):
         for one, two in ((a, b), (b, a)):
             if isinstance(one, PointSetRegion):
-                kept = [point for point in one.points if _holds(two, point)]
+                kept = [point for point in one.points if holds(two, point)]
                 return PointSetRegion(one.name, kept, orientation=_field(a, b)) if kept else nowhere
         exact = _exact_intersection(a, b)
         if exact is not None:
@@ -212,14 +177,14 @@ def intersection(first: Any, second: Any) -> Region:
 
 
 def _exact_intersection(a: Region, b: Region) -> Region | None:
-    flat_a, flat_b = _flat(a), _flat(b)
+    flat_a, flat_b = flat_of(a), flat_of(b)
     if flat_a is not None and flat_b is not None:
         (one, height_a), (two, height_b) = flat_a, flat_b
         if height_a is not None and height_b is not None and height_a != height_b:
             return nowhere
         height = height_b if height_a is None else height_a
         return region_of(one.intersection(two), height, _field(a, b))
-    solid_a, solid_b = _solid(a), _solid(b)
+    solid_a, solid_b = solid_of(a), solid_of(b)
     if solid_a is not None and solid_b is not None:
         return _volume(booleans.intersection([solid_a, solid_b]), _field(a, b))
     for solid, flat, line in ((solid_a, flat_b, b), (solid_b, flat_a, a)):
@@ -228,7 +193,7 @@ def _exact_intersection(a: Region, b: Region) -> Region | None:
         if flat is not None and not isinstance(line, LineRegion):
             polygon, height = flat
             if height is None:
-                column = _prism_about(solid, polygon)
+                column = prism_about(solid, polygon)
                 return (
                     nowhere
                     if column is None
@@ -246,13 +211,8 @@ def _exact_intersection(a: Region, b: Region) -> Region | None:
 
 
 def _line_inside(line: LineRegion, solid: Mesh, orientation: Any) -> Region:
-    """The pieces of a line inside a solid, with an orientation field: it is cut wherever it meets the surface."""
-    pieces = []
-    for start, end in zip(line.pieces.starts, line.pieces.ends, strict=True):
-        cuts = [0.0, *sorted(_crossings(start, end, solid)), 1.0]
-        for low, high in itertools.pairwise(cuts):
-            if high - low > 1e-12 and _inside(solid, start + (low + high) / 2 * (end - start)):
-                pieces.append([(start + part * (end - start)).tolist() for part in (low, high)])
+    """The pieces of a line inside a solid, with an orientation field."""
+    pieces = pieces_inside(line, solid)
     if not pieces:
         return nowhere
     if isinstance(line, PolylineRegion):
@@ -270,38 +230,6 @@ def _of_pieces(orientation: Any) -> Any:
     return True if orientation is None or isinstance(orientation, RegionField) else orientation
 
 
-def _crossings(start: Any, end: Any, solid: Mesh) -> list[float]:
-    """Where a segment meets the faces of a solid, as parts of its length (Moeller and Trumbore, 1997)."""
-    along = end - start
-    a, b, c = (solid.triangles[:, corner] for corner in range(3))
-    ab, ac = b - a, c - a
-    across = np.cross(along, ac)
-    determinant = (ab * across).sum(axis=1)
-    crosses = np.abs(determinant) > 1e-14
-    inverse = 1 / np.where(crosses, determinant, 1.0)
-    offset = start - a
-    u = (offset * across).sum(axis=1) * inverse
-    turned = np.cross(offset, ab)
-    v = (turned @ along) * inverse
-    part = (ac * turned).sum(axis=1) * inverse
-    hit = crosses & (u >= -1e-9) & (v >= -1e-9) & (u + v <= 1 + 1e-9) & (part >= 0) & (part <= 1)
-    return [float(value) for value in part[hit]]
-
-
-def _inside(solid: Mesh, point: Any) -> bool:
-    from scenic.runtime.geometry.containment import contains_points
-
-    unit, centre, extents = solid.normalized()
-    body = Body((unit,), None, Poses.fixed(centre, size=extents))
-    return bool(contains_points(body, np.asarray(point, dtype=np.float64).reshape(1, 3))[0])
-
-
-def _holds(region: Region, point: Any) -> bool:
-    """Whether a fixed region holds a point; one of the plane only what is at its height."""
-    place = np.asarray(point, dtype=np.float64).reshape(1, 3)
-    return bool(exactly_contains(region, place, region.fixed_columns("containment"))[0])
-
-
 def union(first: Any, second: Any) -> Region:
     """The points that lie in either region."""
     a, b = _operand(first, "`union`"), _operand(second, "`union`")
@@ -310,7 +238,7 @@ def union(first: Any, second: Any) -> Region:
     if isinstance(b, Everywhere) or isinstance(a, Nowhere):
         return b
     if not (a.is_random or b.is_random):
-        flat_a, flat_b = _flat(a), _flat(b)
+        flat_a, flat_b = flat_of(a), flat_of(b)
         areal = not (isinstance(a, LineRegion) or isinstance(b, LineRegion))
         if areal and flat_a is not None and flat_b is not None and flat_a[1] == flat_b[1]:
             if is_random((a.orientation, b.orientation)):
@@ -318,7 +246,7 @@ def union(first: Any, second: Any) -> Region:
             else:
                 field = field_of_union([a, b])
             return region_of(flat_a[0].union(flat_b[0]), flat_a[1], field)
-        solid_a, solid_b = _solid(a), _solid(b)
+        solid_a, solid_b = solid_of(a), solid_of(b)
         if solid_a is not None and solid_b is not None:
             return _volume(booleans.union([solid_a, solid_b]))
     chosen = _by_option(union, a, b)
@@ -341,17 +269,17 @@ def difference(first: Any, second: Any) -> Region:
         return a
     if not (a.is_random or b.is_random):
         if isinstance(a, PointSetRegion):
-            kept = [point for point in a.points if not _holds(b, point)]
+            kept = [point for point in a.points if not holds(b, point)]
             return PointSetRegion(a.name, kept, orientation=a.orientation) if kept else nowhere
-        flat_a, flat_b = _flat(a), _flat(b)
+        flat_a, flat_b = flat_of(a), flat_of(b)
         if flat_a is not None and flat_b is not None:
             if flat_a[1] is not None and flat_b[1] is not None and flat_a[1] != flat_b[1]:
                 return a
             if flat_a[1] is not None or flat_b[1] is None:
                 return region_of(flat_a[0].difference(flat_b[0]), flat_a[1], _field(a))
-        solid_a, solid_b = _solid(a), _solid(b)
+        solid_a, solid_b = solid_of(a), solid_of(b)
         if solid_a is not None and solid_b is None and flat_b is not None and flat_b[1] is None:
-            solid_b = _prism_about(solid_a, flat_b[0])
+            solid_b = prism_about(solid_a, flat_b[0])
         if solid_a is not None and solid_b is not None:
             return _volume(booleans.difference(solid_a, [solid_b]), _field(a))
     return _by_option(difference, a, b) or DifferenceRegion(a, b)
@@ -378,65 +306,30 @@ def intersects(first: Any, second: Any) -> Any:
 
 
 def _meet(a: Region, b: Region) -> bool:
-    """Whether two fixed regions share a point."""
-    a, b = _unwrapped(a), _unwrapped(b)
-    if isinstance(a, Nowhere) or isinstance(b, Nowhere):
-        return False
-    if isinstance(a, Everywhere) or isinstance(b, Everywhere):
-        return True
-    for one, two in ((a, b), (b, a)):
-        if isinstance(one, PointSetRegion):
-            return any(_holds(two, point) for point in one.points)
-        if isinstance(one, UnionRegion):
-            return any(_meet(member, two) for member in one.members)
-        if isinstance(one, IntersectionRegion | DifferenceRegion):
-            shared = _shared(one, two)
-            if shared is not None:
-                return not isinstance(shared, Nowhere)
-        if isinstance(one, VoxelRegion):
-            return any(_meet(cell, two) for cell in one.cells_within(*two.box(*two.fixed_columns("the box"))))
-    flat_a, flat_b = _flat(a), _flat(b)
-    if flat_a is not None and flat_b is not None:
-        same = flat_a[1] is None or flat_b[1] is None or flat_a[1] == flat_b[1]
-        return same and bool(flat_a[0].intersects(flat_b[0]))
-    solid_a, solid_b = _meshed(a), _meshed(b)
-    if solid_a is not None and solid_b is not None:
-        return _solids_meet(solid_a, solid_b)
-    for solid, flat, other in ((solid_a, flat_b, b), (solid_b, flat_a, a)):
-        if solid is None:
-            continue
-        if isinstance(other, LineRegion):
-            ends = zip(other.pieces.starts, other.pieces.ends, strict=True)
-            return any(_inside(solid, start) or bool(_crossings(start, end, solid)) for start, end in ends)
-        if flat is not None:
-            polygon, height = flat
-            if height is None:
-                column = _prism_about(solid, polygon)
-                return column is not None and _solids_meet(solid, column)
-            return bool(slice_at(solid, height).intersects(polygon))
-    for line, other in ((a, b), (b, a)):
-        if isinstance(line, PathRegion) and isinstance(other, Footprint):
-            import shapely
+    """Whether two fixed regions share a point; raises `UnknownPairError` where that is not known."""
+    return bool(_MEETS.ask(_unwrapped(a), _unwrapped(b)))
 
-            return any(
-                other.polygons.intersects(shapely.LineString([p[:2] for p in chain])) for chain in line.chains
-            )
-    for line, other in ((a, b), (b, a)):
-        if isinstance(line, PathRegion) and isinstance(other, PlanarRegion):
-            return _crosses_plane(line, other)
-        if isinstance(line, SideSurface):
-            shell = surface_in_world(line)
-            if shell is None:
-                return False
-            if isinstance(other, Footprint):
-                return _is_over(shell, other.polygons)
-            if isinstance(other, SideSurface):
-                second = surface_in_world(other)
-                return second is not None and _edges_cross(shell, second)
-            solid = _meshed(other)
-            if solid is not None:
-                return any(_inside(solid, vertex) for vertex in shell.vertices) or _edges_cross(shell, solid)
-    raise NotImplementedError(f"whether {a!r} and {b!r} intersect is not known for regions of these kinds")
+
+def _composite_meets(one: IntersectionRegion | DifferenceRegion, other: Region) -> bool | None:
+    shared = _shared(one, other)
+    return None if shared is None else not isinstance(shared, Nowhere)
+
+
+_MEETS: Final = PairTable(
+    "whether {} and {} intersect",
+    (
+        Cell(Nowhere, Region, lambda _nowhere, _other: False),
+        Cell(Everywhere, Region, lambda _everywhere, _other: True),
+        Cell(PointSetRegion, Region, lambda one, two: any(holds(two, point) for point in one.points)),
+        Cell(UnionRegion, Region, lambda one, two: any(_meet(member, two) for member in one.members)),
+        Cell(IntersectionRegion, Region, _composite_meets),
+        Cell(DifferenceRegion, Region, _composite_meets),
+        Cell(VoxelRegion, Region, lambda one, two: any(_meet(cell, two) for cell in cells_near(one, two))),
+        *MEETING,
+    ),
+    symmetric=True,
+)
+"""Which rule says of two kinds whether they meet; rules that answer ``None`` leave it to those below."""
 
 
 def _shared(one: IntersectionRegion | DifferenceRegion, other: Region) -> Region | None:
@@ -446,54 +339,12 @@ def _shared(one: IntersectionRegion | DifferenceRegion, other: Region) -> Region
     for member in rest:
         if isinstance(one, IntersectionRegion):
             shared = intersection(shared, member)
-        elif isinstance(shared, PlanarRegion) and (solid := _solid(member)) is not None:
+        elif isinstance(shared, PlanarRegion) and (solid := solid_of(member)) is not None:
             cut = slice_at(solid, float(shared.height))
             shared = region_of(shared.polygons.difference(cut), float(shared.height), None)
         else:
             shared = difference(shared, member)
     return None if isinstance(shared, Composite) else shared
-
-
-def _crosses_plane(line: LineRegion, region: PlanarRegion) -> bool:
-    """Whether a line in space meets a region of the plane."""
-    import shapely
-
-    height, polygon = float(region.height), region.polygons
-    for start, end in zip(line.pieces.starts, line.pieces.ends, strict=True):
-        if start[2] == end[2]:
-            if start[2] == height and polygon.intersects(shapely.LineString([start[:2], end[:2]])):
-                return True
-        elif min(start[2], end[2]) <= height <= max(start[2], end[2]):
-            point = start + (height - start[2]) / (end[2] - start[2]) * (end - start)
-            if polygon.intersects(shapely.Point(point[:2])):
-                return True
-    return False
-
-
-def _is_over(shell: Mesh, polygons: Any) -> bool:
-    """Whether a face of a surface, which may stand upright, has a point above or below polygons."""
-    import shapely
-
-    seen = shapely.convex_hull(shapely.multipoints(shell.triangles[:, :, :2]))
-    return bool(shapely.intersects(polygons, seen).any())
-
-
-def _edges_cross(one: Mesh, two: Mesh) -> bool:
-    """Whether an edge of one of two meshes meets a face of the other."""
-    for edges_of, faces_of in ((one, two), (two, one)):
-        pairs = np.sort(edges_of.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
-        for first, second in np.unique(pairs, axis=0).tolist():
-            if _crossings(edges_of.vertices[first], edges_of.vertices[second], faces_of):
-                return True
-    return False
-
-
-def _solids_meet(one: Mesh, two: Mesh) -> bool:
-    bodies = []
-    for solid in (one, two):
-        unit, centre, extents = solid.normalized()
-        bodies.append(Body((unit,), None, Poses.fixed(centre, size=extents)))
-    return not bool(collide(bodies, np.array([[0, 1]]), lanes=1).free[0])
 
 
 class _Lane:
@@ -542,7 +393,7 @@ _MEET = Operation(
 
 
 def contains_region(first: Any, second: Any, tolerance: float = 0) -> bool:
-    """Whether a fixed region holds another; raises ``NotImplementedError`` where that is not known."""
+    """Whether a fixed region holds another; raises `UnknownPairError` where that is not known."""
     a, b = _operand(first, "`containsRegion`"), _operand(second, "`containsRegion`")
     if isinstance(a, Everywhere) or isinstance(b, Nowhere):
         return True
@@ -551,33 +402,7 @@ def contains_region(first: Any, second: Any, tolerance: float = 0) -> bool:
     for region in (a, b):
         if isinstance(region, RegionChoice):
             region.fixed_columns("what it holds")  # which says that it is random
-    if isinstance(b, PointSetRegion):
-        return all(_holds(a, point) for point in b.points)
-    flat_a, flat_b = _flat(a), _flat(b)
-    if flat_a is not None and flat_b is not None:
-        if flat_a[1] is not None and flat_a[1] != flat_b[1]:
-            return False
-        if isinstance(a, CircularRegion):
-            # Exactly, not by the polygon of the disc, which a sector of the same circle sticks out of.
-            import shapely
-
-            reach = shapely.hausdorff_distance(shapely.Point(a.center.x, a.center.y), flat_b[0])
-            return bool(reach <= float(a.radius) + tolerance + 1e-9)
-        return bool(flat_a[0].buffer(tolerance + 1e-9).covers(flat_b[0]))
-    if isinstance(b, Footprint) and a.dimension == 3 and not isinstance(a, Footprint | Composite):
-        return False
-    solid_a, solid_b = _meshed(a), _meshed(b)
-    if solid_a is not None and solid_b is not None:
-        rest = booleans.difference(solid_b, [solid_a])
-        return rest is None or rest.volume <= 1e-9 * solid_b.volume
-    if flat_a is not None and flat_a[1] is None and solid_b is not None:
-        return bool(flat_a[0].buffer(tolerance + 1e-9).covers(shadow(solid_b)))
-    if a.dimension < b.dimension:
-        return False
-    if solid_a is not None and isinstance(b, LineRegion):
-        inside = _line_inside(b, solid_a, None)
-        return isinstance(inside, LineRegion) and inside.length >= b.length * (1 - 1e-9) - tolerance
-    raise NotImplementedError(f"whether {a!r} holds {b!r} is not known for regions of these kinds")
+    return bool(HOLDS.ask(a, b, tolerance))
 
 
 def boundary(region: PlanarRegion) -> PolylineRegion:
@@ -587,7 +412,7 @@ def boundary(region: PlanarRegion) -> PolylineRegion:
 
 def outline_from_above(region: Region) -> PolygonalRegion:
     """A volume or surface seen from above, at height 0."""
-    solid = surface_in_world(region) if isinstance(region, SideSurface) else _solid(region)
+    solid = surface_in_world(region) if isinstance(region, SideSurface) else solid_of(region)
     outline = None if solid is None else shadow(solid)
     if outline is None or outline.is_empty:
         raise InvalidScenarioError(f"{region!r} has no outline from above", span=here())
@@ -621,7 +446,7 @@ def surface_of(region: OccupiedSpace) -> MeshSurfaceRegion:
 
 def voxelized(region: Region, pitch: float) -> VoxelRegion:
     """The cells of a grid that a volume touches."""
-    solid = _solid(region)
+    solid = solid_of(region)
     if solid is None:
         raise InvalidScenarioError(f"{region!r} has no cells", span=here())
     return cells_of(region, solid, pitch)
