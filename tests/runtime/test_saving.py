@@ -738,3 +738,13 @@ def test_parameters_are_conditioned_on_values_and_on_distributions() -> None:
         program.conditionOn(params={"z": 1})
     with pytest.raises(InvalidScenarioError, match="without a scene"):
         program.conditionOn(params=["x"])
+
+
+def test_parameters_that_are_vectors_are_dumped_as_vectors() -> None:
+    program = scenario("param v = Vector(1, 2, 3)\nego = new Object at (1, 2)\n")
+    stream = io.StringIO()
+    program.sample(1, seed=1)[0].dumpAsScenicCode(stream)
+    text = stream.getvalue()
+    again = scenario(text).sample(1, seed=1)[0]
+    assert type(again.params["v"]) is type(again.egoObject.position)
+    assert tuple(again.params["v"]) == (1, 2, 3)

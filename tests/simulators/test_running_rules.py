@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 
 import scenic
-from scenic.language.errors import DivergenceError, InvalidScenarioError
+from scenic.language.errors import DivergenceError, InvalidScenarioError, SpecifierError
 from scenic.simulators.dummy import DummySimulator
 
 
@@ -159,3 +159,31 @@ def test_definitions_have_the_signatures_that_the_program_gives_them() -> None:
 def test_the_program_runs_as_the_main_module() -> None:
     scene, _ = scenic.scenarioFromString("ego = new Object with mark __name__\n").generate(seed=1)
     assert scene.egoObject.mark == "__main__"
+
+
+def test_the_first_set_up_overrides_properties_of_scenes() -> None:
+    text = """
+behavior B(x):
+    while True:
+        take x
+class Box:
+    foo: 1
+    twice: self.foo * 2
+scenario Main():
+    setup:
+        ego = new Box with behavior B(0)
+        override ego with foo Range(2, 3), with behavior B(1)
+        new Object at (5, 5), with foo ego.foo
+        record ego.foo as foo
+"""
+    scenario = scenic.scenarioFromString(text)
+    scene, _ = scenario.generate(seed=1)
+    first, second = scene.objects
+    assert 2 <= first.foo == second.foo <= 3
+    assert first.twice == 2  # Other properties stay, as in later scenarios.
+    simulation = DummySimulator().simulate(scene, maxSteps=2)
+    assert [tuple(step.values()) for step in simulation.result.actions] == [((1,),)] * 2
+    assert simulation.result.records["foo"] == [(step, first.foo) for step in range(3)]
+    for wrong, message in (("missing 1", "no property 'missing'"), ("velocity (1, 1)", "is dynamic")):
+        with pytest.raises(SpecifierError, match=message):
+            scenic.scenarioFromString(text.replace("foo Range(2, 3)", wrong))

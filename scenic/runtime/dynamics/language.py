@@ -5,7 +5,6 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from scenic.language.errors import (
-    InvalidScenarioError,
     RejectionException,
     RejectSimulationException,
     ScenicTypeError,
@@ -22,6 +21,7 @@ from scenic.runtime.dynamics.definitions import (
     Monitor,
     define,
 )
+from scenic.runtime.dynamics.overriding import override_before
 from scenic.runtime.dynamics.recording import check_duration, check_target
 from scenic.runtime.dynamics.run import Run, RunContext
 from scenic.runtime.dynamics.scenarios import not_a_monitor
@@ -169,12 +169,9 @@ class Dynamics:
         """``override``."""
         run = self._run
         if run is None:
-            raise InvalidScenarioError(
-                "nothing can be overridden before the simulation",
-                span=here(),
-                help="give the object its properties where it is created",
-            )
-        run.current.overrides.apply(target, specifiers)
+            override_before(target, specifiers, mode_2d=self._context.mode_2d)
+        else:
+            run.current.overrides.apply(target, specifiers)
 
     def require_monitor(self, monitor: Any, *, name: str | None = None) -> None:
         """``require monitor``."""

@@ -8,7 +8,7 @@ from scenic.runtime.dynamics.activations import Activation
 from scenic.runtime.dynamics.definitions import Behavior, behavior_of
 from scenic.runtime.elements.specifiers import Specifier
 from scenic.runtime.instances.objects import Object
-from scenic.runtime.instances.properties import normalised
+from scenic.runtime.instances.properties import Finals, normalised
 from scenic.runtime.instances.resolution import resolution_of
 from scenic.runtime.program.context import here
 from scenic.runtime.values.lazy import resolve as settle
@@ -17,7 +17,7 @@ from scenic.runtime.values.values import describe
 if TYPE_CHECKING:
     from scenic.runtime.dynamics.run import Run
 
-__all__ = ["Overrides"]
+__all__ = ["Overrides", "override_before", "refresh"]
 
 
 class Overrides:
@@ -35,34 +35,9 @@ class Overrides:
 
         Raises `ScenicTypeError` if the target is no object, `SpecifierError` where the properties cannot be overridden.
         """
-        if not isinstance(target, Object):
-            raise ScenicTypeError(f"`override`: expected an object, not {describe(target)}", span=here())
-        properties = type(target).scenic_properties
-        known = target.__dict__
-        resolution = resolution_of(type(target), specifiers, mode_2d=self._run.context.mode_2d)
-        values: dict[str, Any] = {}
-        for step in resolution.steps:
-            if step.default is not None:
-                continue
-            specifier = step.specifier(specifiers)
-            for name in step.names:
-                entry = properties.get(name)
-                if entry is None and name not in known:
-                    raise SpecifierError(
-                        f"there is no property {name!r} to override",
-                        span=specifier.span,
-                        help="an override changes properties that the object has",
-                    )
-                if entry is not None and entry.dynamic:
-                    raise SpecifierError(
-                        f"property {name!r} is dynamic and cannot be overridden: the simulator decides it",
-                        span=specifier.span,
-                    )
-            offered = specifier.evaluate(target)
-            values.update((name, normalised(name, settle(offered[name], target))) for name in step.names)
-        for name, value in values.items():
+        for name, value in _values(target, specifiers, mode_2d=self._run.context.mode_2d).items():
             self._set(target, name, value)
-        self._run.refresh(target)
+        refresh(target)
 
     def _set(self, target: Object, name: str, value: Any) -> None:
         old = target.__dict__.get(name)
@@ -87,5 +62,52 @@ class Overrides:
             if name == "behavior" and isinstance(present, Behavior) and present._activation is not None:
                 present._activation.stop()
             target.__dict__[name] = old
-            self._run.refresh(target)
+            refresh(target)
         self._before = {}
+
+
+def override_before(target: Any, specifiers: Sequence[Specifier], *, mode_2d: bool) -> None:
+    """``override`` in the set-up of the scenario that is compiled, which scenes are samples of.
+
+    Raises what `Overrides.apply` does.
+    """
+    for name, value in _values(target, specifiers, mode_2d=mode_2d).items():
+        target.__dict__[name] = behavior_of(value) if name == "behavior" else value
+    refresh(target)
+
+
+def refresh(obj: Any) -> None:
+    """Compute again what a dynamic final property is made of."""
+    finals = Finals.of(type(obj).scenic_properties)
+    for entry in finals.builtin:
+        obj.__dict__[entry.name] = entry.default(obj)
+    finals.renew_own(obj)
+
+
+def _values(target: Any, specifiers: Sequence[Specifier], *, mode_2d: bool) -> dict[str, Any]:
+    """What the specifiers give the properties that they claim."""
+    if not isinstance(target, Object):
+        raise ScenicTypeError(f"`override`: expected an object, not {describe(target)}", span=here())
+    properties = type(target).scenic_properties
+    known = target.__dict__
+    values: dict[str, Any] = {}
+    for step in resolution_of(type(target), specifiers, mode_2d=mode_2d).steps:
+        if step.default is not None:
+            continue
+        specifier = step.specifier(specifiers)
+        for name in step.names:
+            entry = properties.get(name)
+            if entry is None and name not in known:
+                raise SpecifierError(
+                    f"there is no property {name!r} to override",
+                    span=specifier.span,
+                    help="an override changes properties that the object has",
+                )
+            if entry is not None and entry.dynamic:
+                raise SpecifierError(
+                    f"property {name!r} is dynamic and cannot be overridden: the simulator decides it",
+                    span=specifier.span,
+                )
+        offered = specifier.evaluate(target)
+        values.update((name, normalised(name, settle(offered[name], target))) for name in step.names)
+    return values

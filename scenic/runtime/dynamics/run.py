@@ -17,7 +17,6 @@ from scenic.runtime.dynamics.requirements import Followed
 from scenic.runtime.dynamics.scenarios import ScenarioActivation
 from scenic.runtime.instances.mutation import mutate_now
 from scenic.runtime.instances.objects import Object
-from scenic.runtime.instances.properties import Finals
 from scenic.runtime.program.context import Context, Locator, Namer, current, here, warn
 from scenic.runtime.program.outcome import Program
 
@@ -301,13 +300,6 @@ class Run:
         """An object has a behavior."""
         if not any(known is agent for known in (*self.simulation.agents, *self._new_agents)):
             self._new_agents.append(agent)
-
-    def refresh(self, obj: Any) -> None:
-        """Compute again what a dynamic final property is made of."""
-        finals = Finals.of(type(obj).scenic_properties)
-        for entry in finals.builtin:
-            obj.__dict__[entry.name] = entry.default(obj)
-        finals.renew_own(obj)
 
     # The procedure
 

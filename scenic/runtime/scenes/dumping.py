@@ -52,7 +52,9 @@ def program_of(
         is_word = name.isidentifier() and not iskeyword(name) and name not in HARD_KEYWORDS
         key = name if is_word else repr(name)
         try:
-            lines.append(f"param {key} = {literal(value)}")
+            # Of a parameter nothing else tells that its three numbers are a vector.
+            kind = "Vector" if isinstance(value, Vector) else ""
+            lines.append(f"param {key} = {kind}{literal(value)}")
         except NoLiteralError:
             lines.append(f"# param {key}: {_described(value)}")
     classes = {type(item).__name__: type(item) for item in objects if type(item) is not Object}
