@@ -11,7 +11,7 @@ The result means the same and formats to itself; a text with mistakes is left al
 import ast
 import difflib
 import re
-from collections import deque
+from collections import Counter, deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Final
@@ -122,10 +122,9 @@ def _edited(text: str, edits: Sequence[Edit]) -> str:
 def _changes(old: Sequence[str], new: Sequence[str]) -> Iterator[tuple[int, int, int, int]]:
     """Where two texts differ: lines of the one, and those of the other that take their place, as few as can be."""
     # Lines that say the same are changed one by one; those that say nothing are like all others of their kind.
-    said = [_said(line) for line in old], [_said(line) for line in new]
-    matcher = difflib.SequenceMatcher(lambda words: not words, *said, autojunk=False)
+    matches = _matches([_said(line) for line in old], [_said(line) for line in new])
     done, new_done = 0, 0
-    for index, other, size in matcher.get_matching_blocks():
+    for index, other, size in matches:
         for at, new_at in zip(range(index, index + size), range(other, other + size), strict=True):
             stays = old[at] == new[new_at]
             if at > done or (new_at > new_done and stays):
@@ -137,6 +136,33 @@ def _changes(old: Sequence[str], new: Sequence[str]) -> Iterator[tuple[int, int,
             done, new_done = at + 1, new_at + 1
     if done < len(old) or new_done < len(new):
         yield done, len(old), new_done, len(new)
+
+
+def _matches(old: Sequence[str], new: Sequence[str]) -> Iterator[tuple[int, int, int]]:
+    """Runs of equal lines of two texts, in order: where each begins in either text, and how many lines it has.
+
+    Lines that occur once in both texts are matched first, and longest runs are looked for only between them ("patience
+    diff"): looking for these in whole texts takes time that grows with the square of their length.
+    """
+    occurrences, new_occurrences = Counter(old), Counter(new)
+    places = {line: at for at, line in enumerate(new) if line and new_occurrences[line] == 1}
+    start = new_start = 0
+    for at, line in [*enumerate(old), (len(old), None)]:
+        if line is None:
+            new_at = len(new)
+        elif occurrences[line] == 1 and places.get(line, -1) >= new_start:
+            new_at = places[line]
+        else:
+            continue
+        if at > start and new_at > new_start:
+            between = old[start:at], new[new_start:new_at]
+            matcher = difflib.SequenceMatcher(lambda words: not words, *between, autojunk=False)
+            for index, other, size in matcher.get_matching_blocks():
+                if size:
+                    yield start + index, new_start + other, size
+        if line is not None:
+            yield at, new_at, 1
+        start, new_start = at + 1, new_at + 1
 
 
 def _said(line: str) -> str:
@@ -176,8 +202,10 @@ class _Unit:
 
 
 def _units(statements: Sequence[Any], depth: int) -> Iterator[_Unit]:
-    """The statements of a block, and those in them."""
-    for node in statements:
+    """The statements of a block, and those in them; not in order."""
+    stack: list[tuple[Any, int]] = [(node, depth) for node in statements]
+    while stack:
+        node, depth = stack.pop()
         for decorator in getattr(node, "decorator_list", ()):
             yield _Unit(
                 (decorator.lineno, decorator.col_offset - 1),
@@ -188,15 +216,15 @@ def _units(statements: Sequence[Any], depth: int) -> Iterator[_Unit]:
         for handler in (*getattr(node, "handlers", ()), *getattr(node, "interrupts", ())):
             starred = isinstance(node, ast.TryStar)
             yield _Unit((handler.lineno, handler.col_offset), depth, _text_of_part(handler, starred=starred))
-            yield from _units(handler.body, depth + 1)
+            stack.extend((each, depth + 1) for each in handler.body)
         for guard in getattr(node, "guards", ()):
             yield _Unit((guard.lineno, guard.col_offset), depth + 1, _text_of(guard))
         for case in getattr(node, "cases", ()):
             # A case has no place of its own; it begins the line of its pattern.
             yield _Unit((case.pattern.lineno, 0), depth + 1, _text_of_case(case))
-            yield from _units(case.body, depth + 2)
+            stack.extend((each, depth + 2) for each in case.body)
         for name in ("body", "orelse", "finalbody", "setup", "compose"):
-            yield from _units(getattr(node, name, None) or (), depth + 1)
+            stack.extend((each, depth + 1) for each in getattr(node, name, None) or ())
 
 
 def _decorator(node: ast.expr) -> str | None:

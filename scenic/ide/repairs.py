@@ -7,8 +7,10 @@ from scenic.ide.snapshot import Snapshot
 from scenic.language.diagnostics import Diagnostic, Edit, Severity
 from scenic.language.selection import Rules, is_lasting
 from scenic.language.spans import Span
+from scenic.project.index import Project
+from scenic.project.surroundings import surroundings_in
 
-__all__ = ["difference", "ignoring", "repair_all", "repairs", "touch"]
+__all__ = ["can_repair_all", "difference", "ignoring", "repair_all", "repairs", "touch"]
 
 
 def repairs(found: Sequence[Diagnostic], span: Span) -> tuple[Diagnostic, ...]:
@@ -52,12 +54,22 @@ def ignoring(
     return tuple(result)
 
 
-def repair_all(text: str, *, filename: str, rules: Rules | None = None) -> Edit | None:
+def can_repair_all(found: Sequence[Diagnostic]) -> bool:
+    """Whether `repair_all` may have something to do in a document with these diagnostics."""
+    return any(item.fix is not None and item.fix.certain for item in found)
+
+
+def repair_all(
+    text: str, *, filename: str, rules: Rules | None = None, project: Project | None = None
+) -> Edit | None:
     r"""All repairs that do no harm, as one edit of the part that they change; ``None`` if there are none.
 
-    ``text`` has ``\n`` at each line end, and no byte order mark.
+    ``text`` has ``\n`` at each line end, and no byte order mark. Without a ``project``, nothing is known of the modules
+    that it imports.
     """
-    repaired = repair(text, filename=filename, shown=(rules or Rules()).apply)
+    surroundings_of = None if project is None else surroundings_in(project)
+    shown = (rules or Rules()).apply
+    repaired = repair(text, filename=filename, shown=shown, surroundings_of=surroundings_of)
     if not repaired.count:
         return None
     return difference(text, repaired.text)

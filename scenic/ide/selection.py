@@ -1,14 +1,19 @@
 """What a selection grows to, step by step: a word, the expressions around it, statements, blocks, the document."""
 
+from typing import Final
+
 from scenic.ide.places import span_of
 from scenic.ide.snapshot import Snapshot
 from scenic.language.spans import Span
 
 __all__ = ["selections"]
 
+_MOST: Final = 100
+"""The largest number of steps: answers nest as deeply, and readers of JSON commonly allow 128 levels."""
+
 
 def selections(snapshot: Snapshot, line: int, column: int) -> tuple[Span, ...]:
-    """The spans around a place, each within the next, the smallest first."""
+    """The spans around a place, each within the next, the smallest first: at most 100, the last one the document."""
     lines = snapshot.source.lines
     whole = Span(1, 0, len(lines), len(lines[-1]))
     line = min(max(line, 1), len(lines))
@@ -19,6 +24,8 @@ def selections(snapshot: Snapshot, line: int, column: int) -> tuple[Span, ...]:
     token = snapshot.token_at(line, column)
     if token is not None:
         _grow(found, snapshot.span_of_token(token))
+    if len(found) > _MOST:
+        del found[1 : len(found) - _MOST + 1]
     return tuple(reversed(found))
 
 

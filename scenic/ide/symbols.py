@@ -4,7 +4,7 @@ import ast
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import Any
+from typing import Any, Final
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.unparser import UnparseError, unparse
@@ -13,6 +13,9 @@ from scenic.ide.snapshot import Snapshot
 from scenic.language.spans import Span
 
 __all__ = ["Kind", "Symbol", "flat", "matches", "symbols"]
+
+_DEEPEST: Final = 40
+"""The largest number of definitions within each other: answers nest twice as deeply."""
 
 
 class Kind(StrEnum):
@@ -45,10 +48,8 @@ class Symbol:
 
 
 def symbols(snapshot: Snapshot) -> tuple[Symbol, ...]:
-    """The definitions of a document, in order."""
-    return snapshot.derived(
-        "symbols", lambda: tuple(_of_block(snapshot, snapshot.tree.body, set(), in_class=False))
-    )
+    """The definitions of a document, in order; those within more than 40 other definitions are left out."""
+    return snapshot.derived("symbols", lambda: tuple(_of_block(snapshot, snapshot.tree.body, _DEEPEST)))
 
 
 def flat(found: Sequence[Symbol], container: str = "") -> Iterator[tuple[Symbol, str]]:
@@ -65,27 +66,56 @@ def matches(name: str, query: str) -> bool:
 
 
 def _of_block(
-    snapshot: Snapshot, statements: Sequence[ast.stmt], seen: set[str], *, in_class: bool
+    snapshot: Snapshot, statements: Sequence[ast.stmt], depth: int, *, in_class: bool = False
 ) -> Iterator[Symbol]:
-    for node in statements:
-        yield from _of_statement(snapshot, node, seen, in_class=in_class)
+    """The definitions in a block and in the blocks within it, with up to ``depth`` levels of definitions in them."""
+    if not depth:
+        return
+    seen: set[str] = set()
+    # Definitions under a condition or in a loop belong to the block around it. Such blocks may nest deeply.
+    stack: list[Any] = [*reversed(statements)]
+    while stack:
+        node = stack.pop()
+        inner = _blocks_of(node)
+        if inner is None:
+            yield from _of_statement(snapshot, node, seen, depth - 1, in_class=in_class)
+        else:
+            stack.extend(reversed(inner))
 
 
-def _of_statement(snapshot: Snapshot, node: Any, seen: set[str], *, in_class: bool) -> Iterator[Symbol]:
+def _blocks_of(node: Any) -> list[ast.stmt] | None:
+    """The statements within a statement that does not define anything; ``None`` for one that does."""
+    if isinstance(node, _DEFINING):
+        return None
+    inner: list[ast.stmt] = []
+    for field in ("body", "orelse", "finalbody"):
+        inner += getattr(node, field, None) or ()
+    for part in (
+        *getattr(node, "handlers", ()),
+        *getattr(node, "interrupts", ()),
+        *getattr(node, "cases", ()),
+    ):
+        inner += part.body
+    return inner
+
+
+def _of_statement(
+    snapshot: Snapshot, node: Any, seen: set[str], depth: int, *, in_class: bool
+) -> Iterator[Symbol]:
     if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
         kind = Kind.METHOD if in_class else Kind.FUNCTION
-        yield _symbol(snapshot, node, kind, signature(node.args), _inner(snapshot, node.body))
+        yield _symbol(snapshot, node, kind, signature(node.args), _inner(snapshot, node.body, depth))
     elif isinstance(node, ast.ClassDef):
         bases = ", ".join(_text(base) for base in node.bases)
-        children = tuple(_of_block(snapshot, node.body, set(), in_class=True))
+        children = tuple(_of_block(snapshot, node.body, depth, in_class=True))
         yield _symbol(snapshot, node, Kind.CLASS, f"({bases})" if bases else "", children)
     elif isinstance(node, scenic.BehaviorDef):
-        yield _symbol(snapshot, node, Kind.BEHAVIOR, signature(node.args), _inner(snapshot, node.body))
+        yield _symbol(snapshot, node, Kind.BEHAVIOR, signature(node.args), _inner(snapshot, node.body, depth))
     elif isinstance(node, scenic.MonitorDef):
-        yield _symbol(snapshot, node, Kind.MONITOR, signature(node.args), _inner(snapshot, node.body))
+        yield _symbol(snapshot, node, Kind.MONITOR, signature(node.args), _inner(snapshot, node.body, depth))
     elif isinstance(node, scenic.ScenarioDef):
         body = [*(node.setup or ()), *(node.compose or ())]
-        children = tuple(_of_block(snapshot, body, set(), in_class=False))
+        children = tuple(_of_block(snapshot, body, depth))
         yield _symbol(snapshot, node, Kind.SCENARIO, signature(node.args) if node.args else "", children)
     elif isinstance(node, scenic.PropertyDef):
         attributes = f"[{', '.join(node.attributes)}]" if node.attributes else ""
@@ -93,10 +123,10 @@ def _of_statement(snapshot: Snapshot, node: Any, seen: set[str], *, in_class: bo
     elif isinstance(node, scenic.Param):
         for item in node.items:
             yield _symbol(snapshot, item, Kind.PARAMETER, _text(item.value))
-    elif isinstance(node, scenic.Require | scenic.RequireMonitor | scenic.TerminateWhen) and node.name:
-        span = span_of(snapshot, node)
-        name = node.name
-        yield Symbol(name, Kind.REQUIREMENT, "", span, span)
+    elif isinstance(node, scenic.Require | scenic.RequireMonitor | scenic.TerminateWhen):
+        if node.name:
+            span = span_of(snapshot, node)
+            yield Symbol(node.name, Kind.REQUIREMENT, "", span, span)
     elif isinstance(node, ast.Assign | ast.AnnAssign):
         targets = node.targets if isinstance(node, ast.Assign) else [node.target]
         for target in targets:
@@ -110,22 +140,12 @@ def _of_statement(snapshot: Snapshot, node: Any, seen: set[str], *, in_class: bo
                         span_of(snapshot, node),
                         name_span(snapshot, bound),
                     )
-    else:
-        # What is defined under a condition or in a loop is defined all the same.
-        for field in ("body", "orelse", "finalbody"):
-            yield from _of_block(snapshot, getattr(node, field, None) or (), seen, in_class=in_class)
-        for part in (
-            *getattr(node, "handlers", ()),
-            *getattr(node, "interrupts", ()),
-            *getattr(node, "cases", ()),
-        ):
-            yield from _of_block(snapshot, part.body, seen, in_class=in_class)
 
 
-def _inner(snapshot: Snapshot, body: Sequence[ast.stmt]) -> tuple[Symbol, ...]:
+def _inner(snapshot: Snapshot, body: Sequence[ast.stmt], depth: int) -> tuple[Symbol, ...]:
     """Definitions in a function; its variables are its own business."""
     kinds = (Kind.VARIABLE, Kind.CONSTANT, Kind.OBJECT)
-    return tuple(each for each in _of_block(snapshot, body, set(), in_class=False) if each.kind not in kinds)
+    return tuple(each for each in _of_block(snapshot, body, depth) if each.kind not in kinds)
 
 
 def _symbol(
@@ -146,13 +166,16 @@ def _kind_of_value(value: ast.expr | None, name: str) -> Kind:
 
 
 def _names(target: ast.expr) -> Iterator[ast.Name]:
-    if isinstance(target, ast.Name):
-        yield target
-    elif isinstance(target, ast.Tuple | ast.List):
-        for part in target.elts:
-            yield from _names(part)
-    elif isinstance(target, ast.Starred):
-        yield from _names(target.value)
+    """The names that a target binds, in order."""
+    stack = [target]
+    while stack:
+        part = stack.pop()
+        if isinstance(part, ast.Name):
+            yield part
+        elif isinstance(part, ast.Tuple | ast.List):
+            stack.extend(reversed(part.elts))
+        elif isinstance(part, ast.Starred):
+            stack.append(part.value)
 
 
 def signature(args: ast.arguments) -> str:
@@ -175,3 +198,19 @@ def _text(node: ast.expr) -> str:
 
 
 _LONGEST = 80
+
+_DEFINING: Final = (
+    ast.FunctionDef,
+    ast.AsyncFunctionDef,
+    ast.ClassDef,
+    ast.Assign,
+    ast.AnnAssign,
+    scenic.BehaviorDef,
+    scenic.MonitorDef,
+    scenic.ScenarioDef,
+    scenic.PropertyDef,
+    scenic.Param,
+    scenic.Require,
+    scenic.RequireMonitor,
+    scenic.TerminateWhen,
+)

@@ -13,6 +13,7 @@ from scenic.ide.snapshot import Cancelled
 __all__ = ["Job", "Loop", "Timer", "Worker"]
 
 Action: TypeAlias = Callable[[], None]
+Report: TypeAlias = Callable[[Exception], None]
 
 _NEVER: Final = 3600.0
 _COURTESY: Final = 0.05
@@ -43,7 +44,9 @@ class Timer:
 class Loop:
     """Runs actions one at a time: those that any thread hands in, in their order, and those whose time has come."""
 
-    def __init__(self) -> None:
+    def __init__(self, report: Report) -> None:
+        """``report`` is called with what an action or a timer raises; the loop then goes on."""
+        self._report = report
         self._actions: queue.SimpleQueue[Action] = queue.SimpleQueue()
         self._timers: list[tuple[float, int, Timer]] = []
         self._count = count()
@@ -76,10 +79,20 @@ class Loop:
                 # What is waiting comes before timers: a change that has arrived is seen before a check begins.
                 action = self._next(max(0.0, wait))
                 if action is not None:
-                    action()
+                    self._do(action)
                     continue
             if self._timers and self._timers[0][0] <= time.monotonic():
-                heapq.heappop(self._timers)[2].run()
+                self._do(heapq.heappop(self._timers)[2].run)
+
+    def fault(self, error: Exception) -> None:
+        """Report what work beside the loop has raised; from any thread."""
+        self.put(lambda: self._report(error))
+
+    def _do(self, action: Action) -> None:
+        try:
+            action()
+        except Exception as error:  # noqa: BLE001 - a fault in one action must not end the conversation
+            self._report(error)
 
     def _next(self, patience: float) -> Action | None:
         """The next action; ``None`` if there is none for so many seconds."""
@@ -118,7 +131,10 @@ class Job:
     def run(self) -> None:
         """Do the work, unless it was cancelled before it began."""
         if not self._cancelled.is_set():
-            self._work(self)
+            try:
+                self._work(self)
+            except Exception as error:  # noqa: BLE001 - the thread has other jobs to do
+                self._loop.fault(error)
 
 
 class Worker:

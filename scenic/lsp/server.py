@@ -43,7 +43,7 @@ class Server:
     def __init__(self, incoming: BinaryIO, outgoing: BinaryIO) -> None:
         self._reader = Reader(incoming)
         self._writer = Writer(outgoing)
-        self._loop = Loop()
+        self._loop = Loop(self._fault)
         self._session = Session(self._loop, self._writer)
         self._session.checks = Checks(self._session)
         self._worker = Worker("requests")
@@ -244,8 +244,12 @@ class Server:
     # Answers
 
     def _answer(self, name: Any, result: Any) -> None:
-        self._writer.write({"jsonrpc": "2.0", "id": name, "result": result})
-        self._session.trace.answered(name, result)
+        try:
+            self._writer.write({"jsonrpc": "2.0", "id": name, "result": result})
+        except (RecursionError, ValueError) as error:
+            self._refuse(name, self._internal("an answer", error))
+        else:
+            self._session.trace.answered(name, result)
 
     def _refuse(self, name: Any, error: ProtocolError) -> None:
         self._writer.write({"jsonrpc": "2.0", "id": name, "error": error.as_json()})
@@ -258,6 +262,10 @@ class Server:
             f"internal error in {method}: {type(error).__name__}: {error}; "
             "this is a fault of scenic, please report it",
         )
+
+    def _fault(self, error: Exception) -> None:
+        """Log a fault that no request is answered with."""
+        self._session.log(self._internal("the server", error).message, error=True)
 
     def _watch_parent(self, params: Any) -> None:
         process = reading.lookup(params, "processId")

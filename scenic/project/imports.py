@@ -307,12 +307,16 @@ class Imports:
 
     def _is_guarded(self, node: ast.AST) -> bool:
         """Whether a node stands in a ``try`` that catches errors, so that its failure may be provided for."""
-        return any(
-            isinstance(owner, ast.Try | ast.TryStar | scenic.TryInterrupt)
-            and owner.handlers
-            and position(owner) <= position(node) <= (owner.end_lineno or 0, owner.end_col_offset or 0)
+        return any(first <= position(node) <= last for first, last in self._guards)
+
+    @cached_property
+    def _guards(self) -> list[tuple[tuple[int, int], tuple[int, int]]]:
+        """The beginning and the end of each ``try`` that catches errors."""
+        return [
+            (position(owner), (owner.end_lineno or 0, owner.end_col_offset or 0))
             for owner in walk(self._tree)
-        )
+            if isinstance(owner, ast.Try | ast.TryStar | scenic.TryInterrupt) and owner.handlers
+        ]
 
     def _place(self, node: Any, name: str) -> Span:
         """The name of the module in its statement."""

@@ -8,8 +8,9 @@ from scenic.ide.dedenting import dedented
 from scenic.ide.diagnostics import found_in
 from scenic.ide.formatting import formatting
 from scenic.ide.importing import missing_imports, organize_imports
-from scenic.ide.repairs import ignoring, repair_all, repairs, touch
+from scenic.ide.repairs import can_repair_all, ignoring, repair_all, repairs, touch
 from scenic.language.diagnostics import Diagnostic, Edit
+from scenic.language.selection import Rules
 from scenic.lsp import reading
 from scenic.lsp.capabilities import FIX_ALL, ORGANIZE
 from scenic.lsp.convert import Json, to_diagnostic
@@ -50,10 +51,10 @@ def _actions(session: Session, params: Any) -> Json:
             title = f"Silence {item.code} on this line"
             action = _action(session, document, title, _QUICK_FIX, [edit])
             actions.append({**action, "diagnostics": [_diagnostic(session, item, document)]})
-    # It is dear, and an editor asks with each move of the cursor what is offered there.
+    # An editor asks with each move of the cursor what is offered there.
     automatic = reading.lookup(params, "context", "triggerKind") == _AUTOMATIC and not only
     if not automatic and _wanted(FIX_ALL, only):
-        actions += _all_repairs(session, document)
+        actions += _all_repairs(session, document, rules)
     if not automatic and _wanted(ORGANIZE, only):
         found = found_in(document.snapshot, rules, session.project_beside(document), stamp=session.generation)
         organized = organize_imports(document.snapshot, found)
@@ -62,17 +63,28 @@ def _actions(session: Session, params: Any) -> Json:
     return actions
 
 
-def _all_repairs(session: Session, document: Document) -> list[Json]:
+def _all_repairs(session: Session, document: Document, rules: Rules) -> list[Json]:
     """One action that makes all repairs; its changes are worked out when it is chosen, if the client can wait."""
     title = "Make all repairs of scenic"
     can_wait = "edit" in session.client.lists("textDocument", "codeAction", "resolveSupport", "properties")
-    _, rules = session.rules(document.snapshot.filename)
-    edit = repair_all(document.snapshot.text, filename=document.snapshot.filename, rules=rules)
-    if edit is None:
+    found = found_in(document.snapshot, rules, session.project_beside(document), stamp=session.generation)
+    if not can_repair_all(found):
         return []
     if can_wait and session.client.can("textDocument", "codeAction", "dataSupport"):
         return [{"title": title, "kind": FIX_ALL, "data": {"uri": document.uri, "version": document.version}}]
-    return [_action(session, document, title, FIX_ALL, [edit])]
+    edit = _repair_all(session, document, rules)
+    return [] if edit is None else [_action(session, document, title, FIX_ALL, [edit])]
+
+
+def _repair_all(session: Session, document: Document, rules: Rules) -> Edit | None:
+    """All repairs of a document as one edit, worked out once for each version."""
+    snapshot = document.snapshot
+
+    def make() -> Edit | None:
+        project = session.project_beside(document)
+        return repair_all(snapshot.text, filename=snapshot.filename, rules=rules, project=project)
+
+    return snapshot.derived("all repairs", make, stamp=(session.generation, rules))
 
 
 def _resolve_action(session: Session, params: Any) -> Json:
@@ -83,7 +95,7 @@ def _resolve_action(session: Session, params: Any) -> Json:
     if document.version != reading.lookup(params, "data", "version"):
         raise ProtocolError(ErrorCode.CONTENT_MODIFIED, "the document has changed")
     _, rules = session.rules(document.snapshot.filename)
-    edit = repair_all(document.snapshot.text, filename=document.snapshot.filename, rules=rules)
+    edit = _repair_all(session, document, rules)
     if edit is None:
         return params
     return {**params, "edit": _action(session, document, "", FIX_ALL, [edit])["edit"]}
