@@ -239,18 +239,6 @@ def sample(
     if seed is None:
         seed = secrets.randbits(32)
         sys.stderr.write(f"seed {seed} (the same scenes again: --seed {seed})\n")
-    manifest = Manifest.of(
-        loaded,
-        seed=seed,
-        first=first,
-        count=count,
-        form=form or "parquet",
-        part_size=part_size,
-        points=points,
-        max_attempts=max_attempts,
-        properties=properties,
-        command=shlex.join(["scenic", *sys.argv[1:]]),
-    )
     lines = SceneLines((path.name, loaded.digest), changed=properties == "changed", points=points)
     job = batches.Job(seed, first + done, first + count, max_attempts, deadline, Sobol() if sobol else None)
     missing: list[Exhausted] = []
@@ -268,10 +256,25 @@ def sample(
         advance = stack.enter_context(_progress(count, shown=not to_terminal))
         advance(done, 0)
         run = Run(engine, deadline, advance)
-        if dataset is not None:
-            missing.extend(make_dataset(loaded, dataset, manifest, run, resume=resume).missing)
-        elif table is not None:
-            missing.extend(write_table(loaded, table, manifest, run).missing)
+        if dataset is not None or table is not None:
+            manifest = Manifest.of(
+                loaded,
+                seed=seed,
+                first=first,
+                count=count,
+                form=form or "parquet",
+                part_size=part_size,
+                points=points,
+                max_attempts=max_attempts,
+                properties=properties,
+                command=shlex.join(["scenic", *sys.argv[1:]]),
+            )
+            if dataset is not None:
+                finished = make_dataset(loaded, dataset, manifest, run, resume=resume)
+            else:
+                assert table is not None
+                finished = write_table(loaded, table, manifest, run)
+            missing.extend(finished.missing)
         elif engine is not None and count - done > 1:
             for made in batches.in_processes(loaded, lines.block, job, engine):
                 put(made.encoded)

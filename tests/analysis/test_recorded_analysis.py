@@ -27,7 +27,7 @@ def known(program: str, line: str) -> str:
         for axis in np.flatnonzero((lower > 0) | (upper < 1)).tolist()
     ]
     lines = [", ".join([f"{shown(domain.volume)} of all", *ends])]
-    for found in prove(scenario.outline.graph, conditions(scenario)):
+    for found in prove(scenario.outline.graph, conditions(scenario.outline)):
         lines.append(f"  {found.code} {found.message}")
         lines += [f"    {label.text}" for label in found.labels]
     return "\n".join(lines)

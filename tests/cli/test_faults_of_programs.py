@@ -88,10 +88,10 @@ def test_all_calls_of_an_exception_are_shown_where_that_is_wanted(tmp_path: Path
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["--resume"], "--resume needs the file to go on with"),
-        (["--resume", "-o", "-"], "--resume needs the file to go on with"),
+        (["--resume"], "--resume needs a file or a data set to go on with"),
+        (["--resume", "-o", "-"], "--resume needs a file or a data set to go on with"),
         *(
-            ([*given, *sink], "-j and --resume are for JSON Lines alone")
+            ([*given, *sink], "go without images, pages and 3D files")
             for given in (
                 ["--resume"],
                 ["-j", 2],
@@ -100,8 +100,8 @@ def test_all_calls_of_an_exception_are_shown_where_that_is_wanted(tmp_path: Path
             )
             for sink in (["--view", "page.html"], ["--png", "images"])
         ),
-        (["--resume", "-o", "out.glb"], "-j and --resume are for JSON Lines alone"),
-        (["-j", 2, "-o", "out.glb"], "-j and --resume are for JSON Lines alone"),
+        (["--resume", "-o", "out.glb"], "go without images, pages and 3D files"),
+        (["-j", 2, "-o", "out.glb"], "go without images, pages and 3D files"),
         (["--camera", "ego"], "--camera needs a folder"),
     ],
 )

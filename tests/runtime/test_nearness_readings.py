@@ -33,6 +33,7 @@ from scenic.runtime.regions.nearness import SLACK, body_reach, grown, separation
 from scenic.runtime.regions.planar import DISC_POINT, CircularRegion, RectangularRegion
 from scenic.runtime.regions.scattered import PointSetRegion
 from scenic.runtime.regions.sectors import SectorRegion
+from scenic.runtime.regions.spaces import Workspace
 from scenic.runtime.regions.volumes import BALL_POINT, BoxRegion, SpheroidRegion
 from scenic.runtime.values.values import Orientation, Random, Vector
 from scenic.runtime.visibility.flat import _SEES as SEES_IN_PLANE
@@ -142,7 +143,7 @@ def test_a_tolerance_counts() -> None:
         *(
             DifferenceRegion(dots, other),
             IntersectionRegion(BoxRegion((9, 9, 9)), dots),
-            base.Workspace(dots),
+            Workspace(dots),
         ),
     ):
         columns = columns_of(region)

@@ -109,7 +109,7 @@ PLANAR = (planar.PlanarRegion,)
 
 def classes(root: type[Region] = Region) -> Iterator[type[Region]]:
     for cls in root.__subclasses__():
-        if cls.__module__.startswith("scenic.") and not cls.__abstractmethods__:
+        if cls.__module__.startswith("scenic.runtime.") and not cls.__abstractmethods__:
             yield cls
         yield from classes(cls)
 

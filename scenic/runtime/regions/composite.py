@@ -437,8 +437,11 @@ class IntersectionRegion(Composite):
         return _joined(Flat.intersection, [member.from_above(*mine) for member, mine in self._parts(columns)])
 
     def decided(self, points: Points, columns: Sequence[Column]) -> NDArray[np.float64]:
-        """The distance to a member whose nearest point lies in all others."""
+        """The distance to a member whose nearest point lies in all others; infinite where flat members lie at different heights."""
         result = super().decided(points, columns)
+        levels = [member.heights(*mine) for member, mine in self._parts(columns) if isinstance(member, PlanarRegion)]
+        for level in levels[1:]:
+            result[np.broadcast_to(level != levels[0], len(points))] = np.inf
         for member, mine in self._parts(columns):
             found = member.nearest(points, *mine)
             if found is None:
