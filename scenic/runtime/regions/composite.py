@@ -439,7 +439,9 @@ class IntersectionRegion(Composite):
     def decided(self, points: Points, columns: Sequence[Column]) -> NDArray[np.float64]:
         """The distance to a member whose nearest point lies in all others; infinite where flat members lie at different heights."""
         result = super().decided(points, columns)
-        levels = [member.heights(*mine) for member, mine in self._parts(columns) if isinstance(member, PlanarRegion)]
+        levels = [
+            member.heights(*mine) for member, mine in self._parts(columns) if isinstance(member, PlanarRegion)
+        ]
         for level in levels[1:]:
             result[np.broadcast_to(level != levels[0], len(points))] = np.inf
         for member, mine in self._parts(columns):
