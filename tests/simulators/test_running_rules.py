@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 
 import scenic
-from scenic.language.errors import DivergenceError, InvalidScenarioError, SpecifierError
+from scenic.language.errors import DivergenceError, InvalidScenarioError, ScenicSyntaxError, SpecifierError
 from scenic.simulators.dummy import DummySimulator
 
 
@@ -187,3 +187,8 @@ scenario Main():
     for wrong, message in (("missing 1", "no property 'missing'"), ("velocity (1, 1)", "is dynamic")):
         with pytest.raises(SpecifierError, match=message):
             scenic.scenarioFromString(text.replace("foo Range(2, 3)", wrong))
+
+
+def test_a_monitor_that_is_required_like_a_condition_is_a_syntax_error() -> None:
+    with pytest.raises(ScenicSyntaxError, match="`monitor` is missing"):
+        scenic.scenarioFromString("monitor M():\n    wait\nego = new Object\nrequire M()\n")

@@ -62,6 +62,7 @@ _CHECKS: Final[tuple[PieceRule, ...]] = (
     names.check_classes,
     _misplaced,
     declarations.check_declarations,
+    making.check_monitors,
 )
 _LINTS: Final[tuple[PieceRule, ...]] = (
     _nodes,

@@ -7,6 +7,7 @@ from typing import Any, Final
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.blocks import DYNAMIC, where_of
 from scenic.compiler.checks.context import Context, NodeRule
+from scenic.compiler.checks.pieces import Piece
 from scenic.compiler.scopes import Scope
 from scenic.compiler.traversal import position
 from scenic.language.diagnostics import Diagnostic, Edit, Fix
@@ -120,8 +121,13 @@ def _statement(node: ast.Expr, scope: Scope, context: Context) -> Iterator[Diagn
     yield context.warning("SC312", f"this makes the {kind} `{name}`, and nothing runs it", node, advice)
 
 
-def _require(node: scenic.Require, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def check_monitors(piece: Piece, context: Context) -> Iterator[Diagnostic]:
     """SC114: ``require M()`` where ``M`` is a monitor."""
+    for node, _ in piece.nodes(scenic.Require):
+        yield from _required(node, context)
+
+
+def _required(node: scenic.Require, context: Context) -> Iterator[Diagnostic]:
     condition = node.condition
     if not isinstance(condition, ast.Call):
         return
@@ -211,7 +217,6 @@ RULES: Final[dict[type[ast.AST], NodeRule]] = {
     ast.Assign: _assign,
     ast.Call: _call,
     ast.Expr: _statement,
-    scenic.Require: _require,
     scenic.Do: _do,
     scenic.DoChoose: _do,
     scenic.DoShuffle: _do,
