@@ -10,7 +10,7 @@ from typing import Any, Final
 from scenic.formats.files import make_folder, refusing, write
 from scenic.language.errors import Located
 
-__all__ = ["SearchFolder", "SearchFolderError"]
+__all__ = ["SearchFolder", "SearchFolderError", "manifest_of", "number", "read_rows"]
 
 _FORMAT: Final = "scenic-falsification"
 _VERSION: Final = 1
@@ -77,12 +77,6 @@ class SearchFolder:
             stream.write("".join(map(_line, rows)).encode())
             stream.flush()
             os.fsync(stream.fileno())
-
-    def counterexample(self, number: int) -> Path:
-        """The folder of a counterexample, by its run."""
-        folder = self.path / "counterexamples" / f"{number:04d}"
-        make_folder(folder)
-        return folder
 
 
 def _manifest(path: Path) -> dict[str, Any]:
