@@ -13,6 +13,7 @@ from graph.programs import Triple, constant, evaluate, is_fine, make, source
 from scenic.graph.kinds import Kind
 from scenic.graph.node import Graph
 from scenic.graph.operations import TABLE
+from tests.each import each
 
 floats = st.one_of(
     st.floats(),
@@ -56,7 +57,7 @@ def check(name, *columns):
         assert (repr(found), type(found)) == (repr(expected), type(expected))
 
 
-@pytest.mark.parametrize("name", BINARY + COMPARISONS)
+@each(BINARY + COMPARISONS)
 @quick
 @given(st.lists(st.tuples(floats, floats), min_size=1, max_size=9))
 @example(
@@ -66,7 +67,7 @@ def test_floats(name, pairs):
     check(name, *(list(column) for column in zip(*pairs, strict=True)))
 
 
-@pytest.mark.parametrize("name", [*BINARY[:-1], *COMPARISONS])
+@each([*BINARY[:-1], *COMPARISONS])
 @quick
 @given(st.lists(st.tuples(integers, integers), min_size=1, max_size=9))
 @example([(2**53 + 1, 3), (7, -2), (-7, 2), (5, 0)])
@@ -75,7 +76,7 @@ def test_integers(name, pairs):
     check(name, *(list(column) for column in zip(*pairs, strict=True)))
 
 
-@pytest.mark.parametrize("name", [*BINARY, *COMPARISONS])
+@each([*BINARY, *COMPARISONS])
 @quick
 @given(st.lists(st.tuples(small, floats), min_size=1, max_size=5))
 def test_an_integer_and_a_float(name, pairs):
@@ -84,7 +85,7 @@ def test_an_integer_and_a_float(name, pairs):
     check(name, second, first)
 
 
-@pytest.mark.parametrize("name", COMPARISONS)
+@each(COMPARISONS)
 @quick
 @given(st.lists(st.tuples(integers, integers.map(float)), min_size=1, max_size=5))
 @example([(2**53 + 1, float(2**53))])
@@ -98,7 +99,7 @@ def test_integer_powers(pairs):
     check("power", *(list(column) for column in zip(*pairs, strict=True)))
 
 
-@pytest.mark.parametrize("name", UNARY)
+@each(UNARY)
 @quick
 @given(
     st.lists(
@@ -293,7 +294,7 @@ SIGNS = {"less": "<", "less or equal": "<=", "greater": ">", "greater or equal":
 ONE, TURN = [[1.0, 2.0, 3.0]], [[0.0, 0.0, 0.0, 1.0]]
 
 
-@pytest.mark.parametrize("name", COMPARISONS)
+@each(COMPARISONS)
 def test_vectors_and_orientations_have_no_order(name):
     """They are equal or not, also to what is of another kind; the error names the sign that was written."""
     parts = [(Kind.VECTOR, ONE), (Kind.ORIENTATION, TURN), (Kind.SCALAR, [1.0]), (Kind.INTEGER, [1])]

@@ -27,6 +27,7 @@ from scenic.graph.draws import address
 from scenic.graph.kinds import Kind
 from scenic.graph.node import Graph
 from scenic.graph.operation import Call, Operation, always
+from tests.each import each
 
 OK, FAULT, REJECTED = 0, 1, 2
 
@@ -282,7 +283,7 @@ PAVED = 3
 """Boxes of the domain below."""
 
 
-@pytest.mark.parametrize("seed", range(12))
+@each(range(12))
 def test_lanes_are_what_they_are_alone(seed):
     """Whatever is evaluated together, in whichever order, from which boxes, and whichever lanes are dropped meanwhile."""
     rng = np.random.default_rng(seed)
@@ -374,7 +375,7 @@ def test_rows_are_those_of_the_lanes_that_are_kept():
         assert [batch.tuples((node,)) for node in nodes] == [[(2,), (3,)], [(5,), (6,)]]
 
 
-@pytest.mark.parametrize("order", list(itertools.permutations(("fault", "reject", "inherit"))))
+@each(list(itertools.permutations(("fault", "reject", "inherit"))))
 def test_the_worst_fate_of_a_lane_is_told_whatever_comes_first(order):
     """Of the exceptions the first one is kept, also where a later one is of other lanes."""
     first, second = ValueError("first"), KeyError("second")
@@ -528,7 +529,7 @@ def test_a_settled_batch_may_be_asked_for_anything(chained):
                 assert batch.full(node)[fine].tolist() == whole.full(node)[batch.rows][fine].tolist()
 
 
-@pytest.mark.parametrize("order", list(itertools.permutations(range(3))))
+@each(list(itertools.permutations(range(3))))
 def test_a_settled_batch_gives_together_what_it_has_and_what_it_lost(order):
     x = uniform(0, 1)
     nodes = [make("multiply", x, 2.0), make("subtract", x, 3.0), make("add", make("sin", x), 1.0)]

@@ -11,6 +11,7 @@ from scenic.graph import node as graph
 from scenic.graph.bounds import Bounds
 from scenic.graph.kinds import Kind
 from scenic.graph.operation import Operation, always
+from tests.each import each
 
 LIMIT = 2**62
 FREE = (-math.inf, math.inf)
@@ -79,7 +80,9 @@ def test_only_one_number_has_limits():
         assert bounding.limits_of(Bounds(np.zeros(shape), np.ones(shape))) is None
 
 
-@pytest.mark.parametrize("known", [(0, 1), (-(2**53) + 1, 2**53 - 1), (-(2**53), 0), (0, 2**53), (-LIMIT + 1, -(2**60)), (2**60, LIMIT - 1)])  # fmt: skip
+@each(
+    [(0, 1), (-(2**53) + 1, 2**53 - 1), (-(2**53), 0), (0, 2**53), (-LIMIT + 1, -(2**60)), (2**60, LIMIT - 1)]
+)
 def test_whole_numbers_lie_within_their_limits(known):
     low, high = ends(bounding.overall(source(Kind.INTEGER, known)))
     assert int(low) <= known[0] <= known[1] <= int(high)

@@ -9,6 +9,7 @@ from graph.programs import B, I, P, Q, S, U, V
 from graph.readings import CASES, bounds_of, has, kind_of, narrowed, values_of
 from scenic.graph.bounds import Bounds
 from scenic.graph.operations import TABLE
+from tests.each import each
 
 TINY, HUGE = 5e-324, 1.7e308
 
@@ -100,7 +101,7 @@ def inner_values(
     return np.array(columns[0], dtype=kind_of(part).dtype)
 
 
-@pytest.mark.parametrize("case", BOUNDED, ids=str)
+@each(BOUNDED)
 def test_bounds_hold_at_corners(case):
     rng = np.random.default_rng(41)
     for _ in range(25 if case.name in SLOW else 40):
@@ -119,7 +120,7 @@ def test_bounds_hold_at_corners(case):
         assert ((values[fine] >= lower) & (values[fine] <= upper)).all(), (boxes, lower, upper)
 
 
-@pytest.mark.parametrize("case", INVERTED, ids=str)
+@each(INVERTED)
 def test_inverses_lose_no_corner(case):
     """Operands whose result is exactly the one asked for, or within a few units in the last place, are kept."""
     rng = np.random.default_rng(43)
@@ -203,7 +204,7 @@ TIGHT = [
 ]
 
 
-@pytest.mark.parametrize("case", TIGHT, ids=str)
+@each(TIGHT)
 def test_bounds_are_tight(case):
     rng = np.random.default_rng(47)
     ratios = []
@@ -230,7 +231,7 @@ def test_bounds_are_tight(case):
 GRIDS_OF_INVERSES = [case for case in INVERTED if sum(components(part) for part in case.operands) <= 3 and case.name not in {"modulo", "power", "round", "truth", "normalize angle"}]  # fmt: skip
 
 
-@pytest.mark.parametrize("case", GRIDS_OF_INVERSES, ids=str)
+@each(GRIDS_OF_INVERSES)
 def test_inverses_are_tight(case):
     """What is left of an operand is hardly more than what some choice of the others still needs."""
     rng = np.random.default_rng(53)
@@ -480,7 +481,7 @@ WHOLE = [
 HUGE_WHOLE = [sign * (2**bits + more) for bits in (52, 53, 54, 57, 60) for more in (-1, 0, 0, 1, 5) for sign in (1, -1)]  # fmt: skip
 
 
-@pytest.mark.parametrize("name", WHOLE)
+@each(WHOLE)
 def test_whole_numbers_that_no_float_is_are_held_exactly(name):
     """Comparing Python's own numbers: as floats, a value outside could look like the end of its bounds."""
     rng = np.random.default_rng(71)

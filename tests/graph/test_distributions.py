@@ -19,6 +19,7 @@ from scenic.graph.kinds import Kind
 from scenic.graph.node import Graph
 from scenic.graph.operations.distributions import Table
 from scenic.graph.operations.normal import conditioned_cumulative, conditioned_quantile
+from tests.each import each
 
 ALARM = 1e-4
 LANES = 20_000
@@ -284,7 +285,7 @@ def test_an_option_of_weight_zero_is_not_drawn_beyond_the_last_limit():
     assert batch_at(Graph([node]), np.array([[1 - 2.0**-53]]), CODEC).column(node).tolist() == [1]
 
 
-@pytest.mark.parametrize("end", [2.0**exponent for exponent in (52, 53, 60, 61, 62, 63, 64)])
+@each([2.0**exponent for exponent in (52, 53, 60, 61, 62, 63, 64)])
 def test_discrete_ranges_of_any_size_keep_within_their_ends_or_fail(end):
     for low, high in ((-end, end), (0.0, end), (end, end), (-end, -end)):
         node = make("discrete range", graph.axis(), source(Kind.SCALAR, [low]), source(Kind.SCALAR, [high]))
@@ -353,7 +354,7 @@ def test_bounds_of_whole_constants_hold_them_exactly():
             assert bounds.lower[0] == value == bounds.upper[0]
 
 
-@pytest.mark.parametrize("end", [2**53 + more for more in (-1, 0, 1, 3)] + [2**60 + 1, 2**61 - 1])
+@each([2**53 + more for more in (-1, 0, 1, 3)] + [2**60 + 1, 2**61 - 1])
 def test_bounds_of_whole_numbers_hold_their_limits(end):
     for values in ([0, end], [-end, 0], [-end, end]):
         bounds = bounding.overall(source(Kind.INTEGER, values))
@@ -363,7 +364,7 @@ def test_bounds_of_whole_numbers_hold_their_limits(end):
             assert [bounds.lower[0], bounds.upper[0]] == values or end == 2**53
 
 
-@pytest.mark.parametrize("end", [2**53 + more for more in (-1, 0, 1, 3)] + [2**60 + 1, 2**61 - 1])
+@each([2**53 + more for more in (-1, 0, 1, 3)] + [2**60 + 1, 2**61 - 1])
 def test_bounds_of_tables_hold_whole_numbers_of_any_size(end):
     """Whatever smaller ones stand beside them."""
     for values in ([1, end], [end, 1], [-1, -end], [-end, end], [1, -end, 0, end], [1, -2, 3]):
@@ -391,7 +392,7 @@ def test_bounds_of_kinds_hold_every_value():
     assert bounding.of_kind(Kind.OTHER) is None
 
 
-@pytest.mark.parametrize("centre", [0.0, -0.7, 3.0, -8.0, 29.0, -31.0, 2e4])
+@each([0.0, -0.7, 3.0, -8.0, 29.0, -31.0, 2e4])
 def test_inverses_of_windows_of_any_width_keep_what_was_drawn(centre):
     """Shares of a narrow window lose digits, which the inverse has to allow for; of a wide one it says nearly where it was."""
     share = np.linspace(0.0, 1.0, 401)[1:-1]

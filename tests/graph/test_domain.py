@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from scipy import stats
 
 from scenic.graph.domain import Domain
+from tests.each import each
 
 
 def union(*boxes):
@@ -135,7 +136,7 @@ UPPER_ENDS = union([[0.0, 0.25], [0.0, 0.5], [0.5, 1.0]], [[0.25, 1.0], [0.0, 1.
 """Boxes that differ in where the second axis ends alone, and share the third."""
 
 
-@pytest.mark.parametrize("domain", [TWO, PRODUCT, UPPER_ENDS, union([[0.5, 1.0], [0.0, 1.0], [0.25, 0.5]])])
+@each([TWO, PRODUCT, UPPER_ENDS, union([[0.5, 1.0], [0.0, 1.0], [0.25, 0.5]])])
 def test_some_axes_in_any_order_are_placed_as_all_are(domain: Domain) -> None:
     """What is drawn together, or later, or one of several axes in each lane: each number depends on its axis and lane alone."""
     rng = np.random.default_rng(7)
@@ -190,8 +191,7 @@ def test_plain_data_round_trip():
     assert TWO.to_data()["boxes"][0] == {"0": [0.0, 0.5]}
 
 
-@pytest.mark.parametrize(
-    "data",
+@each(
     [
         {},
         {"dimension": 1, "boxes": []},
@@ -205,14 +205,14 @@ def test_plain_data_round_trip():
         {"dimension": None, "boxes": [{}]},
         {"dimension": 2, "boxes": [{"0": [0, 0.5]}], "factors": [[{"0": [0, 0.5]}]]},
         [],
-    ],
+    ]
 )
 def test_bad_data_is_refused(data):
     with pytest.raises(ValueError):  # noqa: PT011 - the messages differ
         Domain.from_data(data)
 
 
-@pytest.mark.parametrize("box", [[[0.5, 0.5]], [[-0.1, 1.0]], [[0.0, 1.1]], [[0.0, float("nan")]]])
+@each([[[0.5, 0.5]], [[-0.1, 1.0]], [[0.0, 1.1]], [[0.0, float("nan")]]])
 def test_boxes_without_volume_are_refused(box):
     with pytest.raises(ValueError, match="volume"):
         union(box)

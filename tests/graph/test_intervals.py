@@ -15,6 +15,7 @@ from scenic.graph.bounds import Bounds, outward
 from scenic.graph.kinds import Kind
 from scenic.graph.operations import TABLE
 from scenic.graph.operations.choosing import hull_of_possible
+from tests.each import each
 
 numbers = st.floats(-1e6, 1e6)
 ends = st.tuples(numbers, numbers).map(lambda pair: (min(pair), max(pair)))
@@ -31,7 +32,7 @@ EXACT = {
 }
 
 
-@pytest.mark.parametrize("function", EXACT)
+@each(EXACT)
 @given(ends, ends)
 def test_exact_results_are_held(function, first, second):
     """The real number is within the bounds, not only its rounding."""
@@ -127,7 +128,7 @@ def test_azimuths_are_tight_away_from_the_seam():
     assert (result.lower[0], result.upper[0]) == (-math.pi, math.pi)
 
 
-@pytest.mark.parametrize("side", [(0.0, 1.0), (-1.0, -0.0), (-1.0, 1.0), (5e-324, 1.0), (-1.0, -1e-300)])
+@each([(0.0, 1.0), (-1.0, -0.0), (-1.0, 1.0), (5e-324, 1.0), (-1.0, -1e-300)])
 def test_azimuths_next_to_the_seam_hold_their_values(side):
     """Due South is half a turn one way or the other, by the sign of a zero or of what is rounded to one."""
     low, high = side
@@ -183,16 +184,14 @@ UNTOLD = {"from euler", "from yaw", "compose", "inverse", "quaternion", "euler"}
 POINTS = {Kind.SCALAR: 0.5, Kind.VECTOR: (1.0, -2.0, 0.5), Kind.ORIENTATION: (0.6, 0.0, 0.0, 0.8)}
 
 
-@pytest.mark.parametrize(
-    "case",
+@each(
     [
         case
         for case in CASES
         if TABLE[case.name].bounds is not None
         and case.name not in UNTOLD
         and set(case.operands) <= POINTS.keys()
-    ],
-    ids=str,
+    ]
 )
 def test_where_nan_goes_in_no_bounds_are_finite(case):
     """Each component of each operand by itself: a result that it makes NaN may be anything."""

@@ -3,7 +3,6 @@
 from dataclasses import replace
 
 import numpy as np
-import pytest
 
 from graph.programs import (
     CASES,
@@ -28,6 +27,7 @@ from scenic.graph.construction import make_node
 from scenic.graph.kinds import Kind
 from scenic.graph.operation import Operation, always
 from scenic.graph.operations import TABLE
+from tests.each import each
 
 LANES = 200
 ROUNDS = 12
@@ -52,7 +52,7 @@ def inside(values: np.ndarray, bounds: Bounds) -> np.ndarray:
 BOUNDED = [case for case in CASES if TABLE[case.name].bounds is not None]
 
 
-@pytest.mark.parametrize("case", BOUNDED, ids=str)
+@each(BOUNDED)
 def test_intervals_hold_every_value(case):
     rng = np.random.default_rng(11)
     informative = 0
@@ -71,7 +71,7 @@ def test_intervals_hold_every_value(case):
     assert informative or case.name in ("power", "truncated normal")
 
 
-@pytest.mark.parametrize("case", BOUNDED, ids=str)
+@each(BOUNDED)
 def test_intervals_of_points_are_narrow(case):
     """Where operands are fixed the bounds hold little more than the value."""
     rng = np.random.default_rng(13)
@@ -96,7 +96,7 @@ LOOSE = {"euler", "getitem", "modulo", "power", "round(s,i)", "round(s,b)"}
 INVERTED = [case for case in CASES if TABLE[case.name].inverse is not None]
 
 
-@pytest.mark.parametrize("case", INVERTED, ids=str)
+@each(INVERTED)
 def test_inverses_lose_no_consistent_value(case):
     """Operands whose result lies in given bounds are in the narrowed bounds."""
     rng = np.random.default_rng(17)
@@ -139,7 +139,7 @@ def assert_alike(found: Bounds | None, expected: Bounds | None) -> None:
         np.testing.assert_allclose(found.upper, expected.upper, rtol=1e-13, atol=1e-300)
 
 
-@pytest.mark.parametrize("case", BOUNDED, ids=str)
+@each(BOUNDED)
 def test_boxes_do_not_depend_on_company(case):
     """Of many boxes at a time, where one operand may be the same in all of them, each is told what it is told alone."""
     rng = np.random.default_rng(23)
@@ -166,7 +166,7 @@ def test_boxes_do_not_depend_on_company(case):
                     assert_alike(of_box(part, number), expected)
 
 
-@pytest.mark.parametrize("case", BOUNDED, ids=str)
+@each(BOUNDED)
 def test_values_of_points_are_held_to_the_last_unit(case):
     """Of thousands of single values: what rounding has made of them is within the bounds, and they are kept by the inverse."""
     rng = np.random.default_rng(29)
@@ -214,7 +214,7 @@ EXACT = {
 SOLVED = [case for case in CASES if TABLE[case.name].solver is not None]
 
 
-@pytest.mark.parametrize("case", SOLVED, ids=str)
+@each(SOLVED)
 def test_terms_agree_with_numpy(case):
     """On fixed operands the term allows the computed value and, where the encoding is exact, no other."""
     rng = np.random.default_rng(19)
@@ -290,7 +290,7 @@ UNDEFINED = {
 }
 
 
-@pytest.mark.parametrize("name", UNDEFINED)
+@each(UNDEFINED)
 def test_nothing_is_said_where_python_defines_no_such_operation(name):
     """Each lane fails there, which is for sampling to tell; of boxes of any number nothing is known."""
     terms = SolverTerms()

@@ -8,12 +8,12 @@ import itertools
 import math
 
 import numpy as np
-import pytest
 
 from graph.programs import B, I, S, U
 from graph.readings import CASES, has, kind_of, values_of
 from scenic.graph.bounds import Bounds
 from scenic.graph.operations import TABLE
+from tests.each import each
 
 STEPS = {
     S: (-1.0, -0.5, 0.0, 0.5, 1.0, 1.5, 2.0),
@@ -97,7 +97,7 @@ NARROWING = {
 """Operations whose inverses leave hardly more than what the results need."""
 
 
-@pytest.mark.parametrize("case", SMALL, ids=str)
+@each(SMALL)
 def test_bounds_of_small_boxes(case):
     grid = Grid(case)
     with np.errstate(all="ignore"):
@@ -111,7 +111,7 @@ def test_bounds_of_small_boxes(case):
         np.testing.assert_allclose(np.broadcast_to(known.upper, high.shape)[met], high[met], atol=1e-12)
 
 
-@pytest.mark.parametrize("case", [case for case in SMALL if has(case, "inverse")], ids=str)
+@each([case for case in SMALL if has(case, "inverse")])
 def test_inverses_of_small_boxes(case):
     """Nothing is lost of what gives a result, or one of several next to each other; and where it may be said, little else is kept."""
     grid = Grid(case)

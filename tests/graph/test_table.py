@@ -13,6 +13,7 @@ from graph.programs import CASES, I, Q, S, V, case_node, draw, evaluate, is_fine
 from scenic.analysis.terms import SolverTerms
 from scenic.graph.bounds import Bounds
 from scenic.graph.operations import TABLE
+from tests.each import each
 
 GOLDEN = Path(__file__).parent / "data" / "table.json"
 READINGS = ("batch", "python", "bounds", "inverse", "solver")
@@ -61,7 +62,7 @@ def same(first, second, case):
     assert bits(first[0].full(node)[fine]) == bits(second[0].full(other)[fine]), case
 
 
-@pytest.mark.parametrize("case", CASES, ids=str)
+@each(CASES)
 def test_batches_and_strides_change_no_bit(case):
     """Rows are the same in batches of 1, 7 and 512, and when columns are strided or repeat one row."""
     rng = np.random.default_rng(3)
@@ -110,7 +111,7 @@ def replace_column(operand, column):
     return replace(operand, payload=(np.asarray(column, dtype=operand.kind.dtype),))
 
 
-@pytest.mark.parametrize("case", CASES, ids=str)
+@each(CASES)
 def test_columns_have_the_form_of_the_kind(case):
     rng = np.random.default_rng(5)
     columns = [draw(part, 20, rng) for part in case.operands]
@@ -128,7 +129,7 @@ PLAIN = [
 ]
 
 
-@pytest.mark.parametrize("case", PLAIN, ids=str)
+@each(PLAIN)
 def test_batches_agree_with_python(case):
     """The NumPy reading gives in every lane what Python's own function gives, and fails as it fails."""
     rng = np.random.default_rng(7)
@@ -155,7 +156,7 @@ def test_batches_agree_with_python(case):
         assert type(found) is type(expected)
 
 
-@pytest.mark.parametrize("case", [case for case in CASES if TABLE[case.name].scalar is not None], ids=str)
+@each([case for case in CASES if TABLE[case.name].scalar is not None])
 def test_plain_numbers_give_the_same_bits(case):
     """What is computed at once equals what a batch computes, in every bit."""
     rng = np.random.default_rng(11)
@@ -191,14 +192,12 @@ AT_CORNERS = {
 """Where formulas change: zeros of both signs, seams of angles, squares that vanish or overflow, half turns."""
 
 
-@pytest.mark.parametrize(
-    "case",
+@each(
     [
         case
         for case in CASES
         if TABLE[case.name].scalar is not None and set(case.operands) <= AT_CORNERS.keys()
-    ],
-    ids=str,
+    ]
 )
 def test_plain_numbers_at_corners_give_the_same_bits(case):
     rng = np.random.default_rng(13)
@@ -243,7 +242,7 @@ REFUSING = {"add": 2, "subtract": 2, "multiply": 2, "divide": 2, "negative": 1}
 """Operations, and of how many operands, that Python defines for some kinds and not for others."""
 
 
-@pytest.mark.parametrize("name", REFUSING)
+@each(REFUSING)
 def test_what_python_does_not_define_is_not_computed_at_once(name):
     """Nobody may take the rows of vectors and orientations for something else than what they are."""
     refused = 0
@@ -266,7 +265,7 @@ PARTLY_DEFINED = {
 }
 
 
-@pytest.mark.parametrize("name", PARTLY_DEFINED)
+@each(PARTLY_DEFINED)
 def test_nothing_is_known_of_what_python_does_not_define(name):
     """Neither bounds nor the solver take a vector or an orientation for something else; where it is defined, both say something."""
     terms = SolverTerms()
