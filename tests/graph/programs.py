@@ -228,6 +228,7 @@ CASES = [
     *(Case("truncated normal", (U, S, P), window) for window in [(-1.0, 2.0), (30.0, 45.0), (-np.inf, -3.0)]),
     *(Case("discrete range", (U, *kinds)) for kinds in [(S, S), (I, I), (I, S)]),
     Case("weighted integer", (U,), (-2, _CUMULATIVE)),
+    Case("piecewise", (U,), ((0.0, 0.2, 0.2, 1.0), (-3.0, -1.0, 0.5, 4.0))),
     Case("choice", (U,), _CUMULATIVE),
     *(Case("select", (("index", 3), *kinds)) for kinds in [(S, S, S), (V, V, V), (B, B, B), (I, I, I)]),
     *(Case("look-up", (("index", 3),), table) for table in _TABLES),

@@ -84,7 +84,7 @@ class Bayesian(_Study):
             except ImportError:
                 raise SamplerError(
                     "the sampler 'bo' needs the package `torch`",
-                    help='install it: pip install "scenic-lang[falsify]"',
+                    help="install it: pip install torch (it is large, so no extra brings it)",
                 ) from None
             sampler = _optuna("bo").samplers.GPSampler(
                 seed=seed % 2**32, n_startup_trials=int(chosen["init_num"]), deterministic_objective=True
