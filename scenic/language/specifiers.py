@@ -37,7 +37,8 @@ class SpecifierDeclaration:
     the value always depends on; more may follow from the operands. ``group`` says which half of the object's pose it
     gives, for ordering documentation and completion: ``"position"``, ``"orientation"`` or ``"general"``.
     ``needs_beside_vector`` are the properties that the value needs if the first operand is a mere position.
-    ``reads_ego`` tells whether the value depends on the ego whatever the operands are.
+    ``reads_ego`` and ``reads_workspace`` tell whether the value depends on the ego, or on the workspace, whatever the
+    operands are.
     """
 
     name: str
@@ -51,6 +52,7 @@ class SpecifierDeclaration:
     available: bool = True
     needs_beside_vector: tuple[str, ...] = ()
     reads_ego: bool = False
+    reads_workspace: bool = False
 
 
 _PREFERRED = "the region has a preferred orientation"
@@ -169,6 +171,7 @@ _ALL = (
         ("visible", "visible from viewer"),
         "The viewer must see the object. Without another specifier of the position it is uniformly at random among "
         "the positions where the viewer can.",
+        reads_workspace=True,
     ),
     SpecifierDeclaration(
         "not visible",
@@ -179,6 +182,7 @@ _ALL = (
         ("not visible", "not visible from viewer"),
         "The viewer must not see the object. Without another specifier of the position it is uniformly at random in "
         "the object's container.",
+        reads_workspace=True,
     ),
     _beside("left of", "left (-X)", "width"),
     _beside("right of", "right (+X)", "width"),

@@ -1,7 +1,8 @@
-"""What each specifier specifies (section 6.2 to 6.4 of the specification).
+"""Values of specifiers (section 6.2 to 6.4 of the specification).
 
 A specifier is turned into a `Specifier`: the properties it offers with their priorities, the properties it reads, and
-a function from the partially built instance to values. Which of the offered values are taken is decided in
+a function from the partially built instance to values. Priorities, needs and operands left out come from
+`scenic.language.specifiers`; the functions here compute the values alone. Which of the offered values are taken is decided in
 `scenic.runtime.instances.resolution`.
 """
 
@@ -13,7 +14,9 @@ from typing import Any
 
 from scenic.graph.operations import TABLE
 from scenic.language.errors import InvalidScenarioError, ScenicTypeError
+from scenic.language.operators import EGO
 from scenic.language.spans import Span
+from scenic.language.specifiers import SPECIFIERS, SpecifierDeclaration
 from scenic.runtime.instances.objects import Object, OrientedPoint, Point
 from scenic.runtime.program.context import current, here
 from scenic.runtime.regions.base import Region
@@ -31,7 +34,6 @@ from scenic.runtime.values.values import (
     describe,
     is_number,
     is_open,
-    is_orientation,
     is_vector,
     operate,
     options_of,
@@ -47,6 +49,8 @@ from scenic.runtime.visibility.seeing import Sighting
 
 Evaluate = Callable[[Any], Mapping[str, Any]]
 Ego = Callable[[], Any]
+Space = Callable[[], Region]
+"""The program's workspace, or everywhere."""
 
 
 @dataclass(
@@ -75,10 +79,50 @@ class Specifier:
         return f"`{self.name}`"
 
 
+@dataclass(frozen=True, slots=True)
+class _Declared:
+    """A specifier's declaration, in the form in which instances are resolved."""
+
+    always: Mapping[str, int]
+    under_condition: Mapping[str, int]
+    """Priorities if the declared conditions hold."""
+    needs: frozenset[str]
+    modifies: frozenset[str]
+    ego_at: tuple[int, ...]
+    """Operands for which the ego stands in."""
+
+    @classmethod
+    def of(cls, declared: SpecifierDeclaration) -> "_Declared":
+        return cls(
+            MappingProxyType({item.property: item.priority for item in declared.specifies if not item.when}),
+            MappingProxyType({item.property: item.priority for item in declared.specifies}),
+            frozenset(declared.needs),
+            frozenset(declared.modifies),
+            tuple(i for i, operand in enumerate(declared.operands) if operand.default == EGO),
+        )
+
+
+_DECLARED = MappingProxyType({name: _Declared.of(declared) for name, declared in SPECIFIERS.items()})
+
+
 def _specifier(
-    name: str, priorities: Mapping[str, int], evaluate: Evaluate, *dependencies: str, **options: Any
+    name: str, evaluate: Evaluate, *reads: str, conditional: bool = True, **options: Any
 ) -> Specifier:
-    return Specifier(name, priorities, frozenset(dependencies), evaluate, span=here(), **options)
+    """A specifier as declared.
+
+    ``reads`` are the properties that it needs beside the declared ones; ``conditional`` tells whether it gives what is
+    declared under a condition.
+    """
+    declared = _DECLARED[name]
+    return Specifier(
+        name,
+        declared.under_condition if conditional else declared.always,
+        declared.needs.union(reads) if reads else declared.needs,
+        evaluate,
+        declared.modifies,
+        span=here(),
+        **options,
+    )
 
 
 # What operands are, where formulas differ by it
@@ -111,49 +155,36 @@ def region_of(value: Any, what: str) -> Region:
 # The specifiers
 
 
-def with_(_ego: Ego, property: str, value: Any) -> Specifier:
-    return _specifier(f"with {property}", {property: 1}, lambda _: {property: value})
+def with_(property: str, value: Any) -> Specifier:
+    """The one specifier that declares no priority: giving a property by name is the strongest way."""
+    return Specifier(f"with {property}", {property: 1}, frozenset(), lambda _: {property: value}, span=here())
 
 
-def at(_ego: Ego, position: Any) -> Specifier:
+def at(position: Any) -> Specifier:
     place = to_vector(position, "`at`")
-    return _specifier("at", {"position": 1}, lambda _: {"position": place})
+    return _specifier("at", lambda _: {"position": place})
 
 
-def in_(_ego: Ego, region: Any, *, name: str = "in", contained: bool = False) -> Specifier:
+def in_(region: Any, *, name: str = "in") -> Specifier:
     target = region_of(region, f"`{name}`")
-    priorities = {"position": 1}
-    if target.has_orientation:
-        priorities["parentOrientation"] = 3
-    if contained:
-        priorities["regionContainedIn"] = 1
 
     def evaluate(_: Any) -> Mapping[str, Any]:
         position, orientation = target.uniform_placement()
         return {"position": position, "parentOrientation": orientation, "regionContainedIn": target}
 
-    return _specifier(name, priorities, evaluate)
+    return _specifier(name, evaluate, conditional=target.has_orientation)
 
 
-def contained_in(ego: Ego, region: Any) -> Specifier:
-    return in_(ego, region, name="contained in", contained=True)
-
-
-def on(_ego: Ego, target: Any) -> Specifier:
+def on(target: Any) -> Specifier:
     """Section 6.3: the base point touches the target, with a gap of half the contact tolerance."""
     surface = target.onSurface if is_kind(target, Object) else target
-    reads = ("baseOffset", "contactTolerance", "onDirection")
-    priorities = {"position": 1}
     region = as_region(surface)
     if region is None and (is_open(surface) or _may_be_surface(surface)):
         region = DrawnRegion.made(_surface, surface)
-    if region is not None:
-        if region.has_orientation:
-            priorities["parentOrientation"] = 2
-    elif is_vector(surface) or isinstance(surface, Random) or hasattr(surface, "toVector"):
+    if region is None:
+        if not (is_vector(surface) or isinstance(surface, Random) or hasattr(surface, "toVector")):
+            raise wrong_type("a region, an object or a vector", surface, "`on`")
         place = to_vector(surface, "`on`")
-    else:
-        raise wrong_type("a region, an object or a vector", surface, "`on`")
 
     def rest(instance: Any, anchor: Any, orientation: Any) -> Mapping[str, Any]:
         gap = vector(0, 0, operate("divide", instance.contactTolerance, 2))
@@ -176,7 +207,8 @@ def on(_ego: Ego, target: Any) -> Specifier:
             )
         return rest(instance, *region.project(instance.position, instance.onDirection))
 
-    return _specifier("on", priorities, evaluate, *reads, modifiable=frozenset({"position"}), modify=modify)
+    is_oriented = region is not None and region.has_orientation
+    return _specifier("on", evaluate, modify=modify, conditional=is_oriented)
 
 
 def _may_be_surface(value: Any) -> bool:
@@ -194,30 +226,29 @@ def _surface(target: Any) -> Region:
     raise wrong_type("a region, an object or a vector", surface, "`on`")
 
 
-def offset_by(ego: Ego, offset: Any) -> Specifier:
-    step, origin = to_vector(offset, "`offset by`"), ego()
+def offset_by(origin: Any, offset: Any) -> Specifier:
+    step = to_vector(offset, "`offset by`")
 
     def evaluate(_: Any) -> Mapping[str, Any]:
         return {"position": origin.relativePosition(step), "parentOrientation": origin.orientation}
 
-    return _specifier("offset by", {"position": 1, "parentOrientation": 3}, evaluate)
+    return _specifier("offset by", evaluate)
 
 
-def offset_along(ego: Ego, direction: Any, offset: Any) -> Specifier:
-    step, origin = to_vector(offset, "`offset along`"), ego()
+def offset_along(origin: Any, direction: Any, offset: Any) -> Specifier:
+    step = to_vector(offset, "`offset along`")
     frame = frame_at(direction, origin.position, "`offset along`")
 
     def evaluate(_: Any) -> Mapping[str, Any]:
         position = operate("add", origin.position, operate("rotate", frame, step))
         return {"position": position, "parentOrientation": origin.orientation}
 
-    return _specifier("offset along", {"position": 1, "parentOrientation": 3}, evaluate)
+    return _specifier("offset along", evaluate)
 
 
-def beyond(ego: Ego, target: Any, offset: Any, origin: Any) -> Specifier:
+def beyond(target: Any, offset: Any, observer: Any) -> Specifier:
     place = to_vector(target, "`beyond`")
     step = scalar_or_vector(offset, "`beyond`", axis=1)
-    observer = ego() if origin is None else origin
     line = operate("subtract", place, to_vector(observer, "`beyond ... from`"))
     frame = operate("from euler", operate("azimuth", line), operate("altitude", line), 0)
     orientation = observer.orientation if is_kind(observer, OrientedPoint) else Orientation()
@@ -226,7 +257,7 @@ def beyond(ego: Ego, target: Any, offset: Any, origin: Any) -> Specifier:
         position = operate("add", place, operate("rotate", frame, step))
         return {"position": position, "parentOrientation": orientation}
 
-    return _specifier("beyond", {"position": 1, "parentOrientation": 3}, evaluate)
+    return _specifier("beyond", evaluate)
 
 
 def scalar_or_vector(value: Any, what: str, *, axis: int) -> Any:
@@ -244,10 +275,13 @@ def scalar_or_vector(value: Any, what: str, *, axis: int) -> Any:
     return to_vector(value, what)
 
 
-def _directional(name: str, axis: int, sign: int, extent: str) -> Callable[..., Specifier]:
-    """Section 6.4: next to something, along one axis of its frame."""
+def _directional(name: str, sign: int) -> Callable[..., Specifier]:
+    """Section 6.4: next to something, along the axis of its frame whose extent is the one declared."""
+    (extent,) = SPECIFIERS[name].needs
+    axis = ("width", "length", "height").index(extent)
+    beside_vector = SPECIFIERS[name].needs_beside_vector
 
-    def build(_ego: Ego, target: Any, distance: Any) -> Specifier:
+    def build(target: Any, distance: Any) -> Specifier:
         is_object, is_oriented = is_kind(target, Object), is_kind(target, OrientedPoint)
         centre = target.position if is_oriented else to_vector(target, f"`{name}`")
         reference = to_scalar(getattr(target, extent)) if is_object else 0.0
@@ -269,19 +303,15 @@ def _directional(name: str, axis: int, sign: int, extent: str) -> Callable[..., 
             position = operate("add", centre, operate("rotate", frame, offset(instance)))
             return {"position": position, "parentOrientation": target.orientation if is_oriented else None}
 
-        priorities = {"position": 1, "parentOrientation": 3} if is_oriented else {"position": 1}
-        reads = [extent]
-        if is_object:
-            reads.append("contactTolerance")
-        if not is_oriented:
-            reads.append("orientation")
-        return _specifier(name, priorities, evaluate, *reads)
+        gap = ("contactTolerance",) if is_object else ()
+        reads = () if is_oriented else beside_vector
+        return _specifier(name, evaluate, *gap, *reads, conditional=is_oriented)
 
     return build
 
 
-def following(ego: Ego, field: Any, origin: Any, distance: Any) -> Specifier:
-    start = to_vector(ego() if origin is None else origin, "`following ... from`")
+def following(field: Any, origin: Any, distance: Any) -> Specifier:
+    start = to_vector(origin, "`following ... from`")
     way = field_of(field, "`following`")
     end = way.followFrom(start, to_scalar(distance, "`following ... for`"))
     orientation = way[end]
@@ -289,38 +319,34 @@ def following(ego: Ego, field: Any, origin: Any, distance: Any) -> Specifier:
     def evaluate(_: Any) -> Mapping[str, Any]:
         return {"position": end, "parentOrientation": orientation}
 
-    return _specifier("following", {"position": 1, "parentOrientation": 3}, evaluate)
+    return _specifier("following", evaluate)
 
 
-def facing(_ego: Ego, orientation: Any) -> Specifier:
-    reads = ["parentOrientation"]
-    target = orientation
-    if is_field(orientation):
-        reads.append("position")
-    elif is_number(orientation) or is_orientation(orientation) or is_kind(orientation, OrientedPoint):
-        target = to_orientation(orientation, "`facing`")
-    elif isinstance(orientation, tuple | list) and len(orientation) == 2:
+def facing(orientation: Any) -> Specifier:
+    if isinstance(orientation, tuple | list) and len(orientation) == 2:
         raise ScenicTypeError(
             f"`facing` takes a heading, an orientation or three Euler angles, not {describe(orientation)}",
             span=here(),
             help="to face a position write `facing toward`",
         )
-    else:
-        target = to_orientation(orientation, "`facing`")
+    varies = is_field(orientation)
+    target = orientation if varies else to_orientation(orientation, "`facing`")
 
     def evaluate(instance: Any) -> Mapping[str, Any]:
-        wanted = frame_at(target, instance.position, "`facing`") if is_field(target) else target
+        wanted = frame_at(target, instance.position, "`facing`") if varies else target
         local = operate("compose", operate("inverse", instance.parentOrientation), wanted)
         if isinstance(local, Lazy):
             return {"yaw": local.yaw, "pitch": local.pitch, "roll": local.roll}
         yaw, pitch, roll = local.eulerAngles
         return {"yaw": yaw, "pitch": pitch, "roll": roll}
 
-    return _specifier("facing", {"yaw": 1, "pitch": 1, "roll": 1}, evaluate, *reads)
+    return _specifier("facing", evaluate, *(("position",) if varies else ()))
 
 
-def _facing_point(name: str, *, away: bool, directly: bool) -> Callable[..., Specifier]:
-    def build(_ego: Ego, target: Any) -> Specifier:
+def _facing_point(name: str, *, away: bool = False) -> Callable[..., Specifier]:
+    directly = "pitch" in _DECLARED[name].always
+
+    def build(target: Any) -> Specifier:
         place = to_vector(target, f"`{name}`")
 
         def evaluate(instance: Any) -> Mapping[str, Any]:
@@ -330,27 +356,25 @@ def _facing_point(name: str, *, away: bool, directly: bool) -> Callable[..., Spe
             angles = {"yaw": operate("azimuth", local)}
             return {**angles, "pitch": operate("altitude", local)} if directly else angles
 
-        priorities = {"yaw": 1, "pitch": 1} if directly else {"yaw": 1}
-        return _specifier(name, priorities, evaluate, "position", "parentOrientation")
+        return _specifier(name, evaluate)
 
     return build
 
 
-def apparently_facing(ego: Ego, heading: Any, origin: Any) -> Specifier:
+def apparently_facing(heading: Any, origin: Any) -> Specifier:
     angle = to_heading(heading, "`apparently facing`")
-    observer = to_vector(ego() if origin is None else origin, "`apparently facing ... from`")
+    observer = to_vector(origin, "`apparently facing ... from`")
 
     def evaluate(instance: Any) -> Mapping[str, Any]:
         line = operate("subtract", instance.position, observer)
         return {"yaw": operate("add", operate("azimuth", line), angle)}
 
-    return _specifier("apparently facing", {"yaw": 1}, evaluate, "position", "parentOrientation")
+    return _specifier("apparently facing", evaluate)
 
 
-def visible(ego: Ego, viewer: Any, workspace: Region, *, wanted: bool = True) -> Specifier:
+def visible(workspace: Region, observer: Any, *, wanted: bool = True) -> Specifier:
     """Section 11.4: who must see the object, or must not; and, if nothing else says so, any position in its container."""
     name = "visible" if wanted else "not visible"
-    observer = ego() if viewer is None else viewer
     if not is_kind(observer, Point):
         raise wrong_type("a point or an object", observer, f"`{name} from`")
     context = current.get()
@@ -378,8 +402,8 @@ def visible(ego: Ego, viewer: Any, workspace: Region, *, wanted: bool = True) ->
             return {"position": place_in_plane(observer, region, seen=False)}
         return {"position": region.uniform_placement()[0]}
 
-    reads = ("regionContainedIn", "width", "length", "height") if wanted else ("regionContainedIn",)
-    return _specifier(name, {"position": 3}, evaluate, *reads, sighting=Sighting(observer, wanted))
+    extents = ("width", "length", "height") if wanted else ()
+    return _specifier(name, evaluate, *extents, sighting=Sighting(observer, wanted))
 
 
 BUILDERS: Mapping[str, Callable[..., Specifier]] = MappingProxyType(
@@ -387,30 +411,30 @@ BUILDERS: Mapping[str, Callable[..., Specifier]] = MappingProxyType(
         "with": with_,
         "at": at,
         "in": in_,
-        "contained in": contained_in,
+        "contained in": partial(in_, name="contained in"),
         "on": on,
         "offset by": offset_by,
         "offset along": offset_along,
         "beyond": beyond,
-        "left of": _directional("left of", 0, -1, "width"),
-        "right of": _directional("right of", 0, 1, "width"),
-        "ahead of": _directional("ahead of", 1, 1, "length"),
-        "behind": _directional("behind", 1, -1, "length"),
-        "above": _directional("above", 2, 1, "height"),
-        "below": _directional("below", 2, -1, "height"),
+        "left of": _directional("left of", -1),
+        "right of": _directional("right of", 1),
+        "ahead of": _directional("ahead of", 1),
+        "behind": _directional("behind", -1),
+        "above": _directional("above", 1),
+        "below": _directional("below", -1),
         "following": following,
         "facing": facing,
-        "facing toward": _facing_point("facing toward", away=False, directly=False),
-        "facing away from": _facing_point("facing away from", away=True, directly=False),
-        "facing directly toward": _facing_point("facing directly toward", away=False, directly=True),
-        "facing directly away from": _facing_point("facing directly away from", away=True, directly=True),
+        "facing toward": _facing_point("facing toward"),
+        "facing away from": _facing_point("facing away from", away=True),
+        "facing directly toward": _facing_point("facing directly toward"),
+        "facing directly away from": _facing_point("facing directly away from", away=True),
         "apparently facing": apparently_facing,
         "visible": visible,
         "not visible": partial(visible, wanted=False),
     }
 )
-"""How each specifier of `scenic.language.specifiers` is built: ``(ego, *operands)``; ``with`` gets its property
-first. ``ego`` is a function, so that a scenario without ego fails only where one is needed."""
+"""How each specifier of `scenic.language.specifiers` is built, from its operands; ``with`` gets its property first, and
+a specifier that reads the ego or the workspace gets that first."""
 
 
 class UserSpecifier:
@@ -444,10 +468,9 @@ class UserSpecifier:
                 )
             return offered
 
-        reads = {*self.reads, *reads_of(arguments)}
-        return _specifier(
-            self.__name__, self.priorities, evaluate, *reads, modifiable=frozenset(self.modifies)
-        )
+        reads = frozenset(self.reads) | reads_of(arguments)
+        modifiable = frozenset(self.modifies)
+        return Specifier(self.__name__, self.priorities, reads, evaluate, modifiable, span=here())
 
 
 def specifier(
@@ -476,9 +499,22 @@ def specifier(
     return lambda function: UserSpecifier(function, priorities, reads, modifies)
 
 
-def specify(name: str, ego: Ego, *operands: Any) -> Specifier:
-    """One specifier; what lazy operands read, it depends on."""
-    found = BUILDERS[name](ego, *operands)
+def specify(name: str, ego: Ego, workspace: Space, *operands: Any) -> Specifier:
+    """One specifier; what lazy operands read, it depends on.
+
+    ``ego`` and ``workspace`` are functions: a program without an ego fails only where one is needed. They stand in for
+    the operands that the text leaves out (``None``), as declared.
+    """
+    declaration = SPECIFIERS[name]
+    given = operands
+    for index in _DECLARED[name].ego_at:
+        if operands[index] is None:
+            given = (*given[:index], ego(), *given[index + 1 :])
+    if declaration.reads_ego:
+        given = (ego(), *given)
+    if declaration.reads_workspace:
+        given = (workspace(), *given)
+    found = BUILDERS[name](*given)
     reads = reads_of(operands)
     return replace(found, dependencies=found.dependencies | reads) if reads else found
 

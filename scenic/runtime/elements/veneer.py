@@ -20,6 +20,7 @@ from scenic.runtime.instances import mutation
 from scenic.runtime.instances.objects import SIDES
 from scenic.runtime.instances.resolution import build
 from scenic.runtime.program.context import current
+from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.spaces import everywhere
 
 _OPERATORS: Final[Mapping[str, tuple[str, str, str]]] = MappingProxyType(
@@ -114,6 +115,10 @@ def _ego() -> Any:
     return _needed("ego").ego
 
 
+def _space() -> Region:
+    return everywhere
+
+
 def _operate(name: str, *operands: Any) -> Any:
     return operation(name, _ego, *operands)
 
@@ -123,7 +128,7 @@ def _specify(name: str, *operands: Any) -> Specifier:
     if language is not None:
         specifier: Specifier = language.specifier(name, *operands)
         return specifier
-    return specify(name, _ego, *operands, *([everywhere] if name in ("visible", "not visible") else []))
+    return specify(name, _ego, _space, *operands)
 
 
 def _function(
@@ -156,7 +161,7 @@ def With(prop: str, val: Any) -> Specifier:
     """The specifier ``with prop val``."""
     language = _language()
     if language is None:
-        return specify("with", _ego, prop, val)
+        return specify("with", _ego, _space, prop, val)
     specifier: Specifier = language.specifier("with", val, property=prop)
     return specifier
 

@@ -182,6 +182,10 @@ class Prelude(Dynamics):
     def _ego(self) -> Any:
         return self.ego
 
+    def _space(self) -> Region:
+        workspace = self._known_workspace()
+        return everywhere if workspace is None else workspace
+
     @property
     def workspace(self) -> Any:
         """The workspace; all of space where the program sets none."""
@@ -221,16 +225,13 @@ class Prelude(Dynamics):
             raise UnsupportedError(f"the specifier `{name}` is not supported yet", span=here())
         if property is not None:
             if property == "heading" and self._context.mode_2d:
-                return specify("facing", self._ego, *operands)
+                return specify("facing", self._ego, self._space, *operands)
             own = self._module.scope.get(property)
             if isinstance(own, UserSpecifier):
                 (value,) = operands
                 return own(*value) if type(value) is tuple else own(value)
-            return specify(name, self._ego, property, *operands)
-        if name in ("visible", "not visible"):
-            workspace = self._known_workspace()
-            return specify(name, self._ego, *operands, everywhere if workspace is None else workspace)
-        return specify(name, self._ego, *operands)
+            operands = (property, *operands)
+        return specify(name, self._ego, self._space, *operands)
 
     def new(self, cls: Any, *specifiers: Specifier) -> Any:
         """A new instance of a Scenic class."""
