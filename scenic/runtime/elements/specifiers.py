@@ -1,9 +1,9 @@
 """Values of specifiers (section 6.2 to 6.4 of the specification).
 
 A specifier is turned into a `Specifier`: the properties it offers with their priorities, the properties it reads, and
-a function from the partially built instance to values. Priorities, needs and operands left out come from
-`scenic.language.specifiers`; the functions here compute the values alone. Which of the offered values are taken is decided in
-`scenic.runtime.instances.resolution`.
+a function from the partially built instance to values. Priorities, needs and the defaults of operands come from
+`scenic.language.specifiers`; the functions here compute the values alone. `scenic.runtime.instances.resolution` decides
+which of the offered values are taken.
 """
 
 from collections.abc import Callable, Mapping, Sequence
