@@ -499,7 +499,7 @@ def test_a_random_permission_to_collide() -> None:
         ("new Object\nnew Object at (0.5, 0)", "always collides with the Object on line 1", "2:1-2:23"),
         ("class Car: pass\nego = new Car\nx = new Object in RectangularRegion((0, 0), 0, 0, 0)", None, None),
         ("workspace = Workspace(CircularRegion((0, 0), 2))\nx = new Object at (2, 0)", "not inside its container", "2:5-2:25"),
-        ("workspace = Workspace(nowhere)\nnew Object", "not inside its container", "2:1-2:11"),
+        ("workspace = Workspace(nowhere)\nnew Object", "cannot be inside its container, which is empty", "2:1-2:11"),
         ("new Object at (5, 5), with regionContainedIn CircularRegion((0, 0), 2)", "not inside", "1:1-1:71"),
     ],
 )  # fmt: skip

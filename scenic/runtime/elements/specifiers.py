@@ -226,8 +226,8 @@ def _surface(target: Any) -> Region:
     raise wrong_type("a region, an object or a vector", surface, "`on`")
 
 
-def offset_by(origin: Any, offset: Any) -> Specifier:
-    step = to_vector(offset, "`offset by`")
+def offset_by(ego: Ego, offset: Any) -> Specifier:
+    step, origin = to_vector(offset, "`offset by`"), ego()
 
     def evaluate(_: Any) -> Mapping[str, Any]:
         return {"position": origin.relativePosition(step), "parentOrientation": origin.orientation}
@@ -235,8 +235,8 @@ def offset_by(origin: Any, offset: Any) -> Specifier:
     return _specifier("offset by", evaluate)
 
 
-def offset_along(origin: Any, direction: Any, offset: Any) -> Specifier:
-    step = to_vector(offset, "`offset along`")
+def offset_along(ego: Ego, direction: Any, offset: Any) -> Specifier:
+    step, origin = to_vector(offset, "`offset along`"), ego()
     frame = frame_at(direction, origin.position, "`offset along`")
 
     def evaluate(_: Any) -> Mapping[str, Any]:
@@ -509,9 +509,12 @@ def specify(name: str, ego: Ego, workspace: Space, *operands: Any) -> Specifier:
     given = operands
     for index in _DECLARED[name].ego_at:
         if operands[index] is None:
+            if name == "beyond":
+                # A wrong target is told before a missing ego.
+                to_vector(operands[0], "`beyond`")
             given = (*given[:index], ego(), *given[index + 1 :])
     if declaration.reads_ego:
-        given = (ego(), *given)
+        given = (ego, *given)
     if declaration.reads_workspace:
         given = (workspace(), *given)
     found = BUILDERS[name](*given)
