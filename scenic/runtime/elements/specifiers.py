@@ -246,9 +246,10 @@ def offset_along(ego: Ego, direction: Any, offset: Any) -> Specifier:
     return _specifier("offset along", evaluate)
 
 
-def beyond(target: Any, offset: Any, observer: Any) -> Specifier:
+def beyond(target: Any, offset: Any, origin: Ego) -> Specifier:
     place = to_vector(target, "`beyond`")
     step = scalar_or_vector(offset, "`beyond`", axis=1)
+    observer = origin()
     line = operate("subtract", place, to_vector(observer, "`beyond ... from`"))
     frame = operate("from euler", operate("azimuth", line), operate("altitude", line), 0)
     orientation = observer.orientation if is_kind(observer, OrientedPoint) else Orientation()
@@ -310,8 +311,8 @@ def _directional(name: str, sign: int) -> Callable[..., Specifier]:
     return build
 
 
-def following(field: Any, origin: Any, distance: Any) -> Specifier:
-    start = to_vector(origin, "`following ... from`")
+def following(field: Any, origin: Ego, distance: Any) -> Specifier:
+    start = to_vector(origin(), "`following ... from`")
     way = field_of(field, "`following`")
     end = way.followFrom(start, to_scalar(distance, "`following ... for`"))
     orientation = way[end]
@@ -361,9 +362,9 @@ def _facing_point(name: str, *, away: bool = False) -> Callable[..., Specifier]:
     return build
 
 
-def apparently_facing(heading: Any, origin: Any) -> Specifier:
+def apparently_facing(heading: Any, origin: Ego) -> Specifier:
     angle = to_heading(heading, "`apparently facing`")
-    observer = to_vector(origin, "`apparently facing ... from`")
+    observer = to_vector(origin(), "`apparently facing ... from`")
 
     def evaluate(instance: Any) -> Mapping[str, Any]:
         line = operate("subtract", instance.position, observer)
@@ -372,9 +373,10 @@ def apparently_facing(heading: Any, origin: Any) -> Specifier:
     return _specifier("apparently facing", evaluate)
 
 
-def visible(workspace: Region, observer: Any, *, wanted: bool = True) -> Specifier:
+def visible(workspace: Region, origin: Ego, *, wanted: bool = True) -> Specifier:
     """Section 11.4: who must see the object, or must not; and, if nothing else says so, any position in its container."""
     name = "visible" if wanted else "not visible"
+    observer = origin()
     if not is_kind(observer, Point):
         raise wrong_type("a point or an object", observer, f"`{name} from`")
     context = current.get()
@@ -434,7 +436,8 @@ BUILDERS: Mapping[str, Callable[..., Specifier]] = MappingProxyType(
     }
 )
 """How each specifier of `scenic.language.specifiers` is built, from its operands; ``with`` gets its property first, and
-a specifier that reads the ego or the workspace gets that first."""
+a specifier that reads the ego or the workspace gets that first. The ego, and an operand for which it stands in, come as
+functions, called when the other operands are converted: a wrong operand is told before a missing ego."""
 
 
 class UserSpecifier:
@@ -499,6 +502,10 @@ def specifier(
     return lambda function: UserSpecifier(function, priorities, reads, modifies)
 
 
+def _same(value: Any) -> Any:
+    return value
+
+
 def specify(name: str, ego: Ego, workspace: Space, *operands: Any) -> Specifier:
     """One specifier; what lazy operands read, it depends on.
 
@@ -508,11 +515,8 @@ def specify(name: str, ego: Ego, workspace: Space, *operands: Any) -> Specifier:
     declaration = SPECIFIERS[name]
     given = operands
     for index in _DECLARED[name].ego_at:
-        if operands[index] is None:
-            if name == "beyond":
-                # A wrong target is told before a missing ego.
-                to_vector(operands[0], "`beyond`")
-            given = (*given[:index], ego(), *given[index + 1 :])
+        stand_in = ego if operands[index] is None else partial(_same, operands[index])
+        given = (*given[:index], stand_in, *given[index + 1 :])
     if declaration.reads_ego:
         given = (ego, *given)
     if declaration.reads_workspace:
