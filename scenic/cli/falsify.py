@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from scenic.cli.options import parameter_value, program_options, seconds
+from scenic.cli.options import named_values, program_options, seconds, simulator_option, timestep_option
 from scenic.cli.output import CLEAN
 from scenic.cli.sample import NOT_ALL, _ended_by_signals, _engine, _progress
 
@@ -16,16 +16,6 @@ if TYPE_CHECKING:
     from scenic.falsification.search import FalsificationResult
 
 __all__ = ["falsify"]
-
-
-def _options(_context: click.Context, _option: click.Parameter, given: tuple[str, ...]) -> dict[str, Any]:
-    found = {}
-    for item in given:
-        name, equals, value = item.partition("=")
-        if not equals or not name:
-            raise click.BadParameter(f"{item!r} is not of the form NAME=VALUE")
-        found[name] = parameter_value(value)
-    return found
 
 
 @click.command()
@@ -49,7 +39,7 @@ def _options(_context: click.Context, _option: click.Parameter, given: tuple[str
     "sampler_options",
     metavar="NAME=VALUE",
     multiple=True,
-    callback=_options,
+    callback=named_values,
     help="An option of the sampler. Repeatable.",
 )
 @click.option(
@@ -103,11 +93,7 @@ def _options(_context: click.Context, _option: click.Parameter, given: tuple[str
     help="Searches of one seed are always the same. Without it, one is drawn and shown.",
 )
 @click.option("--static", is_flag=True, help="Search scenes by themselves, without simulations.")
-@click.option(
-    "--simulator",
-    metavar="NAME",
-    help="kinematic, mujoco, dummy, or MODULE:CLASS.  [default: the program's, else kinematic]",
-)
+@simulator_option
 @click.option(
     "--steps",
     "max_steps",
@@ -116,13 +102,7 @@ def _options(_context: click.Context, _option: click.Parameter, given: tuple[str
     default=100,
     help="Steps of a simulation at most.  [default: 100]",
 )
-@click.option(
-    "--timestep",
-    metavar="T",
-    type=float,
-    callback=seconds,
-    help="Seconds in a step.  [default: the simulator's]",
-)
+@timestep_option
 @program_options
 @click.option(
     "-j", "jobs", metavar="J", type=click.IntRange(min=1), default=1, help="Processes.  [default: 1]"

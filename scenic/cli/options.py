@@ -12,12 +12,15 @@ import click
 
 __all__ = [
     "image_size_option",
+    "named_values",
     "no_cache_option",
     "outlook_option",
     "parameter_value",
     "program_options",
     "seconds",
+    "simulator_option",
     "sobol_option",
+    "timestep_option",
 ]
 
 _Command = TypeVar("_Command", bound=Callable[..., Any])
@@ -49,7 +52,8 @@ def parameter_value(text: str) -> int | float | bool | str:
     return text
 
 
-def _parameters(_context: click.Context, _option: click.Parameter, given: tuple[str, ...]) -> dict[str, Any]:
+def named_values(_context: click.Context, _option: click.Parameter, given: tuple[str, ...]) -> dict[str, Any]:
+    """The values of ``NAME=VALUE`` by name, given repeatedly: the callback of such an option."""
     parameters = {}
     for item in given:
         name, equals, value = item.partition("=")
@@ -120,6 +124,20 @@ sobol_option = click.option(
 )
 
 
+simulator_option = click.option(
+    "--simulator",
+    metavar="NAME",
+    help="kinematic, mujoco, newtonian, dummy, or MODULE:CLASS.  [default: the program's, else kinematic]",
+)
+timestep_option = click.option(
+    "--timestep",
+    metavar="T",
+    type=float,
+    callback=seconds,
+    help="Seconds in a step.  [default: the simulator's]",
+)
+
+
 def program_options(command: _Command) -> _Command:
     """What is asked of a program, the same by all commands that run one."""
     for option in (
@@ -135,7 +153,7 @@ def program_options(command: _Command) -> _Command:
             "parameters",
             metavar="NAME=VALUE",
             multiple=True,
-            callback=_parameters,
+            callback=named_values,
             help="A value for a global parameter: a number, true, false, or text. Repeatable.",
         ),
     ):

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import click
 
-from scenic.cli.options import program_options, seconds, sobol_option
+from scenic.cli.options import program_options, seconds, simulator_option, sobol_option, timestep_option
 from scenic.cli.output import CLEAN, FINDINGS, show_diagnostics
 from scenic.cli.sample import NOT_ALL, _ended_by_signals, _engine, _progress
 from scenic.cli.sinks import check_page
@@ -46,11 +46,7 @@ __all__ = ["simulate"]
     type=int,
     help="Simulations of one seed are always the same. Without it, one is drawn and shown.",
 )
-@click.option(
-    "--simulator",
-    metavar="NAME",
-    help="kinematic, mujoco, newtonian, dummy, or MODULE:CLASS.  [default: the program's, else kinematic]",
-)
+@simulator_option
 @click.option(
     "--time",
     "max_steps",
@@ -59,13 +55,7 @@ __all__ = ["simulate"]
     default=100,
     help="Steps of a simulation at most.  [default: 100]",
 )
-@click.option(
-    "--timestep",
-    metavar="T",
-    type=float,
-    callback=seconds,
-    help="Seconds in a step.  [default: the simulator's]",
-)
+@timestep_option
 @click.option(
     "--tries",
     metavar="M",
