@@ -7,7 +7,7 @@ import math
 
 
 def bouncing_ball(height: float, speed: float, restitution: float, wind: float) -> float:
-    """How far the third apex of a ball stays below 8.6 m; it is dropped from a height with a speed, in an updraught."""
+    """8.6 m less the third apex of a ball that is dropped from a height with a speed, in an updraught."""
     g = 9.81 - wind
     energy = g * height + speed * speed / 2
     for _ in range(3):
@@ -16,7 +16,7 @@ def bouncing_ball(height: float, speed: float, restitution: float, wind: float) 
 
 
 def mountain_car(start: float, velocity: float, power: float, fault_at: float, fault_length: float) -> float:
-    """How far a car that pushes along its velocity gets above the flag in 160 steps, its engine dead for some of them."""
+    """The greatest height above the flag, in 160 steps, of a car that pushes along its velocity; its engine fails for some."""
     x, v, best = start, velocity, start
     for step in range(160):
         push = 0.0 if fault_at <= step < fault_at + fault_length else power * (1 if v >= 0 else -1)

@@ -25,7 +25,7 @@ SCENES = 200
 
 
 def child(path: str) -> None:
-    """What our fresh process does: prints milliseconds a scene."""
+    """Run in a fresh process: print our milliseconds a scene."""
     import scenic
 
     scenario = scenic.scenarioFromFile(path)

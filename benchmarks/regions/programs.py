@@ -45,7 +45,7 @@ QUESTIONS: Mapping[str, str] = MappingProxyType(
         "distance": f"{_THING}, with allowCollisions True\nrequire r.distanceTo(other.position) < 2\n",
     }
 )
-"""What is asked, by name: the statements about `r`."""
+"""The statements about `r`, by the name of the question."""
 
 _CONE = "import trimesh\ncone = trimesh.creation.cone(radius=1, height=2, sections=12)\n"
 

@@ -37,7 +37,7 @@ _BLOCK: Final = 512
 
 @dataclass(frozen=True, slots=True)
 class Run:
-    """How scenes are made: nothing here changes a row.
+    """Settings of a run that change no row.
 
     Attributes:
         engine: where scenes are sampled; in this process if ``None``.
@@ -53,7 +53,7 @@ class Run:
 
 @dataclass(frozen=True, slots=True)
 class Finished:
-    """What a run has made: the manifest, and the scenes that were not found in it."""
+    """The manifest that a run wrote, and the scenes that it did not find."""
 
     manifest: Manifest
     missing: tuple[Exhausted, ...]
