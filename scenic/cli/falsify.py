@@ -10,7 +10,7 @@ import click
 
 from scenic.cli.options import named_values, program_options, seconds, simulator_option, timestep_option
 from scenic.cli.output import CLEAN
-from scenic.cli.sample import NOT_ALL, _ended_by_signals, _engine, _progress
+from scenic.cli.running import NOT_ALL, ended_by_signals, engine_of, progress_bar
 
 if TYPE_CHECKING:
     from scenic.falsification.search import FalsificationResult
@@ -193,9 +193,9 @@ def falsify(
     )
     folder = None if output is None else SearchFolder(output, plan.settings(loaded), resume=resume)
     with (
-        _ended_by_signals(),
-        _progress(count, shown=not sys.stdout.isatty()) as advance,
-        _engine(jobs, dask) as engine,
+        ended_by_signals(),
+        progress_bar(count, shown=not sys.stdout.isatty()) as advance,
+        engine_of(jobs, dask) as engine,
     ):
         limits = Limits(count, stop_after, time_limit, lambda _row: advance(1, 1))
         result = search(loaded, plan, limits, engine=engine, folder=folder)

@@ -5,7 +5,7 @@ import shlex
 import signal
 import sys
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from types import FrameType
@@ -16,6 +16,7 @@ import click
 from scenic.cli import sinks
 from scenic.cli.options import image_size_option, outlook_option, program_options, seconds, sobol_option
 from scenic.cli.output import CLEAN, has_colours
+from scenic.cli.running import NOT_ALL, ended_by_signals, engine_of, progress_bar
 from scenic.formats.files import OutputError
 from scenic.formats.growing import GrowingFile
 from scenic.language.errors import Located
@@ -23,12 +24,8 @@ from scenic.language.errors import Located
 if TYPE_CHECKING:
     from _typeshed import ReadableBuffer
 
-    from scenic.batch.engines import Engine
 
-__all__ = ["NOT_ALL", "sample"]
-
-NOT_ALL: Final = 3
-"""Exit code: some scenes were not found within the limits."""
+__all__ = ["sample"]
 
 
 @click.command()
@@ -249,11 +246,11 @@ def sample(
         f"a candidate was still being evaluated {PATIENCE:g} s after the time limit of {time_limit or 0:g} s",
         "look for a loop without end in what is called on samples",
     )
-    with _ended_by_signals(), endless, ExitStack() as stack:
+    with ended_by_signals(), endless, ExitStack() as stack:
         takers = [stack.enter_context(sink) for sink in chosen]
         put = _to_output if grown is None else stack.enter_context(grown).write
-        engine = stack.enter_context(_engine(jobs, dask))
-        advance = stack.enter_context(_progress(count, shown=not to_terminal))
+        engine = stack.enter_context(engine_of(jobs, dask))
+        advance = stack.enter_context(progress_bar(count, shown=not to_terminal))
         advance(done, 0)
         run = Run(engine, deadline, advance)
         if dataset is not None or table is not None:
@@ -300,18 +297,6 @@ def sample(
         )
         return NOT_ALL
     return CLEAN
-
-
-@contextmanager
-def _engine(jobs: int, dask: str | None) -> "Iterator[Engine | None]":
-    """The place where scenes are sampled; ``None`` is this process."""
-    from scenic.batch.engines import DaskCluster, Processes
-
-    if dask is None:
-        yield Processes(jobs) if jobs > 1 else None
-        return
-    with DaskCluster(dask) as cluster:
-        yield cluster
 
 
 PATIENCE: Final = 10.0
@@ -373,63 +358,3 @@ class TimeLimitError(Located):
     """A program that runs longer than the time limit."""
 
     code = "SC608"
-
-
-@contextmanager
-def _progress(count: int, *, shown: bool) -> Iterator[Callable[[int, int], None]]:
-    """A progress bar on the error stream if that is a terminal: scenes, rate, acceptance, time left.
-
-    The function it gives takes how many more scenes are done, and the candidates they took.
-    """
-    if not (shown and sys.stderr.isatty()):
-        yield lambda _scenes, _attempts: None
-        return
-    from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
-
-    columns = (
-        TextColumn("sampling"),
-        BarColumn(),
-        MofNCompleteColumn(),
-        TextColumn("{task.fields[rate]}"),
-        TimeRemainingColumn(),
-    )
-    console = Console(file=sys.stderr, no_color=not has_colours(sys.stderr))
-    begun = time.monotonic()
-    made = tried = 0
-    with Progress(*columns, console=console, transient=True, redirect_stdout=False) as progress:
-        task = progress.add_task("sampling", total=count, rate="")
-
-        def advance(scenes: int, attempts: int) -> None:
-            nonlocal made, tried
-            if attempts:
-                made, tried = made + scenes, tried + attempts
-            seconds = max(time.monotonic() - begun, 1e-6)
-            rate = f"{made / seconds:.3g}/s, {made / tried:.2g} accepted" if tried else ""
-            progress.update(task, advance=scenes, rate=rate)
-
-        yield advance
-
-
-class _Terminated(BaseException):
-    """SIGTERM has come. `SystemExit` would count as the program's own where its functions are being called."""
-
-
-@contextmanager
-def _ended_by_signals() -> Iterator[None]:
-    """Makes a polite request to end (SIGTERM) leave no half-written file behind, as Ctrl-C does not."""
-
-    def end(_number: int, _frame: FrameType | None) -> None:
-        raise _Terminated
-
-    try:
-        before = signal.signal(signal.SIGTERM, end)
-    except ValueError:  # not in the main thread, where nobody can be interrupted
-        yield
-        return
-    try:
-        yield
-    except _Terminated:
-        raise SystemExit(128 + signal.SIGTERM) from None
-    finally:
-        signal.signal(signal.SIGTERM, before)

@@ -13,7 +13,7 @@ import click
 
 from scenic.cli.options import program_options, seconds, simulator_option, sobol_option, timestep_option
 from scenic.cli.output import CLEAN, FINDINGS, show_diagnostics
-from scenic.cli.sample import NOT_ALL, _ended_by_signals, _engine, _progress
+from scenic.cli.running import NOT_ALL, ended_by_signals, engine_of, progress_bar
 from scenic.cli.sinks import check_page
 
 if TYPE_CHECKING:
@@ -185,9 +185,9 @@ def simulate(
     found = {k: row for k in numbers if (row := batch.known(k)) is not None}
     missing = [k for k in numbers if k not in found]
     with (
-        _ended_by_signals(),
-        _progress(len(missing), shown=not sys.stdout.isatty()) as advance,
-        _engine(jobs, dask) as engine,
+        ended_by_signals(),
+        progress_bar(len(missing), shown=not sys.stdout.isatty()) as advance,
+        engine_of(jobs, dask) as engine,
         closing(batch.rows(missing, engine)) as rows,
     ):
         for row in rows:

@@ -1,0 +1,91 @@
+"""Running of ``sample``, ``simulate`` and ``falsify``: workers, a progress bar, the end by a signal, an exit code."""
+
+import signal
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from types import FrameType
+from typing import TYPE_CHECKING, Final
+
+from scenic.cli.output import has_colours
+
+if TYPE_CHECKING:
+    from scenic.batch.engines import Engine
+
+__all__ = ["NOT_ALL", "ended_by_signals", "engine_of", "progress_bar"]
+
+NOT_ALL: Final = 3
+"""Exit code: some scenes were not found within the limits."""
+
+
+@contextmanager
+def engine_of(jobs: int, dask: str | None) -> "Iterator[Engine | None]":
+    """The place where scenes are sampled; ``None`` is this process."""
+    from scenic.batch.engines import DaskCluster, Processes
+
+    if dask is None:
+        yield Processes(jobs) if jobs > 1 else None
+        return
+    with DaskCluster(dask) as cluster:
+        yield cluster
+
+
+@contextmanager
+def progress_bar(count: int, *, shown: bool) -> Iterator[Callable[[int, int], None]]:
+    """A progress bar on the error stream if that is a terminal: scenes, rate, acceptance, time left.
+
+    The function it gives takes how many more scenes are done, and the candidates they took.
+    """
+    if not (shown and sys.stderr.isatty()):
+        yield lambda _scenes, _attempts: None
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+    columns = (
+        TextColumn("sampling"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TextColumn("{task.fields[rate]}"),
+        TimeRemainingColumn(),
+    )
+    console = Console(file=sys.stderr, no_color=not has_colours(sys.stderr))
+    begun = time.monotonic()
+    made = tried = 0
+    with Progress(*columns, console=console, transient=True, redirect_stdout=False) as progress:
+        task = progress.add_task("sampling", total=count, rate="")
+
+        def advance(scenes: int, attempts: int) -> None:
+            nonlocal made, tried
+            if attempts:
+                made, tried = made + scenes, tried + attempts
+            seconds = max(time.monotonic() - begun, 1e-6)
+            rate = f"{made / seconds:.3g}/s, {made / tried:.2g} accepted" if tried else ""
+            progress.update(task, advance=scenes, rate=rate)
+
+        yield advance
+
+
+class _Terminated(BaseException):
+    """SIGTERM has come. `SystemExit` would count as the program's own where its functions are being called."""
+
+
+@contextmanager
+def ended_by_signals() -> Iterator[None]:
+    """Makes a polite request to end (SIGTERM) leave no half-written file behind, as Ctrl-C does not."""
+
+    def end(_number: int, _frame: FrameType | None) -> None:
+        raise _Terminated
+
+    try:
+        before = signal.signal(signal.SIGTERM, end)
+    except ValueError:  # not in the main thread, where nobody can be interrupted
+        yield
+        return
+    try:
+        yield
+    except _Terminated:
+        raise SystemExit(128 + signal.SIGTERM) from None
+    finally:
+        signal.signal(signal.SIGTERM, before)
