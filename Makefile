@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
-.PHONY: demo test test-fast lint types fuzz generate playground extension pythons clean
+.PHONY: demo test test-fast lint types fuzz generate docs docs-serve playground extension pythons clean
 
 $(STAMP): pyproject.toml hatch_build.py
 	$(PYTHON) -c 'import sys; sys.exit("Scenic needs Python 3.11 or newer; this is " + sys.version.split()[0]) if sys.version_info < (3, 11) else None'
@@ -34,10 +34,17 @@ fuzz: $(STAMP)
 	$(BIN)/python -m fuzz $(if $(MINUTES),--minutes $(MINUTES)) $(FUZZ)
 
 # After a change of grammar/scenic.gram or scenic/language: makes the parser again (imports notice a stale one too), and
-# what editors and docs/syntax.md take from the grammar.
+# what editors and docs/reference/syntax.md take from the grammar.
 generate: $(STAMP)
 	$(BIN)/python -m grammar.generator
 	$(BIN)/python -m editors.generate
+
+# The documentation, in docs/_build/html; builds offline, and every warning is an error.
+docs: $(STAMP)
+	$(BIN)/python -m sphinx -b html -q -W --keep-going docs docs/_build/html
+
+docs-serve: docs
+	$(BIN)/python -m http.server --bind 127.0.0.1 --directory docs/_build/html 8000
 
 # The page of `scenic playground`, which wheels carry; needs npm.
 PAGE := scenic/playground/static/page.js
@@ -55,4 +62,4 @@ pythons:
 	cd tests/pythons && npm ci --silent
 
 clean:
-	rm -rf $(VENV) build dist out scenic/compiler/_generated scenic/playground/static .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	rm -rf $(VENV) build dist out docs/_build scenic/compiler/_generated scenic/playground/static .mypy_cache .ruff_cache .pytest_cache .hypothesis

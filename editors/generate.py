@@ -23,15 +23,15 @@ def texts() -> Mapping[str, str]:
         "editors/vscode/language-configuration.json": json.dumps(language_configuration(), indent=2) + "\n",
         "editors/vscode/snippets/scenic.json": snippets.snippets(),
         "editors/neovim/syntax/scenic.vim": vim.syntax(),
-        "docs/syntax.md": documentation.page(),
-        **{f"docs/syntax/{name}.svg": text for name, text in documentation.diagrams().items()},
+        "docs/reference/syntax.md": documentation.page(),
+        **{f"docs/reference/syntax/{name}.svg": text for name, text in documentation.diagrams().items()},
     }
 
 
 def write(root: Path = ROOT) -> None:
     """Write all files, and remove diagrams that are no longer made."""
     found = texts()
-    for path in (root / "docs" / "syntax").glob("*.svg"):
+    for path in (root / "docs" / "reference" / "syntax").glob("*.svg"):
         if str(path.relative_to(root)) not in found:
             path.unlink()
     for name, text in found.items():

@@ -1,7 +1,7 @@
 """``python -m fuzz.faults``: plant faults in copies of the project, and see whether fuzzing finds them.
 
 Every fault of `fuzz.planted` gets a copy of its own in a temporary folder, in which ``python -m fuzz`` runs until it has
-found something or its time is over. The checkout stays as it is, except for the table in ``docs/fuzzing.md`` with
+found something or its time is over. The checkout stays as it is, except for the table in ``docs/explanation/fuzzing.md`` with
 ``--write-docs``. First of all the same is done without any fault: nothing may be found then.
 """
 
@@ -27,7 +27,7 @@ from grammar.generator import modules, read_grammar
 __all__ = ["Result", "copied", "main", "plant", "table", "try_fault", "write_table"]
 
 ROOT: Final = Path(__file__).resolve().parents[1]
-PAGE: Final = ROOT / "docs" / "fuzzing.md"
+PAGE: Final = ROOT / "docs" / "explanation" / "fuzzing.md"
 BEGIN: Final = "<!-- faults: written by `python -m fuzz.faults --write-docs` -->"
 END: Final = "<!-- end of faults -->"
 
@@ -170,7 +170,7 @@ def _options() -> argparse.ArgumentParser:
     )
     parser.add_argument("--seed", type=int, default=_SEED, help=f"the seed of every run (default: {_SEED})")
     parser.add_argument("--list", action="store_true", help="only say what the faults are")
-    parser.add_argument("--write-docs", action="store_true", help="put the results into docs/fuzzing.md")
+    parser.add_argument("--write-docs", action="store_true", help="put the results into docs/explanation/fuzzing.md")
     return parser
 
 

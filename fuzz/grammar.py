@@ -442,7 +442,7 @@ class _Generator:
         elif text in (")", "]", "}"):
             state.brackets -= 1
         if 0 < state.read == len(state.pieces) and (state.pieces[-1].text, text) in self._operator_starts:
-            # The name `distance` before `to` would begin an operator: see docs/fuzzing.md.
+            # The name `distance` before `to` would begin an operator: see docs/explanation/fuzzing.md.
             state.pieces[-1] = Piece(_HARMLESS, Shape.WORD)
         if text == "from" and 0 < state.sees == len(state.pieces):
             # The specifier `visible` would take the word: it gets one of its own.

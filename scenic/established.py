@@ -388,7 +388,7 @@ class _Inside:
     def __refuse(self) -> NoReturn:
         raise import_module(_ERRORS).UnsupportedError(
             f"`{self.__name}` belongs to the inside of the established implementation and is not supported",
-            help="docs/moving.md says what of the Python API is here",
+            help="docs/howto/moving.md says what of the Python API is here",
         )
 
     def __call__(self, *_args: Any, **_keywords: Any) -> NoReturn:

@@ -1,4 +1,4 @@
-"""Scenes as JSON Lines: one line of JSON for each scene (``docs/scene-format.md`` describes every field)."""
+"""Scenes as JSON Lines: one line of JSON for each scene (``docs/reference/scene-format.md`` describes every field)."""
 
 import json
 import math

@@ -233,7 +233,7 @@ def _box(mask: npt.NDArray[np.bool_]) -> Box | None:
 
 
 def document(observation: Observation, scene: Scene) -> dict[str, Any]:
-    """The labels as plain data that JSON can hold (``docs/cameras.md`` describes every field)."""
+    """The labels as plain data that JSON can hold (``docs/howto/cameras.md`` describes every field)."""
     viewpoint = observation.viewpoint
     camera = viewpoint.camera
     to_camera = np.eye(4)

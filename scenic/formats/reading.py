@@ -1,4 +1,4 @@
-"""Scenes read back from JSON Lines (``docs/scene-format.md``), as plain data with names."""
+"""Scenes read back from JSON Lines (``docs/reference/scene-format.md``), as plain data with names."""
 
 import json
 from collections.abc import Iterable, Iterator, Mapping

@@ -1,4 +1,4 @@
-"""Scenes as Parquet (extra ``parquet``): a row a scene, written in columns; ``docs/datasets.md`` describes the schema.
+"""Scenes as Parquet (extra ``parquet``): a row a scene, written in columns; ``docs/howto/datasets.md`` describes the schema.
 
 Columns of the graph become Arrow columns without a Python object for each value. Only values that are Python objects in the
 graph, too, are read scene by scene.

@@ -29,7 +29,7 @@ class Trajectory:
     """A simulation that was read.
 
     Attributes:
-        about: what is said of the whole: the fields of ``docs/simulations.md``.
+        about: what is said of the whole: the fields of ``docs/reference/simulations.md``.
         times: seconds since the beginning, ``(s,)``, one more than steps were made.
         positions: metres, ``(s, n, 3)``; NaN before an object was created.
         orientations: quaternions x, y, z, w, ``(s, n, 4)``, likewise.

@@ -5,7 +5,7 @@ parentheses. What a tree does not hold is kept as it stands: comments, blank lin
 statements that are written over several lines, which are only moved with their block. Lines are never split or joined.
 
 The result means the same and formats to itself; a text with mistakes is left alone. The style is described in
-``docs/format.md``.
+``docs/reference/format.md``.
 """
 
 import ast

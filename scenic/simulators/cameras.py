@@ -14,7 +14,7 @@ __all__ = ["Cameras", "Present", "carried"]
 
 
 class Cameras:
-    """Gives the cameras of a simulation their images, as `docs/cameras.md` describes them."""
+    """Gives the cameras of a simulation their images, as `docs/howto/cameras.md` describes them."""
 
     def __init__(self) -> None:
         self._gallery = Gallery()

@@ -1,4 +1,4 @@
-"""docs/check.md shows what is so."""
+"""docs/reference/check.md shows what is so."""
 
 import json
 import re
@@ -10,7 +10,7 @@ from click.testing import CliRunner
 from scenic.cli.check import check
 from scenic.configuration.project import read_configuration
 
-PAGE = (Path(__file__).parents[2] / "docs" / "check.md").read_text(encoding="utf-8")
+PAGE = (Path(__file__).parents[2] / "docs" / "reference" / "check.md").read_text(encoding="utf-8")
 
 
 def block(language: str) -> str:

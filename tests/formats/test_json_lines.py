@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from scenic.formats.json_lines import plain, scene_line
 from tests.formats.stand_ins import BALL, CYLINDER, Chair, Object, Scene, Turn
 
-DOCS = Path(__file__).parents[2] / "docs"
+DOCS = Path(__file__).parents[2] / "docs" / "reference"
 SCHEMA = json.loads((DOCS / "scene.schema.json").read_text())
 
 

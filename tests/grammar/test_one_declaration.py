@@ -143,7 +143,7 @@ print(json.dumps({
     "colours": [[str(kind), text] for kind, text in ScenicLexer().get_tokens(TEXT)],
     "textmate": json.loads(files["editors/vscode/syntaxes/scenic.tmLanguage.json"]),
     "vim": files["editors/neovim/syntax/scenic.vim"],
-    "docs": files["docs/syntax.md"],
+    "docs": files["docs/reference/syntax.md"],
     "diagrams": {name: text for name, text in files.items() if name.endswith(("announce.svg", "specifiers.svg"))},
 }))
 """
@@ -216,5 +216,5 @@ def test_highlighters_know_them(found: Any) -> None:
 def test_the_documentation_has_them(found: Any) -> None:
     for text in ("`gap` `between` *first* `to` *second*", "`beside` *reference*", "- `announce value`"):
         assert text in found["docs"]
-    assert ">announce<" in found["diagrams"]["docs/syntax/announce.svg"]
-    assert ">beside<" in found["diagrams"]["docs/syntax/specifiers.svg"]
+    assert ">announce<" in found["diagrams"]["docs/reference/syntax/announce.svg"]
+    assert ">beside<" in found["diagrams"]["docs/reference/syntax/specifiers.svg"]

@@ -71,5 +71,5 @@ def test_generated_files_are_current() -> None:
         path = ROOT / name
         assert path.is_file(), f"{name} is missing: run `make generate`"
         assert path.read_text(encoding="utf-8") == text, f"{name} is stale: run `make generate`"
-    drawn = {str(path.relative_to(ROOT)) for path in (ROOT / "docs" / "syntax").glob("*.svg")}
+    drawn = {str(path.relative_to(ROOT)) for path in (ROOT / "docs" / "reference" / "syntax").glob("*.svg")}
     assert drawn <= texts().keys()

@@ -1,4 +1,4 @@
-"""``docs/language.md`` tells of every word that the declarations know."""
+"""``docs/reference/language.md`` tells of every word that the declarations know."""
 
 from pathlib import Path
 
@@ -8,7 +8,7 @@ from scenic.language.names import NAMES
 from scenic.language.operators import OPERATORS
 from scenic.language.specifiers import SPECIFIERS
 
-PAGE = (Path(__file__).parents[2] / "docs" / "language.md").read_text()
+PAGE = (Path(__file__).parents[2] / "docs" / "reference" / "language.md").read_text()
 NOT_BUILT = PAGE.split("## What is not built")[1]
 
 

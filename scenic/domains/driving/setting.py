@@ -49,7 +49,7 @@ def network_of_program(parameters: Any) -> Network:
         return Network.fromFile(parameters["map"], **dict(parameters["map_options"]))
     except TypeError as error:
         name = "map_options" if parameters["map_options"] else "map"
-        raise _wrong(name, str(error), "see docs/driving.md for what it takes") from error
+        raise _wrong(name, str(error), "see docs/reference/driving.md for what it takes") from error
     except (OSError, ValueError) as error:
         raise _wrong(
             "map",
