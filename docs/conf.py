@@ -3,25 +3,29 @@
 import sys
 from pathlib import Path
 
-HERE = Path(__file__).parent
-ROOT = HERE.parent
-sys.path[:0] = [str(ROOT), str(HERE)]
+sys.path.insert(0, str(Path(__file__).parents[1]))
 
 project = "Scenic"
 author = "The Scenic authors"
-copyright = "the Scenic authors"
 html_title = "Scenic"
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_copybutton"]
-exclude_patterns = ["_build", "_extensions", "README.md"]
-source_suffix = {".md": "markdown"}
+extensions = [
+    "myst_nb",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.napoleon",
+    "sphinx_copybutton",
+    "docs._extensions.programs",
+    "docs._extensions.links",
+]
+exclude_patterns = ["_build", "_extensions"]
 nitpicky = True
 
 myst_enable_extensions = ["attrs_inline", "colon_fence", "deflist"]
 myst_heading_anchors = 4
-# The text of pages is shown by GitHub, too: links are written for files, and mean pages here.
-myst_links_external_new_tab = False
-suppress_warnings = ["misc.highlighting_failure"]
+# The first line of a block of Scenic says what is done with it; code hosts show it as any other block.
+myst_fence_as_directive = ["scenic"]
+nb_execution_mode = "cache"
+nb_execution_raise_on_error = True
 
 html_theme = "furo"
 html_static_path = ["_static"]
@@ -32,9 +36,3 @@ html_show_sourcelink = False
 pygments_style = "default"
 pygments_dark_style = "github-dark"
 copybutton_prompt_text = "$ "
-
-
-def setup(app):
-    from scenic.ide.pygments_lexer import ScenicLexer
-
-    app.add_lexer("scenic", ScenicLexer)

@@ -1,5 +1,6 @@
 """``scenic dataset``: what a data set is, whether it is whole, and several made one."""
 
+import os
 import sys
 from pathlib import Path
 
@@ -72,7 +73,8 @@ def verify(folder: Path, program: str | None, share: str) -> int:
     if wanted > 0:
         from scenic.pipeline import load
 
-        scenario = load(program or folder / manifest.source, **manifest.options)
+        # Without steps upward in the path: meshes beside the program have their paths from it.
+        scenario = load(program or os.path.abspath(folder / manifest.source), **manifest.options)
     compared = 0
 
     def advance(count: int) -> None:

@@ -1,0 +1,1 @@
+"""The documentation: pages in Markdown, and in `_extensions` the programs that build and test them."""

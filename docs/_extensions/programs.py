@@ -1,0 +1,115 @@
+"""Blocks of Scenic in pages: highlighted, and with the flag ``draw`` followed by a picture of what the program makes.
+
+``page`` adds a link to a page in which the scenes can be turned. See `running` for the other flags.
+"""
+
+import shutil
+import tempfile
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from docutils import nodes
+from sphinx.application import Sphinx
+from sphinx.util.docutils import SphinxDirective
+
+from docs._extensions.blocks import options_of
+from docs._extensions.pictures import Shot, kept_page, kept_picture
+from docs._extensions.running import Programs, workplace
+
+BUILD = Path(__file__).parents[1] / "_build"
+PICTURES = BUILD / "pictures"
+PAGES = BUILD / "scenes"
+
+
+class ScenicBlock(SphinxDirective):
+    """A code block of Scenic."""
+
+    has_content = True
+    optional_arguments = 1
+    final_argument_whitespace = True
+
+    def run(self) -> list[nodes.Node]:
+        """The code, and a picture if the block asks for one."""
+        code = "\n".join(self.content) + "\n"
+        options = options_of(self.arguments[0]) if self.arguments else {}
+        shown = "\n".join(self.content)
+        block = nodes.literal_block(shown, shown, language="scenic")
+        self.set_source_info(block)
+        programs = self.env.temp_data.setdefault("scenic_programs", Programs())
+        if "fragment" in options:
+            return [block]
+        text = programs.text(code, options)
+        if "draw" not in options:
+            return [block]
+        with tempfile.TemporaryDirectory() as folder, workplace(Path(folder)):
+            path = Path(folder) / f"{options.get('name', 'program')}.scenic"
+            path.write_text(text)
+            shot = Shot.of(path, options)
+            return [block, *self._shown(shot, options)]
+
+    def _shown(self, shot: Shot, options: dict[str, str]) -> list[nodes.Node]:
+        picture = kept_picture(shot, PICTURES)
+        what = (
+            "Moments of a simulation"
+            if shot.steps
+            else "A scene"
+            if shot.count == 1
+            else f"{shot.count} scenes"
+        )
+        image = nodes.image(
+            uri=f"/_build/pictures/{picture.name}", alt=f"{what} of this program", classes=["scene"]
+        )
+        shown: list[nodes.Node] = [image]
+        if "page" in options:
+            page = kept_page(shot, PAGES, f"{shot.path.stem}: {what.lower()}")
+            used = self.env.metadata[self.env.docname].setdefault("scenic_pages", "")
+            self.env.metadata[self.env.docname]["scenic_pages"] = f"{used} {page.name}"
+            up = "../" * self.env.docname.count("/")
+            link = nodes.raw(
+                "",
+                f'<p class="turn"><a href="{up}scenes/{page.name}">Turn it in three dimensions</a></p>',
+                format="html",
+            )
+            shown.append(link)
+        return shown
+
+
+class CameraImage(SphinxDirective):
+    """What a camera of a program above sees: ``PROGRAM CAMERA seed=1 count=1``."""
+
+    required_arguments = 1
+    final_argument_whitespace = True
+
+    def run(self) -> list[nodes.Node]:
+        """The images, side by side."""
+        program, camera, *rest = self.arguments[0].split()
+        options = options_of(" ".join(rest))
+        text = self.env.temp_data["scenic_programs"].text("", {"extends": program})
+        with tempfile.TemporaryDirectory() as folder, workplace(Path(folder)):
+            path = Path(folder) / f"{program}.scenic"
+            path.write_text(text)
+            shot = Shot.of(path, {**options, "draw": options.get("count", "1")})
+            image = kept_picture(replace(shot, camera=camera), PICTURES)
+        return [nodes.image(uri=f"/_build/pictures/{image.name}", alt=f"Images of the camera {camera}")]
+
+
+def _copy_pages(app: Sphinx, exception: Exception | None) -> None:
+    if exception is None and app.builder.name == "html":
+        used = {name for data in app.env.metadata.values() for name in data.get("scenic_pages", "").split()}
+        target = Path(app.outdir) / "scenes"
+        shutil.rmtree(target, ignore_errors=True)
+        target.mkdir()
+        for name in used:
+            shutil.copy(PAGES / name, target / name)
+
+
+def setup(app: Sphinx) -> dict[str, Any]:
+    """Take blocks of Scenic over from the highlighter."""
+    from scenic.ide.pygments_lexer import ScenicLexer
+
+    app.add_lexer("scenic", ScenicLexer)
+    app.add_directive("scenic", ScenicBlock)
+    app.add_directive("camera", CameraImage)
+    app.connect("build-finished", _copy_pages)
+    return {"version": "1", "parallel_read_safe": True}

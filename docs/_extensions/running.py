@@ -1,0 +1,151 @@
+"""Runs the code blocks of a page, as a reader would: in order, in one folder.
+
+- ``scenic``: the program is written to ``NAME.scenic`` (option ``name=``, by default ``program``) and sampled once with
+  option ``seed=`` (by default 1). ``extends=OTHER`` puts the program of that name before it. ``fails`` means that the
+  program has an error. ``fragment`` means that the block is only parsed.
+- ``python``: run in a module that all such blocks of the page share.
+- ``console``: lines that begin with ``$`` are commands; only ``scenic`` can be called.
+- ``text``: what the block before it writes.
+"""
+
+import contextlib
+import io
+import os
+import shlex
+import sys
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+from unittest import mock
+
+import scenic
+from docs._extensions.blocks import Block, blocks_of, with_outputs
+from scenic.cli.main import main
+from scenic.pipeline import load
+
+__all__ = ["PageRun", "Programs", "WrongOutputError", "checked", "workplace"]
+
+ROOT = Path(__file__).parents[2]
+COLUMNS = "90"
+"""Characters in a line of what commands write."""
+
+
+class WrongOutputError(Exception):
+    """A block does something else than its page shows."""
+
+
+class Programs:
+    """The programs of a page by name, each with what it extends."""
+
+    def __init__(self) -> None:
+        self._texts: dict[str, str] = {}
+
+    def text(self, code: str, options: Mapping[str, str]) -> str:
+        """The whole program of a block, which later blocks can extend by its name."""
+        before = self._texts[options["extends"]] + "\n" if "extends" in options else ""
+        text = before + code
+        self._texts[options.get("name", "program")] = text
+        return text
+
+
+@contextlib.contextmanager
+def workplace(folder: Path) -> Iterator[None]:
+    """Work in a folder in which the meshes and road maps of the examples are found."""
+    for link, target in (("meshes", "meshes"), ("maps", "driving")):
+        (folder / link).symlink_to(ROOT / "examples" / target)
+    with contextlib.chdir(folder), mock.patch.dict(os.environ, COLUMNS=COLUMNS, NO_COLOR="1"):
+        yield
+
+
+@dataclass(frozen=True, slots=True)
+class PageRun:
+    """One run of a page, in the present folder."""
+
+    programs: Programs
+    names: dict[str, Any]
+
+    @classmethod
+    def begin(cls) -> "PageRun":
+        """A run in which nothing is defined yet."""
+        return cls(Programs(), {"__name__": "page"})
+
+    def output(self, block: Block) -> str | None:
+        """What a block writes when it is run; ``None`` for a block that is not run."""
+        match block.language:
+            case "scenic":
+                return self._program(block)
+            case "python":
+                return self._python(block)
+            case "console":
+                return _commands(block)
+            case _:
+                return None
+
+    def _program(self, block: Block) -> str:
+        if "fragment" in block.options:
+            found = scenic.parse(block.text).diagnostics
+            if found:
+                raise WrongOutputError(f"line {block.first + 1}: {found[0].message}")
+            return ""
+        path = Path(f"{block.options.get('name', 'program')}.scenic")
+        path.write_text(self.programs.text(block.text, block.options))
+        seed = block.options.get("seed", "1")
+        if "fails" in block.options:
+            return _called(["sample", path.name, "--seed", seed, "--max-attempts", "2000"])
+        last = int(block.options.get("k", "0")) + int(block.options.get("draw") or 1)
+        with contextlib.redirect_stdout(io.StringIO()) as written:
+            load(path, mode2D="2d" in block.options).sample(last, seed=int(seed))
+        return written.getvalue()
+
+    def _python(self, block: Block) -> str:
+        with contextlib.redirect_stdout(io.StringIO()) as written:
+            # Line numbers of the page appear in tracebacks.
+            exec(compile("\n" * (block.first + 1) + block.text, "page", "exec"), self.names)
+        return written.getvalue()
+
+
+def _commands(block: Block) -> str:
+    """Commands with what each writes below it."""
+    shown = []
+    for line in block.text.splitlines():
+        if line.startswith("$ "):
+            program, *arguments = shlex.split(line[2:])
+            if program != "scenic":
+                raise WrongOutputError(f"line {block.first + 1}: only 'scenic' can be run here")
+            shown.append(f"{line}\n{_called(arguments)}")
+    return "".join(shown)
+
+
+def _called(arguments: list[str]) -> str:
+    """What the command line writes, on both of its streams."""
+    written = io.StringIO()
+    with (
+        mock.patch.object(sys, "argv", ["scenic", *arguments]),
+        contextlib.redirect_stdout(written),
+        contextlib.redirect_stderr(written),
+        contextlib.suppress(SystemExit),
+    ):
+        main()
+    return "".join(line.rstrip() + "\n" for line in written.getvalue().rstrip().splitlines())
+
+
+def checked(page: str, run: PageRun) -> str:
+    """Run all blocks of a page in the present folder; gives the page with the outputs that were found."""
+    outputs: dict[int, str] = {}
+    before: str | None = None
+    for block in blocks_of(page):
+        if block.language == "text":
+            if before is not None:
+                outputs[block.first] = before
+            before = None
+            continue
+        try:
+            before = run.output(block)
+        except Exception as error:
+            error.add_note(f"in the block that begins on line {block.first + 1} of the page")
+            raise
+        if block.language == "console" and before is not None:
+            outputs[block.first] = before
+            before = None
+    return with_outputs(page, outputs)
