@@ -170,7 +170,9 @@ def _options() -> argparse.ArgumentParser:
     )
     parser.add_argument("--seed", type=int, default=_SEED, help=f"the seed of every run (default: {_SEED})")
     parser.add_argument("--list", action="store_true", help="only say what the faults are")
-    parser.add_argument("--write-docs", action="store_true", help="put the results into docs/explanation/fuzzing.md")
+    parser.add_argument(
+        "--write-docs", action="store_true", help="put the results into docs/explanation/fuzzing.md"
+    )
     return parser
 
 
