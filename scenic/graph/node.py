@@ -61,6 +61,11 @@ class Node:
         return (id(self.operation), self.payload, self.kind, kinds)
 
     @property
+    def runs_python(self) -> bool:
+        """Whether evaluation calls Python functions lane by lane, which may be the program's own."""
+        return self.operation.runs_python(self.operands, self.kind)
+
+    @property
     def bounds(self) -> Any:
         """The bounds over the whole cube, or `UNREAD`."""
         return self._bounds

@@ -198,7 +198,7 @@ class Operation:
     undeclared is an internal error. An operation that ``stacks`` evaluates the columns of several alike nodes in one
     call: it is elementwise over all leading dimensions. A ``partial`` one has readings of bounds that take operands of which
     nothing is known, and may look at some operands only: ``looks_at`` says which, from the payload. ``rewrite`` simplifies a node
-    before it is made. ``missing`` says in a user's words what there is none of where a lane has no value.
+    before it is made. ``calls_code`` says that evaluation calls the program's own Python code, lane by lane. ``missing`` says in a user's words what there is none of where a lane has no value.
     """
 
     name: str
@@ -218,6 +218,7 @@ class Operation:
     partial: bool = False
     looks_at: Callable[[Any], slice] | None = None
     rewrite: Rewriting | None = None
+    calls_code: bool = False
     missing: str = "value"
 
     def may_fault(self, operands: Sequence[Operand], payload: Any, kind: Kind) -> bool:
@@ -241,6 +242,10 @@ class Operation:
         if self.python is None or not self.strict:
             return False
         return kind.is_boxed or any(operand.kind.is_boxed for operand in operands)
+
+    def runs_python(self, operands: Sequence[Operand], kind: Kind) -> bool:
+        """Whether evaluation of a node calls Python functions lane by lane, which may be the program's own."""
+        return self.calls_code or self.is_python(operands, kind)
 
 
 def by_lane(_call: Call, *_columns: Column) -> Column:

@@ -41,6 +41,10 @@ _BITS: Final = 20
 _DIMENSIONS: Final = 21201
 """The dimensions for which Joe and Kuo give direction numbers."""
 
+_FIRST_DIMENSIONS: Final = 64
+_FIRST_BITS: Final = 10
+"""Dimensions and bits of the direction numbers that are made at once; more are made when they are asked for."""
+
 _DRAWS: Final = 512
 """Draws of a simulation that have dimensions of their own."""
 
@@ -63,7 +67,8 @@ class Sobol:
     retries = True
 
     def __init__(self) -> None:
-        self._directions: Words = np.zeros((0, 0), dtype=np.uint64)
+        # SciPy's numbers take long to import: they are here before the first scene.
+        self._directions: Words = _directions(_FIRST_DIMENSIONS, _FIRST_BITS)
 
     def __repr__(self) -> str:
         return "Sobol()"
@@ -97,7 +102,7 @@ class Sobol:
         """Direction numbers ``(bits, dimensions)``: what row 2**bit - 1 and row 2**bit differ by."""
         known_bits, known = self._directions.shape
         if dimensions > known or bits > known_bits:
-            wanted = min(_DIMENSIONS, max(64, known, 1 << (dimensions - 1).bit_length()))
+            wanted = min(_DIMENSIONS, max(known, 1 << (dimensions - 1).bit_length()))
             self._directions = _directions(wanted, max(bits, known_bits))
         return self._directions
 

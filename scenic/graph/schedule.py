@@ -183,6 +183,15 @@ class Scheduler:
         """What is evaluated to get some nodes when nothing is there."""
         return frozenset(self._missing(roots, {}))
 
+    def without_python(self, roots: Sequence[Node]) -> tuple[Node, ...]:
+        """Those of some nodes that are evaluated without a call of the program's own Python code."""
+        clear: dict[Node, bool] = {}
+        for node in self._missing(roots, {}):
+            clear[node] = not node.runs_python and all(
+                clear.get(needed, True) for needed in self._needed(node)
+            )
+        return tuple(node for node in roots if clear.get(node, True))
+
     def gather(self, schedule: Schedule, nodes: tuple[Node, ...]) -> Gather:
         """Where the columns of ``nodes`` are, once ``schedule`` has been done."""
         key = (id(schedule), nodes)

@@ -164,6 +164,7 @@ OPAQUE = Operation(
     _truths,
     "A condition that is Python code, called with the sampled values of the names it reads.",
     pure=False,
+    calls_code=True,
     faults=True,
     rejects=True,
 )

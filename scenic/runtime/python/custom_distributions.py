@@ -133,6 +133,7 @@ _LAW = Operation(
     lambda call, *columns: boxed(evaluated(call, columns)),
     "A draw of a distribution of the program's own.",
     pure=False,
+    calls_code=True,
     faults=True,
     rejects=True,
 )
@@ -142,6 +143,7 @@ _SCALAR = Operation(
     _numbers,
     "A draw of a distribution of numbers of the program's own.",
     pure=False,
+    calls_code=True,
     faults=True,
     rejects=True,
 )

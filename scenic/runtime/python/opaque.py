@@ -316,6 +316,7 @@ CALL = Operation(
     lambda call, *columns: boxed(evaluated(call, columns)),
     "A call of Python code with sampled arguments; the first operand is its key.",
     pure=False,
+    calls_code=True,
     faults=True,
     rejects=True,
 )

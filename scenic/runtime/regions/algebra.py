@@ -387,6 +387,7 @@ _MEET = Operation(
     lambda call, *columns: np.array([bool(item) for item in evaluated(call, columns)]),
     "Whether two regions, some with random parameters, share a point.",
     pure=False,
+    calls_code=True,
     faults=True,
     rejects=True,
 )

@@ -22,7 +22,7 @@ from scenic.runtime.geometry.containment import extreme_corners
 from scenic.runtime.program.context import here
 from scenic.runtime.regions.base import Mask, Points, Region
 from scenic.runtime.regions.choice import RegionChoice
-from scenic.runtime.regions.flat import Flat, rows_of, upright_boxes
+from scenic.runtime.regions.flat import Flat, load_library, rows_of, upright_boxes
 from scenic.runtime.regions.nearness import hull_of
 from scenic.runtime.regions.planar import Footprint, PlanarRegion
 from scenic.runtime.regions.spaces import Workspace
@@ -60,6 +60,8 @@ class Composite(Region):
         super().__init__(*(value for member in members for value in member.parameters), name=name)
         self.members = members
         self.tolerance = max(member.tolerance for member in members)
+        if self.is_random and _is_flat(self):
+            load_library()
         self._field = orientation
         self.has_orientation, self.orientation = orientation is not None, orientation
 

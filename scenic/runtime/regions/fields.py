@@ -516,6 +516,7 @@ _VALUE = Operation(
     _values,
     "The value of a field, by its own function.",
     pure=False,
+    calls_code=True,
     faults=True,
     rejects=True,
 )
@@ -525,6 +526,7 @@ _FOLLOW = Operation(
     _follow,
     "The end of a way along a field, by its own function.",
     pure=False,
+    calls_code=True,
     faults=True,
     rejects=True,
 )

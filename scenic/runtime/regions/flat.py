@@ -84,6 +84,11 @@ class Flat:
         return beside if self.heights is None else np.hypot(beside, points[:, 2] - self.heights)
 
 
+def load_library() -> None:
+    """Import shapely now, while a program is loaded, instead of during the first scenes."""
+    import shapely  # noqa: F401 - for the functions here
+
+
 def outlines(body: Body, lanes: NDArray[np.intp], heights: Column | None) -> Geometries:
     """Cuts through a body at heights ``(n | 1,)``, or its outlines from above where there are no heights."""
     return shadows(body, lanes) if heights is None else cuts(body, lanes, heights)
@@ -170,6 +175,7 @@ def ragged_polygons(points: NDArray[np.float64], counts: NDArray[np.intp]) -> Ge
 
 __all__ = [
     "Flat",
+    "load_library",
     "meets_flat",
     "outlines",
     "ragged_polygons",

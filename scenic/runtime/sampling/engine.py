@@ -8,6 +8,7 @@ are fixed in advance by their addresses (`scenic.graph.draws`).
 
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import suppress
 from copy import copy
 from dataclasses import dataclass, field
 from itertools import islice, repeat
@@ -22,7 +23,7 @@ from scenic.graph.draws import Counter, Lanes, Source, attempt_keys, scene_keys,
 from scenic.graph.kinds import Codec
 from scenic.graph.node import Graph, Node
 from scenic.graph.schedule import Scheduler
-from scenic.language.errors import RejectionException
+from scenic.language.errors import RejectionException, ScenicError
 from scenic.runtime.geometry.ragged import expand, first_of_each
 from scenic.runtime.sampling.checks import Check, Verdict
 from scenic.runtime.sampling.pace import Pace
@@ -38,6 +39,9 @@ _FIRST_FORESEEN = 8
 
 _FIRST_LANES = (8 * _FIRST_FORESEEN, 512)
 """Sizes of a first round: of a loop, and of a batch."""
+
+_REHEARSED_LANES = 64
+"""Candidates of a rehearsal."""
 
 _MOST_FORESEEN = 256
 """Scenes looked for at a time, at most, where it is not known how many are wanted."""
@@ -171,8 +175,43 @@ class Engine:
 
     def prepare(self) -> None:
         """Make what the first round would otherwise wait for."""
+        self._rehearse()
+        self._stages.renew()
         for lanes in _FIRST_LANES:
             self._stages.expected(lanes)
+
+    def _rehearse(self) -> None:
+        """Take candidates that nobody sees through the checks.
+
+        This makes now what is made once: imports of libraries, tables of meshes and regions. It also measures, for the first
+        round, what checks cost and how many candidates pass. Python code of the program is not called, and what
+        depends on it is left out. A problem is left to the first round, which raises it if scenes are wanted.
+        """
+        scheduler, checks, outputs = self._scheduler, self.plan.checks, self.plan.outputs
+        keys = _attempts(Task(0, 0), np.arange(_REHEARSED_LANES, dtype=np.int64)).keys
+        begun = time.thread_time()
+        batch = self._batch(Counter(keys))
+        nodes = (*outputs, *(node for check in checks for node in check.nodes))
+        clear = scheduler.without_python(nodes)
+        with suppress(ScenicError), np.errstate(all="ignore"):
+            if len(clear) < len(nodes):
+                known = set(clear)
+                batch.need(clear)
+                for check in checks:
+                    if known.issuperset(check.nodes):
+                        check.test(batch)
+                return
+            stages = self._stages.expected(_FIRST_LANES[-1])
+            for stage in stages:
+                batch.follow(stage.schedule, stage.nodes)
+                for index in stage.checks:
+                    checks[index].test(batch)
+            made = time.thread_time()
+            self._pace.add(len(keys), 0, made - begun)
+            # What the first turn has made, the second one finds: that one is measured.
+            batch = self._batch(Counter(keys))
+            self._judge(batch, stages[:-1], None)
+            self._pace.add(len(keys), len(batch), time.thread_time() - made)
 
     def scenes(
         self,

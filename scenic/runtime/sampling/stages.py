@@ -72,10 +72,14 @@ class Stages:
         measured.seconds = _FADING * measured.seconds + seconds
         measured.passed = _FADING * measured.passed + passed
 
+    def renew(self) -> None:
+        """Forget the order, so that it is made anew from what was measured."""
+        self._plans.clear()
+
     def order(self, lanes: int) -> tuple[Stage, ...]:
         """The stages for a batch of so many lanes; the last one has no checks: it gets the outputs."""
         if self._rounds and self._rounds & (self._rounds - 1) == 0:
-            self._plans.clear()  # after 1, 2, 4, 8, ... rounds
+            self.renew()  # after 1, 2, 4, 8, ... rounds
         self._rounds += 1
         return self.expected(lanes)
 

@@ -58,6 +58,11 @@ class Sampler:
         """The plan that is sampled."""
         return self.engine.plan
 
+    def prepare(self) -> None:
+        """Make what the first scene would otherwise wait for."""
+        if not self._impossible:
+            self.engine.prepare()
+
     def fixed(self, numbers: Mapping[int, float], words: Mapping[int, int]) -> "Sampler":
         """A sampler in which these draws are fixed, too.
 

@@ -219,7 +219,7 @@ class Scenario:
 
     def prepare(self) -> None:
         """Make what the first scene would otherwise wait for."""
-        self._sampler.engine.prepare()
+        self._sampler.prepare()
 
     def stream(
         self,
