@@ -70,7 +70,7 @@ def test_a_killed_run_goes_on_to_the_same_bytes(folder: Path) -> None:
     target = folder / "killed.jsonl"
     part = folder / "killed.jsonl.part"
     kills = 0
-    for _ in range(12):
+    for _ in range(4):
         with subprocess.Popen(
             command("-j", 2, "-o", target.name, "--resume"),
             cwd=folder,
@@ -109,7 +109,7 @@ def test_killed_workers_change_nothing(folder: Path) -> None:
     rng = random.Random(11)
     target = folder / "workers.jsonl"
     kills = 0
-    while kills < 10:
+    while kills < 4:
         target.unlink(missing_ok=True)
         with subprocess.Popen(
             command("-j", 2, "-o", target.name), cwd=folder, stderr=subprocess.PIPE, text=True

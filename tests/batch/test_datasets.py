@@ -254,7 +254,7 @@ def test_a_killed_run_goes_on_to_the_same_bytes(tmp_path: Path) -> None:
     command += ["--format", "jsonl", "--part-size", "50", "-j", "2"]
     subprocess.run([*command, "-o", f"{tmp_path}/whole/"], check=True, capture_output=True)
     rng = random.Random(4)
-    for _ in range(4):
+    for _ in range(2):
         process = subprocess.Popen(
             [*command, "-o", f"{tmp_path}/killed/", "--resume"],
             stderr=subprocess.DEVNULL,

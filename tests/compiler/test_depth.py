@@ -12,7 +12,7 @@ from tests.work import calls_while
 
 Text = Callable[[int], str]
 
-DEPTH = 2000
+DEPTH = 1200
 """Of the deep texts: deeper than Python lets functions call each other, unless it is told to."""
 BLOCKS = 0.1
 """Blocks in blocks, by the depth of other texts."""
@@ -263,7 +263,7 @@ def check(text: str) -> None:
 def test_checking_nested_texts_takes_linear_time(name: str) -> None:
     # Below some depth a block with a mistake may be parsed once more for every block around it.
     factor = 10 if name.startswith("blocks of") else 1
-    small, large = (calls_while(check, TEXTS[name](factor * count)) for count in (40, 80))
+    small, large = (calls_while(check, TEXTS[name](factor * count)) for count in (20, 40))
     assert large < 2.6 * small + 3000
 
 

@@ -60,7 +60,7 @@ def test_words_in_any_order(pieces: list[str]) -> None:
     check("".join(pieces))
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=100, deadline=None)
 @given(st.sampled_from(PROGRAMS), st.integers(0, 10_000), st.integers(0, 10), st.sampled_from(PIECES))
 def test_programs_with_a_change(program: str, place: int, length: int, piece: str) -> None:
     place %= len(program)
@@ -76,13 +76,13 @@ def test_programs_cut_short(program: str, place: int) -> None:
 @pytest.mark.parametrize(
     "text",
     [
-        "x = " + "(" * 20_000 + "1" + ")" * 20_000,
-        "x = " + "[" * 20_000 + "]" * 20_000,
-        "x = " + "(" * 20_000,
-        "x = " + "not " * 20_000 + "a",
-        "x = " + "-" * 20_000 + "a",
-        "x = " + "f(" * 20_000 + ")" * 20_000,
-        "\n".join(" " * depth + "if x:" for depth in range(500)) + "\n" + " " * 500 + "pass",
+        "x = " + "(" * 8_000 + "1" + ")" * 8_000,
+        "x = " + "[" * 8_000 + "]" * 8_000,
+        "x = " + "(" * 8_000,
+        "x = " + "not " * 8_000 + "a",
+        "x = " + "-" * 8_000 + "a",
+        "x = " + "f(" * 8_000 + ")" * 8_000,
+        "\n".join(" " * depth + "if x:" for depth in range(300)) + "\n" + " " * 300 + "pass",
     ],
     ids=lambda text: f"{text[4:8]}",
 )

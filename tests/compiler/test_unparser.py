@@ -134,7 +134,7 @@ def test_random_trees(statement: ast.stmt) -> None:
 
 
 @pytest.mark.slow
-@settings(max_examples=1_000, deadline=None)
+@settings(max_examples=300, deadline=None)
 @given(trees.statements)
 def test_many_random_trees(statement: ast.stmt) -> None:
     check(module(statement))

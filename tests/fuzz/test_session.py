@@ -33,22 +33,21 @@ def test_the_front_end_withstands_a_short_run():
 
 
 @pytest.mark.slow
-def test_everything_is_covered_soon_whatever_the_seed():
-    for seed in (17, 990):
-        report = Report()
-        for number in range(20):
-            run_round(
-                report,
-                seed_of_round=seed + number,
-                until=math.inf,
-                mutants=0,
-                formulas=0,
-                of_programs=(),
-                of_texts=(),
-            )
-            if not report.coverage.aims:
-                break
-        assert [share.explained() for share in report.coverage.shares()] == [[], []]
+def test_everything_is_covered_soon():
+    report = Report()
+    for number in range(20):
+        run_round(
+            report,
+            seed_of_round=17 + number,
+            until=math.inf,
+            mutants=0,
+            formulas=0,
+            of_programs=(),
+            of_texts=(),
+        )
+        if not report.coverage.aims:
+            break
+    assert [share.explained() for share in report.coverage.shares()] == [[], []]
 
 
 @dataclass(frozen=True)
@@ -183,11 +182,11 @@ def test_the_command_shows_failures_and_saves_them(
 @pytest.mark.slow
 def test_workers_share_the_work(capsys: pytest.CaptureFixture[str]):
     assert (
-        command.main(["--programs", "450", "--mutants", "10", "--seed", "5", "--jobs", "2", "--no-save"]) == 0
+        command.main(["--programs", "310", "--mutants", "10", "--seed", "5", "--jobs", "2", "--no-save"]) == 0
     )
     output = capsys.readouterr().out
     assert "2 workers" in output
-    assert "450 programs" in output
+    assert "310 programs" in output
     assert " 10 mutants" in output
 
 

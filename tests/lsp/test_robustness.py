@@ -16,7 +16,7 @@ PROGRAMS = sorted(
     key=lambda file: (-min(file.stat().st_size, 4000), file.name),
 )[:20]
 TEXTS = [Source(file.read_text(encoding="utf-8"), "").text for file in PROGRAMS]
-EDITS, EVERY = 500, 100
+EDITS, EVERY = 200, 100
 SNIPPETS = (
     *"()[]{}\"'#:x@\\,😀é ",
     "\n",

@@ -51,7 +51,7 @@ TAILS = [
     "\nq = DiscreteRange(0, 9)\nrequire[0.6] q > 3\nrequire q == 0 or 1 / q > 0.12\n",
     "\nimport random\ndef coin(v): return random.random() < v\nlevel = Range(0.4, 1)\nrequire coin(level)\n",
 ]
-PROGRAMS = [*OWN, *RECORDED, *(text + tail for text in RECORDED for tail in TAILS)]
+PROGRAMS = [*OWN, *RECORDED[::2], *(text + TAILS[number % 2] for number, text in enumerate(RECORDED))]
 FEW = 4
 
 

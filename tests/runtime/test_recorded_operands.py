@@ -50,8 +50,8 @@ KINDS = {
 }
 
 SECOND = {
-    "b": ("integer", "random", "moving", "turn", "one of", "region", "list"),
-    "n": ("integer", "random", "moving"),
+    "b": ("random", "moving", "one of", "list"),
+    "n": ("random", "moving"),
 }
 """Kinds of the second of two operands; fewer where most others would fail only on a sample, one by one."""
 

@@ -59,9 +59,9 @@ scenario Short():
 )
 
 
-WARM = 600
+WARM = 400
 """Steps until Python's own reserves are filled."""
-STRETCH = 200
+STRETCH = 100
 """Steps between two counts."""
 
 
@@ -87,7 +87,7 @@ def grown(text: str, folder: Path) -> float:
         )
         simulation.begin()
         counts = []
-        for step in range(WARM + 601):
+        for step in range(WARM + 3 * STRETCH + 1):
             assert simulation.advanceOnce()
             if step >= WARM and step % STRETCH == 0:
                 gc.collect()

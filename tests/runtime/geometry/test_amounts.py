@@ -160,8 +160,8 @@ QUESTIONS = {
     touching: (60,),
     contained: (7, 60),
     apart: (50,),
-    on_surfaces: (1, 7, 90),
-    in_cells: (1, 7, 90),
+    on_surfaces: (1, 7),
+    in_cells: (1, 7),
     seen: (11,),
 }
 

@@ -17,7 +17,7 @@ from scenic.runtime.geometry.voxels import voxels
 
 from .samples import FILES, SHAPES, common_volume, random_poses, solid, unit_mesh
 
-PAIRS = int(os.environ.get("SCENIC_TEST_PAIRS", "150"))
+PAIRS = int(os.environ.get("SCENIC_TEST_PAIRS", "60"))
 CONTACT = 1e-6
 """Metres of gap within which either answer is right."""
 
