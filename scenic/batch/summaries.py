@@ -1,13 +1,46 @@
-"""What came of many simulations, in a few lines and as a table."""
+"""Many simulations in a few lines, as a table, and as a plot; of one setting of the parameters or of several."""
 
 import csv
 import io
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Final
 
 from scenic.batch.simulations import SimulationRow, is_violated
 
-__all__ = ["csv_of", "summary", "verdict_of"]
+__all__ = ["Setting", "csv_of", "plot", "summary", "verdict_of"]
+
+_WIDTH: Final = 760
+_HEIGHT: Final = 420
+_LEFT: Final = 70
+_BOTTOM: Final = 80
+_TOP: Final = 20
+_TICKS: Final = 6
+
+
+@dataclass(frozen=True)
+class Setting:
+    """The simulations of one setting of the parameters.
+
+    Attributes:
+        rows: the simulations, by number.
+        parameters: values of the parameters that differ between settings, by name.
+
+    """
+
+    rows: dict[int, SimulationRow]
+    parameters: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def label(self) -> str:
+        """The parameters in words: ``toys=4``."""
+        return ", ".join(f"{name}={value}" for name, value in self.parameters.items())
+
+    @property
+    def simulations(self) -> list[SimulationRow]:
+        """The simulations in order."""
+        return [self.rows[k] for k in sorted(self.rows)]
 
 
 def verdict_of(row: SimulationRow) -> str:
@@ -29,31 +62,111 @@ def robustness_of(row: SimulationRow) -> float | None:
     return min(known, default=None)
 
 
-def summary(rows: Sequence[SimulationRow]) -> str:
-    """The counts of verdicts, and the mean and least robustness."""
-    counts = Counter(map(verdict_of, rows))
+def summary(setting: Setting) -> str:
+    """One line: the counts of verdicts, and the mean and least robustness."""
+    counts = Counter(map(verdict_of, setting.simulations))
     words = ", ".join(
         f"{counts[name]} {name}" for name in ("held", "violated", "rejected", "failed") if counts[name]
     )
-    values = [value for row in rows if (value := robustness_of(row)) is not None]
+    values = _values(setting)
     by = (
         f"; robustness {sum(values) / len(values):.4g} on average, {min(values):.4g} at least"
         if values
         else ""
     )
-    return f"{len(rows)} simulations: {words}{by}"
+    head = f"{setting.label}: " if setting.parameters else ""
+    return f"{head}{len(setting.rows)} simulations: {words}{by}"
 
 
-def csv_of(rows: Sequence[SimulationRow]) -> str:
-    """A table with a row for each simulation: number, verdict, least robustness, steps, why it ended."""
+def csv_of(settings: Sequence[Setting]) -> str:
+    """A table with a row for each simulation: parameters, number, verdict, least robustness, steps, why it ended."""
     text = io.StringIO()
     table = csv.writer(text, lineterminator="\n")
-    table.writerow(["k", "verdict", "robustness", "steps", "reason"])
-    for row in rows:
-        value = robustness_of(row)
-        about = row.about or {}
-        reason = row.missing or about.get("reason") or ("" if row.error is None else row.error.message)
-        table.writerow(
-            [row.k, verdict_of(row), "" if value is None else repr(value), about.get("steps", ""), reason]
-        )
+    names = list(settings[0].parameters) if settings else []
+    table.writerow([*names, "k", "verdict", "robustness", "steps", "reason"])
+    for setting in settings:
+        for row in setting.simulations:
+            value = robustness_of(row)
+            about = row.about or {}
+            reason = row.missing or about.get("reason") or ("" if row.error is None else row.error.message)
+            table.writerow(
+                [
+                    *setting.parameters.values(),
+                    row.k,
+                    verdict_of(row),
+                    "" if value is None else repr(value),
+                    about.get("steps", ""),
+                    reason,
+                ]
+            )
     return text.getvalue()
+
+
+def plot(settings: Sequence[Setting]) -> str:
+    """An SVG image: a dot for the robustness of each simulation, a line through the means, the share violated below.
+
+    Simulations without a finite robustness have no dot, but count in the share.
+    """
+    import html
+
+    values = [_values(item) for item in settings]
+    every = [value for some in values for value in some] or [0.0]
+    low, high = min(*every, 0.0), max(*every, 0.0)
+    margin = 0.06 * (high - low) or 1.0
+    low, high = low - margin, high + margin
+    column = (_WIDTH - _LEFT) / max(1, len(settings))
+
+    def height(value: float) -> float:
+        return _TOP + (_HEIGHT - _TOP - _BOTTOM) * (high - value) / (high - low)
+
+    parts = [
+        f"<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {_WIDTH} {_HEIGHT}' font-family='sans-serif' font-size='13'>",
+        f"<rect width='{_WIDTH}' height='{_HEIGHT}' fill='white'/>",
+    ]
+    for tick in range(_TICKS + 1):
+        value = low + (high - low) * tick / _TICKS
+        parts.append(
+            f"<text x='{_LEFT - 8}' y='{height(value) + 4:.1f}' text-anchor='end' fill='#555'>{value:.2g}</text>"
+        )
+        parts.append(
+            f"<line x1='{_LEFT}' x2='{_WIDTH}' y1='{height(value):.1f}' y2='{height(value):.1f}' stroke='#eee'/>"
+        )
+    parts.append(
+        f"<line x1='{_LEFT}' x2='{_WIDTH}' y1='{height(0):.1f}' y2='{height(0):.1f}' stroke='#888' stroke-dasharray='5 4'/>"
+    )
+    means = []
+    for number, (setting, some) in enumerate(zip(settings, values, strict=True)):
+        middle = _LEFT + column * (number + 0.5)
+        for place, value in enumerate(some):
+            # Dots beside each other, in the order of the simulations.
+            x = middle + 0.5 * column * ((place + 0.5) / len(some) - 0.5)
+            colour = "#c0392b" if value < 0 else "#2e86c1"
+            parts.append(
+                f"<circle cx='{x:.1f}' cy='{height(value):.1f}' r='3' fill='{colour}' fill-opacity='.55'/>"
+            )
+        if some:
+            means.append(f"{middle:.1f},{height(sum(some) / len(some)):.1f}")
+        violated = sum(verdict_of(row) == "violated" for row in setting.simulations)
+        words = (
+            setting.label or "all",
+            f"{violated} of {len(setting.rows)}",
+            "violated",
+        )
+        parts += [
+            f"<text x='{middle:.1f}' y='{_HEIGHT - _BOTTOM + 22 + 17 * line}' text-anchor='middle'>{html.escape(text)}</text>"
+            for line, text in enumerate(words)
+        ]
+    parts.append(f"<polyline points='{' '.join(means)}' fill='none' stroke='#222' stroke-width='2'/>")
+    parts += [
+        f"<rect x='{float(x) - 4:.1f}' y='{float(y) - 4:.1f}' width='8' height='8' fill='#222'/>"
+        for x, y in (point.split(",") for point in means)
+    ]
+    centre = _TOP + (_HEIGHT - _TOP - _BOTTOM) / 2
+    parts.append(
+        f"<text transform='translate(18 {centre:.0f}) rotate(-90)' text-anchor='middle'>robustness</text></svg>"
+    )
+    return "".join(parts)
+
+
+def _values(setting: Setting) -> list[float]:
+    return [value for row in setting.simulations if (value := robustness_of(row)) is not None]

@@ -4,7 +4,8 @@ import json
 import math
 import os
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from itertools import product
 from types import MappingProxyType
 from typing import Any, Final, TypeVar
 
@@ -18,8 +19,10 @@ __all__ = [
     "parameter_value",
     "program_options",
     "seconds",
+    "settings_of",
     "simulator_option",
     "sobol_option",
+    "swept_program_options",
     "timestep_option",
 ]
 
@@ -54,13 +57,37 @@ def parameter_value(text: str) -> int | float | bool | str:
 
 def named_values(_context: click.Context, _option: click.Parameter, given: tuple[str, ...]) -> dict[str, Any]:
     """The values of ``NAME=VALUE`` by name, given repeatedly: the callback of such an option."""
-    parameters = {}
+    return {name: parameter_value(value) for name, value in _named_texts(given).items()}
+
+
+def _named_texts(given: Sequence[str]) -> dict[str, str]:
+    texts = {}
     for item in given:
         name, equals, value = item.partition("=")
         if not equals or not name:
             raise click.BadParameter(f"{item!r} is not of the form NAME=VALUE")
-        parameters[name] = parameter_value(value)
-    return parameters
+        texts[name] = value
+    return texts
+
+
+def _swept_values(
+    _context: click.Context, _option: click.Parameter, given: tuple[str, ...]
+) -> dict[str, tuple[Any, ...]]:
+    """The values of ``NAME=VALUE,VALUE,...`` by name; text in quotation marks is one value."""
+    found = {}
+    for name, text in _named_texts(given).items():
+        quoted = len(text) >= 2 and text[0] == text[-1] == '"'
+        found[name] = tuple(parameter_value(part) for part in ([text] if quoted else text.split(",")))
+        if len(set(found[name])) < len(found[name]):
+            raise click.BadParameter(f"{name}: a value is given twice")
+    return found
+
+
+def settings_of(swept: Mapping[str, Sequence[Any]]) -> list[tuple[dict[str, Any], dict[str, Any]]]:
+    """The product of the values of parameters: for each setting all parameters, and those that differ between settings."""
+    several = [name for name, values in swept.items() if len(values) > 1]
+    made = [dict(zip(swept, values, strict=True)) for values in product(*swept.values())]
+    return [(setting, {name: setting[name] for name in several}) for setting in made]
 
 
 def seconds(_context: click.Context, _option: click.Parameter, given: float | None) -> float | None:
@@ -139,14 +166,9 @@ timestep_option = click.option(
 
 
 def program_options(command: _Command) -> _Command:
-    """What is asked of a program, the same by all commands that run one."""
-    for option in (
-        no_cache_option,
-        click.option("--2d", "mode_2d", is_flag=True, help="Use the 2D compatibility mode."),
-        click.option("--model", metavar="MODULE", help="A world model to use in place of the program's."),
-        click.option(
-            "--scenario", metavar="NAME", help="Which scenario of the file, where it defines several."
-        ),
+    """Options that all commands share which run a program."""
+    return _program_options(
+        command,
         click.option(
             "-p",
             "--param",
@@ -156,6 +178,35 @@ def program_options(command: _Command) -> _Command:
             callback=named_values,
             help="A value for a global parameter: a number, true, false, or text. Repeatable.",
         ),
+    )
+
+
+def swept_program_options(command: _Command) -> _Command:
+    """The same where parameters may have several values each: ``swept`` are the values by name."""
+    return _program_options(
+        command,
+        click.option(
+            "-p",
+            "--param",
+            "swept",
+            metavar="NAME=VALUE,...",
+            multiple=True,
+            callback=_swept_values,
+            help="A value for a global parameter: a number, true, false, or text; several values, separated by commas, for a"
+            ' sweep (text with a comma: in "quotation marks"). Repeatable: all combinations are made.',
+        ),
+    )
+
+
+def _program_options(command: _Command, parameters: Callable[[_Command], _Command]) -> _Command:
+    for option in (
+        no_cache_option,
+        click.option("--2d", "mode_2d", is_flag=True, help="Use the 2D compatibility mode."),
+        click.option("--model", metavar="MODULE", help="A world model to use in place of the program's."),
+        click.option(
+            "--scenario", metavar="NAME", help="Which scenario of the file, where it defines several."
+        ),
+        parameters,
     ):
         command = option(command)
     return command

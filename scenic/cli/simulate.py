@@ -11,7 +11,14 @@ from typing import TYPE_CHECKING, Any, Final
 
 import click
 
-from scenic.cli.options import program_options, seconds, simulator_option, sobol_option, timestep_option
+from scenic.cli.options import (
+    seconds,
+    settings_of,
+    simulator_option,
+    sobol_option,
+    swept_program_options,
+    timestep_option,
+)
 from scenic.cli.output import CLEAN, FINDINGS, show_diagnostics
 from scenic.cli.running import NOT_ALL, ended_by_signals, engine_of, progress_bar
 from scenic.cli.sinks import check_page
@@ -77,6 +84,13 @@ __all__ = ["simulate"]
     type=click.Path(path_type=Path),
     help="Write a row for each simulation: verdict, robustness, why it ended.",
 )
+@click.option(
+    "--plot",
+    "picture",
+    metavar="FILE.svg",
+    type=click.Path(path_type=Path),
+    help="Draw the robustness of all simulations, for each setting of the parameters, and its mean.",
+)
 @sobol_option
 @click.option(
     "--step-limit",
@@ -86,7 +100,7 @@ __all__ = ["simulate"]
     default=10.0,
     help="Seconds that the program may run within one step.  [default: 10]",
 )
-@program_options
+@swept_program_options
 @click.option(
     "-j", "jobs", metavar="J", type=click.IntRange(min=1), default=1, help="Processes.  [default: 1]"
 )
@@ -123,9 +137,10 @@ def simulate(
     tries: int,
     keep: str,
     table: Path | None,
+    picture: Path | None,
     sobol: bool,
     step_limit: float,
-    parameters: Mapping[str, Any],
+    swept: Mapping[str, tuple[Any, ...]],
     scenario: str | None,
     model: str | None,
     mode_2d: bool,
@@ -145,7 +160,7 @@ def simulate(
     """
     # These bring in NumPy and the geometry libraries.
     from scenic.batch.simulations import Running, Simulations
-    from scenic.batch.summaries import csv_of, summary
+    from scenic.batch.summaries import Setting, csv_of, plot, summary
     from scenic.formats.files import make_folder, write
     from scenic.pipeline import load
 
@@ -166,49 +181,64 @@ def simulate(
         make_folder(output)
     is_drawn = seed is None
     seed = secrets.randbits(32) if seed is None else seed
-    loaded = load(Path(file), params=parameters, model=model, scenario=scenario, mode2D=mode_2d)
     running = Running(
         seed, max_steps, timestep, tries, step_limit, sobol=sobol, keep_violations=keep != "none"
     )
-    batch = Simulations(
-        loaded,
-        simulator,
-        running,
-        folder=output,
-        form=_FORMS[form],
-        shown=view is not None,
-        only_violations=keep == "violations",
-    )
+    numbers = range(first, first + count)
+    batches: list[tuple[Setting, Simulations]] = []
+    for parameters, different in settings_of(swept):
+        setting = Setting({}, different)
+        loaded = load(Path(file), params=parameters, model=model, scenario=scenario, mode2D=mode_2d)
+        place = output if output is None or not different else output / setting.label.replace("/", "_")
+        if place is not None:
+            make_folder(place)
+        batch = Simulations(
+            loaded,
+            simulator,
+            running,
+            folder=place,
+            form=_FORMS[form],
+            shown=view is not None,
+            only_violations=keep == "violations",
+        )
+        setting.rows.update({k: row for k in numbers if (row := batch.known(k)) is not None})
+        batches.append((setting, batch))
     if is_drawn:
         sys.stderr.write(f"seed {seed} (the same simulations again: --seed {seed})\n")
-    numbers = range(first, first + count)
-    found = {k: row for k in numbers if (row := batch.known(k)) is not None}
-    missing = [k for k in numbers if k not in found]
+    missing = len(batches) * count - sum(len(setting.rows) for setting, _ in batches)
+    code = CLEAN
     with (
         ended_by_signals(),
-        progress_bar(len(missing), shown=not sys.stdout.isatty()) as advance,
+        progress_bar(missing, shown=not sys.stdout.isatty()) as advance,
         engine_of(jobs, dask) as engine,
-        closing(batch.rows(missing, engine)) as rows,
     ):
-        for row in rows:
-            found[row.k] = row
-            advance(1, 1)
-    code = CLEAN
-    for k in numbers:
-        code = max(code, _show(found[k]))
-    if keep != "none" or table is not None:
-        rows_in_order = [found[k] for k in numbers]
-        if len(rows_in_order) > 1:
-            print(summary(rows_in_order))
-        if table is not None:
-            write(table, csv_of(rows_in_order).encode())
+        for setting, batch in batches:
+            with closing(batch.rows([k for k in numbers if k not in setting.rows], engine)) as rows:
+                for row in rows:
+                    setting.rows[row.k] = row
+                    advance(1, 1)
+    settings = [setting for setting, _ in batches]
+    for setting in settings:
+        if setting.parameters:
+            print(f"{setting.label}:")
+        for k in numbers:
+            code = max(code, _show(setting.rows[k]))
+    if keep != "none" or table is not None or len(settings) > 1:
+        for setting in settings:
+            if len(settings) * count > 1:
+                print(summary(setting))
+    if table is not None:
+        write(table, csv_of(settings).encode())
+    if picture is not None:
+        write(picture, plot(settings).encode())
     if view is not None:
         from scenic.formats.course_page import course_page
 
-        made = [page for k in numbers if (page := found[k].page) is not None]
+        pages = [setting.rows[k].page for setting in settings for k in numbers]
+        made = [page for page in pages if page is not None]
         if made:
             write(view, course_page(Path(file).name, made).encode())
-    failed = any(row.error is not None for row in found.values())
+    failed = any(row.error is not None for setting in settings for row in setting.rows.values())
     return FINDINGS if failed else code
 
 

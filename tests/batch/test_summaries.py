@@ -3,10 +3,12 @@
 import csv
 import io
 from pathlib import Path
+from xml.etree import ElementTree
 
 import scenic
 from scenic.batch.simulations import Running, Simulations
-from scenic.batch.summaries import csv_of, summary, verdict_of
+from scenic.batch.summaries import Setting, csv_of, summary, verdict_of
+from tests.cli.commands import run_here
 
 PROGRAM = """
 from scenic.simulators.kinematic import SetVelocity
@@ -31,15 +33,19 @@ def test_violations_are_kept_with_their_robustness(tmp_path: Path) -> None:
         assert (outcome["verdict"] == "FALSE") == violated == (strict.about is None)
         assert verdict_of(row) == ("violated" if violated else "held")
         assert row.about["steps"] == 10  # to its end
-    table = list(csv.DictReader(io.StringIO(csv_of(rows))))
+    table = list(csv.DictReader(io.StringIO(csv_of([Setting(dict(enumerate(rows)))]))))
     assert [line["verdict"] for line in table] == [verdict_of(row) for row in rows]
     assert min(float(line["robustness"]) for line in table) == min(
         row.about["requirements"][0]["robustness"] for row in rows
     )
     failed = sum(verdict_of(row) == "violated" for row in rows)
     assert 0 < failed < 8
-    assert summary(rows).startswith(f"8 simulations: {8 - failed} held, {failed} violated; robustness ")
-    assert summary(rejecting).startswith(f"8 simulations: {8 - failed} held, {failed} rejected")
+    assert summary(Setting(dict(enumerate(rows)))).startswith(
+        f"8 simulations: {8 - failed} held, {failed} violated; robustness "
+    )
+    assert summary(Setting(dict(enumerate(rejecting)))).startswith(
+        f"8 simulations: {8 - failed} held, {failed} rejected"
+    )
 
 
 def test_only_violations_are_written_where_that_is_asked(tmp_path: Path) -> None:
@@ -50,3 +56,21 @@ def test_only_violations_are_written_where_that_is_asked(tmp_path: Path) -> None
     rows = [batch(k) for k in range(8)]
     written = {path.name for path in tmp_path.iterdir()}
     assert written == {f"simulation-{row.k:04d}.jsonl" for row in rows if verdict_of(row) == "violated"}
+
+
+def test_a_sweep_has_one_table_and_one_plot(tmp_path: Path) -> None:
+    program = tmp_path / "sweep.scenic"
+    program.write_text("param gap = 1, mode = 'a'\n" + PROGRAM.replace("(0, 8)", "(0, globalParameters.gap)"))
+    options = ["-n", 3, "--seed", 1, "--time", 5, "--timestep", 1, "--keep", "all"]
+    swept = ["-p", "gap=4,40", "-p", 'mode="a,b"', "-o", "runs", "--table", "t.csv", "--plot", "p.svg"]
+    done = run_here(["simulate", program, *options, *swept], folder=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert "gap=4: 3 simulations: 2 held, 1 violated" in done.stdout
+    assert "gap=40: 3 simulations: 3 held" in done.stdout
+    table = list(csv.DictReader(io.StringIO((tmp_path / "t.csv").read_text())))
+    assert [(line["gap"], line["k"]) for line in table] == [(gap, k) for gap in ("4", "40") for k in "012"]
+    plot = ElementTree.parse(tmp_path / "p.svg").getroot()
+    assert sum(item.tag.endswith("circle") for item in plot.iter()) == 6
+    assert len(list((tmp_path / "runs" / "gap=40").glob("*.jsonl"))) == 3
+    # What is there already is not simulated again.
+    assert run_here(["simulate", program, *options, *swept], folder=tmp_path).stdout == done.stdout

@@ -867,3 +867,23 @@ def test_parts_that_are_flat_have_no_volume() -> None:
     assert _volume(box) == pytest.approx(6)
     for flat in (box * [1, 1, 0], box * [0, 1, 1] + [0.5, 0, 0], box[:3]):
         assert _volume(flat) == 0
+
+
+def test_a_robot_feels_what_touches_its_sides_and_not_the_floor() -> None:
+    scene = scene_of(
+        "behavior Go():\n"
+        "    while True:\n"
+        "        take SetWheelSpeeds(0.4, 0.4)\n"
+        "ego = new Robot at (0, 0, 0.06), with behavior Go\n"
+        "new Fixture at (-0.3, 0.6, 0.1), with width 0.5, with length 0.1, with height 0.2\n"
+        "record ego.touches as touches\n"
+    )
+    done = MujocoSimulator(timestep=0.1).simulate(scene, maxSteps=20, key=b"k")
+    felt = [places for _, places in done.result.records["touches"]]
+    first = next(step for step, places in enumerate(felt) if places)
+    # The wall's face is at y = 0.55, and the robot's front 0.175 ahead of its middle.
+    assert 8 <= first <= 13
+    assert not any(felt[:first])
+    for place in felt[first]:
+        assert -0.1751 < place.x < 0.01
+        assert place.y == pytest.approx(0.175, abs=0.01)

@@ -26,6 +26,8 @@ class Robot(Body):
     height: 0.12
     wheelRadius: 0.04
     density: 300
+    touches[dynamic]: ()
+    """Places in its own frame where others have touched its sides during the last step."""
 
 class Gripper(Body):
     """A hand that moves as `SetVelocity` says, and holds what it touches from `Grasp` to `Release`."""

@@ -26,6 +26,8 @@ _REACH: Final = 0.05
 _STIFFNESS: Final = 100.0
 """Of a quadrotor's attitude: angular acceleration by angle, per second squared; critically damped."""
 _UPRIGHT: Final = Orientation()
+_SIDEWAYS: Final = 0.95
+"""A contact is with the side of a body where the vertical part of its normal is smaller."""
 
 
 class MujocoSimulation(Simulation):
@@ -54,6 +56,7 @@ class MujocoSimulation(Simulation):
         self._ground = ground
         self._images = Images(images)
         self._parts: dict[int, Part] = {}
+        self._touches: dict[int, list[Vector]] = {}
         self.model: Any = None
         self.data: Any = None
         super().__init__(scene, timestep=timestep, **options)
@@ -200,12 +203,19 @@ class MujocoSimulation(Simulation):
         """Advance by the steps of the physics that make a step of the simulation."""
         mujoco = library()
         steered = [part for part in self._parts.values() if part.model in ("guided", "quadrotor")]
+        feeling = [part for part in self._parts.values() if part.moves and hasattr(part.thing, "touches")]
+        self._touches = {id(part.thing): [] for part in feeling}
         self._push()
         with quietly():
             if steered:
                 for _ in range(self._substeps):
                     self._steer(steered)
                     mujoco.mj_step(self.model, self.data)
+                    self._feel(feeling)
+            elif feeling:
+                for _ in range(self._substeps):
+                    mujoco.mj_step(self.model, self.data)
+                    self._feel(feeling)
             else:
                 mujoco.mj_step(self.model, self.data, self._substeps)
         self._check()
@@ -234,6 +244,21 @@ class MujocoSimulation(Simulation):
             else:
                 command["yaw"] += command["turn"] * step
                 self._fly(part)
+
+    def _feel(self, parts: list[Part]) -> None:
+        """Note where others touch the sides of these bodies."""
+        if not parts:
+            return
+        contacts = self.data.contact
+        sideways = np.flatnonzero(np.abs(contacts.frame[:, 2]) < _SIDEWAYS)
+        if not len(sideways):
+            return
+        bodies = self.model.body_rootid[self.model.geom_bodyid[contacts.geom[sideways]]]
+        for part in parts:
+            body = self.data.body(part.name)
+            own = sideways[(bodies == body.id).any(axis=1)]
+            places = (contacts.pos[own] - body.xpos) @ body.xmat.reshape(3, 3)
+            self._touches[id(part.thing)] += [Vector.of(tuple(place)) for place in places.tolist()]
 
     def _accelerate(self, command: dict[str, float], step: float) -> None:
         for axis in "xyz":
@@ -324,6 +349,8 @@ class MujocoSimulation(Simulation):
         }
         if "holding" in properties:
             values["holding"] = any(self.data.eq_active[number] for number in self._grips(part))
+        if "touches" in properties:
+            values["touches"] = tuple(self._touches.get(id(obj), ()))
         return {name: values[name] if name in values else stored[name] for name in properties}
 
 
