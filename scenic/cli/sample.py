@@ -24,6 +24,8 @@ from scenic.language.errors import Located
 if TYPE_CHECKING:
     from _typeshed import ReadableBuffer
 
+    from scenic.runtime.scenes.scenario import Scenario
+
 
 __all__ = ["sample"]
 
@@ -131,6 +133,11 @@ __all__ = ["sample"]
     help="What --png shows whole: the workspace, so that all scenes are seen alike, or the objects.",
     show_default=True,
 )
+@click.option(
+    "--profile",
+    is_flag=True,
+    help="Show where the time of sampling goes, by operation, line and requirement, in place of the scenes.",
+)
 def sample(
     file: str,
     count: int,
@@ -157,6 +164,7 @@ def sample(
     image_size: tuple[int, int] | None,
     outlook: Mapping[str, float],
     frame: str,
+    profile: bool,
 ) -> int:
     """Sample scenes from a program.
 
@@ -166,6 +174,12 @@ def sample(
     unknown parameter), 3 some scenes were not found within the limits (the others are written), 130 interrupted.
     """
     path = Path(file)
+    if profile and (
+        resume or jobs > 1 or any(item is not None for item in (output, view, png, camera, dask))
+    ):
+        raise click.UsageError(
+            "--profile makes no files: it goes without -o, -j, --dask, --resume and images"
+        )
     chosen: list[sinks.Sink] = []
     target: Path | None = None
     dataset: Path | None = None
@@ -227,6 +241,8 @@ def sample(
         loaded = load(
             path, params=parameters, model=model, scenario=scenario, mode2D=mode_2d, prune=not no_prune
         )
+    if profile:
+        return _profiled(loaded, first, count, seed or 0, sobol, max_attempts, deadline)
     done = 0
     points = "sobol" if sobol else None
     if dataset is not None and resume:
@@ -297,6 +313,33 @@ def sample(
         )
         return NOT_ALL
     return CLEAN
+
+
+def _profiled(
+    loaded: "Scenario",
+    first: int,
+    count: int,
+    seed: int,
+    sobol: bool,
+    max_attempts: int | None,
+    deadline: float | None,
+) -> int:
+    """Show where the time of sampling goes."""
+    from rich.console import Console
+
+    from scenic.cli.render.profiles import render_profile
+    from scenic.graph.points import Sobol
+
+    found = loaded.profile(
+        count,
+        seed=seed,
+        first=first,
+        max_attempts=max_attempts,
+        time_limit=None if deadline is None else max(0.0, deadline - time.monotonic()),
+        source=Sobol() if sobol else None,
+    )
+    render_profile(found, Console(no_color=not has_colours(sys.stdout), highlight=False))
+    return CLEAN if found.scenes == count else NOT_ALL
 
 
 PATIENCE: Final = 10.0

@@ -4,7 +4,8 @@ A lane is one point of the cube. What nodes hold in a lane depends on that lane 
 nodes are evaluated together (`scenic.graph.schedule`).
 """
 
-from collections.abc import Iterable, Sequence
+import time
+from collections.abc import Callable, Iterable, Sequence
 from itertools import repeat
 from typing import Any
 
@@ -17,6 +18,7 @@ from scenic.graph.kinds import Codec, Column, Kind, boxed
 from scenic.graph.node import Graph, Node
 from scenic.graph.operation import FAULT, OK, Call, Status
 from scenic.graph.schedule import (
+    AnyStep,
     ChosenDraw,
     Draw,
     Fixed,
@@ -54,6 +56,7 @@ class Batch:
         codec: the Python side of values.
         domain: the part of the cube to draw from; the whole of it by default.
         rejections: exceptions by which the program's own functions reject a sample.
+        meter: is told what each step took: the step, the number of lanes, seconds.
 
     """
 
@@ -65,12 +68,14 @@ class Batch:
         *,
         domain: Domain | None = None,
         rejections: tuple[type[Exception], ...] = (),
+        meter: Callable[[AnyStep, int, float], None] | None = None,
     ) -> None:
         self._scheduler = scheduler
         self._source = source
         self._codec = codec
         self._domain = None if domain is None or domain.is_whole else domain
         self._rejections = rejections
+        self._meter = meter
         self.rows: NDArray[np.intp] = np.arange(len(source))
         """Which of the first lanes each present lane is, ascending."""
         self.errors: dict[Node, Exception] = {}
@@ -151,6 +156,7 @@ class Batch:
         if schedule.steps:
             with np.errstate(all="ignore"):
                 for step in schedule.steps:
+                    begun = 0.0 if self._meter is None else time.thread_time()
                     if isinstance(step, Draw):
                         group = self._draw(step)
                     elif isinstance(step, ChosenDraw):
@@ -158,6 +164,8 @@ class Batch:
                     else:
                         group = self._evaluate(step)
                     groups[step.slot] = group
+                    if self._meter is not None:
+                        self._meter(step, len(self.rows), time.thread_time() - begun)
                     for slot in next(unused, ()):
                         del groups[slot]
 

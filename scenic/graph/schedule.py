@@ -99,11 +99,14 @@ class ChosenDraw:
     """Numbers of the axes in the domain."""
 
 
+AnyStep = Draw | ChosenDraw | Step
+
+
 @dataclass(frozen=True, slots=True)
 class Schedule:
     """What to do to get some nodes; afterwards they, and what else is kept, are at ``places``."""
 
-    steps: tuple[Draw | ChosenDraw | Step, ...]
+    steps: tuple[AnyStep, ...]
     places: Mapping[Node, Place]
     unused: tuple[tuple[Slot, ...], ...] = ()
     """Of a schedule in a chain: what nobody needs any more, before the first step and then after each. ``places`` are those of all
@@ -200,10 +203,10 @@ class Scheduler:
             gather = self._gathers[key] = _gather(nodes, schedule.places)
         return gather
 
-    def _steps(self, roots: Sequence[Node], places: dict[Node, Place]) -> list[Draw | ChosenDraw | Step]:
+    def _steps(self, roots: Sequence[Node], places: dict[Node, Place]) -> list[AnyStep]:
         """What gets ``roots`` where the nodes of ``places`` are there; adds the places of what it gets."""
         missing = self._missing(roots, places)
-        steps: list[Draw | ChosenDraw | Step] = []
+        steps: list[AnyStep] = []
         levels: dict[Node, int] = {}
         groups: dict[tuple[int, Hashable], list[Node]] = {}
         for node in missing:
@@ -307,7 +310,7 @@ class Scheduler:
         )
 
 
-def _slots_read(step: Draw | ChosenDraw | Step) -> Iterator[Slot]:
+def _slots_read(step: AnyStep) -> Iterator[Slot]:
     if isinstance(step, Draw):
         return
     for gather in step.operands if isinstance(step, Step) else (step.index,):
@@ -367,6 +370,7 @@ def _run(places: Sequence[Place]) -> Run | None:
 
 
 __all__ = [
+    "AnyStep",
     "ChosenDraw",
     "Draw",
     "Fixed",

@@ -5,6 +5,7 @@ hull: the corners of the oriented bounding box inside mean yes, a few extreme co
 no. Containers are closed, up to `TOLERANCE`.
 """
 
+import math
 from collections.abc import Callable
 from typing import Final
 
@@ -92,6 +93,38 @@ def in_convex_polygon(body: Body, corners: Floats, lanes: int) -> Booleans:
         result[left] = _chunked(test, left, mesh.hull.vertices)
     result &= has_area
     return result
+
+
+def surely_in_disc(
+    body: Body, centre: Floats, radius: Floats, sides: int, lanes: int
+) -> tuple[Booleans, Booleans]:
+    """In which lanes a polygon that stands for a disc surely holds the body, and in which that is left open.
+
+    The polygon lies between two circles: a body is in it if it is in the inner one, and not if a corner is outside the outer one.
+    Both are moved by more than the tolerance and rounding.
+
+    Args:
+        body: the body.
+        centre: of the disc, ``(lanes | 1, 3)``.
+        radius: of the disc, ``(lanes | 1,)``.
+        sides: of the regular polygon, whose corners lie on the circle.
+        lanes: the number of lanes.
+
+    """
+    inside, is_open = np.zeros(lanes, dtype=np.bool_), np.zeros(lanes, dtype=np.bool_)
+    inner = np.broadcast_to(radius * math.cos(math.pi / sides) - TOLERANCE, (lanes,))
+    outer = np.broadcast_to(radius + 2 * TOLERANCE, (lanes,))
+    middle = np.broadcast_to(centre, (lanes, 3))
+    for mesh, every in body.by_mesh(lanes):
+        points = mesh.hull.vertices
+        for part in rows(len(every), len(points), _CHUNK):
+            chosen = every[part]
+            x, y, _ = _world(body.poses, chosen, points)
+            dx, dy = x - middle[chosen, 0], y - middle[chosen, 1]
+            farthest = np.sqrt(np.max(dx * dx + dy * dy, axis=0))
+            inside[chosen] = farthest < inner[chosen]
+            is_open[chosen] = ~inside[chosen] & (farthest < outer[chosen])
+    return inside, is_open
 
 
 def _box_margins(poses: Poses, corners: Floats, edges: Floats) -> Floats:

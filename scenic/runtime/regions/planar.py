@@ -23,7 +23,7 @@ from scenic.runtime.geometry.polygons import Polygons
 from scenic.runtime.geometry.rectangles import Rectangles
 from scenic.runtime.program.context import here
 from scenic.runtime.regions.base import Mask, Points, Region, unsupported
-from scenic.runtime.regions.flat import Flat, meets_flat
+from scenic.runtime.regions.flat import Flat, meets_flat, rows_of
 from scenic.runtime.regions.scalar_regions import Disc, Polygon, Rectangle, Single
 from scenic.runtime.regions.spaces import Nowhere
 from scenic.runtime.values.values import (
@@ -356,7 +356,13 @@ class CircularRegion(PlanarRegion):
         return corners
 
     def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
-        return containment.in_convex_polygon(body, self._corners(*columns), lanes)
+        center, radius = columns
+        inside, is_open = containment.surely_in_disc(body, center, radius, 4 * self.resolution, lanes)
+        left = np.flatnonzero(is_open)
+        if len(left):
+            corners = self._corners(*rows_of(columns, left))
+            inside[left] = containment.in_convex_polygon(body.take(left), corners, len(left))
+        return inside
 
 
 class RectangularRegion(PlanarRegion):

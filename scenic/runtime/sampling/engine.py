@@ -28,6 +28,7 @@ from scenic.runtime.geometry.ragged import expand, first_of_each
 from scenic.runtime.sampling.checks import Check, Verdict
 from scenic.runtime.sampling.pace import Pace
 from scenic.runtime.sampling.pending import Pending, Task, soft_address
+from scenic.runtime.sampling.profiling import Meter, Profile
 from scenic.runtime.sampling.report import Exhausted, RejectionReport, RejectionRow
 from scenic.runtime.sampling.stages import Stage, Stages
 
@@ -170,6 +171,7 @@ class Engine:
         self._scheduler = Scheduler(plan.graph, grouped=grouped)
         self._single = Scheduler(plan.graph, grouped=False)
         self._stages = Stages(plan.checks, plan.outputs, self._scheduler)
+        self._meter: Meter | None = None
         self._soft = [index for index, check in enumerate(plan.checks) if check.probability < 1]
         self._chances = np.array([plan.checks[index].probability for index in self._soft])
 
@@ -304,6 +306,17 @@ class Engine:
         other._source = source
         return other
 
+    def metered(self, meter: Meter) -> "Engine":
+        """The engine with a meter of what it does; it knows, and learns, what rounds and checks cost together with this one."""
+        other = copy(self)
+        other._meter = meter
+        return other
+
+    def profile(self, scenes: int) -> Profile:
+        """What the meter of this engine has measured while it found so many scenes."""
+        assert self._meter is not None
+        return self._meter.profile(scenes, self.plan.checks, self._scheduler)
+
     # One round
 
     def _round(
@@ -362,6 +375,8 @@ class Engine:
         seconds = time.thread_time() - begun
         self.seconds += seconds
         self._pace.add(len(owner), passed, seconds)
+        if self._meter is not None:
+            self._meter.round(len(owner), passed, seconds)
 
     def replay(self, source: Source, task: Task, attempts: int) -> Accepted:
         """The scene of given draws, one lane of points of the cube; no check is made again."""
@@ -396,6 +411,7 @@ class Engine:
             self.plan.codec,
             domain=self.plan.domain,
             rejections=(RejectionException,),
+            meter=None if self._meter is None else self._meter.step,
         )
 
     def _judge(
@@ -411,14 +427,14 @@ class Engine:
         for stage in stages:
             if len(batch) == 0:
                 break
-            begun = time.perf_counter()
+            begun = time.thread_time()
             batch.follow(stage.schedule, stage.nodes)
-            shared = (time.perf_counter() - begun) / len(stage.checks)
+            shared = (time.thread_time() - begun) / len(stage.checks)
             rows = batch.rows
             alive = np.ones(len(rows), dtype=np.bool_)
             for index in stage.checks:
                 check = checks[index]
-                begun = time.perf_counter()
+                begun = time.thread_time()
                 verdict = check.test(batch)
                 if inactive is not None and check.probability < 1:
                     verdict = _unless(verdict, inactive[rows, self._soft.index(index)])
@@ -429,8 +445,11 @@ class Engine:
                     earlier = verdict.failed & (place < failed_at[rows])
                     failures[rows[earlier]] = index
                     failed_at[rows[earlier]] = place
-                seconds = shared + time.perf_counter() - begun
-                self._stages.measure(index, len(rows), seconds, int(np.count_nonzero(passes)))
+                seconds = shared + time.thread_time() - begun
+                passed = int(np.count_nonzero(passes))
+                self._stages.measure(index, len(rows), seconds, passed)
+                if self._meter is not None:
+                    self._meter.check(index, len(rows), passed, seconds - shared)
                 alive &= passes
             if not alive.all():
                 batch.keep(alive)

@@ -12,6 +12,7 @@ from scenic.runtime.sampling.driving import driven
 from scenic.runtime.sampling.engine import Accepted, Engine, Plan
 from scenic.runtime.sampling.pending import Task
 from scenic.runtime.sampling.planning import Outline
+from scenic.runtime.sampling.profiling import Meter, Profile
 from scenic.runtime.sampling.report import Exhausted
 from scenic.runtime.scenes.saving import fixed_draws
 
@@ -86,11 +87,23 @@ class Sampler:
         """The scenes of ``tasks``, in order; the arguments are those of `Scenario.stream`."""
         if self._impossible:
             return self._not_found(tasks)
-        limit = self._most_attempts(max_attempts)
-        if source is not None and not source.retries:
-            limit = 1
         engine = self._engine_of(source)
+        limit = self._limit(max_attempts, source)
         return engine.scenes(tasks, max_attempts=limit, deadline=deadline, lanes=lanes)
+
+    def profile(
+        self,
+        tasks: Sequence[tuple[int, int]],
+        *,
+        max_attempts: int | None,
+        deadline: float | None,
+        source: PointSet | None,
+    ) -> Profile:
+        """Where the time goes when scenes are looked for; the arguments are those of `find`."""
+        engine = self._engine_of(source).metered(Meter())
+        limit = self._limit(max_attempts, source)
+        some = () if self._impossible else engine.scenes(tasks, max_attempts=limit, deadline=deadline)
+        return engine.profile(sum(not isinstance(result, Exhausted) for result in some))
 
     def foresee(self, tasks: Iterable[tuple[int, int]], max_attempts: int, more: bool) -> Results:
         """The scenes of tasks without end; ``more`` tells whether to expect that more than the first one is wanted."""
@@ -143,6 +156,9 @@ class Sampler:
         for seed, k in tasks:
             report = report or self.engine.report(Task(seed, k), PROOF_CANDIDATES)
             yield Exhausted(seed, k, 0, "impossible", report)
+
+    def _limit(self, wanted: int | None, source: PointSet | None) -> int:
+        return 1 if source is not None and not source.retries else self._most_attempts(wanted)
 
     def _most_attempts(self, wanted: int | None) -> int:
         limit = DEFAULT_ATTEMPTS if wanted is None else wanted

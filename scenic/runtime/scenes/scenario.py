@@ -36,6 +36,7 @@ from scenic.runtime.regions.spaces import Workspace
 from scenic.runtime.sampling.engine import Accepted, CandidateError
 from scenic.runtime.sampling.foresight import SEED_BITS, Foreseen
 from scenic.runtime.sampling.planning import Outline
+from scenic.runtime.sampling.profiling import Profile
 from scenic.runtime.sampling.report import Exhausted
 from scenic.runtime.scenes.fingerprint import fingerprint
 from scenic.runtime.scenes.sampler import DEFAULT_ATTEMPTS, Sampler
@@ -330,6 +331,35 @@ class Scenario:
                 raise RejectionException(exhaustion_message(result))
             scenes.append(result)
         return scenes
+
+    def profile(
+        self,
+        n: int = 200,
+        *,
+        seed: int = 0,
+        first: int = 0,
+        max_attempts: int | None = None,
+        time_limit: float | None = None,
+        source: PointSet | None = None,
+    ) -> Profile:
+        """Where the time of sampling goes: by operation and line of the program, and by requirement.
+
+        The arguments are those of `stream`. Scenes that are not found within the limits are left out.
+
+        Raises:
+            SamplingError: if a requirement or property fails on a candidate.
+
+        """
+        deadline = None if time_limit is None else time.monotonic() + time_limit
+        tasks = [(seed, k) for k in range(first, first + n)]
+        try:
+            with self._program.undisturbed():
+                return self._sampler.profile(
+                    tasks, max_attempts=max_attempts, deadline=deadline, source=source
+                )
+        except CandidateError as error:
+            failure = error
+        raise self._sampling_error(failure) from failure.__cause__
 
     @property
     def options(self) -> Mapping[str, Any]:
