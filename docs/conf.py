@@ -15,10 +15,16 @@ extensions = [
     "sphinx.ext.napoleon",
     "sphinx_copybutton",
     "docs._extensions.programs",
+    "docs._extensions.declared",
+    "docs._extensions.commands",
     "docs._extensions.links",
 ]
 exclude_patterns = ["_build", "_extensions"]
 nitpicky = True
+nitpick_ignore_regex = [("py:.*", ".*")]  # signatures name classes of other libraries, and private ones
+autodoc_typehints = "description"
+autodoc_member_order = "bysource"
+suppress_warnings = ["misc.highlighting_failure"]  # examples of wrong programs
 
 myst_enable_extensions = ["attrs_inline", "colon_fence", "deflist"]
 myst_heading_anchors = 4
@@ -26,6 +32,8 @@ myst_heading_anchors = 4
 myst_fence_as_directive = ["scenic"]
 nb_execution_mode = "cache"
 nb_execution_raise_on_error = True
+
+smartquotes = False  # options begin with two hyphens
 
 html_theme = "furo"
 html_static_path = ["_static"]

@@ -58,7 +58,9 @@ class ScenicBlock(SphinxDirective):
             else f"{shot.count} scenes"
         )
         image = nodes.image(
-            uri=f"/_build/pictures/{picture.name}", alt=f"{what} of this program", classes=["scene"]
+            uri=f"/_build/pictures/{picture.name}",
+            alt=f"{what} of this program",
+            classes=["scene" if shot.count == 1 else "scenes"],
         )
         shown: list[nodes.Node] = [image]
         if "page" in options:

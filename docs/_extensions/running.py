@@ -1,8 +1,9 @@
 """Runs the code blocks of a page, as a reader would: in order, in one folder.
 
 - ``scenic``: the program is written to ``NAME.scenic`` (option ``name=``, by default ``program``) and sampled once with
-  option ``seed=`` (by default 1). ``extends=OTHER`` puts the program of that name before it. ``fails`` means that the
-  program has an error. ``fragment`` means that the block is only parsed.
+  option ``seed=`` (by default 1). ``extends=OTHER`` puts the program of that name before it. ``steps=N`` simulates the
+  scene, too. ``params`` writes its global parameters, and ``records`` what the simulation recorded. ``fails`` means
+  that the program has an error. ``fragment`` means that the block is only parsed.
 - ``python``: run in a module that all such blocks of the page share.
 - ``console``: lines that begin with ``$`` are commands; only ``scenic`` can be called.
 - ``text``: what the block before it writes.
@@ -23,6 +24,9 @@ import scenic
 from docs._extensions.blocks import Block, blocks_of, with_outputs
 from scenic.cli.main import main
 from scenic.pipeline import load
+from scenic.runtime.scenes.scenario import Scenario
+from scenic.runtime.values.definite import Orientation, Vector
+from scenic.simulators.batch import choose_simulator, simulate_number
 
 __all__ = ["PageRun", "Programs", "WrongOutputError", "checked", "workplace"]
 
@@ -95,7 +99,12 @@ class PageRun:
             return _called(["sample", path.name, "--seed", seed, "--max-attempts", "2000"])
         last = int(block.options.get("k", "0")) + int(block.options.get("draw") or 1)
         with contextlib.redirect_stdout(io.StringIO()) as written:
-            load(path, mode2D="2d" in block.options).sample(last, seed=int(seed))
+            scenario = load(path, mode2D="2d" in block.options)
+            scenes = scenario.sample(last, seed=int(seed))
+            if "params" in block.options:
+                _show(scenes[-1].params)
+            if "steps" in block.options:
+                _show(_records(scenario, block.options))
         return written.getvalue()
 
     def _python(self, block: Block) -> str:
@@ -103,6 +112,43 @@ class PageRun:
             # Line numbers of the page appear in tracebacks.
             exec(compile("\n" * (block.first + 1) + block.text, "page", "exec"), self.names)
         return written.getvalue()
+
+
+def _records(scenario: Scenario, options: Mapping[str, str]) -> Mapping[str, Any]:
+    """What a simulation records, if that is to be shown."""
+    done = simulate_number(
+        scenario,
+        choose_simulator(None, scenario),
+        seed=int(options.get("seed", "1")),
+        k=int(options.get("k", "0")),
+        tries=20,
+        maxSteps=int(options["steps"]),
+    )
+    if done.simulation is None:
+        raise WrongOutputError(f"all simulations are rejected: {done.rejections}")
+    return done.simulation.result.records if "records" in options else {}
+
+
+def _show(values: Mapping[str, Any]) -> None:
+    """Write named values, a line each; numbers with four digits at most behind the point."""
+    for name, value in values.items():
+        print(f"{name} = {_shown(value)}")
+
+
+def _shown(value: Any) -> str:
+    match value:
+        case bool() | int():
+            return str(value)
+        case float():
+            return f"{round(value, 4) + 0:g}"
+        case Orientation():
+            return f"yaw {_shown(value.yaw)}, pitch {_shown(value.pitch)}, roll {_shown(value.roll)}"
+        case Vector() | tuple():
+            return f"({', '.join(_shown(part) for part in value)})"
+        case list():
+            return f"[{', '.join(_shown(part) for part in value)}]"
+        case _:
+            return str(value)
 
 
 def _commands(block: Block) -> str:

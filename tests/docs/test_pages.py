@@ -9,8 +9,20 @@ import pytest
 from docs._extensions.blocks import blocks_of
 from docs._extensions.running import PageRun, checked, workplace
 
+ELEMENTS = (
+    "distributions",
+    "operators",
+    "properties",
+    "regions",
+    "shapes",
+    "specifiers",
+    "statements",
+    "values",
+)
 DOCS = Path(__file__).parents[2] / "docs"
-PAGES = sorted([*DOCS.glob("tutorial/*.md")])
+TUTORIAL = sorted(DOCS.glob("tutorial/*.md"))
+REFERENCE = [DOCS / "reference" / f"{name}.md" for name in ELEMENTS]
+PAGES = [*TUTORIAL, *REFERENCE]
 
 
 @pytest.mark.parametrize("path", PAGES, ids=lambda path: path.stem)
@@ -30,6 +42,9 @@ def test_the_page_shows_what_its_programs_do(path: Path, request: pytest.Fixture
 
 def test_every_block_of_the_tutorial_is_run_or_shows_what_is_written() -> None:
     languages = {
-        block.language for path in PAGES for block in blocks_of(path.read_text()) if block.language[:1] != "{"
+        block.language
+        for path in TUTORIAL
+        for block in blocks_of(path.read_text())
+        if block.language[:1] != "{"
     }
     assert languages <= {"scenic", "python", "console", "text", "sh"}

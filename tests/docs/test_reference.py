@@ -1,0 +1,59 @@
+"""The reference has every element of the language, with an example; the command line's page has every command."""
+
+import re
+from pathlib import Path
+
+from docs._extensions.blocks import blocks_of
+from docs._extensions.commands import commands_text
+from docs._extensions.declared import diagnostics_text
+from scenic.cli.main import scenic
+from scenic.language.diagnostics import CODES
+from scenic.language.keywords import HARD_KEYWORDS, SOFT_KEYWORDS
+from scenic.language.names import NAMES
+from scenic.language.operators import OPERATORS
+from scenic.language.specifiers import SPECIFIERS
+from scenic.language.statements import STATEMENTS
+
+DOCS = Path(__file__).parents[2] / "docs"
+REFERENCE = DOCS / "reference"
+PYTHON_WORDS = {"_", "case", "match", "type"}
+"""Python's own soft keywords."""
+
+
+def code() -> str:
+    """All programs of the tutorial and the reference, without comments and strings."""
+    pages = [*DOCS.glob("tutorial/*.md"), *REFERENCE.glob("*.md")]
+    blocks = [
+        block.text
+        for page in pages
+        for block in blocks_of(page.read_text(encoding="utf-8"))
+        if block.language == "scenic" and "fails" not in block.options
+    ]
+    return re.sub(r"#.*|'[^'\n]*'|\"[^\"\n]*\"", "", "\n".join(blocks))
+
+
+def test_every_element_has_a_section_of_its_page() -> None:
+    for directive, page, names in (
+        ("specifier", "specifiers", SPECIFIERS),
+        ("statement", "statements", STATEMENTS),
+        ("operator", "operators", [name for name in OPERATORS if not name.endswith(" of")]),
+    ):
+        shown = re.findall(rf"```{{{directive}}} (.+)", (REFERENCE / f"{page}.md").read_text())
+        assert sorted(shown) == sorted(names)
+
+
+def test_every_word_of_the_language_is_in_an_example() -> None:
+    examples = code()
+    words = {*HARD_KEYWORDS, *SOFT_KEYWORDS} - PYTHON_WORDS
+    sides = {name for name in OPERATORS if name.endswith(" of")}
+    missing = [
+        word for word in sorted({*words, *NAMES, *sides}) if not re.search(rf"(?<!\w){word}(?!\w)", examples)
+    ]
+    assert missing == []
+
+
+def test_every_command_and_diagnostic_is_told_of() -> None:
+    told = commands_text()
+    assert all(f"## scenic {name}\n" in told for name in scenic.list_commands(None) if name != "preview")  # type: ignore[arg-type]
+    pages = diagnostics_text("")
+    assert all(f"({code.lower()})=" in pages for code in CODES)
