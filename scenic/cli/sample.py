@@ -84,7 +84,7 @@ __all__ = ["sample"]
     "-o",
     "--output",
     metavar="OUT",
-    help="JSON Lines to this file, columns if OUT ends in .parquet, a 3D file for each scene if it ends in .glb or .obj, a data "
+    help="JSON Lines to this file, columns if OUT ends in .parquet, a 3D file for each scene if it ends in .glb, .obj or .wbt, a data "
     "set of many files if it ends in / or is a folder; - is standard output, which is the default without --view and --png.",
 )
 @click.option(

@@ -25,12 +25,12 @@ _OTHER_FORMATS = {
     ".csv": "scenes are written as JSON Lines: a name that ends in .jsonl",
     ".json": "scenes are written as JSON Lines: a name that ends in .jsonl",
     ".gltf": "write the binary form of it: a name that ends in .glb",
-    ".stl": "3D files are written as .glb or .obj",
-    ".ply": "3D files are written as .glb or .obj",
+    ".stl": "3D files are written as .glb, .obj or .wbt",
+    ".ply": "3D files are written as .glb, .obj or .wbt",
 }
 
 
-_SOLID = frozenset({".glb", ".obj"})
+_SOLID = frozenset({".glb", ".obj", ".wbt"})
 """Endings of 3D files."""
 
 _PAGES = frozenset({".html", ".htm", ""})
@@ -71,7 +71,7 @@ def is_lines(path: Path) -> bool:
 
 
 def scene_file(path: Path, count: int, first: int = 0) -> Sink:
-    """A ``.glb`` or ``.obj`` file for each scene, by the name's ending; raises ``OutputError`` at once if that cannot be.
+    """A ``.glb``, ``.obj`` or ``.wbt`` file for each scene, by the name's ending; raises ``OutputError`` at once if that cannot be.
 
     Args:
         path: the file of one scene; those of several have their numbers in their names.
@@ -81,7 +81,7 @@ def scene_file(path: Path, count: int, first: int = 0) -> Sink:
     """
     check_writable(path)
     _check_numbered(path, count, first)
-    return (_obj_files if path.suffix.lower() == ".obj" else _glb_files)(path, count)
+    return _FILES[path.suffix.lower()](path, count)
 
 
 def check_page(path: Path) -> None:
@@ -187,6 +187,20 @@ def _obj_files(path: Path, count: int) -> Iterator[Take]:
         write(file, content)
 
     yield take
+
+
+@contextmanager
+def _worlds(path: Path, count: int) -> Iterator[Take]:
+    from scenic.formats.webots import write_world
+
+    def take(scene: Scene) -> None:
+        write_world(scene, numbered(path, scene.k, count))
+
+    yield take
+
+
+_FILES = {".glb": _glb_files, ".obj": _obj_files, ".wbt": _worlds}
+"""Sinks of 3D files by their endings."""
 
 
 @contextmanager

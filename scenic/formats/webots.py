@@ -1,0 +1,244 @@
+"""Scenes as worlds of Webots R2023a: nodes of its VRML format, and whole ``.wbt`` files with their meshes beside them."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path, PurePosixPath
+from typing import Any, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from scenic.formats.camera import corners, ground_height
+from scenic.formats.files import make_folder, write
+from scenic.formats.instances import Instance, Surface, distinct_labels, picture
+from scenic.formats.scenes import Scene
+
+__all__ = ["World", "mesh_file", "solid", "webots_world", "write_world"]
+
+_HEADER: Final = "#VRML_SIM R2023a utf8"
+_STEP: Final = 16
+"""Basic time step of the world, milliseconds."""
+_MARGIN: Final = 2.0
+"""The floor and the view reach this far beyond the objects, metres."""
+_GRAY: Final = (0.8, 0.8, 0.8)
+_SUPERVISOR: Final = "scenic_supervisor"
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class World:
+    """A world and the files beside it.
+
+    Attributes:
+        text: the contents of the ``.wbt`` file.
+        files: contents of the other files, by their paths relative to it.
+
+    """
+
+    text: str
+    files: Mapping[str, bytes] = field(default_factory=dict)
+
+
+def webots_world(scene: Scene, stem: str, *, program: str | None = None) -> World:
+    """A scene as a world.
+
+    Objects with a property ``webotsProto`` become nodes of that PROTO (a name, found in ``../protos``, or an address that ends
+    in ``NAME.proto``) with their ``controller`` and ``customData``. All others are a ``Solid`` of their shape and colour, which
+    has physics if they have a ``density`` or a ``mass``.
+
+    Args:
+        scene: the scene.
+        stem: the name of the file without its ending; meshes are in the folder ``STEM_meshes``.
+        program: path of the scene's program, to add a supervisor that runs the program's behaviors in this world.
+
+    """
+    drawn = picture([scene])
+    instances = drawn.scenes[0]
+    files: dict[str, bytes] = {}
+    protos: list[str] = []
+    nodes: list[str] = []
+    for number, (instance, label) in enumerate(zip(instances, distinct_labels(instances), strict=True)):
+        thing: Any = instance.thing
+        proto = getattr(thing, "webotsProto", None)
+        if proto is not None:
+            address = str(proto) if str(proto).endswith(".proto") else f"../protos/{proto}.proto"
+            if address not in protos:
+                protos.append(address)
+            nodes.append(_robot(thing, PurePosixPath(address).stem, label, number))
+            continue
+        nodes.append(
+            solid(thing, drawn.surfaces[instance.surface], stem, files, number, label, instance.color)
+        )
+    externals = "".join(f"EXTERNPROTO {_text(address)}\n" for address in protos)
+    supervisor = "" if program is None else _supervisor(scene, program, files)
+    return World(
+        f"{_HEADER}\n{externals}\n{_surroundings(scene, instances)}{''.join(nodes)}{supervisor}", files
+    )
+
+
+def write_world(scene: Scene, path: Path, *, program: str | None = None) -> None:
+    """Write `webots_world` to a ``.wbt`` file and the folder beside it; raises ``OutputError``."""
+    world = webots_world(scene, path.stem, program=program)
+    for name, content in world.files.items():
+        place = path.parent / name
+        make_folder(place.parent)
+        write(place, content)
+    write(path, world.text.encode())
+
+
+def solid(
+    thing: Any,
+    surface: Surface | None,
+    stem: str,
+    files: dict[str, bytes],
+    number: int,
+    label: str,
+    color: Sequence[float] = _GRAY,
+    *,
+    physics: bool | None = None,
+) -> str:
+    """A ``Solid`` of an object, with the DEF name ``object_NUMBER`` unless the object has a ``webotsName``.
+
+    Args:
+        thing: the object.
+        surface: its mesh in the unit box; that of its shape if ``None``.
+        stem: meshes are in the folder ``STEM_meshes``.
+        files: gets the file of its mesh, if it needs one.
+        number: of the object.
+        label: the node's name.
+        color: red, green, blue and perhaps opacity, from 0 to 1.
+        physics: whether it moves; by default if it has a density or a mass.
+
+    """
+    geometry = _geometry(thing, surface, stem, files, number)
+    opacity = color[3] if len(color) > 3 else 1.0
+    look = f"baseColor {_numbers(color[:3])} transparency {_number(1 - opacity)} roughness 1 metalness 0"
+    density, mass = (getattr(thing, name, None) for name in ("density", "mass"))
+    moves = (density is not None or mass is not None) if physics is None else physics
+    lines = [
+        f"children [ Shape {{ appearance PBRAppearance {{ {look} }} geometry {geometry} }} ]",
+        f"name {_text(label)}",
+        f"boundingObject {geometry}",
+    ]
+    if moves and mass is not None:
+        lines.append(f"physics Physics {{ density -1 mass {_number(mass)} }}")
+    elif moves:
+        lines.append(
+            f"physics Physics {{ density {_number(1000.0 if density is None else density)} mass -1 }}"
+        )
+    return _node("Solid", thing, number, lines)
+
+
+def mesh_file(thing: Any, surface: Surface | None = None) -> bytes:
+    """The mesh of an object in its own frame and size (metres), as Wavefront OBJ."""
+    source = thing.shape.mesh if surface is None else surface
+    size = np.array([thing.width, thing.length, thing.height], dtype=np.float64)
+    lines = [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in (np.asarray(source.vertices) * size).tolist()]
+    lines += [f"f {a} {b} {c}" for a, b, c in (np.asarray(source.faces) + 1).tolist()]
+    return ("\n".join(lines) + "\n").encode()
+
+
+def _geometry(thing: Any, surface: Surface | None, stem: str, files: dict[str, bytes], number: int) -> str:
+    width, length, height = float(thing.width), float(thing.length), float(thing.height)
+    heights = getattr(thing, "heights", None)
+    if heights is not None:
+        values = np.asarray(heights, dtype=np.float64)
+        rows, columns = values.shape
+        return (
+            f"ElevationGrid {{ xDimension {columns} yDimension {rows} xSpacing {_number(width / (columns - 1))}"
+            f" ySpacing {_number(length / (rows - 1))} height {_numbers(values.ravel(), listed=True)} }}"
+        )
+    source = thing.shape.source
+    if source.initial_rotation is None:
+        if source.kind == "box":
+            return f"Box {{ size {_numbers((width, length, height))} }}"
+        if source.kind == "cylinder" and width == length:
+            return f"Cylinder {{ radius {_number(width / 2)} height {_number(height)} subdivision 32 }}"
+        if source.kind == "spheroid" and width == length == height:
+            return f"Sphere {{ radius {_number(width / 2)} subdivision 3 }}"
+    name = f"{stem}_meshes/object_{number}.obj"
+    files[name] = mesh_file(thing, surface)
+    return f"Mesh {{ url {_text(name)} }}"
+
+
+def _robot(thing: Any, proto: str, label: str, number: int) -> str:
+    lines = [f"name {_text(label)}"]
+    for name in ("controller", "customData"):
+        value = getattr(thing, name, None)
+        if value is not None:
+            lines.append(f"{name} {_text(str(value))}")
+    return _node(proto, thing, number, lines)
+
+
+def _node(kind: str, thing: Any, number: int, lines: Sequence[str]) -> str:
+    from scipy.spatial.transform import Rotation  # slow to import
+
+    turn = thing.orientation
+    rotation = Rotation.from_quat([turn.x, turn.y, turn.z, turn.w])
+    rotation = rotation * Rotation.from_euler("ZXY", getattr(thing, "rotationOffset", (0, 0, 0)))
+    vector = rotation.as_rotvec()
+    angle = float(np.linalg.norm(vector))
+    axis = vector / angle if angle else np.array([0.0, 0.0, 1.0])
+    shift = np.array(tuple(getattr(thing, "positionOffset", (0, 0, 0))), dtype=np.float64)
+    place = np.array(tuple(thing.position), dtype=np.float64) + shift
+    name = getattr(thing, "webotsName", None) or f"object_{number}"
+    body = [f"translation {_numbers(place)}", f"rotation {_numbers((*axis, angle))}", *lines]
+    return f"DEF {name} {kind} {{\n" + "".join(f"  {line}\n" for line in body) + "}\n"
+
+
+def _surroundings(scene: Scene, instances: Sequence[Instance]) -> str:
+    """The nodes of a world beside its objects: settings, view, sky, light and floor."""
+    from scipy.spatial.transform import Rotation
+
+    points = corners(instances) if instances else np.zeros((1, 3))
+    low, high = points.min(axis=0), points.max(axis=0)
+    middle, reach = (low + high) / 2, float(np.linalg.norm(high - low)) + _MARGIN
+    # The camera of a viewpoint looks along its x axis, with z upwards.
+    view = Rotation.from_euler("ZY", [np.pi / 2, np.radians(40)])
+    place = middle - reach * 1.2 * view.apply([1.0, 0.0, 0.0])
+    vector = view.as_rotvec()
+    angle = float(np.linalg.norm(vector))
+    width, length = (high - low + 2 * _MARGIN)[:2].tolist()
+    floor = f"Plane {{ size {_numbers((width, length))} }}"
+    return (
+        f"WorldInfo {{\n  info [ {_text(f'scene {scene.k} of seed {scene.seed}')} ]\n  basicTimeStep {_STEP}\n"
+        '  coordinateSystem "ENU"\n}\n'
+        f"Viewpoint {{\n  orientation {_numbers((*(vector / angle), angle))}\n  position {_numbers(place)}\n}}\n"
+        "Background {\n  skyColor [ 0.7 0.8 0.9 ]\n}\n"
+        "DirectionalLight {\n  ambientIntensity 0.5\n  direction 0.5 0.3 -1\n  intensity 2\n  castShadows TRUE\n}\n"
+        f"DEF FLOOR Solid {{\n  translation {_numbers((middle[0], middle[1], ground_height(points)))}\n"
+        f"  children [ Shape {{ appearance PBRAppearance {{ baseColor 0.75 0.75 0.75 roughness 1 metalness 0 }} geometry {floor} }} ]\n"
+        f'  name "floor"\n  boundingObject {floor}\n  locked TRUE\n}}\n'
+    )
+
+
+def _supervisor(scene: Scene, program: str, files: dict[str, bytes]) -> str:
+    """A robot that runs the program's behaviors in this world, and its controller."""
+    script = f'''"""Runs the behaviors of a Scenic program in this world, on its scene {scene.k} of seed {scene.seed}."""
+
+from controller import Supervisor
+
+import scenic
+from scenic.simulators.webots.simulator import WebotsSimulator
+
+scenario = scenic.load({program!r})
+scene = scenario.sample({scene.k + 1}, seed={scene.seed})[{scene.k}]
+WebotsSimulator(Supervisor()).simulate(scene)
+'''
+    files[f"../controllers/{_SUPERVISOR}/{_SUPERVISOR}.py"] = script.encode()
+    return f'DEF SCENIC Robot {{\n  name "scenic"\n  controller "{_SUPERVISOR}"\n  supervisor TRUE\n}}\n'
+
+
+def _number(value: Any) -> str:
+    return repr(float(value))
+
+
+def _numbers(values: Any, *, listed: bool = False) -> str:
+    text = " ".join(_number(value) for value in values)
+    return f"[ {text} ]" if listed else text
+
+
+def _text(value: str) -> str:
+    escaped = value.replace("\\", "\\\\").replace('"', '\\"')
+    return f'"{escaped}"'
