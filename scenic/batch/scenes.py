@@ -160,7 +160,7 @@ def sampled_in_processes(
 ) -> Iterator[Scene]:
     """Scenes 0 to ``n`` of a seed, found by several processes: our own, or those of ``executor``.
 
-    Workers return the number of each scene's accepted candidate. The parent evaluates these candidates alone.
+    Workers return the numbers of each scene's accepted candidates. The parent evaluates these candidates alone.
 
     Raises:
         RejectionException: if a scene is not found within the limits.
@@ -173,13 +173,14 @@ def sampled_in_processes(
     for made in in_processes(scenario, _accepted_attempts, job, engine):
         if made.missing:
             raise RejectionException(exhaustion_message(made.missing[0]))
-        attempts = np.frombuffer(bytes(made.encoded), dtype=np.int64)
         numbers = np.arange(made.job.first, made.job.last, dtype=np.int64)
+        attempts = np.frombuffer(bytes(made.encoded), dtype=np.int64).reshape(len(numbers), -1)
+        attempts = attempts[:, 0] if attempts.shape[1] == 1 else attempts
         yield from scenario.found(seed, numbers, attempts, source=source)
 
 
 def _accepted_attempts(_: Scenario, scenes: Sequence[Scene]) -> bytes:
-    return np.array([scene.attempts for scene in scenes], dtype=np.int64).tobytes()
+    return np.array([scene.component_attempts for scene in scenes], dtype=np.int64).tobytes()
 
 
 def in_processes(scenario: Scenario, encode: Encode, job: Job, engine: Engine) -> Iterator[Made]:

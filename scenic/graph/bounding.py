@@ -1,12 +1,12 @@
 """What is known of a node's value without sampling: the bounds of its kind, of a constant, of the whole cube."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Final
 
 import numpy as np
 
-from scenic.graph.bounds import Bounds, outward
+from scenic.graph.bounds import Bounds, Floats, outward
 from scenic.graph.kinds import Kind
 from scenic.graph.node import UNREAD, Node
 from scenic.graph.operation import BoundsReading, Operation
@@ -102,6 +102,43 @@ def overall(node: Node) -> Bounds | None:
         stack.pop()
     node.keep_bounds(known[node])
     return known[node]
+
+
+def over(
+    roots: Iterable[Node],
+    axes: Mapping[Node, int],
+    lower: Floats,
+    upper: Floats,
+    known: dict[Node, Bounds | None] | None = None,
+) -> dict[Node, Bounds | None]:
+    """Bounds of all nodes below some, over boxes of the cube.
+
+    Args:
+        roots: the nodes whose bounds are wanted.
+        axes: numbers of the axes.
+        lower: corners of the boxes, ``(m, dimension)``.
+        upper: the opposite corners, likewise.
+        known: bounds that are there already, to which those of further nodes are added.
+
+    """
+    known = {} if known is None else known
+    for root in roots:
+        stack = [(root, 0)]
+        while stack:
+            node, position = stack.pop()
+            if node in known:
+                continue
+            if node.is_axis:
+                known[node] = Bounds(lower[:, axes[node]], upper[:, axes[node]])
+            elif node.is_constant:
+                known[node] = of_constant(node)
+            else:
+                operands = node.operation.bounding(node.operands, node.payload)
+                if position < len(operands):
+                    stack += ((node, position + 1), (operands[position], 0))
+                else:
+                    known[node] = forward(node, [known.get(operand) for operand in node.operands])
+    return known
 
 
 def _leaf(node: Node) -> Bounds | None:

@@ -79,6 +79,22 @@ class Domain:
         """Logarithm of each box's volume; of many axes the volume itself may be too small for a float."""
         return np.asarray(np.log(self.upper - self.lower).sum(axis=1))
 
+    @property
+    def hull(self) -> tuple[Floats, Floats]:
+        """Corners ``(1, dimension)`` of the smallest box that holds all boxes."""
+        lower, upper = np.zeros((1, self.dimension)), np.ones((1, self.dimension))
+        for part in self.parts:
+            lower = np.maximum(lower, part.lower.min(axis=0, keepdims=True))
+            upper = np.minimum(upper, part.upper.max(axis=0, keepdims=True))
+        return lower, upper
+
+    def joined_axes(self) -> list[NDArray[np.intp]]:
+        """Of each part the axes that its boxes do not all narrow alike: these are drawn together."""
+        return [
+            np.flatnonzero(((part.lower != part.lower[0]) | (part.upper != part.upper[0])).any(axis=0))
+            for part in self.parts
+        ]
+
     def freed(self, axes: NDArray[np.bool_]) -> "Domain":
         """A domain that holds this one and narrows none of some axes ``(dimension,)``."""
 

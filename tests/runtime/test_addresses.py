@@ -8,8 +8,10 @@ from typing import Any
 import pytest
 
 from runtime.programs import scenario
+from scenic.runtime.sampling.components import components_of
 from scenic.runtime.sampling.engine import Engine
 from scenic.runtime.sampling.pending import Task
+from scenic.runtime.sampling.piecewise import PiecewiseEngine
 from scenic.runtime.sampling.report import Exhausted
 from scenic.runtime.scenes.scenario import Scenario
 
@@ -86,7 +88,10 @@ def test_company_changes_no_bit(number: int) -> None:
         assert [
             shown(again, *again.stream(1, seed=3, first=k, max_attempts=300)) for k in range(FEW)
         ] == first
-        single = Engine(program.outline.plan(program.domain), grouped=False)
+        plan = program.outline.plan(program.domain)
+        single: Engine | PiecewiseEngine = Engine(plan, grouped=False)
+        if (components := components_of(plan)) is not None:
+            single = PiecewiseEngine(Engine(plan, grouped=False), components)
         tasks = [Task(3, k) for k in range(FEW)]
         attempts = [
             result.attempts if isinstance(result, Exhausted) else result[0].attempts[result[1]]

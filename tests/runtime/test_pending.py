@@ -21,7 +21,7 @@ def needed(seed: int, k: int) -> list[bool]:
 
 def test_rows_stay_together() -> None:
     random = np.random.default_rng(4)
-    pending = Pending(CHANCES)
+    pending = Pending(CHANCES, range(len(CHANCES)))
     tasks: list[tuple[int, int]] = []
     tried: dict[int, int] = {}
     alive: list[int] = []
@@ -54,7 +54,7 @@ def test_rows_stay_together() -> None:
 
 def test_chances_are_those_of_the_requirements() -> None:
     """Shares of scenes in which each is not needed, and independent ones."""
-    pending = Pending(CHANCES)
+    pending = Pending(CHANCES, range(len(CHANCES)))
     pending.add([(3, k) for k in range(20_000)])
     shares = pending.inactive.mean(axis=0)
     assert shares == pytest.approx([0.9, 0.5, 0.1], abs=0.02)

@@ -543,7 +543,7 @@ OVERFLOWING = [
 
 def attempts_of(program: Scenario) -> Batch:
     """A batch of the first attempts at a scene."""
-    return program._sampler.engine._batch(
+    return program._sampler.engine.batch(
         program._sampler.engine._source(_attempts(Task(1, 0), np.arange(40, dtype=np.int64)))
     )
 

@@ -85,7 +85,7 @@ def test_a_fault_is_that_of_the_first_scene_that_has_one() -> None:
 
 
 def test_a_fault_is_told_with_its_scene_and_attempt() -> None:
-    text = "x, y = Range(0, 1), Range(0, 1)\ndef f(v):\n    {body}\n    return True\ndef g(v): return v < 0.4\nrequire g(y)\nrequire f(x)\nparam x = x\n"
+    text = "x, y = Range(0, 1), Range(0, 1)\ndef f(v):\n    {body}\n    return True\ndef g(v, w): return v < 0.4\nrequire g(y, x)\nrequire f(x)\nparam x = x\n"
     free = scenario(text.format(body="pass")).sample(60, seed=3)
     first = next(scene for scene in free if scene.params["x"] > 0.95)
     assert first.k not in (0, first.attempts - 1)
@@ -98,8 +98,8 @@ def test_a_fault_is_told_with_its_scene_and_attempt() -> None:
 @pytest.mark.parametrize("lanes", LANES)
 def test_a_fault_among_many_scenes_is_told_with_its_own(lanes: int) -> None:
     text = (
-        "limit = {}\ndef same(v): return v\ndef high(v): return 1 / (v >= limit)\nx, y = Range(0, 1), Range(0, 1)\n"
-        "require same(x) > 0.8\nrequire high(y)\nparam y = y\n"
+        "limit = {}\ndef first(v, w): return v\ndef high(v): return 1 / (v >= limit)\nx, y = Range(0, 1), Range(0, 1)\n"
+        "require first(x, y) > 0.8\nrequire high(y)\nparam y = y\n"
     )
     sound = scenario(text.format(0)).sample(20, seed=2)
     fails = next(item for item in sound if item.params["y"] < 0.2)

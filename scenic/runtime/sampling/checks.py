@@ -34,6 +34,16 @@ class Verdict:
     holds: Mask
     failed: Mask | None = None
 
+    @property
+    def passes(self) -> Mask:
+        """Lanes that it does not reject."""
+        return self.holds if self.failed is None else self.holds | self.failed
+
+    def unless(self, inactive: Mask) -> "Verdict":
+        """The verdict of a soft requirement, which says nothing in lanes where it is not active."""
+        failed = None if self.failed is None else self.failed & ~inactive
+        return Verdict(self.holds | inactive, failed)
+
 
 class Check(Protocol):
     """One requirement as the engine sees it.

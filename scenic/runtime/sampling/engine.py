@@ -25,7 +25,7 @@ from scenic.graph.node import Graph, Node
 from scenic.graph.schedule import Scheduler
 from scenic.language.errors import RejectionException, ScenicError
 from scenic.runtime.geometry.ragged import expand, first_of_each
-from scenic.runtime.sampling.checks import Check, Verdict
+from scenic.runtime.sampling.checks import Check
 from scenic.runtime.sampling.pace import Pace
 from scenic.runtime.sampling.pending import Pending, Task, soft_address
 from scenic.runtime.sampling.profiling import Meter, Profile
@@ -82,13 +82,18 @@ class Plan:
     codec: Codec
     bodies: int = 0
     """The number of objects, which bounds memory."""
+    numbers: tuple[int, ...] | None = None
+    """Of a part of a plan: the numbers of its checks in the whole."""
+    soft_places: tuple[int, ...] | None = None
+    """Of a part of a plan: the numbers of its soft checks among those of the whole."""
+    evaluated: Sequence[Node] | None = None
+    """Of a part of a plan: the nodes that it needs."""
 
     @property
     def lane_bytes(self) -> int:
         """About how much memory one lane takes."""
-        numbers = sum(
-            int(np.prod(node.kind.trailing, dtype=int)) for node in self.graph.nodes if not node.is_constant
-        )
+        nodes = self.graph.nodes if self.evaluated is None else self.evaluated
+        numbers = sum(int(np.prod(node.kind.trailing, dtype=int)) for node in nodes if not node.is_constant)
         return 8 * numbers + BODY_BYTES * self.bodies
 
 
@@ -97,15 +102,17 @@ class Found:
     """The scenes that a round has found: the lanes of a finished batch.
 
     ``seeds``, ``numbers`` and ``attempts`` tell of each lane which scene it is, and after how many candidates it was
-    found. ``alone`` makes a batch of one attempt, to look at its draws. ``shared`` is for what is made of all scenes of
-    the batch together: it lives as long as one of them.
+    found. ``alone`` makes a batch of one lane, to look at its draws. Where a scene is put together from components, ``components``
+    ``(n, components)`` tells after how many attempts each was found, and ``attempts`` the largest of these. ``shared`` is for what
+    is made of all scenes of the batch together: it lives as long as one of them.
     """
 
     seeds: Sequence[int]
     numbers: Sequence[int]
     attempts: Sequence[int]
     batch: Batch
-    alone: Callable[[Task, int], Batch]
+    alone: Callable[[int], Batch]
+    components: NDArray[np.int64] | None = None
     shared: dict[object, Any] = field(default_factory=dict)
 
     def task(self, lane: int) -> Task:
@@ -114,7 +121,7 @@ class Found:
 
     def again(self, lane: int) -> Batch:
         """A batch of that lane alone."""
-        return self.alone(self.task(lane), self.attempts[lane] - 1)
+        return self.alone(lane)
 
     def is_active(self, lane: int, place: int, probability: float) -> bool:
         """Whether a soft requirement, number ``place`` among those that are checked, had to hold in the scene."""
@@ -161,6 +168,7 @@ class Engine:
         _keep_freed_memory()
         self.plan = plan
         self._source = source
+        self._grouped = grouped
         self.candidates = 0
         """Candidates tried so far."""
         self.passed = 0
@@ -173,6 +181,8 @@ class Engine:
         self._stages = Stages(plan.checks, plan.outputs, self._scheduler)
         self._meter: Meter | None = None
         self._soft = [index for index, check in enumerate(plan.checks) if check.probability < 1]
+        self._numbers = range(len(plan.checks)) if plan.numbers is None else plan.numbers
+        self._soft_places = range(len(self._soft)) if plan.soft_places is None else plan.soft_places
         self._chances = np.array([plan.checks[index].probability for index in self._soft])
 
     def prepare(self) -> None:
@@ -192,7 +202,7 @@ class Engine:
         scheduler, checks, outputs = self._scheduler, self.plan.checks, self.plan.outputs
         keys = _attempts(Task(0, 0), np.arange(_REHEARSED_LANES, dtype=np.int64)).keys
         begun = time.thread_time()
-        batch = self._batch(Counter(keys))
+        batch = self.batch(Counter(keys))
         nodes = (*outputs, *(node for check in checks for node in check.nodes))
         clear = scheduler.without_python(nodes)
         with suppress(ScenicError), np.errstate(all="ignore"):
@@ -211,7 +221,7 @@ class Engine:
             made = time.thread_time()
             self._pace.add(len(keys), 0, made - begun)
             # What the first turn has made, the second one finds: that one is measured.
-            batch = self._batch(Counter(keys))
+            batch = self.batch(Counter(keys))
             self._judge(batch, stages[:-1], None)
             self._pace.add(len(keys), len(batch), time.thread_time() - made)
 
@@ -222,6 +232,7 @@ class Engine:
         max_attempts: int,
         lanes: int | None = None,
         deadline: float | None = None,
+        tried: int = 0,
     ) -> Iterator[Accepted | Exhausted]:
         """The scenes of ``tasks``, in order.
 
@@ -230,13 +241,14 @@ class Engine:
             max_attempts: candidates tried for one scene before it is given up.
             lanes: candidates in one batch at most; changes speed and memory, never the scenes.
             deadline: a time of `time.monotonic` after which the scenes not yet found are given up.
+            tried: candidates of each scene that are known to be rejected.
 
         Raises:
             CandidateError: a candidate failed that nothing rejects.
 
         """
         most = self._pace.most if lanes is None else lanes
-        return self._results(tasks, max_attempts, most, lambda _: (most, most * 3 // 2), deadline)
+        return self._results(tasks, max_attempts, most, lambda _: (most, most * 3 // 2), deadline, tried)
 
     def foresee(
         self, tasks: Iterable[tuple[int, int]], *, max_attempts: int, more: bool = True
@@ -267,6 +279,7 @@ class Engine:
         most: int,
         window: Callable[[int], tuple[int, int]],
         deadline: float | None,
+        tried: int = 0,
     ) -> Iterator[Accepted | Exhausted]:
         """Scenes in order; rounds have at most ``most`` lanes.
 
@@ -275,7 +288,7 @@ class Engine:
         does not hold up the others at once; where not, less is found in vain.
         """
         waiting = iter(tasks)
-        pending = Pending(self._chances)
+        pending = Pending(self._chances, self._soft_places, tried)
         done: dict[int, Accepted | Exhausted | CandidateError] = {}
         upcoming = 0
         more = True
@@ -335,8 +348,7 @@ class Engine:
         counts = np.minimum(chosen.ahead, max_attempts - pending.attempts[active])
         owner, offset = expand(counts)
         attempts = pending.attempts[owner] + offset
-        keys = attempt_keys(pending.key[owner], attempts)
-        batch = self._batch(self._source(Lanes(pending.seed[owner], pending.k[owner], attempts, keys)))
+        batch = self.attempts_at(pending, owner, attempts)
         *stages, last = self._stages.order(len(batch))
         failures = self._judge(batch, stages, pending.inactive[owner] if self._soft else None)
         pending.attempts[active] += counts
@@ -359,12 +371,11 @@ class Engine:
             batch.settle(last.nodes)
             rows = rows[good]
             scenes = owner[rows]
-            found = Found(
+            found = self._found(
                 pending.given[scenes].tolist(),
                 pending.k[scenes].tolist(),
                 (attempts[rows] + 1).tolist(),
                 batch,
-                self._alone,
             )
             done.update(
                 zip(pending.number[scenes].tolist(), zip(repeat(found), range(len(scenes))), strict=True)
@@ -380,12 +391,12 @@ class Engine:
 
     def replay(self, source: Source, task: Task, attempts: int) -> Accepted:
         """The scene of given draws, one lane of points of the cube; no check is made again."""
-        batch = Batch(self._single, source, self.plan.codec, rejections=(RejectionException,))
-        batch.settle(self.plan.outputs)
 
-        def alone(_task: Task, _attempt: int) -> Batch:
+        def alone(_lane: int) -> Batch:
             return Batch(self._single, source, self.plan.codec, rejections=(RejectionException,))
 
+        batch = alone(0)
+        batch.settle(self.plan.outputs)
         return Found([task.seed], [task.k], [attempts], batch, alone), 0
 
     def accepted(self, seed: int, numbers: NDArray[np.int64], attempts: NDArray[np.int64]) -> list[Accepted]:
@@ -399,12 +410,67 @@ class Engine:
         """
         seeds = np.repeat(seed_word(seed), len(numbers))
         keys = attempt_keys(scene_keys(seeds, numbers), attempts - 1)
-        batch = self._batch(self._source(Lanes(seeds, numbers, attempts - 1, keys)))
+        batch = self.batch(self._source(Lanes(seeds, numbers, attempts - 1, keys)))
         batch.settle(self.plan.outputs)
-        found = Found([seed] * len(numbers), numbers.tolist(), attempts.tolist(), batch, self._alone)
+        found = self._found([seed] * len(numbers), numbers.tolist(), attempts.tolist(), batch)
         return [(found, lane) for lane in range(len(numbers))]
 
-    def _batch(self, source: Source, *, grouped: bool = True) -> Batch:
+    def _found(
+        self, seeds: Sequence[int], numbers: Sequence[int], attempts: Sequence[int], batch: Batch
+    ) -> Found:
+        def alone(lane: int) -> Batch:
+            return self._alone(Task(seeds[lane], numbers[lane]), attempts[lane] - 1)
+
+        return Found(seeds, numbers, attempts, batch, alone)
+
+    # What scenes put together from components need (`scenic.runtime.sampling.piecewise`)
+
+    def of_part(self, plan: Plan) -> "Engine":
+        """An engine for a part of the plan, with the same draws."""
+        return Engine(plan, self._source, grouped=self._grouped)
+
+    def source_of(self, lanes: Lanes) -> Source:
+        """The random numbers of some lanes."""
+        return self._source(lanes)
+
+    def pending(self, tasks: Sequence[tuple[int, int]]) -> Pending:
+        """Scenes to be looked for."""
+        pending = Pending(self._chances, self._soft_places)
+        pending.add(tasks)
+        return pending
+
+    def attempts_at(self, pending: Pending, owner: NDArray[np.intp], attempts: NDArray[np.int64]) -> Batch:
+        """A batch of lanes: attempts ``(n,)`` at the scenes ``owner`` ``(n,)`` among the pending ones."""
+        keys = attempt_keys(pending.key[owner], attempts)
+        return self.batch(self._source(Lanes(pending.seed[owner], pending.k[owner], attempts, keys)))
+
+    def note(self, number: int, lanes: int, passed: int, seconds: float) -> None:
+        """Let the meter know that a check has judged so many lanes."""
+        if self._meter is not None:
+            self._meter.check(number, lanes, passed, seconds)
+
+    def note_round(self, lanes: int, passed: int, seconds: float) -> None:
+        """Let the meter know of a round."""
+        self.seconds += seconds
+        if self._meter is not None:
+            self._meter.round(lanes, passed, seconds)
+
+    def evaluate(self, batch: Batch, nodes: tuple[Node, ...]) -> None:
+        """Evaluate nodes in a new batch; they can be read until others are asked for."""
+        (schedule,) = self._scheduler.chain([nodes])
+        batch.follow(schedule, nodes)
+
+    def make_ready(self, nodes: tuple[Node, ...]) -> None:
+        """Make what `evaluate`, and the scenes after it, would otherwise wait for."""
+        self._scheduler.chain([nodes])
+        self._scheduler.after(self._scheduler.start, tuple(self.plan.outputs))
+
+    def given_up(self, seed: int, k: int, attempts: int) -> Exhausted:
+        """What is said of a scene that was not found among so many candidates."""
+        return Exhausted(seed, k, attempts, "attempts", self.report(Task(seed, k), attempts))
+
+    def batch(self, source: Source, *, grouped: bool = True) -> Batch:
+        """A batch of lanes whose draws come from a source."""
         return Batch(
             self._scheduler if grouped else self._single,
             source,
@@ -437,10 +503,9 @@ class Engine:
                 begun = time.thread_time()
                 verdict = check.test(batch)
                 if inactive is not None and check.probability < 1:
-                    verdict = _unless(verdict, inactive[rows, self._soft.index(index)])
-                passes = verdict.holds
+                    verdict = verdict.unless(inactive[rows, self._soft.index(index)])
+                passes = verdict.passes
                 if verdict.failed is not None:
-                    passes = passes | verdict.failed
                     place = check.position * len(checks) + index  # checks of one position by their numbers
                     earlier = verdict.failed & (place < failed_at[rows])
                     failures[rows[earlier]] = index
@@ -449,7 +514,7 @@ class Engine:
                 passed = int(np.count_nonzero(passes))
                 self._stages.measure(index, len(rows), seconds, passed)
                 if self._meter is not None:
-                    self._meter.check(index, len(rows), passed, seconds - shared)
+                    self._meter.check(self._numbers[index], len(rows), passed, seconds - shared)
                 alive &= passes
             if not alive.all():
                 batch.keep(alive)
@@ -458,7 +523,7 @@ class Engine:
     # Scenes, errors, reports
 
     def _alone(self, task: Task, attempt: int) -> Batch:
-        return self._batch(self.source(task, attempt), grouped=False)
+        return self.batch(self.source(task, attempt), grouped=False)
 
     def source(self, task: Task, attempt: int) -> Source:
         """The random numbers of one attempt at a scene."""
@@ -497,7 +562,7 @@ class Engine:
             [
                 part
                 for check in self.plan.checks
-                for part in check.parts(self._batch(self._source(_attempts(task, numbers))))
+                for part in check.parts(self.batch(self._source(_attempts(task, numbers))))
             ]
             for numbers in np.split(np.arange(count, dtype=np.int64), range(size, count, size))
         ]
@@ -517,9 +582,3 @@ def _attempts(task: Task, numbers: NDArray[np.int64]) -> Lanes:
     seeds = np.repeat(seed_word(task.seed), len(numbers))
     scenes = np.repeat(np.int64(task.k), len(numbers))
     return Lanes(seeds, scenes, numbers, attempt_keys(scene_keys(seeds, scenes), numbers))
-
-
-def _unless(verdict: Verdict, inactive: NDArray[np.bool_]) -> Verdict:
-    """The verdict of a soft requirement, which says nothing in lanes where it is not active."""
-    failed = None if verdict.failed is None else verdict.failed & ~inactive
-    return Verdict(verdict.holds | inactive, failed)

@@ -26,6 +26,8 @@ class Pending:
 
     Args:
         chances: the probabilities with which soft requirements have to hold, ``(s,)``.
+        places: their numbers among all soft requirements of the program, ``(s,)``.
+        tried: candidates of each scene that have been tried already.
 
     Attributes:
         number: which of all scenes that are looked for each one is, ``(n,)``.
@@ -38,11 +40,10 @@ class Pending:
 
     """
 
-    def __init__(self, chances: NDArray[np.float64]) -> None:
+    def __init__(self, chances: NDArray[np.float64], places: Sequence[int], tried: int = 0) -> None:
         self._chances: Final = chances
-        self._addresses: Final = np.array(
-            [soft_address(place) for place in range(len(chances))], dtype=np.uint64
-        )
+        self._addresses: Final = np.array([soft_address(place) for place in places], dtype=np.uint64)
+        self._tried: Final = tried
         self._next = 0
         self.number = np.empty(0, dtype=np.int64)
         self.given = np.empty(0, dtype=np.object_)
@@ -75,7 +76,7 @@ class Pending:
         self.seed = np.concatenate([self.seed, seed])
         self.k = np.concatenate([self.k, k])
         self.key = np.concatenate([self.key, key])
-        self.attempts = np.concatenate([self.attempts, np.zeros(len(tasks), dtype=np.int64)])
+        self.attempts = np.concatenate([self.attempts, np.full(len(tasks), self._tried, dtype=np.int64)])
         self.inactive = np.concatenate([self.inactive, inactive.T])
 
     def leave(self, finished: NDArray[np.bool_]) -> None:

@@ -8,9 +8,11 @@ from numpy.typing import NDArray
 from scenic.graph.domain import Domain
 from scenic.graph.draws import Counter, Lanes, Points, Source
 from scenic.graph.points import PointSet
+from scenic.runtime.sampling.components import components_of
 from scenic.runtime.sampling.driving import driven
 from scenic.runtime.sampling.engine import Accepted, Engine, Plan
 from scenic.runtime.sampling.pending import Task
+from scenic.runtime.sampling.piecewise import PiecewiseEngine
 from scenic.runtime.sampling.planning import Outline
 from scenic.runtime.sampling.profiling import Meter, Profile
 from scenic.runtime.sampling.report import Exhausted
@@ -53,16 +55,24 @@ class Sampler:
         self._impossible = tuple(impossible)
         self._numbers, self._words = dict(numbers or {}), dict(words or {})
         self.engine = Engine(outline.plan(domain), self._fixing(lambda lanes: Counter(lanes.keys)))
+        """The engine of the whole plan."""
+        components = None if self._impossible else components_of(self.engine.plan)
+        self._finder = self.engine if components is None else PiecewiseEngine(self.engine, components)
 
     @property
     def plan(self) -> Plan:
         """The plan that is sampled."""
         return self.engine.plan
 
+    @property
+    def components(self) -> int:
+        """How many components scenes are put together from."""
+        return self._finder.count if isinstance(self._finder, PiecewiseEngine) else 1
+
     def prepare(self) -> None:
         """Make what the first scene would otherwise wait for."""
         if not self._impossible:
-            self.engine.prepare()
+            self._finder.prepare()
 
     def fixed(self, numbers: Mapping[int, float], words: Mapping[int, int]) -> "Sampler":
         """A sampler in which these draws are fixed, too.
@@ -109,13 +119,18 @@ class Sampler:
         """The scenes of tasks without end; ``more`` tells whether to expect that more than the first one is wanted."""
         if self._impossible:
             return self._not_found(tasks)
-        return self.engine.foresee(tasks, max_attempts=self._most_attempts(max_attempts), more=more)
+        return self._finder.foresee(tasks, max_attempts=self._most_attempts(max_attempts), more=more)
 
     def accepted(
         self, seed: int, numbers: NDArray[np.int64], attempts: NDArray[np.int64], source: PointSet | None
     ) -> list[Accepted]:
-        """Scenes of a seed of which the accepted candidates are known."""
-        return self._engine_of(source).accepted(seed, numbers, attempts)
+        """Scenes of a seed of which the accepted candidates are known, or are looked for again; see `Scenario.found`."""
+        engine = self._engine_of(source)
+        if attempts.ndim == 1 and isinstance(engine, PiecewiseEngine):
+            tasks = ((seed, k) for k in numbers.tolist())
+            found = self.find(tasks, max_attempts=int(attempts.max(initial=1)), source=source)
+            return [item for item in found if not isinstance(item, Exhausted)]
+        return engine.accepted(seed, numbers, attempts)
 
     def without_narrowing(self, addresses: Collection[int]) -> "Sampler":
         """A sampler that narrows none of the axes at these addresses."""
@@ -147,7 +162,7 @@ class Sampler:
             rows = lanes.scenes - first
             return Points({place: column[rows] for place, column in numbers.items()}, Counter(lanes.keys))
 
-        engine = self.engine.driven(self._fixing(source))
+        engine = self._finder.driven(self._fixing(source))
         tasks = ((seed, k) for k in range(first, first + count))
         return engine.scenes(tasks, max_attempts=max_attempts)
 
@@ -173,11 +188,11 @@ class Sampler:
             return source
         return lambda lanes: fixed_draws(self._numbers, self._words, source(lanes))
 
-    def _engine_of(self, points: PointSet | None) -> Engine:
+    def _engine_of(self, points: PointSet | None) -> Engine | PiecewiseEngine:
         """The engine that samples rows of a point set; the usual engine where there is none."""
         if points is None:
-            return self.engine
-        return self.engine.driven(self._fixing(driven(points, self.plan.graph)))
+            return self._finder
+        return self._finder.driven(self._fixing(driven(points, self.plan.graph)))
 
 
 __all__ = ["DEFAULT_ATTEMPTS", "Sampler"]

@@ -386,7 +386,8 @@ class Scenario:
         Args:
             seed: their seed.
             numbers: which scenes of the seed, ``(n,)``.
-            attempts: candidates tried for each, the accepted one included, ``(n,)``.
+            attempts: candidates tried for each, the accepted one included, ``(n,)``; of scenes put together from components
+                ``(n, components)``, or scenes are looked for again.
             source: random numbers that are not hashed; see `stream`.
 
         """

@@ -92,8 +92,14 @@ class Scene:
 
     @property
     def attempts(self) -> int:
-        """Candidates tried until this one was accepted, itself included."""
+        """Candidates tried until this one was accepted, itself included; of several components the largest number."""
         return self.found.attempts[self.lane]
+
+    @property
+    def component_attempts(self) -> tuple[int, ...]:
+        """Candidates tried of each independent component of the scene."""
+        components = self.found.components
+        return (self.attempts,) if components is None else tuple(components[self.lane].tolist())
 
     @property
     def workspace(self) -> Workspace:

@@ -1,0 +1,274 @@
+"""Parts of a plan that have nothing to do with each other.
+
+Draws and checks form a graph: a check joins the draws that it reads. Checks that cannot fail, and pairs of objects that are
+always apart, join nothing. Each connected component is a sampling problem of its own; given the requirements, what one
+draws is independent of the others, so that each may be looked for alone (`scenic.runtime.sampling.piecewise`).
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from scenic.graph.bounding import over, overall
+from scenic.graph.bounds import Bounds
+from scenic.graph.draws import box_addresses
+from scenic.graph.node import Graph, Node
+from scenic.runtime.sampling.checks import Check, CollisionCheck, NodeCheck, ObjectNodes
+from scenic.runtime.sampling.engine import Plan
+
+__all__ = ["Components", "components_of"]
+
+_MARGIN: Final = 1e-9
+"""Relative: what rounding may add to distances and sizes, with room to spare."""
+
+
+@dataclass(frozen=True, slots=True)
+class Components:
+    """The components of a plan, in the order of their first checks.
+
+    ``plans`` have the checks of one each. ``owner`` says to which component the draw at an address belongs; draws that no check
+    reads, and are not there, to the first.
+    """
+
+    plans: tuple[Plan, ...]
+    owner: Mapping[int, int]
+
+
+def components_of(plan: Plan) -> Components | None:
+    """The components of a plan; ``None`` where all hangs together."""
+    joins = _Joins(plan)
+    for check in plan.checks:
+        if isinstance(check, CollisionCheck):
+            for item in check.objects:
+                joins.add(item.all)
+        elif not _always_holds(check, overall(check.nodes[0])):
+            joins.add(check.nodes)
+    return None if joins.count < 2 else _split(plan)
+
+
+def _split(plan: Plan) -> Components | None:
+    joins, bounds = _Joins(plan), _Known(plan)
+    kept: list[tuple[int, int, Check]] = []
+    for index, check in enumerate(plan.checks):
+        if not isinstance(check, CollisionCheck):
+            continue
+        pairs = check.pairs[_may_meet(check, bounds)]
+        members = {member: joins.add(check.objects[member].all) for member in np.unique(pairs).tolist()}
+        parts: dict[int, list[int]] = {}
+        for number, (first, second) in enumerate(pairs.tolist()):
+            joins.join(members[first], members[second])
+            # Of a pair of which one does not move the other one decides where it belongs.
+            own = members[first] if joins.has_draws(members[first]) else members[second]
+            parts.setdefault(own, []).append(number)
+        kept += [(index, own, _narrowed(check, pairs[numbers])) for own, numbers in parts.items()]
+    for index, check in enumerate(plan.checks):
+        if isinstance(check, CollisionCheck):
+            continue
+        # Bounds cost more than what they save, but where something hangs on them.
+        if not joins.would_join(check.nodes) or not _always_holds(check, bounds(check.nodes[0])):
+            kept.append((index, joins.add(check.nodes), check))
+    kept.sort(key=_index)
+    groups: dict[int, list[tuple[int, Check]]] = {}
+    for index, member, check in kept:
+        groups.setdefault(joins.leader(member) if joins.has_draws(member) else -1, []).append((index, check))
+    fixed = groups.pop(-1, [])
+    if len(groups) < 2:
+        return None
+    numbers = {leader: number for number, leader in enumerate(groups)}
+    first, *others = (_merged(group) for group in groups.values())
+    places = {
+        index: place
+        for place, index in enumerate(i for i, item in enumerate(plan.checks) if item.probability < 1)
+    }
+    plans = tuple(_part(plan, group, places) for group in (sorted([*fixed, *first], key=_index), *others))
+    owner: dict[int, int] = {}
+    for node, leader in joins.draws():
+        if leader in numbers:
+            owner[plan.graph.address(node)] = numbers[leader]
+    parts_of_domain = zip(box_addresses(len(plan.domain.parts)).tolist(), joins.factors, strict=True)
+    for place, factor in parts_of_domain:
+        if factor is not None and joins.leader(factor) in numbers:
+            owner[place] = numbers[joins.leader(factor)]
+    return Components(plans, owner)
+
+
+def _index(item: tuple[Any, ...]) -> Any:
+    return item[0]
+
+
+def _merged(group: Sequence[tuple[int, Check]]) -> list[tuple[int, Check]]:
+    """The checks of a component; all that is asked of collisions in it is one check."""
+    merged: list[tuple[int, Check]] = []
+    collisions: dict[int, list[CollisionCheck]] = {}
+    for index, check in group:
+        if isinstance(check, CollisionCheck):
+            collisions.setdefault(index, []).append(check)
+        else:
+            merged.append((index, check))
+    for index, some in collisions.items():
+        objects = list({id(item): item for check in some for item in check.objects}.values())
+        number = {id(item): place for place, item in enumerate(objects)}
+        pairs = [
+            [number[id(check.objects[one])], number[id(check.objects[other])]]
+            for check in some
+            for one, other in check.pairs.tolist()
+        ]
+        merged.append(
+            (index, replace(some[0], objects=objects, pairs=np.array(sorted(pairs), dtype=np.intp)))
+        )
+    return sorted(merged, key=_index)
+
+
+def _narrowed(check: CollisionCheck, pairs: NDArray[np.intp]) -> CollisionCheck:
+    """The check of some pairs only, and of the objects in them."""
+    members, numbered = np.unique(pairs, return_inverse=True)
+    objects = [check.objects[member] for member in members.tolist()]
+    return replace(check, objects=objects, pairs=numbered.reshape(-1, 2), _collider=None)
+
+
+def _part(plan: Plan, group: Sequence[tuple[int, Check]], places: Mapping[int, int]) -> Plan:
+    checks = tuple(check for _, check in group)
+    return replace(
+        plan,
+        checks=checks,
+        outputs=(),
+        bodies=sum(len(check.objects) for check in checks if isinstance(check, CollisionCheck)),
+        numbers=tuple(index for index, _ in group),
+        soft_places=tuple(places[index] for index, check in group if check.probability < 1),
+        evaluated=Graph(node for check in checks for node in check.nodes).nodes,
+    )
+
+
+def _always_holds(check: Check, bounds: Bounds | None) -> bool:
+    """Whether bounds of its node show that a check passes in every lane, and nothing below it may fail."""
+    if (
+        not isinstance(check, NodeCheck)
+        or bounds is None
+        or bounds.lower.shape != (1,)
+        or bounds.lower[0] < 1
+    ):
+        return False
+    return not any(
+        node.operation.may_fault(node.operands, node.payload, node.kind)
+        or node.operation.may_reject(node.operands, node.payload, node.kind)
+        for node in Graph([check.node]).nodes
+    )
+
+
+class _Known:
+    """Bounds of nodes over the part of the cube that is sampled."""
+
+    def __init__(self, plan: Plan) -> None:
+        self._axes = plan.graph.axes
+        self._hull = plan.domain.hull
+        self._known: dict[Node, Bounds | None] = {}
+
+    def __call__(self, node: Node) -> Bounds | None:
+        return over([node], self._axes, *self._hull, self._known)[node]
+
+
+def _may_meet(check: CollisionCheck, bounds: _Known) -> NDArray[np.bool_]:
+    """Which pairs of objects are not certainly apart: balls about the places where they may be."""
+    spans = [_span(item, bounds) for item in check.objects]
+    lower, upper = np.array([span[0] for span in spans]), np.array([span[1] for span in spans])
+    radius = np.array([span[2] for span in spans])
+    one, other = check.pairs.T
+    with np.errstate(invalid="ignore"):
+        gap = np.maximum(lower[one] - upper[other], lower[other] - upper[one])
+        reach = (radius[one] + radius[other]) * (1 + _MARGIN)
+        apart = np.square(np.maximum(gap, 0)).sum(axis=1) * (1 - _MARGIN) > np.square(reach)
+    return ~np.asarray(apart)
+
+
+def _span(item: ObjectNodes, bounds: _Known) -> tuple[NDArray[np.float64], NDArray[np.float64], float]:
+    """Where an object's position may be, and how far from it the object may reach: meshes fill their boxes at most."""
+    position, size = bounds(item.position), bounds(item.size)
+    nowhere = np.full(3, np.inf)
+    if position is None or size is None or position.lower.shape != (1, 3) or size.upper.shape != (1, 3):
+        return -nowhere, nowhere, np.inf
+    most = np.maximum(np.abs(size.lower[0]), np.abs(size.upper[0]))
+    return position.lower[0], position.upper[0], float(np.linalg.norm(most)) / 2
+
+
+class _Joins:
+    """Which draws some sets of nodes join: union and find over the sets, told one after the other."""
+
+    def __init__(self, plan: Plan) -> None:
+        self._owner: dict[Node, int] = {}
+        self._leaders: list[int] = []
+        self._drawing: list[bool] = []
+        self._random: dict[Node, bool] = {}
+        for node in plan.graph.nodes:
+            self._random[node] = node.is_drawn or any(self._random[operand] for operand in node.operands)
+        axes = list(plan.graph.axes)
+        self.factors = [
+            self.add([axes[number] for number in numbers.tolist()]) if len(numbers) else None
+            for numbers in plan.domain.joined_axes()
+        ]
+        """The sets of axes that are narrowed together, part by part."""
+
+    @property
+    def count(self) -> int:
+        """How many sets of draws are not joined."""
+        return len({self.leader(member) for member in range(len(self._leaders)) if self._drawing[member]})
+
+    def add(self, nodes: Iterable[Node]) -> int:
+        """A set of nodes, whose draws are joined; its number."""
+        member = len(self._leaders)
+        self._leaders.append(member)
+        self._drawing.append(False)
+        stack = list(nodes)
+        while stack:
+            node = stack.pop()
+            if not self._random[node]:
+                continue
+            self._drawing[member] = True
+            owner = self._owner.get(node)
+            if owner is not None:
+                self.join(owner, member)
+                continue
+            self._owner[node] = member
+            stack.extend(node.operands)
+        return member
+
+    def would_join(self, nodes: Iterable[Node]) -> bool:
+        """Whether adding a set of nodes would join draws that are apart yet."""
+        met: set[int | Node] = set()
+        seen: set[Node] = set()
+        stack = list(nodes)
+        while stack and len(met) < 2:
+            node = stack.pop()
+            if node in seen or not self._random[node]:
+                continue
+            seen.add(node)
+            if node in self._owner:
+                met.add(self.leader(self._owner[node]))
+            elif node.is_drawn:
+                met.add(node)
+            else:
+                stack.extend(node.operands)
+        return len(met) > 1
+
+    def has_draws(self, member: int) -> bool:
+        """Whether any draw is below a set."""
+        return self._drawing[member]
+
+    def leader(self, member: int) -> int:
+        """The number that stands for all that is joined with a set."""
+        while self._leaders[member] != member:
+            self._leaders[member] = self._leaders[self._leaders[member]]
+            member = self._leaders[member]
+        return member
+
+    def join(self, one: int, other: int) -> None:
+        """Join two sets; one without draws joins nothing."""
+        if self._drawing[one] and self._drawing[other]:
+            first, second = sorted((self.leader(one), self.leader(other)))
+            self._leaders[second] = first
+
+    def draws(self) -> list[tuple[Node, int]]:
+        """All draws below the sets, with the leaders of these."""
+        return [(node, self.leader(member)) for node, member in self._owner.items() if node.is_drawn]

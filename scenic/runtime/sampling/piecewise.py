@@ -1,0 +1,287 @@
+"""Scenes put together from components, each of which has attempts of its own.
+
+A scene is, of each component, the first attempt that passes its checks. All components are tried together first: alike nodes
+of a hundred parking lots are evaluated in one call. Those that have found nothing go on alone.
+"""
+
+import time
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from copy import copy
+from dataclasses import dataclass, replace
+from itertools import islice
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from scenic.graph.batch import Batch
+from scenic.graph.draws import Lanes, Source, Words, attempt_keys, scene_keys, seed_word
+from scenic.runtime.geometry.ragged import expand
+from scenic.runtime.sampling.components import Components
+from scenic.runtime.sampling.engine import Accepted, CandidateError, Engine, Found
+from scenic.runtime.sampling.pending import Task
+from scenic.runtime.sampling.profiling import Meter, Profile
+from scenic.runtime.sampling.report import Exhausted
+
+__all__ = ["PiecewiseEngine"]
+
+_BLOCK: Final = 1024
+"""Scenes looked for at a time."""
+
+_FORESEEN: Final = (8, 256)
+"""Scenes looked for at first, and at most, where nobody knows how many are wanted."""
+
+_FORESIGHT_SECONDS: Final = 0.0125
+"""What takes longer is not followed by four times as much."""
+
+_TOGETHER: Final = 32
+"""Lanes in which all components are tried together."""
+
+_FAILED: Final = -1
+"""In the place of an attempt: the first one that nothing rejects has failed."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Limits:
+    """What may be spent on a scene; see `Engine.scenes`."""
+
+    attempts: int
+    lanes: int | None = None
+    deadline: float | None = None
+
+
+class _Block:
+    """Scenes that are looked for together.
+
+    ``attempts`` ``(n, components)`` are those that were accepted, 0 where none is known yet. ``missing`` and ``errors`` tell, by scene, why
+    it was not found; nothing is known of scenes from ``end`` on.
+    """
+
+    def __init__(self, tasks: Sequence[tuple[int, int]], components: int) -> None:
+        self.tasks = tasks
+        self.attempts = np.zeros((len(tasks), components), dtype=np.int64)
+        self.missing: dict[int, Exhausted] = {}
+        self.errors: dict[int, list[CandidateError]] = {}
+        self.end = len(tasks)
+
+
+class PiecewiseEngine:
+    """Samples a plan component by component; has the interface of `Engine` as far as scenes are looked for.
+
+    Args:
+        whole: the engine of the whole plan.
+        components: its components.
+
+    """
+
+    def __init__(self, whole: Engine, components: Components) -> None:
+        self._whole = whole
+        self._components = components
+        self._engines: list[Engine | None] = [None] * len(components.plans)
+        self._nodes = tuple(
+            dict.fromkeys(node for plan in components.plans for check in plan.checks for node in check.nodes)
+        )
+
+    @property
+    def count(self) -> int:
+        """The number of components."""
+        return len(self._engines)
+
+    def prepare(self) -> None:
+        """Make what the first round would otherwise wait for."""
+        self._whole.prepare()
+        self._whole.make_ready(self._nodes)
+
+    def driven(self, source: Callable[[Lanes], Source]) -> "PiecewiseEngine":
+        """The same with other draws (`Engine.driven`)."""
+        other = copy(self)
+        other._whole = self._whole.driven(source)
+        other._engines = [self._engine(number).driven(source) for number in range(self.count)]
+        return other
+
+    def metered(self, meter: Meter) -> "PiecewiseEngine":
+        """The same with a meter of what it does (`Engine.metered`)."""
+        other = copy(self)
+        other._whole = self._whole.metered(meter)
+        other._engines = [self._engine(number).metered(meter) for number in range(self.count)]
+        return other
+
+    def profile(self, scenes: int) -> Profile:
+        """What the meter has measured while so many scenes were found; candidates are those of all components together."""
+        return self._whole.profile(scenes)
+
+    def scenes(
+        self,
+        tasks: Iterable[tuple[int, int]],
+        *,
+        max_attempts: int,
+        lanes: int | None = None,
+        deadline: float | None = None,
+    ) -> Iterator[Accepted | Exhausted]:
+        """The scenes of ``tasks``, in order; as `Engine.scenes`, with ``max_attempts`` for each component."""
+        waiting, limits = iter(tasks), _Limits(max_attempts, lanes, deadline)
+        while block := list(islice(waiting, _BLOCK)):
+            yield from self._block(block, limits)
+
+    def foresee(
+        self, tasks: Iterable[tuple[int, int]], *, max_attempts: int, more: bool = True
+    ) -> Iterator[Accepted | Exhausted]:
+        """The same for tasks without end, of which nobody knows how many are wanted."""
+        waiting, limits = iter(tasks), _Limits(max_attempts)
+        size = _FORESEEN[0] if more else 1
+        while True:
+            begun = time.thread_time()
+            yield from self._block(list(islice(waiting, size)), limits)
+            if time.thread_time() - begun < _FORESIGHT_SECONDS:
+                size = min(4 * size, _FORESEEN[1])
+
+    def accepted(self, seed: int, numbers: NDArray[np.int64], attempts: NDArray[np.int64]) -> list[Accepted]:
+        """Scenes of a seed of which the accepted attempts ``(n, components)`` are known; no check is made again."""
+        return self._finished([(seed, int(k)) for k in numbers], attempts)
+
+    def _engine(self, number: int) -> Engine:
+        engine = self._engines[number]
+        if engine is None:
+            engine = self._engines[number] = self._whole.of_part(self._components.plans[number])
+        return engine
+
+    def _block(self, tasks: Sequence[tuple[int, int]], limits: _Limits) -> Iterator[Accepted | Exhausted]:
+        block = _Block(tasks, self.count)
+        ahead = 0
+        if len(tasks) <= _TOGETHER and (limits.lanes is None or limits.lanes >= len(tasks)):
+            ahead = min(limits.attempts, _TOGETHER // len(tasks))
+            self._together(block, ahead)
+        for number in range(self.count):
+            self._alone(number, block, ahead, limits)
+        good = [row for row in range(block.end) if row not in block.missing and row not in block.errors]
+        found = iter(self._finished([tasks[row] for row in good], block.attempts[good]))
+        for row in range(block.end):
+            if row in block.missing:
+                yield block.missing[row]
+            elif row in block.errors:
+                raise min(block.errors[row], key=lambda error: error.check.position)
+            else:
+                yield next(found)
+        if block.end < len(tasks):
+            yield from self._block(tasks[block.end :], limits)
+
+    def _alone(self, number: int, block: _Block, tried: int, limits: _Limits) -> None:
+        """Look for one component of the scenes in which it is missing."""
+        mine = block.attempts[: block.end, number]
+        if (mine == _FAILED).any():
+            tried, mine[:] = 0, np.where(mine == _FAILED, 0, mine)  # its own engine finds out what failed
+        rows = np.flatnonzero(mine == 0).tolist()
+        if not rows:
+            return
+        tasks = [block.tasks[row] for row in rows]
+        if tried >= limits.attempts:
+            for row, (seed, k) in zip(rows, tasks, strict=True):
+                block.missing.setdefault(row, self._whole.given_up(seed, k, tried))
+            return
+        results = self._engine(number).scenes(
+            tasks, max_attempts=limits.attempts, lanes=limits.lanes, deadline=limits.deadline, tried=tried
+        )
+        for row in rows:
+            try:
+                result = next(results)
+            except CandidateError as error:
+                block.errors.setdefault(row, []).append(error)
+                block.end = row + 1
+                return
+            if isinstance(result, Exhausted):
+                # All requirements are told of, not only those of the component.
+                report = self._whole.report(Task(result.seed, result.k), result.attempts)
+                block.missing.setdefault(row, replace(result, report=report))
+            else:
+                found, lane = result
+                mine[row] = found.attempts[lane]
+
+    def _together(self, block: _Block, ahead: int) -> None:
+        """Try all components of the scenes so many times."""
+        begun = time.thread_time()
+        pending = self._whole.pending(block.tasks)
+        owner, offset = expand(np.full(len(block.tasks), ahead, dtype=np.int64))
+        batch = self._whole.attempts_at(pending, owner, offset)
+        self._whole.evaluate(batch, self._nodes)
+        passes = np.ones((self.count, len(owner)), dtype=np.bool_)
+        failed = np.zeros((self.count, len(owner)), dtype=np.bool_)
+        for number, plan in enumerate(self._components.plans):
+            places = iter(plan.soft_places or ())
+            for index, check in zip(plan.numbers or (), plan.checks, strict=True):
+                asked = time.perf_counter()
+                verdict = check.test(batch)
+                if check.probability < 1:
+                    verdict = verdict.unless(pending.inactive[owner, next(places)])
+                passes[number] &= verdict.passes
+                if verdict.failed is not None:
+                    failed[number] |= verdict.failed
+                spent = time.perf_counter() - asked
+                self._whole.note(index, len(owner), int(np.count_nonzero(verdict.passes)), spent)
+        self._whole.note_round(len(owner), int(passes.all(axis=0).sum()), time.thread_time() - begun)
+        shape = (self.count, len(block.tasks), ahead)
+        passes, failed = passes.reshape(shape), failed.reshape(shape)
+        first = passes.argmax(axis=2)
+        fails = np.take_along_axis(failed, first[..., np.newaxis], axis=2)[..., 0]
+        block.attempts[:] = np.where(passes.any(axis=2), np.where(fails, _FAILED, first + 1), 0).T
+
+    def _finished(self, tasks: Sequence[tuple[int, int]], attempts: NDArray[np.int64]) -> list[Accepted]:
+        """Scenes of known attempts ``(n, components)``."""
+        if not tasks:
+            return []
+        seeds, numbers = [seed for seed, _ in tasks], [k for _, k in tasks]
+        batch = self._whole.batch(self._source(seeds, numbers, attempts))
+        batch.settle(self._whole.plan.outputs)
+
+        def alone(lane: int) -> Batch:
+            one = slice(lane, lane + 1)
+            return self._whole.batch(self._source(seeds[one], numbers[one], attempts[one]), grouped=False)
+
+        found = Found(seeds, numbers, attempts.max(axis=1).tolist(), batch, alone, attempts)
+        return [(found, lane) for lane in range(len(tasks))]
+
+    def _source(self, seeds: Sequence[int], numbers: Sequence[int], attempts: NDArray[np.int64]) -> Source:
+        words = np.array([seed_word(seed) for seed in seeds], dtype=np.uint64)
+        scenes = np.array(numbers, dtype=np.int64)
+        keys = scene_keys(words, scenes)
+        sources = [
+            self._whole.source_of(Lanes(words, scenes, mine - 1, attempt_keys(keys, mine - 1)))
+            for mine in attempts.T
+        ]
+        return _Composed(sources, self._components.owner)
+
+
+class _Composed:
+    """The source whose draws come from one of several, by their components."""
+
+    def __init__(self, sources: Sequence[Source], owner: Mapping[int, int]) -> None:
+        self._sources = sources
+        self._owner = owner
+
+    def __len__(self) -> int:
+        return len(self._sources[0])
+
+    def take(self, lanes: NDArray[np.intp]) -> "_Composed":
+        return _Composed([source.take(lanes) for source in self._sources], self._owner)
+
+    def uniforms(self, addresses: Words) -> NDArray[np.float64]:
+        result = np.empty((len(addresses), len(self)))
+        for number, rows in self._parts(addresses):
+            result[rows] = self._sources[number].uniforms(addresses[rows])
+        return result
+
+    def uniform_each(self, addresses: Words) -> NDArray[np.float64]:
+        result = np.empty(len(addresses))
+        for number, lanes in self._parts(addresses):
+            result[lanes] = self._sources[number].take(lanes).uniform_each(addresses[lanes])
+        return result
+
+    def words(self, addresses: Words) -> Words:
+        result = np.empty((len(addresses), len(self)), dtype=np.uint64)
+        for number, rows in self._parts(addresses):
+            result[rows] = self._sources[number].words(addresses[rows])
+        return result
+
+    def _parts(self, addresses: Words) -> Iterator[tuple[int, NDArray[np.intp]]]:
+        owners = np.array([self._owner.get(place, 0) for place in addresses.tolist()], dtype=np.intp)
+        for number in np.unique(owners).tolist():
+            yield number, np.flatnonzero(owners == number)
