@@ -138,6 +138,7 @@ CODES: Final = MappingProxyType(
         "SC211": "wrong arguments",
         "SC212": "name that a module lacks",
         "SC213": "names that cannot be known",
+        "SC214": "unknown attribute",
         "SC220": "a literal was required",
         # Meaning, found without running the program.
         "SC300": "misspelt property",

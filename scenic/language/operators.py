@@ -86,7 +86,7 @@ def _side(side: str) -> Operator:
 _ALL = (
     Operator(
         "deg",
-        (Operand("angle", "scalar"),),
+        (Operand("angle", "scalar or vector"),),
         "scalar",
         ("angle deg",),
         "An angle given in degrees, converted to radians. It applies to everything multiplied on its left: "

@@ -219,7 +219,8 @@ def test_what_is_said_of_statements_that_stay_follows_the_others(seed: int, tmp_
 
 def test_little_is_looked_at_again() -> None:
     lines = [
-        f"class C{index}(Object): width: {index}\nx{index} = new C{index} at {index}" for index in range(100)
+        f"class C{index}(Object): width: {index}\nx{index} = new C{index} at ({index}, 0)"
+        for index in range(100)
     ]
     lines.insert(50, "y = 1")
     revision = revise("\n".join(lines), filename="f")
@@ -248,7 +249,8 @@ def versions(texts: Iterable[str]) -> Iterator[tuple[Resolution, Checked]]:
 
 def test_what_only_moves_is_not_looked_at_again() -> None:
     lines = [
-        f"class C{index}(Object): width: {index}\nx{index} = new C{index} at {index}" for index in range(100)
+        f"class C{index}(Object): width: {index}\nx{index} = new C{index} at ({index}, 0)"
+        for index in range(100)
     ]
     lines[80] = "def f(): y = 1"  # A warning, which moves.
     more = [*lines[:50], "", *lines[50:]]

@@ -29,6 +29,7 @@ from scenic.compiler.checks import (
     specifiers,
     support,
     uses,
+    values,
 )
 from scenic.compiler.checks.context import Context, NodeRule, ProgramRule
 from scenic.compiler.checks.pieces import Piece, PieceRule, piecewise
@@ -39,7 +40,7 @@ __all__ = ["NOTED", "Context", "check", "lint"]
 
 _NODE_RULES: Final[tuple[tuple[type[ast.AST], NodeRule], ...]] = tuple(
     rule
-    for module in (angles, arguments, class_bodies, conditions, making, randomness, specifiers)
+    for module in (angles, arguments, class_bodies, conditions, making, randomness, specifiers, values)
     for rule in module.RULES.items()
 )
 
@@ -84,6 +85,7 @@ NOTED: Final = frozenset(
         ast.Assign,
         ast.AsyncFunctionDef,
         ast.Attribute,
+        ast.For,
         ast.FunctionDef,
         ast.Import,
         ast.ImportFrom,
@@ -94,6 +96,7 @@ NOTED: Final = frozenset(
         scenic.BehaviorDef,
         scenic.Model,
         scenic.MonitorDef,
+        scenic.Param,
         scenic.Record,
         scenic.ScenarioDef,
         scenic.TerminateWhen,

@@ -11,7 +11,9 @@ from scenic.compiler import tree as scenic
 from scenic.compiler.checks.blocks import Block, blocks
 from scenic.compiler.checks.classes import Classes
 from scenic.compiler.checks.kept import Kept, Moves, Said, changed_names
+from scenic.compiler.checks.meanings import ProgramMeanings
 from scenic.compiler.checks.places import header_span, word_span
+from scenic.compiler.kinds import Kind, KindOf
 from scenic.compiler.scopes import PROVIDED, Binding, BindingKind, Resolution, Scope, ScopeKind, Stretch
 from scenic.compiler.surroundings import Foreign, Surroundings
 from scenic.compiler.traversal import position
@@ -92,6 +94,19 @@ class Context:
         """The properties of the classes that the program uses."""
         # Without a reference back all of this is gone as soon as the check is done.
         return Classes(proxy(self))
+
+    @cached_property
+    def meanings(self) -> ProgramMeanings:
+        """What names mean for the inference of kinds."""
+        return ProgramMeanings(proxy(self))
+
+    @cached_property
+    def _kinds(self) -> KindOf:
+        return KindOf(self.meanings)
+
+    def kind_of(self, value: ast.expr | None) -> Kind | None:
+        """The kind of what an expression gives; ``None`` if it is not certain."""
+        return self._kinds(value)
 
     # What has changed since the version before
 
@@ -180,6 +195,12 @@ class Context:
     def given(self) -> frozenset[str]:
         """The properties that the program gives with `with`."""
         found: frozenset[str] = self.fact("given")
+        return found
+
+    @property
+    def parameters(self) -> frozenset[str]:
+        """The names of the global parameters that the program sets."""
+        found: frozenset[str] = self.fact("parameters")
         return found
 
     @property
@@ -413,6 +434,21 @@ def _given(context: Context) -> frozenset[str]:
     )
 
 
+def _parameters(context: Context) -> frozenset[str]:
+    return _united(
+        context,
+        "parameters",
+        lambda own: frozenset(item.name for node, _ in own.nodes(scenic.Param) for item in node.items),
+    )
+
+
+def _ego_members(context: Context) -> frozenset[str] | None:
+    """All attributes and methods of the ego, if the program sets it just once and makes it there."""
+    stores = [use.node for use in context.resolution.uses("ego") if isinstance(use.node.ctx, ast.Store)]
+    value = context.assigned.get(stores[0]) if len(stores) == 1 else None
+    return context.meanings.members(value.cls) if isinstance(value, scenic.New) else None
+
+
 def _owners(context: Context) -> Mapping[str, int]:
     found: Counter[str] = Counter()
     for stretch in context.resolution.stretches:
@@ -474,8 +510,10 @@ _FACTS: Final[Mapping[str, Callable[[Context], Any]]] = {
     "attributes": _attributes,
     "broken": lambda context: bool(context.nodes(scenic.ErrorStatement)),
     "class names": _class_names,
+    "ego members": _ego_members,
     "given": _given,
     "owners": _owners,
+    "parameters": _parameters,
     "stored attributes": _stored_attributes,
     "unresolved": _unresolved,
 }

@@ -1,0 +1,295 @@
+"""Values of a kind that cannot be used where they stand, and attributes that values of a kind do not have."""
+
+import ast
+from collections.abc import Iterator
+from typing import Final
+
+from scenic.compiler import tree as scenic
+from scenic.compiler.checks.context import Context, NodeRule
+from scenic.compiler.kinds import INSTANCES, Kind, accepts
+from scenic.compiler.scopes import Scope
+from scenic.compiler.traversal import position, walk
+from scenic.language.diagnostics import Diagnostic
+from scenic.language.members import MEMBERS
+from scenic.language.operators import OPERATORS
+from scenic.language.properties import properties_of
+from scenic.language.spans import Span
+from scenic.language.specifiers import SPECIFIERS
+from scenic.language.spelling import nearest
+
+__all__ = ["RULES"]
+
+_COMPLETE: Final = frozenset({"vector", "orientation"})
+"""Kinds all of whose attributes and methods are declared."""
+
+_ORDERED: Final = (ast.Lt, ast.LtE, ast.Gt, ast.GtE)
+
+_PROPERTIES: Final = properties_of("Object")
+
+_HELP: Final = {
+    "vector": "write `(x, y, z)` or `x @ y`, or name a point or an object",
+    "region": "make one, as `CircularRegion((0, 0), 5)`, or take one of an object, as `x.topSurface`",
+    "scalar": "numbers are written plainly, drawn as by `Range(1, 2)`, or measured as by `distance to x`",
+    "point": "make one with `new Point` or `new Object`",
+}
+"""Ways to a value of a declared type."""
+
+
+def _wrong(title: str, declared: str, value: ast.expr | None, context: Context) -> Iterator[Diagnostic]:
+    """SC404: a value that certainly does not do where a type is declared."""
+    kind = context.kind_of(value)
+    if value is None or kind is None or accepts(declared, kind):
+        return
+    if declared == "vector" and kind.size is not None:
+        yield context.error(
+            "SC404",
+            f"`{title}`: a vector has 2 or 3 coordinates, not {kind.size}",
+            value,
+            _HELP["vector"],
+        )
+        return
+    wanted = "number" if declared == "scalar" else declared
+    article = "an" if wanted[0] in "aeio" else "a"
+    yield context.error(
+        "SC404",
+        f"`{title}`: expected {article} {wanted}, not {kind.phrase}",
+        value,
+        _HELP.get(declared, f"give it {article} {wanted}"),
+    )
+
+
+def _specifiers(node: scenic.New | scenic.Override, scope: Scope, context: Context) -> Iterator[Diagnostic]:
+    """``at 3``, ``with width "3"``."""
+    if _may_be_meant(node, scope, context) or _is_cut(node, context):
+        return
+    for specifier in node.specifiers:
+        if specifier.property is not None:
+            declared = _PROPERTIES.get(specifier.property)
+            if declared is not None and specifier.operands:
+                yield from _wrong(f"with {specifier.property}", declared.type, specifier.operands[0], context)
+        elif specifier.specifier in SPECIFIERS:
+            operands = SPECIFIERS[specifier.specifier].operands
+            for operand, value in zip(operands, specifier.operands, strict=False):
+                left_out = operand.default is not None and _is_none(value)
+                # `in front of x` has a message of its own.
+                if not left_out and not isinstance(value, scenic.Operation):
+                    yield from _wrong(specifier.specifier, operand.type, value, context)
+
+
+def _is_cut(node: ast.AST, context: Context) -> bool:
+    """Whether a comma separates an object from the rest of its last operand, of which SC311 tells."""
+    return any(
+        isinstance(assign.value, ast.Tuple) and assign.value.elts[:1] == [node]
+        for assign in context.nodes_around(node, ast.Assign)
+    )
+
+
+def _may_be_meant(node: ast.AST, scope: Scope, context: Context) -> bool:
+    """Whether what fails may be expected to: in a function without a name, or where exceptions are caught."""
+    if isinstance(scope.node, ast.Lambda):
+        return True
+    place = position(node)
+    return any(
+        position(attempt) < place < position(attempt.handlers[0])
+        for attempt in context.nodes_around(node, ast.Try)
+        if attempt.handlers
+    )
+
+
+def _operation(node: scenic.Operation, scope: Scope, context: Context) -> Iterator[Diagnostic]:
+    """``distance to 3``."""
+    if node.operator in OPERATORS and node.operator != "@" and not _may_be_meant(node, scope, context):
+        for operand, value in zip(OPERATORS[node.operator].operands, node.operands, strict=False):
+            if not _is_none(value):  # Mostly as if it were left out.
+                yield from _wrong(node.operator, operand.type, value, context)
+
+
+def _is_none(value: ast.expr | None) -> bool:
+    return isinstance(value, ast.Constant) and value.value is None
+
+
+def _property(node: scenic.PropertyDef, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+    """``width: "3"``, ``size: self.lenth``."""
+    declared = _PROPERTIES.get(node.name)
+    if declared is not None and "additive" not in node.attributes:
+        yield from _wrong(node.name, declared.type, node.value, context)
+
+
+def _assign(node: ast.Assign, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+    """``workspace = room``, ``ego = 3``."""
+    kind = None if isinstance(node.value, ast.Tuple) else context.kind_of(node.value)
+    for target in node.targets if kind is not None else ():
+        name = context.provided(target)
+        if kind is None or name not in ("ego", "workspace"):
+            continue
+        if name == "workspace" and kind.name != "workspace":
+            yield context.error(
+                "SC404",
+                f"the workspace must be a `Workspace`, not {kind.phrase}",
+                node.value,
+                f"write `workspace = Workspace({context.text(node.value) or 'region'})`"
+                if kind.name == "region"
+                else "write `workspace = Workspace(region)`",
+                fix=context.replacement(
+                    "Make a workspace", node.value, f"Workspace({context.text(node.value)})"
+                )
+                if kind.name == "region" and context.text(node.value)
+                else None,
+            )
+        elif name == "ego" and kind.name != "object":
+            yield context.error(
+                "SC404",
+                f"the ego must be an object, not {kind.phrase}",
+                node.value,
+                "make one with `new Object`",
+            )
+
+
+def _mutate(node: scenic.Mutate, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+    """``mutate room``."""
+    for target in node.targets:
+        kind = context.kind_of(target)
+        if kind is not None and kind.name not in INSTANCES:
+            yield context.error(
+                "SC404",
+                f"`mutate` needs points or objects, not {kind.phrase}",
+                target,
+                "name an object, or leave the name out to mutate all",
+            )
+
+
+def _new(node: scenic.New, scope: Scope, context: Context) -> Iterator[Diagnostic]:
+    """``new table`` where ``table`` is an object."""
+    yield from _specifiers(node, scope, context)
+    kind = context.kind_of(node.cls)
+    if kind is not None:
+        yield context.error(
+            "SC404",
+            f"`new` needs a class of objects, and `{node.cls.id}` is {kind.phrase}",
+            node.cls,
+            "name a class, such as `Object`, or define one with `class`",
+        )
+
+
+def _compare(node: ast.Compare, scope: Scope, context: Context) -> Iterator[Diagnostic]:
+    """``ego.position > 3``."""
+    if _may_be_meant(node, scope, context):
+        return
+    sides = [node.left, *node.comparators]
+    for operator, left, right in zip(node.ops, sides, sides[1:], strict=False):
+        if not isinstance(operator, _ORDERED):
+            continue
+        kinds = context.kind_of(left), context.kind_of(right)
+        wrong = next((kind for kind in kinds if kind is not None and _is_unordered(kind)), None)
+        if wrong is not None:
+            yield context.error(
+                "SC404",
+                f"{wrong.phrase} is neither smaller nor larger than anything",
+                node,
+                "compare numbers: a coordinate such as `x.position.y`, or `distance from x to y`",
+            )
+            return
+
+
+def _is_unordered(kind: Kind) -> bool:
+    return kind.name in INSTANCES or kind.name in ("vector", "orientation", "region", "workspace", "nothing")
+
+
+def _attribute(node: ast.Attribute, scope: Scope, context: Context) -> Iterator[Diagnostic]:
+    """SC214: ``ego.positon``, ``Vector(1, 2).lenght()``."""
+    name = node.attr
+    if not isinstance(node.ctx, ast.Load) or name.startswith("_"):
+        return
+    if context.provided(node.value) == "globalParameters":
+        yield from _parameter(node, context)
+        return
+    kind = context.kind_of(node.value)
+    if kind is None or _may_be_meant(node, scope, context):
+        return
+    if kind.name in INSTANCES:
+        known = kind.members
+        if known is None or name in known or name in context.given or name in context.stored_attributes:
+            return
+    else:
+        known = frozenset(MEMBERS.get("region" if kind.name == "workspace" else kind.name, ()))
+        if not known or name in known:
+            return
+    meant = nearest(name, known)
+    if meant is None and kind.name not in _COMPLETE:
+        return  # Python code may give it to some of them.
+    place = _end(node, context)
+    yield context.error(
+        "SC214",
+        f"{kind.phrase} has no attribute `{name}`",
+        place,
+        f"did you mean `{meant}`?" if meant else f"its attributes are {', '.join(sorted(known)[:6])}, ...",
+        fix=context.renaming(place, name, meant) if meant else None,
+    )
+
+
+def _parameter(node: ast.Attribute, context: Context) -> Iterator[Diagnostic]:
+    """SC214: ``globalParameters.sped``."""
+    known = context.parameters
+    meant = nearest(node.attr, known)
+    if node.attr in known or meant is None:
+        return
+    place = _end(node, context)
+    yield context.warning(
+        "SC214",
+        f"this program sets no parameter `{node.attr}`",
+        place,
+        f"did you mean `{meant}`?",
+        fix=context.renaming(place, node.attr, meant),
+    )
+
+
+def _end(node: ast.Attribute, context: Context) -> Span:
+    """The place of the name after the dot."""
+    whole = context.source.span(node)
+    start = max(0, whole.end_column - len(node.attr))
+    return Span(whole.end_line, start, whole.end_line, whole.end_column)
+
+
+def _class(node: ast.ClassDef, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+    """SC214: ``size: self.lenth * 2``, in the defaults of a class."""
+    defaults = [item.value for item in node.body if isinstance(item, scenic.PropertyDef)]
+    known = context.meanings.members_of(node) if defaults else None
+    if known is None:
+        return
+    for default in defaults:
+        for part in walk(default):
+            if (
+                isinstance(part, ast.Attribute)
+                and isinstance(part.value, ast.Name)
+                and part.value.id == "self"
+                and part.attr not in known
+                and part.attr not in context.given
+            ):
+                yield from _of_self(part, node.name, known, context)
+
+
+def _of_self(node: ast.Attribute, name: str, known: frozenset[str], context: Context) -> Iterator[Diagnostic]:
+    meant = nearest(node.attr, known)
+    if meant is None or node.attr in context.stored_attributes:
+        return  # A class that derives from it may have the property.
+    place = _end(node, context)
+    yield context.error(
+        "SC214",
+        f"`{name}` has no property `{node.attr}`",
+        place,
+        f"did you mean `{meant}`?",
+        fix=context.renaming(place, node.attr, meant),
+    )
+
+
+RULES: Final[dict[type[ast.AST], NodeRule]] = {
+    ast.Assign: _assign,
+    ast.Attribute: _attribute,
+    ast.ClassDef: _class,
+    ast.Compare: _compare,
+    scenic.Mutate: _mutate,
+    scenic.New: _new,
+    scenic.Operation: _operation,
+    scenic.PropertyDef: _property,
+    scenic.Override: _specifiers,
+}

@@ -1,0 +1,124 @@
+"""Kinds of values that the text shows: what is certainly wrong is found on its line, and what runs is never accused."""
+
+import re
+from pathlib import Path
+
+import scenic
+from scenic.compiler.check import check_text
+from scenic.language.members import MEMBERS
+from tests.compiler.golden_cases import read_cases
+from tests.each import each
+from tests.recorded import FOLDER
+from tests.runtime.test_recorded_operands import KINDS, PREAMBLE
+
+CODES = {"SC214", "SC404"}
+WRONG = [
+    ("ego = new Object at 3", "`at`: expected a vector, not a number"),
+    ("ego = new Object at (1, 2, 3, 4)", "`at`: a vector has 2 or 3 coordinates, not 4"),
+    ("ego = new Object at room", "`at`: expected a vector, not a region"),
+    ('ego = new Object facing "north"', "`facing`: expected a heading"),
+    ('ego = new Object with width "3"', "`with width`: expected a number, not text"),
+    ("ego = new Object in (1, 2)", "`in`: expected a region, not a tuple of 2"),
+    ('new Object left of table by "3"', "`left of`: expected a scalar or vector, not text"),
+    ("new Object visible from 3", "`visible`: expected a point, not a number"),
+    ("x = distance from table to 3", "`distance`: expected a vector or region, not a number"),
+    ("for i in range(3):\n    new Object at i", "`at`: expected a vector, not a number"),
+    ("def f(size: float):\n    return new Object at size", "`at`: expected a vector, not a number"),
+    ("spot = Uniform(3, 4)\nnew Object at spot", "`at`: expected a vector, not a number"),
+    ("class Tall:\n    height: 'high'", "`height`: expected a number, not text"),
+    ("mutate room", "`mutate` needs points or objects, not a region"),
+    ("workspace = room", "the workspace must be a `Workspace`, not a region"),
+    ("ego = 3", "the ego must be an object, not a number"),
+    ("new table", "`new` needs a class of objects, and `table` is an object"),
+    ("require table.position > 3", "a vector is neither smaller nor larger"),
+    ("x = table.positon", "an object has no attribute `positon`"),
+    ("ego = new Robot\nrequire ego.laod > 3", "an object has no attribute `laod`"),
+    ("x = Vector(1, 2).lenght()", "a vector has no attribute `lenght`"),
+    ("x = table.position.hight", "a vector has no attribute `hight`"),
+    ("x = room.diference(room)", "a region has no attribute `diference`"),
+    ("class Car:\n    size: self.lenth * 2", "`Car` has no property `lenth`"),
+    ("x = globalParameters.sped", "this program sets no parameter `sped`"),
+]
+RIGHT = [
+    "new Object at (1, 2)",
+    "new Object at table offset by (1, 2, 0)",
+    "new Object in room",
+    "new Object on table",
+    "new Object facing (1, 2, 3)",
+    "new Object facing table.orientation",
+    "new Object with width table.width * 2",
+    "spots = [1]\nspots.append(2)\nnew Object at spots",
+    "x = table.extra",
+    "new Robot with extra 3\nx = table.extre",
+    "class Car:\n    size: self.extra",
+    "x = globalParameters.unlike",
+    "spot = 3\nspot = (1, 2)\nnew Object at spot",
+    "def f(spot):\n    return new Object at spot",
+    "require table.position.x > 3",
+    "table = new Object\nx = table._conditioned",
+    "workspace = Workspace(room)",
+    "x = (room if table.width > 3 else table).anything",
+]
+SETTING = (
+    "room = RectangularRegion((0, 0), 0, 4, 4)\ntable = new Object\n"
+    "class Robot:\n    load: 3\nparam speed = 3\n"
+)
+
+
+def found(text: str) -> list[tuple[str, str]]:
+    return [(item.code, item.message) for item in check_text(text, filename="f") if item.code in CODES]
+
+
+@each(WRONG)
+def test_wrong_values_are_found(case: tuple[str, str]) -> None:
+    text, message = case
+    [(_, told)] = found(SETTING + text + "\n")
+    assert told.startswith(message), told
+
+
+@each(RIGHT)
+def test_nothing_is_said_of(text: str) -> None:
+    assert found(SETTING + text + "\n") == []
+
+
+@each(sorted(FOLDER.glob("operands_*.txt")))
+def test_operands_that_are_accepted_are_not_accused(path: Path) -> None:
+    """The oracle is the runtime: the recorded table says which operands every operator, specifier and function takes."""
+    _, cases = read_cases(path)
+    for case in cases:
+        if "viewRayDensity" in case.title:
+            continue  # Anything is accepted while it is not used; what is no number is accused all the same.
+        template = case.source.strip("\n")
+        names = [line.partition(" -> ")[0] for line in (case.tree or "").splitlines() if " -> " in line]
+        places = [place for place in "abn" if f"{{{place}}}" in template]
+        texts = []
+        for name in names:
+            kinds = name.split(", ") if places else []
+            if len(kinds) != len(places):
+                continue
+            given = {place: f"({KINDS[kind]})" for place, kind in zip(places, kinds, strict=True)}
+            texts.append(re.sub(r"\s*\n\s*", " ", template.format(**given)))
+        text = PREAMBLE + "".join(f"attempt({number}, lambda: {each})\n" for number, each in enumerate(texts))
+        assert found(text) == [], case.title
+
+
+PUBLIC = """
+from scenic.core.shapes import BoxShape
+box = trimesh.creation.box()
+param vector = [Vector(1, 2)], orientation = [Orientation.fromEuler(1, 2, 3)], shape = [BoxShape()]
+param field = [VectorField("f", lambda p: 1)]
+param region = [RectangularRegion((0, 0), 0, 4, 4), CircularRegion((0, 0), 1), PolylineRegion([(0, 0), (1, 1)]),
+    PathRegion([(0, 0, 0), (1, 1, 1)]), MeshVolumeRegion(box), MeshSurfaceRegion(box), PolygonalRegion([(0, 0), (1, 0), (1, 1)]),
+    PolygonalRegion([(0, 0), (1, 0), (1, 1)]).footprint, BoxRegion(), SpheroidRegion(), PointSetRegion("p", [(1, 1)])]
+"""
+
+
+def test_declared_members_are_those_of_the_runtime() -> None:
+    params = scenic.scenarioFromString(f"import trimesh\n{PUBLIC}\nego = new Object\n").sample(1)[0].params
+    for kind, names in MEMBERS.items():
+        there = {name for value in params[kind.removeprefix("vector ")] for name in dir(value)}
+        assert set(names) <= there, kind
+    for kind in ("vector", "orientation"):
+        public = {name for name in dir(params[kind][0]) if not name.startswith("_")}
+        # Those that are left out are of the implementation.
+        assert public - set(MEMBERS[kind]) <= {"of", "row"}, kind
