@@ -154,7 +154,7 @@ def theirs(python: Path) -> Iterator[Driver]:
 def texts(accepted: Callable[[str], bool]) -> Iterator[tuple[str, str]]:
     """Name and text of what is parsed; small cases of tests are put together to larger texts."""
     for folder in ("examples", "benchmarks", "tests/data/recovery", "tests/data/checks"):
-        for path in sorted((ROOT / folder).glob("*.scenic")):
+        for path in sorted((ROOT / folder).rglob("*.scenic")):
             yield path.relative_to(ROOT).as_posix(), path.read_text(encoding="utf-8")
     for path in sorted((ROOT / "tests/data/grammar").rglob("*.cases")):
         sources = [

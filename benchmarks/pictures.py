@@ -11,7 +11,10 @@ from scenic.formats.render import SIZE, render
 from scenic.pipeline import load
 
 HERE = Path(__file__).parent
-PROGRAMS = (HERE.parent / "examples" / "desk.scenic", HERE.parent / "examples" / "furnished_room.scenic")
+PROGRAMS = (
+    HERE.parent / "examples" / "indoor" / "desk.scenic",
+    HERE.parent / "examples" / "indoor" / "furnished_room.scenic",
+)
 TURNS = 5
 
 

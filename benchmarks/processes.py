@@ -41,7 +41,9 @@ def seconds(program: str, runs: list[list[str]]) -> float:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("program", nargs="?", default=str(HERE.parent / "examples" / "desk.scenic"))
+    parser.add_argument(
+        "program", nargs="?", default=str(HERE.parent / "examples" / "indoor" / "desk.scenic")
+    )
     parser.add_argument("--scenes", type=int, default=60_000)
     parser.add_argument("--turns", type=int, default=5)
     arguments = parser.parse_args()

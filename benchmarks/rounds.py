@@ -86,7 +86,7 @@ def main() -> None:
     scenarios = {str(path): scenic.scenarioFromFile(path) for path in arguments.programs} or {
         "10 boxes": scenic.scenarioFromString(boxes(10, 100)),
         "100 boxes": scenic.scenarioFromString(boxes(100, 215)),
-        "desk": scenic.scenarioFromFile(HERE.parent / "examples" / "desk.scenic"),
+        "desk": scenic.scenarioFromFile(HERE.parent / "examples" / "indoor" / "desk.scenic"),
         "room": scenic.scenarioFromFile(HERE / "room_with_toys.scenic"),
     }
     print(f"{'':24}" + "".join(f"{lanes:>9}" for lanes in LANES))

@@ -5,6 +5,7 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
+from examples import program
 from scenic.formats.files import OutputError, check_folder, write
 from scenic.formats.glb import glb
 from scenic.formats.html import page
@@ -30,7 +31,7 @@ SMALL_PROGRAMS = (
 
 def sampled(name: str, count: int) -> list[Scene]:
     """Scenes of one of the examples."""
-    results = load(HERE / f"{name}.scenic").stream(count, seed=SEED, max_attempts=None, time_limit=None)
+    results = load(program(name)).stream(count, seed=SEED, max_attempts=None, time_limit=None)
     scenes: list[Scene] = []
     for result in results:
         if isinstance(result, Exhausted):

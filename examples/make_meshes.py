@@ -1,7 +1,7 @@
 """Make the meshes of the examples: ``python -m examples.make_meshes [FOLDER]``.
 
-Every mesh is built from boxes, cylinders, spheres and hulls joined or cut by exact booleans, so each is one
-closed volume. Lengths are in metres; X points right, Y ahead (the front of the thing), Z up; things stand on
+Every mesh is built from boxes, cylinders, spheres and hulls joined or cut by exact booleans, or from heights over a
+grid, so each is one closed volume. Lengths are in metres; X points right, Y ahead (the front of the thing), Z up; things stand on
 z = 0. The files are small and belong to the repository: this script is how they came to be, and running it
 again gives the same ones.
 """
@@ -16,6 +16,7 @@ import numpy.typing as npt
 from manifold3d import Manifold
 
 Vector = tuple[float, float, float]
+Array = npt.NDArray[np.float64]
 
 FOLDER = Path(__file__).parent / "meshes"
 
@@ -244,10 +245,58 @@ def toy_duck() -> Manifold:
     ).trim_by_plane((0, 0, 1), 0.02)
 
 
+def relief(height: Callable[[Array, Array], Array], extent: Vector, *, side: int = 22) -> Manifold:
+    """The ground between a rectangle and heights over it: ``height`` of coordinates from -1 to 1, above 0."""
+    x, y = np.meshgrid(np.linspace(-1, 1, side), np.linspace(-1, 1, side), indexing="ij")
+    above = np.column_stack([x.ravel(), y.ravel(), height(x, y).ravel()])
+    below = above * [1, 1, 0]
+    corner = np.arange(side * side).reshape(side, side)
+    cells = (corner[:-1, :-1], corner[1:, :-1], corner[1:, 1:], corner[:-1, 1:])
+    a, b, c, d = (part.ravel() for part in cells)
+    top = np.concatenate([np.column_stack([a, b, c]), np.column_stack([a, c, d])])
+    rim = np.concatenate([corner[:-1, 0], corner[-1, :-1], corner[:0:-1, -1], corner[0, :0:-1]])
+    after, under = np.roll(rim, -1), side * side
+    walls = [
+        np.column_stack([rim, rim + under, after]),
+        np.column_stack([after, rim + under, after + under]),
+    ]
+    faces = np.concatenate([top, top[:, ::-1] + under, *walls])
+    corners = np.concatenate([above, below]) * np.array(extent) / [2, 2, 1]
+    return Manifold(
+        manifold3d.Mesh64(np.ascontiguousarray(corners), np.ascontiguousarray(faces, dtype=np.uint64))
+    )
+
+
+def sea_floor() -> Manifold:
+    """Low ridges of sand, 30 m wide."""
+    return relief(
+        lambda x, y: 0.5 + 0.25 * np.sin(3 * x + 1) * np.cos(2 * y) + 0.08 * np.sin(9 * x + 4 * y),
+        (30, 30, 5),
+    )
+
+
+def crater() -> Manifold:
+    """A plain with the rim of a crater, 60 m wide."""
+
+    def height(x: Array, y: Array) -> Array:
+        distance = np.hypot(x - 0.3, y + 0.2)
+        return (
+            0.45 + 0.3 * np.exp(-(((distance - 0.45) / 0.15) ** 2)) + 0.06 * np.sin(8 * x) * np.cos(7 * y + 1)
+        )
+
+    return relief(height, (60, 60, 6))
+
+
+def hillside() -> Manifold:
+    """A slope that rises to the right, 40 m wide."""
+    return relief(lambda x, y: 0.5 + 0.3 * x + 0.1 * np.sin(4 * y), (40, 40, 8))
+
+
 MESHES: dict[str, Callable[[], Manifold]] = {
     maker.__name__: maker
     for maker in (
         dining_table, coffee_table, chair, sofa, shelf, floor_lamp, plant, cabinet, plane, toy_car, toy_rocket, toy_duck,
+        sea_floor, crater, hillside,
     )
 }  # fmt: skip
 """What makes each file, by the file's name."""

@@ -12,6 +12,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Final
 
+from examples import program
 from scenic.formats.camera import Outlook, corners, framing
 from scenic.formats.files import write
 from scenic.formats.instances import Instance, Picture, picture
@@ -20,7 +21,6 @@ from scenic.formats.render import render
 from scenic.pipeline import load
 from scenic.simulators.batch import choose_simulator, simulate_number
 
-HERE: Final = Path(__file__).parent
 SIZE: Final = (720, 450)
 
 
@@ -84,7 +84,7 @@ def exposed(simulation: Any, moments: Sequence[float]) -> Picture:
 def shown(name: str) -> bytes:
     """The picture of an example, as a PNG file."""
     shot = SHOTS[name]
-    scenario = load(HERE / f"{name}.scenic")
+    scenario = load(program(name))
     done = simulate_number(
         scenario,
         choose_simulator(None, scenario),

@@ -5,7 +5,7 @@ from scenic.gym import Continuous, ScenicEnv
 from scenic.simulators.mujoco import SetWheelSpeeds
 
 env = ScenicEnv(
-    "examples/robot_vacuum.scenic",
+    "examples/indoor/robot_vacuum.scenic",
     actions=Continuous(SetWheelSpeeds, low=(-0.5, -0.5), high=(0.5, 0.5)),
     observations={"ego": ["position", "yaw", "speed"]},
     reward=lambda now: now.agent.speed,

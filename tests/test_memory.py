@@ -51,7 +51,7 @@ def peak_memory(program: Path) -> int:
 
 @pytest.mark.slow
 def test_512_lanes_of_the_furnished_room() -> None:
-    assert peak_memory(ROOT / "examples" / "furnished_room.scenic") < LIMIT
+    assert peak_memory(ROOT / "examples" / "indoor" / "furnished_room.scenic") < LIMIT
 
 
 @pytest.mark.slow

@@ -40,7 +40,7 @@ def main() -> None:
 
 def room() -> PIL.Image.Image:
     """The furnished room."""
-    (scene,) = load(EXAMPLES / "furnished_room.scenic").sample(1, seed=1)
+    (scene,) = load(EXAMPLES / "indoor" / "furnished_room.scenic").sample(1, seed=1)
     return PIL.Image.open(io.BytesIO(png(scene)))
 
 

@@ -15,7 +15,7 @@ def blocks(language: str) -> list[str]:
 
 def test_the_program_is_the_one_in_the_file() -> None:
     (program,) = blocks("scenic")
-    assert (ROOT / "examples" / "desk.scenic").read_text().endswith(program)
+    assert (ROOT / "examples" / "indoor" / "desk.scenic").read_text().endswith(program)
 
 
 def test_the_code_prints_what_is_shown() -> None:

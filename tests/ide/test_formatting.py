@@ -16,7 +16,7 @@ from scenic.language.source import Source
 ROOT = Path(__file__).parents[2]
 TEXTS = [
     text
-    for file in sorted([*ROOT.glob("tests/data/**/*.scenic"), *ROOT.glob("examples/*.scenic")])
+    for file in sorted([*ROOT.glob("tests/data/**/*.scenic"), *ROOT.glob("examples/**/*.scenic")])
     if not parse(text := Source(file.read_text(encoding="utf-8"), "").text).diagnostics
 ]
 

@@ -50,7 +50,7 @@ def test_words(text: str, word: str, kind: object) -> None:
     assert kinds(text)[word] is kind
 
 
-@pytest.mark.parametrize("path", sorted((ROOT / "examples").glob("*.scenic")), ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", sorted((ROOT / "examples").rglob("*.scenic")), ids=lambda path: path.stem)
 def test_nothing_is_lost(path: Path) -> None:
     text = path.read_text(encoding="utf-8")
     assert not parse(text).diagnostics

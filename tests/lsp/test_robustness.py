@@ -12,7 +12,7 @@ from tests.lsp.client import FULL, Client
 
 ROOT = Path(__file__).parents[2]
 PROGRAMS = sorted(
-    [*ROOT.glob("tests/data/**/*.scenic"), *ROOT.glob("examples/*.scenic")],
+    [*ROOT.glob("tests/data/**/*.scenic"), *ROOT.glob("examples/**/*.scenic")],
     key=lambda file: (-min(file.stat().st_size, 4000), file.name),
 )[:20]
 TEXTS = [Source(file.read_text(encoding="utf-8"), "").text for file in PROGRAMS]

@@ -6,7 +6,7 @@ Everything is a real mesh. Chairs may stand partly under the table, as long as t
 workspace = Workspace(RectangularRegion((0, 0, 0), 0, 6, 5))
 
 def mesh(name):
-    return MeshShape.fromFile(localPath("meshes/" + name + ".obj"))
+    return MeshShape.fromFile(localPath("../meshes/" + name + ".obj"))
 
 chair_shape = mesh("chair")
 

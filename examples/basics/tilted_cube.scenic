@@ -4,7 +4,7 @@ The blue one is placed in the cube's own frame and so is tilted with it. The gre
 floor: its position is dropped straight down, and it stands upright as the floor does.
 """
 
-chair = MeshShape.fromFile(localPath("meshes/chair.obj"))
+chair = MeshShape.fromFile(localPath("../meshes/chair.obj"))
 
 floor = new Object with width 4, with length 4, with height 0.1,
     with color (0.8, 0.72, 0.6)

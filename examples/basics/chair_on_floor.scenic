@@ -8,5 +8,5 @@ floor = new Object with width 5, with length 5, with height 0.1,
 
 ego = new Object on floor,
     facing Range(0, 360) deg,
-    with shape MeshShape.fromFile(localPath("meshes/chair.obj")),
+    with shape MeshShape.fromFile(localPath("../meshes/chair.obj")),
     with color (0.25, 0.5, 0.75)
