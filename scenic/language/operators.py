@@ -10,22 +10,43 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Final
 
-__all__ = ["EGO", "OPERATORS", "SIDES", "Operand", "Operator"]
+from scenic.language.types import (
+    DIRECTION,
+    FIELD,
+    HEADING_OR_ANGLES,
+    OBJECT,
+    ORIENTATION,
+    ORIENTED_POINT,
+    POINT,
+    REGION,
+    SCALAR,
+    SCALAR_OR_VECTOR,
+    VECTOR,
+    Type,
+    listed,
+)
+
+__all__ = ["EGO", "FRAMES", "OPERATORS", "SIDES", "Operand", "Operator"]
 
 
 @dataclass(frozen=True, slots=True)
 class Operand:
     """One operand of an operator or specifier.
 
-    ``type`` is the wanted type in the words of the language's manual. ``default`` says in words what is meant when
+    ``types`` are the types that it may have; the first that fits is taken. ``default`` says in words what is meant when
     the text leaves the operand out; ``None`` when it may not. ``angle`` tells whether a plain number, and each in a
     tuple, is read as an angle in radians.
     """
 
     name: str
-    type: str
+    types: tuple[Type, ...]
     default: str | None = None
     angle: bool = False
+
+    @property
+    def type(self) -> str:
+        """The types in words, for documentation."""
+        return listed(self.types)
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,6 +65,26 @@ class Operator:
     documentation: str
     available: bool = True
     angle: bool = False
+
+    def label(self, operand: Operand) -> str:
+        """The operator as messages about an operand name it: its first words, and those before the operand.
+
+        The words that follow an operand name it where the text begins with it.
+        """
+        names = {each.name for each in self.operands}
+        words = next(form.split() for form in self.forms if operand.name in form.split())
+        # A keyword of the same name stands before its operand: `offset by offset`.
+        places = {number for number, word in enumerate(words) if word in names - set(words[number + 1 :])}
+        end = max(number for number in places if words[number] == operand.name)
+        if end == 0:
+            end = min(places - {0}, default=len(words))
+        runs: list[list[str]] = [[]]
+        for number in range(1 if 0 in places else 0, end):
+            if number in places:
+                runs.append([])
+            else:
+                runs[-1].append(words[number])
+        return f"`{' ... '.join(' '.join(run) for run in (runs if len(runs) < 3 else [runs[0], runs[-1]]))}`"
 
 
 EGO: Final = "the ego"
@@ -72,11 +113,15 @@ SIDES: Final = (
 """The sides of an object's bounding box that have an operator ``<side> of``."""
 
 
+FRAMES: Final = (FIELD, ORIENTED_POINT, SCALAR, ORIENTATION, VECTOR)
+"""What `relative to` and `offset by` take."""
+
+
 def _side(side: str) -> Operator:
     part = {1: "middle of the face", 2: "middle of the edge", 3: "corner"}[len(side.split())]
     return Operator(
         f"{side} of",
-        (Operand("object", "object"),),
+        (Operand("object", (OBJECT,)),),
         "oriented point",
         (f"{side} of object",),
         f"The {part} at the {side} of the object's bounding box, with the orientation of the object.",
@@ -86,22 +131,22 @@ def _side(side: str) -> Operator:
 _ALL = (
     Operator(
         "deg",
-        (Operand("angle", "scalar or vector"),),
-        "scalar",
+        (Operand("angle", (SCALAR_OR_VECTOR,)),),
+        "as the operand",
         ("angle deg",),
-        "An angle given in degrees, converted to radians. It applies to everything multiplied on its left: "
-        "`2 * x deg` is `(2 * x) deg`.",
+        "An angle given in degrees, or a vector of such angles, converted to radians. It applies to everything "
+        "multiplied on its left: `2 * x deg` is `(2 * x) deg`.",
     ),
     Operator(
         "@",
-        (Operand("x", "scalar"), Operand("y", "scalar")),
+        (Operand("x", (SCALAR,)), Operand("y", (SCALAR,))),
         "vector",
         ("x @ y",),
         "The vector with these two coordinates and `z = 0`.",
     ),
     Operator(
         "at",
-        (Operand("field", "vector field"), Operand("position", "vector")),
+        (Operand("field", (FIELD,)), Operand("position", (VECTOR,))),
         "orientation",
         ("field at position",),
         "The orientation that a vector field has at a position.",
@@ -109,8 +154,8 @@ _ALL = (
     Operator(
         "relative to",
         (
-            Operand("value", "heading, orientation, vector or field"),
-            Operand("base", "the same, or oriented point"),
+            Operand("value", FRAMES),
+            Operand("base", FRAMES),
         ),
         "the type of the operands",
         ("value relative to base",),
@@ -119,7 +164,7 @@ _ALL = (
     ),
     Operator(
         "offset by",
-        (Operand("base", "heading, orientation, vector or oriented point"), Operand("offset", "the same")),
+        (Operand("base", FRAMES), Operand("offset", FRAMES)),
         "the type of the operands",
         ("base offset by offset",),
         "The same as `relative to`, reading more naturally for vectors.",
@@ -127,9 +172,9 @@ _ALL = (
     Operator(
         "offset along",
         (
-            Operand("position", "vector"),
-            Operand("direction", "heading, orientation or field", angle=True),
-            Operand("offset", "vector"),
+            Operand("position", (VECTOR,)),
+            Operand("direction", (DIRECTION,), angle=True),
+            Operand("offset", (VECTOR,)),
         ),
         "vector",
         ("position offset along direction by offset",),
@@ -137,14 +182,17 @@ _ALL = (
     ),
     Operator(
         "relative position",
-        (Operand("target", "vector"), Operand("base", "vector", EGO)),
+        (Operand("target", (VECTOR,)), Operand("base", (VECTOR,), EGO)),
         "vector",
         ("relative position of target", "relative position of target from base"),
         "The vector from the base to the target, in global coordinates.",
     ),
     Operator(
         "relative heading",
-        (Operand("heading", "heading", angle=True), Operand("base", "heading", EGO, angle=True)),
+        (
+            Operand("heading", (HEADING_OR_ANGLES,), angle=True),
+            Operand("base", (HEADING_OR_ANGLES,), EGO, angle=True),
+        ),
         "scalar",
         ("relative heading of heading", "relative heading of heading from base"),
         "The difference of two global headings, between -pi and pi.",
@@ -152,7 +200,7 @@ _ALL = (
     ),
     Operator(
         "apparent heading",
-        (Operand("target", "oriented point"), Operand("viewpoint", "vector", EGO)),
+        (Operand("target", (ORIENTED_POINT,)), Operand("viewpoint", (VECTOR,), EGO)),
         "scalar",
         ("apparent heading of target", "apparent heading of target from viewpoint"),
         "The heading of the target relative to the line of sight from the viewpoint.",
@@ -160,7 +208,7 @@ _ALL = (
     ),
     Operator(
         "distance",
-        (Operand("start", "vector or region", EGO), Operand("end", "vector or region", EGO)),
+        (Operand("start", (VECTOR, REGION), EGO), Operand("end", (VECTOR, REGION), EGO)),
         "scalar",
         (
             "distance to end",
@@ -173,7 +221,7 @@ _ALL = (
     ),
     Operator(
         "minimum distance",
-        (Operand("start", "object", EGO), Operand("end", "object", EGO)),
+        (Operand("start", (OBJECT,), EGO), Operand("end", (OBJECT,), EGO)),
         "scalar",
         (
             "minimum distance to end",
@@ -185,14 +233,14 @@ _ALL = (
     ),
     Operator(
         "distance past",
-        (Operand("target", "vector"), Operand("base", "oriented point", EGO)),
+        (Operand("target", (VECTOR,)), Operand("base", (ORIENTED_POINT,), EGO)),
         "scalar",
         ("distance past target", "distance past target of base"),
         "How far the base is ahead of the target, measured along the heading of the base.",
     ),
     Operator(
         "angle",
-        (Operand("start", "vector", EGO), Operand("end", "vector", EGO)),
+        (Operand("start", (VECTOR,), EGO), Operand("end", (VECTOR,), EGO)),
         "scalar",
         ("angle to end", "angle from start", "angle from start to end", "angle to end from start"),
         "The heading of the line from one position to another: 0 is North (+Y), and it grows anticlockwise.",
@@ -200,7 +248,7 @@ _ALL = (
     ),
     Operator(
         "altitude",
-        (Operand("start", "vector", EGO), Operand("end", "vector", EGO)),
+        (Operand("start", (VECTOR,), EGO), Operand("end", (VECTOR,), EGO)),
         "scalar",
         (
             "altitude to end",
@@ -213,35 +261,35 @@ _ALL = (
     ),
     Operator(
         "follow",
-        (Operand("field", "vector field"), Operand("start", "vector"), Operand("distance", "scalar")),
+        (Operand("field", (FIELD,)), Operand("start", (VECTOR,)), Operand("distance", (SCALAR,))),
         "oriented point",
         ("follow field from start for distance",),
         "The point reached by following a vector field for a distance, with the orientation of the field there.",
     ),
     Operator(
         "visible",
-        (Operand("region", "region"), Operand("viewer", "point", EGO)),
+        (Operand("region", (REGION,)), Operand("viewer", (POINT,), EGO)),
         "region",
         ("visible region", "region visible from viewer"),
         "The part of a region that the viewer's view volume covers; nothing occludes here.",
     ),
     Operator(
         "not visible",
-        (Operand("region", "region"), Operand("viewer", "point", EGO)),
+        (Operand("region", (REGION,)), Operand("viewer", (POINT,), EGO)),
         "region",
         ("not visible region", "region not visible from viewer"),
         "The part of a region that the viewer's view volume does not cover; nothing occludes here.",
     ),
     Operator(
         "can see",
-        (Operand("viewer", "point"), Operand("target", "vector, point or object")),
+        (Operand("viewer", (POINT,)), Operand("target", (VECTOR, POINT))),
         "boolean",
         ("viewer can see target",),
         "Whether the viewer sees the target past the other objects. For requirements and dynamic code only.",
     ),
     Operator(
         "intersects",
-        (Operand("first", "object or region"), Operand("second", "object or region")),
+        (Operand("first", (OBJECT, REGION)), Operand("second", (OBJECT, REGION))),
         "boolean",
         ("first intersects second",),
         "Whether two objects or regions share a point.",

@@ -11,6 +11,18 @@ from types import MappingProxyType
 from typing import Final
 
 from scenic.language.operators import EGO, Operand
+from scenic.language.types import (
+    ANYTHING,
+    DIRECTION,
+    FIELD,
+    HEADING,
+    OBJECT,
+    ORIENTED_POINT,
+    POINT,
+    REGION,
+    SCALAR,
+    VECTOR,
+)
 
 __all__ = ["SPECIFIERS", "Specified", "SpecifierDeclaration"]
 
@@ -63,8 +75,8 @@ def _beside(name: str, axis: str, extent: str) -> SpecifierDeclaration:
     return SpecifierDeclaration(
         name,
         (
-            Operand("reference", "vector, oriented point or object"),
-            Operand("distance", "scalar or vector", "no gap"),
+            Operand("reference", (ORIENTED_POINT, VECTOR)),
+            Operand("distance", (SCALAR, VECTOR), "no gap"),
         ),
         (Specified("position", 1), Specified("parentOrientation", 3, _ORIENTED)),
         (extent,),
@@ -79,7 +91,7 @@ def _beside(name: str, axis: str, extent: str) -> SpecifierDeclaration:
 _ALL = (
     SpecifierDeclaration(
         "with",
-        (Operand("value", "anything"),),
+        (Operand("value", (ANYTHING,)),),
         (),
         (),
         "general",
@@ -88,7 +100,7 @@ _ALL = (
     ),
     SpecifierDeclaration(
         "at",
-        (Operand("position", "vector"),),
+        (Operand("position", (VECTOR,)),),
         (Specified("position", 1),),
         (),
         "position",
@@ -97,7 +109,7 @@ _ALL = (
     ),
     SpecifierDeclaration(
         "in",
-        (Operand("region", "region"),),
+        (Operand("region", (REGION,)),),
         (Specified("position", 1), Specified("parentOrientation", 3, _PREFERRED)),
         (),
         "position",
@@ -107,7 +119,7 @@ _ALL = (
     ),
     SpecifierDeclaration(
         "contained in",
-        (Operand("region", "region"),),
+        (Operand("region", (REGION,)),),
         (
             Specified("position", 1),
             Specified("parentOrientation", 3, _PREFERRED),
@@ -120,7 +132,7 @@ _ALL = (
     ),
     SpecifierDeclaration(
         "on",
-        (Operand("target", "region, object or vector"),),
+        (Operand("target", (REGION, OBJECT, VECTOR)),),
         (Specified("position", 1), Specified("parentOrientation", 2, _PREFERRED)),
         ("baseOffset", "contactTolerance", "onDirection"),
         "position",
@@ -131,7 +143,7 @@ _ALL = (
     ),
     SpecifierDeclaration(
         "offset by",
-        (Operand("offset", "vector"),),
+        (Operand("offset", (VECTOR,)),),
         (Specified("position", 1), Specified("parentOrientation", 3)),
         (),
         "position",
@@ -141,7 +153,7 @@ _ALL = (
     ),
     SpecifierDeclaration(
         "offset along",
-        (Operand("direction", "heading, orientation or field", angle=True), Operand("offset", "vector")),
+        (Operand("direction", (DIRECTION,), angle=True), Operand("offset", (VECTOR,))),
         (Specified("position", 1), Specified("parentOrientation", 3)),
         (),
         "position",
@@ -152,9 +164,9 @@ _ALL = (
     SpecifierDeclaration(
         "beyond",
         (
-            Operand("reference", "vector"),
-            Operand("offset", "scalar or vector"),
-            Operand("viewpoint", "vector or point", EGO),
+            Operand("reference", (VECTOR,)),
+            Operand("offset", (SCALAR, VECTOR)),
+            Operand("viewpoint", (ORIENTED_POINT, VECTOR), EGO),
         ),
         (Specified("position", 1), Specified("parentOrientation", 3)),
         (),
@@ -164,7 +176,7 @@ _ALL = (
     ),
     SpecifierDeclaration(
         "visible",
-        (Operand("viewer", "point", EGO),),
+        (Operand("viewer", (POINT,), EGO),),
         (Specified("position", 3),),
         ("regionContainedIn",),
         "position",
@@ -175,7 +187,7 @@ _ALL = (
     ),
     SpecifierDeclaration(
         "not visible",
-        (Operand("viewer", "point", EGO),),
+        (Operand("viewer", (POINT,), EGO),),
         (Specified("position", 3),),
         ("regionContainedIn",),
         "position",
@@ -193,9 +205,9 @@ _ALL = (
     SpecifierDeclaration(
         "following",
         (
-            Operand("field", "vector field"),
-            Operand("start", "vector", EGO),
-            Operand("distance", "scalar"),
+            Operand("field", (FIELD,)),
+            Operand("start", (VECTOR,), EGO),
+            Operand("distance", (SCALAR,)),
         ),
         (Specified("position", 1), Specified("parentOrientation", 3)),
         (),
@@ -205,7 +217,7 @@ _ALL = (
     ),
     SpecifierDeclaration(
         "facing",
-        (Operand("direction", "heading, orientation, Euler angles or field", angle=True),),
+        (Operand("direction", (DIRECTION,), angle=True),),
         (Specified("yaw", 1), Specified("pitch", 1), Specified("roll", 1)),
         ("parentOrientation",),
         "orientation",
@@ -214,7 +226,7 @@ _ALL = (
     ),
     SpecifierDeclaration(
         "facing toward",
-        (Operand("target", "vector"),),
+        (Operand("target", (VECTOR,)),),
         (Specified("yaw", 1),),
         ("position", "parentOrientation"),
         "orientation",
@@ -223,7 +235,7 @@ _ALL = (
     ),
     SpecifierDeclaration(
         "facing away from",
-        (Operand("target", "vector"),),
+        (Operand("target", (VECTOR,)),),
         (Specified("yaw", 1),),
         ("position", "parentOrientation"),
         "orientation",
@@ -232,7 +244,7 @@ _ALL = (
     ),
     SpecifierDeclaration(
         "facing directly toward",
-        (Operand("target", "vector"),),
+        (Operand("target", (VECTOR,)),),
         (Specified("yaw", 1), Specified("pitch", 1)),
         ("position", "parentOrientation"),
         "orientation",
@@ -241,7 +253,7 @@ _ALL = (
     ),
     SpecifierDeclaration(
         "facing directly away from",
-        (Operand("target", "vector"),),
+        (Operand("target", (VECTOR,)),),
         (Specified("yaw", 1), Specified("pitch", 1)),
         ("position", "parentOrientation"),
         "orientation",
@@ -250,7 +262,7 @@ _ALL = (
     ),
     SpecifierDeclaration(
         "apparently facing",
-        (Operand("heading", "heading", angle=True), Operand("viewpoint", "vector", EGO)),
+        (Operand("heading", (HEADING,), angle=True), Operand("viewpoint", (VECTOR,), EGO)),
         (Specified("yaw", 1),),
         ("position", "parentOrientation"),
         "orientation",

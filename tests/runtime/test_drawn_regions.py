@@ -184,7 +184,7 @@ def test_what_is_in_view_is_known_when_it_is_drawn(hidden: str) -> None:
         ("contained in X", "`contained in`: expected a region, not 3"),
         ("with regionContainedIn X", "property 'regionContainedIn': expected a region, not 3"),
         ("in (visible X)", "`visible`: expected a region, not 3"),
-        ("in (disc visible from X)", "an observer: expected a point or an object, not 3"),
+        ("in (disc visible from X)", "`visible from`: expected a point or an object, not 3"),
     ],
 )
 def test_what_is_no_region_is_told(words: str, wanted: str) -> None:

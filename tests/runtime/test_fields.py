@@ -463,7 +463,7 @@ def test_unions_of_many_regions_agree_with_those_of_few() -> None:
 def test_a_class_is_no_field_and_says_how_an_instance_is_made() -> None:
     error = failure("class Kind:\n    foo: 3\nkind = [Kind][0]\nx = follow kind from (1, 2) for 3")
     assert isinstance(error, ScenicTypeError)
-    assert place(error)[2] == "to create an instance write `new Kind at ...`"
+    assert place(error)[2] == "to create an instance write `new Kind`"
 
 
 @pytest.mark.parametrize("options", [{}, {"steps": 2}, {"stepSize": 0.5}, {"steps": 3, "stepSize": 0.1}])

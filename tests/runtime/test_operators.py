@@ -219,7 +219,7 @@ def test_operators_say_what_is_wrong_with_an_operand_that_is_drawn() -> None:
         "distance past (0, 0) of x": "an oriented point",
         "x at (1, 2)": "a vector field",
         "follow x from (1, 2) for 3": "a vector field",
-        "distance from x to ego": "a vector",
+        "distance from x to ego": "a vector or a region",
         "minimum distance from x": "an object",
         "top front left of x": "an object",
         "ego intersects x": "an object or a region",
@@ -551,7 +551,7 @@ def test_vectors_have_the_parts_of_triples(index: str, row: str) -> None:
 def test_only_numbers_are_degrees(value: str) -> None:
     error = failure(f"ego = new Object\nparam x = ({value}) deg\n")
     assert isinstance(error, ScenicTypeError)
-    assert "`deg`: expected a number, not" in str(error)
+    assert "`deg`: expected a number or a vector, not" in str(error)
     assert place(error)[1].startswith("2:11-")
 
 
@@ -604,14 +604,14 @@ WANTED = {
     "new Object with parentOrientation «, with zeta 3": ("property 'parentOrientation'", ORIENTATION),
     "« @ 3": ("`@`", NUMBER),
     "3 @ «": ("`@`", NUMBER),
-    "angle to «": ("`angle`", VECTOR),
-    "angle from «": ("`angle`", VECTOR),
-    "altitude from ego to «": ("`altitude`", VECTOR),
-    "distance from « to ego": ("`distance`", VECTOR),
-    "relative position of «": ("`relative position`", VECTOR),
-    "relative heading of «": ("`relative heading`", HEADING),
-    "relative heading of 3 from «": ("`relative heading`", HEADING),
-    "apparent heading of ego from «": ("`apparent heading`", VECTOR),
+    "angle to «": ("`angle to`", VECTOR),
+    "angle from «": ("`angle from`", VECTOR),
+    "altitude from ego to «": ("`altitude to`", VECTOR),
+    "distance from « to ego": ("`distance from`", "a vector or a region"),
+    "relative position of «": ("`relative position of`", VECTOR),
+    "relative heading of «": ("`relative heading of`", HEADING),
+    "relative heading of 3 from «": ("`relative heading of ... from`", HEADING),
+    "apparent heading of ego from «": ("`apparent heading of ... from`", VECTOR),
     "distance past «": ("`distance past`", VECTOR),
     "F at «": ("`at`", VECTOR),
     "F[«]": ("field 'F'", VECTOR),
@@ -620,7 +620,7 @@ WANTED = {
     "F.followFrom(«, 3)": ("`follow ... from`", VECTOR),
     "F.followFrom((1, 2), «)": ("`follow ... for`", NUMBER),
     "(1, 2) offset along « by (3, 4)": ("`offset along`", ORIENTATION),
-    "(1, 2) offset along 3 by «": ("`offset along`", VECTOR),
+    "(1, 2) offset along 3 by «": ("`offset along ... by`", VECTOR),
     "Vector(1, 2).dot(«)": ("", VECTOR),
     "Vector(1, 2).rotatedBy(«)": ("", ORIENTATION),
 }

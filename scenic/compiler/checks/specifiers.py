@@ -15,6 +15,7 @@ from scenic.language.diagnostics import Diagnostic
 from scenic.language.operators import OPERATORS
 from scenic.language.spans import Span
 from scenic.language.specifiers import SPECIFIERS, Specified
+from scenic.language.types import REGION
 
 __all__ = ["RULES"]
 
@@ -66,7 +67,7 @@ def _regions(specifiers: list[scenic.SpecifierPhrase], context: Context) -> Iter
         declared = SPECIFIERS.get(specifier.specifier)
         pairs = () if declared is None else zip(declared.operands, specifier.operands, strict=False)
         for operand, value in pairs:
-            if operand.type != "region" or not isinstance(value, scenic.Operation):
+            if operand.types != (REGION,) or not isinstance(value, scenic.Operation):
                 continue
             operator = OPERATORS.get(value.operator)
             if operator is None or operator.result != "oriented point":

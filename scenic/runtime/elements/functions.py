@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from scenic.language.errors import RandomControlFlowError
+from scenic.language.types import SCALAR
 from scenic.runtime.program.context import here, verbosity
 from scenic.runtime.python.opaque import call_later, is_later
 from scenic.runtime.python.purity import is_pure
@@ -54,7 +55,7 @@ def _of_numbers(name: str, *operands: Any) -> Any:
         return defer(_of_numbers, name, *operands)
     for item in operands:
         if not (is_number(item) or (isinstance(item, Random) and _may_be_number(item))):
-            raise wrong_type("a number", item, f"`{name}`")
+            raise wrong_type(SCALAR, item, f"`{name}`")
     return operate(name, *operands)
 
 

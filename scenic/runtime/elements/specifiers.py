@@ -12,11 +12,12 @@ from functools import partial
 from types import MappingProxyType
 from typing import Any
 
-from scenic.graph.operations import TABLE
 from scenic.language.errors import InvalidScenarioError, ScenicTypeError
 from scenic.language.operators import EGO
 from scenic.language.spans import Span
 from scenic.language.specifiers import SPECIFIERS, SpecifierDeclaration
+from scenic.language.types import OBJECT, POINT, REGION, VECTOR
+from scenic.runtime.elements.operands import Ego, is_kind
 from scenic.runtime.instances.objects import Object, OrientedPoint, Point
 from scenic.runtime.program.context import current, here
 from scenic.runtime.regions.base import Region
@@ -30,7 +31,6 @@ from scenic.runtime.values.lazy import Lazy, defer, reads_of, resolve
 from scenic.runtime.values.values import (
     Orientation,
     Random,
-    as_value,
     describe,
     is_number,
     is_open,
@@ -48,7 +48,6 @@ from scenic.runtime.values.values import (
 from scenic.runtime.visibility.seeing import Sighting
 
 Evaluate = Callable[[Any], Mapping[str, Any]]
-Ego = Callable[[], Any]
 Space = Callable[[], Region]
 """The program's workspace, or everywhere."""
 
@@ -128,27 +127,13 @@ def _specifier(
 # What operands are, where formulas differ by it
 
 
-def is_kind(value: Any, cls: type[Point]) -> bool:
-    """Whether a value is certainly an instance of a class: for a choice, every option."""
-    if isinstance(value, Random):
-        if value.node.operation is not TABLE["select"]:
-            return False
-        return all(is_kind(as_value(option), cls) for option in value.node.operands[1:])
-    return isinstance(value, cls)
-
-
-def is_unknown(value: Any, cls: type[Point] = Object) -> bool:
-    """Whether only the draw shows if a random value is an instance of a class (section 4.3)."""
-    return is_open(value) or len({is_kind(option, cls) for option in options_of(value)}) > 1
-
-
 def region_of(value: Any, what: str) -> Region:
     """A region; raises `ScenicTypeError` for anything else."""
     region = as_region(value)
     if region is None and is_open(value):
         return DrawnRegion.of(value, what)
     if region is None:
-        raise wrong_type("a region", value, what)
+        raise wrong_type(REGION, value, what)
     return region
 
 
@@ -183,7 +168,7 @@ def on(target: Any) -> Specifier:
         region = DrawnRegion.made(_surface, surface)
     if region is None:
         if not (is_vector(surface) or isinstance(surface, Random) or hasattr(surface, "toVector")):
-            raise wrong_type("a region, an object or a vector", surface, "`on`")
+            raise wrong_type((REGION, OBJECT, VECTOR), surface, "`on`")
         place = to_vector(surface, "`on`")
 
     def rest(instance: Any, anchor: Any, orientation: Any) -> Mapping[str, Any]:
@@ -223,7 +208,7 @@ def _surface(target: Any) -> Region:
         return surface
     if is_vector(surface) or hasattr(surface, "toVector"):
         return PointSetRegion("place", [to_vector(surface, "`on`")])
-    raise wrong_type("a region, an object or a vector", surface, "`on`")
+    raise wrong_type((REGION, OBJECT, VECTOR), surface, "`on`")
 
 
 def offset_by(ego: Ego, offset: Any) -> Specifier:
@@ -378,7 +363,7 @@ def visible(workspace: Region, origin: Ego, *, wanted: bool = True) -> Specifier
     name = "visible" if wanted else "not visible"
     observer = origin()
     if not is_kind(observer, Point):
-        raise wrong_type("a point or an object", observer, f"`{name} from`")
+        raise wrong_type(POINT, observer, f"`{name} from`")
     context = current.get()
     mode_2d = context is not None and context.mode_2d
 
@@ -530,7 +515,6 @@ __all__ = [
     "BUILDERS",
     "Specifier",
     "UserSpecifier",
-    "is_kind",
     "region_of",
     "scalar_or_vector",
     "specifier",

@@ -13,6 +13,7 @@ from typing import Any
 from scenic.graph.kinds import Kind
 from scenic.language.errors import InvalidScenarioError, ScenicValueError
 from scenic.language.spans import Span
+from scenic.language.types import REGION, SHAPE, VIEW_ANGLES
 from scenic.runtime.elements.shapes import Shape
 from scenic.runtime.program.context import current, here, warn
 from scenic.runtime.regions.base import Region
@@ -241,7 +242,7 @@ def _orientation(name: str, value: Any) -> Any:
 
 def _shape(name: str, value: Any) -> Any:
     if not isinstance(value, Shape):
-        raise wrong_type("a shape", value, f"property {name!r}")
+        raise wrong_type(SHAPE, value, f"property {name!r}")
     return value
 
 
@@ -293,7 +294,7 @@ def _ray_count(name: str, value: Any) -> Any:
 
 def _container(name: str, value: Any) -> Any:
     if not isinstance(value, Region | Random | None):
-        raise wrong_type("a region", value, f"property {name!r}")
+        raise wrong_type(REGION, value, f"property {name!r}")
     if isinstance(value, Random) and is_open(value):
         return DrawnRegion.of(value, f"property {name!r}")
     return value
@@ -302,7 +303,7 @@ def _container(name: str, value: Any) -> Any:
 def _view_angles(_name: str, value: Any) -> Any:
     """A pair of angles, at most all around."""
     if not (isinstance(value, tuple | list | Vector) and len(value) in (2, 3)):
-        raise wrong_type("a pair of angles", value, "property 'viewAngles'")
+        raise wrong_type(VIEW_ANGLES, value, "property 'viewAngles'")
     limited = []
     for angle, limit in zip(list(value)[:2], (2 * math.pi, math.pi), strict=True):
         size = to_scalar(angle, "property 'viewAngles'")

@@ -32,13 +32,12 @@ from scenic.runtime.dynamics.definitions import behavior_of
 from scenic.runtime.dynamics.language import Dynamics
 from scenic.runtime.dynamics.run import RunContext
 from scenic.runtime.elements.functions import convert
-from scenic.runtime.elements.operators import OPERATORS, operation
+from scenic.runtime.elements.operands import is_kind, is_unknown
+from scenic.runtime.elements.operators import OPERATORS
 from scenic.runtime.elements.specifiers import (
     BUILDERS,
     Specifier,
     UserSpecifier,
-    is_kind,
-    is_unknown,
     specify,
 )
 from scenic.runtime.instances import mutation
@@ -287,8 +286,9 @@ class Prelude(Dynamics):
 
     def operation(self, name: str, *operands: Any) -> Any:
         """One of the language's own operators."""
-        if name in OPERATORS:
-            return operation(name, self._ego, *operands)
+        function = OPERATORS.get(name)
+        if function is not None:
+            return function(self._ego, *operands)
         if name == "initial scenario":
             run = self._run
             return self._context.is_symbolic if run is None else run.in_first_setup

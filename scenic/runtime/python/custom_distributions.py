@@ -9,6 +9,7 @@ import numpy as np
 from scenic.graph.kinds import Column, Kind, boxed
 from scenic.graph.operation import Call, Operation, always
 from scenic.language.errors import InvalidScenarioError, ScenicTypeError
+from scenic.language.types import SCALAR
 from scenic.runtime.program.context import current, here, uniform_draw
 from scenic.runtime.python.opaque import call_later, evaluated, later
 from scenic.runtime.python.random_state import preserved, seed_globals
@@ -109,7 +110,7 @@ def _drawn_now(law: Distribution) -> Any:
     try:
         return float(value)
     except (TypeError, ValueError, OverflowError):
-        raise wrong_type("a number", value, "`sampleGiven`") from None
+        raise wrong_type(SCALAR, value, "`sampleGiven`") from None
 
 
 def _numbers(call: Call, *columns: Column) -> Column:
@@ -121,7 +122,7 @@ def _numbers(call: Call, *columns: Column) -> Column:
             numbers[lane] = float(value)
         except (TypeError, ValueError, OverflowError):
             failed[lane] = True
-            first = wrong_type("a number", value, "`sampleGiven`") if first is None else first
+            first = wrong_type(SCALAR, value, "`sampleGiven`") if first is None else first
     if first is not None:
         call.fault(failed, first)
     return numbers

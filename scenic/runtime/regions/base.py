@@ -24,6 +24,7 @@ from scenic.language.errors import (
     UndefinedSamplingException,
     UnsupportedError,
 )
+from scenic.language.types import OBJECT
 from scenic.runtime.geometry.collision import Body
 from scenic.runtime.program.context import here
 from scenic.runtime.regions.flat import Flat
@@ -317,7 +318,7 @@ class Region(metaclass=_RegionType):
                 return Random.later(self.containsObject, thing)
             if options_of(thing):
                 return per_option(thing, self.containsObject)
-            raise wrong_type("an object", thing, "`containsObject`")
+            raise wrong_type(OBJECT, thing, "`containsObject`")
         if (single := self.at_once) is not None and (body := placed_of(thing)) is not None:
             held = single.holds_body(body)
             if held is not None:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from scenic.graph.draws import mix, open_unit, words_of
 from scenic.graph.kinds import Column
 from scenic.language.errors import InvalidScenarioError, RejectionException
+from scenic.language.types import REGION
 from scenic.runtime.regions.base import Mask, Points, Region
 from scenic.runtime.regions.varying import VaryingRegion
 from scenic.runtime.values.values import Orientation, Random, operate, to_orientation, to_vector, wrong_type
@@ -88,7 +89,7 @@ class DrawnRegion(VaryingRegion):
 
 def _wanted(value: Any, what: str) -> Region:
     if not isinstance(value, Region):
-        raise wrong_type("a region", value, what)
+        raise wrong_type(REGION, value, what)
     return value
 
 

@@ -18,6 +18,7 @@ from scenic.graph import quaternions
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import Call, Operation, always
 from scenic.language.errors import RejectionException, ScenicTypeError, ScenicValueError
+from scenic.language.types import FIELD
 from scenic.runtime.geometry.cell_index import CellIndex
 from scenic.runtime.program.context import here
 from scenic.runtime.python.opaque import Calls, Rows, evaluated, is_later, later, together
@@ -28,13 +29,13 @@ from scenic.runtime.values.values import (
     Vector,
     apply,
     as_value,
-    describe,
     operate,
     options_of,
     per_option,
     to_orientation,
     to_scalar,
     to_vector,
+    wrong_type,
 )
 
 Points = NDArray[np.float64]
@@ -372,10 +373,7 @@ def field_of(value: Any, what: str) -> VectorField:
         return value
     if is_certainly_field(value):
         return FieldChoice(value)
-    hint = None
-    if isinstance(value, type):
-        hint = f"to create an instance write `new {value.__name__} at ...`"
-    raise ScenicTypeError(f"{what}: expected a vector field, not {describe(value)}", span=here(), help=hint)
+    raise wrong_type(FIELD, value, what)
 
 
 def frame_at(direction: Any, position: Any, what: str) -> Any:

@@ -7,6 +7,7 @@ from scenic.graph.kinds import Kind
 from scenic.graph.operation import Operation, always, by_lane
 from scenic.graph.operations import TABLE
 from scenic.language.errors import ScenicTypeError
+from scenic.language.types import HEADING, ORIENTATION, SCALAR, VECTOR
 from scenic.runtime.program.context import here
 from scenic.runtime.values.applying import apply, operate
 from scenic.runtime.values.choices import drawn_option, select
@@ -35,7 +36,7 @@ def to_scalar(value: Any, what: str = "") -> Any:
             return _coerce_later(value, Kind.SCALAR, to_scalar, what)
     elif is_number(value):
         return float(value)
-    raise wrong_type("a number", value, what)
+    raise wrong_type(SCALAR, value, what)
 
 
 def to_vector(value: Any, what: str = "") -> Any:
@@ -49,7 +50,7 @@ def to_vector(value: Any, what: str = "") -> Any:
             return value
         if value.node.kind.is_boxed:
             return _coerce_boxed(value, Kind.VECTOR, to_vector, what)
-        raise wrong_type("a vector", value, what)
+        raise wrong_type(VECTOR, value, what)
     if isinstance(value, ROWS):
         if len(value) not in (2, 3):
             raise ScenicTypeError(
@@ -59,7 +60,7 @@ def to_vector(value: Any, what: str = "") -> Any:
         return vector(*value)
     if hasattr(value, "toVector") and not isinstance(value, type):
         return value.toVector()
-    raise wrong_type("a vector", value, what)
+    raise wrong_type(VECTOR, value, what)
 
 
 def to_heading(value: Any, what: str = "") -> Any:
@@ -79,7 +80,7 @@ def to_heading(value: Any, what: str = "") -> Any:
         return float(value)
     elif hasattr(value, "toHeading") and not isinstance(value, type):
         return value.toHeading()
-    raise wrong_type("a heading", value, what)
+    raise wrong_type(HEADING, value, what)
 
 
 def to_orientation(value: Any, what: str = "") -> Any:
@@ -105,7 +106,7 @@ def to_orientation(value: Any, what: str = "") -> Any:
         return Orientation.fromEuler(*value)
     elif hasattr(value, "toOrientation") and not isinstance(value, type):
         return value.toOrientation()
-    raise wrong_type("an orientation (a heading, Euler angles or an oriented point)", value, what)
+    raise wrong_type(ORIENTATION, value, what)
 
 
 def vector(x: Any, y: Any, z: Any = 0) -> Any:

@@ -14,6 +14,7 @@ from scenic.graph.kinds import Column, Kind
 from scenic.graph.node import Graph, Node
 from scenic.graph.operation import Call, Operation, always
 from scenic.language.errors import ScenicTypeError
+from scenic.language.types import OBJECT, POINT
 from scenic.runtime.geometry.scalar_bodies import Placed, Triple, axes_of, is_near_way
 from scenic.runtime.geometry.visibility.obstacles import Occluder
 from scenic.runtime.geometry.visibility.points import sees_points
@@ -122,14 +123,14 @@ def occluders_of(values: Any) -> tuple[Any, ...]:
     things = tuple(values)
     for thing in things:
         if not (thing.node.kind.is_boxed if isinstance(thing, Random) else is_body(thing)):
-            raise wrong_type("an object", thing, "what may hide others")
+            raise wrong_type(OBJECT, thing, "what may hide others")
     return things
 
 
 def camera_of(observer: Any) -> tuple[Any, Any]:
     """The place that an observer looks from, and the orientation of its view (section 11.1)."""
     if not hasattr(type(observer), "canSee"):
-        raise wrong_type("a point or an object", observer, "an observer")
+        raise wrong_type(POINT, observer, "an observer")
     if not _is_turned(observer):
         return observer.position, Orientation()
     orientation = observer.orientation

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
+from scenic.language.types import OBJECT
 from scenic.runtime.instances.objects import Object
 from scenic.runtime.values.describing import wrong_type
 from scenic.runtime.values.values import to_vector
@@ -48,7 +49,7 @@ class Grasp(_Grip):
 
     def __init__(self, target: Any) -> None:
         if not isinstance(target, Object):
-            raise wrong_type("an object", target, "Grasp")
+            raise wrong_type(OBJECT, target, "Grasp")
         self.target = target
 
     def applyTo(self, agent: Any, simulation: Any) -> None:

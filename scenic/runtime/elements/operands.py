@@ -1,0 +1,313 @@
+"""Operands of the language's own operators, from what a program gives to what an implementation takes.
+
+A declaration (`scenic.language.operators`) says which types an operand may have, and what stands in where the text leaves it
+out. One layer here decides, for all operators alike and in one order:
+
+1. what the text leaves out is the ego;
+2. where an operand is lazy, so is the result;
+3. a value that is definite, or random and of a known type, is converted to the first of the types that it has;
+4. a choice has the first type that all of its options have;
+5. where only the draw shows what an operand is, the operator waits for it;
+6. anything else is an error that names the operator, the operand and the types.
+
+So an implementation is a function of typed values, which are definite or random.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from types import MappingProxyType
+from typing import Any, Final, NamedTuple
+
+from scenic.graph.kinds import Kind
+from scenic.language.errors import InvalidScenarioError
+from scenic.language.operators import EGO, Operator
+from scenic.language.types import (
+    DIRECTION,
+    FIELD,
+    HEADING_OR_ANGLES,
+    OBJECT,
+    ORIENTATION,
+    ORIENTED_POINT,
+    POINT,
+    REGION,
+    SCALAR,
+    SCALAR_OR_VECTOR,
+    VECTOR,
+    Type,
+)
+from scenic.runtime.instances.objects import Object, OrientedPoint, Point
+from scenic.runtime.python.opaque import call_later
+from scenic.runtime.regions.choice import as_region
+from scenic.runtime.regions.drawn import DrawnRegion
+from scenic.runtime.regions.fields import VectorField, field_of
+from scenic.runtime.values.coercions import when_drawn
+from scenic.runtime.values.lazy import defer, is_lazy
+from scenic.runtime.values.values import (
+    Random,
+    Vector,
+    is_number,
+    is_open,
+    is_orientation,
+    is_vector,
+    options_of,
+    to_heading,
+    to_orientation,
+    to_scalar,
+    to_vector,
+    wrong_type,
+)
+
+Ego = Callable[[], Any]
+Read = Callable[[Any], Any]
+"""An operand as its type; `UNDECIDED` where it is lazy, or where only the draw shows its type."""
+Bound = Callable[..., Any]
+"""An operator as a function ``(ego, *operands)``; an operand that the text leaves out is ``None``."""
+
+
+class _Undecided:
+    """The type of `UNDECIDED`."""
+
+    def __repr__(self) -> str:
+        return "UNDECIDED"
+
+
+UNDECIDED: Final = _Undecided()
+"""In the place of an operand or a result: it has to wait for the object being specified, or for the draw."""
+
+
+class _Reading(NamedTuple):
+    """How values are read as one type.
+
+    ``fits`` tells whether a value that is no choice is of the type. ``convert`` gives the typed value; its second argument names
+    the operand in an error. ``by_some`` is set where a choice is of the type as soon as one of its options is.
+    """
+
+    fits: Callable[[Any], bool]
+    convert: Callable[[Any, str], Any]
+    by_some: bool = False
+
+
+def _number(value: Any) -> bool:
+    return value.node.kind.is_number if isinstance(value, Random) else is_number(value)
+
+
+def _place(value: Any) -> bool:
+    return is_vector(value) or (not isinstance(value, Random | type) and hasattr(value, "toVector"))
+
+
+def _is_measure(value: Any) -> bool:
+    """Whether a value is a number or a vector itself, not what stands for one."""
+    return _number(value) or (is_vector(value) and isinstance(value, Random | Vector))
+
+
+def _instance(cls: type[Point]) -> _Reading:
+    return _Reading(lambda value: isinstance(value, cls), lambda value, _: value)
+
+
+_READINGS: Final[Mapping[Type, _Reading]] = MappingProxyType(
+    {
+        SCALAR: _Reading(_number, to_scalar),
+        VECTOR: _Reading(_place, to_vector),
+        ORIENTATION: _Reading(is_orientation, to_orientation),
+        FIELD: _Reading(lambda value: isinstance(value, VectorField), field_of, by_some=True),
+        REGION: _Reading(lambda value: as_region(value) is not None, lambda value, _: as_region(value)),
+        POINT: _instance(Point),
+        ORIENTED_POINT: _instance(OrientedPoint),
+        OBJECT: _instance(Object),
+        SCALAR_OR_VECTOR: _Reading(_is_measure, lambda value, _: value),
+    }
+)
+
+
+def _is(type_: Type, value: Any) -> bool:
+    reading = _READINGS[type_]
+    options = options_of(value)
+    if options:
+        return (any if reading.by_some else all)(_is(type_, option) for option in options)
+    return reading.fits(value)
+
+
+def type_of(value: Any, types: Sequence[Type], label: str) -> Type | None:
+    """The first of the types that a value has, all of its options where it is a choice; ``None`` where only the draw shows it.
+
+    Raises:
+        ScenicTypeError: if it has none of them; ``label`` names the operand.
+
+    """
+    if not isinstance(value, Random):
+        for each in types:
+            if _READINGS[each].fits(value):
+                return each
+        raise wrong_type(types, value, label)
+    for each in types:
+        if _is(each, value):
+            return each
+    options = options_of(value)
+    if is_open(value) or any(_is(each, option) for option in options for each in types):
+        return None
+    while options:  # Of a choice without a right option, the message names the first one.
+        value, options = options[0], options_of(options[0])
+    raise wrong_type(types, value, label)
+
+
+def is_kind(value: Any, cls: type[Point]) -> bool:
+    """Whether a value is certainly an instance of a class: for a choice, every option."""
+    options = options_of(value)
+    return all(is_kind(option, cls) for option in options) if options else isinstance(value, cls)
+
+
+def is_unknown(value: Any, cls: type[Point] = Object) -> bool:
+    """Whether only the draw shows if a random value is an instance of a class (section 4.3)."""
+    return is_open(value) or len({is_kind(option, cls) for option in options_of(value)}) > 1
+
+
+def _to_yaw(value: Any, label: str) -> Any:
+    """A heading; here three numbers are Euler angles, as wherever an orientation is wanted."""
+    if not isinstance(value, Point) and is_vector(value):
+        value = to_orientation(value, label)
+    return to_heading(value, label)
+
+
+def _to_measure(value: Any, label: str) -> Any:
+    """A number or a vector, as it is; checked when it is drawn where its type is not known before."""
+    if type_of(value, (SCALAR_OR_VECTOR,), label) is None:
+        return when_drawn(value, Kind.OTHER, lambda drawn: _to_measure(drawn, label))
+    return value
+
+
+_COERCED: Final[Mapping[Type, tuple[frozenset[type], Callable[[Any, str], Any]]]] = MappingProxyType(
+    {
+        SCALAR: (frozenset({float}), to_scalar),
+        SCALAR_OR_VECTOR: (frozenset({float, int, Vector}), _to_measure),
+        HEADING_OR_ANGLES: (frozenset({float}), _to_yaw),
+        DIRECTION: (frozenset({float}), lambda value, _: value),
+    }
+)
+"""Types to which random values are converted whatever they are, each with the classes whose values are left as they are."""
+
+
+def reader(types: Sequence[Type], label: str) -> Read:
+    """The function that reads an operand of these types; see the module's text.
+
+    Raises:
+        ScenicTypeError: when it is called with a value of a wrong type.
+
+    """
+    if types[0] is VECTOR:
+        return _reading_places(types, label)
+    if len(types) == 1 and types[0] in _COERCED:
+        exact, convert = _COERCED[types[0]]
+
+        def read(value: Any) -> Any:
+            if type(value) in exact:
+                return value
+            return UNDECIDED if is_lazy(value) else convert(value, label)
+
+        return read
+
+    def decide(value: Any) -> Any:
+        if is_lazy(value):
+            return UNDECIDED
+        found = type_of(value, types, label)
+        return UNDECIDED if found is None else _READINGS[found].convert(value, label)
+
+    return decide
+
+
+def _reading_places(types: Sequence[Type], label: str) -> Read:
+    """`reader` for a vector, or something else; points are the most frequent ones."""
+
+    def read(value: Any) -> Any:
+        if type(value) is Vector:
+            return value
+        if isinstance(value, Point):
+            return value.position
+        if is_lazy(value):
+            return UNDECIDED
+        if len(types) == 1:
+            return to_vector(value, label)
+        found = type_of(value, types, label)
+        return UNDECIDED if found is None else _READINGS[found].convert(value, label)
+
+    return read
+
+
+def bound(declared: Operator, function: Callable[..., Any], drawn: Callable[..., Any]) -> Bound:
+    """An operator as programs use it, from its implementation: a function of the typed operands.
+
+    ``drawn`` gives its result in a sample, from its name and the drawn operands; it is not part of the result, so that
+    what a sample reads stays small.
+
+    Raises:
+        ScenicTypeError: when it is called with an operand of a wrong type.
+        InvalidScenarioError: when an operand is left out and there is no ego.
+
+    """
+    name, made = declared.name, DrawnRegion.made if declared.result == REGION.name else call_later
+    reads = [reader(operand.types, declared.label(operand)) for operand in declared.operands]
+    egos = [operand.default == EGO for operand in declared.operands]
+
+    def undecided(call: Bound, ego: Ego, given: tuple[Any, ...], operands: tuple[Any, ...]) -> Any:
+        return defer(call, ego, *given) if is_lazy(given) else made(drawn, name, *operands)
+
+    if len(reads) == 1:
+        return _unary(reads[0], function, undecided)
+    if len(reads) == 2:
+        are_places = all(operand.types[0] is VECTOR for operand in declared.operands)
+        return _binary((reads[0], reads[1]), (egos[0], egos[1]), are_places, function, undecided)
+    return _ternary((reads[0], reads[1], reads[2]), function, undecided)
+
+
+# One function for each number of operands: a simulation calls them all the time.
+
+
+def _unary(read: Read, function: Callable[..., Any], undecided: Callable[..., Any]) -> Bound:
+    def call(ego: Ego, given: Any) -> Any:
+        operand = read(given)
+        return undecided(call, ego, (given,), (given,)) if operand is UNDECIDED else function(operand)
+
+    return call
+
+
+def _binary(
+    reads: tuple[Read, Read],
+    egos: tuple[bool, bool],
+    are_places: bool,
+    function: Callable[..., Any],
+    undecided: Callable[..., Any],
+) -> Bound:
+    (read_first, read_second), (first_is_ego, second_is_ego) = reads, egos
+
+    def call(ego: Ego, first: Any, second: Any) -> Any:
+        if type(first) is Vector and type(second) is Vector and are_places:
+            return function(first, second)
+        given = first, second
+        try:
+            if first is None and first_is_ego:
+                first = ego()
+            if second is None and second_is_ego:
+                second = ego()
+        except InvalidScenarioError:  # A wrong operand is told before a missing ego.
+            for read, value in zip(reads, given, strict=True):
+                if value is not None:
+                    read(value)
+            raise
+        one, other = read_first(first), read_second(second)
+        if one is UNDECIDED or other is UNDECIDED:
+            return undecided(call, ego, given, (first, second))
+        return function(one, other)
+
+    return call
+
+
+def _ternary(
+    reads: tuple[Read, Read, Read], function: Callable[..., Any], undecided: Callable[..., Any]
+) -> Bound:
+    read_first, read_second, read_third = reads
+
+    def call(ego: Ego, first: Any, second: Any, third: Any) -> Any:
+        one, two, three = read_first(first), read_second(second), read_third(third)
+        if one is UNDECIDED or two is UNDECIDED or three is UNDECIDED:
+            return undecided(call, ego, (first, second, third), (first, second, third))
+        return function(one, two, three)
+
+    return call
