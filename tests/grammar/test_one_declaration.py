@@ -47,7 +47,7 @@ ADDED: Mapping[str, tuple[tuple[str, str], ...]] = {
             '    Operator(\n        "altitude",',
             """    Operator(
         "gap between",
-        (Operand("first", "object"), Operand("second", "object")),
+        (Operand("first", (OBJECT,)), Operand("second", (OBJECT,))),
         "scalar",
         ("gap between first to second",),
         "How much room is left between two objects.",
@@ -61,7 +61,7 @@ ADDED: Mapping[str, tuple[tuple[str, str], ...]] = {
             '    _beside("behind",',
             """    SpecifierDeclaration(
         "beside",
-        (Operand("reference", "object"), Operand("distance", "scalar", "no gap")),
+        (Operand("reference", (OBJECT,)), Operand("distance", (SCALAR,), "no gap")),
         (Specified("position", 1),),
         (),
         "position",

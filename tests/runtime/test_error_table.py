@@ -104,7 +104,7 @@ ERRORS: list[tuple[type[Exception], str, str, str]] = [
     # ScenicTypeError
     (ScenicTypeError, "SC404", "new Object «at 3»", "write `(x, y, z)` or `x @ y`, or name a"),
     (ScenicTypeError, "SC404", "new Object «facing (1, 2)»", "to face a position write `facing toward`"),
-    (ScenicTypeError, "SC404", "x = «(1, 2) at 3»", "write `(x, y, z)` or `x @ y`, or name a"),
+    (ScenicTypeError, "SC404", "x = «(1, 2) at 3»", "make one, as `VectorField"),
     (ScenicTypeError, "SC404", "«ego» = 3", "write `ego = new Object`, with specifiers"),
     (ScenicTypeError, "SC404", "«require monitor 3»", "monitors are defined with `monitor`"),
     (ScenicTypeError, "SC404", "«terminate after Range(1, 2) seconds»", "write a number, or one that is computed"),
