@@ -40,7 +40,7 @@ if TYPE_CHECKING:
         ScenicWarning,
         SpecifierError,
     )
-    from scenic.pipeline import load, scenarioFromFile, scenarioFromString
+    from scenic.pipeline import analyze, load, scenarioFromFile, scenarioFromString
     from scenic.runtime.elements.sensors import DepthSensor, RGBSensor, SSSensor
     from scenic.runtime.elements.specifiers import specifier
     from scenic.runtime.scenes.established_api import setDebuggingOptions
@@ -66,6 +66,7 @@ _HOMES = MappingProxyType(
         "DepthSensor": "scenic.runtime.elements.sensors",
         "RGBSensor": "scenic.runtime.elements.sensors",
         "SSSensor": "scenic.runtime.elements.sensors",
+        "analyze": "scenic.pipeline",
         "falsify": "scenic.falsification.search",
         "load": "scenic.pipeline",
         "read_scenes": "scenic.formats.reading",
@@ -100,6 +101,7 @@ __all__ = [
     "ScenicWarning",
     "Sobol",
     "SpecifierError",
+    "analyze",
     "falsify",
     "load",
     "parse",

@@ -44,6 +44,7 @@ from scenic.runtime.scenes.scene import Scene
 from scenic.runtime.values.values import is_random
 
 if TYPE_CHECKING:
+    from scenic.assessment.assessment import Assessment
     from scenic.batch.simulations import SimulationRow
     from scenic.falsification.external import ExternalSampler
 
@@ -124,6 +125,36 @@ def scenarioFromString(
 def _pruning_wanted() -> bool:
     """Scripts switch pruning off by ``scenic.syntax.translator.usePruning = False``."""
     return bool(getattr(sys.modules.get("scenic.syntax.translator"), "usePruning", True))
+
+
+def analyze(
+    program: str | Path | Scenario,
+    *,
+    params: Mapping[str, Any] | None = None,
+    model: str | None = None,
+    scenario: str | None = None,
+    mode2D: bool = False,
+    candidates: int | None = None,
+) -> "Assessment":
+    """What a program is like to sample: what analysis removes, how many candidates pass, which requirement costs most.
+
+    Args:
+        program: a ``.scenic`` file, or a scenario.
+        params: as for `load`, like the next ones; they go without a scenario.
+        model: a world model to use in place of the program's.
+        scenario: which scenario of the file.
+        mode2D: compile in the 2D compatibility mode.
+        candidates: how many are tried at most to estimate how many pass; 20,000 by default.
+
+    Raises:
+        ScenicError: what is wrong with the program, as `load` and `Scenario.sample` raise it.
+
+    """
+    from scenic.assessment.assessing import CANDIDATES, assess
+
+    if not isinstance(program, Scenario):
+        program = load(program, params=params, model=model, scenario=scenario, mode2D=mode2D)
+    return assess(program, candidates=CANDIDATES if candidates is None else candidates)
 
 
 def deep_check(path: str | Path) -> tuple[Diagnostic, ...]:

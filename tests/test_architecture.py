@@ -14,6 +14,7 @@ LAYERS = {
     "graph": set(),
     "runtime": {"graph", "language"},
     "analysis": {"graph", "runtime", "language", "compiler"},
+    "assessment": {"analysis", "formats", "runtime", "graph", "language"},
     "formats": {"runtime", "graph", "language"},
     "simulators": {"runtime", "graph", "language", "formats", "domains"},
     "domains": {"runtime", "graph", "language", "formats", "simulators"},
@@ -25,6 +26,7 @@ LAYERS = {
     "lsp": {"ide", "language", "configuration", "project"},
     "playground": {"ide"},
     "cli": {
+        "assessment",
         "domains",
         "batch",
         "falsification",

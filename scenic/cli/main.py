@@ -28,6 +28,11 @@ _COMMANDS: Final[Mapping[str, tuple[str, str, str]]] = MappingProxyType(
     {
         "check": ("scenic.cli.check", "check", "Report what is wrong with programs, without running them."),
         "sample": ("scenic.cli.sample", "sample", "Sample scenes from a program."),
+        "analyze": (
+            "scenic.cli.analyze",
+            "analyze",
+            "Tell what a program costs to sample, and where its objects may be.",
+        ),
         "view": ("scenic.cli.view", "view", "Show scenes that were saved: a page, 3D files, images."),
         "map": ("scenic.cli.map", "map_command", "Show what is in a road map, or draw it."),
         "dataset": ("scenic.cli.dataset", "dataset", "Look at, verify and merge data sets."),

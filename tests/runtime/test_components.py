@@ -34,7 +34,7 @@ PROGRAMS = {
 
 
 def components(program: Scenario) -> int:
-    return program._sampler.components
+    return len(program._sampler.engines)
 
 
 def observed(scenes: Any) -> np.ndarray[Any, Any]:

@@ -90,6 +90,12 @@ class Plan:
     """Of a part of a plan: the nodes that it needs."""
 
     @property
+    def draws(self) -> int:
+        """How many random numbers a candidate takes."""
+        nodes = self.graph.nodes if self.evaluated is None else self.evaluated
+        return sum(node.is_drawn for node in nodes)
+
+    @property
     def lane_bytes(self) -> int:
         """About how much memory one lane takes."""
         nodes = self.graph.nodes if self.evaluated is None else self.evaluated
@@ -422,6 +428,19 @@ class Engine:
             return self._alone(Task(seeds[lane], numbers[lane]), attempts[lane] - 1)
 
         return Found(seeds, numbers, attempts, batch, alone)
+
+    @property
+    def most_lanes(self) -> int:
+        """Candidates that fit into memory together."""
+        return self._pace.most
+
+    def trial(self, tasks: Sequence[tuple[int, int]]) -> int:
+        """How many of the first candidates for some scenes meet every requirement."""
+        pending = self.pending(tasks)
+        batch = self.attempts_at(pending, np.arange(len(tasks)), pending.attempts)
+        *stages, _ = self._stages.order(len(batch))
+        failures = self._judge(batch, stages, pending.inactive if self._soft else None)
+        return int(np.count_nonzero(failures[batch.rows] < 0))
 
     # What scenes put together from components need (`scenic.runtime.sampling.piecewise`)
 

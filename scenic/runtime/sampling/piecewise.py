@@ -87,6 +87,11 @@ class PiecewiseEngine:
         """The number of components."""
         return len(self._engines)
 
+    @property
+    def engines(self) -> list[Engine]:
+        """An engine for each component."""
+        return [self._engine(number) for number in range(self.count)]
+
     def prepare(self) -> None:
         """Make what the first round would otherwise wait for."""
         self._whole.prepare()
@@ -96,14 +101,14 @@ class PiecewiseEngine:
         """The same with other draws (`Engine.driven`)."""
         other = copy(self)
         other._whole = self._whole.driven(source)
-        other._engines = [self._engine(number).driven(source) for number in range(self.count)]
+        other._engines = [engine.driven(source) for engine in self.engines]
         return other
 
     def metered(self, meter: Meter) -> "PiecewiseEngine":
         """The same with a meter of what it does (`Engine.metered`)."""
         other = copy(self)
         other._whole = self._whole.metered(meter)
-        other._engines = [self._engine(number).metered(meter) for number in range(self.count)]
+        other._engines = [engine.metered(meter) for engine in self.engines]
         return other
 
     def profile(self, scenes: int) -> Profile:

@@ -1,6 +1,7 @@
 """A plan being sampled: the engine that knows what its rounds cost, and what is fixed in every scene."""
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -52,11 +53,12 @@ class Sampler:
         words: Mapping[int, int] | None = None,
     ) -> None:
         self._outline = outline
-        self._impossible = tuple(impossible)
+        self.impossible: Final = tuple(impossible)
+        """Labels of requirements that are proven to fail everywhere."""
         self._numbers, self._words = dict(numbers or {}), dict(words or {})
         self.engine = Engine(outline.plan(domain), self._fixing(lambda lanes: Counter(lanes.keys)))
         """The engine of the whole plan."""
-        components = None if self._impossible else components_of(self.engine.plan)
+        components = None if self.impossible else components_of(self.engine.plan)
         self._finder = self.engine if components is None else PiecewiseEngine(self.engine, components)
 
     @property
@@ -65,13 +67,13 @@ class Sampler:
         return self.engine.plan
 
     @property
-    def components(self) -> int:
-        """How many components scenes are put together from."""
-        return self._finder.count if isinstance(self._finder, PiecewiseEngine) else 1
+    def engines(self) -> list[Engine]:
+        """An engine for each of the components that scenes are put together from."""
+        return self._finder.engines if isinstance(self._finder, PiecewiseEngine) else [self.engine]
 
     def prepare(self) -> None:
         """Make what the first scene would otherwise wait for."""
-        if not self._impossible:
+        if not self.impossible:
             self._finder.prepare()
 
     def fixed(self, numbers: Mapping[int, float], words: Mapping[int, int]) -> "Sampler":
@@ -95,7 +97,7 @@ class Sampler:
         source: PointSet | None = None,
     ) -> Results:
         """The scenes of ``tasks``, in order; the arguments are those of `Scenario.stream`."""
-        if self._impossible:
+        if self.impossible:
             return self._not_found(tasks)
         engine = self._engine_of(source)
         limit = self._limit(max_attempts, source)
@@ -112,12 +114,12 @@ class Sampler:
         """Where the time goes when scenes are looked for; the arguments are those of `find`."""
         engine = self._engine_of(source).metered(Meter())
         limit = self._limit(max_attempts, source)
-        some = () if self._impossible else engine.scenes(tasks, max_attempts=limit, deadline=deadline)
+        some = () if self.impossible else engine.scenes(tasks, max_attempts=limit, deadline=deadline)
         return engine.profile(sum(not isinstance(result, Exhausted) for result in some))
 
     def foresee(self, tasks: Iterable[tuple[int, int]], max_attempts: int, more: bool) -> Results:
         """The scenes of tasks without end; ``more`` tells whether to expect that more than the first one is wanted."""
-        if self._impossible:
+        if self.impossible:
             return self._not_found(tasks)
         return self._finder.foresee(tasks, max_attempts=self._most_attempts(max_attempts), more=more)
 
@@ -140,7 +142,7 @@ class Sampler:
         return Sampler(
             self._outline,
             domain.freed(free) if free.any() else domain,
-            impossible=self._impossible,
+            impossible=self.impossible,
             numbers=self._numbers,
             words=self._words,
         )
@@ -155,7 +157,7 @@ class Sampler:
         max_attempts: int,
     ) -> Results:
         """Scenes ``first`` to ``first + count`` of a seed, in each of which some draws ``(count,)``, by address, are given."""
-        if self._impossible:
+        if self.impossible:
             return self._not_found((seed, k) for k in range(first, first + count))
 
         def source(lanes: Lanes) -> Source:

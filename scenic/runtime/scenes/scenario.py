@@ -34,6 +34,7 @@ from scenic.runtime.python.samples import dependencies
 from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.spaces import Workspace
 from scenic.runtime.sampling.engine import Accepted, CandidateError
+from scenic.runtime.sampling.estimating import ComponentEstimate, estimate
 from scenic.runtime.sampling.foresight import SEED_BITS, Foreseen
 from scenic.runtime.sampling.planning import Outline
 from scenic.runtime.sampling.profiling import Profile
@@ -217,6 +218,16 @@ class Scenario:
     def domain(self) -> Domain:
         """The part of the unit cube that is sampled."""
         return self._sampler.plan.domain
+
+    @property
+    def impossible(self) -> tuple[str, ...]:
+        """Labels of requirements that are proven to fail in every scene."""
+        return self._sampler.impossible
+
+    def estimates(self, *, seed: int, candidates: int) -> tuple[ComponentEstimate, ...]:
+        """How often candidates pass, for each independent component of the scenes, from so many of each at most."""
+        with self._program.undisturbed():
+            return estimate(self._sampler.engines, seed=seed, candidates=candidates)
 
     def prepare(self) -> None:
         """Make what the first scene would otherwise wait for."""

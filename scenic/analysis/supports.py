@@ -1,0 +1,140 @@
+"""What random values can be: over the whole cube, and over the part of it that analysis leaves."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Any, Final
+
+import numpy as np
+
+from scenic.graph.bounding import over
+from scenic.graph.bounds import Bounds, Floats
+from scenic.graph.domain import Domain
+from scenic.graph.node import Graph, Node
+from scenic.graph.operations import TABLE
+from scenic.language.spans import Span
+
+__all__ = ["NAMES", "DrawnSupport", "options_of", "places_of", "supports"]
+
+NAMES: Final[Mapping[str, str]] = MappingProxyType(
+    {
+        "range": "Range",
+        "discrete range": "DiscreteRange",
+        "weighted integer": "DiscreteRange",
+        "normal": "Normal",
+        "truncated normal": "TruncatedNormal",
+        "choice": "choice",
+    }
+)
+"""What users call primitive distributions, by operation; everything else that is drawn is a place in a region."""
+
+
+@dataclass(frozen=True, slots=True)
+class DrawnSupport:
+    """What one primitive value can be.
+
+    Attributes:
+        kind: what is drawn: ``Range``, ``Normal``, ``choice``, ...; ``place`` for a point of a region.
+        span: where in the program.
+        before: the least and the greatest value; ``None`` of a place, or where nothing is known.
+        after: the same in the part of the cube that is sampled.
+        options: what a choice among fixed values picks from, as text; empty for others.
+        left: options that are left, by number.
+        removed: the share of the axes that is removed, 0 to 1.
+
+    """
+
+    kind: str
+    span: Span | None
+    before: tuple[float, float] | None
+    after: tuple[float, float] | None
+    options: tuple[str, ...]
+    left: tuple[int, ...]
+    removed: float
+
+
+def supports(graph: Graph, domain: Domain) -> tuple[DrawnSupport, ...]:
+    """What each primitive value of a graph can be, in the order of the graph."""
+    drawn: dict[Node, list[int]] = {}
+    for node in graph.nodes:
+        axes = [graph.axes[operand] for operand in node.operands if operand.is_axis]
+        if axes:
+            drawn[node] = axes
+    whole = Domain.whole(graph.dimension).hull
+    before, after = over(drawn, graph.axes, *whole), over(drawn, graph.axes, *domain.hull)
+    rows: list[DrawnSupport] = []
+    places: dict[Span | None, int] = {}
+    for node, axes in drawn.items():
+        span = node.span if isinstance(node.span, Span) else None
+        removed = 1 - float(np.prod([_left(domain, axis) for axis in axes]))
+        kind = NAMES.get(node.operation.name, "place")
+        if kind == "place":
+            if span in places:  # several numbers of one place
+                place = places[span]
+                known = rows[place]
+                rows[place] = DrawnSupport(
+                    kind, span, None, None, (), (), 1 - (1 - known.removed) * (1 - removed)
+                )
+            else:
+                places[span] = len(rows)
+                rows.append(DrawnSupport(kind, span, None, None, (), (), removed))
+            continue
+        options = options_of(node, graph.nodes)
+        ends = _ends(after[node])
+        left = tuple(range(int(ends[0]), int(ends[1]) + 1)) if options and ends else ()
+        rows.append(DrawnSupport(kind, span, _ends(before[node]), ends, options, left, removed))
+    return tuple(rows)
+
+
+def places_of(position: Node, graph: Graph, domain: Domain) -> tuple[Floats, Floats]:
+    """Boxes in which a position may lie, as corners ``(m, 3)``: one for each box of a part of the domain."""
+    used = {axis for axis in graph.axes if axis in Graph([position]).index}
+    numbers = np.array(sorted(graph.axes[axis] for axis in used), dtype=np.intp)
+    lower, upper = domain.hull
+    for part, joined in zip(domain.parts, domain.joined_axes(), strict=True):
+        if len(np.intersect1d(joined, numbers)) and len(lower) == 1:
+            lower, upper = np.repeat(lower, part.boxes, axis=0), np.repeat(upper, part.boxes, axis=0)
+            lower[:, joined], upper[:, joined] = part.lower[:, joined], part.upper[:, joined]
+    bounds = over([position], graph.axes, lower, upper)[position]
+    if bounds is None or bounds.lower.shape[1:] != (3,):
+        return np.full((1, 3), -np.inf), np.full((1, 3), np.inf)
+    count = len(lower)
+    return np.broadcast_to(bounds.lower, (count, 3)), np.broadcast_to(bounds.upper, (count, 3))
+
+
+def options_of(choice: Node, nodes: Sequence[Node]) -> tuple[str, ...]:
+    """The fixed values that a choice picks from, as text; empty where it is none, or they are not fixed."""
+    if choice.operation is not TABLE["choice"]:
+        return ()
+    for node in nodes:
+        if node.operation is TABLE["look-up"] and node.operands[0] is choice:
+            return tuple(_shown(value) for value in node.payload.column.tolist())
+        if node.operation is TABLE["select"] and node.operands[0] is choice:
+            return tuple(
+                _shown(option.value) if option.is_constant else "a random value"
+                for option in node.operands[1:]
+            )
+    return ()
+
+
+def _shown(value: Any) -> str:
+    text = f"{value:.6g}" if isinstance(value, float) else repr(value)
+    return text if len(text) < 30 else f"{text[:26]}..."
+
+
+def _ends(bounds: Bounds | None) -> tuple[float, float] | None:
+    if bounds is None or bounds.lower.shape != (1,):
+        return None
+    return float(bounds.lower[0]), float(bounds.upper[0])
+
+
+def _left(domain: Domain, axis: int) -> float:
+    """How much of an axis the boxes of a domain cover together."""
+    share = 1.0
+    for part in domain.parts:
+        order = np.argsort(part.lower[:, axis])
+        lower, upper = part.lower[order, axis], part.upper[order, axis]
+        reached = np.maximum.accumulate(np.concatenate([[0.0], upper[:-1]]))
+        covered = np.maximum(upper - np.maximum(lower, reached), 0).sum()
+        share = min(share, float(covered))
+    return share

@@ -1,0 +1,72 @@
+"""Finds out what a scenario is like to sample."""
+
+import numpy as np
+
+from scenic.analysis.supports import DrawnSupport, places_of, supports
+from scenic.assessment.assessment import Assessment, ValueRow
+from scenic.assessment.drawing import Whereabouts
+from scenic.language.spans import Span
+from scenic.runtime.scenes.scenario import Scenario
+from scenic.runtime.scenes.scene import Scene
+from scenic.runtime.values.values import as_node
+
+__all__ = ["CANDIDATES", "assess"]
+
+CANDIDATES = 20_000
+"""Candidates of each component, at most, on which estimates rest."""
+
+_SHOWN = 100
+"""Scenes whose objects are drawn."""
+
+
+def assess(scenario: Scenario, *, candidates: int = CANDIDATES, seed: int = 0) -> Assessment:
+    """What a scenario is like to sample.
+
+    Args:
+        scenario: the scenario.
+        candidates: how many of each component are tried at most; they decide how good the estimates are.
+        seed: of these candidates.
+
+    Raises:
+        ValueError: if no candidate is to be tried.
+
+    """
+    if candidates < 1:
+        raise ValueError("estimates need at least one candidate")
+    graph, domain = scenario.outline.graph, scenario.domain
+    impossible = scenario.impossible
+    estimates = () if impossible else scenario.estimates(seed=seed, candidates=candidates)
+    likely = all(part.accepted for part in estimates)
+    scenes = scenario.stream(_SHOWN, seed=seed, max_attempts=candidates) if estimates and likely else ()
+    found = [scene for scene in scenes if isinstance(scene, Scene)]
+    places = []
+    for number, item in enumerate(scenario.objects):
+        lower, upper = places_of(as_node(item.position), graph, domain)
+        name = scenario.variable(item) or (
+            "ego" if item is scenario.egoObject else f"{type(item).__name__} {number}"
+        )
+        seen = [list(scene.objects[number].position) for scene in found]
+        places.append(Whereabouts(name, lower, upper, np.array(seen, dtype=np.float64).reshape(-1, 3)))
+    values = tuple(
+        ValueRow(_text(scenario.text, row), None if row.span is None else row.span.line, row)
+        for row in supports(graph, domain)
+    )
+    return Assessment(scenario.filename, values, tuple(places), domain.volume, estimates, tuple(impossible))
+
+
+def _text(program: str, row: DrawnSupport) -> str:
+    """How the program writes a value; what it is called, where the place is in another file."""
+    if row.span is None or row.kind == "place":
+        return row.kind
+    written = _slice(program, row.span)
+    named = row.kind if row.kind != "choice" else ("Uniform", "Discrete", "Options")
+    return written if written.startswith(named) and len(written) < 60 else row.kind
+
+
+def _slice(program: str, span: Span) -> str:
+    lines = program.split("\n")[span.line - 1 : span.end_line]
+    if not lines:
+        return ""
+    lines[-1] = lines[-1][: span.end_column]
+    lines[0] = lines[0][span.column :]
+    return " ".join(line.strip() for line in lines)

@@ -1,0 +1,232 @@
+"""What is found out about a program before scenes are made in numbers, to be read, shown and drawn."""
+
+import json
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from scenic.analysis.supports import DrawnSupport
+from scenic.assessment.drawing import Whereabouts, png, svg
+from scenic.language.spans import Span
+from scenic.runtime.sampling.estimating import ComponentEstimate, RequirementEstimate
+
+__all__ = ["Assessment", "ValueRow"]
+
+
+@dataclass(frozen=True, slots=True)
+class ValueRow:
+    """A random value of the program: what it is called there, and what it can be."""
+
+    text: str
+    line: int | None
+    support: DrawnSupport
+
+    @property
+    def before(self) -> str:
+        """What it could be by itself."""
+        if self.support.options:
+            return ", ".join(self.support.options)
+        return _interval(self.support.before)
+
+    @property
+    def after(self) -> str:
+        """What is left of that."""
+        options = self.support.options
+        if options:
+            return ", ".join(options[number] for number in self.support.left if number < len(options))
+        return _interval(self.support.after)
+
+
+@dataclass(frozen=True, slots=True)
+class Assessment:
+    """What is found out about a program.
+
+    Attributes:
+        filename: the program.
+        values: its random values.
+        places: where its objects may be.
+        kept: the share of all combinations of draws that analysis leaves, 0 to 1.
+        components: what was estimated of each independent component.
+        impossible: labels of requirements that are proven to fail in every scene.
+
+    """
+
+    filename: str
+    values: tuple[ValueRow, ...]
+    places: tuple[Whereabouts, ...]
+    kept: float
+    components: tuple[ComponentEstimate, ...]
+    impossible: tuple[str, ...]
+
+    @property
+    def acceptance(self) -> float:
+        """The estimated probability that a candidate passes, after what analysis has removed."""
+        return math.prod(part.acceptance for part in self.components)
+
+    @property
+    def acceptance_before(self) -> float:
+        """The same without analysis: what it removes holds no scene."""
+        return self.acceptance * self.kept
+
+    @property
+    def log_probability(self) -> float:
+        """Natural logarithm of the probability that a sample of the program's values meets every requirement."""
+        if any(part.accepted == 0 for part in self.components):
+            return -math.inf
+        return sum(math.log(part.acceptance) for part in self.components) + math.log(self.kept)
+
+    @property
+    def error(self) -> float:
+        """Standard error of `log_probability`, by the counts; infinite where some component was never accepted."""
+        if any(part.accepted == 0 for part in self.components):
+            return math.inf
+        return math.sqrt(sum((1 - part.acceptance) / part.accepted for part in self.components))
+
+    @property
+    def costliest(self) -> RequirementEstimate | None:
+        """The requirement without which scenes would take the fewest candidates."""
+        rows = [row for part in self.components for row in part.requirements]
+        return max(rows, key=lambda row: (row.factor or math.inf, row.rejected), default=None)
+
+    def __str__(self) -> str:
+        return "\n".join([*self.summary(), *self._value_lines()])
+
+    def summary(self) -> list[str]:
+        """The findings on the whole program, a sentence each."""
+        if self.impossible:
+            return [f"no scene exists: {', '.join(self.impossible)}"]
+        lines = [f"analysis removes {1 - self.kept:.4g} of all combinations of draws"]
+        if self.acceptance:
+            lines.append(
+                f"about {_candidates(self.acceptance_before)} a scene without analysis, {_candidates(self.acceptance)} with it"
+            )
+            lines.append(
+                f"log-probability of the scenario: {self.log_probability:.3f} (standard error {self.error:.3f})"
+            )
+        else:
+            tried = max(part.candidates for part in self.components)
+            lines.append(f"none of {tried} candidates met every requirement")
+        if len(self.components) > 1:
+            alone = max(1 / part.acceptance if part.accepted else math.inf for part in self.components)
+            lines.append(
+                f"{len(self.components)} independent components, each looked for by itself: "
+                f"the rarest takes {alone:.3g} candidates"
+            )
+        worst = self.costliest
+        if worst is not None:
+            gain = (
+                ""
+                if worst.factor is None
+                else f"; without it scenes would take {worst.factor:.3g} times fewer"
+            )
+            lines.append(f"costs most: {worst.label}, which rejects {worst.rejected:.1%} of candidates{gain}")
+        return lines
+
+    def _value_lines(self) -> list[str]:
+        return [
+            f"{_line(row.line)}{row.text}: {row.before or 'a place'} -> {row.after or 'a part'}, "
+            f"{row.support.removed:.1%} removed"
+            for row in self.values
+            if row.support.removed > 0
+        ]
+
+    def to_data(self) -> dict[str, Any]:
+        """The findings as plain data, as ``scenic analyze --json`` writes them."""
+        worst = self.costliest
+        return {
+            "file": self.filename,
+            "impossible": list(self.impossible),
+            "kept": self.kept,
+            "acceptance": {"before": self.acceptance_before, "after": self.acceptance},
+            "log_probability": _number(self.log_probability),
+            "standard_error": _number(self.error),
+            "costliest": None if worst is None else _requirement(worst),
+            "values": [
+                {
+                    "text": row.text,
+                    "line": row.line,
+                    "kind": row.support.kind,
+                    "before": _ends(row.support.before),
+                    "after": _ends(row.support.after),
+                    "options": list(row.support.options),
+                    "left": list(row.support.left),
+                    "removed": row.support.removed,
+                }
+                for row in self.values
+            ],
+            "objects": [
+                {"name": place.name, "lower": _vector(place.lower), "upper": _vector(place.upper)}
+                for place in self.places
+            ],
+            "components": [
+                {
+                    "draws": part.draws,
+                    "candidates": part.candidates,
+                    "accepted": part.accepted,
+                    "requirements": [_requirement(row) for row in part.requirements],
+                }
+                for part in self.components
+            ],
+        }
+
+    def to_json(self) -> str:
+        """The same as JSON."""
+        return json.dumps(self.to_data(), indent=2)
+
+    def png(self, path: str | Path) -> None:
+        """Write a drawing of where each object may be, from above and from the side.
+
+        Raises `MissingLibraryError` if Pillow is not installed.
+        """
+        Path(path).write_bytes(png(self.places))
+
+    def _repr_html_(self) -> str:
+        from html import escape
+
+        rows = "".join(
+            f"<tr><td>{_line(row.line)}<code>{escape(row.text)}</code></td><td>{escape(row.before)}</td>"
+            f"<td>{escape(row.after)}</td><td>{row.support.removed:.1%}</td></tr>"
+            for row in self.values
+        )
+        head = "<tr><th>value</th><th>before</th><th>after</th><th>removed</th></tr>"
+        lines = "".join(f"<li>{escape(line)}</li>" for line in self.summary())
+        return f"<ul>{lines}</ul><table>{head}{rows}</table>{svg(self.places)}"
+
+
+def _candidates(acceptance: float) -> str:
+    return f"{1 / acceptance:.3g} candidates"
+
+
+def _line(line: int | None) -> str:
+    return "" if line is None else f"line {line}: "
+
+
+def _interval(ends: tuple[float, float] | None) -> str:
+    return "" if ends is None else f"{ends[0]:.6g} to {ends[1]:.6g}"
+
+
+def _number(value: float) -> float | None:
+    return value if math.isfinite(value) else None
+
+
+def _ends(ends: tuple[float, float] | None) -> list[float | None] | None:
+    return None if ends is None else [_number(end) for end in ends]
+
+
+def _vector(corners: NDArray[np.float64]) -> list[list[float | None]]:
+    return [[_number(part) for part in row] for row in corners.tolist()]
+
+
+def _requirement(row: RequirementEstimate) -> dict[str, Any]:
+    span: Span | None = row.span
+    return {
+        "label": row.label,
+        "line": None if span is None else span.line,
+        "rejected": row.rejected,
+        "alone": row.alone,
+        "factor": row.factor,
+    }

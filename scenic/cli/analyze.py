@@ -1,0 +1,104 @@
+"""``scenic analyze``: what a program is like to sample."""
+
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from scenic.cli.options import program_options
+from scenic.cli.output import CLEAN, FINDINGS, has_colours
+
+if TYPE_CHECKING:
+    from scenic.assessment.assessment import Assessment
+
+__all__ = ["analyze"]
+
+
+@click.command("analyze")
+@click.argument("file", metavar="FILE")
+@program_options
+@click.option(
+    "-n",
+    "--candidates",
+    metavar="N",
+    type=click.IntRange(min=1),
+    default=20_000,
+    show_default=True,
+    help="Candidates of each component, at most, from which probabilities are estimated.",
+)
+@click.option("--json", "as_json", is_flag=True, help="Write the findings as JSON.")
+@click.option(
+    "--png",
+    metavar="PATH",
+    type=click.Path(path_type=Path, dir_okay=False),
+    help="Draw where each object may be, from above and from the side.",
+)
+def analyze(
+    file: str,
+    parameters: Mapping[str, Any],
+    scenario: str | None,
+    model: str | None,
+    mode_2d: bool,
+    candidates: int,
+    as_json: bool,
+    png: Path | None,
+) -> int:
+    """Tell what a program costs to sample, and where its objects may be.
+
+    Exit codes: 0 success, 1 the program has errors or no scene exists, 2 wrong usage.
+    """
+    from scenic.formats.files import check_writable
+    from scenic.formats.png import require_pillow
+    from scenic.pipeline import analyze as analysed
+
+    if png is not None:
+        require_pillow()
+        check_writable(png)
+    found = analysed(
+        file, params=parameters, scenario=scenario, model=model, mode2D=mode_2d, candidates=candidates
+    )
+    if png is not None:
+        found.png(png)
+    if as_json:
+        click.echo(found.to_json())
+    else:
+        _show(found)
+    return FINDINGS if found.impossible else CLEAN
+
+
+def _show(found: "Assessment") -> None:
+    from rich.console import Console
+    from rich.table import Table
+
+    console = Console(no_color=not has_colours(sys.stdout), highlight=False)
+    for line in found.summary():
+        console.print(line, soft_wrap=True, markup=False)
+    values = Table(title="Random values", title_justify="left")
+    for heading in ("value", "line", "before", "after", "removed"):
+        values.add_column(heading, overflow="fold")
+    for row in found.values:
+        line = "" if row.line is None else str(row.line)
+        values.add_row(row.text, line, row.before, row.after, f"{row.support.removed:.1%}")
+    if found.values:
+        console.print(values)
+    for number, part in enumerate(found.components, start=1):
+        of_part = f" of component {number}" if len(found.components) > 1 else ""
+        checks = Table(
+            title=f"Requirements{of_part}: {part.accepted} of {part.candidates} candidates pass",
+            title_justify="left",
+        )
+        checks.add_column("requirement", overflow="fold")
+        for heading in ("line", "rejects", "alone", "times fewer without it"):
+            checks.add_column(heading, justify="right")
+        for check in part.requirements:
+            checks.add_row(
+                check.label,
+                "" if check.span is None else str(check.span.line),
+                f"{check.rejected:.1%}",
+                f"{check.alone:.1%}",
+                "" if check.factor is None else f"{check.factor:.3g}",
+            )
+        if part.requirements:
+            console.print(checks)
