@@ -54,7 +54,7 @@ class Shot:
     plan: bool = False
 
     @classmethod
-    def of(cls, path: Path, options: Mapping[str, str]) -> "Shot":
+    def of(cls, path: Path, options: Mapping[str, str], size: tuple[int, int] | None = None) -> "Shot":
         """The shot of a program that the options of a code block ask for."""
         azimuth, _, elevation = options.get("from", "-35,33").replace("above", "0,90").partition(",")
         return cls(
@@ -66,6 +66,7 @@ class Shot:
             outlook=Outlook(float(azimuth), float(elevation), options.get("frame") != "objects"),
             mode2D="2d" in options,
             plan="plan" in options,
+            size=size,
         )
 
     def key(self) -> str:
