@@ -30,6 +30,7 @@ from scenic.language.errors import (
     RejectSimulationException,
     UnsupportedError,
 )
+from scenic.language.extras import installation
 from scenic.pipeline import load
 from scenic.runtime.elements.sensors import CameraSensor
 from scenic.runtime.sampling.report import Exhausted
@@ -46,7 +47,7 @@ try:
     from gymnasium import spaces
 except ImportError as error:
     raise UnsupportedError(
-        "environments need the package gymnasium", help="install scenic-lang[gym]"
+        "environments need the package gymnasium", help=f"install it: {installation('gym')}"
     ) from error
 
 __all__ = ["Choice", "Continuous", "Moment", "ScenicEnv"]

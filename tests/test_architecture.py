@@ -25,7 +25,9 @@ LAYERS = {
     "ide": {"compiler", "language", "project"},
     "lsp": {"ide", "language", "configuration", "project"},
     "playground": {"ide"},
+    "templates": set(),
     "cli": {
+        "templates",
         "assessment",
         "domains",
         "batch",

@@ -70,7 +70,7 @@ class _Gallery(SphinxDirective):
             section += nodes.container(
                 "",
                 nodes.image(uri=f"/_build/pictures/{picture.name}", alt=header(path)),
-                nodes.paragraph("", "", nodes.strong("", path.stem.replace("_", " ")), nodes.Text(" "), nodes.Text(header(path))),
+                *self.parse_text_to_nodes(f"**{path.stem.replace('_', ' ')}** {header(path)}"),
                 nodes.raw("", f"<details><summary>examples/{name}</summary>", format="html"),
                 nodes.literal_block(text, text, language="scenic"),
                 nodes.raw("", "</details>", format="html"),

@@ -14,6 +14,7 @@ from importlib import metadata
 from typing import Any, Final, Protocol, Self, TypeVar
 
 from scenic.language.errors import Located, UnsupportedError
+from scenic.language.extras import installation
 
 __all__ = ["ClusterError", "DaskCluster", "Engine", "OverExecutor", "Processes", "versions"]
 
@@ -142,7 +143,7 @@ class DaskCluster:
             import distributed  # optional, and slow to import
         except ImportError as error:
             raise UnsupportedError(
-                "a Dask cluster needs the package distributed", help="install scenic-lang[cluster]"
+                "a Dask cluster needs the package distributed", help=f"install it: {installation('cluster')}"
             ) from error
         self._distributed: Any = distributed  # its functions have no types
         self._label = label

@@ -17,7 +17,7 @@ __all__ = ["analyze"]
 
 
 @click.command("analyze")
-@click.argument("file", metavar="FILE")
+@click.argument("file", metavar="FILE", type=click.Path())
 @program_options
 @click.option(
     "-n",

@@ -45,7 +45,7 @@ def _selectors(_context: click.Context, _option: click.Parameter, given: tuple[s
 
 
 @click.command()
-@click.argument("paths", nargs=-1, metavar="[PATH]...")
+@click.argument("paths", nargs=-1, metavar="[PATH]...", type=click.Path())
 @click.option(
     "--format",
     "output_format",

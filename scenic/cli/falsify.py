@@ -19,7 +19,7 @@ __all__ = ["falsify"]
 
 
 @click.command()
-@click.argument("file", metavar="FILE")
+@click.argument("file", metavar="FILE", type=click.Path())
 @click.option(
     "-n",
     "count",

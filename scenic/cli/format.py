@@ -19,7 +19,7 @@ __all__ = ["format_command"]
 
 
 @click.command("format")
-@click.argument("paths", nargs=-1, metavar="[PATH]...")
+@click.argument("paths", nargs=-1, metavar="[PATH]...", type=click.Path())
 @click.option(
     "--check", is_flag=True, help="Change nothing; exit with 1 if a file is not in the usual style."
 )

@@ -26,7 +26,12 @@ __all__ = ["main", "scenic"]
 
 _COMMANDS: Final[Mapping[str, tuple[str, str, str]]] = MappingProxyType(
     {
+        "new": ("scenic.cli.new", "new", "Make a folder with a program to start from."),
         "check": ("scenic.cli.check", "check", "Report what is wrong with programs, without running them."),
+        "format": ("scenic.cli.format", "format_command", "Put programs into the usual style."),
+        "explain": ("scenic.cli.explain", "explain", "Explain a diagnostic by its code."),
+        "playground": ("scenic.cli.playground", "playground", "Write and sample programs in the browser."),
+        "lsp": ("scenic.cli.lsp", "lsp", "Start the language server, for editors."),
         "sample": ("scenic.cli.sample", "sample", "Sample scenes from a program."),
         "analyze": (
             "scenic.cli.analyze",
@@ -34,20 +39,37 @@ _COMMANDS: Final[Mapping[str, tuple[str, str, str]]] = MappingProxyType(
             "Tell what a program costs to sample, and where its objects may be.",
         ),
         "view": ("scenic.cli.view", "view", "Show scenes that were saved: a page, 3D files, images."),
-        "map": ("scenic.cli.map", "map_command", "Show what is in a road map, or draw it."),
         "dataset": ("scenic.cli.dataset", "dataset", "Look at, verify and merge data sets."),
+        "map": ("scenic.cli.map", "map_command", "Show what is in a road map, or draw it."),
         "simulate": ("scenic.cli.simulate", "simulate", "Simulate scenes of a program."),
         "falsify": ("scenic.cli.falsify", "falsify", "Search for scenes and simulations that fail."),
+        "doctor": ("scenic.cli.doctor", "doctor", "Tell whether this installation is complete."),
+        "cache": ("scenic.cli.cache", "cache", "Look at the cache, or empty it."),
+        "completion": ("scenic.cli.completion", "completion", "Let a shell complete commands and options."),
         "ast": ("scenic.cli.syntax_tree", "syntax_tree", "Show the syntax tree of a program."),
         "python": ("scenic.cli.python_code", "python_code", "Show the Python code that a program becomes."),
-        "explain": ("scenic.cli.explain", "explain", "Explain a diagnostic by its code."),
-        "format": ("scenic.cli.format", "format_command", "Put programs into the usual style."),
-        "lsp": ("scenic.cli.lsp", "lsp", "Start the language server, for editors."),
-        "playground": ("scenic.cli.playground", "playground", "Write and sample programs in the browser."),
         "preview": ("scenic.cli.preview", "preview", ""),
     }
 )
 """By name: module, function in it, and what the list of commands says; nothing of those that are for programs only."""
+
+_GROUPS: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType(
+    {
+        "Write programs": ("new", "check", "format", "explain", "playground", "lsp"),
+        "Make scenes": ("sample", "analyze", "view", "dataset", "map"),
+        "Run simulations": ("simulate", "falsify"),
+        "Look behind": ("doctor", "cache", "completion", "ast", "python"),
+    }
+)
+"""The commands as the help lists them."""
+
+_EXAMPLES: Final = (
+    ("scenic new kitchen --template tabletop", "begin"),
+    ("scenic check kitchen", "find mistakes"),
+    ("scenic sample kitchen/scene.scenic -n 10 --view scenes.html", "look at ten scenes"),
+    ("scenic sample kitchen/scene.scenic -n 10000 -o scenes/ -j 4", "make a data set"),
+    ("scenic simulate drive.scenic -n 5 --view runs.html", "watch five simulations"),
+)
 
 _FRAMES: Final = 6
 """So many frames of an internal error are shown."""
@@ -78,8 +100,12 @@ class _Commands(click.Group):
             raise click.UsageError(f"{error.message} Did you mean {similar!r}?", ctx) from None
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        with formatter.section("Commands"):
-            formatter.write_dl([(name, text) for name, (_, _, text) in _COMMANDS.items() if text])
+        for title, names in _GROUPS.items():
+            with formatter.section(title):
+                formatter.write_dl([(name, _COMMANDS[name][2]) for name in names])
+        with formatter.section("Examples"):
+            for command, purpose in _EXAMPLES:
+                formatter.write(f"{'':{formatter.current_indent}}{command}  # {purpose}\n")
 
 
 def _show_version(ctx: click.Context, _parameter: click.Parameter, wanted: bool) -> None:

@@ -9,6 +9,7 @@ from pathlib import Path
 import click
 
 from scenic.cli.output import CLEAN
+from scenic.language.extras import installation
 
 __all__ = ["playground"]
 
@@ -27,9 +28,7 @@ def playground(file: Path | None, port: int, no_browser: bool) -> int:
     that is shown, which holds a secret.
     """
     if importlib.util.find_spec("websockets") is None:
-        raise click.ClickException(
-            'the playground needs another package: pip install "scenic-lang[playground]"'
-        )
+        raise click.ClickException(f"the playground needs another package: {installation('playground')}")
 
     from scenic.playground.server import is_built
 

@@ -19,7 +19,7 @@ _FRAMES: Final = 10_000
 
 
 @click.command()
-@click.argument("file", metavar="FILE")
+@click.argument("file", metavar="FILE", type=click.Path())
 def python_code(file: str) -> int:
     """Show the Python code that a program becomes."""
     source = read_source(file)

@@ -31,7 +31,7 @@ __all__ = ["sample"]
 
 
 @click.command()
-@click.argument("file", metavar="FILE")
+@click.argument("file", metavar="FILE", type=click.Path())
 @click.option(
     "-n", "count", metavar="N", type=click.IntRange(min=1), default=1, help="How many scenes.  [default: 1]"
 )

@@ -31,7 +31,7 @@ __all__ = ["simulate"]
 
 
 @click.command()
-@click.argument("file", metavar="FILE")
+@click.argument("file", metavar="FILE", type=click.Path())
 @click.option(
     "-n",
     "count",

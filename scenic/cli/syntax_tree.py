@@ -23,7 +23,7 @@ _ALL_FIELDS: Final[dict[str, Any]] = {"show_empty": True} if sys.version_info >=
 
 
 @click.command()
-@click.argument("file", metavar="FILE")
+@click.argument("file", metavar="FILE", type=click.Path())
 @click.option(
     "--positions", is_flag=True, help="Show where each node stands: lines from 1, columns in UTF-8 bytes."
 )

@@ -21,7 +21,7 @@ _PAGES: Final = frozenset({".html", ".htm"})
 
 
 @click.command()
-@click.argument("file", metavar="SCENES.jsonl")
+@click.argument("file", metavar="SCENES.jsonl", type=click.Path())
 @click.option(
     "-o",
     "--output",

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from scenic.formats.files import write
 from scenic.language.errors import UnsupportedError
+from scenic.language.extras import installation
 from scenic.runtime.values.values import Orientation, Vector
 
 __all__ = [
@@ -53,7 +54,7 @@ def openscenario_support() -> Any:
     except ImportError as error:
         raise UnsupportedError(
             "OpenSCENARIO files need the package scenariogeneration",
-            help="install scenic-lang[openscenario], or write JSON Lines",
+            help=f"install it: {installation('openscenario')}; or write JSON Lines",
         ) from error
     return xosc
 

@@ -12,6 +12,7 @@ from scenic.formats.instances import picture
 from scenic.formats.render import SIZE, render
 from scenic.formats.scenes import Scene
 from scenic.language.errors import Located
+from scenic.language.extras import installation
 
 _EFFORT: Final = 1
 _RUNS: Final = 3
@@ -31,7 +32,7 @@ def require_pillow() -> ModuleType:
     except ImportError as error:
         raise MissingLibraryError(
             "images need the library Pillow, which is not installed",
-            help="install it: pip install 'scenic-lang[view]'",
+            help=f"install it: {installation('view')}",
         ) from error
     return PIL.Image
 

@@ -12,6 +12,7 @@ from typing import Any, Final
 from scenic.formats.files import OutputError, Waiting, refusing, writing
 from scenic.formats.json_lines import number
 from scenic.language.errors import UnsupportedError
+from scenic.language.extras import installation
 
 __all__ = ["GROUP", "KEY", "ParquetFile", "parquet_about", "parquet_steps", "parquet_support"]
 
@@ -33,7 +34,7 @@ def parquet_support() -> tuple[Any, Any]:
     except ImportError as error:
         raise UnsupportedError(
             "Parquet files need the package pyarrow",
-            help="install scenic-lang[parquet], or write JSON Lines",
+            help=f"install it: {installation('parquet')}; or write JSON Lines",
         ) from error
     return pyarrow, pyarrow.parquet
 

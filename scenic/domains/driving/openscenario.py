@@ -4,6 +4,7 @@ from typing import Any
 
 from scenic.formats.openscenario import openscenario_document, stands_on_ground
 from scenic.language.errors import UnsupportedError
+from scenic.language.extras import installation
 
 __all__ = ["toOpenScenario"]
 
@@ -49,5 +50,5 @@ def toOpenScenario(simulation: Any, mapPath: Any = None, scenarioName: str = "Sc
         )
     except UnsupportedError as error:
         raise ModuleNotFoundError(
-            f"{error}: pip install scenariogeneration", name="scenariogeneration"
+            f"{error}: {installation('openscenario')}", name="scenariogeneration"
         ) from error

@@ -10,6 +10,7 @@ import numpy as np
 
 from scenic.falsification.samplers.protocol import SamplerError, options
 from scenic.falsification.space import Floats, Space
+from scenic.language.extras import installation
 from scenic.runtime.python.random_state import preserved, seed_globals
 
 __all__ = ["Evolution"]
@@ -31,7 +32,7 @@ class Evolution:
         except ImportError:
             raise SamplerError(
                 "the sampler 'cma' needs the package `cma`",
-                help='install it: pip install "scenic-lang[falsify]"',
+                help=f"install it: {installation('falsify')}",
             ) from None
         chosen = options(given, {"sigma": 0.3, "popsize": None}, "cma")
         self._cma: Any = cma

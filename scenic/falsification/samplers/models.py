@@ -7,6 +7,7 @@ import numpy as np
 
 from scenic.falsification.samplers.protocol import SamplerError, options
 from scenic.falsification.space import Floats, Space
+from scenic.language.extras import installation
 
 __all__ = ["Bayesian", "Parzen"]
 
@@ -64,7 +65,7 @@ def _optuna(name: str) -> Any:
     except ImportError:
         raise SamplerError(
             f"the sampler {name!r} needs the package `optuna`",
-            help='install it: pip install "scenic-lang[falsify]"',
+            help=f"install it: {installation('falsify')}",
         ) from None
     optuna.logging.set_verbosity(optuna.logging.ERROR)
     return optuna

@@ -12,6 +12,7 @@ from typing import Any, BinaryIO, Final
 import numpy as np
 
 from scenic.language.errors import ScenicValueError, UnsupportedError
+from scenic.language.extras import installation
 from scenic.runtime.dynamics.recorded import as_array, as_pixels, plain
 from scenic.runtime.dynamics.series import Arrays, Film, Lines, Pickled, Series
 from scenic.runtime.program.context import here
@@ -186,7 +187,7 @@ def _image(stream: BinaryIO, value: Any, **options: Any) -> None:
         raise UnsupportedError(
             "images cannot be recorded without the package Pillow",
             span=here(),
-            help="install scenic-lang[view]",
+            help=f"install it: {installation('view')}",
         ) from error
     Image.fromarray(as_pixels(value)).save(stream, format=_image_format(stream), **options)
 

@@ -14,6 +14,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from scenic.language.errors import ScenicValueError, UnsupportedError
+from scenic.language.extras import installation
 from scenic.runtime.dynamics.recorded import as_array, as_pixels, plain
 from scenic.runtime.program.context import here
 from scenic.runtime.scenes.files import named, naming, unnamed, whole
@@ -172,7 +173,7 @@ class Film:
             raise UnsupportedError(
                 "films cannot be recorded without the package imageio-ffmpeg",
                 span=here(),
-                help="install scenic-lang[video]",
+                help=f"install it: {installation('video')}",
             ) from error
         assert self._first is not None
         _, first = self._first

@@ -56,7 +56,7 @@ def kept(
         write: keep the result for later runs.
 
     """
-    folder = _folder()
+    folder = store_folder()
     if folder is None:
         return compute()
     path = folder / f"{_key(kind, content)}{_SUFFIX}"
@@ -70,11 +70,12 @@ def kept(
 
 def is_kept(kind: str, content: bytes) -> bool:
     """Whether an earlier run left what `kept` would otherwise compute."""
-    folder = _folder()
+    folder = store_folder()
     return folder is not None and (folder / f"{_key(kind, content)}{_SUFFIX}").exists()
 
 
-def _folder() -> Path | None:
+def store_folder() -> Path | None:
+    """The folder of the store; ``None`` where it is turned off, or there is no home to put it in."""
     if os.environ.get("SCENIC_CACHE", "").lower() in ("off", "0", "no", "false"):
         return None
     chosen = os.environ.get("SCENIC_CACHE_DIR")
@@ -127,16 +128,33 @@ def _write(path: Path, arrays: Arrays) -> None:
             except BaseException:
                 os.unlink(part.name)
                 raise
-        _clear(path.parent)
+        _make_room(path.parent)
 
 
-def _clear(folder: Path) -> None:
-    """Remove the files used longest ago if there are too many bytes."""
+def kept_files(folder: Path) -> list[tuple[int, int, Path]]:
+    """The files of a store: when each was last used (nanoseconds), its bytes, and its path."""
     files = []
     for path in (*folder.glob(f"*{_SUFFIX}"), *folder.glob("*.npz")):  # which earlier versions wrote
         with contextlib.suppress(OSError):  # another process may have removed it
             status = path.stat()
             files.append((status.st_mtime_ns, status.st_size, path))
+    return files
+
+
+def clear() -> int:
+    """Remove everything that is kept; the number of bytes that were removed."""
+    folder = store_folder()
+    removed = 0
+    for _, size, path in [] if folder is None else kept_files(folder):
+        with contextlib.suppress(OSError):
+            path.unlink()
+            removed += size
+    return removed
+
+
+def _make_room(folder: Path) -> None:
+    """Remove the files used longest ago if there are too many bytes."""
+    files = kept_files(folder)
     total = sum(size for _, size, _ in files)
     if total <= MOST_BYTES:
         return

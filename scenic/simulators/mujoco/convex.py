@@ -5,6 +5,7 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
+from scenic.language.extras import installation
 from scenic.runtime.geometry.store import Arrays, kept
 from scenic.runtime.program.context import warn
 
@@ -57,7 +58,7 @@ def _library() -> Any:
     except ImportError:
         warn(
             "meshes that are not convex touch with their convex hulls, since the package coacd is missing",
-            help="install scenic-lang[mujoco]",
+            help=f"install it: {installation('mujoco')}",
         )
         return None
     return coacd

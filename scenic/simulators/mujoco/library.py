@@ -7,6 +7,7 @@ from contextlib import contextmanager
 from typing import Any
 
 from scenic.language.errors import UnsupportedError
+from scenic.language.extras import installation
 
 __all__ = ["library", "quietly"]
 
@@ -21,7 +22,7 @@ def library() -> Any:
     except ImportError as error:
         raise UnsupportedError(
             "the MuJoCo simulator needs the package mujoco-core",
-            help="install scenic-lang[mujoco], or simulate with --simulator kinematic",
+            help=f"install it: {installation('mujoco')}; or simulate with --simulator kinematic",
         ) from error
     return mujoco
 

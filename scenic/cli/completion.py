@@ -1,0 +1,28 @@
+"""``scenic completion``: the script that lets a shell complete commands, options and files."""
+
+import click
+from click.shell_completion import get_completion_class
+
+from scenic.cli.output import CLEAN
+
+__all__ = ["completion"]
+
+_VARIABLE = "_SCENIC_COMPLETE"
+
+
+@click.command()
+@click.argument("shell", type=click.Choice(["bash", "zsh", "fish"]))
+@click.pass_context
+def completion(context: click.Context, shell: str) -> int:
+    """Print the script that completes commands, options and files in a shell.
+
+    For bash, add to ~/.bashrc: eval "$(scenic completion bash)"
+
+    For zsh, add to ~/.zshrc: eval "$(scenic completion zsh)"
+
+    For fish: scenic completion fish > ~/.config/fish/completions/scenic.fish
+    """
+    made = get_completion_class(shell)
+    assert made is not None
+    click.echo(made(context.find_root().command, {}, "scenic", _VARIABLE).source())
+    return CLEAN

@@ -1,0 +1,41 @@
+"""The extras of the package: what each is for, which modules it brings, and the command that installs it."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Final
+
+__all__ = ["EXTRAS", "Extra", "installation"]
+
+
+@dataclass(frozen=True, slots=True)
+class Extra:
+    """An extra: ``modules`` are the names that are imported where it is needed."""
+
+    name: str
+    purpose: str
+    modules: tuple[str, ...]
+
+
+EXTRAS: Final[Mapping[str, Extra]] = MappingProxyType(
+    {
+        extra.name: extra
+        for extra in (
+            Extra("view", "images", ("PIL",)),
+            Extra("mujoco", "simulations with contacts and friction", ("mujoco", "coacd")),
+            Extra("gym", "environments of Gymnasium", ("gymnasium",)),
+            Extra("falsify", "samplers that learn", ("cma", "optuna")),
+            Extra("parquet", "data sets and trajectories in columns", ("pyarrow",)),
+            Extra("cluster", "sampling on a Dask cluster", ("distributed",)),
+            Extra("openscenario", "OpenSCENARIO files", ("scenariogeneration",)),
+            Extra("video", "films of recorded images", ("imageio_ffmpeg",)),
+            Extra("playground", "the playground in the browser", ("websockets",)),
+        )
+    }
+)
+"""The extras for users, by name."""
+
+
+def installation(extra: str) -> str:
+    """The command that installs an extra; quoted, since shells read brackets as patterns."""
+    return f"pip install 'scenic-lang[{EXTRAS[extra].name}]'"
