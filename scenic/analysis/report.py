@@ -9,6 +9,7 @@ from scenic.analysis.smt import Contradiction, Support, Verdict, judge
 from scenic.graph.node import Graph, Node
 from scenic.graph.operations import TABLE
 from scenic.language.diagnostics import Diagnostic, Label, Severity
+from scenic.language.names import NAMES
 from scenic.language.spans import Span
 
 _MEND: Final = "no scene can meet all of the marked places; change one of them"
@@ -87,17 +88,18 @@ def _contradiction(item: Contradiction, verdict: Verdict) -> Diagnostic:
 
 
 _NOUNS: Final = {
-    "range": "this range",
-    "discrete range": "this range of integers",
-    "weighted integer": "this range of integers",
-    "truncated normal": "this truncated normal",
-    "choice": "this choice",
+    operation: declared.noun
+    for declared in NAMES.values()
+    if declared.noun is not None
+    for operation in (declared.operation, *declared.operations)
 }
+"""Values of distributions in words, by operation."""
 
 
 def _words(support: Support, verdict: Verdict) -> tuple[str, str]:
     """A support in words: of what, and what about it."""
-    noun = _NOUNS.get(support.node.operation.name, f"this {support.node.operation.name}")
+    operation = support.node.operation.name
+    noun = f"this {_NOUNS.get(operation, operation)}"
     options = _options(support.node, verdict.encoding.nodes)
     if options:
         return noun, f"is one of {', '.join(options)}"

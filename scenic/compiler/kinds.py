@@ -96,14 +96,6 @@ _COORDINATES: Final[Mapping[str, tuple[int, ...]]] = MappingProxyType(
 )
 """Numbers of elements of tuples and lists that do for a word of a declared type."""
 
-_NUMBERS: Final = frozenset(
-    {
-        *("Range", "DiscreteRange", "Normal", "TruncatedNormal", "VerifaiRange", "VerifaiDiscreteRange"),
-        *("sin", "cos", "hypot", "len", "int", "float"),
-    }
-)
-"""What the language provides that returns numbers."""
-
 _DEEPEST: Final = 20
 """How far values are looked into."""
 
@@ -231,22 +223,15 @@ class KindOf:
         name = self._meanings.provided(function)
         if name is None or name not in NAMES:
             return None
-        if name in _NUMBERS:
-            return NUMBER
+        result = NAMES[name].result
+        if result is not None:
+            return kind_of_type(result.name)
         if name in ("abs", "round", "min", "max"):
             numbers = len(node.args) and all(self(each, depth) == NUMBER for each in node.args)
             return NUMBER if numbers else None
         if name in ("Uniform", "Options", "Discrete") and not node.keywords:
             return self._joint(_options(node), depth)
-        by_name = {
-            "Vector": VECTOR,
-            "Workspace": WORKSPACE,
-            "VectorField": FIELD,
-            "PolygonalVectorField": FIELD,
-            "str": TEXT,
-            "localPath": TEXT,
-        }
-        return by_name.get(name) or {NameKind.REGION: REGION, NameKind.SHAPE: SHAPE}.get(NAMES[name].kind)
+        return {"Workspace": WORKSPACE, "str": TEXT, "localPath": TEXT}.get(name)
 
     def _attribute(self, node: ast.Attribute, depth: int) -> Kind | None:
         owner = self(node.value, depth)

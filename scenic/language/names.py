@@ -5,7 +5,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 from types import MappingProxyType
-from typing import Final
+from typing import Any, Final
+
+from scenic.language.types import FIELD, REGION, SCALAR, SHAPE, VECTOR, Type
 
 __all__ = [
     "ANGLE_METHODS",
@@ -33,22 +35,40 @@ class NameKind(StrEnum):
     VALUE = "value"
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Name:
     """One provided name.
 
-    ``signature`` is how it is called, or the bare name of something that is not called. ``lifted`` marks the functions
-    that take random arguments, so that a call in a condition can become part of the value graph. ``angles`` are the
-    parameters whose numbers are angles in radians.
+    Attributes:
+        signature: how it is called, or the bare name of something that is not called.
+        home: the place of its implementation, as ``package.module:name``; ``None`` for what Python provides, and for what
+            each module has of its own.
+        lifted: a function that takes random arguments, so that a call in a condition can become part of the value graph.
+        is_complete: the signature shows all parameters; a call with others is a mistake.
+        types: types of the parameters, in order, as far as the implementation gets them converted.
+        angles: the parameters whose numbers are angles in radians.
+        result: the type of what a call returns, where that is always the same.
+        operation: the operation of the value graph that a call makes of its arguments; random values made by it are shown
+            as such a call.
+        operations: further operations of the value graph that make values of a distribution.
+        noun: a value of a distribution in words, where the operation's name does not say it.
+
     """
 
     name: str
     kind: NameKind
     signature: str
     documentation: str
+    home: str | None = None
     lifted: bool = False
     available: bool = True
+    is_complete: bool = False
+    types: tuple[Type, ...] = ()
     angles: tuple[str, ...] = ()
+    result: Type | None = None
+    operation: str | None = None
+    operations: tuple[str, ...] = ()
+    noun: str | None = None
 
     @property
     def parameters(self) -> tuple[str, ...]:
@@ -59,86 +79,101 @@ class Name:
         return tuple(part.partition("=")[0].strip() for part in flat.split(",") if part.strip())
 
 
-def _name(
-    signature: str,
-    kind: NameKind,
-    documentation: str,
-    *,
-    lifted: bool = False,
-    available: bool = True,
-    angles: tuple[str, ...] = (),
-) -> Name:
-    return Name(signature.partition("(")[0], kind, signature, documentation, lifted, available, angles)
+def _name(kind: NameKind, signature: str, documentation: str, home: str | None, **rest: Any) -> Name:
+    name = signature.partition("(")[0]
+    if home is not None and ":" not in home:
+        home = f"{home}:{name}"
+    return Name(name=name, kind=kind, signature=signature, documentation=documentation, home=home, **rest)
 
 
 def _function(
-    signature: str,
-    documentation: str,
-    *,
-    lifted: bool = False,
-    available: bool = True,
-    angles: tuple[str, ...] = (),
+    signature: str, documentation: str, home: str | None = "scenic.runtime.elements.functions", **rest: Any
 ) -> Name:
+    return _name(NameKind.FUNCTION, signature, documentation, home, **rest)
+
+
+def _distribution(
+    signature: str, documentation: str, home: str = "scenic.runtime.elements.distributions", **rest: Any
+) -> Name:
+    return _name(NameKind.DISTRIBUTION, signature, documentation, home, **rest)
+
+
+def _external(signature: str, documentation: str, **rest: Any) -> Name:
+    return _distribution(signature, documentation, "scenic.runtime.elements.external", **rest)
+
+
+def _region(signature: str, documentation: str, home: str, **rest: Any) -> Name:
     return _name(
-        signature, NameKind.FUNCTION, documentation, lifted=lifted, available=available, angles=angles
+        NameKind.REGION, signature, documentation, f"scenic.runtime.regions.{home}", result=REGION, **rest
     )
 
 
-def _distribution(signature: str, documentation: str, *, available: bool = True) -> Name:
-    return _name(signature, NameKind.DISTRIBUTION, documentation, available=available)
+def _shape(signature: str, documentation: str, home: str = "scenic.runtime.elements.shapes") -> Name:
+    return _name(NameKind.SHAPE, signature, documentation, home, result=SHAPE)
 
 
-def _region(
-    signature: str, documentation: str, *, available: bool = True, angles: tuple[str, ...] = ()
-) -> Name:
-    return _name(signature, NameKind.REGION, documentation, available=available, angles=angles)
+def _class(signature: str, documentation: str, home: str, **rest: Any) -> Name:
+    return _name(NameKind.CLASS, signature, documentation, f"scenic.runtime.{home}", **rest)
 
 
-def _shape(signature: str, documentation: str) -> Name:
-    return _name(signature, NameKind.SHAPE, documentation)
-
-
-def _class(signature: str, documentation: str, *, available: bool = True) -> Name:
-    return _name(signature, NameKind.CLASS, documentation, available=available)
-
-
-def _exception(signature: str, documentation: str, *, available: bool = True) -> Name:
-    return _name(signature, NameKind.EXCEPTION, documentation, available=available)
+def _exception(signature: str, documentation: str) -> Name:
+    return _name(NameKind.EXCEPTION, signature, documentation, "scenic.language.errors")
 
 
 _ALL = (
     # Classes and values
-    _class("Point", "A position in space. Create one with `new Point`."),
-    _class("OrientedPoint", "A position with an orientation. Create one with `new OrientedPoint`."),
-    _class("Object", "A physical object. Create one with `new Object`, or derive classes from it."),
+    _class("Point", "A position in space. Create one with `new Point`.", "instances.objects"),
     _class(
-        "Vector(x, y, z=0)", "A vector of three coordinates; `x @ y` and tuples do as well nearly everywhere."
+        "OrientedPoint",
+        "A position with an orientation. Create one with `new OrientedPoint`.",
+        "instances.objects",
+    ),
+    _class(
+        "Object",
+        "A physical object. Create one with `new Object`, or derive classes from it.",
+        "instances.objects",
+    ),
+    _class(
+        "Vector(x, y, z=0)",
+        "A vector of three coordinates; `x @ y` and tuples do as well nearly everywhere.",
+        "values.definite",
+        operation="vector",
+        result=VECTOR,
     ),
     _class(
         "Orientation",
         "A rotation in space. Made by `Orientation.fromEuler(yaw, pitch, roll)` or "
         "`Orientation.fromQuaternion((x, y, z, w))`; `*` composes.",
+        "values.definite",
     ),
     _class(
         "VectorField(name, value, minSteps=4, defaultStepSize=5)",
         "An orientation for every point of space, given by a function.",
+        "regions.fields",
+        result=FIELD,
     ),
     _class(
         "PolygonalVectorField(name, cells, headingFunction=None, defaultHeading=None)",
         "A vector field that is constant on polygons.",
+        "regions.fields",
+        result=FIELD,
     ),
-    _class("Workspace(region)", "The region that contains all objects, for `workspace = Workspace(region)`."),
-    _class("Mutator", "Base class of what adds noise to mutated objects."),
-    _class("Behavior", "Base class of all behaviors."),
-    _class("Monitor", "Base class of all monitors."),
-    _class("Distribution", "Base class of distributions written in Python."),
-    _class("File(pattern, **options)", "A recorder that writes one file per series."),
-    _class("Files(pattern, **options)", "A recorder that writes one file per value."),
-    Name(
-        "globalParameters",
+    _class(
+        "Workspace(region)",
+        "The region that contains all objects, for `workspace = Workspace(region)`.",
+        "regions.spaces",
+    ),
+    _class("Mutator", "Base class of what adds noise to mutated objects.", "instances.mutators"),
+    _class("Behavior", "Base class of all behaviors.", "dynamics.definitions"),
+    _class("Monitor", "Base class of all monitors.", "dynamics.definitions"),
+    _class("Distribution", "Base class of distributions written in Python.", "python.custom_distributions"),
+    _class("File(pattern, **options)", "A recorder that writes one file per series.", "dynamics.recorders"),
+    _class("Files(pattern, **options)", "A recorder that writes one file per value.", "dynamics.recorders"),
+    _name(
         NameKind.VALUE,
         "globalParameters",
         "The global parameters set by `param` and on the command line, to be read as attributes or items.",
+        None,
     ),
     # Exceptions
     _exception("RejectionException", "Raised by a function to reject the current sample."),
@@ -146,24 +181,71 @@ _ALL = (
     _exception("PreconditionViolation", "A precondition does not hold."),
     _exception("InvariantViolation", "An invariant does not hold."),
     # Functions
-    _function("sin(x)", "The sine of an angle in radians.", lifted=True, angles=("x",)),
-    _function("cos(x)", "The cosine of an angle in radians.", lifted=True, angles=("x",)),
-    _function("hypot(x, y, ...)", "The length of the vector with these coordinates.", lifted=True),
-    _function("max(a, b, ...)", "The largest of its arguments.", lifted=True),
-    _function("min(a, b, ...)", "The smallest of its arguments.", lifted=True),
-    _function("abs(x)", "The absolute value.", lifted=True),
-    _function("round(x, digits=None)", "The nearest integer, or number with so many decimals.", lifted=True),
-    _function("len(x)", "The number of elements.", lifted=True),
-    _function("str(x)", "Conversion to text, also of random values.", lifted=True),
-    _function("int(x)", "Conversion to an integer, also of random values.", lifted=True),
-    _function("float(x)", "Conversion to a real number, also of random values.", lifted=True),
+    _function(
+        "sin(x)",
+        "The sine of an angle in radians.",
+        lifted=True,
+        angles=("x",),
+        operation="sin",
+        result=SCALAR,
+        is_complete=True,
+    ),
+    _function(
+        "cos(x)",
+        "The cosine of an angle in radians.",
+        lifted=True,
+        angles=("x",),
+        operation="cos",
+        result=SCALAR,
+        is_complete=True,
+    ),
+    _function(
+        "hypot(x, y, ...)",
+        "The length of the vector with these coordinates.",
+        lifted=True,
+        operation="hypot",
+        result=SCALAR,
+    ),
+    _function("max(a, b, ...)", "The largest of its arguments.", lifted=True, operation="maximum"),
+    _function("min(a, b, ...)", "The smallest of its arguments.", lifted=True, operation="minimum"),
+    _function("abs(x)", "The absolute value.", None, lifted=True, operation="absolute"),
+    _function(
+        "round(x, digits=None)",
+        "The nearest integer, or number with so many decimals.",
+        lifted=True,
+        operation="round",
+    ),
+    _function("len(x)", "The number of elements.", lifted=True, operation="len", result=SCALAR),
+    _function("str(x)", "Conversion to text, also of random values.", None, lifted=True, operation="str"),
+    _function(
+        "int(x)",
+        "Conversion to an integer, also of random values.",
+        None,
+        lifted=True,
+        operation="int",
+        result=SCALAR,
+    ),
+    _function(
+        "float(x)",
+        "Conversion to a real number, also of random values.",
+        None,
+        lifted=True,
+        operation="float",
+        result=SCALAR,
+    ),
     _function("filter(function, values)", "The values for which the function is true, as a list."),
     _function("range(stop)", "Python's range; its arguments must not be random."),
-    _function("resample(distribution)", "An independent draw of the same distribution."),
-    _function("localPath(path)", "A path relative to the folder of this source file."),
     _function(
-        "verbosePrint(*values, level=1, indent=True)",
-        "Prints if the verbosity is at least the level.",
+        "resample(distribution)",
+        "An independent draw of the same distribution.",
+        "scenic.runtime.elements.distributions",
+        is_complete=True,
+    ),
+    _function(
+        "localPath(path)", "A path relative to the folder of this source file.", None, is_complete=True
+    ),
+    _function(
+        "verbosePrint(*values, level=1, indent=True)", "Prints if the verbosity is at least the level."
     ),
     _function(
         "distributionFunction(function)",
@@ -172,28 +254,76 @@ _ALL = (
     _function(
         "distributionMethod(method)",
         "Makes a method written in Python accept random arguments: it is then called with sampled ones.",
+        "scenic.runtime.python.custom_distributions",
     ),
-    _function("simulation()", "The running simulation."),
+    _function(
+        "simulation()",
+        "The running simulation.",
+        "scenic.runtime.program.builtins:running_simulation",
+        is_complete=True,
+    ),
     # Distributions
-    _distribution("Range(low, high)", "A real number, uniform on an interval."),
-    _distribution("DiscreteRange(low, high, weights=None)", "An integer between two, both included."),
-    _distribution("Normal(mean, stdDev)", "A real number with a normal distribution."),
     _distribution(
-        "TruncatedNormal(mean, stdDev, low, high)", "A normal distribution restricted to an interval."
+        "Range(low, high)",
+        "A real number, uniform on an interval.",
+        operation="range",
+        types=(SCALAR, SCALAR),
+        result=SCALAR,
+        is_complete=True,
     ),
-    _distribution("Uniform(value, ...)", "One of the values, each equally likely."),
-    _distribution("Discrete({value: weight, ...})", "One of the values, with these relative weights."),
-    _distribution("Options({value: weight, ...})", "Another name of `Discrete`; takes a sequence too."),
     _distribution(
+        "DiscreteRange(low, high, weights=None)",
+        "An integer between two, both included.",
+        operation="discrete range",
+        operations=("weighted integer",),
+        noun="range of integers",
+        result=SCALAR,
+        is_complete=True,
+    ),
+    _distribution(
+        "Normal(mean, stdDev)",
+        "A real number with a normal distribution.",
+        operation="normal",
+        types=(SCALAR, SCALAR),
+        result=SCALAR,
+        is_complete=True,
+    ),
+    _distribution(
+        "TruncatedNormal(mean, stdDev, low, high)",
+        "A normal distribution restricted to an interval.",
+        operations=("truncated normal",),
+        types=(SCALAR, SCALAR),
+        result=SCALAR,
+        is_complete=True,
+    ),
+    _distribution(
+        "Uniform(value, ...)", "One of the values, each equally likely.", operations=("select", "look-up")
+    ),
+    _distribution(
+        "Discrete({value: weight, ...})",
+        "One of the values, with these relative weights.",
+        operations=("select", "look-up"),
+        is_complete=True,
+    ),
+    _distribution(
+        "Options({value: weight, ...})",
+        "Another name of `Discrete`; takes a sequence too.",
+        operations=("select", "look-up"),
+        is_complete=True,
+    ),
+    _external(
         "VerifaiRange(low, high, buckets=None, weights=None)",
         "A real number that an external sampler may choose.",
+        result=SCALAR,
     ),
-    _distribution(
-        "VerifaiDiscreteRange(low, high, weights=None)", "An integer that an external sampler may choose."
+    _external(
+        "VerifaiDiscreteRange(low, high, weights=None)",
+        "An integer that an external sampler may choose.",
+        result=SCALAR,
     ),
-    _distribution("VerifaiOptions(options)", "An option that an external sampler may choose."),
-    _distribution("VerifaiParameter", "Base of the values that an external sampler may choose."),
-    _distribution("TimeSeries(parameter)", "An external parameter that has another value at every step."),
+    _external("VerifaiOptions(options)", "An option that an external sampler may choose."),
+    _external("VerifaiParameter", "Base of the values that an external sampler may choose."),
+    _external("TimeSeries(parameter)", "An external parameter that has another value at every step."),
     # Shapes
     _shape("BoxShape(dimensions=(1, 1, 1), scale=1)", "A cuboid."),
     _shape("CylinderShape(dimensions=(1, 1, 1), scale=1, sections=24)", "A cylinder along the Z axis."),
@@ -204,35 +334,41 @@ _ALL = (
         "The form of a closed mesh; `MeshShape.fromFile(path)` reads one.",
     ),
     # Regions
-    _region("everywhere", "All of space."),
-    _region("nowhere", "The empty region."),
-    _region("PointSetRegion(name, points)", "A finite set of points."),
-    _region("GridRegion(name, grid, Ax, Ay, Bx, By)", "The free cells of a grid."),
-    _region("PolylineRegion(points)", "A sequence of line segments in the plane."),
-    _region("PathRegion(points)", "A sequence of line segments in space."),
-    _region("PolygonalRegion(points, z=0)", "A polygon in a horizontal plane."),
-    _region("PolygonalFootprintRegion(polygon)", "All points above and below a polygon."),
-    _region("CircularRegion(center, radius)", "A disc in a horizontal plane."),
+    _region("everywhere", "All of space.", "spaces"),
+    _region("nowhere", "The empty region.", "spaces"),
+    _region("PointSetRegion(name, points)", "A finite set of points.", "scattered"),
+    _region("GridRegion(name, grid, Ax, Ay, Bx, By)", "The free cells of a grid.", "scattered"),
+    _region("PolylineRegion(points)", "A sequence of line segments in the plane.", "lines"),
+    _region("PathRegion(points)", "A sequence of line segments in space.", "lines"),
+    _region("PolygonalRegion(points, z=0)", "A polygon in a horizontal plane.", "planar"),
+    _region("PolygonalFootprintRegion(polygon)", "All points above and below a polygon.", "planar"),
+    _region("CircularRegion(center, radius)", "A disc in a horizontal plane.", "planar"),
     _region(
         "SectorRegion(center, radius, heading, angle)",
         "A sector of a disc in a horizontal plane.",
+        "sectors",
         angles=("heading", "angle"),
     ),
     _region(
         "RectangularRegion(position, heading, width, length)",
         "A rectangle in a horizontal plane.",
+        "planar",
         angles=("heading",),
     ),
     _region(
         "MeshVolumeRegion(mesh, dimensions=None, position=None, rotation=None)",
         "The inside of a closed mesh.",
+        "meshes",
     ),
     _region(
         "MeshSurfaceRegion(mesh, dimensions=None, position=None, rotation=None)",
         "The surface of a mesh.",
+        "meshes",
     ),
-    _region("BoxRegion(dimensions=(1, 1, 1), position=None, rotation=None)", "A solid cuboid."),
-    _region("SpheroidRegion(dimensions=(2, 2, 2), position=None, rotation=None)", "A solid spheroid."),
+    _region("BoxRegion(dimensions=(1, 1, 1), position=None, rotation=None)", "A solid cuboid.", "volumes"),
+    _region(
+        "SpheroidRegion(dimensions=(2, 2, 2), position=None, rotation=None)", "A solid spheroid.", "volumes"
+    ),
 )
 
 NAMES: Final[Mapping[str, Name]] = MappingProxyType({name.name: name for name in _ALL})

@@ -72,7 +72,7 @@ FIELD: Final = Type(
 REGION: Final = Type(
     "region",
     "a region",
-    "make a region, as `CircularRegion((0, 0), 5)`, or take one of an object, as `x.topSurface`",
+    "make one, as `CircularRegion((0, 0), 5)`, or take one of an object, as `x.topSurface`",
 )
 SHAPE: Final = Type("shape", "a shape", "make one, as `BoxShape()` or `MeshShape.fromFile(path)`")
 POINT: Final = Type("point", "a point or an object", "make one with `new Point` or `new Object`")
@@ -90,8 +90,10 @@ def listed(types: Sequence[Type]) -> str:
 
 def wanted(types: Sequence[Type]) -> tuple[str, str | None]:
     """The noun of several types, any of which will do, and the advice of all of them."""
-    advice = "; or ".join(each.advice for each in types if each.advice)
-    return _alternatives([each.noun for each in types]), advice or None
+    noun = _alternatives([each.noun for each in types])
+    if len(types) == 1:
+        return noun, types[0].advice or None
+    return noun, "; ".join(f"{each.noun}: {each.advice}" for each in types)
 
 
 def _alternatives(words: Sequence[str]) -> str:

@@ -151,7 +151,7 @@ def test_warnings_tell_the_place_of_what_they_mean(tmp_path: Path) -> None:
         ("new Object at None\n", "not None", "write `(x, y, z)` or `x @ y`"),
         (f"new Object at {'x' * 37!r}\n", f"not '{'x' * 37}' (str)", "name a point or an object"),
         (f"new Object at {'x' * 38!r}\n", "not a value of type str", "name a point or an object"),
-        ("new Object in 3\n", "not 3 (int)", "make a region, as `CircularRegion"),
+        ("new Object in 3\n", "not 3 (int)", "make one, as `CircularRegion"),
         ("new Object at Range(0, 1)\n", "not a random scalar", "write `(x, y, z)`"),
     ],
 )

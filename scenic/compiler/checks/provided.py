@@ -10,21 +10,6 @@ from scenic.language.names import NAMES
 
 __all__ = ["PROVIDED_PARAMETERS"]
 
-_EXACT: Final = (
-    "Discrete",
-    "DiscreteRange",
-    "Normal",
-    "Options",
-    "Range",
-    "TruncatedNormal",
-    "cos",
-    "localPath",
-    "resample",
-    "simulation",
-    "sin",
-)
-"""What takes the parameters that its signature shows, and no others."""
-
 
 def _parameters(signature: str) -> ast.arguments:
     """The parameters of a signature; a display of a dictionary in it stands for one of any name."""
@@ -35,6 +20,6 @@ def _parameters(signature: str) -> ast.arguments:
 
 
 PROVIDED_PARAMETERS: Final[Mapping[str, ast.arguments]] = MappingProxyType(
-    {name: _parameters(NAMES[name].signature) for name in _EXACT}
+    {name: _parameters(declared.signature) for name, declared in NAMES.items() if declared.is_complete}
 )
-"""The parameters of each of them."""
+"""The parameters of each name whose signature shows all of them."""

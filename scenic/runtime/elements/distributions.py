@@ -14,6 +14,8 @@ from scenic.graph.kinds import Kind
 from scenic.graph.node import axis, constant
 from scenic.graph.operations import TABLE
 from scenic.language.errors import InvalidScenarioError, ScenicTypeError, ScenicValueError
+from scenic.language.names import NAMES
+from scenic.language.types import SCALAR
 from scenic.runtime.program.context import current, here, next_address, uniform_draw
 from scenic.runtime.values.lazy import defer, is_lazy
 from scenic.runtime.values.values import (
@@ -32,15 +34,28 @@ _MOST_EXACT: Final = 2**61
 
 
 class Law:
-    """The function that draws from a law, which can also stand after ``isinstance``, as scripts expect of a class."""
+    """The function that draws from a law, which can also stand after ``isinstance``, as scripts expect of a class.
 
-    def __init__(self, function: Callable[..., Any], operations: frozenset[str]) -> None:
+    The law is declared under the function's name in `scenic.language.names`: arguments whose type is declared are converted before the
+    function gets them, and values of the law are those that the declared operations make.
+    """
+
+    def __init__(self, function: Callable[..., Any]) -> None:
         functools.update_wrapper(self, function)
+        declared = NAMES[function.__name__]
+        assert set(declared.types) <= {SCALAR}, "no law has taken anything else so far"
         self._function = function
-        self._operations = operations
+        self._label = f"`{declared.name}`"
+        self._operations = frozenset({declared.operation, *declared.operations})
+        self._numbers = declared.parameters[: len(declared.types)]
 
     def __call__(self, *args: Any, **keywords: Any) -> Any:
-        return self._function(*args, **keywords)
+        count = len(self._numbers)
+        numbers = [to_scalar(value, self._label) for value in args[:count]]
+        for name in self._numbers:
+            if name in keywords:
+                keywords[name] = to_scalar(keywords[name], self._label)
+        return self._function(*numbers, *args[count:], **keywords)
 
     def __instancecheck__(self, value: Any) -> bool:
         return (
@@ -49,10 +64,6 @@ class Law:
 
     def __repr__(self) -> str:
         return f"<law {self._function.__name__}>"
-
-
-def _law(*operations: str) -> Callable[[Callable[..., Any]], Law]:
-    return lambda function: Law(function, frozenset(operations))
 
 
 def primitive(operation: str, *operands: Any, payload: Any = None) -> Any:
@@ -80,19 +91,19 @@ def primitive(operation: str, *operands: Any, payload: Any = None) -> Any:
     return as_value(node, lambda: primitive(operation, *operands, payload=payload))
 
 
-@_law("range")
+@Law
 def Range(low: Any, high: Any) -> Any:
     """A real number, uniform between two ends (in either order; they may be random)."""
-    return primitive("range", to_scalar(low, "`Range`"), to_scalar(high, "`Range`"))
+    return primitive("range", low, high)
 
 
-@_law("normal")
+@Law
 def Normal(mean: Any, stdDev: Any) -> Any:
     """A real number, normally distributed."""
-    return primitive("normal", to_scalar(mean, "`Normal`"), to_scalar(stdDev, "`Normal`"))
+    return primitive("normal", mean, stdDev)
 
 
-@_law("truncated normal")
+@Law
 def TruncatedNormal(mean: Any, stdDev: Any, low: Any, high: Any) -> Any:
     """A real number, normally distributed on condition that it lies between two fixed ends."""
     if is_random(low) or is_random(high):
@@ -104,15 +115,10 @@ def TruncatedNormal(mean: Any, stdDev: Any, low: Any, high: Any) -> Any:
             span=here(),
             help="give the lower end first",
         )
-    return primitive(
-        "truncated normal",
-        to_scalar(mean, "`TruncatedNormal`"),
-        to_scalar(stdDev, "`TruncatedNormal`"),
-        payload=window,
-    )
+    return primitive("truncated normal", mean, stdDev, payload=window)
 
 
-@_law("discrete range", "weighted integer")
+@Law
 def DiscreteRange(low: Any, high: Any, weights: Sequence[float] | None = None) -> Any:
     """An integer between two ends (included), uniform, or with a weight for each."""
     if weights is None:
@@ -149,13 +155,13 @@ def _end(value: Any) -> Any:
     return to_scalar(value, "`DiscreteRange`")
 
 
-@_law("select", "look-up")
+@Law
 def Uniform(*options: Any) -> Any:
     """One of the options, each equally likely. ``Uniform(*xs)`` draws from the elements of a list."""
     return choose_among(options, [1.0] * len(options), "Uniform")
 
 
-@_law("select", "look-up")
+@Law
 def Discrete(options: Mapping[Any, Any] | Iterable[Any]) -> Any:
     """One of the keys of a dictionary, with probability in proportion to its value."""
     if isinstance(options, Mapping):

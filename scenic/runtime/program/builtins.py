@@ -3,35 +3,16 @@
 import builtins
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
+from pkgutil import resolve_name
 from types import MappingProxyType
 from typing import Any
 
-from scenic.language import errors
 from scenic.language.errors import InvalidScenarioError, UnknownParameterError
-from scenic.runtime.dynamics.definitions import Behavior, Monitor
-from scenic.runtime.dynamics.recorders import File, Files
+from scenic.language.names import NAMES
 from scenic.runtime.dynamics.run import RunContext
-from scenic.runtime.elements import distributions, external, functions, shapes
-from scenic.runtime.instances.mutators import Mutator
-from scenic.runtime.instances.objects import Object, OrientedPoint, Point
 from scenic.runtime.program.context import current, here
 from scenic.runtime.program.outcome import Program
-from scenic.runtime.python import custom_distributions as laws
 from scenic.runtime.regions import algebra as algebra  # gives regions their algebra
-from scenic.runtime.regions import fields
-from scenic.runtime.regions.lines import PathRegion, PolylineRegion
-from scenic.runtime.regions.meshes import MeshSurfaceRegion, MeshVolumeRegion
-from scenic.runtime.regions.planar import (
-    CircularRegion,
-    PolygonalFootprintRegion,
-    PolygonalRegion,
-    RectangularRegion,
-)
-from scenic.runtime.regions.scattered import GridRegion, PointSetRegion
-from scenic.runtime.regions.sectors import SectorRegion
-from scenic.runtime.regions.spaces import Workspace, everywhere, nowhere
-from scenic.runtime.regions.volumes import BoxRegion, SpheroidRegion
-from scenic.runtime.values.values import Orientation, Vector
 
 
 def running_simulation() -> Any:
@@ -44,76 +25,6 @@ def running_simulation() -> Any:
             help="`simulation()` can be used in behaviors, monitors, compose blocks and their conditions",
         )
     return context.run.simulation
-
-
-_NAMES: Mapping[str, Any] = MappingProxyType(
-    {
-        "Point": Point,
-        "OrientedPoint": OrientedPoint,
-        "Object": Object,
-        "Vector": Vector,
-        "Orientation": Orientation,
-        "Mutator": Mutator,
-        "VectorField": fields.VectorField,
-        "PolygonalVectorField": fields.PolygonalVectorField,
-        "Range": distributions.Range,
-        "DiscreteRange": distributions.DiscreteRange,
-        "Normal": distributions.Normal,
-        "TruncatedNormal": distributions.TruncatedNormal,
-        "Uniform": distributions.Uniform,
-        "Discrete": distributions.Discrete,
-        "Options": distributions.Options,
-        "resample": distributions.resample,
-        "sin": functions.sin,
-        "cos": functions.cos,
-        "hypot": functions.hypot,
-        "max": functions.max,
-        "min": functions.min,
-        "round": functions.round,
-        "len": functions.len,
-        "filter": functions.filter,
-        "range": functions.range,
-        "Distribution": laws.Distribution,
-        "distributionFunction": functions.distributionFunction,
-        "distributionMethod": laws.distributionMethod,
-        "verbosePrint": functions.verbosePrint,
-        "BoxShape": shapes.BoxShape,
-        "CylinderShape": shapes.CylinderShape,
-        "ConeShape": shapes.ConeShape,
-        "SpheroidShape": shapes.SpheroidShape,
-        "MeshShape": shapes.MeshShape,
-        "everywhere": everywhere,
-        "nowhere": nowhere,
-        "Workspace": Workspace,
-        "CircularRegion": CircularRegion,
-        "PolygonalRegion": PolygonalRegion,
-        "RectangularRegion": RectangularRegion,
-        "SectorRegion": SectorRegion,
-        "PolygonalFootprintRegion": PolygonalFootprintRegion,
-        "PolylineRegion": PolylineRegion,
-        "PathRegion": PathRegion,
-        "PointSetRegion": PointSetRegion,
-        "GridRegion": GridRegion,
-        "MeshVolumeRegion": MeshVolumeRegion,
-        "MeshSurfaceRegion": MeshSurfaceRegion,
-        "BoxRegion": BoxRegion,
-        "SpheroidRegion": SpheroidRegion,
-        "RejectionException": errors.RejectionException,
-        "GuardViolation": errors.GuardViolation,
-        "PreconditionViolation": errors.PreconditionViolation,
-        "InvariantViolation": errors.InvariantViolation,
-        "Behavior": Behavior,
-        "Monitor": Monitor,
-        "File": File,
-        "Files": Files,
-        "simulation": running_simulation,
-        "TimeSeries": external.TimeSeries,
-        "VerifaiDiscreteRange": external.VerifaiDiscreteRange,
-        "VerifaiOptions": external.VerifaiOptions,
-        "VerifaiParameter": external.VerifaiParameter,
-        "VerifaiRange": external.VerifaiRange,
-    }
-)
 
 
 class GlobalParameters:
@@ -161,6 +72,11 @@ class GlobalParameters:
         )
 
 
+_NAMES: Mapping[str, Any] = MappingProxyType(
+    {declared.name: resolve_name(declared.home) for declared in NAMES.values() if declared.home is not None}
+)
+
+
 def language_names() -> Mapping[str, Any]:
     """The language's own names, apart from those that depend on the module they are used in."""
     return _NAMES
@@ -171,7 +87,7 @@ def provided(name: str) -> Any:
     return _NAMES.get(name, getattr(builtins, name, None))
 
 
-def builtin_names(program: Program, filename: str, import_module: Callable[..., Any]) -> dict[str, Any]:
+def builtin_names(program: Program, filename: str, importer: Callable[..., Any]) -> dict[str, Any]:
     """The builtins of one module: Python's, the language's, and what depends on the module's place."""
     folder = Path(filename).parent
 
@@ -184,5 +100,5 @@ def builtin_names(program: Program, filename: str, import_module: Callable[..., 
         **language_names(),
         "globalParameters": GlobalParameters(program),
         "localPath": local_path,
-        "__import__": import_module,
+        "__import__": importer,
     }

@@ -4,11 +4,14 @@ from types import MappingProxyType
 from typing import Any, Final
 
 from scenic.graph.node import Node
+from scenic.language.names import NAMES, NameKind
 
 __all__ = ["plain_number", "spelled"]
 
-_LAWS: Final = MappingProxyType({"range": "Range", "normal": "Normal", "discrete range": "DiscreteRange"})
-_FUNCTIONS: Final = MappingProxyType({"vector": "Vector", "sin": "sin", "cos": "cos", "hypot": "hypot", "absolute": "abs", "maximum": "max", "minimum": "min", "round": "round", "int": "int", "float": "float", "str": "str", "len": "len"})  # fmt: skip
+_CALLS: Final = MappingProxyType(
+    {declared.operation: declared for declared in NAMES.values() if declared.operation is not None}
+)
+"""The calls that make values, by operation of the graph."""
 _INFIX: Final = MappingProxyType({"add": "+", "subtract": "-", "multiply": "*", "divide": "/", "floor divide": "//", "modulo": "%", "power": "**", "compose": "*"})  # fmt: skip
 _DEPTH: Final = 4
 """Expressions within expressions that are shown; beyond, three points stand for one."""
@@ -28,15 +31,14 @@ def spelled(node: Node, depth: int = _DEPTH) -> str:
     if depth == 0:
         return "..."
     name = node.operation.name
-    if name in _LAWS:
-        return f"{_LAWS[name]}({_listed(node.operands[1:], depth)})"
     if name == "truncated normal":
         window = ", ".join(map(plain_number, node.payload))
         return f"TruncatedNormal({_listed(node.operands[1:], depth)}, {window})"
     if name in ("look-up", "select") and node.operands[0].operation.name == "choice":
         return _choice(node, depth)
-    if name in _FUNCTIONS:
-        return f"{_FUNCTIONS[name]}({_listed(node.operands, depth)})"
+    if name in _CALLS:
+        is_drawn = _CALLS[name].kind is NameKind.DISTRIBUTION  # The first operand is the draw.
+        return f"{_CALLS[name].name}({_listed(node.operands[is_drawn:], depth)})"
     if name in _INFIX and len(node.operands) == 2:
         left, right = (spelled(operand, depth - 1) for operand in node.operands)
         return f"({left} {_INFIX[name]} {right})"
