@@ -9,6 +9,7 @@ being false; those scenes are lost either way.
 All work is counted, never timed: the result decides which scenes a seed gives.
 """
 
+import math
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -49,6 +50,9 @@ PATIENCE: Final = 4
 
 STRIKES: Final = 2
 """Groups of conditions of one shape that gain nothing by it, after which others of that shape are left as they are."""
+
+LARGEST_ENUMERATION: Final = 1024
+"""Combinations of discrete values, at most, that are looked at one by one, where conditions are about nothing else."""
 
 SPLIT_AXES: Final = 8
 """Conditions on more axes than these are not paved: too few boxes would fall to each."""
@@ -216,6 +220,12 @@ class _Network:
         self.axes = {node: graph.axes[node] for node in self.order if node.is_axis}
         self.inner = [node for node in self.order if not node.is_axis and not node.is_constant]
         self._visits = visits
+        self._cuts: dict[int, Floats] = {}
+        """Of the axes of discrete distributions, by number: where the value changes."""
+        for node in self.inner:
+            cuts = None if node.operation.cuts is None else node.operation.cuts(node.payload, node.operands)
+            if cuts is not None:
+                self._cuts[self.axes[node.operands[0]]] = cuts
 
     def contract(self, boxes: _Boxes, first: int = FIRST_ROUNDS) -> _Boxes:
         """The boxes narrowed, in more than ``first`` passes at least; those that hold no solution are left out."""
@@ -240,21 +250,54 @@ class _Network:
         if not 0 < len(axes) <= SPLIT_AXES:
             return boxes
         volume = boxes.volume(axes)
+        patience, largest = PATIENCE, LARGEST_PAVING
+        if self._combinations() <= LARGEST_ENUMERATION:
+            patience, largest = SPLITS, LARGEST_ENUMERATION
         for number in range(SPLITS):
-            if not 0 < len(boxes.lower) <= LARGEST_PAVING // 2 or self._visits <= 0:
+            if not 0 < len(boxes.lower) <= largest // 2 or self._visits <= 0:
                 break
-            if number == PATIENCE and boxes.volume(axes) > (1 - PROGRESS) * volume:
+            if number == patience and boxes.volume(axes) > (1 - PROGRESS) * volume:
                 break
-            widths = boxes.upper[:, axes] - boxes.lower[:, axes]
-            rows, widest = np.arange(len(widths)), axes[widths.argmax(axis=1)]
-            middle = (boxes.lower[rows, widest] + boxes.upper[rows, widest]) / 2
-            left, right = boxes.upper.copy(), boxes.lower.copy()
-            left[rows, widest] = middle
-            right[rows, widest] = middle
-            boxes = self.contract(
-                _Boxes(np.concatenate([boxes.lower, right]), np.concatenate([left, boxes.upper])), first=0
+            halves, whole = self._halved(boxes, axes)
+            if not len(halves.lower):
+                break
+            halves = self.contract(halves, first=0)
+            boxes = _Boxes(
+                np.concatenate([whole.lower, halves.lower]), np.concatenate([whole.upper, halves.upper])
             )
         return boxes
+
+    def _combinations(self) -> float:
+        """How many combinations of values the axes have, where all are discrete."""
+        return math.prod(
+            len(self._cuts[axis]) + 1 if axis in self._cuts else math.inf for axis in self.axes.values()
+        )
+
+    def _halved(self, boxes: _Boxes, axes: NDArray[np.intp]) -> tuple[_Boxes, _Boxes]:
+        """Both halves of each box along its widest axis; and the boxes that cannot be halved.
+
+        Axes of discrete distributions are cut between two of their values.
+        """
+        lower, upper = boxes.lower[:, axes], boxes.upper[:, axes]
+        widths, ends, starts = upper - lower, (lower + upper) / 2, (lower + upper) / 2
+        for column, axis in enumerate(axes.tolist()):
+            cuts = self._cuts.get(axis)
+            if cuts is None:
+                continue
+            first = np.searchsorted(cuts, lower[:, column], side="right")
+            last = np.searchsorted(cuts, upper[:, column], side="right")
+            widths[:, column] = np.where(first < last, widths[:, column], 0.0)
+            if len(cuts):
+                starts[:, column] = cuts[np.minimum((first + last) // 2, len(cuts) - 1)]
+                ends[:, column] = np.nextafter(starts[:, column], 0.0)
+        splits = widths.max(axis=1) > 0
+        rows, widest = np.flatnonzero(splits), widths[splits].argmax(axis=1)
+        left, right = boxes.upper[rows].copy(), boxes.lower[rows].copy()
+        each = np.arange(len(rows))
+        left[each, axes[widest]] = ends[rows, widest]
+        right[each, axes[widest]] = starts[rows, widest]
+        halves = _Boxes(np.concatenate([boxes.lower[rows], right]), np.concatenate([left, boxes.upper[rows]]))
+        return halves, _Boxes(boxes.lower[~splits], boxes.upper[~splits])
 
 
 class _State:

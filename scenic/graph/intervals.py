@@ -159,6 +159,13 @@ def modulo(a: Bounds, b: Bounds) -> Bounds:
     upper = np.where(positive, np.minimum(upper, a.upper), upper)
     same = positive & (a.upper < b.lower)
     lower = np.where(same, a.lower, lower)
+    # Within one period of a fixed divisor the remainder grows with the dividend.
+    divisor = np.where((b.lower == b.upper) & (b.lower > 0), b.lower, np.nan)
+    first, last = (np.floor_divide(end, divisor) for end in (a.lower, a.upper))
+    rest = outward(np.remainder(a.lower, divisor), np.remainder(a.upper, divisor))
+    grows = (first == last) & (np.abs(first) < 2.0**52)
+    lower = np.where(grows, np.maximum(lower, rest.lower), lower)
+    upper = np.where(grows, np.minimum(upper, rest.upper), upper)
     return doubtful(Bounds(lower, upper), a, b)
 
 

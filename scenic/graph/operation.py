@@ -174,6 +174,12 @@ KindRule = Callable[[Sequence[Any], Any], Kind]
 Declared = bool | Callable[[Sequence[Any], Any], bool]
 """Whether something may happen in some lane: a fact of the operation, or of its operands and payload."""
 
+CutsReading = Callable[[Any, Sequence[Any]], Any]
+"""``(payload, operands) -> cuts``: the first points ``(m,)`` of the axis, ascending, from which a discrete value is the next one.
+
+``None`` where they are not known.
+"""
+
 Rewriting = Callable[[Sequence[Any], Any], Any]
 """``(operands, payload) -> node``: a simpler node of the same value, ``None`` where there is none."""
 
@@ -218,6 +224,7 @@ class Operation:
     partial: bool = False
     looks_at: Callable[[Any], slice] | None = None
     rewrite: Rewriting | None = None
+    cuts: CutsReading | None = None
     calls_code: bool = False
     missing: str = "value"
 

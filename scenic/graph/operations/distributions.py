@@ -517,6 +517,38 @@ def _choice_solver(terms: Terms, payload: Any, _axis: Any) -> Any:
     return value
 
 
+MOST_CUTS: Final = 4096
+"""Values of a discrete distribution, at most, between which its axis is cut."""
+
+
+def _between_options(cumulative: Any) -> Floats:
+    limits = np.unique(np.asarray(cumulative, dtype=np.float64))
+    return np.asarray(limits[(limits > 0) & (limits < limits[-1])])
+
+
+def _choice_cuts(payload: Any, _operands: Sequence[Node]) -> Floats:
+    return _between_options(payload)
+
+
+def _weighted_cuts(payload: Any, _operands: Sequence[Node]) -> Floats:
+    return _between_options(payload[1])
+
+
+def _discrete_cuts(_payload: Any, operands: Sequence[Node]) -> Floats | None:
+    low, high = operands[1:]
+    if not (low.is_constant and high.is_constant and is_finite(low) and is_finite(high)):
+        return None
+    count = math.floor(high.value) - math.ceil(low.value) + 1
+    if not 1 < count <= MOST_CUTS:
+        return None
+    numbers = np.arange(1, count)
+    cuts = numbers / count
+    # Exactly where the rounded product of axis and count reaches the number.
+    before = np.nextafter(cuts, 0.0)
+    cuts = np.where(np.floor(before * count) >= numbers, before, cuts)
+    return np.asarray(np.where(np.floor(cuts * count) < numbers, np.nextafter(cuts, 1.0), cuts))
+
+
 def _select_bounds(_payload: Any, index: Bounds, *options: Bounds | None) -> Bounds | None:
     return hull_of_possible(options, _possible(index, len(options)))
 
@@ -614,6 +646,7 @@ OPERATIONS = (
         rejects=_may_be_empty,
         missing="whole number in the range",
         stacks=True,
+        cuts=_discrete_cuts,
     ),
     Operation(
         "weighted integer",
@@ -624,6 +657,7 @@ OPERATIONS = (
         inverse=_weighted_inverse,
         solver=_weighted_solver,
         stacks=True,
+        cuts=_weighted_cuts,
     ),
     Operation(
         "choice",
@@ -634,6 +668,7 @@ OPERATIONS = (
         inverse=_choice_inverse,
         solver=_choice_solver,
         stacks=True,
+        cuts=_choice_cuts,
     ),
     SELECT,
     LOOKUP,
