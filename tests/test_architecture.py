@@ -53,7 +53,7 @@ LIBRARIES = {
     "graph": {"numpy", "scipy"},
     "project": set(),
     "ide": {"pygments"},
-    "lsp": set(),
+    "lsp": {"pygls", "lsprotocol", "cattrs", "websockets"},
     "playground": {"websockets"},
 }
 """Libraries of each layer beside the standard library; layers left out may use any dependency."""
@@ -61,7 +61,10 @@ LIBRARIES = {
 ONLY_IN = {
     "embreex": {"runtime", "formats"},
     "z3": {"analysis"},
-    "websockets": {"playground"},
+    "websockets": {"playground", "lsp"},
+    "pygls": {"lsp"},
+    "lsprotocol": {"lsp"},
+    "cattrs": {"lsp"},
     "click": {"cli"},
     "rich": {"cli"},
     "mujoco": {"simulators"},

@@ -6,6 +6,8 @@ import re
 from functools import cache
 from typing import Any, Final
 
+from lsprotocol.types import Position
+
 from fuzz.properties.case import FILENAME, Case, Property, Violation, describe, spans_of
 from scenic.cli.checking import Checker, Task
 from scenic.cli.render import FORMATS, Report, render
@@ -77,28 +79,28 @@ def places_survive_conversion(case: Case) -> None:
 def _check_protocol(item: Diagnostic, source: Source, kind: Encoding, encoding: str) -> None:
     lines = Lines(source, kind)
     made = to_diagnostic(item, lines, _URI)
-    if made["code"] != item.code or not made["message"].startswith(item.message):
+    if made.code != item.code or not made.message.startswith(item.message):
         raise Violation(f"the protocol says something else: {describe(item)}")
     expected = [span for _, span in spans_of(item)]
     edits = () if item.fix is None else lines.to_edits(item.fix.edits, "\n")
     ranges = [
-        made["range"],
-        *(each["location"]["range"] for each in made.get("relatedInformation", ())),
-        *(each["range"] for each in edits),
+        made.range,
+        *(each.location.range for each in made.related_information or ()),
+        *(each.range for each in edits),
     ]
     if len(ranges) != len(expected):
         raise Violation(f"the protocol has other labels or changes: {describe(item)}")
     for span, given in zip(expected, ranges, strict=True):
-        back = (*_column(given["start"], source, encoding), *_column(given["end"], source, encoding))
+        back = (*_column(given.start, source, encoding), *_column(given.end, source, encoding))
         if span is not None and back != _clipped(span, source):
             raise Violation(f"{span} comes back from {encoding} as {back}: {describe(item)}")
 
 
-def _column(position: dict[str, int], source: Source, encoding: str) -> tuple[int, int]:
+def _column(position: Position, source: Source, encoding: str) -> tuple[int, int]:
     """A position of the protocol in lines and characters, computed from the encoded line."""
-    data = source.line(position["line"] + 1).encode(encoding, "surrogatepass")
-    before = data[: position["character"] * _UNIT[encoding]]
-    return position["line"] + 1, len(before.decode(encoding, "surrogatepass"))
+    data = source.line(position.line + 1).encode(encoding, "surrogatepass")
+    before = data[: position.character * _UNIT[encoding]]
+    return position.line + 1, len(before.decode(encoding, "surrogatepass"))
 
 
 def _clipped(span: Span, source: Source) -> tuple[int, int, int, int]:

@@ -6,15 +6,40 @@ __all__ = ["lsp"]
 
 
 @click.command()
+@click.option("--stdio", is_flag=True, help="Use standard input and output, as without any option.")
+@click.option("--tcp", "tcp", metavar="[HOST:]PORT", help="Wait for one client that connects to a port.")
 @click.option(
-    "--stdio", is_flag=True, expose_value=False, help="Use standard input and output; there is no other way."
+    "--ws", "websocket", metavar="[HOST:]PORT", help="Wait for one client that connects by a web socket."
 )
-def lsp() -> int:
+@click.option(
+    "--origin",
+    "origins",
+    multiple=True,
+    metavar="URL",
+    help="With --ws: let pages of this origin connect, which browsers are otherwise refused.",
+)
+def lsp(stdio: bool, tcp: str | None, websocket: str | None, origins: tuple[str, ...]) -> int:
     """Start the language server on standard input and output.
 
     Editors start it themselves. It shows what `scenic check` reports, and runs a program only when the user asks for
-    that in a workspace that the user trusts.
+    that in a workspace that the user trusts, and never for a client that has come by a port.
     """
-    from scenic.lsp.server import serve
+    if stdio + (tcp is not None) + (websocket is not None) > 1:
+        raise click.UsageError("choose one of --stdio, --tcp and --ws")
+    if origins and websocket is None:
+        raise click.UsageError("--origin goes with --ws")
+    from scenic.lsp.server import serve, serve_tcp, serve_websocket
 
+    if tcp is not None:
+        return serve_tcp(*_address(tcp))
+    if websocket is not None:
+        return serve_websocket(*_address(websocket), origins)
     return serve()
+
+
+def _address(text: str) -> tuple[str, int]:
+    """Host and port; without a host, this machine alone."""
+    host, _, port = text.rpartition(":")
+    if not (port.isascii() and port.isdigit()) or int(port) > 65535:
+        raise click.BadParameter(f"{text!r} is no port: write a number up to 65535, or HOST:PORT")
+    return host.strip("[]") or "127.0.0.1", int(port)

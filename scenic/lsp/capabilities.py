@@ -1,17 +1,22 @@
-"""What the server offers, as exactly as the protocol lets it say; and what it asks the client to report."""
+"""How the server's features are offered, and what it asks the client to report.
 
-from typing import Final
+That a feature is offered follows from its handler; here stands what there is to say besides.
+"""
+
+from collections.abc import Mapping
+from typing import Any, Final
+
+from lsprotocol import types
+from pygls.capabilities import get_capability
 
 from scenic.ide.semantic_tokens import MODIFIERS, TYPES
-from scenic.lsp.convert import Json
-from scenic.lsp.session import Client
 
-__all__ = ["FIX_ALL", "ORGANIZE", "SAMPLE", "SIMULATE", "WATCHED", "capabilities", "registrations"]
+__all__ = ["COMMANDS", "FIX_ALL", "ORGANIZE", "SAMPLE", "SIMULATE", "WATCHED", "options_for", "registrations"]
 
 FIX_ALL: Final = "source.fixAll.scenic"
 """The kind of the action that makes all repairs of a document, which editors can make when they save it."""
 
-ORGANIZE: Final = "source.organizeImports"
+ORGANIZE: Final = types.CodeActionKind.SourceOrganizeImports
 """The kind of the action that puts the imports of a document in order."""
 
 SAMPLE: Final = "scenic.sample"
@@ -20,108 +25,77 @@ SAMPLE: Final = "scenic.sample"
 SIMULATE: Final = "scenic.simulate"
 """The command that simulates a program, with the same arguments; it takes the program as it was saved."""
 
+COMMANDS: Final = (SAMPLE, SIMULATE)
+
 WATCHED: Final = ("**/*.scenic", "**/*.sc", "**/*.py", "**/pyproject.toml")
 """The files whose changes on the disk matter."""
 
-_FILES: Final = (
-    {"scheme": "file", "pattern": {"glob": "**/*.{scenic,sc,py}", "matches": "file"}},
-    {"scheme": "file", "pattern": {"glob": "**", "matches": "folder"}},
-)
-"""The files and folders of which it matters what they are called."""
 
-_INCREMENTAL: Final = 2
-
-
-def capabilities(client: Client) -> Json:
-    """What is offered to a client."""
-    return {
-        "positionEncoding": client.encoding.value,
-        "textDocumentSync": {
-            "openClose": True,
-            "change": _INCREMENTAL,
-            "save": {"includeText": False},
-        },
-        "completionProvider": {
-            "triggerCharacters": [".", " ", ",", "(", '"', "'", "/"],
-            "resolveProvider": True,
-        },
-        "hoverProvider": True,
-        "signatureHelpProvider": {
-            "triggerCharacters": ["(", ","],
-            "retriggerCharacters": ["=", ")"],
-        },
-        "declarationProvider": True,
-        "definitionProvider": True,
-        "typeDefinitionProvider": True,
-        "implementationProvider": True,
-        "referencesProvider": {"workDoneProgress": True},
-        "documentHighlightProvider": True,
-        "documentSymbolProvider": True,
-        "workspaceSymbolProvider": {"resolveProvider": True, "workDoneProgress": True},
-        "codeActionProvider": {
-            "codeActionKinds": ["quickfix", FIX_ALL, ORGANIZE],
-            "resolveProvider": True,
-        }
-        if client.has("textDocument", "codeAction", "codeActionLiteralSupport")
-        or not client.has("textDocument", "codeAction")
-        else True,
-        "codeLensProvider": {"resolveProvider": True},
-        "documentLinkProvider": {"resolveProvider": True},
-        "colorProvider": True,
-        "documentFormattingProvider": True,
-        "documentRangeFormattingProvider": {"rangesSupport": True}
-        if client.can("textDocument", "rangeFormatting", "rangesSupport")
-        else True,
-        "documentOnTypeFormattingProvider": {"firstTriggerCharacter": ":"},
-        "renameProvider": {"prepareProvider": True}
-        if client.can("textDocument", "rename", "prepareSupport") or not client.has("textDocument", "rename")
-        else True,
-        "foldingRangeProvider": True,
-        "selectionRangeProvider": True,
-        "linkedEditingRangeProvider": True,
-        "monikerProvider": True,
-        "callHierarchyProvider": True,
-        "typeHierarchyProvider": True,
-        "semanticTokensProvider": {
-            "legend": {"tokenTypes": list(TYPES), "tokenModifiers": list(MODIFIERS)},
-            "full": {"delta": True},
-            "range": True,
-        },
-        "inlayHintProvider": {"resolveProvider": True},
-        "executeCommandProvider": {"commands": [SAMPLE, SIMULATE], "workDoneProgress": True},
-        "diagnosticProvider": {
-            "identifier": "scenic",
-            "interFileDependencies": True,
-            "workspaceDiagnostics": True,
-            "workDoneProgress": True,
-        },
-        "workspace": {
-            "workspaceFolders": {"supported": True, "changeNotifications": True},
-            "fileOperations": {
-                name: {"filters": _FILES} for name in ("willRename", "didRename", "didCreate", "didDelete")
-            },
-        },
+def options_for(client: types.ClientCapabilities) -> Mapping[str, Any]:
+    """By method: the options with which it is offered to a client."""
+    files = types.FileOperationRegistrationOptions(
+        [
+            types.FileOperationFilter(
+                types.FileOperationPattern(
+                    "**/*.{scenic,sc,py}", matches=types.FileOperationPatternKind.File
+                ),
+                scheme="file",
+            ),
+            types.FileOperationFilter(
+                types.FileOperationPattern("**", matches=types.FileOperationPatternKind.Folder),
+                scheme="file",
+            ),
+        ]
+    )
+    found: dict[str, Any] = {
+        types.TEXT_DOCUMENT_DID_SAVE: types.SaveOptions(include_text=False),
+        types.TEXT_DOCUMENT_COMPLETION: types.CompletionOptions(
+            trigger_characters=[".", " ", ",", "(", '"', "'", "/"], resolve_provider=True
+        ),
+        types.TEXT_DOCUMENT_SIGNATURE_HELP: types.SignatureHelpOptions(
+            trigger_characters=["(", ","], retrigger_characters=["=", ")"]
+        ),
+        types.TEXT_DOCUMENT_REFERENCES: types.ReferenceOptions(work_done_progress=True),
+        types.WORKSPACE_SYMBOL: types.WorkspaceSymbolOptions(work_done_progress=True),
+        types.TEXT_DOCUMENT_ON_TYPE_FORMATTING: types.DocumentOnTypeFormattingOptions(":"),
+        types.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL: types.SemanticTokensLegend(list(TYPES), list(MODIFIERS)),
+        types.TEXT_DOCUMENT_DIAGNOSTIC: types.DiagnosticOptions(
+            inter_file_dependencies=True,
+            workspace_diagnostics=True,
+            identifier="scenic",
+            work_done_progress=True,
+        ),
+        types.WORKSPACE_WILL_RENAME_FILES: files,
+        types.WORKSPACE_DID_RENAME_FILES: files,
+        types.WORKSPACE_DID_CREATE_FILES: files,
+        types.WORKSPACE_DID_DELETE_FILES: files,
     }
+    actions = get_capability(client, "text_document.code_action")
+    if actions is None or actions.code_action_literal_support is not None:
+        kinds = [
+            types.CodeActionKind.QuickFix,
+            FIX_ALL,
+            ORGANIZE,
+        ]
+        found[types.TEXT_DOCUMENT_CODE_ACTION] = types.CodeActionOptions(kinds, resolve_provider=True)
+    if get_capability(client, "text_document.range_formatting.ranges_support"):
+        found[types.TEXT_DOCUMENT_RANGE_FORMATTING] = types.DocumentRangeFormattingOptions(
+            ranges_support=True
+        )
+    return found
 
 
-def registrations(client: Client) -> list[Json]:
+def registrations(client: types.ClientCapabilities) -> list[types.Registration]:
     """What the client is asked to report, as far as it can be asked."""
     found = []
-    if client.can("workspace", "didChangeWatchedFiles", "dynamicRegistration"):
-        watchers = [{"globPattern": pattern} for pattern in WATCHED]
-        found.append(
-            {
-                "id": "scenic-watched-files",
-                "method": "workspace/didChangeWatchedFiles",
-                "registerOptions": {"watchers": watchers},
-            }
+    if get_capability(client, "workspace.did_change_watched_files.dynamic_registration"):
+        watchers = types.DidChangeWatchedFilesRegistrationOptions(
+            [types.FileSystemWatcher(pattern) for pattern in WATCHED]
         )
-    if client.can("workspace", "didChangeConfiguration", "dynamicRegistration"):
-        found.append(
-            {
-                "id": "scenic-configuration",
-                "method": "workspace/didChangeConfiguration",
-                "registerOptions": {"section": "scenic"},
-            }
-        )
+        method = types.WORKSPACE_DID_CHANGE_WATCHED_FILES
+        found.append(types.Registration("scenic-watched-files", method, watchers))
+    if get_capability(client, "workspace.did_change_configuration.dynamic_registration"):
+        section = types.DidChangeConfigurationRegistrationOptions("scenic")
+        method = types.WORKSPACE_DID_CHANGE_CONFIGURATION
+        found.append(types.Registration("scenic-configuration", method, section))
     return found

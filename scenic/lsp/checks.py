@@ -4,21 +4,24 @@ A check begins a moment after a change, beside the loop. A change that arrives w
 the client has waited too long for any result.
 """
 
+import asyncio
 import os
 import re
 import time
 from collections.abc import Callable, Sequence
+from concurrent.futures import Future
 from typing import Final, TypeAlias
+
+from lsprotocol import types
 
 from scenic.ide.continuations import prepare
 from scenic.ide.diagnostics import found_in
-from scenic.ide.snapshot import Cancelled
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.errors import ScenicError
 from scenic.language.source import Source, read_source
-from scenic.lsp.convert import Json, Lines, to_diagnostic
+from scenic.lsp.beside import GoOn
+from scenic.lsp.convert import Lines, to_diagnostic
 from scenic.lsp.documents import Document
-from scenic.lsp.loop import Job, Timer
 from scenic.lsp.session import Session
 from scenic.lsp.uris import to_uri
 from scenic.project.index import Project
@@ -35,21 +38,24 @@ LONGEST_WAIT: Final = 0.3
 
 _IMPORTS: Final = re.compile(r"^\s*(?:import|from|model)\b", re.MULTILINE)
 
+Found: TypeAlias = tuple[list[types.Diagnostic], tuple[Diagnostic, ...]]
+"""What is wrong with a document by the settings of its project, and with these settings."""
+
 
 class Checks:
     """The checks of the open documents, made beside the loop."""
 
     def __init__(self, session: Session) -> None:
         self._session = session
-        self._timers: dict[str, Timer] = {}
-        self._running: dict[str, Job] = {}
+        self._timers: dict[str, asyncio.TimerHandle] = {}
+        self._running: dict[str, Future[Found]] = {}
         self._since: dict[str, float] = {}
         """By document: when the first change came that no result has covered yet."""
         self._pulled: set[str] = set()
         """The documents that the client asks for itself."""
         self._told: set[str] = set()
         """The documents of which the client has been told something that it should forget one day."""
-        self._others: Timer | None = None
+        self._others: asyncio.TimerHandle | None = None
         self._troubled: dict[str, tuple[Diagnostic, ...]] = {}
         """By document: the problems of its settings that are shown."""
         self._is_prepared = False
@@ -68,7 +74,7 @@ class Checks:
         if late:
             self._begin(uri)
         else:
-            self._timers[uri] = self._session.loop.call_later(PAUSE, lambda: self._begin(uri))
+            self._timers[uri] = self._session.later(PAUSE, lambda: self._begin(uri))
         self._await_others(uri)
 
     def opened(self, uri: str) -> None:
@@ -100,7 +106,7 @@ class Checks:
         """Check what may import a document that has another text now, once nothing changes for a while."""
         if self._others is not None:
             self._others.cancel()
-        self._others = self._session.loop.call_later(LONG_PAUSE, lambda: self._check_others(changed))
+        self._others = self._session.later(LONG_PAUSE, lambda: self._check_others(changed))
 
     def _check_others(self, changed: str) -> None:
         """Other documents may import the one that has changed."""
@@ -122,7 +128,7 @@ class Checks:
 
         A client that does not say that it can ask goes by what it is sent, whatever it tries besides.
         """
-        if uri not in self._pulled and self._session.client.has("textDocument", "diagnostic"):
+        if uri not in self._pulled and self._session.has("text_document.diagnostic"):
             self._pulled.add(uri)
             if uri in self._told:
                 self._told.discard(uri)
@@ -139,30 +145,21 @@ class Checks:
             self._since.pop(uri, None)
             return
         session = self._session
-        find = finder(session, document)
+        loop = asyncio.get_running_loop()
+        check = session.checker.begin(finder(session, document))
+        self._running[uri] = check
+        check.add_done_callback(lambda done: loop.call_soon_threadsafe(self._finish, done, document))
 
-        def work(job: Job) -> None:
-            try:
-                found, problems = find(job.go_on)
-            except Cancelled:
-                return
-            session.loop.put(lambda: self._finish(job, document, found, problems))
-
-        job = Job(work, session.loop)
-        self._running[uri] = job
-        session.checker.put(job)
-
-    def _finish(
-        self, job: Job, document: Document, found: list[Json], problems: tuple[Diagnostic, ...]
-    ) -> None:
+    def _finish(self, check: Future[Found], document: Document) -> None:
         uri = document.uri
-        if self._running.get(uri) is not job:
+        if self._running.get(uri) is not check:
             return
         del self._running[uri]
         self._since.pop(uri, None)
         present = self._session.documents.get(uri)
         if present is None:
             return
+        found, problems = check.result()
         if uri not in self._pulled:
             self._told.add(uri)
             self._publish(uri, found, document.version)
@@ -173,19 +170,20 @@ class Checks:
         if not self._is_prepared:
             # The first completion should not have to wait for the tables that it reads.
             self._is_prepared = True
-            self._session.checker.put(Job(lambda _job: prepare(), self._session.loop))
+            self._session.checker.begin(lambda _go_on: prepare())
 
     def _stop_timer(self, uri: str) -> None:
         timer = self._timers.pop(uri, None)
         if timer is not None:
             timer.cancel()
 
-    def _publish(self, uri: str, found: list[Json], version: int | None) -> None:
-        params: dict[str, Json] = {"uri": uri, "diagnostics": found}
-        support, client = ("textDocument", "publishDiagnostics"), self._session.client
-        if version is not None and (client.can(*support, "versionSupport") or not client.has(*support)):
-            params["version"] = version
-        self._session.notify("textDocument/publishDiagnostics", params)
+    def _publish(self, uri: str, found: list[types.Diagnostic], version: int | None) -> None:
+        support = "text_document.publish_diagnostics"
+        knows = self._session.can(f"{support}.version_support") or not self._session.has(support)
+        self._session.notify(
+            types.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS,
+            types.PublishDiagnosticsParams(uri, found, version=version if knows else None),
+        )
 
     # Problems of settings
 
@@ -216,14 +214,7 @@ class Checks:
         return {os.path.abspath(item.filename) for item in problems if item.filename is not None}
 
 
-Find: TypeAlias = Callable[[Callable[[], None]], tuple[list[Json], tuple[Diagnostic, ...]]]
-"""Finds what is wrong with a document by the settings of its project, and with these settings.
-
-It calls the function that it is given now and then, which raises when the answer is no longer wanted.
-"""
-
-
-def finder(session: Session, document: Document) -> Find:
+def finder(session: Session, document: Document) -> Callable[[GoOn], Found]:
     """What finds the problems of a document, in any thread. To be called in the loop's thread."""
     project, stamp = session.project_beside(document), session.generation
 
@@ -231,8 +222,8 @@ def finder(session: Session, document: Document) -> Find:
 
 
 def found_in_document(
-    session: Session, document: Document, project: Project, stamp: int, go_on: Callable[[], None]
-) -> tuple[list[Json], tuple[Diagnostic, ...]]:
+    session: Session, document: Document, project: Project, stamp: int, go_on: GoOn
+) -> Found:
     """What is wrong with a document, and with its settings; ``stamp`` is the generation that ``project`` is of."""
     if not document.is_program:
         return [], ()
@@ -241,12 +232,14 @@ def found_in_document(
     return _protocol(found, document.lines, document.uri, session), configurations.problems
 
 
-def _protocol(found: Sequence[Diagnostic], lines: Lines, uri: str, session: Session) -> list[Json]:
-    client = session.client
-    told = client.has("textDocument", "publishDiagnostics")
-    related = not told or client.can("textDocument", "publishDiagnostics", "relatedInformation")
-    tags = not told or client.has("textDocument", "publishDiagnostics", "tagSupport")
-    pages = client.can("textDocument", "publishDiagnostics", "codeDescriptionSupport")
+def _protocol(
+    found: Sequence[Diagnostic], lines: Lines, uri: str, session: Session
+) -> list[types.Diagnostic]:
+    support = "text_document.publish_diagnostics"
+    told = session.has(support)
+    related = not told or session.can(f"{support}.related_information")
+    tags = not told or session.has(f"{support}.tag_support")
+    pages = session.can(f"{support}.code_description_support")
     return [
         to_diagnostic(item, lines, uri, elsewhere=session.location, related=related, tags=tags, pages=pages)
         for item in found

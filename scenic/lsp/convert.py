@@ -9,7 +9,9 @@ import os
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
-from typing import Any, Final, TypeAlias
+from typing import Final
+
+from lsprotocol import types
 
 from scenic.language.diagnostics import Diagnostic, Edit, Label, Severity
 from scenic.language.explanations import explanation_file
@@ -17,19 +19,15 @@ from scenic.language.source import Source
 from scenic.language.spans import Span
 from scenic.lsp.uris import to_uri
 
-__all__ = ["Encoding", "Json", "Lines", "to_diagnostic", "units"]
+__all__ = ["Encoding", "Lines", "to_diagnostic", "units"]
 
-Json: TypeAlias = Any
-"""What a message holds: built from dictionaries with texts as keys, lists, texts, numbers, booleans and ``None``."""
-
-_SEVERITIES: Final[Mapping[Severity, int]] = {
-    Severity.ERROR: 1,
-    Severity.WARNING: 2,
-    Severity.INFORMATION: 3,
+_SEVERITIES: Final[Mapping[Severity, types.DiagnosticSeverity]] = {
+    Severity.ERROR: types.DiagnosticSeverity.Error,
+    Severity.WARNING: types.DiagnosticSeverity.Warning,
+    Severity.INFORMATION: types.DiagnosticSeverity.Information,
 }
 _UNNECESSARY: Final = frozenset({"SC205", "SC206", "SC303", "SC390"})
 """Codes of what can be left out, which editors show faded."""
-_TAG_UNNECESSARY: Final = 1
 
 
 class Encoding(StrEnum):
@@ -61,24 +59,24 @@ class Lines:
     def __post_init__(self) -> None:
         object.__setattr__(self, "_lead", units("\ufeff" * self.marks, self.encoding))
 
-    def to_position(self, line: int, column: int) -> Json:
+    def to_position(self, line: int, column: int) -> types.Position:
         """A place as a position."""
         character = units(self.source.line(line)[:column], self.encoding)
-        return {"line": line - 1, "character": character + (self._lead if line == 1 else 0)}
+        return types.Position(line - 1, character + (self._lead if line == 1 else 0))
 
-    def to_range(self, span: Span) -> Json:
+    def to_range(self, span: Span) -> types.Range:
         """A span as a range."""
-        return {
-            "start": self.to_position(span.line, span.column),
-            "end": self.to_position(span.end_line, span.end_column),
-        }
+        return types.Range(
+            self.to_position(span.line, span.column), self.to_position(span.end_line, span.end_column)
+        )
 
-    def from_position(self, line: int, character: int) -> tuple[int, int]:
+    def from_position(self, position: types.Position) -> tuple[int, int]:
         """A position as line and column.
 
         Inside a character, the column of that character; past the end of a line, its end; past the end of the text,
         the end of that.
         """
+        line, character = position.line, position.character
         if line >= len(self.source.lines):
             return len(self.source.lines), len(self.source.lines[-1])
         content = self.source.line(line + 1)
@@ -93,17 +91,14 @@ class Lines:
                 return line + 1, column
         return line + 1, len(content)
 
-    def from_range(self, start: tuple[int, int], end: tuple[int, int]) -> Span:
-        """A range, as two pairs of line and character, as a span; one that ends before it starts is empty."""
-        first = self.from_position(*start)
-        return Span(*first, *max(first, self.from_position(*end)))
+    def from_range(self, found: types.Range) -> Span:
+        """A range as a span; one that ends before it starts is empty."""
+        first = self.from_position(found.start)
+        return Span(*first, *max(first, self.from_position(found.end)))
 
-    def to_edits(self, edits: Iterable[Edit], line_end: str) -> list[Json]:
+    def to_edits(self, edits: Iterable[Edit], line_end: str) -> list[types.TextEdit]:
         """Changes of the text, with the line ends of the document."""
-        return [
-            {"range": self.to_range(edit.span), "newText": edit.text.replace("\n", line_end)}
-            for edit in edits
-        ]
+        return [types.TextEdit(self.to_range(edit.span), edit.text.replace("\n", line_end)) for edit in edits]
 
 
 def to_diagnostic(
@@ -111,11 +106,11 @@ def to_diagnostic(
     lines: Lines,
     uri: str,
     *,
-    elsewhere: Callable[[str, Span], Json] | None = None,
+    elsewhere: Callable[[str, Span], types.Location] | None = None,
     related: bool = True,
     tags: bool = True,
     pages: bool = False,
-) -> Json:
+) -> types.Diagnostic:
     """A diagnostic as the protocol has it: the help is a line of the message, labels are related places.
 
     ``elsewhere`` gives the places in other files; without it, they are left out.
@@ -124,32 +119,28 @@ def to_diagnostic(
     message = diagnostic.message
     if diagnostic.help:
         message += f"\nhelp: {diagnostic.help}"
-    found: dict[str, Json] = {
-        "range": lines.to_range(diagnostic.span or Span(1, 0, 1, 0)),
-        "severity": _SEVERITIES[diagnostic.severity],
-        "code": diagnostic.code,
-        "source": "scenic",
-        "message": message,
-    }
-    page = explanation_file(diagnostic.code) if pages else None
-    if page is not None:
-        found["codeDescription"] = {"href": to_uri(page)}
-    if tags and diagnostic.code in _UNNECESSARY:
-        found["tags"] = [_TAG_UNNECESSARY]
-    places: list[Json] = []
+    places = []
     for label in diagnostic.labels:
         if label.filename is None or label.filename == diagnostic.filename:
-            location: Json = {"uri": uri, "range": lines.to_range(label.span)}
+            location = types.Location(uri, lines.to_range(label.span))
         elif elsewhere is not None:
             location = elsewhere(label.filename, label.span)
         else:
             continue
-        places.append({"location": location, "message": label.text})
-    if places and related:
-        found["relatedInformation"] = places
-    elif places:
-        found["message"] += "".join(f"\n{_place(label)}: {label.text}" for label in diagnostic.labels)
-    return found
+        places.append(types.DiagnosticRelatedInformation(location, label.text))
+    if places and not related:
+        message += "".join(f"\n{_place(label)}: {label.text}" for label in diagnostic.labels)
+    page = explanation_file(diagnostic.code) if pages else None
+    return types.Diagnostic(
+        lines.to_range(diagnostic.span or Span(1, 0, 1, 0)),
+        message,
+        severity=_SEVERITIES[diagnostic.severity],
+        code=diagnostic.code,
+        code_description=None if page is None else types.CodeDescription(to_uri(page)),
+        source="scenic",
+        tags=[types.DiagnosticTag.Unnecessary] if tags and diagnostic.code in _UNNECESSARY else None,
+        related_information=places if places and related else None,
+    )
 
 
 def _place(label: Label) -> str:

@@ -5,12 +5,13 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Final
+from typing import Final
+
+from lsprotocol import types
 
 from scenic.ide.snapshot import Snapshot
 from scenic.language.errors import ScenicError
 from scenic.language.source import read_source
-from scenic.lsp import reading
 from scenic.lsp.convert import Encoding, Lines, units
 from scenic.lsp.uris import to_path
 
@@ -66,19 +67,17 @@ def snapshot_of(text: str, uri: str, before: Snapshot | None = None) -> Snapshot
     return Snapshot(text, path, before=before)
 
 
-def changed(text: str, changes: Sequence[Any], encoding: Encoding) -> str:
+def changed(text: str, changes: Sequence[types.TextDocumentContentChangeEvent], encoding: Encoding) -> str:
     """A text after the changes that a client reports, one after the other.
 
     A place past the end of a line means its end, as the protocol has it.
     """
-    for index, change in enumerate(changes):
-        new = reading.text(changes, index, "text")
-        if reading.lookup(change, "range") is None:
-            text = new
+    for change in changes:
+        if isinstance(change, types.TextDocumentContentChangeWholeDocument):
+            text = change.text
             continue
-        start, end = reading.range_of(changes, index, "range")
-        first, last = (_offset(text, *place, encoding) for place in (start, end))
-        text = text[:first] + new + text[max(first, last) :]
+        first, last = (_offset(text, place, encoding) for place in (change.range.start, change.range.end))
+        text = text[:first] + change.text + text[max(first, last) :]
     return text
 
 
@@ -97,8 +96,8 @@ def _line(text: str, line: int) -> tuple[int, int] | None:
     return ends[line - 1].end() if line else 0, ends[line].start() if line < len(ends) else len(text)
 
 
-def _offset(text: str, line: int, character: int, encoding: Encoding) -> int:
-    found = _line(text, line)
+def _offset(text: str, position: types.Position, encoding: Encoding) -> int:
+    found, character = _line(text, position.line), position.character
     if found is None:
         return len(text)
     begin, end = found

@@ -1,10 +1,9 @@
 """When the server looks for garbage: while nobody waits for an answer."""
 
+import asyncio
 import gc
 import time
 from typing import Final
-
-from scenic.lsp.loop import Loop
 
 __all__ = ["Garbage"]
 
@@ -27,20 +26,19 @@ class Garbage:
     Nearly all garbage is what parsing leaves: young, and found quickly once a check is done.
     """
 
-    def __init__(self, loop: Loop) -> None:
-        self._loop = loop
+    def __init__(self) -> None:
         self._last = 0.0
         self._is_due = False
         self._checks = 0
 
     def touched(self) -> None:
-        """A message has come; in the loop's thread only."""
+        """A message has come; in the event loop only."""
         self._last = time.monotonic()
         if gc.get_count()[0] > _MANY:
             gc.collect(1)
         if not self._is_due:
             self._is_due = True
-            self._loop.call_later(_PAUSE, self._look)
+            asyncio.get_running_loop().call_later(_PAUSE, self._look)
 
     def checked(self) -> None:
         """A check is done, and its result is sent."""
@@ -49,7 +47,7 @@ class Garbage:
             gc.collect()
         else:
             # What is asked about the new version comes first.
-            self._loop.call_later(_BREATH, self._look_at_young)
+            asyncio.get_running_loop().call_later(_BREATH, self._look_at_young)
 
     def _look_at_young(self) -> None:
         if time.monotonic() - self._last >= _BREATH:
@@ -58,7 +56,7 @@ class Garbage:
     def _look(self) -> None:
         rest = self._last + _PAUSE - time.monotonic()
         if rest > 0:
-            self._loop.call_later(rest, self._look)
+            asyncio.get_running_loop().call_later(rest, self._look)
         else:
             self._is_due = False
             gc.collect()

@@ -1,9 +1,16 @@
 """What the server knows while it talks to one client: what the client can do, the open documents, what is asked of it."""
 
+import asyncio
 import os
 import sys
+import threading
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any, Final
+from concurrent.futures import Future
+from typing import TYPE_CHECKING, Any, Final, TypeVar
+
+from lsprotocol import types
+from pygls.capabilities import ServerCapabilitiesBuilder, get_capability
+from pygls.exceptions import JsonRpcException, JsonRpcInvalidParams
 
 from scenic.configuration.project import Configurations
 from scenic.ide.snapshot import PythonSnapshot, Snapshot
@@ -11,80 +18,31 @@ from scenic.language.errors import ScenicError
 from scenic.language.selection import Rules
 from scenic.language.source import Source, read_source
 from scenic.language.spans import Span
-from scenic.lsp import reading
-from scenic.lsp.convert import Encoding, Json, Lines
+from scenic.lsp.beside import Beside, GoOn
+from scenic.lsp.convert import Encoding, Lines
 from scenic.lsp.documents import Document, snapshot_of
-from scenic.lsp.errors import ErrorCode, ProtocolError
 from scenic.lsp.garbage import Garbage
-from scenic.lsp.loop import Loop, Worker
-from scenic.lsp.trace import Trace
 from scenic.lsp.uris import to_path, to_uri
-from scenic.lsp.wire import Writer
 from scenic.project.index import Project
 from scenic.project.modules import Module
 
 if TYPE_CHECKING:
     from scenic.lsp.checks import Checks
+    from scenic.lsp.protocol import Protocol
 
-__all__ = ["Client", "Deferred", "Session"]
+__all__ = ["SUFFIXES", "Session"]
+
+_T = TypeVar("_T")
 
 SUFFIXES: Final = (".scenic", ".sc")
 """The endings of the files that are programs."""
 
-Answer = Callable[[Json], None]
-"""What is done with the client's answer to a request; it is given ``None`` if the client refused."""
-
-
-class Client:
-    """What the client can do, as it says at the beginning."""
-
-    def __init__(self, capabilities: Any = None) -> None:
-        self._capabilities = capabilities
-
-    def can(self, *path: str) -> bool:
-        """Whether there is ``true`` at a path of its capabilities."""
-        return reading.flag(self._capabilities, *path)
-
-    def has(self, *path: str) -> bool:
-        """Whether there is anything at a path of its capabilities."""
-        return reading.lookup(self._capabilities, *path) is not None
-
-    def lists(self, *path: str) -> frozenset[str]:
-        """The texts listed at a path of its capabilities."""
-        return frozenset(reading.texts(self._capabilities, *path))
-
-    def limit(self, *path: str) -> int | None:
-        """The number at a path of its capabilities."""
-        value = reading.lookup(self._capabilities, *path)
-        return value if isinstance(value, int) and not isinstance(value, bool) else None
-
-    @property
-    def encoding(self) -> Encoding:
-        """The first encoding of columns that it offers and we know; without an offer, that of the protocol."""
-        for each in reading.texts(self._capabilities, "general", "positionEncodings"):
-            if each in tuple(Encoding):
-                return Encoding(each)
-        return Encoding.UTF16
-
-
-class Deferred:
-    """The answer to a request that takes long: worked out beside the loop.
-
-    ``work`` calls the function that it is given now and then, which raises if the answer is no longer wanted.
-    ``document`` is the one whose change makes the answer worthless, if there is one. Work that mostly waits has a
-    thread of its own.
-    """
-
-    def __init__(
-        self,
-        work: Callable[[Callable[[], None]], Json],
-        *,
-        document: str | None = None,
-        own_thread: bool = False,
-    ) -> None:
-        self.work = work
-        self.document = document
-        self.own_thread = own_thread
+_REFRESHED: Final = {
+    "diagnostics": types.WORKSPACE_DIAGNOSTIC_REFRESH,
+    "semantic_tokens": types.WORKSPACE_SEMANTIC_TOKENS_REFRESH,
+    "inlay_hint": types.WORKSPACE_INLAY_HINT_REFRESH,
+    "code_lens": types.WORKSPACE_CODE_LENS_REFRESH,
+}
 
 
 class Results:
@@ -112,12 +70,14 @@ class Results:
 
 
 class Session:
-    """The state that all handlers share; used in the loop's thread only."""
+    """The state that all handlers share; used in the event loop only. ``idle`` is set while that waits for messages."""
 
-    def __init__(self, loop: Loop, writer: Writer) -> None:
-        self.loop = loop
-        self.writer = writer
-        self.client = Client()
+    def __init__(self, protocol: "Protocol", idle: threading.Event, *, trusting: bool) -> None:
+        self.protocol = protocol
+        self.trusting = trusting
+        """Whether the client can be believed when it says that programs may be run."""
+        self.client = types.ClientCapabilities()
+        """What the client can do, as it says at the beginning."""
         self.encoding = Encoding.UTF16
         self.documents: dict[str, Document] = {}
         self.folders: dict[str, str] = {}
@@ -125,10 +85,12 @@ class Session:
         self.trusted: bool | None = None
         """Whether programs may be run; ``None`` if the client did not say."""
         self.settings: Mapping[str, Any] = {}
-        self.garbage = Garbage(loop)
-        self.trace = Trace(writer)
-        self.checker = Worker("checks")
+        self.garbage = Garbage()
+        self.checker = Beside("checks", idle)
         self.checks: Checks
+        self.requests = Beside("requests", idle)
+        self.runs = Beside("runs", idle, threads=4)
+        """For work that mostly waits."""
         self.tokens = Results()
         self.generation = 0
         """Grows whenever what one document says of others may have changed."""
@@ -136,23 +98,40 @@ class Session:
         self._in_project: dict[str, Document] = {}
         """By file name: the version of each open document that the project knows."""
         self._snapshots: dict[str, tuple[Module, Snapshot]] = {}
-        self._asked: dict[str, Answer] = {}
-        self._count = 0
+        self._working: dict[Future[Any], str] = {}
+        """What is being worked out, by the document on which it depends."""
+
+    # What the client can do
+
+    def set_client(self, client: types.ClientCapabilities) -> None:
+        """Take note of what the client can do."""
+        self.client = client
+        self.encoding = Encoding(ServerCapabilitiesBuilder.choose_position_encoding(client))
+
+    def can(self, path: str) -> bool:
+        """Whether there is ``true`` at a path of its capabilities."""
+        return get_capability(self.client, path) is True
+
+    def has(self, path: str) -> bool:
+        """Whether there is anything at a path of its capabilities."""
+        return get_capability(self.client, path) is not None
+
+    def lists(self, path: str) -> frozenset[str]:
+        """The texts listed at a path of its capabilities."""
+        return frozenset(get_capability(self.client, path) or ())
 
     # Documents
 
     def document(self, uri: str) -> Document:
         """An open document, or else the file of that name as it is on the disk.
 
-        Raises `ProtocolError` if there is neither.
+        Raises `JsonRpcInvalidParams` if there is neither.
         """
         found = self.documents.get(uri)
         if found is None:
             found = self.file(uri)
         if found is None:
-            raise ProtocolError(
-                ErrorCode.INVALID_PARAMS, f"the document {uri} is not open, and no file can be read"
-            )
+            raise JsonRpcInvalidParams(f"the document {uri} is not open, and no file can be read")
         return found
 
     def file(self, uri: str) -> Document | None:
@@ -201,14 +180,13 @@ class Session:
         self.generation += 1
         self.project.refresh()
         self.checks.everything()
-        self.have_asked_again("diagnostics", "semanticTokens", "inlayHint", "codeLens")
+        self.have_asked_again(*_REFRESHED)
 
     def have_asked_again(self, *features: str) -> None:
         """Tell the client, if it can be told, that answers about some features may be others now."""
         for what in features:
-            if self.client.can("workspace", what, "refreshSupport"):
-                method = "diagnostic" if what == "diagnostics" else what
-                self.ask(f"workspace/{method}/refresh", None, lambda _result: None)
+            if self.can(f"workspace.{what}.refresh_support"):
+                self.ask(_REFRESHED[what], None)
 
     def project_with(self, document: Document) -> Project:
         """The project, with the present texts of the open documents."""
@@ -272,9 +250,9 @@ class Session:
         module = self.project.module(filename)
         return Lines(Source("", filename) if module is None else module.source, self.encoding)
 
-    def location(self, filename: str, span: Span) -> Json:
+    def location(self, filename: str, span: Span) -> types.Location:
         """A place in any file."""
-        return {"uri": self.uri_of(filename), "range": self.lines_of(filename).to_range(span)}
+        return types.Location(self.uri_of(filename), self.lines_of(filename).to_range(span))
 
     def lines_of_source(self, filename: str, source: Source) -> Lines:
         """The lines of a file of which the source is at hand."""
@@ -287,16 +265,17 @@ class Session:
             (each for each in list(self.documents.values()) if each.snapshot.filename == filename), None
         )
 
-    def workspace_edit(self, changes: Mapping[str, list[Json]]) -> Json:
+    def workspace_edit(self, changes: Mapping[str, list[types.TextEdit]]) -> types.WorkspaceEdit:
         """Changes of documents, with their versions if the client knows of such."""
-        if not self.client.can("workspace", "workspaceEdit", "documentChanges"):
-            return {"changes": dict(changes)}
+        if not self.can("workspace.workspace_edit.document_changes"):
+            return types.WorkspaceEdit(changes=dict(changes))
         documents = []
         for uri, edits in changes.items():
             opened = self.documents.get(uri)
             version = None if opened is None else opened.version
-            documents.append({"textDocument": {"uri": uri, "version": version}, "edits": edits})
-        return {"documentChanges": documents}
+            named = types.OptionalVersionedTextDocumentIdentifier(uri, version)
+            documents.append(types.TextDocumentEdit(named, edits))
+        return types.WorkspaceEdit(document_changes=documents)
 
     def rules(self, filename: str) -> tuple[Configurations, Rules]:
         """The settings of the project that a document belongs to. Read each time: they may have changed, and are small."""
@@ -305,30 +284,55 @@ class Session:
             return configurations, Rules()
         return configurations, configurations.of_file(filename).rules_for(filename)
 
+    # Work beside the event loop
+
+    def work(
+        self,
+        work: Callable[[GoOn], _T],
+        *,
+        document: str | None = None,
+        token: types.ProgressToken | None = None,
+        beside: Beside | None = None,
+    ) -> Future[_T]:
+        """The answer to a request that takes long.
+
+        ``document`` is the one whose change makes the answer worthless, if there is one; by ``token`` the client may call
+        off the work.
+        """
+        future = (beside or self.requests).begin(work)
+        if document is not None:
+            self._working[future] = document
+            future.add_done_callback(lambda done: self._working.pop(done, None))
+        if token is not None:
+            known = self.protocol.progress.tokens
+            known[token] = future
+            future.add_done_callback(lambda _done: known.pop(token, None))
+        return future
+
+    def outdate(self, uri: str) -> None:
+        """Give up what is being worked out for a version of a document that is no longer there."""
+        for future, document in list(self._working.items()):
+            if document == uri and not future.done():
+                code = types.LSPErrorCodes.ServerCancelled
+                again = types.DiagnosticServerCancellationData(retrigger_request=True)
+                future.set_exception(JsonRpcException("the document has changed", code, again))
+
+    def later(self, delay: float, action: Callable[[], None]) -> asyncio.TimerHandle:
+        """Have an action done in the event loop after so many seconds."""
+        return asyncio.get_running_loop().call_later(delay, action)
+
     # Messages to the client
 
-    def notify(self, method: str, params: Json) -> None:
+    def notify(self, method: str, params: Any) -> None:
         """Tell the client something; from any thread."""
-        self.writer.write({"jsonrpc": "2.0", "method": method, "params": params})
+        self.protocol.notify(method, params)
 
-    def ask(self, method: str, params: Json, answer: Answer) -> None:
-        """Ask the client something; ``answer`` is given what it says."""
-        self._count += 1
-        name = f"scenic-{self._count}"
-        self._asked[name] = answer
-        self.writer.write({"jsonrpc": "2.0", "id": name, "method": method, "params": params})
-
-    def answered(self, name: object, result: Json) -> None:
-        """The client has answered one of our requests."""
-        answer = self._asked.pop(name, None) if isinstance(name, str) else None
-        if answer is not None:
-            answer(result)
+    def ask(self, method: str, params: Any) -> "Future[Any]":
+        """Ask the client something; the future has what it says, as JSON."""
+        return self.protocol.send_request(method, params)
 
     def log(self, message: str, *, error: bool = False) -> None:
         """Write to the client's log, and to our error stream; from any thread."""
         sys.stderr.write(f"{message}\n")
-        self.notify("window/logMessage", {"type": _ERROR if error else _LOG, "message": message})
-
-
-_ERROR: Final = 1
-_LOG: Final = 4
+        kind = types.MessageType.Error if error else types.MessageType.Log
+        self.notify(types.WINDOW_LOG_MESSAGE, types.LogMessageParams(kind, message))

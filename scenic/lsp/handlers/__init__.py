@@ -1,115 +1,99 @@
 """What the server does for each method of the protocol: one module for each theme.
 
-A handler converts what the client sent, calls one function of `scenic.ide`, and converts what that returns. The modules
-are imported when the first request of their theme arrives: the server starts without them.
+A handler is given what the client sent as the protocol's types have it, calls one function of `scenic.ide`, and converts what
+that returns. The modules are imported when the first request of their theme arrives: the server starts without them.
 """
 
 from collections.abc import Callable, Mapping
 from importlib import import_module
-from types import MappingProxyType
-from typing import Any, Final, TypeAlias
+from typing import Any, Final
 
-from scenic.lsp.convert import Json
-from scenic.lsp.session import Deferred, Session
+from lsprotocol import types
 
-__all__ = ["THEMES", "Notified", "Requested", "notification_handler", "request_handler"]
+from scenic.lsp.session import Session
 
-Requested: TypeAlias = Callable[[Session, Any], Json | Deferred]
-Notified: TypeAlias = Callable[[Session, Any], None]
+__all__ = ["METHODS", "handler"]
 
-_METHODS: Final = {
-    "diagnostics": ("textDocument/diagnostic", "workspace/diagnostic"),
+_THEMES: Final[Mapping[str, tuple[str, ...]]] = {
+    "diagnostics": (types.TEXT_DOCUMENT_DIAGNOSTIC, types.WORKSPACE_DIAGNOSTIC),
     "editing": (
-        "textDocument/codeAction",
-        "codeAction/resolve",
-        "textDocument/formatting",
-        "textDocument/rangeFormatting",
-        "textDocument/rangesFormatting",
-        "textDocument/onTypeFormatting",
-        "textDocument/prepareRename",
-        "textDocument/rename",
-        "textDocument/linkedEditingRange",
+        types.TEXT_DOCUMENT_CODE_ACTION,
+        types.CODE_ACTION_RESOLVE,
+        types.TEXT_DOCUMENT_FORMATTING,
+        types.TEXT_DOCUMENT_RANGE_FORMATTING,
+        types.TEXT_DOCUMENT_RANGES_FORMATTING,
+        types.TEXT_DOCUMENT_ON_TYPE_FORMATTING,
+        types.TEXT_DOCUMENT_PREPARE_RENAME,
+        types.TEXT_DOCUMENT_RENAME,
+        types.TEXT_DOCUMENT_LINKED_EDITING_RANGE,
     ),
     "hints": (
-        "textDocument/inlayHint",
-        "inlayHint/resolve",
-        "textDocument/codeLens",
-        "codeLens/resolve",
-        "textDocument/documentLink",
-        "documentLink/resolve",
-        "textDocument/documentColor",
-        "textDocument/colorPresentation",
+        types.TEXT_DOCUMENT_INLAY_HINT,
+        types.INLAY_HINT_RESOLVE,
+        types.TEXT_DOCUMENT_CODE_LENS,
+        types.CODE_LENS_RESOLVE,
+        types.TEXT_DOCUMENT_DOCUMENT_LINK,
+        types.DOCUMENT_LINK_RESOLVE,
+        types.TEXT_DOCUMENT_DOCUMENT_COLOR,
+        types.TEXT_DOCUMENT_COLOR_PRESENTATION,
     ),
     "information": (
-        "textDocument/hover",
-        "textDocument/completion",
-        "completionItem/resolve",
-        "textDocument/signatureHelp",
+        types.TEXT_DOCUMENT_HOVER,
+        types.TEXT_DOCUMENT_COMPLETION,
+        types.COMPLETION_ITEM_RESOLVE,
+        types.TEXT_DOCUMENT_SIGNATURE_HELP,
     ),
-    "lifecycle": ("initialized", "$/setTrace"),
+    "lifecycle": (types.INITIALIZED,),
     "navigation": (
-        "textDocument/declaration",
-        "textDocument/definition",
-        "textDocument/typeDefinition",
-        "textDocument/implementation",
-        "textDocument/references",
-        "textDocument/documentHighlight",
-        "textDocument/prepareCallHierarchy",
-        "callHierarchy/incomingCalls",
-        "callHierarchy/outgoingCalls",
-        "textDocument/prepareTypeHierarchy",
-        "typeHierarchy/supertypes",
-        "typeHierarchy/subtypes",
-        "textDocument/moniker",
-        "workspace/symbol",
-        "workspaceSymbol/resolve",
+        types.TEXT_DOCUMENT_DECLARATION,
+        types.TEXT_DOCUMENT_DEFINITION,
+        types.TEXT_DOCUMENT_TYPE_DEFINITION,
+        types.TEXT_DOCUMENT_IMPLEMENTATION,
+        types.TEXT_DOCUMENT_REFERENCES,
+        types.TEXT_DOCUMENT_DOCUMENT_HIGHLIGHT,
+        types.TEXT_DOCUMENT_PREPARE_CALL_HIERARCHY,
+        types.CALL_HIERARCHY_INCOMING_CALLS,
+        types.CALL_HIERARCHY_OUTGOING_CALLS,
+        types.TEXT_DOCUMENT_PREPARE_TYPE_HIERARCHY,
+        types.TYPE_HIERARCHY_SUPERTYPES,
+        types.TYPE_HIERARCHY_SUBTYPES,
+        types.TEXT_DOCUMENT_MONIKER,
+        types.WORKSPACE_SYMBOL,
+        types.WORKSPACE_SYMBOL_RESOLVE,
     ),
-    "running": ("workspace/executeCommand",),
+    "running": (types.WORKSPACE_EXECUTE_COMMAND,),
     "structure": (
-        "textDocument/documentSymbol",
-        "textDocument/foldingRange",
-        "textDocument/selectionRange",
-        "textDocument/semanticTokens/full",
-        "textDocument/semanticTokens/full/delta",
-        "textDocument/semanticTokens/range",
+        types.TEXT_DOCUMENT_DOCUMENT_SYMBOL,
+        types.TEXT_DOCUMENT_FOLDING_RANGE,
+        types.TEXT_DOCUMENT_SELECTION_RANGE,
+        types.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL,
+        types.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL_DELTA,
+        types.TEXT_DOCUMENT_SEMANTIC_TOKENS_RANGE,
     ),
     "synchronization": (
-        "textDocument/didOpen",
-        "textDocument/didChange",
-        "textDocument/didSave",
-        "textDocument/didClose",
+        types.TEXT_DOCUMENT_DID_OPEN,
+        types.TEXT_DOCUMENT_DID_CHANGE,
+        types.TEXT_DOCUMENT_DID_SAVE,
+        types.TEXT_DOCUMENT_DID_CLOSE,
     ),
     "workspace": (
-        "workspace/didChangeConfiguration",
-        "workspace/didChangeWorkspaceFolders",
-        "workspace/didChangeWatchedFiles",
-        "workspace/willRenameFiles",
-        "workspace/didRenameFiles",
-        "workspace/didCreateFiles",
-        "workspace/didDeleteFiles",
+        types.WORKSPACE_DID_CHANGE_CONFIGURATION,
+        types.WORKSPACE_DID_CHANGE_WORKSPACE_FOLDERS,
+        types.WORKSPACE_DID_CHANGE_WATCHED_FILES,
+        types.WORKSPACE_WILL_RENAME_FILES,
+        types.WORKSPACE_DID_RENAME_FILES,
+        types.WORKSPACE_DID_CREATE_FILES,
+        types.WORKSPACE_DID_DELETE_FILES,
     ),
 }
+_THEME_OF: Final = {method: theme for theme, methods in _THEMES.items() for method in methods}
 
-THEMES: Final[Mapping[str, str]] = MappingProxyType(
-    {method: theme for theme, methods in _METHODS.items() for method in methods}
-)
-"""By method: the module that knows what to do."""
-
-
-def request_handler(method: str) -> Requested | None:
-    """What answers a request; ``None`` if nothing does."""
-    handler: Requested | None = _table(method, "REQUESTS").get(method)
-    return handler
+METHODS: Final = tuple(_THEME_OF)
+"""The methods that are registered once the client is known."""
 
 
-def notification_handler(method: str) -> Notified | None:
-    """What takes note of a notification; ``None`` if nothing does."""
-    handler: Notified | None = _table(method, "NOTIFICATIONS").get(method)
-    return handler
-
-
-def _table(method: str, name: str) -> Mapping[str, Any]:
-    theme = THEMES.get(method)
-    module = None if theme is None else import_module(f"{__name__}.{theme}")
-    table: Mapping[str, Any] = getattr(module, name, {})
-    return table
+def handler(method: str) -> Callable[[Session, Any], Any]:
+    """The handler of a method, or of ``initialize``."""
+    module = import_module(f"{__name__}.{_THEME_OF.get(method, 'lifecycle')}")
+    found: Callable[[Session, Any], Any] = module.HANDLERS[method]
+    return found

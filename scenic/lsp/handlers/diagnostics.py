@@ -1,49 +1,52 @@
 """Problems that the client asks for: of one document, and of all files of the workspace."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator, Sequence
+from concurrent.futures import Future
 from hashlib import sha256
-from json import dumps
-from typing import Any, Final
+from typing import Final
+
+from lsprotocol import types
 
 from scenic.configuration.project import Configurations
-from scenic.lsp import reading
+from scenic.lsp.beside import GoOn
 from scenic.lsp.checks import finder, found_in_document
-from scenic.lsp.convert import Json
 from scenic.lsp.progress import Partial, Progress
-from scenic.lsp.session import SUFFIXES, Deferred, Session
+from scenic.lsp.session import SUFFIXES, Session
 from scenic.lsp.uris import to_uri
 from scenic.project.index import Project
 
-__all__ = ["REQUESTS"]
+__all__ = ["HANDLERS"]
 
 
-def _document(session: Session, params: Any) -> Deferred:
-    uri = reading.uri_of(params)
+def _document(
+    session: Session, params: types.DocumentDiagnosticParams
+) -> Future[types.DocumentDiagnosticReport]:
+    uri = params.text_document.uri
     document = session.document(uri)
     if uri in session.documents:
         session.checks.pulled(uri)
-    previous = reading.lookup(params, "previousResultId")
-
     find = finder(session, document)
 
-    def work(go_on: Callable[[], None]) -> Json:
+    def work(go_on: GoOn) -> types.DocumentDiagnosticReport:
         found, _ = find(go_on)
-        return _report(found, previous)
+        name = _name(found)
+        if name == params.previous_result_id:
+            return types.RelatedUnchangedDocumentDiagnosticReport(name)
+        return types.RelatedFullDocumentDiagnosticReport(found, result_id=name)
 
-    return Deferred(work, document=uri)
+    return session.work(work, document=uri, token=params.work_done_token)
 
 
-def _workspace(session: Session, params: Any) -> Deferred:
-    previous = {
-        reading.lookup(each, "uri"): reading.lookup(each, "value")
-        for each in reading.lookup(params, "previousResultIds") or []
-    }
+def _workspace(
+    session: Session, params: types.WorkspaceDiagnosticParams
+) -> Future[types.WorkspaceDiagnosticReport]:
+    previous = {each.uri: each.value for each in params.previous_result_ids}
     documents = dict(session.documents)
     project, stamp = session.project_beside(None), session.generation
-    progress = Progress(session, reading.lookup(params, "workDoneToken"), "Checking the workspace")
-    partial = Partial(session, reading.lookup(params, "partialResultToken"))
+    progress = Progress(session, params.work_done_token, "Checking the workspace")
+    partial: Partial[types.WorkspaceDocumentDiagnosticReport] = Partial(session, params.partial_result_token)
 
-    def work(go_on: Callable[[], None]) -> Json:
+    def work(go_on: GoOn) -> types.WorkspaceDiagnosticReport:
         with progress:
             named = {to_uri(path): path for path in _programs(project)}
             for done, uri in enumerate(sorted(named.keys() | documents.keys())):
@@ -52,12 +55,12 @@ def _workspace(session: Session, params: Any) -> Deferred:
                 if document is None:
                     continue
                 found, _ = found_in_document(session, document, project, stamp, go_on)
-                report = {"uri": uri, "version": document.version, **_report(found, previous.get(uri))}
-                partial.add([report], lambda items: {"items": items})
+                report = _report(uri, document.version, found, previous.get(uri))
+                partial.add([report], types.WorkspaceDiagnosticReport)
                 progress.report(done + 1, len(named))
-        return {"items": partial.rest}
+        return types.WorkspaceDiagnosticReport(partial.rest)
 
-    return Deferred(work)
+    return session.work(work, token=params.work_done_token)
 
 
 def _programs(project: Project) -> Iterator[str]:
@@ -68,12 +71,19 @@ def _programs(project: Project) -> Iterator[str]:
             yield path
 
 
-def _report(found: list[Json], previous: Json) -> Json:
+def _report(
+    uri: str, version: int | None, found: Sequence[types.Diagnostic], previous: str | None
+) -> types.WorkspaceDocumentDiagnosticReport:
     """All that was found, or only that it is what the client knows already."""
-    name = sha256(dumps(found, sort_keys=True).encode()).hexdigest()[:16]
+    name = _name(found)
     if name == previous:
-        return {"kind": "unchanged", "resultId": name}
-    return {"kind": "full", "resultId": name, "items": found}
+        return types.WorkspaceUnchangedDocumentDiagnosticReport(uri, name, version)
+    return types.WorkspaceFullDocumentDiagnosticReport(uri, found, version, result_id=name)
 
 
-REQUESTS: Final = {"textDocument/diagnostic": _document, "workspace/diagnostic": _workspace}
+def _name(found: Sequence[types.Diagnostic]) -> str:
+    """The name of a result: equal results have equal names."""
+    return sha256(repr(found).encode("utf-8", "surrogatepass")).hexdigest()[:16]
+
+
+HANDLERS: Final = {types.TEXT_DOCUMENT_DIAGNOSTIC: _document, types.WORKSPACE_DIAGNOSTIC: _workspace}

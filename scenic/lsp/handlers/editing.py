@@ -1,7 +1,10 @@
 """Changing documents: repairs, formatting, other names."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any, Final
+
+from lsprotocol import types
+from pygls.exceptions import JsonRpcException, JsonRpcInvalidParams
 
 from scenic.ide import navigation
 from scenic.ide.dedenting import dedented
@@ -11,67 +14,69 @@ from scenic.ide.importing import missing_imports, organize_imports
 from scenic.ide.repairs import can_repair_all, ignoring, repair_all, repairs, touch
 from scenic.language.diagnostics import Diagnostic, Edit
 from scenic.language.selection import Rules
-from scenic.lsp import reading
+from scenic.language.spans import Span
 from scenic.lsp.capabilities import FIX_ALL, ORGANIZE
-from scenic.lsp.convert import Json, to_diagnostic
+from scenic.lsp.convert import to_diagnostic
 from scenic.lsp.documents import Document
-from scenic.lsp.errors import ErrorCode, ProtocolError
 from scenic.lsp.handlers.information import place_of
 from scenic.lsp.session import Session
 
-__all__ = ["REQUESTS"]
+__all__ = ["HANDLERS"]
 
-_AUTOMATIC: Final = 2
-_QUICK_FIX: Final = "quickfix"
+_QUICK_FIX: Final = types.CodeActionKind.QuickFix
 
 
 # Code actions
 
 
-def _actions(session: Session, params: Any) -> Json:
+def _actions(session: Session, params: types.CodeActionParams) -> list[types.CodeAction]:
     """What can be repaired at a place, and if that is asked for, all that can be repaired in the document."""
-    document = session.document(reading.uri_of(params))
-    span = document.lines.from_range(*reading.range_of(params, "range"))
-    only = reading.texts(params, "context", "only")
+    document = session.document(params.text_document.uri)
+    span = document.lines.from_range(params.range)
+    only = params.context.only or ()
     _, rules = session.rules(document.snapshot.filename)
-    actions: list[Json] = []
+    found = found_in(document.snapshot, rules, session.project_beside(document), stamp=session.generation)
+    actions: list[types.CodeAction] = []
     if _wanted(_QUICK_FIX, only):
-        found = found_in(document.snapshot, rules, session.project_beside(document), stamp=session.generation)
-        for item in repairs(found, span):
-            assert item.fix is not None
-            action = _action(session, document, item.fix.title, _QUICK_FIX, item.fix.edits)
-            # An editor may make what is preferred without asking.
-            preferred = {"isPreferred": True} if item.fix.certain else {}
-            actions.append({**action, "diagnostics": [_diagnostic(session, item, document)], **preferred})
-        project = session.project_with(document)
-        for missing in missing_imports(project, document.snapshot, found, lambda each: touch(each, span)):
-            action = _action(session, document, missing.title, _QUICK_FIX, [missing.edit])
-            actions.append({**action, "diagnostics": [_diagnostic(session, missing.diagnostic, document)]})
+        actions += _quick_fixes(session, document, found, span)
         for item, edit in ignoring(document.snapshot, found, span):
             title = f"Silence {item.code} on this line"
-            action = _action(session, document, title, _QUICK_FIX, [edit])
-            actions.append({**action, "diagnostics": [_diagnostic(session, item, document)]})
+            actions.append(_action(session, document, title, _QUICK_FIX, [edit], item))
     # An editor asks with each move of the cursor what is offered there.
-    automatic = reading.lookup(params, "context", "triggerKind") == _AUTOMATIC and not only
-    if not automatic and _wanted(FIX_ALL, only):
+    automatic = params.context.trigger_kind is types.CodeActionTriggerKind.Automatic and not only
+    if not automatic and _wanted(FIX_ALL, only) and can_repair_all(found):
         actions += _all_repairs(session, document, rules)
     if not automatic and _wanted(ORGANIZE, only):
-        found = found_in(document.snapshot, rules, session.project_beside(document), stamp=session.generation)
         organized = organize_imports(document.snapshot, found)
         if organized is not None:
             actions.append(_action(session, document, "Organize imports", ORGANIZE, [organized]))
     return actions
 
 
-def _all_repairs(session: Session, document: Document, rules: Rules) -> list[Json]:
+def _quick_fixes(
+    session: Session,
+    document: Document,
+    found: Sequence[Diagnostic],
+    span: Span,
+) -> Iterator[types.CodeAction]:
+    for item in repairs(found, span):
+        assert item.fix is not None
+        action = _action(session, document, item.fix.title, _QUICK_FIX, item.fix.edits, item)
+        # An editor may make what is preferred without asking.
+        action.is_preferred = item.fix.certain or None
+        yield action
+    project = session.project_with(document)
+    for missing in missing_imports(project, document.snapshot, found, lambda each: touch(each, span)):
+        yield _action(session, document, missing.title, _QUICK_FIX, [missing.edit], missing.diagnostic)
+
+
+def _all_repairs(session: Session, document: Document, rules: Rules) -> list[types.CodeAction]:
     """One action that makes all repairs; its changes are worked out when it is chosen, if the client can wait."""
     title = "Make all repairs of scenic"
-    can_wait = "edit" in session.client.lists("textDocument", "codeAction", "resolveSupport", "properties")
-    found = found_in(document.snapshot, rules, session.project_beside(document), stamp=session.generation)
-    if not can_repair_all(found):
-        return []
-    if can_wait and session.client.can("textDocument", "codeAction", "dataSupport"):
-        return [{"title": title, "kind": FIX_ALL, "data": {"uri": document.uri, "version": document.version}}]
+    can_wait = "edit" in session.lists("text_document.code_action.resolve_support.properties")
+    if can_wait and session.can("text_document.code_action.data_support"):
+        data = {"uri": document.uri, "version": document.version}
+        return [types.CodeAction(title, kind=FIX_ALL, data=data)]
     edit = _repair_all(session, document, rules)
     return [] if edit is None else [_action(session, document, title, FIX_ALL, [edit])]
 
@@ -87,29 +92,38 @@ def _repair_all(session: Session, document: Document, rules: Rules) -> Edit | No
     return snapshot.derived("all repairs", make, stamp=(session.generation, rules))
 
 
-def _resolve_action(session: Session, params: Any) -> Json:
-    uri = reading.lookup(params, "data", "uri")
-    if not isinstance(uri, str) or "edit" in params:
-        return params
+def _resolve_action(session: Session, action: types.CodeAction) -> types.CodeAction:
+    data: dict[str, Any] = action.data if isinstance(action.data, dict) else {}
+    uri = data.get("uri")
+    if not isinstance(uri, str) or action.edit is not None:
+        return action
     document = session.document(uri)
-    if document.version != reading.lookup(params, "data", "version"):
-        raise ProtocolError(ErrorCode.CONTENT_MODIFIED, "the document has changed")
+    if document.version != data.get("version"):
+        raise JsonRpcException("the document has changed", types.LSPErrorCodes.ContentModified)
     _, rules = session.rules(document.snapshot.filename)
     edit = _repair_all(session, document, rules)
-    if edit is None:
-        return params
-    return {**params, "edit": _action(session, document, "", FIX_ALL, [edit])["edit"]}
+    if edit is not None:
+        action.edit = _changes(session, document, [edit])
+    return action
 
 
 def _action(
-    session: Session, document: Document, title: str, kind: str, edits: Sequence[Edit]
-) -> dict[str, Json]:
-    changes = {document.uri: document.lines.to_edits(edits, document.line_end)}
-    return {"title": title, "kind": kind, "edit": session.workspace_edit(changes)}
+    session: Session,
+    document: Document,
+    title: str,
+    kind: str,
+    edits: Sequence[Edit],
+    item: Diagnostic | None = None,
+) -> types.CodeAction:
+    """An action, and the diagnostic that it answers."""
+    shown = None
+    if item is not None:
+        shown = [to_diagnostic(item, document.lines, document.uri, elsewhere=session.location)]
+    return types.CodeAction(title, kind, shown, edit=_changes(session, document, edits))
 
 
-def _diagnostic(session: Session, item: Diagnostic, document: Document) -> Json:
-    return to_diagnostic(item, document.lines, document.uri, elsewhere=session.location)
+def _changes(session: Session, document: Document, edits: Sequence[Edit]) -> types.WorkspaceEdit:
+    return session.workspace_edit({document.uri: document.lines.to_edits(edits, document.line_end)})
 
 
 def _wanted(kind: str, only: Sequence[str]) -> bool:
@@ -120,84 +134,85 @@ def _wanted(kind: str, only: Sequence[str]) -> bool:
 # Formatting
 
 
-def _format(session: Session, params: Any) -> Json:
-    document = session.document(reading.uri_of(params))
+def _format(session: Session, params: types.DocumentFormattingParams) -> list[types.TextEdit]:
+    document = session.document(params.text_document.uri)
     return document.lines.to_edits(formatting(document.snapshot), document.line_end)
 
 
-def _format_range(session: Session, params: Any) -> Json:
-    document = session.document(reading.uri_of(params))
-    lines = _lines(document, reading.range_of(params, "range"))
-    return document.lines.to_edits(formatting(document.snapshot, lines), document.line_end)
+def _format_range(session: Session, params: types.DocumentRangeFormattingParams) -> list[types.TextEdit]:
+    document = session.document(params.text_document.uri)
+    edits = formatting(document.snapshot, _lines(document, params.range))
+    return document.lines.to_edits(edits, document.line_end)
 
 
-def _format_ranges(session: Session, params: Any) -> Json:
-    document = session.document(reading.uri_of(params))
-    every = reading.items(params, "ranges")
-    ranges = [_lines(document, reading.range_of(params, "ranges", index)) for index, _ in enumerate(every)]
+def _format_ranges(session: Session, params: types.DocumentRangesFormattingParams) -> list[types.TextEdit]:
+    document = session.document(params.text_document.uri)
+    ranges = [_lines(document, each) for each in params.ranges]
     edits = formatting(document.snapshot, *ranges) if ranges else ()
     return document.lines.to_edits(edits, document.line_end)
 
 
-def _lines(document: Document, places: tuple[tuple[int, int], tuple[int, int]]) -> tuple[int, int]:
+def _lines(document: Document, place: types.Range) -> tuple[int, int]:
     """The first and the last line of a range; one that ends where a line begins does not hold that line."""
-    span = document.lines.from_range(*places)
+    span = document.lines.from_range(place)
     last = span.end_line - 1 if span.end_column == 0 and span.end_line > span.line else span.end_line
     return span.line, last
 
 
-def _format_typed(session: Session, params: Any) -> Json:
+def _format_typed(session: Session, params: types.DocumentOnTypeFormattingParams) -> list[types.TextEdit]:
     document, line, column = place_of(session, params)
-    typed = reading.text(params, "ch")
-    edits = dedented(document.snapshot, line, column) if typed == ":" else ()
+    edits = dedented(document.snapshot, line, column) if params.ch == ":" else ()
     return document.lines.to_edits(edits, document.line_end)
 
 
 # Names
 
 
-def _prepare_rename(session: Session, params: Any) -> Json:
+def _prepare_rename(
+    session: Session, params: types.PrepareRenameParams
+) -> types.PrepareRenamePlaceholder | None:
     document, line, column = place_of(session, params)
     try:
         found = navigation.prepare_rename(session.project_with(document), document.snapshot, line, column)
     except navigation.RenameError as error:
-        raise ProtocolError(ErrorCode.REQUEST_FAILED, str(error)) from None
+        raise JsonRpcException(str(error), types.LSPErrorCodes.RequestFailed) from None
     if found is None:
         return None
-    return {"range": document.lines.to_range(found[0]), "placeholder": found[1]}
+    return types.PrepareRenamePlaceholder(document.lines.to_range(found[0]), found[1])
 
 
-def _rename(session: Session, params: Any) -> Json:
+def _rename(session: Session, params: types.RenameParams) -> types.WorkspaceEdit:
     document, line, column = place_of(session, params)
-    name = reading.text(params, "newName")
+    name = params.new_name
     try:
         changed = navigation.rename(session.project_with(document), document.snapshot, line, column, name)
     except navigation.RenameError as error:
-        code = ErrorCode.REQUEST_FAILED if name.isidentifier() else ErrorCode.INVALID_PARAMS
-        raise ProtocolError(code, str(error)) from None
-    changes: dict[str, list[Json]] = {}
+        if not name.isidentifier():
+            raise JsonRpcInvalidParams(str(error)) from None
+        raise JsonRpcException(str(error), types.LSPErrorCodes.RequestFailed) from None
+    changes: dict[str, list[types.TextEdit]] = {}
     for place, text in changed:
-        edit = {"range": session.lines_of(place.filename).to_range(place.span), "newText": text}
+        edit = types.TextEdit(session.lines_of(place.filename).to_range(place.span), text)
         changes.setdefault(session.uri_of(place.filename), []).append(edit)
     return session.workspace_edit(changes)
 
 
-def _linked(session: Session, params: Any) -> Json:
+def _linked(session: Session, params: types.LinkedEditingRangeParams) -> types.LinkedEditingRanges | None:
     document, line, column = place_of(session, params)
     spans = navigation.linked(session.project_with(document), document.snapshot, line, column)
     if not spans:
         return None
-    return {"ranges": [document.lines.to_range(span) for span in spans], "wordPattern": r"[A-Za-z_]\w*"}
+    return types.LinkedEditingRanges([document.lines.to_range(span) for span in spans], r"[A-Za-z_]\w*")
 
 
-REQUESTS: Final = {
-    "textDocument/codeAction": _actions,
-    "codeAction/resolve": _resolve_action,
-    "textDocument/formatting": _format,
-    "textDocument/rangeFormatting": _format_range,
-    "textDocument/rangesFormatting": _format_ranges,
-    "textDocument/onTypeFormatting": _format_typed,
-    "textDocument/prepareRename": _prepare_rename,
-    "textDocument/rename": _rename,
-    "textDocument/linkedEditingRange": _linked,
+HANDLERS: Final = {
+    types.TEXT_DOCUMENT_CODE_ACTION: _actions,
+    types.CODE_ACTION_RESOLVE: _resolve_action,
+    types.TEXT_DOCUMENT_FORMATTING: _format,
+    types.TEXT_DOCUMENT_RANGE_FORMATTING: _format_range,
+    types.TEXT_DOCUMENT_RANGES_FORMATTING: _format_ranges,
+    types.TEXT_DOCUMENT_ON_TYPE_FORMATTING: _format_typed,
+    types.TEXT_DOCUMENT_PREPARE_RENAME: _prepare_rename,
+    types.TEXT_DOCUMENT_RENAME: _rename,
+    types.TEXT_DOCUMENT_LINKED_EDITING_RANGE: _linked,
 }

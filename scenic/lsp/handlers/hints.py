@@ -2,120 +2,114 @@
 
 from typing import Any, Final
 
+from lsprotocol import types
+
 from scenic.ide.colors import colors, presentation
 from scenic.ide.inlay_hints import HintKind, hints
 from scenic.ide.lenses import lenses
 from scenic.ide.links import links
-from scenic.lsp import reading
 from scenic.lsp.capabilities import SAMPLE, SIMULATE
-from scenic.lsp.convert import Json
 from scenic.lsp.session import Session
 from scenic.lsp.uris import to_uri
 
-__all__ = ["REQUESTS"]
+__all__ = ["HANDLERS"]
 
-_PARAMETER: Final = 2
-_TYPE: Final = 1
-
-
-def _inlay_hints(session: Session, params: Any) -> Json:
-    document = session.document(reading.uri_of(params))
-    span = document.lines.from_range(*reading.range_of(params, "range"))
-    later = "tooltip" in session.client.lists("textDocument", "inlayHint", "resolveSupport", "properties")
-    found = []
-    for hint in hints(document.snapshot, span):
-        text = hint.text.strip()
-        item: dict[str, Json] = {
-            "position": document.lines.to_position(hint.line, hint.column),
-            "label": text,
-            "paddingLeft": hint.text.startswith(" "),
-            "paddingRight": hint.text.endswith(" "),
-        }
-        if hint.kind is HintKind.PARAMETER:
-            item["kind"] = _PARAMETER
-        elif hint.kind is HintKind.UNIT:
-            item["kind"] = _TYPE
-        if later:
-            item["data"] = {"tooltip": hint.tooltip}
-        else:
-            item["tooltip"] = hint.tooltip
-        found.append(item)
-    return found
+_KINDS: Final = {
+    HintKind.PARAMETER: types.InlayHintKind.Parameter,
+    HintKind.UNIT: types.InlayHintKind.Type,
+}
 
 
-def _resolve_hint(_session: Session, params: Any) -> Json:
-    tooltip = reading.lookup(params, "data", "tooltip")
-    return {**params, "tooltip": tooltip} if isinstance(tooltip, str) else params
+def _inlay_hints(session: Session, params: types.InlayHintParams) -> list[types.InlayHint]:
+    document = session.document(params.text_document.uri)
+    later = "tooltip" in session.lists("text_document.inlay_hint.resolve_support.properties")
+    return [
+        types.InlayHint(
+            document.lines.to_position(hint.line, hint.column),
+            hint.text.strip(),
+            kind=_KINDS.get(hint.kind),
+            padding_left=hint.text.startswith(" "),
+            padding_right=hint.text.endswith(" "),
+            tooltip=None if later else hint.tooltip,
+            data={"tooltip": hint.tooltip} if later else None,
+        )
+        for hint in hints(document.snapshot, document.lines.from_range(params.range))
+    ]
 
 
-def _lenses(session: Session, params: Any) -> Json:
-    document = session.document(reading.uri_of(params))
+def _resolve_hint(_session: Session, hint: types.InlayHint) -> types.InlayHint:
+    tooltip = hint.data.get("tooltip") if isinstance(hint.data, dict) else None
+    if isinstance(tooltip, str):
+        hint.tooltip = tooltip
+    return hint
+
+
+def _lenses(session: Session, params: types.CodeLensParams) -> list[types.CodeLens]:
+    document = session.document(params.text_document.uri)
     found = []
     for lens in lenses(document.snapshot):
         for simulates in (False, True) if lens.simulates else (False,):
             data = {"uri": document.uri, "scenario": lens.scenario, "simulates": simulates}
             command = _command(document.uri, lens.scenario, simulates=simulates)
-            found.append({"range": document.lines.to_range(lens.span), "command": command, "data": data})
+            found.append(types.CodeLens(document.lines.to_range(lens.span), command, data))
     return found
 
 
-def _resolve_lens(_session: Session, params: Any) -> Json:
-    uri = reading.lookup(params, "data", "uri")
-    if not isinstance(uri, str):
-        return params
-    scenario = reading.lookup(params, "data", "scenario")
-    simulates = reading.flag(params, "data", "simulates")
-    command = _command(uri, scenario if isinstance(scenario, str) else None, simulates=simulates)
-    return {**params, "command": command}
+def _resolve_lens(_session: Session, lens: types.CodeLens) -> types.CodeLens:
+    data: dict[str, Any] = lens.data if isinstance(lens.data, dict) else {}
+    uri, scenario = data.get("uri"), data.get("scenario")
+    if isinstance(uri, str):
+        chosen = scenario if isinstance(scenario, str) else None
+        lens.command = _command(uri, chosen, simulates=data.get("simulates") is True)
+    return lens
 
 
-def _command(uri: str, scenario: str | None, *, simulates: bool) -> Json:
+def _command(uri: str, scenario: str | None, *, simulates: bool) -> types.Command:
     title = "Simulate" if simulates else "Sample a scene"
     if scenario is not None:
         title += f" {scenario}" if simulates else f" of {scenario}"
     options = {} if scenario is None else {"scenario": scenario}
-    return {"title": title, "command": SIMULATE if simulates else SAMPLE, "arguments": [uri, options]}
+    return types.Command(title, SIMULATE if simulates else SAMPLE, arguments=[uri, options])
 
 
-def _links(session: Session, params: Any) -> Json:
-    document = session.document(reading.uri_of(params))
-    tooltips = session.client.can("textDocument", "documentLink", "tooltipSupport")
-    found = []
-    for link in links(session.project_with(document), document.snapshot):
-        item = {"range": document.lines.to_range(link.span), "target": to_uri(link.path)}
-        if tooltips:
-            item["tooltip"] = link.path
-        found.append(item)
-    return found
-
-
-def _resolve_link(_session: Session, params: Any) -> Json:
-    return params
-
-
-def _colors(session: Session, params: Any) -> Json:
-    document = session.document(reading.uri_of(params))
+def _links(session: Session, params: types.DocumentLinkParams) -> list[types.DocumentLink]:
+    document = session.document(params.text_document.uri)
+    tooltips = session.can("text_document.document_link.tooltip_support")
     return [
-        {
-            "range": document.lines.to_range(each.span),
-            "color": {"red": each.red, "green": each.green, "blue": each.blue, "alpha": each.opacity},
-        }
+        types.DocumentLink(
+            document.lines.to_range(link.span), to_uri(link.path), link.path if tooltips else None
+        )
+        for link in links(session.project_with(document), document.snapshot)
+    ]
+
+
+def _resolve_link(_session: Session, link: types.DocumentLink) -> types.DocumentLink:
+    return link
+
+
+def _colors(session: Session, params: types.DocumentColorParams) -> list[types.ColorInformation]:
+    document = session.document(params.text_document.uri)
+    return [
+        types.ColorInformation(
+            document.lines.to_range(each.span),
+            types.Color(each.red, each.green, each.blue, each.opacity),
+        )
         for each in colors(document.snapshot)
     ]
 
 
-def _presentations(_session: Session, params: Any) -> Json:
-    parts = [reading.number(params, "color", part) for part in ("red", "green", "blue", "alpha")]
-    return [{"label": presentation(*parts)}]
+def _presentations(_session: Session, params: types.ColorPresentationParams) -> list[types.ColorPresentation]:
+    color = params.color
+    return [types.ColorPresentation(presentation(color.red, color.green, color.blue, color.alpha))]
 
 
-REQUESTS: Final = {
-    "textDocument/documentColor": _colors,
-    "textDocument/colorPresentation": _presentations,
-    "textDocument/inlayHint": _inlay_hints,
-    "inlayHint/resolve": _resolve_hint,
-    "textDocument/codeLens": _lenses,
-    "codeLens/resolve": _resolve_lens,
-    "textDocument/documentLink": _links,
-    "documentLink/resolve": _resolve_link,
+HANDLERS: Final = {
+    types.TEXT_DOCUMENT_DOCUMENT_COLOR: _colors,
+    types.TEXT_DOCUMENT_COLOR_PRESENTATION: _presentations,
+    types.TEXT_DOCUMENT_INLAY_HINT: _inlay_hints,
+    types.INLAY_HINT_RESOLVE: _resolve_hint,
+    types.TEXT_DOCUMENT_CODE_LENS: _lenses,
+    types.CODE_LENS_RESOLVE: _resolve_lens,
+    types.TEXT_DOCUMENT_DOCUMENT_LINK: _links,
+    types.DOCUMENT_LINK_RESOLVE: _resolve_link,
 }

@@ -1,142 +1,136 @@
 """What a reader or writer wants to know about a place: hover, completion, signatures."""
 
-from typing import Any, Final
+from typing import Any, Final, Protocol
+
+from lsprotocol import types
 
 from scenic.ide.completion import CompletionKind, completions, document, must_follow
 from scenic.ide.hover import hover
 from scenic.ide.signatures import signature_help
-from scenic.lsp import reading
-from scenic.lsp.convert import Json
 from scenic.lsp.documents import Document
 from scenic.lsp.session import Session
 
-__all__ = ["REQUESTS"]
+__all__ = ["HANDLERS", "Placed", "place_of"]
 
 _KINDS: Final = {
-    CompletionKind.KEYWORD: 14,
-    CompletionKind.SPECIFIER: 14,
-    CompletionKind.OPERATOR: 24,
-    CompletionKind.SNIPPET: 15,
-    CompletionKind.CLASS: 7,
-    CompletionKind.FUNCTION: 3,
-    CompletionKind.METHOD: 2,
-    CompletionKind.BEHAVIOR: 23,
-    CompletionKind.MONITOR: 23,
-    CompletionKind.SCENARIO: 9,
-    CompletionKind.PROPERTY: 10,
-    CompletionKind.ATTRIBUTE: 5,
-    CompletionKind.VARIABLE: 6,
-    CompletionKind.PARAMETER: 6,
-    CompletionKind.MODULE: 9,
-    CompletionKind.CONSTANT: 17,
+    CompletionKind.KEYWORD: types.CompletionItemKind.Keyword,
+    CompletionKind.SPECIFIER: types.CompletionItemKind.Keyword,
+    CompletionKind.OPERATOR: types.CompletionItemKind.Operator,
+    CompletionKind.SNIPPET: types.CompletionItemKind.Snippet,
+    CompletionKind.CLASS: types.CompletionItemKind.Class,
+    CompletionKind.FUNCTION: types.CompletionItemKind.Function,
+    CompletionKind.METHOD: types.CompletionItemKind.Method,
+    CompletionKind.BEHAVIOR: types.CompletionItemKind.Event,
+    CompletionKind.MONITOR: types.CompletionItemKind.Event,
+    CompletionKind.SCENARIO: types.CompletionItemKind.Module,
+    CompletionKind.PROPERTY: types.CompletionItemKind.Property,
+    CompletionKind.ATTRIBUTE: types.CompletionItemKind.Field,
+    CompletionKind.VARIABLE: types.CompletionItemKind.Variable,
+    CompletionKind.PARAMETER: types.CompletionItemKind.Variable,
+    CompletionKind.MODULE: types.CompletionItemKind.Module,
+    CompletionKind.CONSTANT: types.CompletionItemKind.Constant,
 }
-_SNIPPET: Final = 2
 
 
-def place_of(session: Session, params: Any) -> tuple[Document, int, int]:
+class Placed(Protocol):
+    """Parameters of a request about a place in a document."""
+
+    text_document: types.TextDocumentIdentifier
+    position: types.Position
+
+
+def place_of(session: Session, params: Placed) -> tuple[Document, int, int]:
     """The document that a request is about, and the line and column in it."""
-    document = session.document(reading.uri_of(params))
-    return document, *document.lines.from_position(*reading.position(params, "position"))
+    document = session.document(params.text_document.uri)
+    return document, *document.lines.from_position(params.position)
 
 
-def markup(session: Session, text: str, *path: str) -> Json:
+def markup(session: Session, text: str, path: str) -> types.MarkupContent:
     """Markdown for a client that shows it, and otherwise without its marks; ``path`` leads to the formats it lists."""
-    formats = session.client.lists(*path)
-    if formats and "markdown" not in formats:
+    formats = session.lists(path)
+    if formats and types.MarkupKind.Markdown not in formats:
         plain = text.replace("```scenic\n", "").replace("```python\n", "").replace("\n```", "")
-        return {"kind": "plaintext", "value": plain.replace("`", "").replace("*", "")}
-    return {"kind": "markdown", "value": text}
+        return types.MarkupContent(types.MarkupKind.PlainText, plain.replace("`", "").replace("*", ""))
+    return types.MarkupContent(types.MarkupKind.Markdown, text)
 
 
-def _hover(session: Session, params: Any) -> Json:
+def _hover(session: Session, params: types.HoverParams) -> types.Hover | None:
     document, line, column = place_of(session, params)
     found = hover(document.snapshot, line, column, lambda: session.project_with(document))
     if found is None:
         return None
-    return {
-        "contents": markup(session, found.markdown, "textDocument", "hover", "contentFormat"),
-        "range": document.lines.to_range(found.span),
-    }
+    shown = markup(session, found.markdown, "text_document.hover.content_format")
+    return types.Hover(shown, document.lines.to_range(found.span))
 
 
-def _completion(session: Session, params: Any) -> Json:
+def _completion(session: Session, params: types.CompletionParams) -> types.CompletionList:
     document, line, column = place_of(session, params)
-    if reading.lookup(params, "context", "triggerCharacter") == " " and not must_follow(
-        document.snapshot, line, column
-    ):
-        return {"isIncomplete": False, "items": []}
+    typed = None if params.context is None else params.context.trigger_character
+    if typed == " " and not must_follow(document.snapshot, line, column):
+        return types.CompletionList(is_incomplete=False, items=[])
     found = completions(session.project_with(document), document.snapshot, line, column)
-    snippets = session.client.can("textDocument", "completion", "completionItem", "snippetSupport")
+    snippets = session.can("text_document.completion.completion_item.snippet_support")
     # The place is the same for all, and need be said but once to clients that know of that.
-    once = "editRange" in session.client.lists("textDocument", "completion", "completionList", "itemDefaults")
+    once = "editRange" in session.lists("text_document.completion.completion_list.item_defaults")
     place = document.lines.to_range(found.span)
     items = []
     for item in found.items:
         snippet = item.snippet if snippets else None
         text = item.text if snippet is None else snippet
-        shown: dict[str, Json] = {
-            "label": item.label,
-            "kind": _KINDS[item.kind],
-            "sortText": f"{item.rank}{item.label}",
-        }
-        if not once:
-            shown["textEdit"] = {"range": place, "newText": text}
-        elif text != item.label:
-            shown["textEditText"] = text
-        if item.text != item.label:
-            shown["filterText"] = item.label
-        if item.detail:
-            shown["detail"] = item.detail
-        if snippet is not None:
-            shown["insertTextFormat"] = _SNIPPET
-        if item.key:
-            shown["data"] = {"uri": document.uri, "key": list(item.key)}
-        items.append(shown)
-    answer: dict[str, Json] = {"isIncomplete": False, "items": items}
-    if once:
-        answer["itemDefaults"] = {"editRange": place}
-    return answer
+        items.append(
+            types.CompletionItem(
+                item.label,
+                kind=_KINDS[item.kind],
+                sort_text=f"{item.rank}{item.label}",
+                text_edit=None if once else types.TextEdit(place, text),
+                text_edit_text=text if once and text != item.label else None,
+                filter_text=item.label if item.text != item.label else None,
+                detail=item.detail or None,
+                insert_text_format=None if snippet is None else types.InsertTextFormat.Snippet,
+                data={"uri": document.uri, "key": list(item.key)} if item.key else None,
+            )
+        )
+    defaults = types.CompletionItemDefaults(edit_range=place) if once else None
+    return types.CompletionList(is_incomplete=False, items=items, item_defaults=defaults)
 
 
-def _resolve(session: Session, params: Any) -> Json:
-    key = tuple(reading.texts(params, "data", "key"))
-    uri = reading.lookup(params, "data", "uri")
-    if not key or not isinstance(uri, str) or "documentation" in params:
-        return params
-    document = session.documents.get(uri)
-    project = session.project if document is None else session.project_with(document)
-    text = None if project is None else document_of(project, document, key)
-    if text is None:
-        return params
-    path = ("textDocument", "completion", "completionItem", "documentationFormat")
-    return {**params, "documentation": markup(session, text, *path)}
+def _resolve(session: Session, item: types.CompletionItem) -> types.CompletionItem:
+    data: dict[str, Any] = item.data if isinstance(item.data, dict) else {}
+    uri, listed = data.get("uri"), data.get("key")
+    key = tuple(each for each in listed if isinstance(each, str)) if isinstance(listed, list) else ()
+    if not key or not isinstance(uri, str) or item.documentation is not None:
+        return item
+    opened = session.documents.get(uri)
+    project = session.project if opened is None else session.project_with(opened)
+    text = document(project, None if opened is None else opened.snapshot, key)
+    if text is not None:
+        path = "text_document.completion.completion_item.documentation_format"
+        item.documentation = markup(session, text, path)
+    return item
 
 
-def document_of(project: Any, opened: Document | None, key: tuple[str, ...]) -> str | None:
-    """What there is to say about a possibility."""
-    return document(project, None if opened is None else opened.snapshot, key)
-
-
-def _signature_help(session: Session, params: Any) -> Json:
+def _signature_help(session: Session, params: types.SignatureHelpParams) -> types.SignatureHelp | None:
     opened, line, column = place_of(session, params)
     found = signature_help(session.project_with(opened), opened.snapshot, line, column)
     if found is None:
         return None
-    path = ("textDocument", "signatureHelp", "signatureInformation")
-    offsets = session.client.can(*path, "parameterInformation", "labelOffsetSupport")
+    path = "text_document.signature_help.signature_information"
+    offsets = session.can(f"{path}.parameter_information.label_offset_support")
     parameters = [
-        {"label": [start, end] if offsets else found.label[start:end]} for start, end in found.parameters
+        types.ParameterInformation((start, end) if offsets else found.label[start:end])
+        for start, end in found.parameters
     ]
-    signature: dict[str, Json] = {"label": found.label, "parameters": parameters}
+    documentation = None
     if found.documentation:
-        signature["documentation"] = markup(session, found.documentation, *path, "documentationFormat")
+        documentation = markup(session, found.documentation, f"{path}.documentation_format")
+    signature = types.SignatureInformation(found.label, documentation, parameters)
     active = len(parameters) if found.active is None else found.active
-    return {"signatures": [signature], "activeSignature": 0, "activeParameter": active}
+    return types.SignatureHelp([signature], active_signature=0, active_parameter=active)
 
 
-REQUESTS: Final = {
-    "textDocument/hover": _hover,
-    "textDocument/completion": _completion,
-    "completionItem/resolve": _resolve,
-    "textDocument/signatureHelp": _signature_help,
+HANDLERS: Final = {
+    types.TEXT_DOCUMENT_HOVER: _hover,
+    types.TEXT_DOCUMENT_COMPLETION: _completion,
+    types.COMPLETION_ITEM_RESOLVE: _resolve,
+    types.TEXT_DOCUMENT_SIGNATURE_HELP: _signature_help,
 }

@@ -1,118 +1,116 @@
 """Going from place to place: definitions, uses, hierarchies, symbols of the workspace."""
 
 from collections.abc import Callable, Sequence
+from concurrent.futures import Future
 from itertools import groupby
-from typing import Any, Final
+from typing import Any, Final, TypeAlias, TypeVar
+
+from lsprotocol import types
+from pygls.exceptions import JsonRpcInvalidParams
 
 from scenic.ide import hierarchies, navigation
 from scenic.ide.navigation import Target
 from scenic.ide.symbols import Kind, flat, matches, symbols
-from scenic.lsp import reading
-from scenic.lsp.convert import Json
-from scenic.lsp.errors import ErrorCode, ProtocolError
-from scenic.lsp.handlers.information import place_of
+from scenic.lsp.beside import GoOn
+from scenic.lsp.handlers.information import Placed, place_of
 from scenic.lsp.progress import Partial, Progress
-from scenic.lsp.session import Deferred, Session
+from scenic.lsp.session import Session
 from scenic.lsp.uris import to_path
+from scenic.project.index import Project
 from scenic.project.symbols import Symbol, SymbolKind
 
-__all__ = ["KINDS", "REQUESTS"]
+__all__ = ["HANDLERS", "KINDS"]
+
+_Item = TypeVar("_Item", types.CallHierarchyItem, types.TypeHierarchyItem)
 
 KINDS: Final = {
-    Kind.CLASS: 5,
-    Kind.PROPERTY: 7,
-    Kind.FUNCTION: 12,
-    Kind.METHOD: 6,
-    Kind.BEHAVIOR: 24,
-    Kind.MONITOR: 24,
-    Kind.SCENARIO: 3,
-    Kind.OBJECT: 19,
-    Kind.VARIABLE: 13,
-    Kind.CONSTANT: 14,
-    Kind.PARAMETER: 20,
-    Kind.REQUIREMENT: 17,
+    Kind.CLASS: types.SymbolKind.Class,
+    Kind.PROPERTY: types.SymbolKind.Property,
+    Kind.FUNCTION: types.SymbolKind.Function,
+    Kind.METHOD: types.SymbolKind.Method,
+    Kind.BEHAVIOR: types.SymbolKind.Event,
+    Kind.MONITOR: types.SymbolKind.Event,
+    Kind.SCENARIO: types.SymbolKind.Namespace,
+    Kind.OBJECT: types.SymbolKind.Object,
+    Kind.VARIABLE: types.SymbolKind.Variable,
+    Kind.CONSTANT: types.SymbolKind.Constant,
+    Kind.PARAMETER: types.SymbolKind.Key,
+    Kind.REQUIREMENT: types.SymbolKind.Boolean,
 }
-"""The protocol's numbers for kinds of symbols."""
 _OF_PROJECT: Final = {
-    SymbolKind.MODULE: 2,
-    SymbolKind.CLASS: 5,
-    SymbolKind.FUNCTION: 12,
-    SymbolKind.METHOD: 6,
-    SymbolKind.BEHAVIOR: 24,
-    SymbolKind.MONITOR: 24,
-    SymbolKind.SCENARIO: 3,
-    SymbolKind.PROPERTY: 7,
-    SymbolKind.ATTRIBUTE: 8,
+    SymbolKind.MODULE: types.SymbolKind.Module,
+    SymbolKind.CLASS: types.SymbolKind.Class,
+    SymbolKind.FUNCTION: types.SymbolKind.Function,
+    SymbolKind.METHOD: types.SymbolKind.Method,
+    SymbolKind.BEHAVIOR: types.SymbolKind.Event,
+    SymbolKind.MONITOR: types.SymbolKind.Event,
+    SymbolKind.SCENARIO: types.SymbolKind.Namespace,
+    SymbolKind.PROPERTY: types.SymbolKind.Property,
+    SymbolKind.ATTRIBUTE: types.SymbolKind.Field,
 }
 _MOST: Final = 1000
 """So many symbols of the workspace are listed."""
 
-_READ: Final = 2
-_WRITE: Final = 3
+Places: TypeAlias = list[types.Location] | list[types.LocationLink] | None
+Find: TypeAlias = Callable[[Project, str, int, int], Symbol | None]
 
 
-def _goto(find: Callable[..., Sequence[Target]], name: str) -> Callable[[Session, Any], Json]:
+def _goto(find: Callable[..., Sequence[Target]], name: str) -> Callable[[Session, Placed], Places]:
     """The handler of a request that leads elsewhere."""
 
-    def handler(session: Session, params: Any) -> Json:
+    def handler(session: Session, params: Placed) -> Places:
         document, line, column = place_of(session, params)
         targets = find(session.project_with(document), document.snapshot, line, column)
         if not targets:
             return None
-        if not session.client.can("textDocument", name, "linkSupport"):
-            return [
-                {
-                    "uri": session.uri_of(each.filename),
-                    "range": session.lines_of(each.filename).to_range(each.span),
-                }
-                for each in targets
-            ]
+        if not session.can(f"text_document.{name}.link_support"):
+            return [session.location(each.filename, each.span) for each in targets]
         return [
-            {
-                "originSelectionRange": document.lines.to_range(each.origin),
-                "targetUri": session.uri_of(each.filename),
-                "targetRange": session.lines_of(each.filename).to_range(each.extent),
-                "targetSelectionRange": session.lines_of(each.filename).to_range(each.span),
-            }
+            types.LocationLink(
+                session.uri_of(each.filename),
+                session.lines_of(each.filename).to_range(each.extent),
+                session.lines_of(each.filename).to_range(each.span),
+                origin_selection_range=document.lines.to_range(each.origin),
+            )
             for each in targets
         ]
 
     return handler
 
 
-def _references(session: Session, params: Any) -> Deferred:
+def _references(session: Session, params: types.ReferenceParams) -> Future[list[types.Location]]:
     document, line, column = place_of(session, params)
-    with_definitions = reading.flag(params, "context", "includeDeclaration")
+    with_definitions = params.context.include_declaration
     project = session.project_with(document)
-    progress = Progress(session, reading.lookup(params, "workDoneToken"), "Finding references")
-    partial = Partial(session, reading.lookup(params, "partialResultToken"))
+    progress = Progress(session, params.work_done_token, "Finding references")
+    partial: Partial[types.Location] = Partial(session, params.partial_result_token)
 
-    def work(go_on: Callable[[], None]) -> Json:
+    def work(go_on: GoOn) -> list[types.Location]:
         with progress:
             found = navigation.usages(
                 project, document.snapshot, line, column, with_definitions=with_definitions, go_on=go_on
             )
             for filename, places in groupby(found, lambda each: each.filename):
                 uri, lines = session.uri_of(filename), session.lines_of(filename)
-                partial.add([{"uri": uri, "range": lines.to_range(each.span)} for each in places])
+                partial.add([types.Location(uri, lines.to_range(each.span)) for each in places])
         return partial.rest
 
-    return Deferred(work)
+    return session.work(work, token=params.work_done_token)
 
 
-def _highlights(session: Session, params: Any) -> Json:
+def _highlights(session: Session, params: types.DocumentHighlightParams) -> list[types.DocumentHighlight]:
     document, line, column = place_of(session, params)
-    found = navigation.highlights(session.project_with(document), document.snapshot, line, column)
+    kind = types.DocumentHighlightKind
     return [
-        {"range": document.lines.to_range(each.span), "kind": _WRITE if each.writes else _READ}
-        for each in found
+        types.DocumentHighlight(document.lines.to_range(each.span), kind.Write if each.writes else kind.Read)
+        for each in navigation.highlights(session.project_with(document), document.snapshot, line, column)
     ]
 
 
 # Hierarchies
 
 
-def _item(session: Session, symbol: Symbol) -> Json:
+def _item(session: Session, symbol: Symbol, make: type[_Item]) -> _Item:
     """A function or class as an item of a hierarchy."""
     assert symbol.filename is not None
     assert symbol.span is not None
@@ -120,67 +118,76 @@ def _item(session: Session, symbol: Symbol) -> Json:
     extent = (
         symbol.extent if symbol.extent is not None and symbol.extent.contains(symbol.span) else symbol.span
     )
-    found: dict[str, Json] = {
-        "name": symbol.name,
-        "kind": _OF_PROJECT.get(symbol.kind, 13),
-        "uri": session.uri_of(symbol.filename),
-        "range": lines.to_range(extent),
-        "selectionRange": lines.to_range(symbol.span),
-        "data": {"line": symbol.span.line, "column": symbol.span.column},
-    }
     detail = symbol.container or (symbol.kind.value if symbol.kind is not SymbolKind.MODULE else "")
-    if detail:
-        found["detail"] = detail
-    return found
+    return make(
+        name=symbol.name,
+        kind=_OF_PROJECT.get(symbol.kind, types.SymbolKind.Variable),
+        uri=session.uri_of(symbol.filename),
+        range=lines.to_range(extent),
+        selection_range=lines.to_range(symbol.span),
+        detail=detail or None,
+    )
 
 
-def _prepare(find: Callable[..., Symbol | None]) -> Callable[[Session, Any], Json]:
-    def handler(session: Session, params: Any) -> Json:
+def _prepare(find: Find, make: type[_Item]) -> Callable[[Session, Placed], list[_Item] | None]:
+    def handler(session: Session, params: Placed) -> list[_Item] | None:
         document, line, column = place_of(session, params)
         symbol = find(session.project_with(document), document.snapshot.filename, line, column)
-        return None if symbol is None else [_item(session, symbol)]
+        return None if symbol is None else [_item(session, symbol, make)]
 
     return handler
 
 
-def _symbol(session: Session, params: Any, find: Callable[..., Symbol | None]) -> tuple[Any, Symbol | None]:
+def _symbol(
+    session: Session, item: types.CallHierarchyItem | types.TypeHierarchyItem, find: Find
+) -> tuple[Project, Symbol | None]:
     """What an item of a hierarchy stands for."""
-    document = session.document(reading.text(params, "item", "uri"))
-    line, column = document.lines.from_position(*reading.position(params, "item", "selectionRange", "start"))
+    document = session.document(item.uri)
+    line, column = document.lines.from_position(item.selection_range.start)
     project = session.project_with(document)
     return project, find(project, document.snapshot.filename, line, column)
 
 
-def _incoming(session: Session, params: Any) -> Json:
-    project, symbol = _symbol(session, params, hierarchies.callable_at)
+def _incoming(
+    session: Session, params: types.CallHierarchyIncomingCallsParams
+) -> list[types.CallHierarchyIncomingCall] | None:
+    project, symbol = _symbol(session, params.item, hierarchies.callable_at)
     if symbol is None:
         return None
-    found = []
-    for call in hierarchies.callers(project, symbol):
-        lines = session.lines_of(call.filename)
-        found.append(
-            {"from": _item(session, call.symbol), "fromRanges": [lines.to_range(span) for span in call.spans]}
+    return [
+        types.CallHierarchyIncomingCall(
+            _item(session, call.symbol, types.CallHierarchyItem),
+            [session.lines_of(call.filename).to_range(span) for span in call.spans],
         )
-    return found
+        for call in hierarchies.callers(project, symbol)
+    ]
 
 
-def _outgoing(session: Session, params: Any) -> Json:
-    project, symbol = _symbol(session, params, hierarchies.callable_at)
+def _outgoing(
+    session: Session, params: types.CallHierarchyOutgoingCallsParams
+) -> list[types.CallHierarchyOutgoingCall] | None:
+    project, symbol = _symbol(session, params.item, hierarchies.callable_at)
     if symbol is None:
         return None
-    found = []
-    for call in hierarchies.callees(project, symbol):
-        lines = session.lines_of(call.filename)
-        found.append(
-            {"to": _item(session, call.symbol), "fromRanges": [lines.to_range(span) for span in call.spans]}
+    return [
+        types.CallHierarchyOutgoingCall(
+            _item(session, call.symbol, types.CallHierarchyItem),
+            [session.lines_of(call.filename).to_range(span) for span in call.spans],
         )
-    return found
+        for call in hierarchies.callees(project, symbol)
+    ]
 
 
-def _types(find: Callable[..., Sequence[Symbol]]) -> Callable[[Session, Any], Json]:
-    def handler(session: Session, params: Any) -> Json:
-        project, symbol = _symbol(session, params, hierarchies.class_at)
-        return None if symbol is None else [_item(session, each) for each in find(project, symbol)]
+def _types(
+    find: Callable[..., Sequence[Symbol]],
+) -> Callable[[Session, Any], list[types.TypeHierarchyItem] | None]:
+    def handler(
+        session: Session, params: types.TypeHierarchySupertypesParams | types.TypeHierarchySubtypesParams
+    ) -> list[types.TypeHierarchyItem] | None:
+        project, symbol = _symbol(session, params.item, hierarchies.class_at)
+        if symbol is None:
+            return None
+        return [_item(session, each, types.TypeHierarchyItem) for each in find(project, symbol)]
 
     return handler
 
@@ -188,15 +195,16 @@ def _types(find: Callable[..., Sequence[Symbol]]) -> Callable[[Session, Any], Js
 # The workspace
 
 
-def _workspace_symbols(session: Session, params: Any) -> Deferred:
-    query = reading.text(params, "query")
+def _workspace_symbols(
+    session: Session, params: types.WorkspaceSymbolParams
+) -> Future[list[types.WorkspaceSymbol]]:
+    query = params.query
     snapshots = session.workspace_snapshots()
-    progress = Progress(session, reading.lookup(params, "workDoneToken"), "Searching symbols")
-    partial = Partial(session, reading.lookup(params, "partialResultToken"))
-    lazy = session.client.has("workspace", "symbol", "resolveSupport")
+    progress = Progress(session, params.work_done_token, "Searching symbols")
+    partial: Partial[types.WorkspaceSymbol] = Partial(session, params.partial_result_token)
 
-    def work(go_on: Callable[[], None]) -> Json:
-        found: list[Json] = []
+    def work(go_on: GoOn) -> list[types.WorkspaceSymbol]:
+        found = []
         with progress:
             for filename, snapshot in snapshots:
                 go_on()
@@ -205,63 +213,55 @@ def _workspace_symbols(session: Session, params: Any) -> Deferred:
                     if not matches(symbol.name, query):
                         continue
                     lines = lines or session.lines_of_source(filename, snapshot().source)
-                    place = {"uri": session.uri_of(filename), "range": lines.to_range(symbol.name_span)}
-                    item: dict[str, Json] = {
-                        "name": symbol.name,
-                        "kind": KINDS[symbol.kind],
-                        "location": place,
-                    }
-                    if container:
-                        item["containerName"] = container
-                    if lazy:
-                        item["data"] = {"range": place["range"]}
+                    place = types.Location(session.uri_of(filename), lines.to_range(symbol.name_span))
+                    item = types.WorkspaceSymbol(
+                        place, symbol.name, KINDS[symbol.kind], container_name=container or None
+                    )
                     found.append(item)
-        query_name = query.lower()
-        found.sort(key=lambda item: (not item["name"].lower().startswith(query_name), item["name"].lower()))
+        start = query.lower()
+        found.sort(key=lambda item: (not item.name.lower().startswith(start), item.name.lower()))
         partial.add(found[:_MOST])
         return partial.rest
 
-    return Deferred(work)
+    return session.work(work, token=params.work_done_token)
 
 
-def _resolve_symbol(session: Session, params: Any) -> Json:
-    uri = reading.text(params, "location", "uri")
-    place = reading.lookup(params, "data", "range") or reading.lookup(params, "location", "range")
+def _resolve_symbol(session: Session, symbol: types.WorkspaceSymbol) -> types.WorkspaceSymbol:
+    """Nothing is left to find out: a symbol is listed with its place."""
+    uri = symbol.location.uri
     if to_path(uri) is None and uri not in session.documents:
-        raise ProtocolError(ErrorCode.INVALID_PARAMS, f"{uri} is no document of the workspace")
-    return {**params, "location": {"uri": uri, "range": place}} if place is not None else params
+        raise JsonRpcInvalidParams(f"{uri} is no document of the workspace")
+    return symbol
 
 
-def _moniker(session: Session, params: Any) -> Json:
+def _moniker(session: Session, params: types.MonikerParams) -> list[types.Moniker] | None:
     document, line, column = place_of(session, params)
     project = session.project_with(document)
     found = navigation.moniker(project, document.snapshot, line, column)
     if found is None:
         return None
-    return [
-        {
-            "scheme": "scenic",
-            "identifier": found.identifier,
-            "unique": "document" if found.is_local else "project",
-            "kind": "local" if found.is_local else "import" if found.is_import else "export",
-        }
-    ]
+    unique, kind = types.UniquenessLevel.Project, types.MonikerKind.Export
+    if found.is_local:
+        unique, kind = types.UniquenessLevel.Document, types.MonikerKind.Local
+    elif found.is_import:
+        kind = types.MonikerKind.Import
+    return [types.Moniker("scenic", found.identifier, unique, kind)]
 
 
-REQUESTS: Final = {
-    "textDocument/moniker": _moniker,
-    "textDocument/declaration": _goto(navigation.declarations, "declaration"),
-    "textDocument/definition": _goto(navigation.definitions, "definition"),
-    "textDocument/typeDefinition": _goto(navigation.type_definitions, "typeDefinition"),
-    "textDocument/implementation": _goto(navigation.implementations, "implementation"),
-    "textDocument/references": _references,
-    "textDocument/documentHighlight": _highlights,
-    "textDocument/prepareCallHierarchy": _prepare(hierarchies.callable_at),
-    "callHierarchy/incomingCalls": _incoming,
-    "callHierarchy/outgoingCalls": _outgoing,
-    "textDocument/prepareTypeHierarchy": _prepare(hierarchies.class_at),
-    "typeHierarchy/supertypes": _types(hierarchies.supertypes),
-    "typeHierarchy/subtypes": _types(hierarchies.subtypes),
-    "workspace/symbol": _workspace_symbols,
-    "workspaceSymbol/resolve": _resolve_symbol,
+HANDLERS: Final = {
+    types.TEXT_DOCUMENT_MONIKER: _moniker,
+    types.TEXT_DOCUMENT_DECLARATION: _goto(navigation.declarations, "declaration"),
+    types.TEXT_DOCUMENT_DEFINITION: _goto(navigation.definitions, "definition"),
+    types.TEXT_DOCUMENT_TYPE_DEFINITION: _goto(navigation.type_definitions, "type_definition"),
+    types.TEXT_DOCUMENT_IMPLEMENTATION: _goto(navigation.implementations, "implementation"),
+    types.TEXT_DOCUMENT_REFERENCES: _references,
+    types.TEXT_DOCUMENT_DOCUMENT_HIGHLIGHT: _highlights,
+    types.TEXT_DOCUMENT_PREPARE_CALL_HIERARCHY: _prepare(hierarchies.callable_at, types.CallHierarchyItem),
+    types.CALL_HIERARCHY_INCOMING_CALLS: _incoming,
+    types.CALL_HIERARCHY_OUTGOING_CALLS: _outgoing,
+    types.TEXT_DOCUMENT_PREPARE_TYPE_HIERARCHY: _prepare(hierarchies.class_at, types.TypeHierarchyItem),
+    types.TYPE_HIERARCHY_SUPERTYPES: _types(hierarchies.supertypes),
+    types.TYPE_HIERARCHY_SUBTYPES: _types(hierarchies.subtypes),
+    types.WORKSPACE_SYMBOL: _workspace_symbols,
+    types.WORKSPACE_SYMBOL_RESOLVE: _resolve_symbol,
 }

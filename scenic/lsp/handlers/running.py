@@ -2,18 +2,20 @@
 
 import threading
 from collections.abc import Callable
+from concurrent.futures import Future
 from typing import Any, Final
 
-from scenic.ide.running import RunError, sample_page, simulation_page
-from scenic.lsp import reading
-from scenic.lsp.capabilities import SAMPLE, SIMULATE
-from scenic.lsp.convert import Json
-from scenic.lsp.documents import Document
-from scenic.lsp.errors import ErrorCode, ProtocolError
-from scenic.lsp.progress import Progress
-from scenic.lsp.session import Deferred, Session
+from lsprotocol import types
+from pygls.exceptions import JsonRpcException, JsonRpcInvalidParams
 
-__all__ = ["REQUESTS"]
+from scenic.ide.running import RunError, sample_page, simulation_page
+from scenic.lsp.beside import GoOn
+from scenic.lsp.capabilities import COMMANDS, SIMULATE
+from scenic.lsp.documents import Document
+from scenic.lsp.progress import Progress
+from scenic.lsp.session import Session
+
+__all__ = ["HANDLERS"]
 
 _RUN: Final = "Run it"
 _INTERVAL: Final = 0.1
@@ -21,26 +23,28 @@ _REFUSED: Final = (
     "programs are not run in a workspace that is not trusted: start the server with the initialization option "
     "`trusted: true` if you trust what is in it"
 )
+_NOT_HERE: Final = "programs are run only for a client that has started the server itself, on standard input"
 
 
-def _execute(session: Session, params: Any) -> Deferred:
-    command = reading.text(params, "command")
-    if command not in (SAMPLE, SIMULATE):
-        raise ProtocolError(ErrorCode.INVALID_PARAMS, f"there is no command {command}")
-    first = reading.lookup(params, "arguments", 0)
-    uri = first if isinstance(first, str) else reading.text(first, "uri")
-    options = reading.lookup(params, "arguments", 1)
+def _execute(session: Session, params: types.ExecuteCommandParams) -> Future[str]:
+    if params.command not in COMMANDS:
+        raise JsonRpcInvalidParams(f"there is no command {params.command}")
+    first, second = (*(params.arguments or ()), None, None)[:2]
+    uri = first.get("uri") if isinstance(first, dict) else first
+    if not isinstance(uri, str):
+        raise JsonRpcInvalidParams("the first argument is the address of a document")
+    options: dict[str, Any] = second if isinstance(second, dict) else {}
     document = session.document(uri)
-    simulates = command == SIMULATE
+    simulates = params.command == SIMULATE
     if simulates and not document.is_saved():
-        raise ProtocolError(ErrorCode.REQUEST_FAILED, "save the program first: its file is what is simulated")
+        raise _failed("save the program first: its file is what is simulated")
     title = "Simulating" if simulates else "Sampling a scene"
-    progress = Progress(session, reading.lookup(params, "workDoneToken"), title)
+    progress = Progress(session, params.work_done_token, title)
     allowed = _permission(session, document)
 
-    def work(go_on: Callable[[], None]) -> Json:
+    def work(go_on: GoOn) -> str:
         allowed(go_on)
-        name, seed = reading.lookup(options, "scenario"), reading.lookup(options, "seed")
+        name, seed = options.get("scenario"), options.get("seed")
         scenario = name if isinstance(name, str) else None
         seed = seed if isinstance(seed, int) else 0
         snapshot = document.snapshot
@@ -52,37 +56,43 @@ def _execute(session: Session, params: Any) -> Deferred:
                     snapshot.text, snapshot.filename, scenario=scenario, seed=seed, go_on=go_on
                 )
             except RunError as error:
-                raise ProtocolError(ErrorCode.REQUEST_FAILED, str(error)) from None
+                raise _failed(str(error)) from None
 
-    return Deferred(work, own_thread=True)
+    return session.work(work, token=params.work_done_token, beside=session.runs)
 
 
-def _permission(session: Session, document: Document) -> Callable[[Callable[[], None]], None]:
+def _permission(session: Session, document: Document) -> Callable[[GoOn], None]:
     """A function that returns when the program may be run, and raises if it may not."""
-    if session.trusted is None and session.client.has("window", "showMessage"):
+    if not session.trusting:
+        raise _failed(_NOT_HERE)
+    if session.trusted is None and session.has("window.show_message"):
         # The client does not know of trust, but the user can be asked.
         answered = threading.Event()
-        choice: list[Json] = []
-
-        def answer(result: Json) -> None:
-            choice.append(reading.lookup(result, "title"))
-            answered.set()
-
         name = document.snapshot.filename.rpartition("/")[2]
-        question = f"{name} and the modules that it imports may do anything that you can do. Run it?"
-        actions = [{"title": _RUN}, {"title": "Cancel"}]
-        session.ask("window/showMessageRequest", {"type": 2, "message": question, "actions": actions}, answer)
+        question = types.ShowMessageRequestParams(
+            types.MessageType.Warning,
+            f"{name} and the modules that it imports may do anything that you can do. Run it?",
+            [types.MessageActionItem(_RUN), types.MessageActionItem("Cancel")],
+        )
+        answer = session.ask(types.WINDOW_SHOW_MESSAGE_REQUEST, question)
+        answer.add_done_callback(lambda _answer: answered.set())
 
-        def wait(go_on: Callable[[], None]) -> None:
+        def wait(go_on: GoOn) -> None:
             while not answered.wait(_INTERVAL):
                 go_on()
-            if choice != [_RUN]:
-                raise ProtocolError(ErrorCode.REQUEST_FAILED, _REFUSED)
+            refused = answer.cancelled() or answer.exception() is not None
+            chosen = None if refused else answer.result()
+            if not isinstance(chosen, dict) or chosen.get("title") != _RUN:
+                raise _failed(_REFUSED)
 
         return wait
     if not session.trusted:
-        raise ProtocolError(ErrorCode.REQUEST_FAILED, _REFUSED)
+        raise _failed(_REFUSED)
     return lambda _go_on: None
 
 
-REQUESTS: Final = {"workspace/executeCommand": _execute}
+def _failed(reason: str) -> JsonRpcException:
+    return JsonRpcException(reason, types.LSPErrorCodes.RequestFailed)
+
+
+HANDLERS: Final = {types.WORKSPACE_EXECUTE_COMMAND: _execute}

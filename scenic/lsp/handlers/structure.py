@@ -1,97 +1,100 @@
 """The structure of a document: its symbols, what can be folded, what a selection grows to, what each word is."""
 
 from collections.abc import Sequence
-from typing import Any, Final
+from typing import Final
+
+from lsprotocol import types
 
 from scenic.ide.folding import FoldKind, folds
 from scenic.ide.selection import selections
 from scenic.ide.semantic_tokens import MODIFIERS, TYPES, SemanticToken, semantic_tokens
 from scenic.ide.symbols import Symbol, flat, symbols
-from scenic.lsp import reading
-from scenic.lsp.convert import Json, units
+from scenic.lsp.convert import units
 from scenic.lsp.documents import Document
 from scenic.lsp.handlers.navigation import KINDS
 from scenic.lsp.session import Session
 
-__all__ = ["REQUESTS"]
+__all__ = ["HANDLERS"]
 
 _TYPE: Final = {name: index for index, name in enumerate(TYPES)}
 _MODIFIER: Final = {name: 1 << index for index, name in enumerate(MODIFIERS)}
-_FOLDS: Final = {FoldKind.COMMENT: "comment", FoldKind.IMPORTS: "imports", FoldKind.REGION: "region"}
+_FOLDS: Final = {
+    FoldKind.COMMENT: types.FoldingRangeKind.Comment,
+    FoldKind.IMPORTS: types.FoldingRangeKind.Imports,
+    FoldKind.REGION: types.FoldingRangeKind.Region,
+}
 
 
-def _symbols(session: Session, params: Any) -> Json:
-    document = session.document(reading.uri_of(params))
+def _symbols(
+    session: Session, params: types.DocumentSymbolParams
+) -> list[types.DocumentSymbol] | list[types.SymbolInformation]:
+    document = session.document(params.text_document.uri)
     found = symbols(document.snapshot)
-    if session.client.can("textDocument", "documentSymbol", "hierarchicalDocumentSymbolSupport"):
+    if session.can("text_document.document_symbol.hierarchical_document_symbol_support"):
         return [_symbol(document, each) for each in found]
     return [
-        {
-            "name": symbol.name,
-            "kind": KINDS[symbol.kind],
-            "location": {"uri": document.uri, "range": document.lines.to_range(symbol.span)},
-            **({"containerName": container} if container else {}),
-        }
+        types.SymbolInformation(
+            types.Location(document.uri, document.lines.to_range(symbol.span)),
+            symbol.name,
+            KINDS[symbol.kind],
+            container_name=container or None,
+        )
         for symbol, container in flat(found)
     ]
 
 
-def _symbol(document: Document, symbol: Symbol) -> Json:
-    found = {
-        "name": symbol.name,
-        "kind": KINDS[symbol.kind],
-        "range": document.lines.to_range(symbol.span),
-        "selectionRange": document.lines.to_range(symbol.name_span),
-        "children": [_symbol(document, each) for each in symbol.children],
-    }
-    if symbol.detail:
-        found["detail"] = symbol.detail
-    return found
+def _symbol(document: Document, symbol: Symbol) -> types.DocumentSymbol:
+    return types.DocumentSymbol(
+        symbol.name,
+        KINDS[symbol.kind],
+        document.lines.to_range(symbol.span),
+        document.lines.to_range(symbol.name_span),
+        detail=symbol.detail or None,
+        children=[_symbol(document, each) for each in symbol.children],
+    )
 
 
-def _folding(session: Session, params: Any) -> Json:
-    document = session.document(reading.uri_of(params))
-    limit = reading.lookup(params, "rangeLimit")
-    asked = session.client.limit("textDocument", "foldingRange", "rangeLimit")
+def _folding(session: Session, params: types.FoldingRangeParams) -> list[types.FoldingRange]:
+    document = session.document(params.text_document.uri)
+    support = session.client.text_document and session.client.text_document.folding_range
+    most = support.range_limit if support else None
+    found = [
+        types.FoldingRange(fold.line - 1, fold.end_line - 1, kind=_FOLDS.get(fold.kind))
+        for fold in folds(document.snapshot)
+    ]
+    return found[:most]
+
+
+def _selection(session: Session, params: types.SelectionRangeParams) -> list[types.SelectionRange]:
+    document = session.document(params.text_document.uri)
     found = []
-    for fold in folds(document.snapshot):
-        item: dict[str, Json] = {"startLine": fold.line - 1, "endLine": fold.end_line - 1}
-        if fold.kind in _FOLDS:
-            item["kind"] = _FOLDS[fold.kind]
-        found.append(item)
-    most = limit if isinstance(limit, int) else asked
-    return found if most is None else found[:most]
-
-
-def _selection(session: Session, params: Any) -> Json:
-    document = session.document(reading.uri_of(params))
-    found = []
-    for index in range(len(reading.items(params, "positions"))):
-        place = document.lines.from_position(*reading.position(params, "positions", index))
-        result: Json = None
+    for position in params.positions:
+        place = document.lines.from_position(position)
+        result = None
         for span in reversed(selections(document.snapshot, *place)):
-            item = {"range": document.lines.to_range(span)}
-            result = item if result is None else {**item, "parent": result}
-        found.append(result)
+            result = types.SelectionRange(document.lines.to_range(span), result)
+        found.append(result or types.SelectionRange(types.Range(position, position)))
     return found
 
 
 # Semantic tokens
 
 
-def _full(session: Session, params: Any) -> Json:
-    document = session.document(reading.uri_of(params))
+def _full(session: Session, params: types.SemanticTokensParams) -> types.SemanticTokens:
+    document = session.document(params.text_document.uri)
     data = _encoded(document, _tokens(session, document))
-    return {"resultId": session.tokens.keep(document.uri, data), "data": data}
+    return types.SemanticTokens(data, session.tokens.keep(document.uri, data))
 
 
-def _delta(session: Session, params: Any) -> Json:
-    document = session.document(reading.uri_of(params))
-    before = session.tokens.known(document.uri, reading.text(params, "previousResultId"))
+def _delta(
+    session: Session, params: types.SemanticTokensDeltaParams
+) -> types.SemanticTokens | types.SemanticTokensDelta:
+    document = session.document(params.text_document.uri)
+    before = session.tokens.known(document.uri, params.previous_result_id)
     data = _encoded(document, _tokens(session, document))
     name = session.tokens.keep(document.uri, data)
     if before is None:
-        return {"resultId": name, "data": data}
+        return types.SemanticTokens(data, name)
     start = next((at for at, (one, two) in enumerate(zip(before, data, strict=False)) if one != two), None)
     if start is None:
         start = min(len(before), len(data))
@@ -102,21 +105,21 @@ def _delta(session: Session, params: Any) -> Json:
     same = next((at for at, (one, two) in enumerate(pairs) if one != two), most)
     same = min(same, most)
     if start == len(before) == len(data):
-        return {"resultId": name, "edits": []}
-    edit = {"start": start, "deleteCount": len(before) - same - start, "data": data[start : len(data) - same]}
-    return {"resultId": name, "edits": [edit]}
+        return types.SemanticTokensDelta([], name)
+    edit = types.SemanticTokensEdit(start, len(before) - same - start, data[start : len(data) - same])
+    return types.SemanticTokensDelta([edit], name)
 
 
-def _range(session: Session, params: Any) -> Json:
-    document = session.document(reading.uri_of(params))
-    span = document.lines.from_range(*reading.range_of(params, "range"))
+def _range(session: Session, params: types.SemanticTokensRangeParams) -> types.SemanticTokens:
+    document = session.document(params.text_document.uri)
+    span = document.lines.from_range(params.range)
     tokens = [
         token
         for token in _tokens(session, document)
         if (token.line, token.end_column) > (span.line, span.column)
         and (token.line, token.column) < (span.end_line, span.end_column)
     ]
-    return {"data": _encoded(document, tokens)}
+    return types.SemanticTokens(_encoded(document, tokens))
 
 
 def _tokens(session: Session, document: Document) -> Sequence[SemanticToken]:
@@ -131,7 +134,7 @@ def _encoded(document: Document, tokens: Sequence[SemanticToken]) -> list[int]:
     for token in tokens:
         content = document.snapshot.source.line(token.line)
         position = document.lines.to_position(token.line, token.column)
-        line, start = position["line"], position["character"]
+        line, start = position.line, position.character
         length = units(content[token.column : token.end_column], encoding)
         data += (
             line - last_line,
@@ -144,11 +147,11 @@ def _encoded(document: Document, tokens: Sequence[SemanticToken]) -> list[int]:
     return data
 
 
-REQUESTS: Final = {
-    "textDocument/documentSymbol": _symbols,
-    "textDocument/foldingRange": _folding,
-    "textDocument/selectionRange": _selection,
-    "textDocument/semanticTokens/full": _full,
-    "textDocument/semanticTokens/full/delta": _delta,
-    "textDocument/semanticTokens/range": _range,
+HANDLERS: Final = {
+    types.TEXT_DOCUMENT_DOCUMENT_SYMBOL: _symbols,
+    types.TEXT_DOCUMENT_FOLDING_RANGE: _folding,
+    types.TEXT_DOCUMENT_SELECTION_RANGE: _selection,
+    types.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL: _full,
+    types.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL_DELTA: _delta,
+    types.TEXT_DOCUMENT_SEMANTIC_TOKENS_RANGE: _range,
 }

@@ -1,58 +1,54 @@
 """Documents that are opened, changed and closed."""
 
-from typing import Any, Final
+from typing import Final
 
-from scenic.lsp import reading
+from lsprotocol import types
+from pygls.exceptions import JsonRpcInvalidParams
+
 from scenic.lsp.documents import changed
-from scenic.lsp.errors import ErrorCode, ProtocolError
 from scenic.lsp.session import Session
 
-__all__ = ["NOTIFICATIONS"]
+__all__ = ["HANDLERS"]
 
 
-def _opened(session: Session, params: Any) -> None:
-    uri = reading.uri_of(params)
-    language = reading.lookup(params, "textDocument", "languageId")
-    session.open(
-        uri,
-        language if isinstance(language, str) else "scenic",
-        reading.integer(params, "textDocument", "version"),
-        reading.text(params, "textDocument", "text"),
-    )
-    if session.project.finder.is_stale(session.documents[uri].snapshot.filename):
+def _opened(session: Session, params: types.DidOpenTextDocumentParams) -> None:
+    given = params.text_document
+    document = session.open(given.uri, given.language_id, given.version, given.text)
+    if session.project.finder.is_stale(document.snapshot.filename):
         # A file was made beside it of which nobody told us, perhaps this one.
         session.files_changed()
-    session.checks.opened(uri)
+    session.checks.opened(given.uri)
 
 
-def _changed(session: Session, params: Any) -> None:
-    uri = reading.uri_of(params)
+def _changed(session: Session, params: types.DidChangeTextDocumentParams) -> None:
+    uri = params.text_document.uri
     document = session.documents.get(uri)
     if document is None:
-        raise ProtocolError(ErrorCode.INVALID_PARAMS, f"the document {uri} is not open")
-    text = changed(document.text, reading.items(params, "contentChanges"), session.encoding)
-    session.open(uri, document.language, reading.integer(params, "textDocument", "version"), text)
+        raise JsonRpcInvalidParams(f"the document {uri} is not open")
+    text = changed(document.text, params.content_changes, session.encoding)
+    session.open(uri, document.language, params.text_document.version, text)
     session.checks.changed(uri)
+    session.outdate(uri)
 
 
-def _saved(session: Session, params: Any) -> None:
-    uri = reading.uri_of(params)
-    if not session.client.can("workspace", "didChangeWatchedFiles", "dynamicRegistration"):
+def _saved(session: Session, params: types.DidSaveTextDocumentParams) -> None:
+    uri = params.text_document.uri
+    if not session.can("workspace.did_change_watched_files.dynamic_registration"):
         # Nobody else will tell us that a file may be new.
         session.files_changed()
     elif uri in session.documents:
         session.checks.changed(uri)
 
 
-def _closed(session: Session, params: Any) -> None:
-    uri = reading.uri_of(params)
+def _closed(session: Session, params: types.DidCloseTextDocumentParams) -> None:
+    uri = params.text_document.uri
     if session.close(uri):
         session.checks.closed(uri)
 
 
-NOTIFICATIONS: Final = {
-    "textDocument/didOpen": _opened,
-    "textDocument/didChange": _changed,
-    "textDocument/didSave": _saved,
-    "textDocument/didClose": _closed,
+HANDLERS: Final = {
+    types.TEXT_DOCUMENT_DID_OPEN: _opened,
+    types.TEXT_DOCUMENT_DID_CHANGE: _changed,
+    types.TEXT_DOCUMENT_DID_SAVE: _saved,
+    types.TEXT_DOCUMENT_DID_CLOSE: _closed,
 }
