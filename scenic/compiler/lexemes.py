@@ -89,8 +89,11 @@ STATEMENT_WORD: Final = re.compile(
 
 NUMBER: Final = re.compile(_NUMBER)
 LEADING_ZERO: Final = re.compile(r"0[0-9_]*[1-9][0-9_]*")
-WORD_AFTER_NUMBER: Final = re.compile(r"and|else|for|i[fns]|or|not")
-"""Keywords that CPython lets touch a number in front of them, as in ``1if x else y``."""
+WORD_AFTER_NUMBER: Final = re.compile(
+    r"and|else|for|i[fns]|or|not|(?:at|by|deg|from|offset|relative|seconds|steps|to|until)\b"
+)
+"""Words that may touch a number in front of them: keywords that CPython lets, as in ``1if x else y``, and words of Scenic's
+operators and durations, as in ``30deg`` and ``5seconds``."""
 BAD_NUMBER: Final = re.compile(rf"(?:[eE][+-](?=[0-9])|\.(?=[0-9])|{_NAME_PART})++|\.")
 
 BACKSLASHES: Final = re.compile(r"\\++([ \t\f]*+\n)?+")

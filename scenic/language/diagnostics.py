@@ -153,7 +153,7 @@ CODES: Final = MappingProxyType(
         "SC309": "default value that is changed",
         "SC310": "misspelt guard",
         "SC311": "comma that makes a tuple",
-        "SC312": "behavior that nothing runs",
+        "SC312": "behavior or monitor that nothing runs",
         "SC313": "attribute where a property is meant",
         "SC314": "something else than can be run",
         "SC390": "ignore comment that silences nothing",

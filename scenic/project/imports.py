@@ -10,6 +10,7 @@ from scenic.compiler import tree as scenic
 from scenic.compiler.checks.places import header_span, word_span
 from scenic.compiler.scopes import BindingKind, Resolution, Stretch
 from scenic.compiler.traversal import position, walk
+from scenic.established import MODULES as ESTABLISHED
 from scenic.language.diagnostics import Diagnostic, Edit, Fix, Severity
 from scenic.language.libraries import FAMILIES, LIBRARIES
 from scenic.language.source import Source
@@ -258,6 +259,8 @@ class Imports:
                 continue
             exports = self._project.exports_of(home)
             if node.attr in exports.names or node.attr.startswith("__") or self.attribute(node) is not None:
+                continue
+            if f"{home.name}.{node.attr}" in ESTABLISHED:
                 continue
             if not exports.complete or self._is_guarded(node) or self._is_stored(node):
                 continue

@@ -114,6 +114,8 @@ def _known(node: ast.Call, context: Context) -> _Callee | None:
 def _arguments(node: ast.Call, callee: _Callee, context: Context) -> Iterator[Diagnostic]:
     title, args, skip = callee.title, callee.args, callee.skip
     positional = [*args.posonlyargs, *args.args][skip:]
+    if isinstance(callee.definition, scenic.BehaviorDef) and [arg.arg for arg in positional[:1]] == ["self"]:
+        return  # The definition is wrong, not the call.
     by_name = {arg.arg for arg in (*args.args[max(0, skip - len(args.posonlyargs)) :], *args.kwonlyargs)}
     spread = any(isinstance(argument, ast.Starred) for argument in node.args)
     spread_names = any(keyword.arg is None for keyword in node.keywords)
@@ -234,7 +236,7 @@ def _uncalled(value: ast.expr | None, context: Context) -> Iterator[Diagnostic]:
     if value is None or not isinstance(definition, scenic.BehaviorDef | scenic.ScenarioDef):
         return
     missing = required_parameters(definition)
-    if missing:
+    if missing and missing[0] != "self":
         name = definition.name
         yield context.error(
             "SC211",

@@ -16,7 +16,15 @@ from scenic.language.spelling import nearest_property
 
 __all__ = ["NOTED", "check_declarations"]
 
-NOTED: Final = (ast.ClassDef, scenic.New, scenic.Param, scenic.PropertyDef, scenic.Require)
+NOTED: Final = (
+    ast.ClassDef,
+    scenic.BehaviorDef,
+    scenic.MonitorDef,
+    scenic.New,
+    scenic.Param,
+    scenic.PropertyDef,
+    scenic.Require,
+)
 """The nodes that declare something."""
 
 
@@ -37,6 +45,24 @@ def check_declarations(piece: Piece, context: Context) -> Iterator[Diagnostic]:
             )
     for node, _ in piece.nodes(scenic.New):
         yield from _misspelt(context, node)
+    for cls in (scenic.BehaviorDef, scenic.MonitorDef):
+        for node, _ in piece.nodes(cls):
+            yield from _self(context, node)
+
+
+def _self(context: Context, node: Any) -> Iterator[Diagnostic]:
+    """SC200: ``behavior Come(self, speed)``."""
+    given = [] if node.args is None else [*node.args.posonlyargs, *node.args.args]
+    if given and given[0].arg == "self":
+        kind = "behavior" if isinstance(node, scenic.BehaviorDef) else "monitor"
+        rest = ", ".join(arg.arg for arg in given[1:])
+        yield context.error(
+            "SC200",
+            f"a {kind} has `self` without a parameter for it",
+            given[0],
+            f"remove it: `{kind} {node.name}({rest})`"
+            + (", in which `self` is the agent" if kind == "behavior" else ""),
+        )
 
 
 def _duplicates(context: Context, items: list[tuple[str, ast.AST]], what: str) -> Iterator[Diagnostic]:

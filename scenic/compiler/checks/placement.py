@@ -81,6 +81,12 @@ def _problems(node: ast.AST, where: Where) -> Iterator[tuple[str, str]]:
     if statement is not None:
         if where.place not in statement.places:
             allowed = " or ".join(sorted(str(place) for place in statement.places))
+            if where.function is not None and where.place is Place.TOP:
+                yield (
+                    f"`{statement.title}` cannot be used in a function",
+                    f"it can stand {allowed}; a function cannot act for an agent",
+                )
+                return
             yield f"`{statement.title}` cannot be used {where.place}", f"it can stand {allowed}"
             return
         if where.function is not None and where.place in DYNAMIC and statement.suspends:

@@ -60,6 +60,23 @@ def check_uses(context: Context) -> Iterator[Diagnostic]:
         if _is_imported(binding) and not resolution.is_read(binding) and _is_of_concern(binding, context):
             yield from _unused_import(binding, scope, context)
     yield from _replaced(context, context.tree.body)
+    yield from _monitors(context)
+
+
+def _monitors(context: Context) -> Iterator[Diagnostic]:
+    """SC312: a monitor of a program, not of a library, that nothing names."""
+    resolution = context.resolution
+    for binding in resolution.names.values():
+        if binding.kinds != {BindingKind.MONITOR} or resolution.is_read(binding) or _is_library(context):
+            continue
+        if binding.name.startswith("_") or not _is_of_concern(binding, context):
+            continue
+        yield context.warning(
+            "SC312",
+            f"nothing requires the monitor `{binding.name}`, so it never runs",
+            word_span(context.source, binding.first_site, binding.name),
+            f"start it with `require monitor {binding.name}()`",
+        )
 
 
 def check_unused(piece: Piece, context: Context) -> Iterator[Diagnostic]:

@@ -22,6 +22,7 @@ RULES: Final[tuple[Rule, ...]] = (
     python.replacement_field,
     elsewhere.comment,
     elsewhere.else_if,
+    elsewhere.unit,
     blocks.clause_without_beginning,
     statements.parts_of_scenario,
     statements.definition_without_name,

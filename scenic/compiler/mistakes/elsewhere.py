@@ -6,6 +6,7 @@ from typing import Final
 from scenic.compiler.actions import Problem
 from scenic.compiler.mistakes.situation import Situation
 from scenic.compiler.mistakes.trial import Change
+from scenic.compiler.tokens import NUMBER
 
 __all__ = [
     "OTHER_WORDS",
@@ -16,6 +17,7 @@ __all__ = [
     "import_from",
     "increment",
     "operator",
+    "unit",
 ]
 
 _PAIRS: Final = {
@@ -90,6 +92,31 @@ def operator(at: Situation) -> Problem | None:
             fix=(f"replace `{written}` by `{meant}`", [change]),
         )
     return None
+
+
+_UNITS: Final = {
+    **dict.fromkeys(("km", "m", "cm", "mm", "ft", "meters", "metres"), "lengths are in metres"),
+    **dict.fromkeys(("km/h", "kmh", "kph", "mph", "mps", "m/s"), "speeds are in metres per second"),
+    **dict.fromkeys(("rad", "radian", "radians"), "angles are in radians, or written `30 deg`"),
+    "kg": "masses are in kilograms",
+}
+"""What is said of units that somebody may write behind a number."""
+
+
+def unit(at: Situation) -> Problem | None:
+    """``10 km/h``, ``3 m``."""
+    if at.token == 0 or at.tokens.kinds[at.token - 1] != NUMBER or not at.is_plain_name(at.token):
+        return None
+    rate = f"{at.found}/{at.word(at.token + 2)}" if at.word(at.token + 1) == "/" else ""
+    said = _UNITS.get(rate) or _UNITS.get(at.found)
+    if said is None:
+        return None
+    return at.problem(
+        "SC129",
+        at.here(),
+        f"numbers have no units: {said}",
+        f"convert the number, and leave `{rate or at.found}` out",
+    )
 
 
 def comment(at: Situation) -> Problem | None:

@@ -7,6 +7,7 @@ from scenic.compiler.generated import HARD_KEYWORDS
 from scenic.compiler.mistakes.situation import Situation, insertion
 from scenic.compiler.mistakes.trial import Change
 from scenic.compiler.tokens import FSTRING_MIDDLE, FSTRING_START, NUMBER, STRING
+from scenic.language.specifiers import SPECIFIERS
 
 __all__ = [
     "assignment_in_condition",
@@ -31,6 +32,8 @@ __all__ = [
 _NAME_LABELS: Final = frozenset(
     {"a name", "a parameter", "a parameter's name", "the name of a module", "a type parameter"}
 )
+_SPECIFYING: Final = frozenset(name.split()[0] for name in SPECIFIERS)
+"""Words that begin specifiers."""
 _KEYWORD_KINDS: Final = frozenset(HARD_KEYWORDS.values())
 
 
@@ -70,6 +73,15 @@ def assignment_in_condition(at: Situation) -> Problem | None:
         advice = "write `name=value`, or use `==` to compare two values"
     elif first in ("if", "elif", "while", "assert", "require", "terminate", "until", "wait"):
         message = f"`=` assigns a value, but `{first}` needs a condition"
+    name = [Change(at.token, at.token + 1, ("as",))]
+    if first == "record" and bracket == "" and at.helps(*name):
+        return at.problem(
+            "SC122",
+            at.here(),
+            "a record is named after its value, by `as`",
+            "write `record value as name`",
+            fix=("replace `=` by `as`", name),
+        )
     if not at.helps(*double):
         advice = "an assignment is a statement of its own"
     return at.problem("SC122", at.here(), message, advice, fix=("replace `=` by `==`", double))
@@ -295,6 +307,14 @@ def keyword_as_name(at: Situation) -> Problem | None:
     assigned = at.token == at.first == at.start and at.word(at.token + 1) == "="
     if not (names or argument or target or assigned) or (at.found == "import" and at.before == "from"):
         return None
+    opener = at.opener(at.token)
+    if argument and opener is not None and at.is_class_name(opener - 1) and at.found in _SPECIFYING:
+        return at.problem(
+            "SC135",
+            at.here(),
+            f"objects are made with `new` and specifiers, and `{at.found}` is a specifier",
+            f"write `new {at.word(opener - 1)} {at.found} {at.words(at.token + 2, at.token + 3)}`",
+        )
     return at.problem(
         "SC119",
         at.here(),

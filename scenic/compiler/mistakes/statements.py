@@ -42,6 +42,10 @@ _ORDERS: Final = {
 """The clauses of forms in their order, and how the form is written."""
 
 
+_BINDING_LESS: Final = frozenset({"and", "or", "if", "implies", "until", "lambda"})
+"""Operators whose operands `not` does not reach over."""
+
+
 def clauses_out_of_order(at: Situation) -> Problem | None:
     """``record x to y every 3 steps``, ``follow f for 3 from p``."""
     for index in range(at.token - 1, at.first - 1, -1):
@@ -122,13 +126,16 @@ def target_first(at: Situation) -> Problem | None:
                 fix=("add parentheses", changes),
             )
     if first == "do" and at.found == "while":
-        change = Change(at.token, at.token + 1, ("until", "not"))
+        changes = [Change(at.token, at.token + 1, ("until", "not"))]
+        if not _BINDING_LESS.isdisjoint(map(at.word, range(at.token, at.end))):
+            # `until not a and b` would end it for other reasons.
+            changes = [Change(at.token, at.token + 1, ("until", "not", "(")), insertion(at.end, ")")]
         return at.problem(
             "SC129",
             at.here(),
             "`do` has no `while`",
             "write `until`, which ends it when the condition holds",
-            fix=("replace it by `until not`", [change]),
+            fix=("replace it by `until not`", changes),
         )
     if first == "mutate" and at.word(at.first + 1) == "by" and at.is_name(at.token):
         return at.problem(

@@ -60,7 +60,7 @@ monitor Check():
         wait
 
 visible = [1, 2, 3]
-first = visible[0] if visible else None
+first = visible if visible else None
 require monitor Check()
 require first == 1
 require steps < 10 and seconds < 20

@@ -93,3 +93,4 @@ monitor Watches(x):
     #^^^^^^^^^^ SC304
         require x > 3
 print(function, generator, loops, falls_through, caught)
+require monitor Watches(3)

@@ -41,3 +41,5 @@ scenario Main():
 #          ^^^^^^ SC314 `do` takes a scenario here, and `Turn` is a behavior
         chosen = Inner()
         do chosen
+require monitor Watch()
+require monitor Follow()
