@@ -1,7 +1,7 @@
 """Values of a kind that cannot be used where they stand, and attributes that values of a kind do not have."""
 
 import ast
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Final
 
 from scenic.compiler import tree as scenic
@@ -16,6 +16,7 @@ from scenic.language.properties import properties_of
 from scenic.language.spans import Span
 from scenic.language.specifiers import SPECIFIERS
 from scenic.language.spelling import nearest
+from scenic.language.types import ORIENTATION, REGION, SCALAR, SHAPE, VECTOR, Type, listed, wanted
 
 __all__ = ["RULES"]
 
@@ -26,36 +27,35 @@ _ORDERED: Final = (ast.Lt, ast.LtE, ast.Gt, ast.GtE)
 
 _PROPERTIES: Final = properties_of("Object")
 
-_HELP: Final = {
-    "vector": "write `(x, y, z)` or `x @ y`, or name a point or an object",
-    "region": "make one, as `CircularRegion((0, 0), 5)`, or take one of an object, as `x.topSurface`",
-    "scalar": "numbers are written plainly, drawn as by `Range(1, 2)`, or measured as by `distance to x`",
-    "point": "make one with `new Point` or `new Object`",
+_PROPERTY_TYPES: Final = {
+    "vector": VECTOR,
+    "scalar": SCALAR,
+    "region": REGION,
+    "shape": SHAPE,
+    "orientation": ORIENTATION,
 }
-"""Ways to a value of a declared type."""
+"""The types of properties by the words that declare them; of others the words are shown."""
 
 
-def _wrong(title: str, declared: str, value: ast.expr | None, context: Context) -> Iterator[Diagnostic]:
-    """SC404: a value that certainly does not do where a type is declared."""
+def _wrong(
+    title: str, types: Sequence[Type], value: ast.expr | None, context: Context
+) -> Iterator[Diagnostic]:
+    """SC404: a value that certainly does not do where some types are declared. ``title`` is quoted."""
     kind = context.kind_of(value)
-    if value is None or kind is None or accepts(declared, kind):
+    if value is None or kind is None or accepts(listed(types), kind):
         return
-    if declared == "vector" and kind.size is not None:
-        yield context.error(
-            "SC404",
-            f"`{title}`: a vector has 2 or 3 coordinates, not {kind.size}",
-            value,
-            _HELP["vector"],
-        )
-        return
-    wanted = "number" if declared == "scalar" else declared
-    article = "an" if wanted[0] in "aeio" else "a"
-    yield context.error(
-        "SC404",
-        f"`{title}`: expected {article} {wanted}, not {kind.phrase}",
-        value,
-        _HELP.get(declared, f"give it {article} {wanted}"),
-    )
+    noun, advice = wanted(types)
+    if types == (VECTOR,) and kind.size is not None:
+        message = f"{title}: a vector has 2 or 3 coordinates, not {kind.size}"
+    else:
+        message = f"{title}: expected {noun}, not {kind.phrase}"
+    yield context.error("SC404", message, value, advice or f"give it {noun}")
+
+
+def _given(title: str, declared: str, value: ast.expr | None, context: Context) -> Iterator[Diagnostic]:
+    """SC404, of the value of a property."""
+    type_ = _PROPERTY_TYPES.get(declared) or Type(declared, declared)
+    yield from _wrong(title, (type_,), value, context)
 
 
 def _specifiers(node: scenic.New | scenic.Override, scope: Scope, context: Context) -> Iterator[Diagnostic]:
@@ -66,14 +66,15 @@ def _specifiers(node: scenic.New | scenic.Override, scope: Scope, context: Conte
         if specifier.property is not None:
             declared = _PROPERTIES.get(specifier.property)
             if declared is not None and specifier.operands:
-                yield from _wrong(f"with {specifier.property}", declared.type, specifier.operands[0], context)
+                title = f"`with {specifier.property}`"
+                yield from _given(title, declared.type, specifier.operands[0], context)
         elif specifier.specifier in SPECIFIERS:
             operands = SPECIFIERS[specifier.specifier].operands
             for operand, value in zip(operands, specifier.operands, strict=False):
                 left_out = operand.default is not None and _is_none(value)
                 # `in front of x` has a message of its own.
                 if not left_out and not isinstance(value, scenic.Operation):
-                    yield from _wrong(specifier.specifier, operand.type, value, context)
+                    yield from _wrong(f"`{specifier.specifier}`", operand.types, value, context)
 
 
 def _is_cut(node: ast.AST, context: Context) -> bool:
@@ -99,9 +100,10 @@ def _may_be_meant(node: ast.AST, scope: Scope, context: Context) -> bool:
 def _operation(node: scenic.Operation, scope: Scope, context: Context) -> Iterator[Diagnostic]:
     """``distance to 3``."""
     if node.operator in OPERATORS and node.operator != "@" and not _may_be_meant(node, scope, context):
-        for operand, value in zip(OPERATORS[node.operator].operands, node.operands, strict=False):
+        operator = OPERATORS[node.operator]
+        for operand, value in zip(operator.operands, node.operands, strict=False):
             if not _is_none(value):  # Mostly as if it were left out.
-                yield from _wrong(node.operator, operand.type, value, context)
+                yield from _wrong(operator.label(operand), operand.types, value, context)
 
 
 def _is_none(value: ast.expr | None) -> bool:
@@ -112,7 +114,7 @@ def _property(node: scenic.PropertyDef, _scope: Scope, context: Context) -> Iter
     """``width: "3"``, ``size: self.lenth``."""
     declared = _PROPERTIES.get(node.name)
     if declared is not None and "additive" not in node.attributes:
-        yield from _wrong(node.name, declared.type, node.value, context)
+        yield from _given(f"`{node.name}`", declared.type, node.value, context)
 
 
 def _assign(node: ast.Assign, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
