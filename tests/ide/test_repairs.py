@@ -37,7 +37,7 @@ def test_a_repair_elsewhere_than_its_diagnostic_is_offered_at_both() -> None:
         TEXT,
         "import os\n",
         "x = 1\nimport os",
-        "😀 = 3\nego = new Object with wdth '\u2028'\n",
+        "😀 = 3\nego = new Object with wdth 3, with note '\u2028'\n",
         "\x0cif x\n    ego = new Object at 1 with wdth 3\n",
     ],
 )
