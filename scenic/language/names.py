@@ -163,7 +163,9 @@ _ALL = (
         "The region that contains all objects, for `workspace = Workspace(region)`.",
         "regions.spaces",
     ),
-    _class("Region", "Base class of all regions, for `isinstance` and for regions of one's own.", "regions.base"),
+    _class(
+        "Region", "Base class of all regions, for `isinstance` and for regions of one's own.", "regions.base"
+    ),
     _class("Shape", "Base class of all shapes, for `isinstance`.", "elements.shapes"),
     _class("Mutator", "Base class of what adds noise to mutated objects.", "instances.mutators"),
     _class("Behavior", "Base class of all behaviors.", "dynamics.definitions"),
