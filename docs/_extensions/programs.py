@@ -39,13 +39,12 @@ class ScenicBlock(SphinxDirective):
         programs = self.env.temp_data.setdefault("scenic_programs", Programs())
         if "fragment" in options:
             return [block]
-        text = programs.text(code, options)
+        programs.text(code, options)
         if "draw" not in options:
             return [block]
         with tempfile.TemporaryDirectory() as folder, workplace(Path(folder)):
-            path = Path(folder) / f"{options.get('name', 'program')}.scenic"
-            path.write_text(text)
-            shot = Shot.of(path, options)
+            programs.write(Path(folder))
+            shot = Shot.of(Path(folder) / f"{options.get('name', 'program')}.scenic", options)
             return [block, *self._shown(shot, options)]
 
     def _shown(self, shot: Shot, options: dict[str, str]) -> list[nodes.Node]:
@@ -57,12 +56,14 @@ class ScenicBlock(SphinxDirective):
             if shot.count == 1
             else f"{shot.count} scenes"
         )
-        image = nodes.image(
+        image: nodes.Node = nodes.image(
             uri=f"/_build/pictures/{picture.name}",
             alt=f"{what} of this program",
-            classes=["scene" if shot.count == 1 else "scenes"],
+            classes=["scene"] if shot.count == 1 else [],
         )
-        shown: list[nodes.Node] = [image]
+        shown: list[nodes.Node] = [
+            image if shot.count == 1 else nodes.container("", image, classes=["scenes"])
+        ]
         if "page" in options:
             page = kept_page(shot, PAGES, f"{shot.path.stem}: {what.lower()}")
             used = self.env.metadata[self.env.docname].setdefault("scenic_pages", "")
@@ -87,11 +88,9 @@ class CameraImage(SphinxDirective):
         """The images, side by side."""
         program, camera, *rest = self.arguments[0].split()
         options = options_of(" ".join(rest))
-        text = self.env.temp_data["scenic_programs"].text("", {"extends": program})
         with tempfile.TemporaryDirectory() as folder, workplace(Path(folder)):
-            path = Path(folder) / f"{program}.scenic"
-            path.write_text(text)
-            shot = Shot.of(path, {**options, "draw": options.get("count", "1")})
+            self.env.temp_data["scenic_programs"].write(Path(folder))
+            shot = Shot.of(Path(folder) / f"{program}.scenic", {**options, "draw": options.get("count", "1")})
             image = kept_picture(replace(shot, camera=camera), PICTURES)
         return [nodes.image(uri=f"/_build/pictures/{image.name}", alt=f"Images of the camera {camera}")]
 

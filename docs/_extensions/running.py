@@ -52,6 +52,11 @@ class Programs:
         self._texts[options.get("name", "program")] = text
         return text
 
+    def write(self, folder: Path) -> None:
+        """Put all of them into a folder, for those that import others."""
+        for name, text in self._texts.items():
+            (folder / f"{name}.scenic").write_text(text, encoding="utf-8")
+
 
 @contextlib.contextmanager
 def workplace(folder: Path) -> Iterator[None]:
@@ -93,7 +98,8 @@ class PageRun:
                 raise WrongOutputError(f"line {block.first + 1}: {found[0].message}")
             return ""
         path = Path(f"{block.options.get('name', 'program')}.scenic")
-        path.write_text(self.programs.text(block.text, block.options))
+        self.programs.text(block.text, block.options)
+        self.programs.write(Path())
         seed = block.options.get("seed", "1")
         if "fails" in block.options:
             return _called(["sample", path.name, "--seed", seed, "--max-attempts", "2000"])

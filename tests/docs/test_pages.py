@@ -22,7 +22,9 @@ ELEMENTS = (
 DOCS = Path(__file__).parents[2] / "docs"
 TUTORIAL = sorted(DOCS.glob("tutorial/*.md"))
 REFERENCE = [DOCS / "reference" / f"{name}.md" for name in ELEMENTS]
-PAGES = [*TUTORIAL, *REFERENCE]
+GUIDES = [DOCS / "howto" / f"{name}.md" for name in ("ci", "custom", "library", "simulator", "slow")]
+EXPLANATION = [DOCS / "explanation" / f"{name}.md" for name in ("pruning", "reproducibility")]
+PAGES = [DOCS / "index.md", *TUTORIAL, *REFERENCE, *GUIDES, *EXPLANATION]
 
 
 @pytest.mark.parametrize("path", PAGES, ids=lambda path: path.stem)
