@@ -99,7 +99,7 @@ class Conditions:
         return prelude_call("condition", [traced, *self.kept(node), *self._margin(node)], node)
 
     def _margin(self, node: ast.expr) -> list[ast.expr]:
-        """For a comparison, a function of the same names that gives by how much it holds."""
+        """For a comparison or the like, a function of the same names that gives by how much it holds."""
         match node:
             case ast.Compare(left=left, ops=ops, comparators=others):
                 if not all(type(item) in _MEASURED for item in ops):
@@ -107,6 +107,8 @@ class Conditions:
                 symbols, compared = [_MEASURED[type(item)] for item in ops], [left, *others]
             case scenic.Operation(operator="intersects", operands=[ast.expr() as left, ast.expr() as right]):
                 symbols, compared = ["intersects"], [left, right]
+            case scenic.Operation(operator="can see", operands=[ast.expr() as left, ast.expr() as right]):
+                symbols, compared = ["can see"], [left, right]
             case _:
                 return []
         words = tuple_([constant(symbol, node) for symbol in symbols], node)

@@ -1,8 +1,8 @@
 """By how much a condition holds: the atoms of quantitative robustness (`scenic.runtime.temporal.robustness`).
 
 A margin is in the unit of what is compared, positive where the condition holds and negative where it does not. It is infinite
-where there is nothing to measure: for an equality that holds, inside something of which no depth is known, or for what is
-seen, which is a matter of yes and no: what hides can be moved in any direction, and the rays that decide change by leaps.
+where there is nothing to measure: for an equality that holds, or inside something of which no depth is known. What is seen is
+measured by shares and angles (`scenic.runtime.visibility.clearance`).
 """
 
 import math
@@ -16,11 +16,14 @@ from scenic.runtime.geometry.depth import convex_depth
 from scenic.runtime.geometry.poses import Floats
 from scenic.runtime.geometry.scalar_bodies import overlap
 from scenic.runtime.instances.objects import Object, Point
+from scenic.runtime.program.context import current
 from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.body_regions import gap_between
 from scenic.runtime.regions.planar import PlanarRegion
 from scenic.runtime.regions.stacked import placed_of
 from scenic.runtime.values.values import Vector, is_number, is_vector, to_vector
+from scenic.runtime.visibility.clearance import clearance
+from scenic.runtime.visibility.seeing import sees
 
 __all__ = ["margin"]
 
@@ -29,7 +32,7 @@ def margin(symbols: Sequence[str], operands: Sequence[Any]) -> float | None:
     """The least margin of ``a SYMBOL b SYMBOL c ...``; ``None`` where one of the parts has none.
 
     Args:
-        symbols: comparisons, ``in``, ``not in`` or ``intersects``.
+        symbols: comparisons, ``in``, ``not in``, ``intersects`` or ``can see``.
         operands: one more than symbols.
 
     """
@@ -54,6 +57,8 @@ def _part(symbol: str, left: Any, right: Any) -> float | None:
             return _membership(left, right)
         case "intersects":
             return _overlap(left, right)
+        case "can see":
+            return _sight(left, right)
         case _:
             opposite = _part("==" if symbol == "!=" else "in", left, right)
             return None if opposite is None else -opposite
@@ -135,3 +140,12 @@ def _overlap(left: Any, right: Any) -> float | None:
     if one.mesh.is_convex and other.mesh.is_convex:
         return convex_depth(one.hull(), other.hull())
     return math.inf
+
+
+def _sight(observer: Any, target: Any) -> float | None:
+    """By how much an observer sees a point or an object past those of the simulation; unknown in the plane."""
+    context = current.get()
+    if context is None or context.mode_2d:
+        return None
+    occluders = context.present
+    return clearance(observer, target, occluders, seen=bool(sees(observer, target, occluders)))

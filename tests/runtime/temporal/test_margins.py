@@ -2,6 +2,7 @@
 
 import math
 import time
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -18,6 +19,7 @@ from scenic.runtime.geometry.poses import Poses
 from scenic.runtime.geometry.scalar_bodies import Placed, overlap, placed
 from scenic.runtime.regions.planar import CircularRegion
 from scenic.runtime.values.values import Orientation, Vector
+from scenic.runtime.visibility.clearance import clearance
 from scenic.simulators.dummy import DummySimulator
 
 SCENE = """
@@ -69,7 +71,6 @@ def robustness(condition: str, steps: int, program: str = SCENE) -> float:
         ("eventually wall not in zone", 2.5),
         ("always ego intersects block", 0.3),
         ("always cone intersects block", 2 / 5**0.5),  # along the normal of its side
-        ("always ego can see block", math.inf),
         ("always ego not in far", 12.5),  # by its corner that is farthest from there
         ("always not (ego intersects wall)", 5),
         ("always ego.name == 'ego'", math.inf),
@@ -299,3 +300,65 @@ behavior Lower():
 ego = new Object with behavior Lower
 """
     assert robustness(condition, 3, program) == pytest.approx(margin, abs=1e-6)
+
+
+SIGHTS = """
+class Eye:
+    viewAngles: (60 deg, 60 deg)
+    visibleDistance: 50
+    cameraOffset: (0, 0, 0)
+ego = new Eye at (0, 0, 0), with width 0.1, with length 0.1, with height 0.1
+wall = new Object at (0, 10, 0), with width 4, with height 4, with length 0.02
+"""
+
+
+def test_what_is_seen_has_a_margin_of_shares_and_angles() -> None:
+    """Angles and shares by hand; the grid of directions is 2 degrees wide."""
+    boxes = (
+        "half = new Object at (4, 20, 0), with width 2, with length 0.01, with height 2\n"
+        "whole = new Object at (8, 20, 0), with width 1, with length 1, with height 1\n"
+        "out = new Object at (-20, 10, 0), with width 1, with length 1, with height 1\n"
+    )
+    ego, wall, half, whole, out = scenic.scenarioFromString(SIGHTS + boxes).sample(1, seed=0)[0].objects
+
+    def at(degrees: float, distance: float) -> Vector:
+        angle = math.radians(degrees)
+        return Vector(distance * math.sin(angle), distance * math.cos(angle), 0)
+
+    edge = math.degrees(math.atan(2 / 10))  # of the wall
+    for target, wanted, near in (
+        # To the border of the view at 30 degrees.
+        (at(25, 30), math.radians(5), 0.04),
+        (at(50, 30), -math.radians(20), 0.04),
+        # Behind the wall, and beside it.
+        (at(0, 20), -math.radians(edge), 0.04),
+        (at(5, 20), math.radians(5 - edge), 0.04),
+        (at(15, 20), math.radians(15 - edge), 0.04),
+        # Near the end of the range, and beyond it.
+        (at(20, 49), 0.02, 1e-6),
+        (at(20, 55), -0.1, 1e-6),
+        (half, 0.5, 0.1),
+        (whole, 1 - math.hypot(7.5, 19.5) / 50, 0.02),
+        (out, math.radians(30) - math.atan2(19.5, 10.5), 0.06),
+    ):
+        seen = bool(ego.canSee(target, [wall]))
+        found = clearance(ego, target, [wall], seen=seen)
+        assert (found > 0) == seen, target
+        assert found == pytest.approx(wanted, abs=near), target
+    assert (
+        robustness(
+            "always ego can see (0, 50, 0)", 2, SIGHTS.replace("new Object at (0, 10", "new Object at (0, -9")
+        )
+        > 0
+    )
+
+
+def test_margins_of_what_moves_into_view_grow() -> None:
+    cars = "".join(
+        f"new Object at ({x}, 20, 0), with width 1, with length 1, with allowCollisions True\n"
+        for x in np.linspace(8, 18, 21).tolist()
+    )
+    ego, wall, *cars = scenic.scenarioFromString(SIGHTS + cars).sample(1, seed=0)[0].objects
+    values = [clearance(ego, car, [wall], seen=bool(ego.canSee(car, [wall]))) for car in cars]
+    assert values[0] > 0 > values[-1]
+    assert all(a >= b - 0.03 for a, b in pairwise(values))
