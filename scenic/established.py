@@ -10,6 +10,10 @@ from importlib import import_module
 from types import MappingProxyType, ModuleType
 from typing import Any, Final, NoReturn
 
+from scenic.language.names import NAMES, NameKind
+from scenic.language.operators import OPERATORS
+from scenic.language.specifiers import SPECIFIERS
+
 _LANGUAGE: Final = "the language"
 """Home of names that every program finds in scope."""
 
@@ -26,20 +30,29 @@ _MUTATORS: Final = "scenic.runtime.instances.mutators"
 _VENEER: Final = "scenic.runtime.elements.veneer"
 _SENSORS: Final = "scenic.runtime.elements.sensors"
 _LAZY: Final = "scenic.runtime.values.lazy"
+_EXTERNAL: Final = "scenic.runtime.elements.external"
 _INSIDE: Final = "the inside"
 """Home of names of what is within the established implementation, and has no counterpart here."""
 
 
-_VENEER_FUNCTIONS: Final = (
-    "Above Ahead AltitudeFrom AltitudeTo AngleFrom AngleTo ApparentHeading ApparentlyFacing At Back BackLeft BackRight Behind"
-    " Below Beyond Bottom BottomBackLeft BottomBackRight BottomFrontLeft BottomFrontRight CanSee ContainedIn DistanceFrom"
-    " DistancePast Facing FacingAwayFrom FacingDirectlyAwayFrom FacingDirectlyToward FacingToward FieldAt Follow Following"
-    " Front FrontLeft FrontRight In Intersects Left LeftSpec NotVisible NotVisibleFrom NotVisibleFromOp NotVisibleSpec"
-    " OffsetAlong OffsetAlongSpec OffsetBy On RelativeHeading RelativePosition RelativeTo Right RightSpec Top TopBackLeft"
-    " TopBackRight TopFrontLeft TopFrontRight Visible VisibleFrom VisibleFromOp VisibleSpec With ego globalParameters"
-    " in_initial_scenario isActive localPath mutate new param simulationInProgress workspace"
-)
-"""Operators, specifiers and statements as functions."""
+_STATEMENTS: Final = "With ego globalParameters in_initial_scenario isActive localPath mutate new param simulationInProgress workspace"
+"""Statements, and what asks for the state of a program, as functions."""
+
+
+def _functions() -> str:
+    """Operators and specifiers as functions."""
+    functions = [element.functions for element in OPERATORS.values()]
+    functions += [element.functions for element in SPECIFIERS.values()]
+    return " ".join(function.name for each in functions for function in each)
+
+
+def _language(kind: NameKind, *, external: bool = False) -> str:
+    """Names of a kind that the language provides, those of external parameters or the others."""
+    return " ".join(
+        name.name
+        for name in NAMES.values()
+        if name.kind is kind and name.home is not None and name.home.startswith(_EXTERNAL) is external
+    )
 
 
 def _homes(*groups: tuple[str, str]) -> Mapping[str, str]:
@@ -52,10 +65,7 @@ MODULES: Final[Mapping[str, Mapping[str, str]]] = MappingProxyType(
         "scenic.core.distributions": _homes(
             (
                 _LANGUAGE,
-                (
-                    "Range DiscreteRange Normal TruncatedNormal Uniform Discrete Options Distribution"
-                    " distributionFunction distributionMethod"
-                ),
+                f"{_language(NameKind.DISTRIBUTION)} Distribution distributionFunction distributionMethod",
             ),
             (_LAWS, "supportInterval"),
             (_ERRORS, "RejectionException RandomControlFlowError"),
@@ -110,8 +120,8 @@ MODULES: Final[Mapping[str, Mapping[str, str]]] = MappingProxyType(
             ),
         ),
         "scenic.core.external_params": _homes(
-            (_LANGUAGE, "VerifaiRange VerifaiDiscreteRange VerifaiOptions VerifaiParameter"),
-            ("scenic.runtime.elements.external", "ExternalParameter TimeSeries"),
+            (_LANGUAGE, _language(NameKind.DISTRIBUTION, external=True)),
+            (_EXTERNAL, "ExternalParameter"),
             ("scenic.falsification.external", "ExternalSampler VerifaiSampler"),
         ),
         "scenic.core.geometry": _homes(
@@ -173,11 +183,7 @@ MODULES: Final[Mapping[str, Mapping[str, str]]] = MappingProxyType(
         "scenic.core.regions": _homes(
             (
                 _LANGUAGE,
-                (
-                    "everywhere nowhere CircularRegion SectorRegion RectangularRegion PolygonalRegion PolylineRegion"
-                    " PathRegion PointSetRegion GridRegion MeshVolumeRegion MeshSurfaceRegion BoxRegion SpheroidRegion"
-                    " PolygonalFootprintRegion"
-                ),
+                _language(NameKind.REGION),
             ),
             ("scenic.runtime.regions.base", "Region"),
             ("scenic.runtime.regions.spaces", "AllRegion=Everywhere EmptyRegion=Nowhere"),
@@ -213,7 +219,7 @@ MODULES: Final[Mapping[str, Mapping[str, str]]] = MappingProxyType(
             ("scenic.runtime.scenes.scenario", "Scenario"), ("scenic.runtime.scenes.scene", "Scene")
         ),
         "scenic.core.shapes": _homes(
-            (_LANGUAGE, "MeshShape BoxShape CylinderShape ConeShape SpheroidShape"),
+            (_LANGUAGE, _language(NameKind.SHAPE)),
             ("scenic.runtime.elements.shapes", "Shape"),
         ),
         "scenic.core.sensors": _homes(
@@ -320,7 +326,7 @@ MODULES: Final[Mapping[str, Mapping[str, str]]] = MappingProxyType(
         ),
         "scenic.syntax.veneer": _homes(
             (_ERRORS, "InvalidScenarioError"),
-            (_VENEER, _VENEER_FUNCTIONS),
+            (_VENEER, f"{_functions()} {_STATEMENTS}"),
             (
                 _INSIDE,
                 (

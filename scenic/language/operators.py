@@ -26,7 +26,7 @@ from scenic.language.types import (
     listed,
 )
 
-__all__ = ["EGO", "FRAMES", "OPERATORS", "SIDES", "Operand", "Operator"]
+__all__ = ["EGO", "FRAMES", "OPERATORS", "SIDES", "Function", "Operand", "Operator"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,12 +50,35 @@ class Operand:
 
 
 @dataclass(frozen=True, slots=True)
+class Function:
+    """A function of the established Python API that does what an operator or specifier does.
+
+    ``operands`` are the parameters that stand for the operands, in order, ``-`` where none does; by default those of the
+    signature. Operands for which no parameter stands are left out.
+    """
+
+    signature: str
+    operands: str | None = None
+
+    @property
+    def name(self) -> str:
+        """The name of the function."""
+        return self.signature.partition("(")[0]
+
+    @property
+    def parameters(self) -> Mapping[str, bool]:
+        """The parameters in order; true for those that may be left out."""
+        inside = self.signature.partition("(")[2].removesuffix(")")
+        return {part.partition("=")[0]: "=" in part for part in inside.split(", ") if part}
+
+
+@dataclass(frozen=True, slots=True)
 class Operator:
     """One operator: its name in the tree, its operands in order, and what a reader should know.
 
     ``forms`` are all ways to write it, operands by their names. ``available`` tells whether this version builds it;
     a program that uses an operator that is not available is refused where it stands. ``angle`` tells whether the result
-    is an angle in radians.
+    is an angle in radians. ``functions`` are those of the established Python API.
     """
 
     name: str
@@ -65,6 +88,7 @@ class Operator:
     documentation: str
     available: bool = True
     angle: bool = False
+    functions: tuple[Function, ...] = ()
 
     def label(self, operand: Operand) -> str:
         """The operator as messages about an operand name it: its first words, and those before the operand.
@@ -125,6 +149,7 @@ def _side(side: str) -> Operator:
         "oriented point",
         (f"{side} of object",),
         f"The {part} at the {side} of the object's bounding box, with the orientation of the object.",
+        functions=(Function(f"{side.title().replace(' ', '')}(X)"),),
     )
 
 
@@ -150,6 +175,7 @@ _ALL = (
         "orientation",
         ("field at position",),
         "The orientation that a vector field has at a position.",
+        functions=(Function("FieldAt(X, Y)"),),
     ),
     Operator(
         "relative to",
@@ -161,6 +187,7 @@ _ALL = (
         ("value relative to base",),
         "The first operand read in the frame of the second: headings and orientations are composed, vectors are "
         "added, and a vector relative to an oriented point is an oriented point at that offset.",
+        functions=(Function("RelativeTo(X, Y)"),),
     ),
     Operator(
         "offset by",
@@ -179,6 +206,7 @@ _ALL = (
         "vector",
         ("position offset along direction by offset",),
         "A position moved by an offset that is given in the frame of the direction.",
+        functions=(Function("OffsetAlong(X, H, Y)"),),
     ),
     Operator(
         "relative position",
@@ -186,6 +214,7 @@ _ALL = (
         "vector",
         ("relative position of target", "relative position of target from base"),
         "The vector from the base to the target, in global coordinates.",
+        functions=(Function("RelativePosition(X, Y=None)"),),
     ),
     Operator(
         "relative heading",
@@ -197,6 +226,7 @@ _ALL = (
         ("relative heading of heading", "relative heading of heading from base"),
         "The difference of two global headings, between -pi and pi.",
         angle=True,
+        functions=(Function("RelativeHeading(X, Y=None)"),),
     ),
     Operator(
         "apparent heading",
@@ -205,6 +235,7 @@ _ALL = (
         ("apparent heading of target", "apparent heading of target from viewpoint"),
         "The heading of the target relative to the line of sight from the viewpoint.",
         angle=True,
+        functions=(Function("ApparentHeading(X, Y=None)"),),
     ),
     Operator(
         "distance",
@@ -218,6 +249,7 @@ _ALL = (
         ),
         "The straight distance between two points, or between a point and a region. An object counts as its "
         "position; see `minimum distance` for its extent.",
+        functions=(Function("DistanceFrom(X, Y=None)"),),
     ),
     Operator(
         "minimum distance",
@@ -237,6 +269,7 @@ _ALL = (
         "scalar",
         ("distance past target", "distance past target of base"),
         "How far the base is ahead of the target, measured along the heading of the base.",
+        functions=(Function("DistancePast(X, Y=None)"),),
     ),
     Operator(
         "angle",
@@ -245,6 +278,10 @@ _ALL = (
         ("angle to end", "angle from start", "angle from start to end", "angle to end from start"),
         "The heading of the line from one position to another: 0 is North (+Y), and it grows anticlockwise.",
         angle=True,
+        functions=(
+            Function("AngleFrom(X=None, Y=None)"),
+            Function("AngleTo(X)", "- X"),
+        ),
     ),
     Operator(
         "altitude",
@@ -258,6 +295,10 @@ _ALL = (
         ),
         "The angle of the line from one position to another above the horizontal plane.",
         angle=True,
+        functions=(
+            Function("AltitudeFrom(X=None, Y=None)"),
+            Function("AltitudeTo(X)", "- X"),
+        ),
     ),
     Operator(
         "follow",
@@ -265,6 +306,7 @@ _ALL = (
         "oriented point",
         ("follow field from start for distance",),
         "The point reached by following a vector field for a distance, with the orientation of the field there.",
+        functions=(Function("Follow(F, X, D)"),),
     ),
     Operator(
         "visible",
@@ -272,6 +314,10 @@ _ALL = (
         "region",
         ("visible region", "region visible from viewer"),
         "The part of a region that the viewer's view volume covers; nothing occludes here.",
+        functions=(
+            Function("Visible(region)"),
+            Function("VisibleFromOp(region, base)"),
+        ),
     ),
     Operator(
         "not visible",
@@ -279,6 +325,10 @@ _ALL = (
         "region",
         ("not visible region", "region not visible from viewer"),
         "The part of a region that the viewer's view volume does not cover; nothing occludes here.",
+        functions=(
+            Function("NotVisible(region)"),
+            Function("NotVisibleFromOp(region, base)"),
+        ),
     ),
     Operator(
         "can see",
@@ -286,6 +336,7 @@ _ALL = (
         "boolean",
         ("viewer can see target",),
         "Whether the viewer sees the target past the other objects. For requirements and dynamic code only.",
+        functions=(Function("CanSee(X, Y)"),),
     ),
     Operator(
         "intersects",
@@ -293,6 +344,7 @@ _ALL = (
         "boolean",
         ("first intersects second",),
         "Whether two objects or regions share a point.",
+        functions=(Function("Intersects(X, Y)"),),
     ),
     Operator(
         "initial scenario",

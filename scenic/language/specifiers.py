@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Final
 
-from scenic.language.operators import EGO, Operand
+from scenic.language.operators import EGO, Function, Operand
 from scenic.language.types import (
     ANYTHING,
     DIRECTION,
@@ -50,7 +50,7 @@ class SpecifierDeclaration:
     gives, for ordering documentation and completion: ``"position"``, ``"orientation"`` or ``"general"``.
     ``needs_beside_vector`` are the properties that the value needs if the first operand is a mere position.
     ``reads_ego`` and ``reads_workspace`` tell whether the value depends on the ego, or on the workspace, whatever the
-    operands are.
+    operands are. ``functions`` are those of the established Python API.
     """
 
     name: str
@@ -65,13 +65,14 @@ class SpecifierDeclaration:
     needs_beside_vector: tuple[str, ...] = ()
     reads_ego: bool = False
     reads_workspace: bool = False
+    functions: tuple[Function, ...] = ()
 
 
 _PREFERRED = "the region has a preferred orientation"
 _ORIENTED = "the reference is an oriented point or object"
 
 
-def _beside(name: str, axis: str, extent: str) -> SpecifierDeclaration:
+def _beside(name: str, axis: str, extent: str, function: str) -> SpecifierDeclaration:
     return SpecifierDeclaration(
         name,
         (
@@ -85,6 +86,7 @@ def _beside(name: str, axis: str, extent: str) -> SpecifierDeclaration:
         f"Places the object on the {axis} side of the reference, in the reference's frame, so that their bounding "
         "boxes are the given distance apart. Next to an object and without a distance they all but touch.",
         needs_beside_vector=("orientation",),
+        functions=(Function(f"{function}(pos, dist=None)"),),
     )
 
 
@@ -106,6 +108,7 @@ _ALL = (
         "position",
         ("at position",),
         "Places the object's centre at a global position.",
+        functions=(Function("At(pos)"),),
     ),
     SpecifierDeclaration(
         "in",
@@ -116,6 +119,7 @@ _ALL = (
         ("in region",),
         "Places the object's centre uniformly at random in a region, aligned with the region's preferred "
         "orientation if it has one.",
+        functions=(Function("In(region)"),),
     ),
     SpecifierDeclaration(
         "contained in",
@@ -129,6 +133,7 @@ _ALL = (
         "position",
         ("contained in region",),
         "Like `in`, and the whole object must lie in the region.",
+        functions=(Function("ContainedIn(region)"),),
     ),
     SpecifierDeclaration(
         "on",
@@ -140,6 +145,7 @@ _ALL = (
         "Stands the object with its base on a surface: uniformly at random, or, next to another specifier of the "
         "position, at the projection of that position onto the surface. An object means its top surface.",
         modifies=("position",),
+        functions=(Function("On(thing)"),),
     ),
     SpecifierDeclaration(
         "offset by",
@@ -150,6 +156,7 @@ _ALL = (
         ("offset by offset",),
         "Places the object at an offset from the ego, in the ego's frame.",
         reads_ego=True,
+        functions=(Function("OffsetBy(offset)"),),
     ),
     SpecifierDeclaration(
         "offset along",
@@ -160,6 +167,7 @@ _ALL = (
         ("offset along direction by offset",),
         "Places the object at an offset from the ego, in the frame of the direction.",
         reads_ego=True,
+        functions=(Function("OffsetAlongSpec(direction, offset)"),),
     ),
     SpecifierDeclaration(
         "beyond",
@@ -173,6 +181,7 @@ _ALL = (
         "position",
         ("beyond reference by offset", "beyond reference by offset from viewpoint"),
         "Places the object behind the reference as seen from the viewpoint, on the line of sight.",
+        functions=(Function("Beyond(pos, offset, fromPt=None)"),),
     ),
     SpecifierDeclaration(
         "visible",
@@ -184,6 +193,10 @@ _ALL = (
         "The viewer must see the object. Without another specifier of the position it is uniformly at random among "
         "the positions where the viewer can.",
         reads_workspace=True,
+        functions=(
+            Function("VisibleFrom(base)"),
+            Function("VisibleSpec()"),
+        ),
     ),
     SpecifierDeclaration(
         "not visible",
@@ -195,13 +208,17 @@ _ALL = (
         "The viewer must not see the object. Without another specifier of the position it is uniformly at random in "
         "the object's container.",
         reads_workspace=True,
+        functions=(
+            Function("NotVisibleFrom(base)"),
+            Function("NotVisibleSpec()"),
+        ),
     ),
-    _beside("left of", "left (-X)", "width"),
-    _beside("right of", "right (+X)", "width"),
-    _beside("ahead of", "front (+Y)", "length"),
-    _beside("behind", "back (-Y)", "length"),
-    _beside("above", "upper (+Z)", "height"),
-    _beside("below", "lower (-Z)", "height"),
+    _beside("left of", "left (-X)", "width", "LeftSpec"),
+    _beside("right of", "right (+X)", "width", "RightSpec"),
+    _beside("ahead of", "front (+Y)", "length", "Ahead"),
+    _beside("behind", "back (-Y)", "length", "Behind"),
+    _beside("above", "upper (+Z)", "height", "Above"),
+    _beside("below", "lower (-Z)", "height", "Below"),
     SpecifierDeclaration(
         "following",
         (
@@ -214,6 +231,7 @@ _ALL = (
         "position",
         ("following field for distance", "following field from start for distance"),
         "Places the object where following a vector field for a distance leads to, aligned with the field there.",
+        functions=(Function("Following(field, dist, fromPt=None)", "field fromPt dist"),),
     ),
     SpecifierDeclaration(
         "facing",
@@ -223,6 +241,7 @@ _ALL = (
         "orientation",
         ("facing direction",),
         "Turns the object to a global orientation. A number is a heading in radians: write `90 deg` for degrees.",
+        functions=(Function("Facing(heading)"),),
     ),
     SpecifierDeclaration(
         "facing toward",
@@ -232,6 +251,7 @@ _ALL = (
         "orientation",
         ("facing toward target",),
         "Turns the object's front toward a position, by its yaw alone: it stays upright.",
+        functions=(Function("FacingToward(pos)"),),
     ),
     SpecifierDeclaration(
         "facing away from",
@@ -241,6 +261,7 @@ _ALL = (
         "orientation",
         ("facing away from target",),
         "Turns the object's front away from a position, by its yaw alone: it stays upright.",
+        functions=(Function("FacingAwayFrom(pos)"),),
     ),
     SpecifierDeclaration(
         "facing directly toward",
@@ -250,6 +271,7 @@ _ALL = (
         "orientation",
         ("facing directly toward target",),
         "Points the object's front exactly at a position, by yaw and pitch.",
+        functions=(Function("FacingDirectlyToward(pos)"),),
     ),
     SpecifierDeclaration(
         "facing directly away from",
@@ -259,6 +281,7 @@ _ALL = (
         "orientation",
         ("facing directly away from target",),
         "Points the object's front exactly away from a position, by yaw and pitch.",
+        functions=(Function("FacingDirectlyAwayFrom(pos)"),),
     ),
     SpecifierDeclaration(
         "apparently facing",
@@ -268,6 +291,7 @@ _ALL = (
         "orientation",
         ("apparently facing heading", "apparently facing heading from viewpoint"),
         "Turns the object to a heading that is measured from the line of sight of the viewpoint.",
+        functions=(Function("ApparentlyFacing(heading, fromPt=None)"),),
     ),
 )
 

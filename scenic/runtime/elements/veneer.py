@@ -13,78 +13,16 @@ from types import MappingProxyType
 from typing import Any, Final
 
 from scenic.language.errors import InvalidScenarioError
+from scenic.language.operators import OPERATORS, Function, Operator
+from scenic.language.specifiers import SPECIFIERS, SpecifierDeclaration
 from scenic.runtime.dynamics.run import RunContext
 from scenic.runtime.elements.operators import operation
 from scenic.runtime.elements.specifiers import Specifier, specify
 from scenic.runtime.instances import mutation
-from scenic.runtime.instances.objects import SIDES
 from scenic.runtime.instances.resolution import build
 from scenic.runtime.program.context import current
 from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.spaces import everywhere
-
-_OPERATORS: Final[Mapping[str, tuple[str, str, str]]] = MappingProxyType(
-    {
-        "AltitudeFrom": ("altitude", "X= Y=", "X Y"),
-        "AltitudeTo": ("altitude", "X", "- X"),
-        "AngleFrom": ("angle", "X= Y=", "X Y"),
-        "AngleTo": ("angle", "X", "- X"),
-        "ApparentHeading": ("apparent heading", "X Y=", "X Y"),
-        "CanSee": ("can see", "X Y", "X Y"),
-        "DistanceFrom": ("distance", "X Y=", "X Y"),
-        "DistancePast": ("distance past", "X Y=", "X Y"),
-        "FieldAt": ("at", "X Y", "X Y"),
-        "Follow": ("follow", "F X D", "F X D"),
-        "Intersects": ("intersects", "X Y", "X Y"),
-        "NotVisible": ("not visible", "region", "region -"),
-        "NotVisibleFromOp": ("not visible", "region base", "region base"),
-        "OffsetAlong": ("offset along", "X H Y", "X H Y"),
-        "RelativeHeading": ("relative heading", "X Y=", "X Y"),
-        "RelativePosition": ("relative position", "X Y=", "X Y"),
-        "RelativeTo": ("relative to", "X Y", "X Y"),
-        "Visible": ("visible", "region", "region -"),
-        "VisibleFromOp": ("visible", "region base", "region base"),
-        **{
-            side[0].upper() + side[1:]: (
-                "".join(f" {letter.lower()}" if letter.isupper() else letter for letter in side) + " of",
-                "X",
-                "X",
-            )
-            for side in SIDES
-        },
-    }
-)
-"""Operators by function: the name here, the function's parameters (optional ones with ``=``), the operands (``-`` is left out)."""
-
-_SPECIFIERS: Final[Mapping[str, tuple[str, str, str]]] = MappingProxyType(
-    {
-        "Above": ("above", "pos dist=", "pos dist"),
-        "Ahead": ("ahead of", "pos dist=", "pos dist"),
-        "ApparentlyFacing": ("apparently facing", "heading fromPt=", "heading fromPt"),
-        "At": ("at", "pos", "pos"),
-        "Behind": ("behind", "pos dist=", "pos dist"),
-        "Below": ("below", "pos dist=", "pos dist"),
-        "Beyond": ("beyond", "pos offset fromPt=", "pos offset fromPt"),
-        "ContainedIn": ("contained in", "region", "region"),
-        "Facing": ("facing", "heading", "heading"),
-        "FacingAwayFrom": ("facing away from", "pos", "pos"),
-        "FacingDirectlyAwayFrom": ("facing directly away from", "pos", "pos"),
-        "FacingDirectlyToward": ("facing directly toward", "pos", "pos"),
-        "FacingToward": ("facing toward", "pos", "pos"),
-        "Following": ("following", "field dist fromPt=", "field fromPt dist"),
-        "In": ("in", "region", "region"),
-        "LeftSpec": ("left of", "pos dist=", "pos dist"),
-        "NotVisibleFrom": ("not visible", "base", "base"),
-        "NotVisibleSpec": ("not visible", "", "-"),
-        "OffsetAlongSpec": ("offset along", "direction offset", "direction offset"),
-        "OffsetBy": ("offset by", "offset", "offset"),
-        "On": ("on", "thing", "thing"),
-        "RightSpec": ("right of", "pos dist=", "pos dist"),
-        "VisibleFrom": ("visible", "base", "base"),
-        "VisibleSpec": ("visible", "", "-"),
-    }
-)
-"""Specifiers by function, as above."""
 
 
 def _scope() -> Mapping[str, Any] | None:
@@ -132,27 +70,26 @@ def _specify(name: str, *operands: Any) -> Specifier:
 
 
 def _function(
-    made_by: Callable[..., Any], established: str, name: str, parameters: str, operands: str
+    made_by: Callable[..., Any], element: Operator | SpecifierDeclaration, declared: Function
 ) -> Callable[..., Any]:
-    """The function of an operator or a specifier; see the tables."""
-    kind = inspect.Parameter.POSITIONAL_OR_KEYWORD
+    """The declared function of an operator or a specifier."""
+    kind, required = inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.empty
     signature = inspect.Signature(
         [
-            inspect.Parameter(
-                word.rstrip("="), kind, default=None if word.endswith("=") else inspect.Parameter.empty
-            )
-            for word in parameters.split()
+            inspect.Parameter(name, kind, default=None if optional else required)
+            for name, optional in declared.parameters.items()
         ]
     )
+    words = [*declared.parameters] if declared.operands is None else declared.operands.split()
+    words += ["-"] * (len(element.operands) - len(words))
 
     def function(*args: Any, **keywords: Any) -> Any:
         bound = signature.bind(*args, **keywords)
         bound.apply_defaults()
-        values = {**bound.arguments, "-": None}
-        return made_by(name, *(values[word] for word in operands.split()))
+        return made_by(element.name, *(bound.arguments.get(word) for word in words))
 
-    function.__name__ = function.__qualname__ = established
-    function.__doc__ = f"``{name}`` of the language, as a function."
+    function.__name__ = function.__qualname__ = declared.name
+    function.__doc__ = f"``{element.name}`` of the language, as a function."
     function.__signature__ = signature  # type: ignore[attr-defined] # read by `inspect`
     return function
 
@@ -237,8 +174,16 @@ def simulationInProgress() -> bool:
 
 FUNCTIONS: Final[Mapping[str, Callable[..., Any]]] = MappingProxyType(
     {
-        **{name: _function(_operate, name, *row) for name, row in _OPERATORS.items()},
-        **{name: _function(_specify, name, *row) for name, row in _SPECIFIERS.items()},
+        **{
+            each.name: _function(_operate, item, each)
+            for item in OPERATORS.values()
+            for each in item.functions
+        },
+        **{
+            each.name: _function(_specify, item, each)
+            for item in SPECIFIERS.values()
+            for each in item.functions
+        },
         **{
             function.__name__: function
             for function in (
