@@ -1,4 +1,4 @@
-"""A new operator, specifier and statement, written into a copy of the grammar and declared once, is there in every tool."""
+"""A new element of the language, declared once in a copy of the project, is there in every tool; implemented once, it runs."""
 
 import json
 import os
@@ -67,7 +67,42 @@ ADDED: Mapping[str, tuple[tuple[str, str], ...]] = {
         "position",
         ("beside reference", "beside reference by distance"),
         "Places the object at any side of the reference.",
-        available=False,
+        functions=(Function("Beside(pos, dist=None)"),),
+    ),
+""",
+        ),
+    ),
+    "scenic/runtime/elements/specifiers.py": (
+        (
+            "BUILDERS: Mapping[str",
+            """def beside(reference: Any, distance: Any) -> Specifier:
+    return _specifier("beside", lambda _: {"position": reference.position + (distance or 1, 0, 0)})
+
+
+""",
+        ),
+        ("""        "behind": _directional("behind", -1),""", """        "beside": beside,\n"""),
+    ),
+    "scenic/language/names.py": (
+        (
+            "    # Exceptions\n",
+            """    _region("CubeRegion(center, size)", "The cube about a point.", "cubes"),
+    _distribution(
+        "Exponential(rate)",
+        "A positive real number, the time until something happens.",
+        "scenic.runtime.elements.exponential",
+        types=(SCALAR,),
+        result=SCALAR,
+        is_complete=True,
+        operation="exponential",
+        noun="waiting time",
+    ),
+    _function(
+        "clamp(value, low, high)",
+        "The nearest number between two.",
+        "scenic.runtime.elements.clamping",
+        lifted=True,
+        is_complete=True,
     ),
 """,
         ),
@@ -88,6 +123,37 @@ ADDED: Mapping[str, tuple[tuple[str, str], ...]] = {
     ),
 }
 """By file: the lines before which something is written."""
+
+IMPLEMENTED: Mapping[str, str] = {
+    "scenic/runtime/regions/cubes.py": """
+from scenic.runtime.regions.volumes import BoxRegion
+
+class CubeRegion(BoxRegion):
+    def __init__(self, center, size):
+        super().__init__((size, size, size), center)
+""",
+    "scenic/runtime/elements/exponential.py": """
+import numpy as np
+from scenic.graph.kinds import Kind
+from scenic.graph.operation import Operation, always
+from scenic.runtime.elements.distributions import Law, primitive
+
+_DRAW = Operation(
+    "exponential", always(Kind.SCALAR), lambda _, uniform, rate: -np.log1p(-uniform) / rate, "A waiting time."
+)
+
+@Law
+def Exponential(rate):
+    return primitive(_DRAW, rate)
+""",
+    "scenic/runtime/elements/clamping.py": """
+from scenic.runtime.elements.functions import max, min
+
+def clamp(value, low, high):
+    return min(max(value, low), high)
+""",
+}
+"""Files with implementations of what is no syntax."""
 
 SCRIPT = r"""
 import ast, json
@@ -133,8 +199,39 @@ for rule, word in (("prefix_operation", "gap"), ("specifier", "beside"), ("soft_
     collect()
     words[rule] = sorted(found & {"gap", "beside", "announce"})
 
+import importlib
+import scenic
+from scenic.analysis.report import _NOUNS
+from scenic.ide.completion import completions
+from scenic.project.index import Project
+from scenic.runtime.values.source_text import spelled
+
+scenario = scenic.scenarioFromString(
+    "x = Exponential(2)\nassert isinstance(x, Exponential)\nroom = CubeRegion((0, 0, 9), 4)\nrequire clamp(x, 0, 1) < 0.9\n"
+    "ego = new Object in room, with tag clamp(x, 0, 0.1), with drawn x\nother = new Object beside ego by 3\n"
+)
+ego, other = scenario.sample(1, seed=1)[0].objects
+
+def messages(text):
+    return [item.code + " " + item.message for item in check_text(text, filename="x")]
+
+def imported(module, name):
+    return getattr(importlib.import_module(module), name).__name__
+
+typed = Path("typed.scenic").resolve()
+typed.write_text("x = ")
+NAMED = "a = CubeRegion((0, 0, 0), 1)\nb = Exponential(2)\nc = clamp(1, 2, 3)\n"
 files = texts()
 print(json.dumps({
+    "spelled": spelled(scenario.objects[0].drawn.node),
+    "scene": [max(abs(part - 9 * (axis == 2)) for axis, part in enumerate(ego.position)), ego.drawn, ego.tag,
+              list(other.position - ego.position)],
+    "noun": _NOUNS["exponential"],
+    "wrong": messages("x = Exponential()\ny = clamp(1, 2)\nnew Object at Exponential(1)\nnew Object in CubeRegion"),
+    "imported": [imported("scenic.core.regions", "CubeRegion"), imported("scenic.core.distributions", "Exponential"),
+                 imported("scenic.syntax.veneer", "Beside"), imported("scenic.syntax.veneer", "clamp")],
+    "named": [hover(Snapshot(NAMED, "x"), line, 5).markdown for line in (1, 2, 3)],
+    "completed": [item.label for item in completions(Project(["."]), Snapshot("x = ", str(typed)), 1, 4).items],
     "nodes": nodes(TEXT),
     "codes": sorted({item.code for item in check_text(TEXT, filename="x")}),
     "fuzzed": words,
@@ -160,6 +257,8 @@ def found(tmp_path_factory: pytest.TempPathFactory) -> Any:
         for before, added in changes:
             assert text.count(before) == 1, before
             text = text.replace(before, added + before)
+        (root / path).write_text(text, encoding="utf-8")
+    for path, text in IMPLEMENTED.items():
         (root / path).write_text(text, encoding="utf-8")
     done = subprocess.run(
         [sys.executable, "-c", SCRIPT],
@@ -218,3 +317,34 @@ def test_the_documentation_has_them(found: Any) -> None:
         assert text in found["docs"]
     assert ">announce<" in found["diagrams"]["docs/reference/syntax/announce.svg"]
     assert ">beside<" in found["diagrams"]["docs/reference/syntax/specifiers.svg"]
+
+
+def test_programs_find_what_is_implemented(found: Any) -> None:
+    distance, drawn, tag, way = found["scene"]
+    assert distance <= 2
+    assert 0 < drawn < 0.9
+    assert tag == min(drawn, 0.1)
+    assert way == [3, 0, 0]
+
+
+def test_python_finds_it_under_the_established_names(found: Any) -> None:
+    assert found["imported"] == ["CubeRegion", "Exponential", "Beside", "clamp"]
+
+
+def test_names_are_explained_and_offered(found: Any) -> None:
+    region, distribution, function = found["named"]
+    assert "The cube about a point" in region
+    assert "time until something happens" in distribution
+    assert "nearest number between two" in function
+    assert {"CubeRegion", "Exponential", "clamp"} <= set(found["completed"])
+
+
+def test_messages_know_its_parameters_its_type_and_its_noun(found: Any) -> None:
+    arity, other_arity, kind = (message for message in found["wrong"][:3])
+    assert arity.startswith("SC211")
+    assert "`Exponential`" in arity
+    assert other_arity.startswith("SC211")
+    assert "`clamp`" in other_arity
+    assert kind == "SC404 `at`: expected a vector, not a number"
+    assert found["noun"] == "waiting time"
+    assert found["spelled"] == "Exponential(2)"

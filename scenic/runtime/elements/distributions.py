@@ -12,6 +12,7 @@ from typing import Any, Final
 from scenic.graph.construction import make_node
 from scenic.graph.kinds import Kind
 from scenic.graph.node import axis, constant
+from scenic.graph.operation import Operation
 from scenic.graph.operations import TABLE
 from scenic.language.errors import InvalidScenarioError, ScenicTypeError, ScenicValueError
 from scenic.language.names import NAMES
@@ -66,7 +67,7 @@ class Law:
         return f"<law {self._function.__name__}>"
 
 
-def primitive(operation: str, *operands: Any, payload: Any = None) -> Any:
+def primitive(operation: str | Operation, *operands: Any, payload: Any = None) -> Any:
     """A primitive random value: the operation's first operand is an axis of its own.
 
     In a simulation it is drawn at once. Raises `InvalidScenarioError` inside a requirement.
@@ -82,7 +83,7 @@ def primitive(operation: str, *operands: Any, payload: Any = None) -> Any:
         return defer(primitive, operation, *operands, payload=payload)
     nodes = [as_node(operand) for operand in operands]
     uniform = uniform_draw()
-    entry = TABLE[operation]
+    entry = TABLE[operation] if isinstance(operation, str) else operation
     if uniform is not None:
         first = constant(uniform, Kind.SCALAR, uniform)
         return folded(entry, [first, *nodes], payload)
