@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
-.PHONY: demo test test-fast lint types fuzz generate docs docs-serve playground extension pythons clean
+.PHONY: demo test test-fast lint types fuzz generate docs docs-serve dist playground extension pythons clean
 
 $(STAMP): pyproject.toml hatch_build.py
 	$(PYTHON) -c 'import sys; sys.exit("Scenic needs Python 3.11 or newer; this is " + sys.version.split()[0]) if sys.version_info < (3, 11) else None'
@@ -45,6 +45,15 @@ docs: $(STAMP)
 
 docs-serve: docs
 	$(BIN)/python -m http.server --bind 127.0.0.1 --directory docs/_build/html 8000
+
+# Wheel and sdist in dist/: checked, and the wheel installed in an empty environment, where it samples a scene.
+dist: $(STAMP)
+	rm -rf dist build/empty
+	$(BIN)/python -m build --outdir dist
+	$(BIN)/python -m twine check --strict dist/*
+	$(PYTHON) -m venv build/empty
+	build/empty/bin/python -m pip install -q --disable-pip-version-check dist/*.whl
+	cd build/empty && bin/scenic new started && bin/scenic sample started/scene.scenic -n 2 --seed 1 -o scenes.jsonl
 
 # The page of `scenic playground`, which wheels carry; needs npm.
 PAGE := scenic/playground/static/page.js

@@ -14,14 +14,18 @@ from pathlib import Path
 import numpy as np
 import PIL.Image
 import PIL.ImageDraw
+import rich.console
+import rich.text
 from selenium import webdriver
 from selenium.webdriver.chrome.service import Service
 
+from scenic.cli.render import Sources, render_text
 from scenic.formats.camera import Outlook
 from scenic.formats.html import page
 from scenic.formats.labels import observe
 from scenic.formats.png import png
 from scenic.formats.sensors import viewpoint
+from scenic.language.errors import ScenicSyntaxError
 from scenic.pipeline import load
 
 HERE = Path(__file__).parent
@@ -31,11 +35,29 @@ QUALITY = 88
 
 def main() -> None:
     """Make all of them, or those whose names are given."""
+    if not sys.argv[1:] or "diagnostic" in sys.argv[1:]:
+        diagnostic()
     makers = {"room": room, "terrain": terrain, "occlusion": occlusion, "cameras": cameras}
-    for name in sys.argv[1:] or makers:
+    for name in [name for name in sys.argv[1:] if name in makers] if sys.argv[1:] else makers:
         image = makers[name]()
         image.convert("RGB").save(HERE / f"{name}.jpg", quality=QUALITY, optimize=True)
         print(f"{name}.jpg: {image.width} x {image.height}")
+
+
+def diagnostic() -> None:
+    """The message about a misspelt name, as a terminal shows it."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "desk.scenic"
+        path.write_text("table = new Object with width 1.2\nego = new Object left of tabel by 0.3\n")
+        try:
+            load(path)
+        except ScenicSyntaxError as error:
+            shown = render_text(list(error.diagnostics), Sources(), True).replace(f"{folder}/", "")
+    console = rich.console.Console(record=True, width=64, file=io.StringIO())
+    console.print(rich.text.Text.from_ansi(shown.rstrip()))
+    (HERE / "diagnostic.svg").write_text(
+        console.export_svg(title="scenic check desk.scenic"), encoding="utf-8"
+    )
 
 
 def room() -> PIL.Image.Image:
