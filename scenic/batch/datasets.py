@@ -17,11 +17,10 @@ from numpy.typing import NDArray
 
 from scenic.batch.engines import Engine
 from scenic.batch.manifest import DatasetError, Manifest, Part, digest_of
-from scenic.batch.scenes import Job, Made, encoded_here, in_processes
+from scenic.batch.scenes import Job, Made, encoded_here, in_processes, method_of
 from scenic.formats.files import Waiting, make_folder, refusing, writing
 from scenic.formats.json_lines import SceneLines
 from scenic.formats.trajectory_tables import parquet_support
-from scenic.graph.points import PointSet, Sobol
 from scenic.runtime.sampling.report import Exhausted
 from scenic.runtime.scenes.scenario import Scenario
 from scenic.runtime.scenes.scene import Scene
@@ -156,7 +155,12 @@ def make_dataset(
             for attempts in progress.recalled():
                 run.advance(1, attempts)
             job = Job(
-                kept.seed, progress.upcoming, last, kept.max_attempts, run.deadline, _source(kept.points)
+                kept.seed,
+                progress.upcoming,
+                last,
+                kept.max_attempts,
+                run.deadline,
+                **method_of(kept.points),
             )
             for made in _made(scenario, progress.encoder, job, run.engine):
                 progress.add(made)
@@ -186,7 +190,7 @@ def write_table(
         manifest.first + manifest.count,
         manifest.max_attempts,
         run.deadline,
-        _source(manifest.points),
+        **method_of(manifest.points),
     )
     with contextlib.closing(_Table(path, scenario, manifest)) as table:
         for made in _made(scenario, encoder, job, run.engine):
@@ -196,10 +200,6 @@ def write_table(
             run.advance(made.job.last - made.job.first, made.attempts)
         table.finish()
     return Finished(manifest, tuple(missing))
-
-
-def _source(points: str | None) -> PointSet | None:
-    return Sobol() if points == "sobol" else None
 
 
 def _made(scenario: Scenario, encoder: Encoder, job: Job, engine: Engine | None) -> Iterator[Made]:
@@ -265,7 +265,7 @@ class _PartInProgress:
             block = entries[start : start + _BLOCK]
             found = block[block[:, 1] > 0]
             if len(found):
-                source = _source(self._manifest.points)
+                source = method_of(self._manifest.points).get("source")
                 scenes = list(
                     self._scenario.found(self._manifest.seed, found[:, 0], found[:, 1], source=source)
                 )

@@ -67,7 +67,7 @@ class Manifest:
         count: how many scenes were wanted.
         form: format of the parts, ``parquet`` or ``jsonl``.
         part_size: scenes of a part.
-        points: ``sobol`` where scenes are rows of Sobol's sequence.
+        points: ``sobol`` where scenes are rows of Sobol's sequence, ``approximate N`` where N were made together, of nearly the program's law.
         max_attempts: candidates tried for one scene, at most.
         properties: which properties of objects are told, ``all`` or ``changed``.
         meshes: digests of the mesh files that the program names.

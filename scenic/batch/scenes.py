@@ -11,12 +11,12 @@ from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from functools import partial
 from pickle import PickleBuffer
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from scenic.batch.engines import Engine, OverExecutor, Processes
-from scenic.graph.points import PointSet
+from scenic.graph.points import PointSet, Sobol
 from scenic.language.errors import Located, RejectionException
 from scenic.runtime.sampling.report import Exhausted
 from scenic.runtime.scenes.scenario import Scenario, exhaustion_message
@@ -56,7 +56,8 @@ class WorkerDiedError(Located):
 class Job:
     """What to sample: scenes ``first`` to ``last`` (exclusive) of a seed, within limits.
 
-    ``deadline`` is a time of `time.monotonic`; ``source`` gives random numbers that are not hashed (see `Scenario.stream`).
+    ``deadline`` is a time of `time.monotonic`; ``source`` gives random numbers that are not hashed, and ``approximate`` scenes
+    are made so many together (see `Scenario.stream`).
     """
 
     seed: int
@@ -65,6 +66,14 @@ class Job:
     max_attempts: int | None
     deadline: float | None
     source: PointSet | None = None
+    approximate: int | None = None
+
+
+def method_of(points: str | None) -> dict[str, Any]:
+    """The settings of a job whose scenes a manifest says to be made of ``sobol`` points, or ``approximate N``."""
+    if points is not None and points.startswith("approximate "):
+        return {"approximate": int(points.removeprefix("approximate "))}
+    return {"source": Sobol() if points == "sobol" else None}
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,6 +99,7 @@ def results_of(scenario: Scenario, job: Job) -> Iterator[Scene | Exhausted]:
         max_attempts=job.max_attempts,
         time_limit=limit,
         source=job.source,
+        approximate=job.approximate,
     )
 
 

@@ -11,10 +11,9 @@ from typing import Any
 
 from scenic.batch.datasets import Encoder
 from scenic.batch.manifest import DatasetError, Manifest, Part, digest_of
-from scenic.batch.scenes import Job, results_of
+from scenic.batch.scenes import Job, method_of, results_of
 from scenic.formats.files import make_folder, write
 from scenic.formats.trajectory_tables import parquet_support
-from scenic.graph.points import Sobol
 from scenic.runtime.sampling.report import Exhausted
 from scenic.runtime.scenes.scenario import Scenario
 
@@ -82,9 +81,9 @@ def _compared(
     )
     kept = {row["k"]: row for row in part_rows(path, manifest.form)}
     encoder = Encoder(manifest.form, changed=manifest.properties == "changed", points=manifest.points)
-    source = Sobol() if manifest.points == "sobol" else None
+    method = method_of(manifest.points)
     for k in sorted(chosen):
-        job = Job(manifest.seed, k, k + 1, manifest.max_attempts, None, source)
+        job = Job(manifest.seed, k, k + 1, manifest.max_attempts, None, **method)
         (result,) = results_of(scenario, job)
         advance(1)
         if isinstance(result, Exhausted):

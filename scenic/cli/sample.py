@@ -69,6 +69,12 @@ __all__ = ["sample"]
     help="Scenes of one seed are always the same. Without it, one is drawn and shown.",
 )
 @sobol_option
+@click.option(
+    "--approximate",
+    metavar="N",
+    type=click.IntRange(min=2),
+    help="For requirements that are hardly ever met: make N scenes together, whose law comes the closer to the program's the larger N is.",
+)
 @program_options
 @click.option(
     "--no-prune", is_flag=True, help="Do not narrow the distributions first. The same scenes are as likely."
@@ -147,6 +153,7 @@ def sample(
     properties: str,
     seed: int | None,
     sobol: bool,
+    approximate: int | None,
     parameters: Mapping[str, Any],
     scenario: str | None,
     model: str | None,
@@ -179,6 +186,12 @@ def sample(
     ):
         raise click.UsageError(
             "--profile makes no files: it goes without -o, -j, --dask, --resume and images"
+        )
+    if approximate is not None and (
+        resume or jobs > 1 or dask is not None or sobol or profile or time_limit is not None
+    ):
+        raise click.UsageError(
+            "--approximate goes without -j, --dask, --resume, --sobol, --profile and --time-limit"
         )
     chosen: list[sinks.Sink] = []
     target: Path | None = None
@@ -229,7 +242,6 @@ def sample(
     from scenic.batch.manifest import Manifest
     from scenic.formats.json_lines import SceneLines
     from scenic.formats.resuming import continued
-    from scenic.graph.points import Sobol
     from scenic.pipeline import load
     from scenic.runtime.sampling.report import Exhausted
 
@@ -244,7 +256,7 @@ def sample(
     if profile:
         return _profiled(loaded, first, count, seed or 0, sobol, max_attempts, deadline)
     done = 0
-    points = "sobol" if sobol else None
+    points = "sobol" if sobol else None if approximate is None else f"approximate {approximate}"
     if dataset is not None and resume:
         seed = Manifest.load(dataset).seed if seed is None else seed
     if grown is not None and resume:
@@ -253,7 +265,7 @@ def sample(
         seed = secrets.randbits(32)
         sys.stderr.write(f"seed {seed} (the same scenes again: --seed {seed})\n")
     lines = SceneLines((path.name, loaded.digest), changed=properties == "changed", points=points)
-    job = batches.Job(seed, first + done, first + count, max_attempts, deadline, Sobol() if sobol else None)
+    job = batches.Job(seed, first + done, first + count, max_attempts, deadline, **batches.method_of(points))
     missing: list[Exhausted] = []
     to_terminal = target == sinks.STANDARD_OUTPUT and sys.stdout.isatty()
     left = None if deadline is None else max(0.0, deadline - time.monotonic()) + PATIENCE
@@ -303,6 +315,8 @@ def sample(
                     if target is not None:
                         put(lines.encoded(result))
                 advance(1, result.attempts)
+    if loaded.approximation is not None:
+        sys.stderr.write(f"{loaded.approximation}\n")
     if missing:
         from rich.console import Console
 

@@ -40,7 +40,7 @@ class SceneLines:
     Args:
         program: the name of the program's file and the digest of its text and options; told in every line.
         changed: whether to tell only properties that the program gives, not those at the defaults of the language.
-        points: what the scenes are made of, if not of random numbers: ``sobol``.
+        points: how the scenes are made, if not by rejection of random numbers: ``sobol``, ``approximate N``.
 
     """
 

@@ -219,6 +219,26 @@ class CollisionCheck:
     filename: str | None = None
     _collider: Collider | None = None
 
+    def of_pairs(self, pairs: NDArray[np.intp]) -> "CollisionCheck":
+        """The check of some pairs ``(p, 2)`` only, and of the objects in them."""
+        members, numbered = np.unique(pairs, return_inverse=True)
+        objects = [self.objects[member] for member in members.tolist()]
+        return replace(self, objects=objects, pairs=numbered.reshape(-1, 2), _collider=None)
+
+    @classmethod
+    def joined(cls, checks: Sequence["CollisionCheck"]) -> "CollisionCheck":
+        """The check of all pairs of several checks."""
+        objects = list({id(item): item for check in checks for item in check.objects}.values())
+        number = {id(item): place for place, item in enumerate(objects)}
+        pairs = [
+            [number[id(check.objects[one])], number[id(check.objects[other])]]
+            for check in checks
+            for one, other in check.pairs.tolist()
+        ]
+        return replace(
+            checks[0], objects=objects, pairs=np.array(sorted(pairs), dtype=np.intp), _collider=None
+        )
+
     @property
     def nodes(self) -> Sequence[Node]:
         return [node for item in self.objects for node in item.all]

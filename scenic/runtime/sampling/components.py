@@ -63,7 +63,7 @@ def _split(plan: Plan) -> Components | None:
             # Of a pair of which one does not move the other one decides where it belongs.
             own = members[first] if joins.has_draws(members[first]) else members[second]
             parts.setdefault(own, []).append(number)
-        kept += [(index, own, _narrowed(check, pairs[numbers])) for own, numbers in parts.items()]
+        kept += [(index, own, check.of_pairs(pairs[numbers])) for own, numbers in parts.items()]
     for index, check in enumerate(plan.checks):
         if isinstance(check, CollisionCheck):
             continue
@@ -108,25 +108,8 @@ def _merged(group: Sequence[tuple[int, Check]]) -> list[tuple[int, Check]]:
             collisions.setdefault(index, []).append(check)
         else:
             merged.append((index, check))
-    for index, some in collisions.items():
-        objects = list({id(item): item for check in some for item in check.objects}.values())
-        number = {id(item): place for place, item in enumerate(objects)}
-        pairs = [
-            [number[id(check.objects[one])], number[id(check.objects[other])]]
-            for check in some
-            for one, other in check.pairs.tolist()
-        ]
-        merged.append(
-            (index, replace(some[0], objects=objects, pairs=np.array(sorted(pairs), dtype=np.intp)))
-        )
+    merged += [(index, CollisionCheck.joined(some)) for index, some in collisions.items()]
     return sorted(merged, key=_index)
-
-
-def _narrowed(check: CollisionCheck, pairs: NDArray[np.intp]) -> CollisionCheck:
-    """The check of some pairs only, and of the objects in them."""
-    members, numbered = np.unique(pairs, return_inverse=True)
-    objects = [check.objects[member] for member in members.tolist()]
-    return replace(check, objects=objects, pairs=numbered.reshape(-1, 2), _collider=None)
 
 
 def _part(plan: Plan, group: Sequence[tuple[int, Check]], places: Mapping[int, int]) -> Plan:

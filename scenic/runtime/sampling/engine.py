@@ -29,7 +29,7 @@ from scenic.runtime.sampling.checks import Check
 from scenic.runtime.sampling.pace import Pace
 from scenic.runtime.sampling.pending import Pending, Task, soft_address
 from scenic.runtime.sampling.profiling import Meter, Profile
-from scenic.runtime.sampling.report import Exhausted, RejectionReport, RejectionRow
+from scenic.runtime.sampling.report import Approximation, Exhausted, RejectionReport, RejectionRow
 from scenic.runtime.sampling.stages import Stage, Stages
 
 DEFAULT_LANES = 4096
@@ -109,7 +109,8 @@ class Found:
 
     ``seeds``, ``numbers`` and ``attempts`` tell of each lane which scene it is, and after how many candidates it was
     found. ``alone`` makes a batch of one lane, to look at its draws. Where a scene is put together from components, ``components``
-    ``(n, components)`` tells after how many attempts each was found, and ``attempts`` the largest of these. ``shared`` is for what
+    ``(n, components)`` tells after how many attempts each was found, and ``attempts`` the largest of these. ``approximation`` tells
+    how approximate scenes came about (`scenic.runtime.sampling.approximate`). ``shared`` is for what
     is made of all scenes of the batch together: it lives as long as one of them.
     """
 
@@ -119,6 +120,7 @@ class Found:
     batch: Batch
     alone: Callable[[int], Batch]
     components: NDArray[np.int64] | None = None
+    approximation: Approximation | None = None
     shared: dict[object, Any] = field(default_factory=dict)
 
     def task(self, lane: int) -> Task:

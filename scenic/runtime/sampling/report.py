@@ -48,3 +48,31 @@ class Exhausted:
     attempts: int
     reason: str
     report: RejectionReport
+
+
+@dataclass(frozen=True, slots=True)
+class Approximation:
+    """How a block of approximate scenes came about.
+
+    Attributes:
+        lanes: scenes made together.
+        log_probability: natural logarithm of the estimated probability that a candidate meets every hard requirement.
+        effective: about how many independent scenes say as much as these.
+        survival: the share of lanes that lived at each block, ``1`` where none was lost.
+        sweeps: how often all blocks were moved at the end.
+        correlation: between what the blocks were before these sweeps and after, the largest.
+
+    """
+
+    lanes: int
+    log_probability: float
+    effective: float
+    survival: tuple[float, ...]
+    sweeps: int
+    correlation: float
+
+    def __str__(self) -> str:
+        return (
+            f"approximate: {self.lanes} lanes, effective sample size {self.effective:.0f}, "
+            f"log-probability {self.log_probability:.2f}, {self.sweeps} sweeps"
+        )

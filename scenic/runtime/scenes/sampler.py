@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from scenic.graph.domain import Domain
 from scenic.graph.draws import Counter, Lanes, Points, Source
 from scenic.graph.points import PointSet
+from scenic.runtime.sampling.approximate import approximated
 from scenic.runtime.sampling.components import components_of
 from scenic.runtime.sampling.driving import driven
 from scenic.runtime.sampling.engine import Accepted, Engine, Plan
@@ -103,6 +104,22 @@ class Sampler:
         limit = self._limit(max_attempts, source)
         return engine.scenes(tasks, max_attempts=limit, deadline=deadline, lanes=lanes)
 
+    def approximate(
+        self, seed: int, first: int, count: int, *, lanes: int, max_attempts: int | None
+    ) -> Results:
+        """Scenes of a seed that are only approximately of the program's law; see `Scenario.stream`."""
+        if self.impossible:
+            return self._not_found((seed, k) for k in range(first, first + count))
+        return approximated(
+            self.engine,
+            seed,
+            first,
+            count,
+            lanes=lanes,
+            max_attempts=self._most_attempts(max_attempts),
+            fixing=self._fixed,
+        )
+
     def profile(
         self,
         tasks: Sequence[tuple[int, int]],
@@ -188,7 +205,10 @@ class Sampler:
     def _fixing(self, source: Callable[[Lanes], Source]) -> Callable[[Lanes], Source]:
         if not self._numbers and not self._words:
             return source
-        return lambda lanes: fixed_draws(self._numbers, self._words, source(lanes))
+        return lambda lanes: self._fixed(source(lanes))
+
+    def _fixed(self, source: Source) -> Source:
+        return fixed_draws(self._numbers, self._words, source) if self._numbers or self._words else source
 
     def _engine_of(self, points: PointSet | None) -> Engine | PiecewiseEngine:
         """The engine that samples rows of a point set; the usual engine where there is none."""

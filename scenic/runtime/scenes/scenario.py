@@ -38,7 +38,7 @@ from scenic.runtime.sampling.estimating import ComponentEstimate, estimate
 from scenic.runtime.sampling.foresight import SEED_BITS, Foreseen
 from scenic.runtime.sampling.planning import Outline
 from scenic.runtime.sampling.profiling import Profile
-from scenic.runtime.sampling.report import Exhausted
+from scenic.runtime.sampling.report import Approximation, Exhausted
 from scenic.runtime.scenes.fingerprint import fingerprint
 from scenic.runtime.scenes.sampler import DEFAULT_ATTEMPTS, Sampler
 from scenic.runtime.scenes.saving import SavedScene, draws_of, source_of
@@ -122,6 +122,7 @@ class Scenario:
         self._foreseen = Foreseen(self._foresee)
         self._choosing: Sampler | None = None
         self._external_sampler: Any = None
+        self._approximation: Approximation | None = None
         self._family = Family(
             program,
             ego,
@@ -220,6 +221,11 @@ class Scenario:
         return self._sampler.plan.domain
 
     @property
+    def approximation(self) -> Approximation | None:
+        """How the approximate scenes that were sampled last came about, if there were any."""
+        return self._approximation
+
+    @property
     def impossible(self) -> tuple[str, ...]:
         """Labels of requirements that are proven to fail in every scene."""
         return self._sampler.impossible
@@ -243,6 +249,7 @@ class Scenario:
         time_limit: float | None = None,
         lanes: int | None = None,
         source: PointSet | None = None,
+        approximate: int | None = None,
     ) -> Iterator[Scene | Exhausted]:
         """Scenes ``first`` to ``first + n`` of a seed, in order, as they are found.
 
@@ -256,12 +263,27 @@ class Scenario:
             source: where random numbers come from, if they are not hashed: `scenic.Sobol` for scenes that are spread evenly,
                 `scenic.GivenPoints` for points of the cube that somebody chose. The words that key draws which take tries
                 are hashed all the same.
+            approximate: make so many scenes together, whose law comes the closer to the program's the more these are: for
+                programs whose requirements rejection hardly ever meets. `Scene.approximation` tells how well that went. It
+                goes without ``lanes``, ``source`` and ``time_limit``.
 
         Raises:
             SamplingError: if a requirement or property fails on a candidate; an exception of the program's own code keeps
                 its type, and tells the place in a note.
+            ValueError: for options that do not go together.
 
         """
+        if approximate is not None:
+            if approximate < 2 or any(item is not None for item in (lanes, source, time_limit)):
+                raise ValueError(
+                    "approximate scenes are made two or more together, without `lanes`, `source` and `time_limit`"
+                )
+            results = self._sampler.approximate(seed, first, n, lanes=approximate, max_attempts=max_attempts)
+            for result in self._scenes(results):
+                if isinstance(result, Scene):
+                    self._approximation = result.approximation
+                yield result
+            return
         tasks = zip(repeat(seed), range(first, first + n))  # one of them has no end
         deadline = None if time_limit is None else time.monotonic() + time_limit
         yield from self._scenes(
@@ -304,6 +326,7 @@ class Scenario:
         time_limit: float | None = None,
         lanes: int | None = None,
         source: PointSet | None = None,
+        approximate: int | None = None,
         processes: int = 1,
         executor: Executor | None = None,
     ) -> list[Scene]:
@@ -316,6 +339,7 @@ class Scenario:
             time_limit: seconds for all of them.
             lanes: candidates evaluated at a time. Changes speed and memory, never the scenes.
             source: random numbers that are not hashed; see `stream`.
+            approximate: scenes made together, of nearly the program's law; see `stream`. It goes without several processes.
             processes: how many processes look for scenes. Changes speed, never the scenes.
             executor: looks for scenes in place of processes of our own, ``processes`` ranges at a time.
 
@@ -326,6 +350,8 @@ class Scenario:
 
         """
         chosen = random.getrandbits(SEED_BITS) if seed is None else seed
+        if approximate is not None and (processes > 1 or executor is not None):
+            raise ValueError("approximate scenes are made together, in one process")
         if (processes > 1 or executor is not None) and self._services.sample is not None:
             limits = {
                 "max_attempts": max_attempts,
@@ -336,7 +362,13 @@ class Scenario:
             return list(self._services.sample(self, n, seed=chosen, processes=processes, **limits))
         scenes = []
         for result in self.stream(
-            n, seed=chosen, max_attempts=max_attempts, time_limit=time_limit, lanes=lanes, source=source
+            n,
+            seed=chosen,
+            max_attempts=max_attempts,
+            time_limit=time_limit,
+            lanes=lanes,
+            source=source,
+            approximate=approximate,
         ):
             if isinstance(result, Exhausted):
                 raise RejectionException(exhaustion_message(result))

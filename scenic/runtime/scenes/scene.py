@@ -16,6 +16,7 @@ from scenic.runtime.python.samples import dependencies
 from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.spaces import Workspace
 from scenic.runtime.sampling.engine import Found
+from scenic.runtime.sampling.report import Approximation
 from scenic.runtime.scenes.dumping import program_of
 from scenic.runtime.scenes.files import whole
 
@@ -100,6 +101,11 @@ class Scene:
         """Candidates tried of each independent component of the scene."""
         components = self.found.components
         return (self.attempts,) if components is None else tuple(components[self.lane].tolist())
+
+    @property
+    def approximation(self) -> Approximation | None:
+        """How the scene came about together with others, if it is an approximate one (`Scenario.stream`)."""
+        return self.found.approximation
 
     @property
     def workspace(self) -> Workspace:

@@ -1,0 +1,460 @@
+"""Scenes that rejection would hardly find: many lanes side by side, one object after the other (sequential Monte Carlo).
+
+A *block* holds the draws that an object adds to those before it. Block after block is drawn from its law in every lane; lanes
+that fail a check which can be decided by now are lost, and others take their places (Del Moral, Doucet and Jasra, "Sequential
+Monte Carlo samplers", 2006; lanes are drawn until as many live as before: LeGland and Oudjane, 2005). Moves of single blocks
+that keep the law (Metropolis and Hastings) make copies differ again. With more lanes the law comes as close to the
+program's as one likes. The share of lanes that live at each block gives the probability of the scenario.
+"""
+
+import math
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from scenic.graph.batch import Batch
+from scenic.graph.draws import (
+    Counter,
+    Points,
+    Source,
+    Words,
+    attempt_keys,
+    box_addresses,
+    scene_keys,
+    seed_word,
+)
+from scenic.graph.node import Graph, Node
+from scenic.runtime.sampling.checks import Check, CollisionCheck
+from scenic.runtime.sampling.engine import Accepted, CandidateError, Engine, Found
+from scenic.runtime.sampling.pending import Task
+from scenic.runtime.sampling.report import Approximation, Exhausted
+
+__all__ = ["approximated"]
+
+_LIVELY: Final = 0.35
+"""Blocks are moved once this share of lanes, or less, has lived since they were moved last."""
+
+_STEPS: Final = (0.5, 0.1, 0.02)
+"""How far moves go along an axis of the cube, one sweep after the other; 0.5 draws anew."""
+
+_SWEEPS: Final = (6, 60)
+"""Sweeps at the end, at least and at most."""
+
+_CORRELATED: Final = 0.1
+"""Sweeps go on while what some block was before them and what it is now correlate more."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Block:
+    """Draws that are made together: numbers and words by address, and the checks that look at them."""
+
+    numbers: tuple[int, ...]
+    words: tuple[int, ...]
+    decided: tuple[Check, ...]
+    """Checks that can be made once the block is there, and not before."""
+    moved: tuple[tuple[int, Check], ...]
+    """Checks that may change with it, each with the number of the block that decides it."""
+
+
+_Move = tuple[_Block, tuple[Check, ...]]
+"""A block, and what has to hold after it was moved."""
+
+
+class _Blocks:
+    """The blocks of a plan, and the checks of their moves when only the first ones are there."""
+
+    def __init__(self, blocks: Sequence[_Block]) -> None:
+        self.blocks: Final = tuple(blocks)
+        self._moves: dict[int, tuple[_Move, ...]] = {}
+
+    def moves(self, last: int) -> tuple[_Move, ...]:
+        """The blocks up to number ``last`` that checks look at, each with those that are decided by then."""
+        moves = self._moves.get(last)
+        if moves is None:
+            found = (
+                (block, tuple(_merged(check for number, check in block.moved if number <= last)))
+                for block in self.blocks[: last + 1]
+            )
+            moves = self._moves[last] = tuple(move for move in found if move[1])
+        return moves
+
+
+class _GaveUpError(Exception):
+    """A block could not be drawn within the limit of candidates."""
+
+
+def approximated(
+    engine: Engine,
+    seed: int,
+    first: int,
+    count: int,
+    *,
+    lanes: int,
+    max_attempts: int,
+    fixing: Callable[[Source], Source] = lambda source: source,
+) -> Iterator[Accepted | Exhausted]:
+    """Scenes ``first`` to ``first + count`` of a seed, in order; scene ``k`` is lane ``k % lanes`` of block ``k // lanes``.
+
+    Args:
+        engine: of the whole plan.
+        seed: any integer.
+        first: number of the first scene.
+        count: how many.
+        lanes: scenes that are made together.
+        max_attempts: candidates for each lane and block of draws, on average, before all are given up.
+        fixing: puts fixed draws in the place of some.
+
+    Raises:
+        CandidateError: a scene failed that nothing rejects.
+
+    """
+    sampler = _Sampler(engine, max_attempts, fixing)
+    for group in range(first // lanes, -(-(first + count) // lanes)):
+        wanted = range(max(first, group * lanes), min(first + count, (group + 1) * lanes))
+        try:
+            found = sampler.group(seed, group, lanes)
+        except _GaveUpError:
+            report = engine.report(Task(seed, wanted.start), 200)
+            yield from (Exhausted(seed, k, max_attempts, "attempts", report) for k in wanted)
+            continue
+        yield from ((found, k - group * lanes) for k in wanted)
+
+
+class _Sampler:
+    """Makes groups of scenes of one plan."""
+
+    def __init__(self, engine: Engine, max_attempts: int, fixing: Callable[[Source], Source]) -> None:
+        self._engine = engine
+        self._fixing = fixing
+        self._max_attempts = max_attempts
+        plan = engine.plan
+        self._soft = [check for check in plan.checks if check.probability < 1]
+        self._reads = _Reads(plan.graph, plan.domain.joined_axes())
+        self._plans: dict[frozenset[int], _Blocks] = {}
+
+    def group(self, seed: int, group: int, lanes: int) -> Found:
+        """The scenes ``group * lanes`` to ``(group + 1) * lanes`` of a seed."""
+        scenes = np.arange(group * lanes, (group + 1) * lanes, dtype=np.int64)
+        inactive = self._engine.pending([(seed, k) for k in scenes.tolist()]).inactive
+        state = _State(self._reads, lanes)
+        reports = []
+        # Whether soft requirements have to hold is decided before anything else: lanes that differ in it do not compete.
+        patterns, which = np.unique(inactive, axis=0, return_inverse=True)
+        for number, pattern in enumerate(patterns):
+            members = np.flatnonzero(which.ravel() == number)
+            random = np.random.Generator(np.random.Philox(key=[int(seed_word(seed)), (group << 8) + number]))
+            part, report = self._run(random, len(members), frozenset(np.flatnonzero(pattern).tolist()))
+            state.put(members, part)
+            reports.append(report)
+        attempts = [max(1, round(sum(1 / share for share in report.survival))) for report in reports]
+        found_attempts = [attempts[number] for number in which.ravel().tolist()]
+        keys = attempt_keys(
+            scene_keys(np.repeat(seed_word(seed), lanes), scenes), np.zeros(lanes, dtype=np.int64)
+        )
+        batch = self._engine.batch(self._fixing(state.source(keys)))
+        batch.settle(self._engine.plan.outputs)
+        self._raise_failures(state, keys, scenes, inactive)
+
+        def alone(lane: int) -> Batch:
+            one = np.array([lane])
+            return self._engine.batch(self._fixing(state.source(keys).take(one)), grouped=False)
+
+        return Found(
+            [seed] * lanes,
+            scenes.tolist(),
+            found_attempts,
+            batch,
+            alone,
+            approximation=_joined(reports, lanes),
+        )
+
+    def _raise_failures(
+        self, state: "_State", keys: Words, scenes: NDArray[np.int64], inactive: NDArray[np.bool_]
+    ) -> None:
+        """Raise the error of the first scene in which a requirement failed."""
+        batch = self._engine.batch(self._fixing(state.source(keys)))
+        failures: list[tuple[int, int, Check]] = []
+        soft = 0
+        for check in self._engine.plan.checks:
+            batch.need(check.nodes)
+            verdict = check.test(batch)
+            if check.probability < 1:
+                verdict, soft = verdict.unless(inactive[:, soft]), soft + 1
+            if verdict.failed is not None and verdict.failed.any():
+                failures.append((int(verdict.failed.argmax()), check.position, check))
+        if failures:
+            lane, _, check = min(failures, key=lambda item: item[:2])
+            one = self._engine.batch(self._fixing(state.source(keys).take(np.array([lane]))), grouped=False)
+            check.test(one)
+            error = CandidateError(check, int(scenes[lane]), 0)
+            error.__cause__ = next((one.errors[node] for node in check.nodes if node in one.errors), None)
+            raise error
+
+    def _run(
+        self, random: np.random.Generator, lanes: int, inactive: frozenset[int]
+    ) -> tuple["_State", Approximation]:
+        """So many lanes in which these soft requirements need not hold."""
+        plan = self._plan(inactive)
+        state = _State(self._reads, lanes)
+        roots = np.arange(lanes)
+        survival: list[float] = []
+        log_probability, since = 0.0, 1.0
+        blocks = plan.blocks
+        for number, block in enumerate(blocks):
+            ancestors, tried = self._extend(random, state, block)
+            roots = roots[ancestors]
+            share = 1.0 if tried == lanes else max(lanes - 1, 1) / max(tried - 1, 1)
+            survival.append(share)
+            log_probability += math.log(share)
+            since *= share
+            if since < _LIVELY and number + 1 < len(blocks):
+                since = 1.0
+                for step in _STEPS[:2]:
+                    self._sweep(random, state, plan.moves(number), step)
+        start, correlation, sweeps = state.copy(), 1.0, 0
+        constrained = plan.moves(len(blocks) - 1)
+        if min(survival, default=1.0) == 1.0:
+            constrained, correlation = (), 0.0  # no lane was lost: all are independent
+        while constrained and sweeps < _SWEEPS[1]:
+            self._sweep(random, state, constrained, _STEPS[sweeps % len(_STEPS)])
+            sweeps += 1
+            if sweeps >= _SWEEPS[0] and sweeps % len(_STEPS) == 0:
+                correlation = max(start.correlation(state, block.numbers) for block, _ in constrained)
+                if correlation < _CORRELATED:
+                    break
+        sizes = np.bincount(roots, minlength=lanes)
+        shared = float(np.square(sizes).sum()) / lanes
+        effective = lanes / (1 + (shared - 1) * correlation**2)
+        report = Approximation(lanes, log_probability, effective, tuple(survival), sweeps, correlation)
+        return state, report
+
+    def _extend(
+        self, random: np.random.Generator, state: "_State", block: _Block
+    ) -> tuple[NDArray[np.intp], int]:
+        """Draw a block in lanes until as many live as there are; who each one's ancestor is, and how many were tried."""
+        lanes = len(state)
+        if not block.decided:
+            state.redraw(random, block, 0.5)
+            return np.arange(lanes), lanes
+        kept: list[_State] = []
+        ancestors: list[NDArray[np.intp]] = []
+        missing, tried = lanes, 0
+        while missing:
+            if tried >= self._max_attempts * lanes:
+                raise _GaveUpError
+            order = random.permutation(
+                lanes
+            )  # systematic: of lanes that weigh the same each comes once in a round
+            trial = state.take(order)
+            trial.redraw(random, block, 0.5)
+            good = np.flatnonzero(self._passes(trial, block.decided))[:missing]
+            tried += int(good[-1]) + 1 if len(good) == missing else lanes
+            missing -= len(good)
+            kept.append(trial.take(good))
+            ancestors.append(order[good])
+        state.become(kept)
+        return np.concatenate(ancestors), tried
+
+    def _sweep(
+        self, random: np.random.Generator, state: "_State", moves: Sequence[_Move], step: float
+    ) -> None:
+        """Move each block of each lane once, where all checks still hold after it."""
+        for block, checks in moves:
+            trial = state.copy()
+            trial.redraw(random, block, step)
+            # All draws of a block have the law of the cube before and after, so that a move is good if its lane is.
+            state.put_block(np.flatnonzero(self._passes(trial, checks)), trial, block)
+
+    def _passes(self, state: "_State", checks: Sequence[Check]) -> NDArray[np.bool_]:
+        """Which lanes none of the checks rejects."""
+        passes = np.ones(len(state), dtype=np.bool_)
+        if not checks:
+            return passes
+        batch = self._engine.batch(self._fixing(state.source(np.zeros(len(state), dtype=np.uint64))))
+        for check in sorted(checks, key=lambda item: item.cost):
+            batch.need(check.nodes)
+            alive = check.test(batch).passes
+            passes[batch.rows[~alive]] = False
+            batch.keep(alive)
+            if not len(batch):
+                break
+        return passes
+
+    def _plan(self, inactive: frozenset[int]) -> _Blocks:
+        """The blocks of the plan without some soft requirements, by their numbers among these."""
+        plan = self._plans.get(inactive)
+        if plan is None:
+            left_out = {id(self._soft[number]) for number in inactive}
+            checks = [check for check in self._engine.plan.checks if id(check) not in left_out]
+            plan = self._plans[inactive] = _Blocks(_blocks_of(self._reads, checks))
+        return plan
+
+
+def _joined(reports: Sequence[Approximation], lanes: int) -> Approximation:
+    """The report of lanes that were made apart."""
+    if len(reports) == 1:
+        return reports[0]
+    shares = [report.lanes / lanes for report in reports]
+    mean = sum(
+        share * math.exp(report.log_probability) for share, report in zip(shares, reports, strict=True)
+    )
+    return Approximation(
+        lanes,
+        math.log(mean) if mean else -math.inf,
+        sum(report.effective for report in reports),
+        min((report.survival for report in reports), key=math.prod),
+        max(report.sweeps for report in reports),
+        max(report.correlation for report in reports),
+    )
+
+
+class _Reads:
+    """The draws of a graph by address, and which of them nodes depend on."""
+
+    def __init__(self, graph: Graph, joined: Sequence[NDArray[np.intp]]) -> None:
+        self.numbers = [graph.address(node) for node in graph.axes]
+        self.words = [graph.address(node) for node in graph.nodes if node.is_drawn and not node.is_axis]
+        self.boxes = [
+            (place, frozenset(axes.tolist()))
+            for place, axes in zip(box_addresses(len(joined)).tolist(), joined, strict=True)
+            if len(axes)
+        ]
+        self._graph = graph
+
+    def of(self, nodes: Iterable[Node]) -> frozenset[int]:
+        """The addresses of the draws below nodes, and of the boxes that these are drawn from."""
+        drawn = [node for node in Graph(nodes).nodes if node.is_drawn]
+        axes = {self._graph.axes[node] for node in drawn if node.is_axis}
+        boxes = [place for place, joined in self.boxes if joined & axes]
+        return frozenset([*map(self._graph.address, drawn), *boxes])
+
+
+def _blocks_of(reads: _Reads, checks: Sequence[Check]) -> list[_Block]:
+    """The draws in blocks: those of one object after the other, then of one check after the other, then the rest."""
+    units: list[frozenset[int]] = []
+    parts: list[tuple[Check, frozenset[int]]] = []
+    for check in checks:
+        if isinstance(check, CollisionCheck):
+            below = [reads.of(item.all) for item in check.objects]
+            units = [*below, *units]
+            owners: dict[frozenset[int], list[int]] = {}
+            for number, (one, other) in enumerate(check.pairs.tolist()):
+                owners.setdefault(below[one] | below[other], []).append(number)
+            parts += [(check.of_pairs(check.pairs[numbers]), key) for key, numbers in owners.items()]
+        else:
+            units.append(reads.of(check.nodes))
+            parts.append((check, units[-1]))
+    everything = frozenset([*reads.numbers, *reads.words, *(place for place, _ in reads.boxes)])
+    words = frozenset(reads.words)
+    news: list[frozenset[int]] = []
+    for unit in [*units, everything]:
+        new = unit.difference(*news)
+        if new:
+            news.append(new)
+    number_of = {place: number for number, new in enumerate(news) for place in new}
+    deciding = [(max((number_of[place] for place in read), default=0), check, read) for check, read in parts]
+    return [
+        _Block(
+            tuple(sorted(new - words)),
+            tuple(sorted(new & words)),
+            tuple(_merged(check for last, check, _ in deciding if last == number)),
+            tuple((last, check) for last, check, read in deciding if read & new),
+        )
+        for number, new in enumerate(news)
+    ]
+
+
+def _merged(checks: Iterable[Check]) -> list[Check]:
+    """The checks, with all that is asked of collisions in one of them."""
+    merged: list[Check] = []
+    collisions: list[CollisionCheck] = []
+    for check in checks:
+        if isinstance(check, CollisionCheck):
+            collisions.append(check)
+        else:
+            merged.append(check)
+    if collisions:
+        merged.append(CollisionCheck.joined(collisions))
+    return merged
+
+
+class _State:
+    """The draws of lanes: numbers of the unit interval and words ``(n,)`` by address."""
+
+    def __init__(self, reads: _Reads, lanes: int) -> None:
+        addresses = [*reads.numbers, *(place for place, _ in reads.boxes)]
+        self._numbers: dict[int, NDArray[np.float64]] = {place: np.full(lanes, 0.5) for place in addresses}
+        self._words: dict[int, Words] = {place: np.zeros(lanes, dtype=np.uint64) for place in reads.words}
+        self._lanes = lanes
+
+    def __len__(self) -> int:
+        return self._lanes
+
+    def _made(self, numbers: dict[int, NDArray[np.float64]], words: dict[int, Words], lanes: int) -> "_State":
+        other = object.__new__(_State)
+        other._numbers, other._words, other._lanes = numbers, words, lanes
+        return other
+
+    def copy(self) -> "_State":
+        """Another state that shares columns until they are redrawn."""
+        return self._made(dict(self._numbers), dict(self._words), self._lanes)
+
+    def take(self, lanes: NDArray[np.intp]) -> "_State":
+        """Some of the lanes."""
+        return self._made(
+            {place: column[lanes] for place, column in self._numbers.items()},
+            {place: column[lanes] for place, column in self._words.items()},
+            len(lanes),
+        )
+
+    def become(self, parts: Sequence["_State"]) -> None:
+        """The lanes of several states one after the other."""
+        for place in self._numbers:
+            self._numbers[place] = np.concatenate([part._numbers[place] for part in parts])
+        for place in self._words:
+            self._words[place] = np.concatenate([part._words[place] for part in parts])
+
+    def put(self, lanes: NDArray[np.intp], part: "_State") -> None:
+        """Lanes as they are in another state, one after the other."""
+        for place, column in part._numbers.items():
+            self._numbers[place][lanes] = column
+        for place, words in part._words.items():
+            self._words[place][lanes] = words
+
+    def put_block(self, lanes: NDArray[np.intp], other: "_State", block: _Block) -> None:
+        """A block of some lanes as it is in another state of the same lanes."""
+        for place in block.numbers:
+            column = self._numbers[place].copy()
+            column[lanes] = other._numbers[place][lanes]
+            self._numbers[place] = column
+        for place in block.words:
+            words = self._words[place].copy()
+            words[lanes] = other._words[place][lanes]
+            self._words[place] = words
+
+    def redraw(self, random: np.random.Generator, block: _Block, step: float) -> None:
+        """Draw a block anew, at most so far from where it was; words, at random, where ``step`` is 0.5."""
+        for place in block.numbers:
+            shift = random.uniform(-step, step, self._lanes)
+            self._numbers[place] = np.clip((self._numbers[place] + shift) % 1.0, 2.0**-60, 1 - 2.0**-53)
+        if step == _STEPS[0]:
+            for place in block.words:
+                self._words[place] = random.integers(0, 2**64, self._lanes, dtype=np.uint64, endpoint=False)
+
+    def correlation(self, other: "_State", places: Sequence[int]) -> float:
+        """The largest correlation of some numbers here and in another state of the same lanes."""
+        largest = 0.0
+        for place in places:
+            here, there = self._numbers[place], other._numbers[place]
+            spread = float(here.std() * there.std())
+            if spread > 0:
+                covariance = float(((here - here.mean()) * (there - there.mean())).mean())
+                largest = max(largest, abs(covariance) / spread)
+        return largest
+
+    def source(self, keys: Words) -> Points:
+        """The source of the lanes."""
+        return Points(self._numbers, Counter(keys), self._words)
