@@ -72,7 +72,7 @@ ONLY_IN = {
 """Libraries that only some layers may know."""
 
 HEAVY = {"scipy", "trimesh", "z3", "embreex", "shapely", "manifold3d", "PIL", "networkx"}
-HEAVY |= {"mujoco", "pyarrow", "imageio_ffmpeg", "cma", "optuna", "torch"}
+HEAVY |= {"mujoco", "pyarrow", "imageio_ffmpeg", "cma", "optuna", "sklearn"}
 """Libraries that may not be imported when a module is."""
 
 

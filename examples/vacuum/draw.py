@@ -24,7 +24,7 @@ def main() -> None:
     options.add_argument("-o", "--output", type=Path, default=Path("worst.svg"))
     given = options.parse_args()
     rows = list(csv.DictReader(given.table.open()))
-    worst = min(rows, key=lambda row: float(row["robustness"]))
+    worst = min((row for row in rows if row["robustness"]), key=lambda row: float(row["robustness"]))
     print(f"numToys={worst['numToys']}, simulation {worst['k']}: robustness {worst['robustness']}")
     scenario = scenic.load(PROGRAM, params={"numToys": int(worst["numToys"])})
     number = int(worst["k"])
@@ -37,7 +37,9 @@ def drawing(scene: object, path: list[list[float]]) -> str:
     """The room from above: what was swept, the path, and the things where they stood at the beginning."""
     line = shapely.LineString([place[:2] for place in path])
     ground = [
-        shapely.MultiPoint([tuple(corner)[:2] for corner in thing.corners]).convex_hull
+        shapely.Point(tuple(thing.position)[:2]).buffer(thing.width / 2)
+        if thing is scene.egoObject
+        else shapely.MultiPoint([tuple(corner)[:2] for corner in thing.corners]).convex_hull
         for thing in scene.objects
     ]
     shapes = [

@@ -2,16 +2,13 @@
 
 from collections.abc import Sequence
 
-from shapely import LineString
+import shapely
 
 __all__ = ["Sweep"]
 
-_EXACT = 1e-3
-"""Deviation (metres) up to which a path is simplified before it is buffered."""
-
 
 class Sweep:
-    """The path of a robot's middle, and the area that its disc has swept.
+    """The area that the disc of a robot has swept, along the way of its middle.
 
     Args:
         radius: radius of the robot, metres.
@@ -21,6 +18,8 @@ class Sweep:
     def __init__(self, radius: float) -> None:
         self.radius = radius
         self.path: list[tuple[float, float]] = []
+        self._swept: shapely.Geometry = shapely.Polygon()
+        self._counted = 0
 
     def pass_over(self, place: Sequence[float]) -> None:
         """Add the present place of the robot's middle, metres."""
@@ -28,6 +27,9 @@ class Sweep:
 
     def area(self) -> float:
         """The swept area, square metres."""
-        if len(self.path) < 2:
-            return 0.0
-        return float(LineString(self.path).simplify(_EXACT).buffer(self.radius).area)
+        # The rest of the path begins where the counted part ends.
+        rest = self.path[max(0, self._counted - 1) :]
+        line = shapely.LineString(rest) if len(rest) > 1 else shapely.MultiPoint(rest)
+        self._swept = self._swept.union(line.buffer(self.radius))
+        self._counted = len(self.path)
+        return float(self._swept.area)

@@ -5,9 +5,10 @@ from types import MappingProxyType
 from typing import Any, Final
 
 from scenic.falsification.samplers.annealing import Annealing
+from scenic.falsification.samplers.bayesian import Bayesian
 from scenic.falsification.samplers.buckets import Bandit, CrossEntropy, EpsilonGreedy
 from scenic.falsification.samplers.evolution import Evolution
-from scenic.falsification.samplers.models import Bayesian, Parzen
+from scenic.falsification.samplers.parzen import Parzen
 from scenic.falsification.samplers.protocol import Sampler, SamplerError
 from scenic.falsification.samplers.sequences import Grid, Halton, Random, Sobol
 from scenic.falsification.space import Space

@@ -1,4 +1,4 @@
-"""Samplers that model what was seen, by the library ``optuna``: Bayesian optimisation, tree-structured Parzen estimators."""
+"""Tree-structured Parzen estimators, by the library ``optuna``."""
 
 import warnings
 from typing import Any
@@ -9,16 +9,20 @@ from scenic.falsification.samplers.protocol import SamplerError, options
 from scenic.falsification.space import Floats, Space
 from scenic.language.extras import installation
 
-__all__ = ["Bayesian", "Parzen"]
+__all__ = ["Parzen"]
 
 
-class _Study:
-    """A study that optuna keeps in memory."""
+class Parzen:
+    """Tree-structured Parzen estimators (Bergstra et al., "Algorithms for hyper-parameter optimization", 2011)."""
 
     batch: int | None = None
 
-    def __init__(self, space: Space, name: str, sampler: Any) -> None:
-        optuna = _optuna(name)
+    def __init__(self, space: Space, seed: int, given: Any = None) -> None:
+        options(given, {}, "tpe")
+        optuna = _library()
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            sampler = optuna.samplers.TPESampler(seed=seed % 2**32, multivariate=True, constant_liar=True)
         self._optuna = optuna
         self._study: Any = optuna.create_study(sampler=sampler)
         self._laws = {
@@ -59,48 +63,13 @@ class _Study:
                     self._study.tell(trial, state=self._optuna.trial.TrialState.FAIL)
 
 
-def _optuna(name: str) -> Any:
+def _library() -> Any:
     try:
         import optuna
     except ImportError:
         raise SamplerError(
-            f"the sampler {name!r} needs the package `optuna`",
+            "the sampler 'tpe' needs the package `optuna`",
             help=f"install it: {installation('falsify')}",
         ) from None
     optuna.logging.set_verbosity(optuna.logging.ERROR)
     return optuna
-
-
-class Bayesian(_Study):
-    """Bayesian optimisation: a Gaussian process and expected improvement, after ``init_num`` random points."""
-
-    batch = 1
-
-    def __init__(self, space: Space, seed: int, given: Any = None) -> None:
-        chosen = options(given, {"init_num": 5}, "bo")
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            try:
-                import torch as torch
-            except ImportError:
-                raise SamplerError(
-                    "the sampler 'bo' needs the package `torch`",
-                    help="install it: pip install torch (it is large, so no extra brings it)",
-                ) from None
-            sampler = _optuna("bo").samplers.GPSampler(
-                seed=seed % 2**32, n_startup_trials=int(chosen["init_num"]), deterministic_objective=True
-            )
-        super().__init__(space, "bo", sampler)
-
-
-class Parzen(_Study):
-    """Tree-structured Parzen estimators (Bergstra et al., "Algorithms for hyper-parameter optimization", 2011)."""
-
-    def __init__(self, space: Space, seed: int, given: Any = None) -> None:
-        options(given, {}, "tpe")
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            sampler = _optuna("tpe").samplers.TPESampler(
-                seed=seed % 2**32, multivariate=True, constant_liar=True
-            )
-        super().__init__(space, "tpe", sampler)
