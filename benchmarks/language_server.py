@@ -8,6 +8,7 @@ client reads JSON and does no more, as editors do. The server starts as an insta
 
 import argparse
 import os
+import re
 import sys
 import tempfile
 import time
@@ -44,7 +45,19 @@ def f{i}(a, b=1):
 HEAD = "class SetSpeed:\n    def __init__(self, s):\n        self.s = s\n\nego = new Object\n"
 
 
+EXAMPLES = sorted((Path(__file__).parents[1] / "examples").rglob("*.scenic"))
+
+
+def real_program(lines: int) -> str:
+    """The repository's examples one after the other, again and again."""
+    texts: list[str] = []
+    while sum(text.count("\n") for text in texts) < lines:
+        texts.append(EXAMPLES[len(texts) % len(EXAMPLES)].read_text(encoding="utf-8"))
+    return "".join(texts)
+
+
 def program(lines: int) -> str:
+    """Blocks of one kind."""
     count = lines // BLOCK.count("\n")
     return HEAD + "".join(BLOCK.replace("{i}", str(index)) for index in range(count))
 
@@ -80,29 +93,44 @@ def measured(client: Client, edits: int, what: Callable[[int], float]) -> str:
     return f"p95 {1000 * waits[int(0.95 * edits)]:7.1f}   processor {1000 * used:7.1f}"
 
 
-def session(lines: int, edits: int, folder: Path) -> None:
-    text = program(lines)
-    uri = (folder / f"program{lines}.scenic").as_uri()
+def session(name: str, text: str, edits: int, folder: Path) -> None:
+    uri = (folder / "program.scenic").as_uri()
     began = time.perf_counter()
     client = started(folder)
     client.open(uri, text)
     client.published(uri, version=1)
-    print(f"{lines} lines")
+    print(name)
     print(
         f"  start to first diagnostics       {1000 * (time.perf_counter() - began):7.1f}   processor {1000 * processor(client):7.1f}"
     )
     rows = text.split("\n")
     line = next(
-        number for number, row in enumerate(rows) if row.startswith("table") and number > len(rows) // 2
+        number for number, row in enumerate(rows) if re.match(r"\w+ = new", row) and number > len(rows) // 2
     )
-    place = {"textDocument": {"uri": uri}, "position": {"line": line, "character": 12}}
+    inner = next(
+        number for number, row in enumerate(rows) if re.match(r" +width:", row) and number > len(rows) // 2
+    )
+    position = {"line": line, "character": 12}
+    place = {
+        "textDocument": {"uri": uri},
+        "position": position,
+        "range": {"start": position, "end": position},
+        "context": {"diagnostics": [], "triggerKind": 1},
+        "options": {"tabSize": 4, "insertSpaces": True},
+    }
 
-    def edit(new: str) -> int:
-        return client.change(uri, ((line, 0), (line, 0), new))
+    def edit(new: str, at: int = line, column: int = 0) -> int:
+        return client.change(uri, ((at, column), (at, column), new))
 
     def diagnostics(_index: int) -> float:
         start = time.perf_counter()
         client.published(uri, version=edit("q"))
+        return time.perf_counter() - start
+
+    def within(_index: int) -> float:
+        column = rows[inner].index("width")
+        start = time.perf_counter()
+        client.published(uri, version=edit("q", inner, column))
         return time.perf_counter() - start
 
     def answer(method: str, *, settled: bool) -> Callable[[int], float]:
@@ -134,11 +162,13 @@ def session(lines: int, edits: int, folder: Path) -> None:
 
     print(f"  diagnostics after a keystroke    {measured(client, edits, diagnostics)}")
     client.published(uri, version=client.change(uri, text))
+    print(f"  the same within a class          {measured(client, edits, within)}")
+    client.published(uri, version=client.change(uri, text))
     print(f"  diagnostics after a new line     {measured(client, edits, line_end)}")
     client.published(uri, version=client.change(uri, text))
     print(f"  after a bracket is typed, deleted {measured(client, edits, bracket)}")
     # Elsewhere a bracket is open.
-    client.published(uri, version=client.change(uri, text.replace("def f5(a, b=1)", "def f5(a, b=1")))
+    client.published(uri, version=client.change(uri, text + "def f(a, b=1:\n    return a\n"))
     print(f"  the same in a broken text        {measured(client, edits, diagnostics)}")
     client.published(uri, version=client.change(uri, text))
     for name, method, settled in (
@@ -147,6 +177,8 @@ def session(lines: int, edits: int, folder: Path) -> None:
         ("hover while a check runs", "textDocument/hover", False),
         ("symbols", "textDocument/documentSymbol", True),
         ("semantic tokens", "textDocument/semanticTokens/full", True),
+        ("code actions", "textDocument/codeAction", True),
+        ("formatting", "textDocument/formatting", True),
     ):
         print(f"  {name:32} {measured(client, edits, answer(method, settled=settled))}   (with the check)")
     client.end()
@@ -187,7 +219,8 @@ def main() -> None:
         else:
             started(Path(folder)).end()  # Its modules are compiled.
             for lines in (500, 5000):
-                session(lines, options.edits, Path(folder))
+                session(f"{lines} lines of one kind", program(lines), options.edits, Path(folder))
+                session(f"{lines} lines of examples", real_program(lines), options.edits, Path(folder))
 
 
 if __name__ == "__main__":

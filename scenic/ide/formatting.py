@@ -17,9 +17,7 @@ from dataclasses import dataclass, field
 from typing import Any, Final
 
 from scenic.compiler import tree as scenic
-from scenic.compiler.generated import WORDS
-from scenic.compiler.lexer import lex
-from scenic.compiler.parser import DEEPEST, parse, recursion_limit
+from scenic.compiler.incremental import revise
 from scenic.compiler.tokens import DEDENT, ENDMARKER, FSTRING_MIDDLE, INDENT, NEWLINE, STRING, Tokens
 from scenic.compiler.unparser import UnparseError, unparse
 from scenic.ide.snapshot import Snapshot
@@ -57,7 +55,7 @@ def formatting(snapshot: Snapshot, *ranges: tuple[int, int]) -> tuple[Edit, ...]
     level. None for a text with mistakes.
     """
     before = snapshot.text
-    after = snapshot.derived("formatted", lambda: format_text(before))
+    after = snapshot.derived("formatted", lambda: _formatted(snapshot))
     if after is None or after == before:
         return ()
     edits = tuple(_edits(before.split("\n"), after.split("\n")))
@@ -171,13 +169,16 @@ def _said(line: str) -> str:
 
 def format_text(text: str) -> str | None:
     r"""A program in the usual style; ``None`` if it has mistakes of syntax. ``text`` has ``\n`` at each line end."""
-    parsed = parse(text)
-    if parsed.diagnostics:
+    return _formatted(Snapshot(text, "<text>"))
+
+
+def _formatted(snapshot: Snapshot) -> str | None:
+    if snapshot.parsed.diagnostics:
         return None
-    tokens = lex(text, WORDS)
+    tree, tokens = snapshot.tree, snapshot.tokens
     standing = _logical_lines(tokens)
     layout = _Layout(tokens)
-    units = deque(sorted(_units(parsed.tree.body, 0), key=lambda unit: unit.place))
+    units = deque(sorted(_units(tree.body, 0), key=lambda unit: unit.place))
     for line in standing:
         own = []
         while units and units[0].place[0] <= line.last:
@@ -186,7 +187,7 @@ def format_text(text: str) -> str | None:
     last = standing[-1].last if standing else 0
     layout.comments([comment for comment in tokens.comments if comment[0] > last], 0)
     result = layout.text()
-    return result if _same(parsed.tree, tokens, result) else None
+    return result if _same(tree, tokens, result) else None
 
 
 @dataclass(frozen=True, slots=True)
@@ -470,10 +471,28 @@ def _lines_in_strings(tokens: Tokens) -> Iterator[int]:
 
 def _same(tree: ast.Module, tokens: Tokens, result: str) -> bool:
     """Whether a text has this tree, and the comments of these tokens."""
-    again = parse(result)
-    if again.diagnostics:
+    again = revise(result)
+    if again.result.diagnostics:
         return False
     before = [text.rstrip() for _, _, text in tokens.comments]
-    after = [text.rstrip() for _, _, text in lex(result, WORDS).comments]
-    with recursion_limit(DEEPEST):
-        return before == after and ast.dump(tree) == ast.dump(again.tree)
+    after = [text.rstrip() for _, _, text in again.tokens.comments]
+    return before == after and _equal(tree, again.result.tree)
+
+
+def _equal(one: ast.AST, other: ast.AST) -> bool:
+    """Whether two trees say the same, wherever their nodes stand."""
+    pairs: list[tuple[Any, Any]] = [(one, other)]
+    while pairs:
+        left, right = pairs.pop()
+        if left.__class__ is not right.__class__:
+            return False
+        if isinstance(left, list):
+            if len(left) != len(right):
+                return False
+            pairs.extend(zip(left, right, strict=True))
+        elif isinstance(left, ast.AST):
+            mine, its = left.__dict__, right.__dict__
+            pairs.extend((mine.get(name), its.get(name)) for name in left._fields)
+        elif left != right:
+            return False
+    return True

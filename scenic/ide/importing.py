@@ -19,7 +19,7 @@ from scenic.language.spans import Span
 from scenic.project.index import Project
 from scenic.project.modules import Module
 
-__all__ = ["Missing", "missing_imports", "organize_imports"]
+__all__ = ["Missing", "can_organize", "missing_imports", "organize_imports"]
 
 _UNKNOWN: Final = frozenset({"SC202", "SC203"})
 _UNUSED: Final = "SC206"
@@ -138,6 +138,13 @@ def _imports(body: Sequence[ast.stmt]) -> list[ast.Import | ast.ImportFrom | sce
 # Imports in order
 
 
+def can_organize(snapshot: Snapshot, found: Sequence[Diagnostic]) -> bool:
+    """Whether `organize_imports` has something to do; decided without working out what."""
+    if snapshot.parsed.diagnostics:
+        return False
+    return any(item.code == _UNUSED for item in found) or organize_imports(snapshot, ()) is not None
+
+
 def organize_imports(snapshot: Snapshot, found: Sequence[Diagnostic]) -> Edit | None:
     """Removes imports that are not used, and puts the others in order where that changes nothing.
 
@@ -149,7 +156,7 @@ def organize_imports(snapshot: Snapshot, found: Sequence[Diagnostic]) -> Edit | 
         return None
     fixes = [item.fix for item in found if item.code == _UNUSED and item.fix is not None]
     text, _ = apply_fixes(snapshot.text, fixes)
-    tree = parse(text).tree
+    tree = snapshot.tree if text == snapshot.text else parse(text).tree
     lines = text.split("\n")
     groups: list[list[tuple[int, str]]] = []
     before = 0

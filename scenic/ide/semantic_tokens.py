@@ -2,9 +2,8 @@
 
 import ast
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from functools import cache
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.generated import HARD_KEYWORDS, OPERATORS
@@ -50,7 +49,20 @@ MODIFIERS: Final = (
 
 _MARKS: Final = frozenset({"(", ")", "[", "]", "{", "}", ",", ":", ";", "."})
 _OPERATOR_KINDS: Final = {kind for mark, kind in OPERATORS.items() if mark not in _MARKS}
+_STRING_KINDS: Final = frozenset({STRING, FSTRING_START, FSTRING_MIDDLE, FSTRING_END})
 _HARD_KINDS: Final = frozenset(HARD_KEYWORDS.values())
+
+_SILENT: Final = (
+    ast.Constant,
+    ast.BinOp,
+    ast.UnaryOp,
+    ast.Tuple,
+    ast.List,
+    ast.Assign,
+    ast.Compare,
+    ast.Subscript,
+)
+"""The most frequent of the nodes that say nothing about the words in them."""
 
 _OF_BINDING: Final = {
     BindingKind.PARAMETER: "parameter",
@@ -82,8 +94,7 @@ _OF_NAME: Final = {
 }
 
 
-@dataclass(frozen=True, slots=True)
-class SemanticToken:
+class SemanticToken(NamedTuple):
     """A stretch of one line: ``line`` from 1, columns in characters, what it is and what else can be said of it."""
 
     line: int
@@ -110,35 +121,35 @@ def _find(snapshot: Snapshot, project: Project | None) -> Iterator[SemanticToken
     tokens, source = snapshot.tokens, snapshot.source
     names = _names(snapshot, _imported(snapshot, project))
     plain: frozenset[str] = frozenset()
+    spelled: dict[int, _What] = dict.fromkeys(_OPERATOR_KINDS, ("operator", plain))
+    spelled |= dict.fromkeys(_HARD_KINDS, ("keyword", plain))
+    spelled |= dict.fromkeys(_STRING_KINDS, ("string", plain))
+    spelled[NUMBER] = ("number", plain)
+    spelled[NAME] = ("variable", plain)
+    soft: _What = ("keyword", plain)
+    ascii_lines = [line.isascii() for line in source.lines]
     found: list[SemanticToken] = []
-    for index, (kind, line, column) in enumerate(
-        zip(tokens.kinds, tokens.lines, tokens.columns, strict=True)
+    for kind, line, start, end_line, end in zip(
+        tokens.kinds, tokens.lines, tokens.columns, tokens.end_lines, tokens.end_columns, strict=True
     ):
-        what: _What | None = None
-        if kind >= NAME:
-            what = names.get((line, column))
-            if what is None:
-                what = ("keyword", plain) if kind > NAME else ("variable", plain)
-        elif kind in _HARD_KINDS:
-            what = ("keyword", plain)
-        elif kind == NUMBER:
-            what = ("number", plain)
-        elif kind in (STRING, FSTRING_START, FSTRING_MIDDLE, FSTRING_END):
-            what = names.get((line, column), ("string", plain))
-        elif kind in _OPERATOR_KINDS:
-            what = ("operator", plain)
+        what = names.get((line, start)) if kind >= NAME or kind in _STRING_KINDS else None
         if what is None:
+            what = soft if kind > NAME else spelled.get(kind)
+            if what is None:
+                continue
+        if line == end_line and ascii_lines[line - 1]:
+            if end > start:
+                found.append(SemanticToken(line, start, end, *what))
             continue
-        start, end_line = source.character(line, column), tokens.end_lines[index]
-        end = source.character(end_line, tokens.end_columns[index])
+        first_column, last_column = source.character(line, start), source.character(end_line, end)
         for at in range(line, end_line + 1):
-            first = start if at == line else 0
-            last = end if at == end_line else len(source.line(at))
+            first = first_column if at == line else 0
+            last = last_column if at == end_line else len(source.line(at))
             if last > first:
                 found.append(SemanticToken(at, first, last, *what))
     for line, column, text in tokens.comments:
         found.append(SemanticToken(line, column, column + len(text), "comment", plain))
-    found.sort(key=lambda token: (token.line, token.column))
+    found.sort()
     end_of_last = (0, 0)
     for token in found:
         if (token.line, token.column) >= end_of_last:
@@ -175,10 +186,13 @@ def _names(snapshot: Snapshot, imported: Callable[[str], str | None]) -> dict[tu
     # What a name is because of the node around it, which is visited first.
     outer: dict[ast.AST, str] = {}
     for node in walk(snapshot.tree):
+        if isinstance(node, _SILENT):
+            continue
         outer.update((decorator, "decorator") for decorator in getattr(node, "decorator_list", ()))
         if isinstance(node, ast.Name):
+            what = outer.get(node)
             place = (node.lineno, node.col_offset)
-            found[place] = (outer[node], none) if node in outer else _of_name(node, resolution, imported)
+            found[place] = _of_name(node, resolution, imported) if what is None else (what, none)
         elif isinstance(node, ast.Attribute):
             found[_end_of(node, node.attr)] = (outer.get(node, "property"), none)
         elif isinstance(node, ast.Call):

@@ -27,6 +27,8 @@ _MOST_SUGGESTIONS: Final = 100
 _MOST_FOLDERS: Final = 4
 """So many of the folders that were searched are named."""
 
+_GUARDS: Final = (ast.Try, ast.TryStar, scenic.TryInterrupt)
+
 
 class Imports:
     """The imports of a program, in its project. If ``verbose``, those of which nothing is known are reported."""
@@ -317,8 +319,11 @@ class Imports:
         """The beginning and the end of each ``try`` that catches errors."""
         return [
             (position(owner), (owner.end_lineno or 0, owner.end_col_offset or 0))
-            for owner in walk(self._tree)
-            if isinstance(owner, ast.Try | ast.TryStar | scenic.TryInterrupt) and owner.handlers
+            for stretch in self._resolution.stretches
+            if stretch.common("guarded", _has_guards)
+            for statement in stretch.statements
+            for owner in walk(statement)
+            if isinstance(owner, _GUARDS) and owner.handlers
         ]
 
     def _place(self, node: Any, name: str) -> Span:
@@ -333,6 +338,14 @@ class Imports:
 
     def _alias_place(self, alias: ast.alias) -> Span:
         return word_span(self._source, alias, alias.name)
+
+
+def _has_guards(stretch: Stretch) -> bool:
+    return any(
+        isinstance(owner, _GUARDS) and owner.handlers
+        for statement in stretch.statements
+        for owner in walk(statement)
+    )
 
 
 def _judgement(found: Found, node: Any, level: int) -> tuple[Severity | None, str | None]:

@@ -14,7 +14,15 @@ from scenic.compiler.checks.kept import Kept, Moves, Said, changed_names
 from scenic.compiler.checks.meanings import ProgramMeanings
 from scenic.compiler.checks.places import header_span, word_span
 from scenic.compiler.kinds import Kind, KindOf
-from scenic.compiler.scopes import PROVIDED, Binding, BindingKind, Resolution, Scope, ScopeKind, Stretch
+from scenic.compiler.scopes import (
+    PROVIDED,
+    Binding,
+    BindingKind,
+    Resolution,
+    Scope,
+    ScopeKind,
+    Stretch,
+)
 from scenic.compiler.surroundings import Foreign, Surroundings
 from scenic.compiler.traversal import position
 from scenic.language.diagnostics import Diagnostic, Edit, Fix, Label, Severity
@@ -329,15 +337,15 @@ class Context:
         found: frozenset[str] = self.fact("unresolved")
         return found
 
-    @cached_property
-    def mentions(self) -> Mapping[str, list[tuple[int, int]]]:
-        """Where each name is read or written, in order."""
-        found: dict[str, list[tuple[int, int]]] = {}
-        for reference in self.resolution.references.values():
-            found.setdefault(reference.node.id, []).append(position(reference.node))
-        for places in found.values():
-            places.sort()
-        return found
+    def mentions(self, name: str) -> list[tuple[int, int]]:
+        """Where a name is read or written, in order."""
+        return sorted(
+            position(reference.node)
+            for stretch in self.resolution.stretches
+            if name in stretch.common("mentioned", _mentioned)
+            for reference in stretch.references.values()
+            if reference.node.id == name
+        )
 
     # What is said about it
 
@@ -524,3 +532,7 @@ NodeRule = Callable[[Any, Scope, Context], Iterator[Diagnostic]]
 
 ProgramRule = Callable[[Context], Iterator[Diagnostic]]
 """What is said about a program as a whole."""
+
+
+def _mentioned(stretch: Stretch) -> frozenset[str]:
+    return frozenset(reference.node.id for reference in stretch.references.values())

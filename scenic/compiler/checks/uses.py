@@ -261,7 +261,7 @@ def _replaced(context: Context, statements: Iterable[ast.stmt]) -> Iterator[Diag
             continue
         if any(getattr(node, "decorator_list", None) for node in (first, statement)):
             continue
-        mentions = context.mentions.get(name, [])
+        mentions = context.mentions(name)
         following = bisect_left(mentions, position(first))
         if following < len(mentions) and mentions[following] < position(statement):
             continue

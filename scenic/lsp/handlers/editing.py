@@ -10,10 +10,9 @@ from scenic.ide import navigation
 from scenic.ide.dedenting import dedented
 from scenic.ide.diagnostics import found_in
 from scenic.ide.formatting import formatting
-from scenic.ide.importing import missing_imports, organize_imports
+from scenic.ide.importing import can_organize, missing_imports, organize_imports
 from scenic.ide.repairs import can_repair_all, ignoring, repair_all, repairs, touch
 from scenic.language.diagnostics import Diagnostic, Edit
-from scenic.language.selection import Rules
 from scenic.language.spans import Span
 from scenic.lsp.capabilities import FIX_ALL, ORGANIZE
 from scenic.lsp.convert import to_diagnostic
@@ -45,11 +44,9 @@ def _actions(session: Session, params: types.CodeActionParams) -> list[types.Cod
     # An editor asks with each move of the cursor what is offered there.
     automatic = params.context.trigger_kind is types.CodeActionTriggerKind.Automatic and not only
     if not automatic and _wanted(FIX_ALL, only) and can_repair_all(found):
-        actions += _all_repairs(session, document, rules)
-    if not automatic and _wanted(ORGANIZE, only):
-        organized = organize_imports(document.snapshot, found)
-        if organized is not None:
-            actions.append(_action(session, document, "Organize imports", ORGANIZE, [organized]))
+        actions += _of_document(session, document, FIX_ALL, "Make all repairs of scenic")
+    if not automatic and _wanted(ORGANIZE, only) and can_organize(document.snapshot, found):
+        actions += _of_document(session, document, ORGANIZE, "Organize imports")
     return actions
 
 
@@ -70,26 +67,29 @@ def _quick_fixes(
         yield _action(session, document, missing.title, _QUICK_FIX, [missing.edit], missing.diagnostic)
 
 
-def _all_repairs(session: Session, document: Document, rules: Rules) -> list[types.CodeAction]:
-    """One action that makes all repairs; its changes are worked out when it is chosen, if the client can wait."""
-    title = "Make all repairs of scenic"
+def _of_document(session: Session, document: Document, kind: str, title: str) -> list[types.CodeAction]:
+    """An action on the whole document; its changes are worked out when it is chosen, if the client can wait."""
     can_wait = "edit" in session.lists("text_document.code_action.resolve_support.properties")
     if can_wait and session.can("text_document.code_action.data_support"):
-        data = {"uri": document.uri, "version": document.version}
-        return [types.CodeAction(title, kind=FIX_ALL, data=data)]
-    edit = _repair_all(session, document, rules)
-    return [] if edit is None else [_action(session, document, title, FIX_ALL, [edit])]
+        data = {"uri": document.uri, "version": document.version, "kind": kind}
+        return [types.CodeAction(title, kind, data=data)]
+    edit = _edit_of_document(session, document, kind)
+    return [] if edit is None else [_action(session, document, title, kind, [edit])]
 
 
-def _repair_all(session: Session, document: Document, rules: Rules) -> Edit | None:
-    """All repairs of a document as one edit, worked out once for each version."""
+def _edit_of_document(session: Session, document: Document, kind: str) -> Edit | None:
+    """What an action on the whole document changes, worked out once for each version."""
     snapshot = document.snapshot
+    _, rules = session.rules(snapshot.filename)
 
     def make() -> Edit | None:
         project = session.project_beside(document)
+        if kind == ORGANIZE:
+            found = found_in(snapshot, rules, project, stamp=session.generation)
+            return organize_imports(snapshot, found)
         return repair_all(snapshot.text, filename=snapshot.filename, rules=rules, project=project)
 
-    return snapshot.derived("all repairs", make, stamp=(session.generation, rules))
+    return snapshot.derived(kind, make, stamp=(session.generation, rules))
 
 
 def _resolve_action(session: Session, action: types.CodeAction) -> types.CodeAction:
@@ -100,8 +100,7 @@ def _resolve_action(session: Session, action: types.CodeAction) -> types.CodeAct
     document = session.document(uri)
     if document.version != data.get("version"):
         raise JsonRpcException("the document has changed", types.LSPErrorCodes.ContentModified)
-    _, rules = session.rules(document.snapshot.filename)
-    edit = _repair_all(session, document, rules)
+    edit = _edit_of_document(session, document, str(data.get("kind")))
     if edit is not None:
         action.edit = _changes(session, document, [edit])
     return action

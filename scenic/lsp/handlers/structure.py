@@ -9,7 +9,7 @@ from scenic.ide.folding import FoldKind, folds
 from scenic.ide.selection import selections
 from scenic.ide.semantic_tokens import MODIFIERS, TYPES, SemanticToken, semantic_tokens
 from scenic.ide.symbols import Symbol, flat, symbols
-from scenic.lsp.convert import units
+from scenic.lsp.convert import Encoding
 from scenic.lsp.documents import Document
 from scenic.lsp.handlers.navigation import KINDS
 from scenic.lsp.session import Session
@@ -130,20 +130,24 @@ def _encoded(document: Document, tokens: Sequence[SemanticToken]) -> list[int]:
     """Tokens as the protocol has them: five numbers each, places relative to the token before."""
     data: list[int] = []
     last_line = last_start = 0
-    encoding = document.lines.encoding
+    lines, rows = document.lines, document.snapshot.source.lines
+    plain = [lines.encoding is Encoding.UTF32 or row.isascii() for row in rows]
+    modifiers: dict[frozenset[str], int] = {}
     for token in tokens:
-        content = document.snapshot.source.line(token.line)
-        position = document.lines.to_position(token.line, token.column)
-        line, start = position.line, position.character
-        length = units(content[token.column : token.end_column], encoding)
+        line, start, end = token.line, token.column, token.end_column
+        if line == 1 or not plain[line - 1]:
+            start = lines.to_position(line, start).character
+            end = lines.to_position(line, end).character
+        if token.modifiers not in modifiers:
+            modifiers[token.modifiers] = sum(_MODIFIER[name] for name in token.modifiers)
         data += (
-            line - last_line,
-            start - last_start if line == last_line else start,
-            length,
+            line - 1 - last_line,
+            start - last_start if line - 1 == last_line else start,
+            end - start,
             _TYPE[token.type],
-            sum(_MODIFIER[name] for name in token.modifiers),
+            modifiers[token.modifiers],
         )
-        last_line, last_start = line, start
+        last_line, last_start = line - 1, start
     return data
 
 
