@@ -27,6 +27,10 @@ __all__ = ["TABLE", "Climber", "Table", "Tree", "climb"]
 RESERVED: Final = frozenset({*HARD_KEYWORDS, "NEWLINE"})
 """Words that are no names, and what stands after the last token."""
 
+_DIRECTIONS: Final = frozenset({"_ left of _", "_ right of _"})
+_CORNERS: Final = frozenset({"front", "back", "top", "bottom"})
+"""Words that belong to the ``left`` or ``right`` after them: ``front left of x`` is a corner, or a mistake."""
+
 
 @dataclass(frozen=True)
 class Table:
@@ -151,6 +155,8 @@ class Climber:
             elif form.level < slot.level:
                 continue
             if not isinstance(first, Slot):
+                continue
+            if form.text in _DIRECTIONS and self.words[left.end - 1] in _CORNERS:
                 continue
             links: tuple[Tree, ...] = (left.tree,)
             if left.form is not None and not first.accepts(left.form):

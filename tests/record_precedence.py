@@ -50,11 +50,19 @@ json.dump([places(line) for line in json.load(sys.stdin)], sys.stdout)
 """Nodes without fields only name a word; operations and their operands are the others."""
 
 
+NEWER = {
+    *("_ ahead of _", "_ behind _", "_ left of _", "_ right of _"),
+    *("apparent heading to _", "apparent heading to _ from _"),
+}
+"""Operators of a later version of the language than the reference implementation."""
+
+
 def bare_texts() -> list[str]:
     """Lines with all pairs of operators, without parentheses, in expressions and in conditions of ``require``."""
+    ordinary = [row for row in ORDINARY if row.text not in NEWER]
     both = MIXED + TEMPORAL
     conditions = {*pairs(TEMPORAL, both), *pairs(both, TEMPORAL)}
-    return [f"x = ( {text} )" for text in sorted(set(pairs(ORDINARY, ORDINARY)))] + [
+    return [f"x = ( {text} )" for text in sorted(set(pairs(ordinary, ordinary)))] + [
         f"require {text}" for text in sorted(conditions)
     ]
 

@@ -204,6 +204,15 @@ _ALL = (
         is_complete=True,
     ),
     _function(
+        "tan(x)",
+        "The tangent of an angle in radians.",
+        lifted=True,
+        angles=("x",),
+        operation="tan",
+        result=SCALAR,
+        is_complete=True,
+    ),
+    _function(
         "hypot(x, y, ...)",
         "The length of the vector with these coordinates.",
         lifted=True,

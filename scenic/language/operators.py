@@ -153,6 +153,17 @@ def _side(side: str) -> Operator:
     )
 
 
+def _direction(words: str, condition: str) -> Operator:
+    return Operator(
+        f"is {words}",
+        (Operand("target", (VECTOR,)), Operand("base", (ORIENTED_POINT,))),
+        "boolean",
+        (f"target {words} base",),
+        f"Whether the apparent heading to the target from the base is {condition}. On a border, within a hundredth of "
+        "a degree, it is neither this nor the opposite.",
+    )
+
+
 _ALL = (
     Operator(
         "deg",
@@ -236,6 +247,15 @@ _ALL = (
         "The heading of the target relative to the line of sight from the viewpoint.",
         angle=True,
         functions=(Function("ApparentHeading(X, Y=None)"),),
+    ),
+    Operator(
+        "apparent heading to",
+        (Operand("target", (VECTOR,)), Operand("viewer", (ORIENTED_POINT,), EGO)),
+        "scalar",
+        ("apparent heading to target", "apparent heading to target from viewer"),
+        "The heading of the line from the viewer to the target, relative to the heading of the viewer: 0 is straight "
+        "ahead, and it grows anticlockwise up to pi.",
+        angle=True,
     ),
     Operator(
         "distance",
@@ -345,6 +365,15 @@ _ALL = (
         ("first intersects second",),
         "Whether two objects or regions share a point.",
         functions=(Function("Intersects(X, Y)"),),
+    ),
+    *(
+        _direction(words, condition)
+        for words, condition in (
+            ("ahead of", "less than 90 degrees to either side"),
+            ("behind", "more than 90 degrees to either side"),
+            ("left of", "on the left"),
+            ("right of", "on the right"),
+        )
     ),
     Operator(
         "initial scenario",

@@ -109,7 +109,7 @@ _ALL = (
         "terminate after",
         ("terminate after duration",),
         _TOP_AND_SETUP,
-        "Ends the scenario after so many seconds or steps.",
+        "Ends the scenario after a number of seconds or steps. Of several, the earliest counts.",
     ),
     Statement(
         "Terminate",
@@ -154,10 +154,16 @@ _ALL = (
     Statement(
         "Do",
         "do",
-        ("do behavior", "do behavior for duration", "do behavior until condition", "do scenario, ..."),
+        (
+            "do behavior",
+            "do behavior for duration",
+            "do behavior until condition",
+            "do behavior, ...",
+            "do scenario, ...",
+        ),
         _DYNAMIC,
-        "Runs a behavior or scenario until it ends, a time is over or a condition holds; in a compose block, several "
-        "scenarios in parallel.",
+        "Runs a behavior or scenario until it ends, a time is over or a condition holds. Several scenarios, or several "
+        "behaviors of one agent, run side by side: the agent takes the actions of all, in order.",
         suspends=True,
     ),
     Statement(

@@ -27,7 +27,7 @@ MOST = 24
 """Combinations of operands of a case, at most."""
 
 LEFT_OPEN = {
-    *("power", "floor divide", "modulo", "round", "getitem", "sin", "cos", "normalize angle"),
+    *("power", "floor divide", "modulo", "round", "getitem", "sin", "cos", "tan", "normalize angle"),
     *("azimuth", "altitude", "normalized", "euler"),
 }
 """Which value of these it is the solver may leave open, even where it knows all operands."""

@@ -8,6 +8,7 @@ are several, the sentences of the specification that say which one is meant are 
 - words are keywords if the whole text can be read so, else names;
 - `is not` is one operator, as in Python;
 - a temporal prefix, and the last specifier of `new`, takes all that it can;
+- `left` and `right` after one of the other sides belong to it;
 - closing words, from left to right, go to the innermost operator that can use them.
 """
 
@@ -122,8 +123,11 @@ ROWS: Final = (
     _new("visible", "from", 2),
     _new("not", "visible"),
     _new("not", "visible", "from", 2),
-    _new("left", "of", 2),
-    _new("left", "of", 2, "by", 2),
+    *(
+        _new(*words, 2, *by)
+        for words in (("left", "of"), ("right", "of"), ("ahead", "of"), ("behind",))
+        for by in ((), ("by", 2))
+    ),
     _new("beyond", 2, "by", 2),
     _new("beyond", 2, "by", 2, "from", 2),
 )
@@ -201,7 +205,7 @@ def _gives_up(tree: Tree, words: list[str]) -> bool:
         row.parts[: len(node.row.parts)] == node.row.parts
         and row.parts[len(node.row.parts)] == words[node.end]
         for node in instances
-        if len(node.row.parts) > 2
+        if len(node.row.parts) > 2 or words[node.end] in ("left", "right", "ahead", "behind")
         for row in ROWS
         if len(row.parts) > len(node.row.parts)
     )
@@ -306,6 +310,13 @@ class _Readings:
             for row in self.others:
                 slot, *parts = row.parts
                 assert isinstance(slot, Slot)
+                if parts[0] in ("left", "right") and self.words[left.end - 1] in (
+                    "front",
+                    "back",
+                    "top",
+                    "bottom",
+                ):
+                    continue
                 if left.fits(slot):
                     results += self.rest(row, parts, start, left.end, (left.tree,))
                 elif row.chain and isinstance(left.tree, Node) and left.tree.row.goes_on_as(row):

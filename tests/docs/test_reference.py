@@ -10,7 +10,7 @@ from scenic.cli.main import scenic
 from scenic.language.diagnostics import CODES
 from scenic.language.keywords import HARD_KEYWORDS, SOFT_KEYWORDS
 from scenic.language.names import NAMES
-from scenic.language.operators import OPERATORS
+from scenic.language.operators import OPERATORS, SIDES
 from scenic.language.specifiers import SPECIFIERS
 from scenic.language.statements import STATEMENTS
 
@@ -33,10 +33,11 @@ def code() -> str:
 
 
 def test_every_element_has_a_section_of_its_page() -> None:
+    corners = {f"{side} of" for side in SIDES}
     for directive, page, names in (
         ("specifier", "specifiers", SPECIFIERS),
         ("statement", "statements", STATEMENTS),
-        ("operator", "operators", [name for name in OPERATORS if not name.endswith(" of")]),
+        ("operator", "operators", OPERATORS.keys() - corners),
     ):
         shown = re.findall(rf"```{{{directive}}} (.+)", (REFERENCE / f"{page}.md").read_text())
         assert sorted(shown) == sorted(names)
@@ -45,7 +46,7 @@ def test_every_element_has_a_section_of_its_page() -> None:
 def test_every_word_of_the_language_is_in_an_example() -> None:
     examples = code()
     words = {*HARD_KEYWORDS, *SOFT_KEYWORDS} - PYTHON_WORDS
-    sides = {name for name in OPERATORS if name.endswith(" of")}
+    sides = {f"{side} of" for side in SIDES}
     missing = [
         word for word in sorted({*words, *NAMES, *sides}) if not re.search(rf"(?<!\w){word}(?!\w)", examples)
     ]

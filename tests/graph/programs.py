@@ -191,7 +191,7 @@ CASES = [
     Case("len", (V,)),
     *(Case("getitem", (V, kind)) for kind in (I, B)),
     *(Case("truth", kinds) for kinds in [*_UNARY, (V,), (Q,)]),
-    *(Case(name, kinds) for name in ("sin", "cos", "normalize angle") for kinds in [(S,), (I,), (B,)]),
+    *(Case(name, kinds) for name in ("sin", "cos", "tan", "normalize angle") for kinds in [(S,), (I,), (B,)]),
     *(Case("hypot", kinds) for kinds in [(S, S), (S, I), (S, S, S), (S,), (B, I)]),
     *(
         Case(name, kinds)

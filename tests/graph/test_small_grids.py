@@ -24,7 +24,7 @@ STEPS = {
 """Values of operands; boxes have their ends among them."""
 MOST = 300
 """Boxes of an operation of three operands, at most."""
-TURNS = {"sin", "cos", "normalize angle"}
+TURNS = {"sin", "cos", "tan", "normalize angle"}
 """Operations whose formulas change at multiples of a quarter turn."""
 
 

@@ -25,7 +25,7 @@ TURNS = ["Orientation.fromEuler(1, 2, 3)", "Orientation.fromEuler(Range(0, 1), 2
 
 
 @pytest.mark.parametrize("value", VECTORS + TURNS)
-@pytest.mark.parametrize("function", ["sin", "cos", "hypot", "float", "int"])
+@pytest.mark.parametrize("function", ["sin", "cos", "tan", "hypot", "float", "int"])
 def test_vectors_are_no_numbers(function: str, value: str) -> None:
     error = failure(f"y = {value}\nparam x = {function}(y)")
     assert isinstance(error, TypeError)

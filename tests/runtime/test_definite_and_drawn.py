@@ -24,7 +24,7 @@ FUNCTIONS = [
 def expected_of(expression: str) -> Any:
     names = {
         "filter": lambda function, values: list(filter(function, values)),
-        **{name: getattr(math, name) for name in ("hypot", "sin", "cos")},
+        **{name: getattr(math, name) for name in ("hypot", "sin", "cos", "tan")},
         "numpy": np,
     }
     return eval(expression.format(NUMBER), names)

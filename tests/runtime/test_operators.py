@@ -101,6 +101,8 @@ CASES: dict[str, Any] = {
     "relative heading of o from p": wrap(TURN.as_euler("ZXY")[0] - YAW_P),
     "apparent heading of p": wrap(YAW_P - azimuth(P_AT - EGO_AT)),
     "apparent heading of p from b": wrap(YAW_P - azimuth(P_AT - B)),
+    "apparent heading to b": wrap(azimuth(B - EGO_AT) - YAW_EGO),
+    "apparent heading to b from p": wrap(azimuth(B - P_AT) - YAW_P),
     "distance to b": np.linalg.norm(B - EGO_AT),
     "distance from b": np.linalg.norm(B - EGO_AT),
     "distance from a to b": np.linalg.norm(B - A),
@@ -214,6 +216,8 @@ def test_operators_say_what_is_wrong_with_an_operand_that_is_drawn() -> None:
     cases = {
         "front of x": "an object",
         "apparent heading of x": "an oriented point",
+        "apparent heading to (1, 2) from x": "an oriented point",
+        "ego left of x": "an oriented point",
         "x intersects ego": "an object or a region",
         "minimum distance from ego to x": "an object",
         "distance past (0, 0) of x": "an oriented point",
@@ -295,6 +299,8 @@ def test_operators_need_an_ego_only_where_they_mean_it() -> None:
         "relative heading of (1, 2) from 3",
         "relative position of 3 from (1, 2)",
         "apparent heading of (1, 2) from (3, 4)",
+        "apparent heading to (1, 2) from (3, 4)",
+        "(1, 2) behind 3",
         "distance from 1 to (1, 2)",
         "distance from (1,) to (1, 2)",
         "angle from (1, 2) to ()",
@@ -612,6 +618,7 @@ WANTED = {
     "relative heading of «": ("`relative heading of`", HEADING),
     "relative heading of 3 from «": ("`relative heading of ... from`", HEADING),
     "apparent heading of ego from «": ("`apparent heading of ... from`", VECTOR),
+    "apparent heading to «": ("`apparent heading to`", VECTOR),
     "distance past «": ("`distance past`", VECTOR),
     "F at «": ("`at`", VECTOR),
     "F[«]": ("field 'F'", VECTOR),
@@ -736,3 +743,38 @@ def test_other_arrays_are_no_vectors(array: str) -> None:
     for expression in (f"v relative to {array}", f"distance from v to {array}", f"new Object at {array}"):
         text = f"import numpy\nv = Vector(Range(0, 1), 5, 0)\nparam x = {expression}\n"
         assert isinstance(failure(text), ScenicTypeError)
+
+
+def test_directions() -> None:
+    turned, size = math.radians(30), 0.02
+    directions = ("ahead of", "behind", "left of", "right of")
+    degrees = [0, 0.005, 1, 89.98, 90, 90.02, 179, -0.005, -1, -89.98, -90, -90.02, -179]
+    expected = [
+        (abs(angle) < 89.99, abs(angle) > 90.01, 0.01 < angle < 180, -180 < angle < -0.01)
+        for angle in degrees
+    ]
+    places = [
+        (7 - size * math.sin(turned + math.radians(angle)), 8 + size * math.cos(turned + math.radians(angle)))
+        for angle in degrees
+    ]
+    for spread in ("", " + (Range(0, 0), 0)"):
+        found = params(
+            "ego = new Object at (7, 8), facing 30 deg\nparam found = ["
+            + ", ".join(
+                f"[{', '.join(f'(Vector({x!r}, {y!r}, 3){spread} {words} ego)' for words in directions)}]"
+                for x, y in places
+            )
+            + "]\n"
+        )["found"]
+        assert [tuple(map(bool, row)) for row in found] == expected
+
+
+def test_straight_behind_is_neither_left_nor_right() -> None:
+    text = "ego = new Object\nparam p = [(0, -2) left of ego, (0, -2) right of ego, (0, -2) behind ego]"
+    assert params(f"{text}, q = apparent heading to (0, -2)") == {"p": [False, False, True], "q": math.pi}
+
+
+def test_requirements_narrow_by_direction() -> None:
+    text = "ego = new Object\na = new Object at (Range(-5, 5), Range(-5, 5))\n"
+    scenes = scenario(text + "require a left of ego\nrequire a ahead of ego").sample(50, seed=1)
+    assert all(scene.objects[1].x < 0 < scene.objects[1].y for scene in scenes)

@@ -1034,3 +1034,64 @@ ego = new Object with behavior B
         ("after",),
         *[()] * (3 - violated),
     ]
+
+
+# Side by side, and limits
+
+
+SIDE_BY_SIDE = """
+behavior Two():
+    take "a", "b"
+    take "c"
+behavior Three():
+    for number in range(3): take number
+behavior Stop():
+    wait
+    terminate
+behavior Both():
+    do {statement}
+    take "end"
+ego = new Object with behavior Both
+"""
+
+
+@pytest.mark.parametrize(
+    ("statement", "actions"),
+    [
+        ("Two(), Three()", [("a", "b", 0), ("c", 1), (2,), ("end",)]),
+        ("Three(), Two() for 1 steps", [(0, "a", "b"), ("end",), (), ()]),
+        ("Three(), Two() until simulation().currentTime == 2", [(0, "a", "b"), (1, "c"), ("end",), ()]),
+        ("Two(), Stop(), Three()", [("a", "b", 0)]),
+    ],
+)
+def test_behaviors_run_side_by_side(statement: str, actions: list[tuple[Any, ...]]) -> None:
+    assert taken(simulate(SIDE_BY_SIDE.format(statement=statement), 4)) == actions
+
+
+def test_the_earliest_of_several_limits_ends_by_time() -> None:
+    done = simulate(
+        "ego = new Object\nterminate after 3 steps\nterminate after 1 seconds\nterminate after 5 steps\n",
+        9,
+        timestep=0.5,
+    )
+    assert len(done.result.actions) == 2
+    assert done.result.terminationType is TerminationType.timeLimit
+
+
+def test_records_cover_the_steps_in_which_their_scenario_runs() -> None:
+    text = """
+scenario Main():
+    setup:
+        ego = new Object
+    compose:
+        wait
+        do Part() for 2 steps
+        wait
+scenario Part():
+    setup:
+        record simulation().currentTime as each
+        record final simulation().currentTime as last
+"""
+    done = simulate(text, 9)
+    assert done.records["each"] == [(1, 1), (2, 2)]
+    assert done.records["last"] == 3

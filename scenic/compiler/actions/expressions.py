@@ -11,6 +11,28 @@ from scenic.compiler.actions.common import LOAD, CommonActions, Place, make, pla
 class ExpressionActions(CommonActions):
     """Expressions whose parts need a check."""
 
+    def is_direction(self, side: int) -> bool:
+        """Whether the token ``left`` or ``right`` is not the end of ``front left of`` and the like."""
+        words = self._tokens.texts
+        before = words[side - 1]
+        if before in ("front", "back"):
+            self.fail(
+                (*self.place_of_token(side - 1)[:2], *self.place_of_token(side)[2:]),
+                f"`{before} {words[side]} of` cannot follow an operator that is tighter",
+                help=f"put parentheses around `{before} {words[side]} of ...`",
+                code="SC125",
+            )
+            return False
+        if before in ("top", "bottom"):
+            self.fail(
+                (*self.place_of_token(side - 1)[:2], *self.place_of_token(side)[2:]),
+                f"there is no operator `{before} {words[side]} of`: it does not say whether front or back",
+                help=f"write `{before} front {words[side]} of` or `{before} back {words[side]} of`",
+                code="SC114",
+            )
+            return False
+        return True
+
     def arguments(self, items: Sequence[Any]) -> tuple[list[Any], list[Any], Any] | None:
         """Split what a call is given into positional and keyword arguments, and check the order."""
         for item in items:

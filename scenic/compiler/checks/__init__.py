@@ -22,6 +22,7 @@ from scenic.compiler.checks import (
     guards,
     instances,
     making,
+    meant_specifiers,
     names,
     order,
     placement,
@@ -64,6 +65,7 @@ _CHECKS: Final[tuple[PieceRule, ...]] = (
     _misplaced,
     declarations.check_declarations,
     making.check_monitors,
+    meant_specifiers.check_meant_specifiers,
 )
 _LINTS: Final[tuple[PieceRule, ...]] = (
     _nodes,
@@ -101,7 +103,7 @@ NOTED: Final = frozenset(
         scenic.ScenarioDef,
         scenic.TerminateWhen,
         *(cls for cls, _ in _NODE_RULES),
-    }.union(declarations.NOTED, names.NOTED, placement.NOTED, support.NOTED)
+    }.union(declarations.NOTED, meant_specifiers.NOTED, names.NOTED, placement.NOTED, support.NOTED)
 )
 """The classes of nodes that rules look for, wherever in the tree they stand."""
 

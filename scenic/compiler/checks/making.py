@@ -42,45 +42,30 @@ def _call(node: ast.Call, _scope: Scope, context: Context) -> Iterator[Diagnosti
 
 
 def _assign(node: ast.Assign, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
-    """SC311: ``ego = new Object at 1, 2``, ``ego = new Object with width 3,``."""
+    """SC311: ``ego = new Object at 1, 2``."""
     value = node.value
     if not (isinstance(value, ast.Tuple) and value.elts and isinstance(value.elts[0], scenic.New)):
         return
     first, rest = value.elts[0], value.elts[1:]
-    if position(value) != position(first) or len(node.targets) != 1:
-        return  # in parentheses
+    if not rest or position(value) != position(first) or len(node.targets) != 1:
+        return  # A comma at the end is an error of its own, and parentheses say that a tuple is meant.
     target = node.targets[0]
     if isinstance(target, ast.Tuple | ast.List) or any(isinstance(each, scenic.New) for each in rest):
         return
     ego = isinstance(target, ast.Name) and target.id == "ego"
     say = context.error if ego else context.warning
-    if rest:
-        operand = _last_operand(first)
-        shown = None
-        if operand is not None and not isinstance(operand, ast.Tuple):
-            texts = [context.text(each) for each in (operand, *rest)]
-            shown = ", ".join(text for text in texts if text) if all(texts) else None
-        yield say(
-            "SC311",
-            "this comma makes a tuple of the object and what follows",
-            Span(context.span(rest[0]).line, context.span(rest[0]).column, *_end(context, rest[0])),
-            f"put the coordinates in parentheses: `({shown})`"
-            if shown
-            else "put parentheses around what belongs together, or write a specifier after the comma",
-        )
-        return
-    end = context.source.span(first)
-    line = context.source.line(end.end_line)
-    comma = line.find(",", end.end_column)
-    if comma < 0:
-        return
-    place = Span(end.end_line, comma, end.end_line, comma + 1)
+    operand = _last_operand(first)
+    shown = None
+    if operand is not None and not isinstance(operand, ast.Tuple):
+        texts = [context.text(each) for each in (operand, *rest)]
+        shown = ", ".join(text for text in texts if text) if all(texts) else None
     yield say(
         "SC311",
-        "this comma makes a tuple that holds nothing but the object",
-        place,
-        "remove the comma, or write more specifiers after it",
-        fix=Fix("Remove the comma", (Edit(place, ""),)),
+        "this comma makes a tuple of the object and what follows",
+        Span(context.span(rest[0]).line, context.span(rest[0]).column, *_end(context, rest[0])),
+        f"put the coordinates in parentheses: `({shown})`"
+        if shown
+        else "put parentheses around what belongs together, or write a specifier after the comma",
     )
 
 

@@ -101,10 +101,10 @@ def _problems(node: ast.AST, where: Where) -> Iterator[tuple[str, str]]:
                 "a property is defined directly in the body of its class",
                 "move it out of the nested statement",
             )
-        case scenic.Do(targets=[_, _, *_]) if where.place is not Place.COMPOSE:
+        case scenic.Do(targets=[_, _, *_]) if where.place not in (Place.COMPOSE, Place.BEHAVIOR):
             yield (
                 f"`do` with several targets cannot be used {where.place}",
-                "only scenarios run in parallel, in a compose block; write one `do` for each",
+                "only scenarios and behaviors run side by side; write one `do` for each",
             )
         case scenic.Abort() if not where.interruptible:
             yield (

@@ -105,10 +105,13 @@ class Conditions:
                 if not all(type(item) in _MEASURED for item in ops):
                     return []
                 symbols, compared = [_MEASURED[type(item)] for item in ops], [left, *others]
-            case scenic.Operation(operator="intersects", operands=[ast.expr() as left, ast.expr() as right]):
-                symbols, compared = ["intersects"], [left, right]
-            case scenic.Operation(operator="can see", operands=[ast.expr() as left, ast.expr() as right]):
-                symbols, compared = ["can see"], [left, right]
+            case scenic.Operation(
+                operator=(
+                    "intersects" | "can see" | "is ahead of" | "is behind" | "is left of" | "is right of"
+                ) as symbol,
+                operands=[ast.expr() as left, ast.expr() as right],
+            ):
+                symbols, compared = [symbol], [left, right]
             case _:
                 return []
         words = tuple_([constant(symbol, node) for symbol in symbols], node)

@@ -334,6 +334,8 @@ WATCHED: Final = frozenset(chain(_SECOND_WORDS, _WHOLE_STATEMENTS, *_BEFORE_OPER
 
 def is_keyword(name: str, after: After, closer: str, lead: int) -> bool:
     """Whether the parser would take a name for something else in this place."""
+    if after in ("left", "right") and name in ("front", "back", "top", "bottom"):
+        return True
     if lead & PREFIX:
         if after in _SECOND_WORDS.get(name, ()):
             return True

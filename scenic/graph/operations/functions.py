@@ -71,8 +71,23 @@ sin_bounds = _wave_bounds(math.pi / 2)
 cos_bounds = _wave_bounds(0.0)
 
 
+def _tan_bounds(_payload: Any, angle: Bounds) -> Bounds:
+    # Half turns since an asymptote: the function grows between two of them. A margin covers the rounding of large angles.
+    start, end = (angle.lower / math.pi - 0.5, angle.upper / math.pi - 0.5)
+    margin = 1e-15 * (2 + np.maximum(np.abs(start), np.abs(end)))
+    monotone = np.floor(start - margin) == np.floor(end + margin)
+    ends = intervals.relaxed(Bounds(np.tan(angle.lower), np.tan(angle.upper)), 1e-15)
+    return intervals.doubtful(
+        Bounds(np.where(monotone, ends.lower, -np.inf), np.where(monotone, ends.upper, np.inf)), angle
+    )
+
+
 def _wave_solver(terms: Terms, _payload: Any, _angle: Any) -> Any:
     return within(terms, -1.0, 1.0)
+
+
+def _tan_solver(terms: Terms, _payload: Any, _angle: Any) -> Any:
+    return terms.fresh(Kind.SCALAR)
 
 
 def _hypot_bounds(_payload: Any, *parts: Bounds) -> Bounds:
@@ -160,6 +175,18 @@ OPERATIONS = (
         faults=may_be_infinite,
         stacks=True,
         scalar=lambda _payload, angle: math.cos(angle),
+    ),
+    Operation(
+        "tan",
+        always(Kind.SCALAR),
+        _periodic(math.tan),
+        "Tangent of an angle in radians.",
+        python=math.tan,
+        bounds=_tan_bounds,
+        solver=_tan_solver,
+        faults=may_be_infinite,
+        stacks=True,
+        scalar=lambda _payload, angle: math.tan(angle),
     ),
     Operation(
         "hypot",

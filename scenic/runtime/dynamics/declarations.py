@@ -127,7 +127,8 @@ class Declared:
     ends: list[End] = field(default_factory=list)
     monitors: list[MonitorUse] = field(default_factory=list)
     records: list[RecordUse] = field(default_factory=list)
-    limit: tuple[float, str] | None = None
+    limits: list[tuple[float, str]] = field(default_factory=list)
+    """Of ``terminate after``: numbers with their units; the earliest counts."""
 
     def within(self, copier: Copier) -> "Declared":
         """The same over the values of a simulation."""
@@ -135,7 +136,7 @@ class Declared:
             [item.within(copier) for item in self.ends],
             [MonitorUse(copier.value(item.monitor), item.label) for item in self.monitors],
             [item.within(copier) for item in self.records],
-            self.limit,
+            self.limits,
         )
 
     def random_parts(self) -> list[Any]:

@@ -198,7 +198,7 @@ class Dynamics:
                 span=here(),
                 help="write a number, or one that is computed of fixed numbers alone",
             )
-        self._declared.limit = (value, unit)  # the last one counts
+        self._declared.limits.append((value, unit))
 
     def record(
         self,

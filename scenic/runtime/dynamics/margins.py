@@ -1,6 +1,6 @@
 """By how much a condition holds: the atoms of quantitative robustness (`scenic.runtime.temporal.robustness`).
 
-A margin is in the unit of what is compared, positive where the condition holds and negative where it does not. It is infinite
+A margin is in the unit of what is compared (radians for directions), positive where the condition holds and negative where it does not. It is infinite
 where there is nothing to measure: for an equality that holds, or inside something of which no depth is known. What is seen is
 measured by shares and angles (`scenic.runtime.visibility.clearance`).
 """
@@ -11,16 +11,18 @@ from typing import Any
 
 import numpy as np
 
+from scenic.graph.quaternions import normal_angle
 from scenic.language.errors import ScenicError
 from scenic.runtime.geometry.depth import convex_depth
 from scenic.runtime.geometry.poses import Floats
 from scenic.runtime.geometry.scalar_bodies import overlap
-from scenic.runtime.instances.objects import Object, Point
+from scenic.runtime.instances.objects import Object, OrientedPoint, Point
 from scenic.runtime.program.context import current
 from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.body_regions import gap_between
 from scenic.runtime.regions.planar import PlanarRegion
 from scenic.runtime.regions.stacked import placed_of
+from scenic.runtime.values.directions import DIRECTIONS
 from scenic.runtime.values.values import Vector, is_number, is_vector, to_vector
 from scenic.runtime.visibility.clearance import clearance
 from scenic.runtime.visibility.seeing import sees
@@ -32,7 +34,7 @@ def margin(symbols: Sequence[str], operands: Sequence[Any]) -> float | None:
     """The least margin of ``a SYMBOL b SYMBOL c ...``; ``None`` where one of the parts has none.
 
     Args:
-        symbols: comparisons, ``in``, ``not in``, ``intersects`` or ``can see``.
+        symbols: comparisons, ``in``, ``not in``, ``intersects``, ``can see`` or a direction such as ``is ahead of``.
         operands: one more than symbols.
 
     """
@@ -59,6 +61,8 @@ def _part(symbol: str, left: Any, right: Any) -> float | None:
             return _overlap(left, right)
         case "can see":
             return _sight(left, right)
+        case "is ahead of" | "is behind" | "is left of" | "is right of":
+            return _direction(symbol.removeprefix("is "), left, right)
         case _:
             opposite = _part("==" if symbol == "!=" else "in", left, right)
             return None if opposite is None else -opposite
@@ -72,6 +76,14 @@ def _equality(left: Any, right: Any) -> float | None:
     else:
         return None
     return -apart if apart else math.inf
+
+
+def _direction(words: str, place: Any, base: Any) -> float | None:
+    """By which angle, in radians, the base could turn before the place leaves the direction."""
+    if not isinstance(base, OrientedPoint):
+        return None
+    bearing = normal_angle(base.position.azimuthTo(to_vector(place)) - base.heading)
+    return DIRECTIONS[words].margin(bearing)
 
 
 def _membership(item: Any, region: Any) -> float | None:

@@ -339,7 +339,7 @@ class Run:
         while True:
             # 1. Scenarios
             if top.running and top.resume() is None:
-                self._remember("scenarioComplete", top.reason or "")
+                self._remember("timeLimit" if top.timed_out else "scenarioComplete", top.reason or "")
             if self.unmet is not None:
                 raise self.unmet
             # 2. Sensors

@@ -1,6 +1,7 @@
 """Running scenarios: prepared, started, stepped, stopped (section 12.5 of the specification)."""
 
 import inspect
+import math
 from collections.abc import Generator
 from typing import TYPE_CHECKING, Any
 
@@ -67,9 +68,11 @@ class ScenarioActivation(Guarded):
         self.running = False
         self.reason: str | None = None
         """Why it stopped."""
+        self.timed_out = False
+        """Whether a ``terminate after`` stopped it."""
         self.number = run.number_of(self)
         self._elapsed = 0
-        self._limit: float | None = None
+        self._limit = math.inf
         self._compose: Generator[Yielded, None, Any] | None = None
         self._resumed = False
 
@@ -103,8 +106,11 @@ class ScenarioActivation(Guarded):
                     help="use `do`, `wait` or `terminate` in it",
                 )
             self._compose = run.copies.value(body)(self.instance)
-        if self.declared.limit is not None:
-            self._limit = limit_in_steps(*self.declared.limit, run.simulation.timestep, "`terminate after`")
+        timestep = run.simulation.timestep
+        self._limit = min(
+            (limit_in_steps(*limit, timestep, "`terminate after`") for limit in self.declared.limits),
+            default=math.inf,
+        )
         self.running = True
         run.scenarios.append(self)
         for agent in self.agents:
@@ -146,7 +152,8 @@ class ScenarioActivation(Guarded):
         run = self.run
         for requirement in self.followed:
             requirement.follow()
-        if self._limit is not None and self._elapsed >= self._limit:
+        if self._elapsed >= self._limit:
+            self.timed_out = True
             return self._stopped("reached time limit")
         self._elapsed += 1
         with run.within(self):

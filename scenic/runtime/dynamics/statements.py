@@ -11,7 +11,7 @@ from scenic.language.errors import (
     ScenicTypeError,
     ScenicValueError,
 )
-from scenic.runtime.dynamics.activations import Activation, Yielded
+from scenic.runtime.dynamics.activations import Activation, Termination, Yielded
 from scenic.runtime.dynamics.definitions import Behavior, Invocable, ModularScenario, Monitor
 from scenic.runtime.program.context import here
 from scenic.runtime.values.values import describe, is_number
@@ -107,11 +107,11 @@ def do(owner: Running, targets: Sequence[Any], limit: Any = None, unit: str | No
                 if output is None:
                     break
             else:
-                # In parallel only scenarios are, which take no actions.
-                output = ()
-                waiting = [sub for sub in waiting if sub.resume() is not None]
+                outputs = [(sub, sub.resume()) for sub in waiting]
+                waiting = [sub for sub, taken in outputs if taken is not None]
                 if not waiting:
                     break
+                output = _joined([taken for _, taken in outputs if taken is not None])
             owner.direct = False
             yield output
             if stop is not None and stop():
@@ -128,6 +128,16 @@ def do(owner: Running, targets: Sequence[Any], limit: Any = None, unit: str | No
         for sub in started:
             sub.stop()
     owner.check_invariants()
+
+
+def _joined(outputs: Sequence[Yielded]) -> Yielded:
+    """The actions of a step of all that runs side by side, in order; the first request to terminate among them counts."""
+    actions: tuple[Any, ...] = ()
+    for output in outputs:
+        if isinstance(output, Termination):
+            return output
+        actions += output
+    return actions
 
 
 def wait(owner: Running, limit: Any, unit: str) -> Steps:

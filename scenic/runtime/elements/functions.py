@@ -44,6 +44,12 @@ def cos(x: Any) -> Any:
     return _of_numbers("cos", x)
 
 
+@_for_python(math.tan)
+def tan(x: Any) -> Any:
+    """Tangent of an angle in radians."""
+    return _of_numbers("tan", x)
+
+
 @_for_python(math.hypot)
 def hypot(*coordinates: Any) -> Any:
     """Euclidean length of a vector given by its coordinates."""

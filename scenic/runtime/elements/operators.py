@@ -4,6 +4,7 @@ Each is a composition of operations of the table, so that sampling, intervals an
 those of `scenic.language.operators`.
 """
 
+import math
 from collections.abc import Callable, Mapping
 from operator import attrgetter
 from types import MappingProxyType
@@ -21,6 +22,7 @@ from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.body_regions import gap_between
 from scenic.runtime.regions.fields import frame_at, relative_to
 from scenic.runtime.regions.views import part_of
+from scenic.runtime.values.directions import DIRECTIONS, Direction
 from scenic.runtime.values.lazy import defer, definite, is_lazy
 from scenic.runtime.values.values import (
     Vector,
@@ -66,6 +68,26 @@ def _relative_heading(heading: Any, base: Any) -> Any:
 
 def _apparent_heading(target: Any, viewpoint: Any) -> Any:
     return _normal(_minus(target.heading, _azimuth(_minus(target.position, viewpoint))))
+
+
+def _apparent_heading_to(target: Any, viewer: Any) -> Any:
+    """From -pi, exclusive, to pi."""
+    bearing = _normal(_minus(_azimuth(_minus(target, viewer.position)), viewer.heading))
+    return operate("if", operate("greater", bearing, -math.pi), bearing, math.pi)
+
+
+def _lies(direction: Direction) -> Callable[[Any, Any], Any]:
+    """The operator that tells whether a place lies in a direction of an oriented point."""
+
+    def build(target: Any, base: Any) -> Any:
+        bearing = _apparent_heading_to(target, base)
+        if direction.either_side:
+            bearing = operate("absolute", bearing)
+        return operate(
+            "and", operate("greater", bearing, direction.least), operate("less", bearing, direction.most)
+        )
+
+    return build
 
 
 def _distance(start: Any, end: Any) -> Any:
@@ -127,6 +149,8 @@ IMPLEMENTATIONS: Mapping[str, Callable[..., Any]] = MappingProxyType(
         "relative position": _minus,
         "relative heading": _relative_heading,
         "apparent heading": _apparent_heading,
+        "apparent heading to": _apparent_heading_to,
+        **{f"is {words}": _lies(direction) for words, direction in DIRECTIONS.items()},
         "distance": _distance,
         "minimum distance": gap_between,
         "distance past": _distance_past,

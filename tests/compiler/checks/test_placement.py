@@ -44,7 +44,7 @@ do a for 3 steps                          -   -     ok      ok       ok      -
 do a until b                              -   -     ok      ok       ok      -
 do choose a, b                            -   -     ok      ok       ok      -
 do shuffle a, b                           -   -     ok      ok       ok      -
-do a, b                                   -   -     ok      -        -       -
+do a, b                                   -   -     ok      ok       -       -
 try:;    wait;interrupt when a:;    wait  -   -     ok      ok       ok      -
 abort                                     -   -     -       -        -       -
 override a with b 3                       -   ok    ok      ok       ok      -

@@ -97,6 +97,11 @@ def robustness(condition: str, steps: int, program: str = SCENE) -> float:
         ("always not (4 == ego.name)", math.inf),
         ("always ego.position.x != None", math.inf),
         ("always 1 > ego.position.x >= -3", 1),
+        # Directions, in radians.
+        ("always wall ahead of ego", math.radians(89.99)),
+        ("always wall.position left of block", math.atan(0.7 / 5.6) - math.radians(0.01)),
+        ("always block right of ego", math.atan2(0.7, 0.4) - math.radians(0.01)),
+        ("always ego behind wall", math.pi - math.radians(90.01)),
         # A point as its place, and lines, that have no inside.
         ("always (new Point at (0, 1)) in zone", 4),
         ("always wall.position not in PolylineRegion([(-3, -9), (-3, 99)])", 3),

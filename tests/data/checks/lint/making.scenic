@@ -16,8 +16,6 @@ class Crate(Box):
 #   ^^^^^^ SC300 `Crate` has no property `colour` to give a default, so this line defin
 a = new Box at 1, 2
 #                 ^ SC311 this comma makes a tuple of the object and what follows
-b = new Box with depth 3,
-#                       ^ SC311 this comma makes a tuple that holds nothing but the object
 c = (new Box at (1, 2), 3)
 d = new Box, new Box
 e = new object

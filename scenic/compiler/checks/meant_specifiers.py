@@ -1,0 +1,95 @@
+"""What reads as a tuple or as an operator, and can only be meant as a specifier of a new object."""
+
+import ast
+from collections.abc import Iterator
+from typing import Final
+
+from scenic.compiler import tree as scenic
+from scenic.compiler.checks.context import Context
+from scenic.compiler.checks.pieces import Piece
+from scenic.compiler.traversal import position
+from scenic.language.diagnostics import Diagnostic, Edit, Fix
+from scenic.language.spans import Span
+
+__all__ = ["NOTED", "check_meant_specifiers"]
+
+NOTED: Final = frozenset({ast.Assign, ast.Expr, scenic.Operation, scenic.SpecifierPhrase})
+
+_DIRECTIONS: Final = frozenset({"is ahead of", "is behind", "is left of", "is right of"})
+
+
+def check_meant_specifiers(piece: Piece, context: Context) -> Iterator[Diagnostic]:
+    """SC111, SC113 and SC311: a specifier without `new`, without a comma before it, or missing after one."""
+    for cls in (ast.Assign, ast.Expr):
+        for node, _ in piece.nodes(cls):
+            yield from _dangling_comma(node.value, context)
+    for node, _ in piece.nodes(scenic.Operation):
+        yield from _missing_new(node, context)
+    for node, _ in piece.nodes(scenic.SpecifierPhrase):
+        yield from _missing_comma(node, context)
+
+
+def _dangling_comma(value: ast.expr, context: Context) -> Iterator[Diagnostic]:
+    """``ego = new Object with width 3,``."""
+    if not (isinstance(value, ast.Tuple) and len(value.elts) == 1 and isinstance(value.elts[0], scenic.New)):
+        return
+    (first,) = value.elts
+    if position(value) != position(first):
+        return  # in parentheses
+    end = context.source.span(first)
+    comma = context.source.line(end.end_line).find(",", end.end_column)
+    if comma < 0:
+        return
+    place = Span(end.end_line, comma, end.end_line, comma + 1)
+    yield context.error(
+        "SC311",
+        "no specifier follows this comma, which makes a tuple of the object",
+        place,
+        "remove the comma, or write more specifiers after it",
+        fix=Fix("Remove the comma", (Edit(place, ""),)),
+    )
+
+
+def _missing_new(node: scenic.Operation, context: Context) -> Iterator[Diagnostic]:
+    """``Chair left of table``."""
+    if node.operator not in _DIRECTIONS:
+        return
+    left = node.operands[0]
+    if not isinstance(left, ast.Name) or context.classes.properties(left) is None:
+        return
+    words = node.operator.removeprefix("is ")
+    start = context.source.span(left)
+    place = Span(start.line, start.column, start.line, start.column)
+    yield context.error(
+        "SC111",
+        f"`{left.id}` is followed by a specifier, but `new` is missing",
+        left,
+        f"write `new {left.id} {words} ...`",
+        fix=Fix("Insert `new`", (Edit(place, "new "),)),
+    )
+
+
+def _missing_comma(node: scenic.SpecifierPhrase, context: Context) -> Iterator[Diagnostic]:
+    """``new Chair at x left of table``: no specifier takes the answer of such a question but ``with``."""
+    operand = node.operands[-1] if node.operands else None
+    if not isinstance(operand, scenic.Operation) or operand.operator not in _DIRECTIONS:
+        return
+    left = operand.operands[0]
+    if left is None or (node.specifier == "with" and not isinstance(left, ast.Constant)):
+        return
+    start, end = context.source.span(operand), context.source.span(left)
+    if context.source.line(start.line)[: start.column].rstrip().endswith("("):
+        return  # in parentheses: a wrong operand, but no missing comma
+    words = operand.operator.removeprefix("is ")
+    word = words.split()[0]
+    column = context.source.line(end.end_line).find(word, end.end_column)
+    if column < 0:
+        return
+    gap = Span(end.end_line, end.end_column, end.end_line, end.end_column)
+    yield context.error(
+        "SC113",
+        f"a comma is missing before the specifier `{words}`",
+        Span(end.end_line, column, end.end_line, column + len(word)),
+        f"write `{context.text(left) or '...'}, {words} ...`",
+        fix=Fix("Insert a comma", (Edit(gap, ","),)),
+    )
