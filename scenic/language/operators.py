@@ -5,7 +5,7 @@ the operands stand in the order declared here. An operand with a default may be 
 ``None`` in the tree.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Final
@@ -26,7 +26,7 @@ from scenic.language.types import (
     listed,
 )
 
-__all__ = ["EGO", "FRAMES", "OPERATORS", "SIDES", "Function", "Operand", "Operator"]
+__all__ = ["EGO", "FRAMES", "OPERATORS", "SIDES", "Function", "Operand", "Operator", "label"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,24 +91,29 @@ class Operator:
     functions: tuple[Function, ...] = ()
 
     def label(self, operand: Operand) -> str:
-        """The operator as messages about an operand name it: its first words, and those before the operand.
+        """The operator as messages about an operand name it; see `label`."""
+        return label(self.forms, self.operands, operand)
 
-        The words that follow an operand name it where the text begins with it.
-        """
-        names = {each.name for each in self.operands}
-        words = next(form.split() for form in self.forms if operand.name in form.split())
-        # A keyword of the same name stands before its operand: `offset by offset`.
-        places = {number for number, word in enumerate(words) if word in names - set(words[number + 1 :])}
-        end = max(number for number in places if words[number] == operand.name)
-        if end == 0:
-            end = min(places - {0}, default=len(words))
-        runs: list[list[str]] = [[]]
-        for number in range(1 if 0 in places else 0, end):
-            if number in places:
-                runs.append([])
-            else:
-                runs[-1].append(words[number])
-        return f"`{' ... '.join(' '.join(run) for run in (runs if len(runs) < 3 else [runs[0], runs[-1]]))}`"
+
+def label(forms: Sequence[str], operands: Sequence[Operand], operand: Operand) -> str:
+    """An operator or specifier as messages about an operand name it: its first words, and those before the operand.
+
+    The words that follow an operand name it where the text begins with it.
+    """
+    names = {each.name for each in operands}
+    words = next(form.split() for form in forms if operand.name in form.split())
+    # A keyword of the same name stands before its operand: `offset by offset`.
+    places = {number for number, word in enumerate(words) if word in names - set(words[number + 1 :])}
+    end = max(number for number in places if words[number] == operand.name)
+    if end == 0:
+        end = min(places - {0}, default=len(words))
+    runs: list[list[str]] = [[]]
+    for number in range(1 if 0 in places else 0, end):
+        if number in places:
+            runs.append([])
+        else:
+            runs[-1].append(words[number])
+    return f"`{' ... '.join(' '.join(run) for run in (runs if len(runs) < 3 else [runs[0], runs[-1]]))}`"
 
 
 EGO: Final = "the ego"

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Final
 
-from scenic.language.operators import EGO, Function, Operand
+from scenic.language.operators import EGO, Function, Operand, label
 from scenic.language.types import (
     ANYTHING,
     DIRECTION,
@@ -66,6 +66,10 @@ class SpecifierDeclaration:
     reads_ego: bool = False
     reads_workspace: bool = False
     functions: tuple[Function, ...] = ()
+
+    def label(self, operand: Operand) -> str:
+        """The specifier as messages about an operand name it."""
+        return label(self.forms, self.operands, operand)
 
 
 _PREFERRED = "the region has a preferred orientation"

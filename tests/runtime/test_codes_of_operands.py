@@ -1,13 +1,15 @@
-"""An operator refuses an operand of a wrong type with one code, be the operand definite, drawn, a choice or open.
+"""An operator or specifier refuses an operand of a wrong type with one code, be the operand definite, drawn, a choice or open.
 
-Each operator is asked twice, of a definite operand and of a random one of the same kind. Where both are refused, while
+Each is asked twice, of a definite operand and of a random one of the same kind. Where both are refused, while
 the program is loaded or in a sample, the codes must agree.
 """
 
+import re
 from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
+import pytest
 
 import scenic
 from scenic.graph.batch import Batch
@@ -16,15 +18,14 @@ from scenic.graph.node import Graph, Node
 from scenic.graph.operation import FAULT
 from scenic.graph.schedule import Scheduler
 from scenic.language.errors import Located
-from scenic.language.operators import OPERATORS, SIDES
+from scenic.language.operators import OPERATORS, SIDES, Operator
+from scenic.language.specifiers import SPECIFIERS, SpecifierDeclaration
 from scenic.runtime.values.values import CODEC, Random
 
 KINDS = {
     "number": ("0.5", "Range(0, 1)"),
-    "whole": ("3", "DiscreteRange(2, 4)"),
     "boolean": ("True", "Uniform(True, False)"),
     "vector": ("Vector(1, 2, 3)", "Vector(Range(1, 2), 2, 3)"),
-    "pair": ("(4, 5)", "(Range(3, 4), 5)"),
     "orientation": ("turn", "Orientation.fromEuler(Range(0, 1), 0, 0)"),
     "point": ("point", None),
     "oriented point": ("oriented", None),
@@ -36,7 +37,6 @@ KINDS = {
     "list": ("[1, 2.5, -3, 4]", "[Range(0, 1), 2.5, -3, 4]"),
     "none": ("nothing", None),
     "class": ("cls", None),
-    "function": ("abs", None),
 }
 """The text of a definite operand of each kind, and of one that is drawn."""
 
@@ -60,12 +60,12 @@ def given(value, other):
 """
 
 
-def form_of(name: str) -> str:
-    """How an operator is written with all operands, each as a field to be filled in."""
-    declared = OPERATORS[name]
+def form_of(declared: Operator | SpecifierDeclaration) -> str:
+    """How an element is written with all operands, each as a field to be filled in."""
     words = declared.forms[-1].split()
     for operand in declared.operands:  # Keywords of the same name stand before it.
-        words[len(words) - 1 - words[::-1].index(operand.name)] = f"({{{operand.name}}})"
+        if operand.name in words:
+            words[len(words) - 1 - words[::-1].index(operand.name)] = f"({{{operand.name}}})"
     return " ".join(words)
 
 
@@ -78,12 +78,25 @@ def random_texts(kind: str) -> Iterator[str]:
         yield drawn
 
 
-def cases() -> Iterator[tuple[str, list[str]]]:
-    """An expression over a definite operand, and those over random ones in its place."""
+def operators() -> Iterator[str]:
+    """Each operator, but one alone of the sides, which are one function."""
     for name, declared in OPERATORS.items():
-        if name.removesuffix(" of") in SIDES[1:]:  # The sides are one function.
-            continue
-        form, names = form_of(name), [operand.name for operand in declared.operands]
+        if name.removesuffix(" of") not in SIDES[1:]:
+            yield form_of(declared)
+
+
+def specifiers() -> Iterator[str]:
+    """What each specifier gives a new object; one alone of those that differ by a direction."""
+    for name, declared in SPECIFIERS.items():
+        if name not in ("with", "right of", "ahead of", "behind", "above", "below"):
+            given = "orientation" if declared.group == "orientation" else "position"
+            yield f"(new Object {form_of(declared)}, with allowCollisions True).{given}"
+
+
+def cases(forms: Iterator[str]) -> Iterator[tuple[str, list[str]]]:
+    """An expression over a definite operand, and those over random ones in its place."""
+    for form in forms:
+        names = re.findall(r"\{(\w+)\}", form)
         for asked in names:
             for others in seconds(len(names) - 1):
                 rest = dict(zip([each for each in names if each != asked], others, strict=True))
@@ -141,8 +154,9 @@ def code_in(batch: Batch, node: Node) -> str | None:
     return code_of(batch.errors[failed])
 
 
-def test_definite_and_random_operands_are_refused_alike() -> None:
-    asked = list(cases())
+@pytest.mark.parametrize("forms", [operators, specifiers])
+def test_definite_and_random_operands_are_refused_alike(forms: Callable[[], Iterator[str]]) -> None:
+    asked = list(cases(forms()))
     expressions = list(dict.fromkeys(text for definite, random in asked for text in (definite, *random)))
     found = dict(zip(expressions, codes(expressions), strict=True))
     pairs = {(definite, other) for definite, random in asked for other in random}

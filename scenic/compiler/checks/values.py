@@ -69,12 +69,12 @@ def _specifiers(node: scenic.New | scenic.Override, scope: Scope, context: Conte
                 title = f"`with {specifier.property}`"
                 yield from _given(title, declared.type, specifier.operands[0], context)
         elif specifier.specifier in SPECIFIERS:
-            operands = SPECIFIERS[specifier.specifier].operands
-            for operand, value in zip(operands, specifier.operands, strict=False):
+            element = SPECIFIERS[specifier.specifier]
+            for operand, value in zip(element.operands, specifier.operands, strict=False):
                 left_out = operand.default is not None and _is_none(value)
                 # `in front of x` has a message of its own.
                 if not left_out and not isinstance(value, scenic.Operation):
-                    yield from _wrong(f"`{specifier.specifier}`", operand.types, value, context)
+                    yield from _wrong(element.label(operand), operand.types, value, context)
 
 
 def _is_cut(node: ast.AST, context: Context) -> bool:

@@ -1,4 +1,4 @@
-"""Operands of the language's own operators, from what a program gives to what an implementation takes.
+"""Operands of operators and specifiers, from what a program gives to what an implementation takes.
 
 A declaration (`scenic.language.operators`) says which types an operand may have, and what stands in where the text leaves it
 out. One layer here decides, for all operators alike and in one order:
@@ -23,6 +23,7 @@ from scenic.language.operators import EGO, Operator
 from scenic.language.types import (
     DIRECTION,
     FIELD,
+    HEADING,
     HEADING_OR_ANGLES,
     OBJECT,
     ORIENTATION,
@@ -36,6 +37,7 @@ from scenic.language.types import (
 )
 from scenic.runtime.instances.objects import Object, OrientedPoint, Point
 from scenic.runtime.python.opaque import call_later
+from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.choice import as_region
 from scenic.runtime.regions.drawn import DrawnRegion
 from scenic.runtime.regions.fields import VectorField, field_of
@@ -229,6 +231,47 @@ def _reading_places(types: Sequence[Type], label: str) -> Read:
         return UNDECIDED if found is None else _READINGS[found].convert(value, label)
 
     return read
+
+
+def region_of(value: Any, label: str) -> Region:
+    """A region; raises `ScenicTypeError` for anything else."""
+    region = as_region(value)
+    if region is not None:
+        return region
+    if is_open(value):
+        return DrawnRegion.of(value, label)
+    raise wrong_type(REGION, value, label)
+
+
+def _observer(value: Any, label: str) -> Any:
+    if not is_kind(value, Point):
+        raise wrong_type(POINT, value, label)
+    return value
+
+
+_CONVERTED: Final[Mapping[Type, Callable[[Any, str], Any]]] = MappingProxyType(
+    {
+        SCALAR: to_scalar,
+        VECTOR: to_vector,
+        HEADING: to_heading,
+        FIELD: field_of,
+        REGION: region_of,
+        POINT: _observer,
+    }
+)
+
+
+def converter(types: Sequence[Type], label: str) -> Read:
+    """The function that converts an operand of a specifier: a lazy value gives a lazy one, as it is read with the instance.
+
+    Operands of several types, and those of a type that depends on where the instance is, stay as they are.
+
+    Raises:
+        ScenicTypeError: when it is called with a value of a wrong type.
+
+    """
+    convert = _CONVERTED.get(types[0]) if len(types) == 1 else None
+    return (lambda value: value) if convert is None else lambda value: convert(value, label)
 
 
 def bound(declared: Operator, function: Callable[..., Any], drawn: Callable[..., Any]) -> Bound:

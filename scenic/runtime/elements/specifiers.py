@@ -13,17 +13,17 @@ from types import MappingProxyType
 from typing import Any
 
 from scenic.language.errors import InvalidScenarioError, ScenicTypeError
-from scenic.language.operators import EGO
+from scenic.language.operators import EGO, Operand
 from scenic.language.spans import Span
 from scenic.language.specifiers import SPECIFIERS, SpecifierDeclaration
-from scenic.language.types import OBJECT, POINT, REGION, VECTOR
-from scenic.runtime.elements.operands import Ego, is_kind
-from scenic.runtime.instances.objects import Object, OrientedPoint, Point
+from scenic.language.types import OBJECT, REGION, VECTOR
+from scenic.runtime.elements.operands import Ego, Read, converter, is_kind, region_of
+from scenic.runtime.instances.objects import Object, OrientedPoint
 from scenic.runtime.program.context import current, here
 from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.choice import as_region
 from scenic.runtime.regions.drawn import DrawnRegion
-from scenic.runtime.regions.fields import field_of, frame_at, is_field
+from scenic.runtime.regions.fields import VectorField, frame_at, is_field
 from scenic.runtime.regions.scattered import PointSetRegion
 from scenic.runtime.regions.spaces import Everywhere, Workspace
 from scenic.runtime.regions.views import place_in_plane, place_near
@@ -38,7 +38,6 @@ from scenic.runtime.values.values import (
     operate,
     options_of,
     per_option,
-    to_heading,
     to_orientation,
     to_scalar,
     to_vector,
@@ -87,8 +86,12 @@ class _Declared:
     """Priorities if the declared conditions hold."""
     needs: frozenset[str]
     modifies: frozenset[str]
+    reads: tuple[Read, ...]
+    """The conversions of operands; the name of the property is the first one of ``with``."""
     ego_at: tuple[int, ...]
     """Operands for which the ego stands in."""
+    reads_ego: bool
+    reads_workspace: bool
 
     @classmethod
     def of(cls, declared: SpecifierDeclaration) -> "_Declared":
@@ -97,8 +100,26 @@ class _Declared:
             MappingProxyType({item.property: item.priority for item in declared.specifies}),
             frozenset(declared.needs),
             frozenset(declared.modifies),
+            (
+                *(() if declared.specifies else (_same,)),
+                *(_reading(declared, each) for each in declared.operands),
+            ),
             tuple(i for i, operand in enumerate(declared.operands) if operand.default == EGO),
+            declared.reads_ego,
+            declared.reads_workspace,
         )
+
+
+def _same(value: Any) -> Any:
+    return value
+
+
+def _reading(declared: SpecifierDeclaration, operand: Operand) -> Read:
+    """The conversion of an operand, which leaves it out where the text does."""
+    convert = converter(operand.types, declared.label(operand))
+    if operand.default is None:
+        return convert
+    return lambda value: None if value is None else convert(value)
 
 
 _DECLARED = MappingProxyType({name: _Declared.of(declared) for name, declared in SPECIFIERS.items()})
@@ -124,19 +145,6 @@ def _specifier(
     )
 
 
-# What operands are, where formulas differ by it
-
-
-def region_of(value: Any, what: str) -> Region:
-    """A region; raises `ScenicTypeError` for anything else."""
-    region = as_region(value)
-    if region is None and is_open(value):
-        return DrawnRegion.of(value, what)
-    if region is None:
-        raise wrong_type(REGION, value, what)
-    return region
-
-
 # The specifiers
 
 
@@ -146,18 +154,15 @@ def with_(property: str, value: Any) -> Specifier:
 
 
 def at(position: Any) -> Specifier:
-    place = to_vector(position, "`at`")
-    return _specifier("at", lambda _: {"position": place})
+    return _specifier("at", lambda _: {"position": position})
 
 
-def in_(region: Any, *, name: str = "in") -> Specifier:
-    target = region_of(region, f"`{name}`")
-
+def in_(region: Region, *, name: str = "in") -> Specifier:
     def evaluate(_: Any) -> Mapping[str, Any]:
-        position, orientation = target.uniform_placement()
-        return {"position": position, "parentOrientation": orientation, "regionContainedIn": target}
+        position, orientation = region.uniform_placement()
+        return {"position": position, "parentOrientation": orientation, "regionContainedIn": region}
 
-    return _specifier(name, evaluate, conditional=target.has_orientation)
+    return _specifier(name, evaluate, conditional=region.has_orientation)
 
 
 def on(target: Any) -> Specifier:
@@ -211,30 +216,25 @@ def _surface(target: Any) -> Region:
     raise wrong_type((REGION, OBJECT, VECTOR), surface, "`on`")
 
 
-def offset_by(ego: Ego, offset: Any) -> Specifier:
-    step, origin = to_vector(offset, "`offset by`"), ego()
-
+def offset_by(ego: Any, offset: Any) -> Specifier:
     def evaluate(_: Any) -> Mapping[str, Any]:
-        return {"position": origin.relativePosition(step), "parentOrientation": origin.orientation}
+        return {"position": ego.relativePosition(offset), "parentOrientation": ego.orientation}
 
     return _specifier("offset by", evaluate)
 
 
-def offset_along(ego: Ego, direction: Any, offset: Any) -> Specifier:
-    step, origin = to_vector(offset, "`offset along`"), ego()
-    frame = frame_at(direction, origin.position, "`offset along`")
+def offset_along(ego: Any, direction: Any, offset: Any) -> Specifier:
+    frame = frame_at(direction, ego.position, "`offset along`")
 
     def evaluate(_: Any) -> Mapping[str, Any]:
-        position = operate("add", origin.position, operate("rotate", frame, step))
-        return {"position": position, "parentOrientation": origin.orientation}
+        position = operate("add", ego.position, operate("rotate", frame, offset))
+        return {"position": position, "parentOrientation": ego.orientation}
 
     return _specifier("offset along", evaluate)
 
 
-def beyond(target: Any, offset: Any, origin: Ego) -> Specifier:
-    place = to_vector(target, "`beyond`")
-    step = scalar_or_vector(offset, "`beyond`", axis=1)
-    observer = origin()
+def beyond(place: Any, offset: Any, observer: Any) -> Specifier:
+    step = scalar_or_vector(offset, "`beyond ... by`", axis=1)
     line = operate("subtract", place, to_vector(observer, "`beyond ... from`"))
     frame = operate("from euler", operate("azimuth", line), operate("altitude", line), 0)
     orientation = observer.orientation if is_kind(observer, OrientedPoint) else Orientation()
@@ -296,11 +296,9 @@ def _directional(name: str, sign: int) -> Callable[..., Specifier]:
     return build
 
 
-def following(field: Any, origin: Ego, distance: Any) -> Specifier:
-    start = to_vector(origin(), "`following ... from`")
-    way = field_of(field, "`following`")
-    end = way.followFrom(start, to_scalar(distance, "`following ... for`"))
-    orientation = way[end]
+def following(field: VectorField, start: Any, distance: Any) -> Specifier:
+    end = field.followFrom(start, distance)
+    orientation = field[end]
 
     def evaluate(_: Any) -> Mapping[str, Any]:
         return {"position": end, "parentOrientation": orientation}
@@ -332,9 +330,7 @@ def facing(orientation: Any) -> Specifier:
 def _facing_point(name: str, *, away: bool = False) -> Callable[..., Specifier]:
     directly = "pitch" in _DECLARED[name].always
 
-    def build(target: Any) -> Specifier:
-        place = to_vector(target, f"`{name}`")
-
+    def build(place: Any) -> Specifier:
         def evaluate(instance: Any) -> Mapping[str, Any]:
             ends = (place, instance.position) if away else (instance.position, place)
             line = operate("subtract", ends[1], ends[0])
@@ -347,10 +343,7 @@ def _facing_point(name: str, *, away: bool = False) -> Callable[..., Specifier]:
     return build
 
 
-def apparently_facing(heading: Any, origin: Ego) -> Specifier:
-    angle = to_heading(heading, "`apparently facing`")
-    observer = to_vector(origin(), "`apparently facing ... from`")
-
+def apparently_facing(angle: Any, observer: Any) -> Specifier:
     def evaluate(instance: Any) -> Mapping[str, Any]:
         line = operate("subtract", instance.position, observer)
         return {"yaw": operate("add", operate("azimuth", line), angle)}
@@ -358,12 +351,9 @@ def apparently_facing(heading: Any, origin: Ego) -> Specifier:
     return _specifier("apparently facing", evaluate)
 
 
-def visible(workspace: Region, origin: Ego, *, wanted: bool = True) -> Specifier:
+def visible(workspace: Region, observer: Any, *, wanted: bool = True) -> Specifier:
     """Section 11.4: who must see the object, or must not; and, if nothing else says so, any position in its container."""
     name = "visible" if wanted else "not visible"
-    observer = origin()
-    if not is_kind(observer, Point):
-        raise wrong_type(POINT, observer, f"`{name} from`")
     context = current.get()
     mode_2d = context is not None and context.mode_2d
 
@@ -420,9 +410,8 @@ BUILDERS: Mapping[str, Callable[..., Specifier]] = MappingProxyType(
         "not visible": partial(visible, wanted=False),
     }
 )
-"""How each specifier of `scenic.language.specifiers` is built, from its operands; ``with`` gets its property first, and
-a specifier that reads the ego or the workspace gets that first. The ego, and an operand for which it stands in, come as
-functions, called when the other operands are converted: a wrong operand is told before a missing ego."""
+"""How each specifier of `scenic.language.specifiers` is built, from its converted operands; ``with`` gets its property first, and
+a specifier that reads the ego or the workspace gets that first."""
 
 
 class UserSpecifier:
@@ -487,25 +476,21 @@ def specifier(
     return lambda function: UserSpecifier(function, priorities, reads, modifies)
 
 
-def _same(value: Any) -> Any:
-    return value
-
-
 def specify(name: str, ego: Ego, workspace: Space, *operands: Any) -> Specifier:
     """One specifier; what lazy operands read, it depends on.
 
     ``ego`` and ``workspace`` are functions: a program without an ego fails only where one is needed. They stand in for
-    the operands that the text leaves out (``None``), as declared.
+    the operands that the text leaves out (``None``), as declared. A wrong operand is told before a missing ego.
     """
-    declaration = SPECIFIERS[name]
-    given = operands
-    for index in _DECLARED[name].ego_at:
-        stand_in = ego if operands[index] is None else partial(_same, operands[index])
-        given = (*given[:index], stand_in, *given[index + 1 :])
-    if declaration.reads_ego:
-        given = (ego, *given)
-    if declaration.reads_workspace:
-        given = (workspace(), *given)
+    declared = _DECLARED[name]
+    given = [read(value) for read, value in zip(declared.reads, operands, strict=True)]
+    for index in declared.ego_at:
+        if given[index] is None:
+            given[index] = declared.reads[index](ego())
+    if declared.reads_ego:
+        given.insert(0, ego())
+    if declared.reads_workspace:
+        given.insert(0, workspace())
     found = BUILDERS[name](*given)
     reads = reads_of(operands)
     return replace(found, dependencies=found.dependencies | reads) if reads else found
@@ -515,7 +500,6 @@ __all__ = [
     "BUILDERS",
     "Specifier",
     "UserSpecifier",
-    "region_of",
     "scalar_or_vector",
     "specifier",
     "specify",
