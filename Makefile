@@ -41,7 +41,7 @@ generate: $(STAMP)
 
 # The documentation, in docs/_build/html; builds offline, and every warning is an error.
 docs: $(STAMP)
-	$(BIN)/python -m sphinx -b html -q -W --keep-going docs docs/_build/html
+	$(BIN)/python -m sphinx -b html -q -W --keep-going -d docs/_build/doctrees docs docs/_build/html
 
 docs-serve: docs
 	$(BIN)/python -m http.server --bind 127.0.0.1 --directory docs/_build/html 8000

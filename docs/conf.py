@@ -33,6 +33,7 @@ myst_heading_anchors = 4
 myst_fence_as_directive = ["scenic"]
 nb_execution_mode = "cache"
 nb_execution_raise_on_error = True
+nb_execution_timeout = 120
 
 smartquotes = False  # options begin with two hyphens
 

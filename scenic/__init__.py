@@ -68,6 +68,7 @@ _HOMES = MappingProxyType(
         "SSSensor": "scenic.runtime.elements.sensors",
         "analyze": "scenic.pipeline",
         "falsify": "scenic.falsification.search",
+        "load_ipython_extension": "scenic.notebook",
         "load": "scenic.pipeline",
         "read_scenes": "scenic.formats.reading",
         "read_trajectory": "scenic.formats.trajectory_reading",

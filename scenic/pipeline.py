@@ -286,6 +286,7 @@ def _scenario(text: str, filename: str, options: _Options) -> Scenario:
         digest=options.digest(text),
         services=Services(
             show_page,
+            _bundle,
             (_scenario, (text, filename, options)),
             options.given(),
             _sample,
@@ -364,6 +365,12 @@ def _external_sampler(scenario: Scenario) -> "ExternalSampler":
     from scenic.falsification.external import external_sampler
 
     return external_sampler(scenario)
+
+
+def _bundle(scene: Scene) -> Mapping[str, str]:
+    from scenic.formats.embedding import scene_bundle
+
+    return scene_bundle(scene)
 
 
 def show_page(scene: Any) -> Path:

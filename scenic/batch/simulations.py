@@ -277,6 +277,7 @@ def simulated(
     timestep: float | None = None,
     tries: int = 20,
     keep_violations: bool = False,
+    shown: bool = False,
     folder: str | Path | None = None,
     processes: int = 1,
     executor: Executor | None = None,
@@ -293,6 +294,7 @@ def simulated(
         timestep: seconds in a step; the simulator's own if not given.
         tries: simulations tried of one scene before it is given up as rejected.
         keep_violations: let simulations that violate a requirement run to their end, rather than reject them.
+        shown: let each row carry what a page needs to play it, so that notebooks do.
         folder: where trajectories are kept; those that are there already are not made again.
         processes: how many processes simulate. Changes speed, never what comes out.
         executor: runs the simulations in place of processes of our own, ``processes`` at a time.
@@ -317,7 +319,7 @@ def simulated(
         tries,
         keep_violations=keep_violations,
     )
-    batch = Simulations(scenario, simulator, running, folder=place)
+    batch = Simulations(scenario, simulator, running, folder=place, shown=shown)
     numbers = range(first, first + n)
     found = {row.k: row for row in _known(batch, numbers)}
     engine: Engine | None = None

@@ -1149,7 +1149,12 @@
     byId("trouble").hidden = false;
     byId("trouble").textContent = "The graphics of this page were reset; load it again.";
   });
-  new ResizeObserver(changed).observe(canvas);
+  // Until somebody uses the page, all that there is stays in view: frames get their size late.
+  let used = false;
+  for (const kind of ["pointerdown", "wheel", "keydown"]) {
+    window.addEventListener(kind, () => { used = true; }, { passive: true, capture: true });
+  }
+  new ResizeObserver(() => (used ? changed() : wholeScene())).observe(canvas);
 
   setTheme(window.matchMedia?.("(prefers-color-scheme: dark)").matches ?? false);
   const byNumber = () => {

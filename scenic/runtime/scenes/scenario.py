@@ -59,6 +59,8 @@ class Services:
 
     view: Callable[[Scene], Any] | None = None
     """Shows a scene (`Scene.show`)."""
+    bundle: Callable[[Scene], Mapping[str, str]] | None = None
+    """A scene by type of media, for notebooks."""
     recipe: tuple[Any, ...] | None = None
     """Compiles the program once more, as ``__reduce__`` returns it."""
     options: Mapping[str, Any] = field(default_factory=dict)
@@ -133,6 +135,7 @@ class Scenario:
             self.sceneToBytes,
             self,
             self._services.view,
+            self._services.bundle,
             self._regions,
         )
         self._unconditioned = {name: value for name, value in vars(self).items() if name not in _KEPT}

@@ -63,6 +63,7 @@ class Family:
     keep: Callable[["Scene"], bytes]
     scenario: Any
     view: Callable[["Scene"], Any] | None
+    bundle: Callable[["Scene"], Mapping[str, str]] | None
     regions: Mapping[str, Region]
 
 
@@ -217,6 +218,11 @@ class Scene:
         """
         view = self._family.view
         return None if view is None else view(self)
+
+    def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> Mapping[str, str]:
+        """The scene by type of media, as notebooks ask for it: a page in which it can be turned, and text."""
+        bundle = self._family.bundle
+        return {"text/plain": repr(self)} if bundle is None else bundle(self)
 
     def show3D(self, axes: bool = True) -> Any:
         """The same as `show`."""
