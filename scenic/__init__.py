@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     from scenic.pipeline import analyze, load, scenarioFromFile, scenarioFromString
     from scenic.runtime.elements.sensors import DepthSensor, RGBSensor, SSSensor
     from scenic.runtime.elements.specifiers import specifier
+    from scenic.runtime.python.bounded import bounded
     from scenic.runtime.scenes.established_api import setDebuggingOptions
     from scenic.runtime.scenes.scenario import Scenario
     from scenic.runtime.scenes.scene import Scene
@@ -67,6 +68,7 @@ _HOMES = MappingProxyType(
         "RGBSensor": "scenic.runtime.elements.sensors",
         "SSSensor": "scenic.runtime.elements.sensors",
         "analyze": "scenic.pipeline",
+        "bounded": "scenic.runtime.python.bounded",
         "falsify": "scenic.falsification.search",
         "load_ipython_extension": "scenic.notebook",
         "load": "scenic.pipeline",
@@ -103,6 +105,7 @@ __all__ = [
     "Sobol",
     "SpecifierError",
     "analyze",
+    "bounded",
     "falsify",
     "load",
     "parse",

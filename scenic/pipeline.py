@@ -4,6 +4,7 @@ import inspect
 import sys
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from importlib.util import find_spec
 from pathlib import Path
 from types import CodeType, FrameType, ModuleType, TracebackType
 from typing import TYPE_CHECKING, Any, Final
@@ -159,6 +160,14 @@ def analyze(
 
 def deep_check(path: str | Path) -> tuple[Diagnostic, ...]:
     """What is wrong with a program, found by running and analysing it (no scene is sampled)."""
+    if find_spec("z3") is None:
+        from scenic.formats.png import MissingLibraryError
+
+        missing = MissingLibraryError(
+            "the deep check needs the library z3, which is not installed",
+            help="install it: pip install 'scenic-lang[deep]'",
+        )
+        return (missing.diagnostic(),)
     from scenic.analysis.report import prove
 
     filename = str(path)

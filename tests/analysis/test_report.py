@@ -14,6 +14,7 @@ from scenic.graph.node import Graph
 from scenic.graph.operations.distributions import Table
 from scenic.language.diagnostics import Severity
 from scenic.language.spans import Span
+from scenic.pipeline import deep_check
 
 
 def line(number, column=0):
@@ -293,3 +294,13 @@ def test_places_in_other_files_are_told_with_them():
     always = Fact(make("greater", x, -1), "", line(2), filename="a")
     (found,) = prove(Graph([always.node]), [always])
     assert found.filename == "a"
+
+
+def test_the_library_is_asked_for_where_it_is_missing(monkeypatch, tmp_path):
+    path = tmp_path / "program.scenic"
+    path.write_text("x = Range(0, 1)\nrequire x > 2\n")
+    assert [item.code for item in deep_check(path)] == ["SC700"]
+    monkeypatch.setattr("scenic.pipeline.find_spec", lambda name: None)
+    (found,) = deep_check(path)
+    assert found.code == "SC604"
+    assert "scenic-lang[deep]" in found.help

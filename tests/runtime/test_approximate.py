@@ -57,37 +57,37 @@ def test_the_law_is_nearly_that_of_rejection(name: str) -> None:
 
 
 def test_scenes_depend_on_seed_number_and_lanes_alone(tmp_path: Path) -> None:
-    program = scenario(PROGRAMS["mugs"])
+    program = scenario(MUGS.format(4))
     scenes = program.sample(70, seed=3, approximate=32)
     expected = [fingerprint(scene) for scene in scenes]
     assert len(set(expected)) == 70
-    again = scenario(PROGRAMS["mugs"]).stream(5, seed=3, first=62, approximate=32)
+    again = scenario(MUGS.format(4)).stream(5, seed=3, first=62, approximate=32)
     assert [fingerprint(scene) for scene in again] == expected[62:67]
     scenes[40].save(tmp_path / "scene.json")
     assert fingerprint(program.replay(tmp_path / "scene.json")) == expected[40]
 
 
 def test_probabilities_that_are_known() -> None:
-    for bound in (0.9, 0.99, 0.9999):
+    for bound in (0.9, 0.999):
         program = scenario(
             f"{SAME}x, y = Range(0, 1), Range(0, 1)\nrequire same(x) > {bound}\nrequire same(y) > {bound}\n"
         )
-        (scene, *_) = program.sample(1, seed=0, approximate=400)
-        assert scene.approximation.log_probability == pytest.approx(2 * math.log(1 - bound), abs=0.3)
+        (scene, *_) = program.sample(1, seed=0, approximate=200)
+        assert scene.approximation.log_probability == pytest.approx(2 * math.log(1 - bound), abs=0.5)
     # Two discs on a square: the middle of one keeps a disc of twice the radius from that of the other.
     text = "for i in range(2):\n    new Object at (Range(-10, 10), Range(-10, 10)), with width 4, with length 4, with shape CylinderShape()\n"
-    (scene, *_) = scenario(text).sample(1, seed=0, approximate=4000)
+    (scene, *_) = scenario(text).sample(1, seed=0, approximate=2000)
     # The mean share of a disc of radius 4 about a point of a square of side 20 that lies in it.
     r = 4 / 20
     covered = math.pi * r**2 - 8 / 3 * r**3 + r**4 / 2
-    assert math.exp(scene.approximation.log_probability) == pytest.approx(1 - covered, abs=0.02)
+    assert math.exp(scene.approximation.log_probability) == pytest.approx(1 - covered, abs=0.03)
 
 
 def test_what_rejection_does_not_find_and_what_nobody_does() -> None:
-    scenes = scenario(MUGS.format(20)).sample(8, seed=0, approximate=64)
+    scenes = scenario(MUGS.format(14)).sample(8, seed=0, approximate=32)
     told = scenes[0].approximation
-    assert told.log_probability < -3
-    assert len(told.survival) >= 20
+    assert told.log_probability < -1
+    assert len(told.survival) >= 14
     assert len({fingerprint(scene) for scene in scenes}) == 8
     never = scenario(f"{SAME}x = Range(0, 1)\nrequire same(x) > 2 as never\n")
     with pytest.raises(RejectionException, match="never rejected every candidate"):

@@ -11,6 +11,7 @@ from scenic.graph.operation import Call, Operation, always
 from scenic.language.errors import InvalidScenarioError, ScenicTypeError
 from scenic.language.types import SCALAR
 from scenic.runtime.program.context import current, here, uniform_draw
+from scenic.runtime.python.bounded import bounds_of_support
 from scenic.runtime.python.opaque import call_later, evaluated, later
 from scenic.runtime.python.random_state import preserved, seed_globals
 from scenic.runtime.values.drawing import support_of
@@ -74,7 +75,7 @@ class Distribution(Random, metaclass=_AnyLaw):
         raise NotImplementedError(f"{type(self).__name__} cannot be divided into buckets")
 
     def supportInterval(self) -> tuple[float | None, float | None]:
-        """The least and the greatest value, where known."""
+        """The least and the greatest value, where known: analysis relies on them where ``valueType`` is ``float``."""
         return (None, None)
 
 
@@ -143,6 +144,8 @@ _SCALAR = Operation(
     always(Kind.SCALAR),
     _numbers,
     "A draw of a distribution of numbers of the program's own.",
+    bounds=lambda code, *_operands: bounds_of_support(code.args[0].distribution.supportInterval),
+    partial=True,
     pure=False,
     calls_code=True,
     faults=True,

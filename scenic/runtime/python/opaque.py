@@ -11,6 +11,8 @@ from typing import Any
 
 import numpy as np
 
+from scenic.graph.bounding import of_constant
+from scenic.graph.bounds import Bounds
 from scenic.graph.construction import make_node
 from scenic.graph.kinds import Column, Kind, boxed
 from scenic.graph.node import Graph, Node, key
@@ -18,6 +20,7 @@ from scenic.graph.operation import OK, Call, Operation, always
 from scenic.language.errors import InvalidScenarioError, RejectionException
 from scenic.runtime.instances.objects import Point
 from scenic.runtime.program.context import Context, current, here, next_address
+from scenic.runtime.python.bounded import bounds_of_call
 from scenic.runtime.python.random_state import is_as, preserved, seed_globals
 from scenic.runtime.python.samples import Globals, Reach, Sample, dependencies, mention, reachable
 from scenic.runtime.values.values import CODEC, Random, as_value
@@ -310,11 +313,27 @@ class _Lanes:
         return [tuple(self.read(lane, node) for node in nodes) for lane in range(count)]
 
 
+def _told_bounds(code: OpaqueCode, *operands: Bounds | None) -> Bounds | None:
+    """What the program says of the results (`scenic.bounded`)."""
+    if code.keywords:
+        return None
+    known = dict(zip(code.operands, operands, strict=False))
+
+    def bounds_of(item: Any) -> Bounds | None:
+        if isinstance(item, Random):
+            return of_constant(item.node) if item.node.is_constant else known.get(item.node)
+        return Bounds.exactly(float(item)) if isinstance(item, int | float) else None
+
+    return bounds_of_call(code.function, code.args, bounds_of)
+
+
 CALL = Operation(
     "opaque call",
     always(Kind.OTHER),
     lambda call, *columns: boxed(evaluated(call, columns)),
     "A call of Python code with sampled arguments; the first operand is its key.",
+    bounds=_told_bounds,
+    partial=True,
     pure=False,
     calls_code=True,
     faults=True,
