@@ -34,7 +34,7 @@ def may_mutate(code: CodeType) -> bool:
 def stand_in(instance: Any) -> Any:
     """What has the values of an instance after mutation; the instance itself where nothing is mutated."""
     context = current.get()
-    if context is None or not context.mutates or not context.is_symbolic or context.sample is not None:
+    if context is None or not context.is_symbolic or context.sample is not None:
         return instance
     if not isinstance(instance, Point) or "_source" in instance.__dict__:
         return instance
@@ -108,5 +108,3 @@ _BOXED = Operation(
     lambda call, column: boxed(CODEC.decode(call.payload, column)),
     "A value of a known kind as a Python object; payload its kind.",
 )
-
-Random.stand_in = staticmethod(stand_in)

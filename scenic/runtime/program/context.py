@@ -65,8 +65,8 @@ class Context:
         """The objects of the scenario so far, in order of creation: what may stand in the way of a look."""
         self.calls: list[tuple[Any, tuple[Any, ...]]] = []
         """The nodes of calls that are made on samples, each with the instances that it sees."""
-        self.mutates = False
-        """Whether some module may mutate instances."""
+        self.stand_in: Callable[[Any], Any] = lambda instance: instance
+        """What stands for an instance that a choice draws: the instance itself unless some module may mutate instances."""
         self.stand_ins: dict[int, tuple[Any, Any]] = {}
         """Instances that choices draw and what stands for them until they are mutated, by their identities."""
         self.sample: Any = None

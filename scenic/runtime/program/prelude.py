@@ -42,7 +42,7 @@ from scenic.runtime.elements.specifiers import (
 )
 from scenic.runtime.instances import mutation
 from scenic.runtime.instances.objects import Object, Point
-from scenic.runtime.instances.placeholders import may_mutate
+from scenic.runtime.instances.placeholders import may_mutate, stand_in
 from scenic.runtime.instances.properties import ATTRIBUTES, PropertyDefinition
 from scenic.runtime.instances.resolution import build
 from scenic.runtime.program import builtins as names
@@ -523,7 +523,8 @@ class Loader:
         scope["__builtins__"] = names.builtin_names(
             self._program, state.filename, lambda *args: self._import(state, *args)
         )
-        self._context.mutates |= may_mutate(code)
+        if may_mutate(code):
+            self._context.stand_in = stand_in
         if not isinstance(current.get(), RunContext):
             self._program.scopes.append(scope)
         exec(code, scope)

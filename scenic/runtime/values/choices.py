@@ -11,7 +11,7 @@ from scenic.graph.kinds import Kind
 from scenic.graph.node import Node
 from scenic.graph.operation import Call, Operation, always
 from scenic.graph.operations import TABLE
-from scenic.runtime.program.context import here
+from scenic.runtime.program.context import current, here
 from scenic.runtime.python.ownership import is_own_function
 from scenic.runtime.values.definite import Orientation, Vector
 from scenic.runtime.values.nodes import CONTAINERS_MADE, as_node, as_value, kind_of
@@ -103,7 +103,8 @@ MISSING = Operation(
 def drawn_option(option: Node) -> Any:
     """The value of an option of a choice, as the choice draws it: an instance after mutation."""
     value = as_value(option)
-    return Random.stand_in(value) if kind_of(value) is Kind.OBJECT else value
+    context = current.get()
+    return value if context is None or kind_of(value) is not Kind.OBJECT else context.stand_in(value)
 
 
 def options_of(value: Any) -> tuple[Any, ...]:

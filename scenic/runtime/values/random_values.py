@@ -27,8 +27,6 @@ class Random(Arithmetic):
     _attribute: ClassVar[Callable[["Random", str], Any]]
     _called: ClassVar[Callable[["Random", Sequence[Any], dict[str, Any]], Any]]
     """What its parts are: `scenic.runtime.values.access`, which stands on this module; `scenic.runtime.values.values` puts it here."""
-    stand_in: ClassVar[Callable[[Any], Any]]
-    """What stands for an instance that a choice draws; `scenic.runtime.instances.placeholders`, which stands on this module, gives it."""
     later: ClassVar[Callable[..., Any]]
     """A call of Python code that is made on each sample; `scenic.runtime.python.opaque`, which stands on this module, gives it."""
 

@@ -3,19 +3,22 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import ClassVar
 
 __all__ = ["CarModel"]
+
+
+class _Models:
+    """The models by name, as an attribute of their class."""
+
+    def __get__(self, _instance: object, owner: type["CarModel"]) -> Mapping[str, "CarModel"]:
+        return MappingProxyType({"CAR": owner("CAR")})
 
 
 @dataclass(frozen=True)
 class CarModel:
     """A model of a car; lengths in metres."""
 
-    models: ClassVar[Mapping[str, "CarModel"]]
+    models = _Models()
     name: str
     width: float = 1.8
     length: float = 4.5
-
-
-CarModel.models = MappingProxyType({"CAR": CarModel("CAR")})
