@@ -4,81 +4,38 @@ import ast
 import builtins
 import os
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
-from enum import StrEnum
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
 from keyword import iskeyword
 from typing import Any, Final
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.generated import WORDS
+from scenic.compiler.loader import SUFFIXES
 from scenic.compiler.scopes import Binding, BindingKind, ScopeKind
 from scenic.compiler.tokens import FSTRING_END, FSTRING_MIDDLE, FSTRING_START, STRING
 from scenic.compiler.traversal import walk
 from scenic.ide import descriptions, documentation
 from scenic.ide.continuations import Continuation, Continuations, PhraseKind, continuations
 from scenic.ide.expressions import expression, operand_before
+from scenic.ide.members import members
+from scenic.ide.parameters import settings
+from scenic.ide.possibilities import Completion, CompletionKind, Completions, kind_of_symbol
 from scenic.ide.snapshot import Snapshot
-from scenic.language.names import LIFTED_METHODS, NAMES, TRACKED, NameKind
+from scenic.language.names import NAMES, TRACKED, NameKind
 from scenic.language.operators import OPERATORS
 from scenic.language.properties import CLASSES
 from scenic.language.spans import Span
 from scenic.language.specifiers import SPECIFIERS
 from scenic.language.statements import STATEMENTS, Place
-from scenic.project.classes import Class, Member, class_of, class_of_symbol, meaning, module_behind
+from scenic.project.classes import Class, Member, class_of_symbol, meaning
 from scenic.project.index import Project
 from scenic.project.modules import Module
 from scenic.project.queries import call_signature
+from scenic.project.search import Found, ModuleKind
 from scenic.project.symbols import Symbol, SymbolKind, symbol_of_binding, symbol_of_exported
 
 __all__ = ["Completion", "CompletionKind", "completions", "document", "must_follow"]
-
-
-class CompletionKind(StrEnum):
-    """What is offered, as far as editors tell it apart."""
-
-    KEYWORD = "keyword"
-    SPECIFIER = "specifier"
-    OPERATOR = "operator"
-    SNIPPET = "snippet"
-    CLASS = "class"
-    FUNCTION = "function"
-    METHOD = "method"
-    BEHAVIOR = "behavior"
-    MONITOR = "monitor"
-    SCENARIO = "scenario"
-    PROPERTY = "property"
-    ATTRIBUTE = "attribute"
-    VARIABLE = "variable"
-    PARAMETER = "parameter"
-    MODULE = "module"
-    CONSTANT = "constant"
-
-
-@dataclass(frozen=True, slots=True)
-class Completion:
-    """One possibility.
-
-    ``text`` is what takes the place of the word that is begun; ``snippet`` the same with places to fill in, as the
-    protocol writes them (``${1:name}``), if there are any. ``rank`` orders possibilities, the smallest first. ``key``
-    says to `document` what it is about.
-    """
-
-    label: str
-    kind: CompletionKind
-    text: str
-    rank: int
-    detail: str = ""
-    snippet: str | None = None
-    key: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True, slots=True)
-class Completions:
-    """The possibilities, and the word that they take the place of."""
-
-    span: Span
-    items: tuple[Completion, ...]
 
 
 _NOTHING: Final = Completions(Span(1, 0, 1, 0), ())
@@ -88,9 +45,19 @@ _EXPRESSIONS: Final = frozenset(
 _RUNNING: Final = frozenset({"do", "choose", "shuffle"})
 _TARGETS: Final = (CompletionKind.BEHAVIOR, CompletionKind.SCENARIO)
 _NEVER_RUN: Final = frozenset({CompletionKind.CLASS, CompletionKind.MONITOR})
+_WANTED: Final[Mapping[tuple[str, ...], str]] = {
+    ("take",): "applyTo",
+    ("simulator",): "createSimulation",
+    ("require", "monitor"): "",
+}
+"""After these words come instances of classes with such a method, or monitors."""
+_VALUES: Final = frozenset(
+    {CompletionKind.FUNCTION, CompletionKind.VARIABLE, CompletionKind.PARAMETER, CompletionKind.MODULE}
+)
+_DEEPEST: Final = 3
+"""How deep in packages world models are looked for."""
 _OWN: Final = 4
 """The rank of the last names that a program or its modules define."""
-_MONITORS: Final = (CompletionKind.MONITOR,)
 _BEGUN: Final = re.compile(r"\w*$")
 _NUMBER: Final = re.compile(r"(?<![\w.)\]])\d[\d_]*\.$")
 """A number, whose point has no members after it."""
@@ -110,16 +77,6 @@ _BLOCKS: Final[Mapping[str, str]] = {
     "with": "with ${1:context}:\n\t$0",
 }
 """Python's statements with blocks, which are no forms of the language's declarations."""
-
-_MEMBERS_OF: Final[Mapping[str, tuple[str, ...]]] = {
-    "vector": (
-        "x", "y", "z", "altitudeTo", "angleTo", "angleWith", "azimuthTo", "cross", "distanceTo", "dot", "norm",
-        "normalized", "offsetLocally", "offsetRadially", "offsetRotated", "rotatedBy", "sphericalCoordinates",
-    ),
-    "orientation": ("yaw", "pitch", "roll", "approxEq", "localAnglesFor"),
-    "region": ("intersect", "union", "difference", "intersects", "containsPoint", "containsObject", "containsRegion"),
-}  # fmt: skip
-"""Members of values that are instances of no class of the language, by the words in which types are declared."""
 
 
 def completions(project: Project, snapshot: Snapshot, line: int, column: int) -> Completions:
@@ -269,11 +226,18 @@ def _find(
         yield from _imported(project, module, before)
         return
     if last == ".":
-        yield from _members(project, snapshot, before[:-1], line, column)
+        yield from members(project, snapshot, before[:-1], line, column)
         return
     if last == "new":
         yield from (each for each in _names(project, module, snapshot, line, column) if each.kind is CompletionKind.CLASS
                     and _is_scenic(project, module, snapshot, each, line, column))  # fmt: skip
+        return
+    if first == "param" and last in ("param", ","):
+        yield from _parameters(project, module, before)
+        return
+    wanted = _WANTED.get(before[-2:], _WANTED.get(before[-1:]))
+    if wanted is not None and "a name" not in found.labels:
+        yield from _of_kind(project, module, snapshot, wanted, line, column)
         return
     if last == "with" and "new" in before:
         yield from _properties(project, snapshot, before, line, column)
@@ -294,7 +258,7 @@ def _find(
         begun.add(item.words)
     if found.labels & _EXPRESSIONS or "a name" in found.labels:
         running = run or before[-2:] == ("with", "behavior")
-        fitting = _TARGETS if running else _MONITORS if before[-2:] == ("require", "monitor") else ()
+        fitting = _TARGETS if running else ()
         for each in _names(project, module, snapshot, line, column):
             if each.kind in fitting:
                 yield Completion(each.label, each.kind, each.text, 0, each.detail, each.snippet, each.key)
@@ -305,6 +269,42 @@ def _find(
     if not found.items and not found.labels and not found.kinds:
         # What stands before on the line cannot be read: names are the best guess.
         yield from _names(project, module, snapshot, line, column)
+
+
+def _of_kind(
+    project: Project, module: Module, snapshot: Snapshot, method: str, line: int, column: int
+) -> Iterator[Completion]:
+    """What a statement wants first, then other names that a program defines; none of the language's own.
+
+    ``method`` is what the instances of the wanted classes have; without one, monitors are wanted.
+    """
+    for each in _names(project, module, snapshot, line, column):
+        if not method:
+            fits = each.kind is CompletionKind.MONITOR
+        elif each.kind is CompletionKind.CLASS:
+            symbol = _symbol_named(project, module, snapshot, each.label, [str(line), str(column)])
+            cls = None if symbol is None else class_of_symbol(project, symbol)
+            fits = cls is not None and cls.member(method) is not None
+        else:
+            fits = False
+        if fits:
+            yield replace(each, rank=0)
+        elif each.rank <= _OWN and each.kind in _VALUES:
+            yield each
+
+
+def _parameters(project: Project, module: Module, before: tuple[str, ...]) -> Iterator[Completion]:
+    """The parameters that a program may set: those that its modules set or that it reads."""
+    read = (
+        node.attr
+        for node in walk(module.tree)
+        if isinstance(node, ast.Attribute)
+        and isinstance(node.value, ast.Name)
+        and node.value.id == "globalParameters"
+    )
+    known = {setting.name: setting.value for setting in settings(project, module)}
+    for name in sorted({*known, *read} - {*before}):
+        yield Completion(name, CompletionKind.PARAMETER, f"{name} = ", 1, known.get(name, "parameter"))
 
 
 def _places(snapshot: Snapshot, line: int) -> frozenset[Place]:
@@ -461,23 +461,8 @@ def _kind_of_binding(project: Project, module: Module, binding: Binding) -> tupl
             return shown, kind.value
     if BindingKind.IMPORTED in kinds and binding.scope.kind is ScopeKind.MODULE:
         symbol = symbol_of_exported(project, project.own(module, binding))
-        return _kind_of_symbol(symbol), symbol.kind.value
+        return kind_of_symbol(symbol), symbol.kind.value
     return CompletionKind.VARIABLE, "variable"
-
-
-def _kind_of_symbol(symbol: Symbol) -> CompletionKind:
-    return {
-        SymbolKind.CLASS: CompletionKind.CLASS,
-        SymbolKind.FUNCTION: CompletionKind.FUNCTION,
-        SymbolKind.METHOD: CompletionKind.METHOD,
-        SymbolKind.BEHAVIOR: CompletionKind.BEHAVIOR,
-        SymbolKind.MONITOR: CompletionKind.MONITOR,
-        SymbolKind.SCENARIO: CompletionKind.SCENARIO,
-        SymbolKind.MODULE: CompletionKind.MODULE,
-        SymbolKind.PROPERTY: CompletionKind.PROPERTY,
-        SymbolKind.ATTRIBUTE: CompletionKind.ATTRIBUTE,
-        SymbolKind.PARAMETER: CompletionKind.PARAMETER,
-    }.get(symbol.kind, CompletionKind.VARIABLE)
 
 
 def _is_scenic(
@@ -543,14 +528,14 @@ def _inherited(project: Project, snapshot: Snapshot, line: int, column: int) -> 
     scope = snapshot.scope_at(line, column)
     body = getattr(scope.node, "body", ()) if scope.kind is ScopeKind.CLASS else ()
     own = {each.name for each in body if isinstance(each, scenic.PropertyDef)}
-    members: dict[str, Member] = {}
+    known: dict[str, Member] = {}
     for base in (header["bases"] or "Object").split(","):
         found = expression(project, snapshot, base.strip(), line, column)
         symbol = None if found is None else meaning(project, *found)
         cls = None if symbol is None else class_of_symbol(project, symbol)
         for member in () if cls is None or not cls.is_scenic else cls.properties:
-            members.setdefault(member.name, member)
-    for member in members.values():
+            known.setdefault(member.name, member)
+    for member in known.values():
         if member.name in own or "final" in member.attributes:
             continue
         yield _property(snapshot, member, f"{member.name}:", after=" ")
@@ -569,78 +554,6 @@ def _property(snapshot: Snapshot, member: Member, text: str, *, after: str = "")
 
 def _escaped(text: str) -> str:
     return re.sub(r"([\\$}])", r"\\\1", text)
-
-
-def _members(
-    project: Project, snapshot: Snapshot, before: tuple[str, ...], line: int, column: int
-) -> Iterator[Completion]:
-    """What can stand after a dot."""
-    text = operand_before(before)
-    found = expression(project, snapshot, text, line, column) if text else None
-    if found is None:
-        return
-    module, node = found
-    if text == "globalParameters":
-        for name in _parameters(module):
-            yield Completion(name, CompletionKind.PARAMETER, name, 1, "parameter")
-        return
-    home = module_behind(project, module, node)
-    if home is not None:
-        exports = project.exports_of(home)
-        for name in sorted(exports.public & exports.names.keys()):
-            brought = symbol_of_exported(project, exports.names[name])
-            place = ("name", brought.filename or "", brought.name)
-            yield Completion(name, _kind_of_symbol(brought), name, 1, brought.kind.value, key=place)
-        return
-    symbol = meaning(project, module, node)
-    owner = (
-        symbol if symbol is not None and symbol.kind is SymbolKind.CLASS else class_of(project, module, node)
-    )
-    if owner is None and isinstance(node, ast.Name) and node.id in ("ego", "self"):
-        owner = Symbol("Object", SymbolKind.CLASS)  # Of whatever class, it is an object.
-    cls = None if owner is None else class_of_symbol(project, owner)
-    if cls is not None and cls.members:
-        for member in cls.members:
-            kind = {
-                SymbolKind.PROPERTY: CompletionKind.PROPERTY,
-                SymbolKind.METHOD: CompletionKind.METHOD,
-            }.get(member.kind, CompletionKind.ATTRIBUTE)
-            own = member.symbol is not None
-            key = (
-                ("member", snapshot.filename, member.owner, member.name) if own else ("property", member.name)
-            )
-            hidden = member.name.startswith("_")
-            yield Completion(member.name, kind, member.name, 8 if hidden else 1 if own else 2,
-                             member.type or member.owner, key=key)  # fmt: skip
-        return
-    yield from _of_values(project, module, node, owner)
-
-
-def _parameters(module: Module) -> Sequence[str]:
-    """The global parameters that a module sets, as far as they are names."""
-    settings = (node for node in walk(module.tree) if isinstance(node, scenic.Param))
-    names = dict.fromkeys(item.name for node in settings for item in node.items)
-    return [name for name in names if name.isidentifier()]
-
-
-def _of_values(
-    project: Project, module: Module, node: ast.expr, owner: Symbol | None
-) -> Iterator[Completion]:
-    """Members of vectors, orientations and regions; of what is not known, those of all."""
-    kinds = list(_MEMBERS_OF)
-    if owner is not None and owner.name in NAMES:
-        is_region = NAMES[owner.name].kind is NameKind.REGION
-        kinds = ["region"] if is_region else [owner.name.lower()]
-    elif isinstance(node, ast.Attribute):
-        base = class_of(project, module, node.value)
-        cls = None if base is None else class_of_symbol(project, base)
-        member = None if cls is None else cls.member(node.attr)
-        if member is not None and member.type is not None:
-            kinds = [kind for kind in _MEMBERS_OF if kind in member.type] or kinds
-    for kind in kinds:
-        for name in _MEMBERS_OF.get(kind, ()):
-            shown = CompletionKind.METHOD if name in LIFTED_METHODS else CompletionKind.ATTRIBUTE
-            yield Completion(name, shown, name, 3, kind)
 
 
 def _modules(project: Project, snapshot: Snapshot, before: tuple[str, ...]) -> Iterator[Completion]:
@@ -662,8 +575,29 @@ def _modules(project: Project, snapshot: Snapshot, before: tuple[str, ...]) -> I
     for name in project.finder.importable(folder, ".".join(parts)):
         found = project.find(".".join([*parts, name]), importer=snapshot.filename)
         beside = found.filename is not None and found.filename.startswith(folder)
+        if before[0] == "model" and not _leads_to_models(found, beside=beside or bool(parts)):
+            continue
         if not name.startswith("_"):
             yield Completion(name, CompletionKind.MODULE, name, 1 if beside else 5, found.kind.value)
+
+
+def _leads_to_models(found: Found, *, beside: bool) -> bool:
+    """Whether a module is one of Scenic, or a folder with such modules: for installed packages, right in it."""
+    if found.kind is ModuleKind.SCENIC or found.filename is None:
+        return found.kind is ModuleKind.SCENIC
+    is_package = os.path.basename(found.filename).startswith("__init__.")
+    if not is_package and not os.path.isdir(found.filename):
+        return False
+    folder = os.path.dirname(found.filename) if is_package else found.filename
+    own = found.name.partition(".")[0] == "scenic"
+    deepest = folder.count(os.sep) + (_DEEPEST if beside or own else 0)
+    for path, folders, files in os.walk(folder):
+        if any(file == "model.scenic" if own else file.endswith(SUFFIXES) for file in files):
+            return True
+        folders[:] = (
+            [] if path.count(os.sep) >= deepest else [each for each in folders if each[0] not in "._"]
+        )
+    return False
 
 
 def _imported(project: Project, module: Module, before: tuple[str, ...]) -> Iterator[Completion]:
@@ -676,7 +610,7 @@ def _imported(project: Project, module: Module, before: tuple[str, ...]) -> Iter
     for each in sorted(exports.names):
         if each not in taken and not each.startswith("__"):
             symbol = symbol_of_exported(project, exports.names[each])
-            yield Completion(each, _kind_of_symbol(symbol), each, 8 if each.startswith("_") else 1, symbol.kind.value,
+            yield Completion(each, kind_of_symbol(symbol), each, 8 if each.startswith("_") else 1, symbol.kind.value,
                              key=("name", found.filename or "", each))  # fmt: skip
 
 

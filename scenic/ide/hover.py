@@ -8,6 +8,7 @@ from typing import Final
 from scenic.compiler import tree as scenic
 from scenic.compiler.tokens import NAME
 from scenic.ide import descriptions, documentation
+from scenic.ide.parameters import parameter_at, settings
 from scenic.ide.snapshot import Snapshot
 from scenic.language.names import TRACKED
 from scenic.language.operators import OPERATORS
@@ -50,6 +51,9 @@ def hover(
     if index is None or not (snapshot.is_word(index) or tokens.texts[index] == "@"):
         return None
     span = snapshot.span_of_token(index)
+    parameter = parameter_at(snapshot, line, column)
+    if parameter is not None and project_of is not None:
+        return _of_parameter(project_of(), snapshot, *parameter)
     node = snapshot.path_to(line, span.column)[-1]
     markdown = _explain(tokens.texts[index], tokens.kinds[index], node)
     is_name = isinstance(node, ast.Name | ast.Attribute)
@@ -58,6 +62,16 @@ def hover(
     if markdown is None and isinstance(node, ast.Name):
         markdown = descriptions.of_python(node.id)
     return None if markdown is None else Hover(markdown, span)
+
+
+def _of_parameter(project: Project, snapshot: Snapshot, name: str, span: Span) -> Hover | None:
+    """A global parameter with the values that it is given."""
+    module = project.module(snapshot.filename)
+    found = [] if module is None else [each for each in settings(project, module) if each.name == name]
+    if not found:
+        return None
+    lines = "\n".join(f"param {name} = {each.value}" for each in found)
+    return Hover(f"```scenic\n{lines}\n```\nA global parameter.", span)
 
 
 def _defined(project: Project, snapshot: Snapshot, span: Span) -> str | None:

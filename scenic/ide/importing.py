@@ -3,7 +3,7 @@
 import ast
 import os
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -23,6 +23,47 @@ __all__ = ["Missing", "can_organize", "missing_imports", "organize_imports"]
 
 _UNKNOWN: Final = frozenset({"SC202", "SC203"})
 _UNUSED: Final = "SC206"
+_SHORT: Final[Mapping[str, str]] = {
+    "np": "numpy",
+    "plt": "matplotlib.pyplot",
+    "pd": "pandas",
+    "numpy": "numpy",
+}
+"""Modules by the names under which programs usually import them."""
+_COMMON: Final[Mapping[str, frozenset[str]]] = {
+    "math": frozenset(
+        [
+            "acos",
+            "asin",
+            "atan",
+            "atan2",
+            "ceil",
+            "copysign",
+            "degrees",
+            "dist",
+            "e",
+            "exp",
+            "floor",
+            "hypot",
+            "inf",
+            "isclose",
+            "log",
+            "log10",
+            "pi",
+            "radians",
+            "tan",
+            "tau",
+        ]
+    ),
+    "itertools": frozenset(
+        ["chain", "combinations", "count", "cycle", "pairwise", "permutations", "product"]
+    ),
+    "collections": frozenset(["Counter", "defaultdict", "deque", "namedtuple"]),
+    "functools": frozenset(["cache", "partial", "reduce"]),
+    "dataclasses": frozenset(["dataclass", "field"]),
+    "pathlib": frozenset({"Path"}),
+}
+"""What programs take most often from Python's library."""
 _MOST: Final = 5
 """So many modules are offered for one name."""
 
@@ -52,9 +93,14 @@ def missing_imports(
         modules = [*_modules_with(project, snapshot.filename, name)]
         if name in IMPORTABLE:
             modules.append(IMPORTABLE[name])
+        modules += [module for module, names in _COMMON.items() if name in names]
         for module in dict.fromkeys(modules):
             edit = _import(snapshot, module, name)
             yield Missing(item, f"Import `{name}` from `{module}`", edit)
+        whole = _SHORT.get(name, name)
+        if name in _SHORT or name in sys.stdlib_module_names:
+            called = f"import {whole}" if whole == name else f"import {whole} as {name}"
+            yield Missing(item, f"Write `{called}`", _on_own_line(snapshot, called))
 
 
 def _modules_with(project: Project, importer: str, name: str) -> list[str]:
@@ -106,6 +152,12 @@ def _import(snapshot: Snapshot, module: str, name: str) -> Edit:
             if last.name != "*":
                 span = snapshot.source.span(last)
                 return Edit(Span(span.end_line, span.end_column, span.end_line, span.end_column), f", {name}")
+    return _on_own_line(snapshot, f"from {module} import {name}")
+
+
+def _on_own_line(snapshot: Snapshot, statement: str) -> Edit:
+    """The edit that adds an import after those that are there."""
+    imports = _imports(snapshot.tree.body)
     line = 1
     body = snapshot.tree.body
     if imports:
@@ -116,7 +168,7 @@ def _import(snapshot: Snapshot, module: str, name: str) -> Edit:
         lines = snapshot.source.lines
         while line < len(lines) and lines[line - 1].startswith("#"):
             line += 1
-    text = f"from {module} import {name}\n"
+    text = f"{statement}\n"
     if line > len(snapshot.source.lines):
         end = len(snapshot.source.lines)
         column = len(snapshot.source.lines[-1])

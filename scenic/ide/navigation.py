@@ -3,14 +3,20 @@
 import ast
 import keyword
 import os
+import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from types import ModuleType
 
+from scenic.compiler import tree as scenic
 from scenic.compiler.generated import HARD_KEYWORDS
 from scenic.compiler.scopes import Binding, Resolution, ScopeKind
 from scenic.ide.inheritance import family, own_member, owner_of, subclasses
+from scenic.ide.parameters import parameter_at, settings
 from scenic.ide.snapshot import Snapshot
+from scenic.language import names, operators, properties, specifiers
 from scenic.language.names import RESERVED, TRACKED
+from scenic.language.source import read_source
 from scenic.language.spans import Span
 from scenic.project.classes import class_of, class_of_symbol
 from scenic.project.index import Project
@@ -68,15 +74,46 @@ class RenameError(Exception):
 
 
 def definitions(project: Project, snapshot: Snapshot, line: int, column: int) -> tuple[Target, ...]:
-    """Where the name at a place is defined: nothing for what the language provides.
+    """Where the name at a place is defined: what the language provides, where it is declared with its documentation.
 
-    A name that several places bind leads to all of them; a module to its file.
+    A name that several places bind leads to all of them; a module to its file; a global parameter to where it is set.
     """
     module, found = _occurrence(project, snapshot, line, column)
+    parameter = parameter_at(snapshot, line, column)
+    if module is not None and parameter is not None:
+        name, origin = parameter
+        set_here = [each for each in settings(project, module) if each.name == name]
+        return tuple(Target(each.filename, each.span, each.extent, origin) for each in set_here)
     symbol = None if module is None or found is None else symbol_of(project, module, found)
     if symbol is None or found is None or symbol.is_builtin:
-        return _ego(module, found)
+        return _ego(module, found) or _provided(snapshot, line, column)
     return _targets(symbol, found.span)
+
+
+def _provided(snapshot: Snapshot, line: int, column: int) -> tuple[Target, ...]:
+    """The declaration of what the language provides, which documents it."""
+    index = snapshot.token_at(line, column)
+    if index is None or not snapshot.is_word(index):
+        return ()
+    name = snapshot.tokens.texts[index]
+    node = snapshot.path_to(line, column)[-1]
+    declaring: ModuleType | None = None
+    if isinstance(node, ast.Name) and name in names.NAMES:
+        declaring = names
+    elif name in properties.properties_of("Object") and not isinstance(node, ast.Name):
+        declaring = properties
+    elif isinstance(node, scenic.SpecifierPhrase):
+        declaring, name = specifiers, node.specifier
+    elif isinstance(node, scenic.Operation):
+        declaring, name = operators, node.operator
+    if declaring is None or declaring.__file__ is None:
+        return ()
+    for number, content in enumerate(read_source(declaring.__file__).lines, 1):
+        found = re.search(rf'"{re.escape(name)}\b', content)
+        if found is not None:
+            span = Span(number, found.start() + 1, number, found.end())
+            return (Target(declaring.__file__, span, span, snapshot.span_of_token(index)),)
+    return ()
 
 
 def moniker(project: Project, snapshot: Snapshot, line: int, column: int) -> Moniker | None:
@@ -92,8 +129,8 @@ def moniker(project: Project, snapshot: Snapshot, line: int, column: int) -> Mon
         ScopeKind.MODULE,
         ScopeKind.CLASS,
     )
-    names = [] if symbol.kind is SymbolKind.MODULE else [symbol.container, symbol.name]
-    identifier = ":".join([path, ".".join(filter(None, names))]) if names else path
+    inside = [] if symbol.kind is SymbolKind.MODULE else [symbol.container, symbol.name]
+    identifier = ":".join([path, ".".join(filter(None, inside))]) if inside else path
     return Moniker(identifier, inner, symbol.filename != module.filename)
 
 

@@ -1,0 +1,72 @@
+"""What can stand after a dot: members of modules, of instances, and of values whose kind the text shows."""
+
+from collections.abc import Iterator
+
+from scenic.compiler.checks.context import Context
+from scenic.compiler.kinds import INSTANCES, Kind
+from scenic.ide.expressions import expression, operand_before
+from scenic.ide.parameters import settings
+from scenic.ide.possibilities import Completion, CompletionKind, kind_of_symbol
+from scenic.ide.snapshot import Snapshot
+from scenic.language.members import MEMBERS
+from scenic.language.names import LIFTED_METHODS, NAMES
+from scenic.project.classes import Member, class_of, class_of_symbol, meaning, module_behind
+from scenic.project.index import Project
+from scenic.project.symbols import Symbol, SymbolKind, symbol_of_exported
+
+__all__ = ["members"]
+
+
+def members(
+    project: Project, snapshot: Snapshot, before: tuple[str, ...], line: int, column: int
+) -> Iterator[Completion]:
+    """What can stand after the dot that follows ``before``; nothing if it is not known what has members there."""
+    text = operand_before(before)
+    found = expression(project, snapshot, text, line, column) if text else None
+    if found is None:
+        return
+    module, node = found
+    if text == "globalParameters":
+        for setting in settings(project, module):
+            yield Completion(setting.name, CompletionKind.PARAMETER, setting.name, 1, setting.value)
+        return
+    home = module_behind(project, module, node)
+    if home is not None:
+        exports = project.exports_of(home)
+        for name in sorted(exports.public & exports.names.keys()):
+            brought = symbol_of_exported(project, exports.names[name])
+            place = ("name", brought.filename or "", brought.name)
+            yield Completion(name, kind_of_symbol(brought), name, 1, brought.kind.value, key=place)
+        return
+    symbol = meaning(project, module, node)
+    owner = (
+        symbol if symbol is not None and symbol.kind is SymbolKind.CLASS else class_of(project, module, node)
+    )
+    kind = None
+    if owner is None or owner.name in NAMES:
+        kind = Context(module.tree, module.source, module.resolution).kind_of(node)
+        if owner is None and (_is_instance(kind) or text == "self"):
+            owner = Symbol("Object", SymbolKind.CLASS)  # Of whatever class, it is an object.
+    cls = None if owner is None else class_of_symbol(project, owner)
+    if cls is not None and cls.members:
+        yield from (_of_class(snapshot, member) for member in cls.members)
+    elif kind is not None:
+        of_kind = "region" if kind.name == "workspace" else kind.name
+        for name in MEMBERS.get(of_kind, ()):
+            shown = CompletionKind.METHOD if name in LIFTED_METHODS else CompletionKind.ATTRIBUTE
+            yield Completion(name, shown, name, 3, of_kind)
+
+
+def _is_instance(kind: Kind | None) -> bool:
+    return kind is not None and kind.name in INSTANCES
+
+
+def _of_class(snapshot: Snapshot, member: Member) -> Completion:
+    kind = {
+        SymbolKind.PROPERTY: CompletionKind.PROPERTY,
+        SymbolKind.METHOD: CompletionKind.METHOD,
+    }.get(member.kind, CompletionKind.ATTRIBUTE)
+    own = member.symbol is not None
+    key = ("member", snapshot.filename, member.owner, member.name) if own else ("property", member.name)
+    rank = 8 if member.name.startswith("_") else 1 if own else 2
+    return Completion(member.name, kind, member.name, rank, member.type or member.owner, key=key)
