@@ -13,12 +13,14 @@ import math
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from scenic.analysis.boxes import Boxes
 from scenic.analysis.facts import Fact
+from scenic.analysis.paving import RARE, pave_by_trial, share_that_may_hold
 from scenic.graph import bounding
 from scenic.graph.bounds import Bounds, Floats
 from scenic.graph.domain import Domain
@@ -75,18 +77,6 @@ class Pruning:
     impossible: tuple[Fact, ...]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Boxes:
-    """Boxes of the cube, corners of shape ``(m, dimension)``."""
-
-    lower: Floats
-    upper: Floats
-
-    def volume(self, axes: NDArray[Any]) -> float:
-        """The volume of all of them together, along some axes only."""
-        return float((self.upper - self.lower)[:, axes].prod(axis=1).sum())
-
-
 def prune(graph: Graph, conditions: Sequence[Fact]) -> Domain:
     """The part of the cube in which the conditions can hold; the whole cube where they cannot hold at all."""
     return contract(graph, conditions).domain
@@ -98,7 +88,7 @@ def contract(graph: Graph, conditions: Sequence[Fact]) -> Pruning:
     whole = Domain.whole(graph.dimension)
     if not network.axes:
         return Pruning(whole, _impossible_alone(graph, conditions))
-    boxes = network.contract(_Boxes(whole.lower, whole.upper))
+    boxes = network.contract(Boxes(whole.lower, whole.upper))
     if len(boxes.lower) == 0:
         return Pruning(whole, _impossible_alone(graph, conditions))
     pavings = _pave(graph, conditions, boxes)
@@ -107,13 +97,13 @@ def contract(graph: Graph, conditions: Sequence[Fact]) -> Pruning:
     return Pruning(_product(boxes, pavings), ())
 
 
-def _pave(graph: Graph, conditions: Sequence[Fact], hull: _Boxes) -> list[_Boxes] | None:
+def _pave(graph: Graph, conditions: Sequence[Fact], hull: Boxes) -> list[Boxes] | None:
     """Pavings of the hull, each of axes of its own: of groups of conditions that share no axis with other groups.
 
     ``None`` where some group cannot hold.
     """
     groups = _groups(conditions)
-    pavings: list[_Boxes] = []
+    pavings: list[Boxes] = []
     vain: Counter[tuple[int, ...]] = Counter()
     for group in groups:
         network = _Network(graph, group, VISITS // len(groups))
@@ -148,10 +138,10 @@ def _groups(conditions: Sequence[Fact]) -> list[list[Fact]]:
     return list(groups.values())
 
 
-def _product(hull: _Boxes, pavings: Sequence[_Boxes]) -> Domain:
+def _product(hull: Boxes, pavings: Sequence[Boxes]) -> Domain:
     """The part of the cube that lies in all pavings; where one hardly says more than its hull, that takes its place."""
     lower, upper = hull.lower.copy(), hull.upper.copy()
-    unions: list[tuple[Mask, _Boxes]] = []
+    unions: list[tuple[Mask, Boxes]] = []
     left = 1.0
     for paving in pavings:
         least, most = paving.lower.min(axis=0), paving.upper.max(axis=0)
@@ -178,16 +168,16 @@ def _impossible_alone(graph: Graph, conditions: Sequence[Fact]) -> tuple[Fact, .
     alone = []
     for condition in conditions:
         network = _Network(graph, [condition])
-        if len(network.contract(_Boxes(whole.lower, whole.upper)).lower) == 0:
+        if len(network.contract(Boxes(whole.lower, whole.upper)).lower) == 0:
             alone.append(condition)
     if alone:
         return tuple(alone)
-    left = _Network(graph, conditions).contract(_Boxes(whole.lower, whole.upper))
+    left = _Network(graph, conditions).contract(Boxes(whole.lower, whole.upper))
     impossible = len(left.lower) == 0 or _pave(graph, conditions, left) is None
     return tuple(conditions) if impossible else ()
 
 
-def _moved(before: _Boxes, after: _Boxes, alive: Mask) -> bool:
+def _moved(before: Boxes, after: Boxes, alive: Mask) -> bool:
     """Whether some axis of a box that is still alive lost enough to go on."""
     old = before.upper[alive] - before.lower[alive]
     new = after.upper[alive] - after.lower[alive]
@@ -227,7 +217,7 @@ class _Network:
             if cuts is not None:
                 self._cuts[self.axes[node.operands[0]]] = cuts
 
-    def contract(self, boxes: _Boxes, first: int = FIRST_ROUNDS) -> _Boxes:
+    def contract(self, boxes: Boxes, first: int = FIRST_ROUNDS) -> Boxes:
         """The boxes narrowed, in more than ``first`` passes at least; those that hold no solution are left out."""
         rounds = max(FIRST_ROUNDS, min(ROUNDS, self._visits // max(1, len(self.inner))))
         state = _State(self, boxes)
@@ -242,16 +232,24 @@ class _Network:
                 break
             if number >= first and not _moved(before, boxes, state.alive):
                 break
-        return _Boxes(boxes.lower[state.alive], boxes.upper[state.alive])
+        return Boxes(boxes.lower[state.alive], boxes.upper[state.alive])
 
-    def pave(self, boxes: _Boxes) -> _Boxes:
+    def _once(self, boxes: Boxes) -> Boxes:
+        """The boxes narrowed as long as that helps."""
+        return self.contract(boxes, first=0)
+
+    def pave(self, boxes: Boxes) -> Boxes:
         """Split boxes along the axes below the conditions and narrow the parts, up to a number of boxes."""
         axes = np.array(sorted(self.axes.values()))
         if not 0 < len(axes) <= SPLIT_AXES:
             return boxes
+        are_few = self._combinations() <= LARGEST_ENUMERATION
+        share = 1.0 if are_few else share_that_may_hold(self._once, boxes, axes)
+        if share < RARE:
+            return pave_by_trial(self._once, boxes, axes, share, self._cuts, lambda: self._visits <= 0)
         volume = boxes.volume(axes)
         patience, largest = PATIENCE, LARGEST_PAVING
-        if self._combinations() <= LARGEST_ENUMERATION:
+        if are_few:
             patience, largest = SPLITS, LARGEST_ENUMERATION
         for number in range(SPLITS):
             if not 0 < len(boxes.lower) <= largest // 2 or self._visits <= 0:
@@ -261,8 +259,8 @@ class _Network:
             halves, whole = self._halved(boxes, axes)
             if not len(halves.lower):
                 break
-            halves = self.contract(halves, first=0)
-            boxes = _Boxes(
+            halves = self._once(halves)
+            boxes = Boxes(
                 np.concatenate([whole.lower, halves.lower]), np.concatenate([whole.upper, halves.upper])
             )
         return boxes
@@ -273,7 +271,7 @@ class _Network:
             len(self._cuts[axis]) + 1 if axis in self._cuts else math.inf for axis in self.axes.values()
         )
 
-    def _halved(self, boxes: _Boxes, axes: NDArray[np.intp]) -> tuple[_Boxes, _Boxes]:
+    def _halved(self, boxes: Boxes, axes: NDArray[np.intp]) -> tuple[Boxes, Boxes]:
         """Both halves of each box along its widest axis; and the boxes that cannot be halved.
 
         Axes of discrete distributions are cut between two of their values.
@@ -296,14 +294,14 @@ class _Network:
         each = np.arange(len(rows))
         left[each, axes[widest]] = ends[rows, widest]
         right[each, axes[widest]] = starts[rows, widest]
-        halves = _Boxes(np.concatenate([boxes.lower[rows], right]), np.concatenate([left, boxes.upper[rows]]))
-        return halves, _Boxes(boxes.lower[~splits], boxes.upper[~splits])
+        halves = Boxes(np.concatenate([boxes.lower[rows], right]), np.concatenate([left, boxes.upper[rows]]))
+        return halves, Boxes(boxes.lower[~splits], boxes.upper[~splits])
 
 
 class _State:
     """Bounds of every node over a set of boxes, tightened pass by pass."""
 
-    def __init__(self, network: _Network, boxes: _Boxes) -> None:
+    def __init__(self, network: _Network, boxes: Boxes) -> None:
         self._network = network
         self.alive: Mask = np.ones(len(boxes.lower), dtype=np.bool_)
         """Boxes in which all conditions may still hold."""
@@ -391,7 +389,7 @@ class _State:
         self.alive = self.alive & ~new.empty()
         self._bounds[node] = new
 
-    def boxes(self, before: _Boxes) -> _Boxes:
+    def boxes(self, before: Boxes) -> Boxes:
         """The boxes as the bounds of the axes now are."""
         lower, upper = before.lower.copy(), before.upper.copy()
         for node, axis in self._network.axes.items():
@@ -401,7 +399,7 @@ class _State:
         point = lower == upper
         lower = np.where(point & (upper == 1), np.nextafter(lower, 0), lower)
         upper = np.where(point & (upper < 1), np.nextafter(upper, 1), upper)
-        return _Boxes(lower, upper)
+        return Boxes(lower, upper)
 
 
 def _same(before: Sequence[Bounds | None] | None, now: Sequence[Bounds | None]) -> bool:

@@ -9,7 +9,8 @@ from scipy import stats
 from scipy.sparse import csgraph
 
 from analysis.random_programs import accepted, conditions, seldom_met
-from scenic.analysis import contraction
+from scenic.analysis import contraction, paving
+from scenic.analysis.boxes import Boxes
 from scenic.analysis.contraction import contract, prune
 from scenic.analysis.facts import Fact
 from scenic.graph import construction
@@ -180,7 +181,9 @@ def test_a_paving_that_loses_nothing_ends_soon(sets):
     x, y, z, w = (uniform(-10, 10) for _ in range(4))
     total = make("add", make("absolute", make("subtract", x, y)), make("absolute", make("subtract", z, w)))
     assert check(make("less", total, 35.0)).is_whole
-    assert max(sets) == 2**contraction.PATIENCE
+    # The points that tell whether splitting is worth while come first.
+    assert sets[1] == paving.POINTS
+    assert max(sets[2:]) == 2**contraction.PATIENCE
 
 
 def test_what_may_not_be_evaluated_narrows_nothing():
@@ -493,7 +496,7 @@ def test_so_many_axes_are_split_and_no_more(extra, sets):
     for draw in rest:
         total = make("add", total, draw)
     assert check(make("less", total, 100.0)).is_whole
-    assert max(sets) == (1 if extra else 2**contraction.PATIENCE)
+    assert max(sets[2:], default=1) == (1 if extra else 2**contraction.PATIENCE)
 
 
 def test_a_paving_has_so_many_boxes_at_most():
@@ -502,7 +505,9 @@ def test_a_paving_has_so_many_boxes_at_most():
     radius = make("add", make("power", x, 2), make("power", y, 2))
     ring = make("less", make("absolute", make("subtract", radius, 0.8)), 0.01)
     domain = check(ring)
-    assert contraction.LARGEST_PAVING / 4 < domain.boxes <= contraction.LARGEST_PAVING
+    assert paving.MOST / 4 < domain.boxes <= paving.MOST
+    half = check(make("less", make("absolute", make("subtract", radius, 0.8)), 0.2))
+    assert contraction.LARGEST_PAVING / 4 < half.boxes <= contraction.LARGEST_PAVING
 
 
 def test_few_visits_are_shared_among_groups(monkeypatch):
@@ -535,7 +540,7 @@ def test_what_moves_by_a_third_each_time_goes_on():
     x, y = uniform(0, 1), uniform(0, 1)
     items = [Fact(make("less", a, make("multiply", b, 0.7)), "") for a, b in ((x, y), (y, x))]
     network = contraction._Network(Graph([item.node for item in items]), items)
-    boxes = network.contract(contraction._Boxes(np.zeros((1, 2)), np.ones((1, 2))))
+    boxes = network.contract(Boxes(np.zeros((1, 2)), np.ones((1, 2))))
     assert boxes.upper.max() < 1e-3
 
 

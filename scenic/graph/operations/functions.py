@@ -13,7 +13,7 @@ from scenic.graph.kinds import Column, Kind
 from scenic.graph.node import Node
 from scenic.graph.operation import Call, Operation, Terms, always
 from scenic.graph.operations.encoding import root_of_squares, within
-from scenic.graph.operations.narrowing import sides, where
+from scenic.graph.operations.narrowing import sides
 from scenic.graph.operations.possibilities import may_be_infinite
 from scenic.graph.quaternions import normal_angle, normalize_angle
 
@@ -125,7 +125,21 @@ def _normalize_bounds(_payload: Any, angle: Bounds) -> Bounds:
 
 
 def _normalize_inverse(_payload: Any, result: Bounds, angle: Bounds) -> list[Bounds]:
-    return [where((angle.lower >= -math.pi) & (angle.upper <= math.pi), result)]
+    """The angles within the bounds known so far that whole turns move into the result's."""
+    margin = 1e-12 * (1 + intervals.size(angle))
+    low, high = result.lower - margin, result.upper + margin
+    first = np.ceil((angle.lower - high) / math.tau)
+    last = np.floor((angle.upper - low) / math.tau)
+    turned = Bounds(low + math.tau * first - margin, high + math.tau * last + margin)
+    inside = (angle.lower >= -math.pi) & (angle.upper <= math.pi)
+    known = np.isfinite(margin) & (margin < 1e-3)
+    # What is at the seam may count as either end.
+    return [
+        Bounds(
+            np.where(inside, result.lower, np.where(known, turned.lower, -np.inf)),
+            np.where(inside, result.upper, np.where(known, turned.upper, np.inf)),
+        )
+    ]
 
 
 def _normalize_solver(terms: Terms, _payload: Any, angle: Any) -> Any:

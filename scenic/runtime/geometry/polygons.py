@@ -9,6 +9,12 @@ import numpy.typing as npt
 
 from scenic.runtime.geometry.poses import Booleans, Floats
 
+_ROUNDING: Final = 4e-16
+"""Relative error of a number times an area."""
+
+Ends = tuple[Floats, Floats]
+"""Lower and upper ends of numbers, ``(m | 1,)`` each."""
+
 TOLERANCE: Final = 1e-9
 """Metres by which something may stick out of a container, for rounding."""
 
@@ -95,6 +101,57 @@ class Polygons:
         ab, ac = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
         return corners, np.cumsum(0.5 * np.abs(ab[:, 0] * ac[:, 1] - ab[:, 1] * ac[:, 0]))
 
+    @property
+    def choice_cuts(self) -> Floats:
+        """The numbers at which `sample` goes from one triangle to the next, ascending."""
+        areas = self._triangles[1]
+        return np.asarray(areas[:-1] / areas[-1])
+
+    @cached_property
+    def _ranges(self) -> list[tuple[Floats, Floats]]:
+        """The boxes of 1, 2, 4, ... triangles from each one on: corners ``(t, 2)`` each."""
+        corners, _ = self._triangles
+        levels = [(corners.min(axis=1), corners.max(axis=1))]
+        while 2 ** len(levels) <= len(corners):
+            step = 2 ** (len(levels) - 1)
+            low, high = levels[-1]
+            levels.append((np.minimum(low[:-step], low[step:]), np.maximum(high[:-step], high[step:])))
+        return levels
+
+    def drawn_bounds(self, choice: Ends, first: Ends, second: Ends) -> tuple[Floats, Floats]:
+        """Boxes, corners ``(m, 2)`` each, of the points that `sample` makes of numbers between ends ``(m | 1,)``."""
+        corners, areas = self._triangles
+        last = len(areas) - 1
+        choice_low, choice_high, *others = np.broadcast_arrays(*choice, *first, *second)
+        # Boxes that end at a break between triangles hold one of them: at the break, up to rounding, both are as good, since
+        # no number is drawn there but with a probability of some 1e-16.
+        begin = np.minimum(
+            np.searchsorted(areas, choice_low * areas[-1] * (1 + _ROUNDING), side="right"), last
+        )
+        end = np.minimum(np.searchsorted(areas, choice_high * areas[-1] * (1 - _ROUNDING), side="left"), last)
+        end = np.maximum(end, begin)
+        level = np.frexp(end - begin + 1.0)[1] - 1
+        lower, upper = np.empty((len(begin), 2)), np.empty((len(begin), 2))
+        for number, (low, high) in enumerate(self._ranges):
+            mine = np.flatnonzero(level == number)
+            one, two = begin[mine], end[mine] + 1 - 2**number
+            lower[mine] = np.minimum(low[one], low[two])
+            upper[mine] = np.maximum(high[one], high[two])
+        single = np.flatnonzero(begin == end)
+        if len(single):
+            a, b, c = np.moveaxis(corners[begin[single]], 1, 0)
+            first_low, first_high, second_low, second_high = (part[single, None] for part in others)
+            # For either number alone a point moves along a line: the extremes are at the ends.
+            points = [
+                a + root * ((b - a) + along * (c - b))
+                for root in (np.sqrt(first_low), np.sqrt(first_high))
+                for along in (second_low, second_high)
+            ]
+            lower[single] = np.minimum.reduce(points)
+            upper[single] = np.maximum.reduce(points)
+        slack = 1e-12 * np.maximum(np.abs(lower), np.abs(upper)) + 1e-12
+        return lower - slack, upper + slack
+
     def sample(self, choice: Floats, first: Floats, second: Floats) -> Floats:
         """Points ``(n, 2)``, uniform by area, from three columns ``(n,)`` of uniform numbers in (0, 1)."""
         corners, areas = self._triangles
@@ -143,6 +200,13 @@ class Polygons:
 
         distances: Floats = shapely.distance(self.polygon, shapely.points(x, y))
         return distances
+
+    def depths(self, x: Floats, y: Floats) -> Floats:
+        """Distances of points of the plane from what lies outside, ``(n,)``; 0 outside."""
+        import shapely
+
+        depths = shapely.distance(self._boundary, shapely.points(x, y))
+        return np.where(self.contains(x, y), depths, 0.0)
 
     def nearly_contains(self, x: Floats, y: Floats) -> Booleans:
         """Which points lie inside up to the tolerance, ``(n,)``."""

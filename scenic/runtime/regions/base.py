@@ -192,6 +192,13 @@ class Region(metaclass=_RegionType):
         """How far points ``(n, 3)`` are at least from the region as a container, shape ``(n,)``; 0 where unknown."""
         return np.zeros(len(points))
 
+    def depths(self, points: Points, *columns: Column) -> NDArray[np.float64]:
+        """How far points ``(n, 3)`` are at most from what lies outside of the region as a container, shape ``(n,)``.
+
+        0 outside, infinite where nothing is known. Of a region in the plane, seen from above.
+        """
+        return np.full(len(points), np.inf)
+
     def box(self, *columns: Column) -> tuple[Points, Points]:
         """Lower and upper corners ``(n | 1, 3)`` of boxes that hold the region; infinite where it is not bounded."""
         return np.full((1, 3), -np.inf), np.full((1, 3), np.inf)
@@ -211,6 +218,14 @@ class Region(metaclass=_RegionType):
         """
         columns = fixed(parameters)
         return None if columns is None else Bounds(*self.box(*columns))
+
+    def drawn_extent(self, numbers: Sequence[Bounds], *parameters: Bounds | None) -> Bounds | None:
+        """Bounds ``(m | 1, 3)`` of points that are drawn by numbers in these bounds; here, those of any point."""
+        return self.extent(*parameters)
+
+    def draw_cuts(self) -> NDArray[np.float64] | None:
+        """Values ``(m,)``, ascending, of the first uniform number of a draw, between which the point does not depend on it."""
+        return None
 
     def container_extent(self, *parameters: Bounds | None) -> Bounds | None:
         """As `extent`, of the region as a container."""
@@ -524,7 +539,10 @@ def _draw(call: Call, *columns: Column) -> Column:
 
 
 def _point_extent(region: Region, *operands: Bounds | None) -> Bounds | None:
-    found = region.extent(*operands[region.draws + 1 :])
+    count = region.draws
+    numbers = [operand for operand in operands[:count] if operand is not None]
+    parameters = operands[count + 1 :]
+    found = region.drawn_extent(numbers, *parameters) if len(numbers) == count else region.extent(*parameters)
     return None if found is None else Bounds(found.lower - SLACK, found.upper + SLACK)
 
 
@@ -538,6 +556,8 @@ _DRAW = Operation(
     _draw,
     "A uniform point of a region, from uniform numbers and a key; rejected where the region is empty.",
     bounds=_point_extent,
+    cuts=lambda region, operands: region.draw_cuts() if operands and operands[0].is_axis else None,
+    partial=True,
     rejects=_may_find_none,
     missing="point of the region",
 )

@@ -470,6 +470,11 @@ class IntersectionRegion(Composite):
             reduce(np.maximum, [member.gaps(points, *mine) for member, mine in self._parts(columns)])
         )
 
+    def depths(self, points: Points, *columns: Column) -> NDArray[np.float64]:
+        return np.asarray(
+            reduce(np.minimum, [member.depths(points, *mine) for member, mine in self._parts(columns)])
+        )
+
     def box(self, *columns: Column) -> tuple[Points, Points]:
         boxes = [member.box(*mine) for member, mine in self._parts(columns)]
         lower = reduce(np.maximum, [low for low, _ in boxes])
@@ -695,6 +700,12 @@ class DifferenceRegion(Composite):
     def gaps(self, points: Points, *columns: Column) -> NDArray[np.float64]:
         (first, mine), _ = self._parts(columns)
         return first.gaps(points, *mine)
+
+    def depths(self, points: Points, *columns: Column) -> NDArray[np.float64]:
+        (first, mine), (second, others) = self._parts(columns)
+        depths = first.depths(points, *mine)
+        # What is cut out of a container of the plane is cut out at every height.
+        return np.minimum(depths, second.gaps(points, *others)) if _is_flat(self) else depths
 
     def box(self, *columns: Column) -> tuple[Points, Points]:
         (first, mine), _ = self._parts(columns)

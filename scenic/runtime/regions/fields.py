@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scenic.graph import quaternions
+from scenic.graph.bounds import Bounds
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import Call, Operation, always
 from scenic.language.errors import RejectionException, ScenicTypeError, ScenicValueError
@@ -147,6 +148,10 @@ class TabulatedField(VectorField):
     def headings(self, points: Points) -> tuple[Headings, Mask]:
         """Headings ``(n,)``, anticlockwise from north, at points ``(n, 3)``, and which points have one, ``(n,)``."""
 
+    def heading_bounds(self, points: Bounds) -> Bounds | None:
+        """Bounds ``(m,)`` of the headings at points in boxes ``(m, 3)``; ``None`` where nothing is known."""
+        return None
+
     def __getitem__(self, position: Any) -> Any:
         place = to_vector(position, f"field {self.name!r}")
         if isinstance(place, Random) and self._is_table:
@@ -198,6 +203,7 @@ class PolygonalVectorField(TabulatedField):
             headings = [*(heading for _, heading in self.cells), defaultHeading or 0.0]
             self._table = np.array(headings, dtype=np.float64)
         self._index: CellIndex | None = None
+        self._boxes: tuple[NDArray[np.float64], NDArray[np.float64]] | None = None
         super().__init__(name, self._value, **options)
 
     def _nearest_cells(self, x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.intp]:
@@ -211,6 +217,23 @@ class PolygonalVectorField(TabulatedField):
         assert self._table is not None
         cells = self._nearest_cells(points[:, 0], points[:, 1])
         return self._table[cells], (cells < len(self.cells)) | (self.defaultHeading is not None)
+
+    def heading_bounds(self, points: Bounds) -> Bounds | None:
+        if self._table is None or len(self.cells) > _MOST_BOUNDED:
+            return None
+        if self._boxes is None:
+            corners = np.array([_polygon(cell).bounds for cell, _ in self.cells]).reshape(-1, 4)
+            self._boxes = corners[:, :2], corners[:, 2:]
+        low, high = self._boxes
+        lower, upper = points.lower[:, np.newaxis, :2], points.upper[:, np.newaxis, :2]
+        met = ((lower <= high + _EDGE) & (upper >= low - _EDGE)).all(axis=2)
+        # The last entry of the table is the heading outside of all cells.
+        outside = np.full((met.shape[0], 1), self.defaultHeading is not None)
+        held: NDArray[np.bool_] = np.concatenate([met, outside], axis=1)
+        held[~held.any(axis=1)] = True  # no candidate has a heading there
+        return Bounds(
+            np.where(held, self._table, np.inf).min(axis=1), np.where(held, self._table, -np.inf).max(axis=1)
+        )
 
     @property
     def _is_table(self) -> bool:  # type: ignore[override] # only where every cell has a heading of its own
@@ -465,6 +488,12 @@ class _Absent:
     """Stands for a value that no call has given; ``None`` would be one that the function gives."""
 
 
+_MOST_BOUNDED: Final = 1 << 10
+"""Cells up to which bounds of headings are looked for."""
+
+_EDGE: Final = 1e-6
+"""Metres by which boxes of cells are widened."""
+
 _ABSENT: Final = _Absent()
 _HEADINGS: Final = (float, int, _Absent)
 
@@ -536,11 +565,16 @@ def _headings(call: Call, points: Column) -> Column:
     return np.asarray(headings)
 
 
+def _heading_bounds(field: TabulatedField, points: Bounds) -> Bounds | None:
+    return field.heading_bounds(points)
+
+
 _HEADING = Operation(
     "field heading",
     always(Kind.SCALAR),
     _headings,
     "The heading of a field of polygons; the candidate is rejected where it has none.",
+    bounds=_heading_bounds,
     rejects=True,
     missing="direction of the field",
 )

@@ -50,6 +50,7 @@ def containment_bounds(payload: Containment, *operands: Bounds | None) -> Bounds
         corners = Bounds(low.reshape(-1, 3), high.reshape(-1, 3))
         away = _is_away(payload.region, corners, columns, SLACK)
         outside = outside | away.reshape(low.shape[:2]).any(axis=1)
+        outside = outside | _is_near_the_edge(payload, container, operands, columns)
     return truth(np.zeros_like(outside), outside)
 
 
@@ -63,7 +64,10 @@ def containment_inverse(
         return nothing
     lower, upper = container.lower - SLACK, container.upper + SLACK
     new = Bounds(lower[:, np.newaxis] - reach.upper, upper[:, np.newaxis] - reach.lower)
-    return [where(result.lower > 0, Bounds(new.lower.max(axis=1), new.upper.min(axis=1))), *nothing[1:]]
+    inradius = _inradius(payload, operands)[:, np.newaxis]
+    least = np.maximum(new.lower.max(axis=1), lower + inradius)
+    most = np.minimum(new.upper.min(axis=1), upper - inradius)
+    return [where(result.lower > 0, Bounds(least, most)), *nothing[1:]]
 
 
 def point_bounds(region: "Region", point: Bounds | None, *parameters: Bounds | None) -> Bounds | None:
@@ -125,6 +129,49 @@ def _is_away(region: "Region", boxes: Bounds, columns: Sequence[Floats], slack: 
     gaps = region.gaps(centre, *columns)
     away: Mask = known & (gaps > radius + slack)
     return away
+
+
+def _is_near_the_edge(
+    payload: Containment, container: Bounds, operands: Sequence[Bounds | None], columns: Sequence[Floats]
+) -> Mask:
+    """Which bodies are certainly less deep in a container than the balls or discs are large that they hold."""
+    position = operands[0]
+    assert position is not None
+    inradius = _inradius(payload, operands)
+    if _is_column(container):
+        z = np.array([False, False, True])
+        position = Bounds(np.where(z, 0.0, position.lower), np.where(z, 0.0, position.upper))
+        inradius = np.maximum(inradius, _inradius(payload, operands, upright=True))
+    centre, radius, known = _ball(position)
+    depths = payload.region.depths(centre, *columns)
+    near: Mask = known & (depths + radius + SLACK < inradius)
+    return near
+
+
+def _is_column(container: Bounds) -> bool:
+    """Whether a container reaches to every height."""
+    return bool(np.isinf(container.lower[:, 2]).all() and np.isinf(container.upper[:, 2]).all())
+
+
+def _inradius(
+    payload: Containment, operands: Sequence[Bounds | None], *, upright: bool = False
+) -> NDArray[np.float64]:
+    """The radius ``(m,)`` of a ball about the position that a body holds at least; 0 where nothing is known.
+
+    If it is asked of what stands ``upright``, that of a disc seen from above; 0 where the body may be tilted.
+    """
+    orientation, size = operands[1:3]
+    mesh = payload.mesh
+    if mesh is None or orientation is None or size is None or not mesh.is_convex:
+        return np.zeros(1)
+    planes = mesh.hull.planes
+    inner = max(0.0, float((-planes[:, 3] / np.sqrt((planes[:, :3] ** 2).sum(axis=1))).min()))
+    axes = 2 if upright else 3
+    radius: NDArray[np.float64] = np.maximum(size.lower[:, :axes].min(axis=1), 0.0) * (inner * (1 - 1e-9))
+    if upright:
+        tilt = np.maximum(np.abs(orientation.lower), np.abs(orientation.upper))[:, :2]
+        radius = np.where((tilt == 0).all(axis=1), radius, 0.0)
+    return radius
 
 
 def _ball(boxes: Bounds) -> tuple[Floats, Floats, Mask]:

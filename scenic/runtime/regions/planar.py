@@ -14,7 +14,7 @@ from scenic.graph import intervals
 from scenic.graph.bounds import Bounds, outward
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import Call, Operation, always
-from scenic.graph.operations.functions import length_bounds
+from scenic.graph.operations.functions import cos_bounds, length_bounds, sin_bounds
 from scenic.language.errors import InvalidScenarioError, ScenicTypeError, ScenicValueError
 from scenic.runtime.geometry import containment
 from scenic.runtime.geometry.collision import Body
@@ -234,10 +234,18 @@ def disc_extent(center: Bounds | None, radius: Bounds | None) -> Bounds | None:
     return intervals.add(center, Bounds(-reach, reach))
 
 
-def _disc_bounds(_payload: Any, first: Bounds, _second: Bounds) -> Bounds:
-    reach = outward(first.upper, np.sqrt(first.upper), ulps=4).upper
-    upper = np.stack([reach, reach, np.zeros_like(reach)], axis=-1)
-    return Bounds(-upper, upper)
+def _disc_bounds(_payload: Any, first: Bounds, second: Bounds) -> Bounds:
+    radius = outward(np.sqrt(first.lower), np.sqrt(first.upper), ulps=4)
+    radius = Bounds(np.maximum(radius.lower, 0.0), radius.upper)
+    angle = Bounds(math.tau * second.lower, math.tau * second.upper)
+    x, y = (intervals.multiply(radius, wave(None, angle)) for wave in (cos_bounds, sin_bounds))
+    return intervals.widened(intervals.stacked([x, y, Bounds.exactly(0.0)]), 1e-14)
+
+
+def _disc_inverse(_payload: Any, result: Bounds, _first: Bounds, _second: Bounds) -> list[Bounds | None]:
+    """The squares of the distances that points in these bounds have from the middle."""
+    squares = [intervals.square(part) for part in intervals.components(result)[:2]]
+    return [intervals.widened(intervals.total(squares), 1e-13), None]
 
 
 DISC_POINT = Operation(
@@ -246,6 +254,7 @@ DISC_POINT = Operation(
     _disc_point,
     "A uniform point of the unit disc, from two axes.",
     bounds=_disc_bounds,
+    inverse=_disc_inverse,
 )
 
 
@@ -323,6 +332,11 @@ class CircularRegion(PlanarRegion):
         center, radius = columns
         dx, dy = points[:, 0] - center[:, 0], points[:, 1] - center[:, 1]
         return np.asarray(np.maximum(np.hypot(dx, dy) - radius, 0))
+
+    def depths(self, points: Points, *columns: Column) -> Column:
+        center, radius = columns
+        dx, dy = points[:, 0] - center[:, 0], points[:, 1] - center[:, 1]
+        return np.asarray(np.maximum(radius - np.hypot(dx, dy), 0))
 
     def nearest(self, points: Points, *columns: Column) -> Points:
         center, radius = columns
@@ -496,6 +510,11 @@ class RectangularRegion(PlanarRegion):
             np.maximum(np.abs(across) - columns[2] / 2, 0), np.maximum(np.abs(along) - columns[3] / 2, 0)
         )
 
+    def depths(self, points: Points, *columns: Column) -> Column:
+        across, along = self._local(points, *columns)
+        inside = np.minimum(columns[2] / 2 - np.abs(across), columns[3] / 2 - np.abs(along))
+        return np.asarray(np.maximum(inside, 0))
+
     def _local(
         self, points: Points, position: Column, heading: Column, *_size: Column
     ) -> tuple[Column, Column]:
@@ -596,6 +615,17 @@ class PolygonalRegion(PlanarRegion):
     def beside(self, points: Points, *columns: Column) -> Column:
         return self.outline.distances(points[:, 0], points[:, 1])
 
+    def depths(self, points: Points, *columns: Column) -> Column:
+        return self.outline.depths(points[:, 0], points[:, 1])
+
+    def drawn_extent(self, numbers: Sequence[Bounds], *parameters: Bounds | None) -> Bounds | None:
+        lower, upper = self.outline.drawn_bounds(*((part.lower, part.upper) for part in numbers))
+        height = np.full(len(lower), self.z)
+        return Bounds(np.column_stack([lower, height]), np.column_stack([upper, height]))
+
+    def draw_cuts(self) -> Column:
+        return self.outline.choice_cuts
+
     def heights(self, *columns: Column) -> Column:
         return np.full(1, self.z)
 
@@ -656,6 +686,9 @@ class Footprint(Region):
 
     def gaps(self, points: Points, *columns: Column) -> Column:
         return self.region.gaps(points, *columns)
+
+    def depths(self, points: Points, *columns: Column) -> Column:
+        return self.region.depths(points, *columns)
 
     def box(self, *columns: Column) -> tuple[Points, Points]:
         return self.region.container_box(*columns)

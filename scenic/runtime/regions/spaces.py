@@ -150,6 +150,9 @@ class Workspace(Region):
     def gaps(self, points: Points, *columns: Column) -> NDArray[np.float64]:
         return self.region.gaps(points, *columns)
 
+    def depths(self, points: Points, *columns: Column) -> NDArray[np.float64]:
+        return self.region.depths(points, *columns)
+
     def box(self, *columns: Column) -> tuple[Points, Points]:
         return self.region.box(*columns)
 

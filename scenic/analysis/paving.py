@@ -1,0 +1,139 @@
+"""Splitting boxes of the cube where few of their points can meet the conditions.
+
+Where a condition couples axes, as an angle and a place in a narrow corridor, halving them one after the other may show nothing
+for many rounds. So the axis to split is tried out: the one whose parts lose most. Everything is counted, never timed.
+"""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from itertools import combinations
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from scenic.analysis.boxes import Boxes
+from scenic.graph.bounds import Floats
+
+Contract = Callable[[Boxes], Boxes]
+"""Narrows boxes, and leaves out those that hold no solution."""
+
+RARE: Final = 0.25
+"""Boxes are split by trial where fewer than this share of their points may meet the conditions."""
+
+POINTS: Final = 256
+"""Points that tell this share."""
+
+MOST: Final = 1024
+"""Boxes, at most; twice as many where hardly any point may meet the conditions."""
+
+HARDLY_ANY: Final = 0.01
+"""The share that counts as hardly any."""
+
+CUT: Final = 256
+"""Boxes, at most, that cutting into more than halves gives."""
+
+TRIED: Final = 16
+"""Boxes up to which every axis is tried."""
+
+SECTIONS: Final = 16
+"""Parts into which boxes are cut along an axis where halves lose nothing."""
+
+LOSS: Final = 0.01
+"""The least share of the volume that counts as lost."""
+
+VAIN: Final = 3
+"""Rounds without a loss, of many boxes, after which splitting ends."""
+
+
+def share_that_may_hold(contract: Contract, hull: Boxes, axes: NDArray[np.intp]) -> float:
+    """About the share of points of a box that may meet the conditions, by points that are spread evenly along some axes."""
+    # The additive sequence of the generalised golden ratio (M. Roberts, "The unreasonable effectiveness of
+    # quasirandom sequences", 2018).
+    ratio = 2.0
+    for _ in range(64):
+        ratio = (1 + ratio) ** (1 / (len(axes) + 1))
+    steps = ratio ** -np.arange(1.0, len(axes) + 1)
+    places = np.mod(0.5 + np.arange(1, POINTS + 1)[:, np.newaxis] * steps, 1.0)
+    lower, upper = np.tile(hull.lower[:1], (POINTS, 1)), np.tile(hull.upper[:1], (POINTS, 1))
+    points = lower[:, axes] + (upper[:, axes] - lower[:, axes]) * places
+    lower[:, axes] = upper[:, axes] = points
+    return len(contract(Boxes(lower, upper))) / POINTS
+
+
+def pave_by_trial(
+    contract: Contract,
+    hull: Boxes,
+    axes: NDArray[np.intp],
+    share: float,
+    cuts: Mapping[int, Floats],
+    is_spent: Callable[[], bool],
+) -> Boxes:
+    """Boxes that hold all solutions of a box.
+
+    Args:
+        contract: narrows boxes.
+        hull: the box.
+        axes: those below the conditions.
+        share: how many of its points may meet the conditions.
+        cuts: by axis, where values change that are the same between: boxes are cut there first.
+        is_spent: tells when no more work may be done.
+
+    """
+    boxes, vain = hull, 0
+    split = axes.tolist()
+    for axis, places in cuts.items():
+        if axis in split and len(boxes) * (len(places) + 1) <= CUT:
+            boxes = contract(boxes.cut(axis, places))
+            split.remove(axis)
+    useful = np.array(split, dtype=np.intp)
+    most = MOST if share > HARDLY_ANY else 2 * MOST
+    while split and 0 < 2 * len(boxes) <= most and not is_spent():
+        if vain == VAIN:
+            if len(useful) == len(split):
+                break
+            useful, vain = np.array(split, dtype=np.intp), 0  # what gained nothing at first may now
+        volume = boxes.volume(axes)
+        found = None
+        if len(boxes) <= TRIED:
+            for ways in _ways(split, len(boxes)):
+                tried = [contract(_cut_along(boxes, way)) for way in ways]
+                left = [each.volume(axes) for each in tried]
+                losing = [way for way, rest in zip(ways, left, strict=True) if rest < (1 - LOSS) * volume]
+                if losing:
+                    found = tried[int(np.argmin(left))]
+                    useful = np.array(sorted({axis for way in losing for axis, _ in way}), dtype=np.intp)
+                    break
+        if found is None:
+            found = contract(boxes.divided(_widest(boxes, useful)))
+            vain = vain + 1 if len(boxes) > TRIED and found.volume(axes) > (1 - LOSS) * volume else 0
+        boxes = found
+    return boxes
+
+
+Way = Sequence[tuple[int, int]]
+"""Axes, each with the number of parts into which boxes are cut along it."""
+
+
+def _ways(axes: Sequence[int], count: int) -> Iterator[list[Way]]:
+    """Ways to cut so many boxes, cheap ones first: in halves, in sections, in sections along two axes."""
+    yield [[(axis, 2)] for axis in axes]
+    if count * SECTIONS <= CUT:
+        yield [[(axis, SECTIONS)] for axis in axes]
+    parts = SECTIONS // 2 if count * SECTIONS * 4 <= CUT else SECTIONS // 4
+    if count * parts * parts <= CUT:
+        yield [[(one, parts), (two, parts)] for one, two in combinations(axes, 2)]
+
+
+def _cut_along(boxes: Boxes, way: Way) -> Boxes:
+    for axis, parts in way:
+        boxes = boxes.divided(np.full(len(boxes), axis), parts)
+    return boxes
+
+
+def _widest(boxes: Boxes, axes: NDArray[np.intp]) -> NDArray[np.intp]:
+    """Of some axes, the one along which each box is widest, ``(m,)``."""
+    widest: NDArray[np.intp] = axes[(boxes.upper - boxes.lower)[:, axes].argmax(axis=1)]
+    return widest
+
+
+__all__ = ["RARE", "pave_by_trial", "share_that_may_hold"]
